@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+# shellcheck shell=bash disable=SC2034  # variables for the commands that source this
+#
+# What the commands of this directory share. Each of them starts with
+#
+#     source "$(dirname "${BASH_SOURCE[0]}")/common.bash"
+#
+# which switches to the root of the workspace and turns every error into a stop.
+
+set -euo pipefail
+shopt -s inherit_errexit nullglob
+
+workspace=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$workspace"
+
+venv=$workspace/.venv
+requirements=inverse_dynamics_tools/requirements.txt
+
+# Debian's ament, colcon and pluginlib belong to Debian's own python3, whatever `python3` is first on PATH.
+system_python=/usr/bin/python3
+
+# Debian and Ubuntu packages, in groups.
+apt_packages=(
+  # Fetching, compiling, checking.
+  ca-certificates git g++ cmake ninja-build ccache clang-tidy shellcheck
+  # Python and its virtual environment.
+  python3 python3-dev python3-venv
+  # The colcon command and the extensions that the builds here need.
+  colcon python3-colcon-bash python3-colcon-cmake python3-colcon-defaults
+  python3-colcon-library-path python3-colcon-metadata python3-colcon-output
+  python3-colcon-package-information python3-colcon-package-selection
+  python3-colcon-parallel-executor python3-colcon-pkg-config python3-colcon-recursive-crawl
+  python3-colcon-ros python3-colcon-test-result
+  # ament and plugins.
+  ament-cmake ament-cmake-googletest ament-cmake-pytest ament-cmake-python
+  libament-index-cpp-dev python3-ament-index libclass-loader-dev pluginlib-dev
+  # Mathematics, robot descriptions, data files, tests.
+  libeigen3-dev libgtest-dev liborocos-kdl-dev liburdfdom-dev libyaml-cpp-dev
+  # Pictures of simulated robots without a screen.
+  libosmesa6
+)
+
+say() { printf '==> %s\n' "$*"; }
+note() { printf '    %s\n' "$*"; }
+fail() {
+  printf 'error: %s\n' "$1" >&2
+  shift
+  [ $# -eq 0 ] || printf '       %s\n' "$@" >&2
+  exit 1
+}
+
+# 75 -> "1 min 15 s"
+duration() {
+  if [ "$1" -ge 60 ]; then echo "$(($1 / 60)) min $(($1 % 60)) s"; else echo "$1 s"; fi
+}
+
+# Runs the virtual environment's Python first, and forgets workspaces that the shell had sourced
+# (a sourced ROS 2 stays: it then provides ament and pluginlib).
+enter_venv() {
+  export VIRTUAL_ENV=$venv PATH=$venv/bin:$PATH
+  unset PYTHONHOME
+  if [ -z "${ROS_DISTRO:-}" ]; then
+    unset AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH PYTHONPATH
+  fi
+}
+
+# Sources what was built: libraries, plugins, the Python package and the `ids` command.
+enter_install() {
+  enter_venv
+  [ -f install/local_setup.bash ] || fail "nothing is built yet" "run ./scripts/build first"
+  # colcon's script reads variables that nobody has set
+  set +u
+  # shellcheck source=/dev/null
+  source install/local_setup.bash
+  set -u
+}
