@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// The one exception of this package: a robot that can't be, or can't be read.
+///
+///     throw ModelError("arm.yaml:31: joint elbow", "friction", "5 numbers", "4 numbers",
+///                      "give fv, fo, fc, alpha, nu");
+///     // arm.yaml:31: joint elbow: friction: expected 5 numbers, got 4 numbers; give fv, ...
+
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace chain_dynamics {
+
+/// A user's mistake in a robot description, model file or argument.
+///
+/// The text says where, what, what was expected, what was found, and the remedy. Mistakes of
+/// developers (a vector of the wrong size) are assertions of debug builds instead.
+class ModelError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+
+  /// Text `where: what: expected ..., got ...; remedy`. An empty remedy is left out.
+  ModelError(const std::string& where, const std::string& what, const std::string& expected,
+             const std::string& got, const std::string& remedy)
+      : std::runtime_error(where + ": " + what + ": expected " + expected + ", got " + got +
+                           (remedy.empty() ? "" : "; " + remedy)) {}
+};
+
+}  // namespace chain_dynamics

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/chain.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <utility>
+
+namespace chain_dynamics {
+namespace {
+
+constexpr double kRotationTolerance = 1e-9;  // entries of R'R - 1: what ten printed digits leave
+constexpr double kInertiaTolerance = 1e-9;  // of the greatest moment: published figures are rounded
+
+// Any printable value, with enough digits to find it in a file.
+template <typename Value>
+std::string text(const Value& value) {
+  std::ostringstream stream;
+  stream.precision(10);
+  stream << value;
+  return stream.str();
+}
+
+std::string text(const Eigen::Vector3d& value) {
+  return "[" + text(value.x()) + ", " + text(value.y()) + ", " + text(value.z()) + "]";
+}
+
+void checkGravity(const std::string& chain, const Eigen::Vector3d& gravity) {
+  if (!gravity.allFinite()) {
+    throw ModelError(chain, "gravity", "three finite numbers [m/s^2]", text(gravity),
+                     "for example [0, 0, -9.81]");
+  }
+}
+
+void checkPose(const std::string& where, const std::string& what, const Transform<double>& X) {
+  if (!X.R.allFinite() || !X.p.allFinite()) {
+    throw ModelError(where, what, "finite numbers", "a NaN or an infinity", "");
+  }
+  const double error = (X.R.transpose() * X.R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (error > kRotationTolerance || X.R.determinant() < 0) {
+    throw ModelError(
+        where, what, "a rotation matrix",
+        "columns off orthonormal by " + text(error) + ", determinant " + text(X.R.determinant()),
+        "make it from angles or a unit quaternion");
+  }
+}
+
+void checkLimits(const std::string& where, const JointLimits& limits) {
+  if (!(limits.lower <= limits.upper)) {
+    throw ModelError(where, "position limits", "lower <= upper",
+                     text(limits.lower) + " and " + text(limits.upper),
+                     "leave out what is unknown");
+  }
+  if (!(limits.velocity >= 0) || !(limits.effort >= 0)) {
+    throw ModelError(where, "velocity and effort limits", "numbers >= 0",
+                     text(limits.velocity) + " and " + text(limits.effort),
+                     "leave out what is unknown");
+  }
+}
+
+void checkJoint(const std::string& where, const Joint& joint) {
+  checkPose(where, "placement", joint.placement);
+  checkLimits(where, joint.limits);
+  if (!std::isfinite(joint.rotor_inertia) || joint.rotor_inertia < 0) {
+    throw ModelError(where, "rotor inertia", "a finite number >= 0", text(joint.rotor_inertia), "");
+  }
+}
+
+void checkLink(const std::string& where, const LinkParameters& link) {
+  if (!link.toVector().allFinite()) {
+    throw ModelError(where, "inertial parameters", "ten finite numbers", "a NaN or an infinity",
+                     "");
+  }
+  if (link.mass < 0) {
+    throw ModelError(where, "mass", "a number >= 0 [kg]", text(link.mass), "");
+  }
+  const double asymmetry = (link.inertia - link.inertia.transpose()).cwiseAbs().maxCoeff();
+  if (asymmetry > 0) {
+    throw ModelError(where, "moment of inertia", "a symmetric matrix",
+                     "entries that differ by " + text(asymmetry), "");
+  }
+}
+
+void checkSizes(const std::string& chain, std::size_t joints, std::size_t links) {
+  if (joints == 0) {
+    throw ModelError(chain, "joints", "at least one movable joint", "none",
+                     "a chain without joints has no torques");
+  }
+  if (links != joints) {
+    throw ModelError(chain, "links", "one per joint (" + std::to_string(joints) + ")",
+                     std::to_string(links), "");
+  }
+}
+
+// Names are how callers tell joints apart.
+void checkNames(const std::string& chain, const std::vector<Joint>& joints) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i].name.empty()) {
+      throw ModelError(chain, "name of joint " + std::to_string(i + 1), "a name", "none", "");
+    }
+    if (!names.insert(joints[i].name).second) {
+      throw ModelError(chain, "joint names", "each once", "'" + joints[i].name + "' twice", "");
+    }
+  }
+}
+
+}  // namespace
+
+Chain::Chain(std::string name, std::vector<Joint> joints, std::vector<LinkParameters> links,
+             const Eigen::Vector3d& gravity, const Transform<double>& tip)
+    : name_(std::move(name)),
+      joints_(std::move(joints)),
+      links_(std::move(links)),
+      gravity_(gravity),
+      tip_(tip) {
+  const std::string where = "chain " + name_;
+  checkSizes(where, joints_.size(), links_.size());
+  checkNames(where, joints_);
+  checkGravity(where, gravity_);
+  checkPose(where, "tip", tip_);
+
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const std::string joint = where + ": joint " + joints_[i].name;
+    const std::string link = where + ": link moved by joint " + joints_[i].name;
+    checkJoint(joint, joints_[i]);
+    checkLink(link, links_[i]);
+
+    const std::string defect = inertiaDefect(links_[i]);
+    if (!defect.empty()) {
+      warnings_.push_back(link + ": " + defect);
+    }
+  }
+}
+
+Chain Chain::withGravity(const Eigen::Vector3d& gravity) const {
+  checkGravity("chain " + name_, gravity);
+  Chain result = *this;
+  result.gravity_ = gravity;
+  return result;
+}
+
+std::vector<std::string> Chain::jointNames() const {
+  std::vector<std::string> names;
+  names.reserve(joints_.size());
+  for (const Joint& joint : joints_) {
+    names.push_back(joint.name);
+  }
+  return names;
+}
+
+std::string inertiaDefect(const LinkParameters& link) {
+  if (link.mass < 0) {
+    return "negative mass " + text(link.mass);
+  }
+  if (link.mass == 0) {
+    const bool empty = link.first_moment.isZero(0) && link.inertia.isZero(0);
+    return empty ? "" : "inertia without mass";
+  }
+
+  // I_c = I + m [c]x [c]x, principal moments in rising order
+  const Eigen::Matrix3d c_x = skew<double>(link.first_moment / link.mass);
+  const Eigen::Matrix3d about_center = link.inertia + link.mass * c_x * c_x;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(about_center, Eigen::EigenvaluesOnly);
+  const Eigen::Vector3d moments = solver.eigenvalues();
+
+  // what rounding of the given entries, about the frame's origin, may cause is no defect
+  const double tolerance = kInertiaTolerance * link.inertia.cwiseAbs().maxCoeff();
+  if (moments[0] < -tolerance) {
+    return "principal moments of inertia " + text(moments) +
+           " about the center of mass aren't positive";
+  }
+  if (moments[0] + moments[1] < moments[2] - tolerance) {
+    return "principal moments of inertia " + text(moments) +
+           " about the center of mass break the triangle inequality";
+  }
+  return "";
+}
+
+}  // namespace chain_dynamics
