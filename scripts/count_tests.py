@@ -4,8 +4,8 @@
 Usage: python3 count_tests.py BUILD_DIRECTORY
 
 Reads `PACKAGE/test_results/**/*.xml` (GoogleTest and pytest, one entry a case) and
-`PACKAGE/Testing/TAG/Test.xml` (CTest, one entry a program). A program that CTest calls failed though
-none of its cases is (it crashed on leaving, ran too long, or is missing) counts as one failure.
+`PACKAGE/Testing/TAG/Test.xml` (CTest, one entry a program). A program that CTest calls failed
+though none of its cases is (it crashed on leaving, ran too long, or is missing) is one failure.
 
 Prints failed cases, reasons for skipping, and `N passed, N failed, N skipped` as the last line.
 The exit status is 1 if a test failed or none passed.
@@ -81,7 +81,9 @@ def _count_programs(package: Path, count: Count) -> None:
             _count_cases(file, own)
         if program.get("Status") != "passed":
             if not own.failed:
-                count.failed.append(f"{package.name}: {name} (the program itself: crash, time-out or missing)")
+                count.failed.append(
+                    f"{package.name}: {name} (the program itself: crash, time-out or missing)"
+                )
         elif not results:  # a plain program without cases
             count.passed += 1
 

@@ -4,6 +4,7 @@
 from pathlib import Path
 
 import pytest
+
 from count_tests import count_tests, main
 
 GTEST = """<?xml version="1.0" encoding="UTF-8"?>
@@ -29,7 +30,9 @@ ALL_PASS = """<testsuites><testsuite>
 </testsuite></testsuites>"""
 
 
-def write_results(build: Path, package: str, cases: dict[str, str], programs: dict[str, str]) -> None:
+def write_results(
+    build: Path, package: str, cases: dict[str, str], programs: dict[str, str]
+) -> None:
     """Lays out the results of one package: xunit text per program, CTest's status per program."""
     results = build / package / "test_results" / package
     results.mkdir(parents=True)
