@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One HTML page, complete in itself (no network), from any number of runs.
+
+    write_page(Path("report.html"), "Four robots", [run, ...])
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# More samples than this are thinned in the page (never in metrics, bags and tables): a page of 4 robots stays below 10 MB.
+MAX_SAMPLES = 12_000
+
+
+@dataclass(frozen=True)
+class MetricRow:
+    """Error figures of one joint; `unit` is that of mae, rmse and bias, nrmse is a share of the measured range."""
+
+    joint: str
+    unit: str
+    mae: float
+    rmse: float
+    nrmse: float
+    bias: float
+    r2: float
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A static figure of the page."""
+
+    svg: str
+    caption: str
+
+
+@dataclass(frozen=True)
+class ReportRun:
+    """What the page shows of one evaluation. Arrays: time N [s], the others N x n; order of joints as `table`."""
+
+    title: str
+    description: str
+    solver: str
+    time: Array
+    q: Array
+    measured: Array
+    computed: Array
+    table: Sequence[MetricRow]
+    assumptions: Sequence[tuple[str, str]]
+    links: Sequence[dict[str, Any]] = ()
+    other_table: Sequence[MetricRow] = ()
+    other_table_title: str = ""
+    notes: Sequence[str] = ()
+    figures: Sequence[Figure] = field(default_factory=list)
+
+
+def write_page(path: Path, title: str, runs: Sequence[ReportRun]) -> None:
+    """Writes the page; the caller makes sure that `path` may be written."""
+    path.write_text(render_page(title, runs), encoding="utf-8")
+
+
+def render_page(title: str, runs: Sequence[ReportRun]) -> str:
+    """The page as text."""
+    from jinja2 import Environment, StrictUndefined
+
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
+    environment.filters["figure"] = _figure
+    environment.filters["percent"] = lambda share: _figure(100.0 * share)
+    script = "\n".join(_asset(name) for name in ("scene.js", "plots.js", "viewer.js"))
+    return environment.from_string(_asset("page.html")).render(
+        title=title,
+        style=_asset("style.css"),
+        script=script,
+        data=_json_for_html([_data(run, i) for i, run in enumerate(runs)]),
+        runs=[_view(run, i) for i, run in enumerate(runs)],
+    )
+
+
+def _asset(name: str) -> str:
+    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
+
+
+def _identifier(index: int) -> str:
+    return f"run-{index + 1}"
+
+
+def _view(run: ReportRun, index: int) -> dict[str, Any]:
+    """What the template prints."""
+    rows = list(run.table)
+    worst = max(rows, key=lambda row: row.nrmse if math.isfinite(row.nrmse) else -1.0)
+    return {
+        "id": _identifier(index),
+        "title": run.title,
+        "description": run.description,
+        "solver": run.solver,
+        "samples": len(run.time),
+        "mean_rmse": float(np.mean([row.rmse for row in rows])),
+        "mean_nrmse": float(np.nanmean([row.nrmse for row in rows])),
+        "worst_joint": f"{worst.joint} ({_figure(100 * worst.nrmse)} %)",
+        "has_scene": bool(run.links),
+        "table": rows,
+        "other_table": run.other_table,
+        "other_table_title": run.other_table_title,
+        "assumptions": run.assumptions,
+        "notes": run.notes,
+        "joints": [row.joint for row in rows],
+        "figures": run.figures,
+    }
+
+
+def _data(run: ReportRun, index: int) -> dict[str, Any]:
+    """What the script draws."""
+    keep = slice(None, None, math.ceil(len(run.time) / MAX_SAMPLES))
+    return {
+        "id": _identifier(index),
+        "joints": [{"name": row.joint, "unit": row.unit} for row in run.table],
+        "time": _base64(run.time[keep] - run.time[0]),
+        "q": _base64(run.q[keep].T),
+        "measured": _base64(run.measured[keep].T),
+        "computed": _base64(run.computed[keep].T),
+        "links": list(run.links),
+    }
+
+
+def _base64(values: Array) -> str:
+    return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode("ascii")
+
+
+def _json_for_html(value: Any) -> str:
+    """JSON that can't end the script element that holds it."""
+    return json.dumps(value, allow_nan=False).replace("<", "\\u003c")
+
+
+def _figure(value: float) -> str:
+    """Three significant digits; a dash where there is no figure."""
+    if not math.isfinite(value):
+        return "\N{EN DASH}"
+    if value == 0.0:
+        return "0"
+    digits = max(0, 2 - math.floor(math.log10(abs(value))))
+    return f"{value:.{digits}f}" if digits <= 6 else f"{value:.2e}"

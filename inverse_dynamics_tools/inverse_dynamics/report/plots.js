@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Time series on a canvas: zoom and pan in time shared by a group of plots, a cursor on a canvas of its own.
+//
+//   const group = createPlotGroup(time, {onCursor: (t) => ...});
+//   group.add(element, {label: "elbow_joint", unit: "N m", series: [{name, values, style: "measured"}]});
+//   group.setCursor(1.5);
+//
+// time: s, increasing; values: as many as time. Dragging zooms, shift and dragging pans, a click sets
+// the cursor, a double click shows everything.
+"use strict";
+
+// Told apart by colour-blind readers and in print: dashes and lightness differ, not only hue (Okabe and Ito's palette).
+const kStyles = {
+  measured: {color: "#111111", width: 1.3, dash: [5, 3]},
+  computed: {color: "#D55E00", width: 1.5, dash: []},
+  error: {color: "#0072B2", width: 1.2, dash: []},
+};
+const kMargin = {left: 54, right: 10, top: 18, bottom: 20};
+
+// Round numbers between low and high, about `count` of them.
+function ticks(low, high, count) {
+  const raw = (high - low) / Math.max(1, count);
+  const power = Math.pow(10, Math.floor(Math.log10(raw)));
+  const step = [1, 2, 5, 10].map((factor) => factor * power).find((candidate) => candidate >= raw);
+  const first = Math.ceil(low / step - 1e-9);
+  const last = Math.floor(high / step + 1e-9);
+  const values = [];
+  for (let i = first; i <= last; ++i) values.push(i * step);
+  return {values, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9))};
+}
+
+// Index of the last sample at or before t.
+function indexAt(time, t) {
+  let low = 0, high = time.length - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (time[middle] <= t) low = middle;
+    else high = middle - 1;
+  }
+  return low;
+}
+
+function range(all_series) {
+  let low = Infinity, high = -Infinity;
+  for (const series of all_series) {
+    for (const value of series.values) {
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+  }
+  if (!(high > low)) {
+    const middle = Number.isFinite(low) ? low : 0;
+    return [middle - 1, middle + 1];
+  }
+  const margin = 0.06 * (high - low);
+  return [low - margin, high + margin];
+}
+
+function makeCanvas(parent, name) {
+  const canvas = document.createElement("canvas");
+  canvas.className = name;
+  parent.appendChild(canvas);
+  return canvas;
+}
+
+// Sizes a canvas to its element in device pixels; drawing then goes in CSS pixels.
+function prepare(canvas) {
+  const ratio = window.devicePixelRatio || 1;
+  const width = canvas.clientWidth, height = canvas.clientHeight;
+  if (canvas.width !== Math.round(width * ratio)) canvas.width = Math.round(width * ratio);
+  if (canvas.height !== Math.round(height * ratio)) canvas.height = Math.round(height * ratio);
+  const context = canvas.getContext("2d");
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, width, height);
+  return {context, width, height};
+}
+
+class Plot {
+  constructor(element, time, options) {
+    this.time = time;
+    this.options = options;
+    this.range = range(options.series);
+    this.base = makeCanvas(element, "plot-base");
+    this.overlay = makeCanvas(element, "plot-overlay");
+    this.overlay.setAttribute("role", "img");
+    this.overlay.setAttribute("aria-label", `${options.label} over time, ${options.unit}`);
+  }
+
+  x(t, view) {
+    const width = this.base.clientWidth - kMargin.left - kMargin.right;
+    return kMargin.left + width * (t - view.low) / (view.high - view.low);
+  }
+
+  t(x, view) {
+    const width = this.base.clientWidth - kMargin.left - kMargin.right;
+    return view.low + (view.high - view.low) * (x - kMargin.left) / width;
+  }
+
+  y(value) {
+    const height = this.base.clientHeight - kMargin.top - kMargin.bottom;
+    return kMargin.top + height * (this.range[1] - value) / (this.range[1] - this.range[0]);
+  }
+
+  draw(view) {
+    const {context, width, height} = prepare(this.base);
+    if (width === 0) return;
+    this.drawAxes(context, width, height, view);
+    context.save();
+    context.beginPath();
+    context.rect(kMargin.left, kMargin.top, width - kMargin.left - kMargin.right, height - kMargin.top - kMargin.bottom);
+    context.clip();
+    for (const series of this.options.series) this.drawSeries(context, series, width, view);
+    context.restore();
+  }
+
+  drawAxes(context, width, height, view) {
+    context.font = "11px system-ui, sans-serif";
+    context.fillStyle = "#333";
+    context.strokeStyle = "#e3e6ea";
+    context.lineWidth = 1;
+    const vertical = ticks(this.range[0], this.range[1], height / 34);
+    context.textAlign = "right";
+    context.textBaseline = "middle";
+    for (const value of vertical.values) {
+      const y = Math.round(this.y(value)) + 0.5;
+      context.beginPath();
+      context.moveTo(kMargin.left, y);
+      context.lineTo(width - kMargin.right, y);
+      context.stroke();
+      context.fillText(value.toFixed(vertical.digits), kMargin.left - 5, y);
+    }
+    const horizontal = ticks(view.low, view.high, width / 80);
+    context.textAlign = "center";
+    context.textBaseline = "top";
+    for (const value of horizontal.values) {
+      const x = Math.round(this.x(value, view)) + 0.5;
+      context.beginPath();
+      context.moveTo(x, kMargin.top);
+      context.lineTo(x, height - kMargin.bottom);
+      context.stroke();
+      context.fillText(`${value.toFixed(horizontal.digits)} s`, x, height - kMargin.bottom + 4);
+    }
+    context.textAlign = "left";
+    context.textBaseline = "alphabetic";
+    context.font = "600 12px system-ui, sans-serif";
+    context.fillText(`${this.options.label} [${this.options.unit}]`, kMargin.left, 12);
+  }
+
+  drawSeries(context, series, width, view) {
+    const style = kStyles[series.style];
+    context.strokeStyle = style.color;
+    context.lineWidth = style.width;
+    context.setLineDash(style.dash);
+    context.beginPath();
+    const first = indexAt(this.time, view.low);
+    const last = Math.min(this.time.length - 1, indexAt(this.time, view.high) + 1);
+    const pixels = width - kMargin.left - kMargin.right;
+    if (last - first > 4 * pixels) this.traceColumns(context, series.values, first, last, view);
+    else {
+      for (let i = first; i <= last; ++i) context.lineTo(this.x(this.time[i], view), this.y(series.values[i]));
+    }
+    context.stroke();
+    context.setLineDash([]);
+  }
+
+  // More samples than pixels: from each column of pixels its least and greatest value, so that no peak is lost.
+  traceColumns(context, values, first, last, view) {
+    let column = -1, low = 0, high = 0;
+    for (let i = first; i <= last; ++i) {
+      const x = Math.round(this.x(this.time[i], view));
+      if (x !== column) {
+        if (column >= 0) {
+          context.lineTo(column, this.y(low));
+          context.lineTo(column, this.y(high));
+        }
+        column = x;
+        low = high = values[i];
+      }
+      low = Math.min(low, values[i]);
+      high = Math.max(high, values[i]);
+    }
+    context.lineTo(column, this.y(low));
+    context.lineTo(column, this.y(high));
+  }
+
+  drawOverlay(view, cursor, selection) {
+    const {context, width, height} = prepare(this.overlay);
+    if (width === 0) return;
+    if (selection) {
+      context.fillStyle = "rgba(0, 114, 178, 0.15)";
+      const [low, high] = selection.map((t) => this.x(t, view));
+      context.fillRect(low, kMargin.top, high - low, height - kMargin.top - kMargin.bottom);
+    }
+    const x = this.x(cursor, view);
+    if (x >= kMargin.left && x <= width - kMargin.right) {
+      context.strokeStyle = "#009E73";
+      context.lineWidth = 1.5;
+      context.beginPath();
+      context.moveTo(x, kMargin.top);
+      context.lineTo(x, height - kMargin.bottom);
+      context.stroke();
+    }
+    this.drawReadout(context, width, cursor);
+  }
+
+  drawReadout(context, width, cursor) {
+    const i = indexAt(this.time, cursor);
+    context.font = "11px system-ui, sans-serif";
+    context.textAlign = "right";
+    let x = width - kMargin.right;
+    for (const series of [...this.options.series].reverse()) {
+      const text = `${series.name} ${series.values[i].toFixed(3)}`;
+      context.fillStyle = kStyles[series.style].color;
+      context.fillText(text, x, 12);
+      x -= context.measureText(text).width + 12;
+    }
+  }
+}
+
+function createPlotGroup(time, {onCursor}) {
+  const everything = {low: time[0], high: time[time.length - 1]};
+  if (!(everything.high > everything.low)) everything.high = everything.low + 1;
+  const view = {...everything};
+  const plots = [];
+  let cursor = time[0];
+  let selection = null;
+
+  const drawOverlays = () => plots.forEach((plot) => plot.drawOverlay(view, cursor, selection));
+  const drawAll = () => {
+    plots.forEach((plot) => plot.draw(view));
+    drawOverlays();
+  };
+
+  function setView(low, high) {
+    const least = 1e-3 * (everything.high - everything.low);
+    const span = Math.min(Math.max(high - low, least), everything.high - everything.low);
+    view.low = Math.min(Math.max(low, everything.low), everything.high - span);
+    view.high = view.low + span;
+    drawAll();
+  }
+
+  function zoom(factor, centre = cursor) {
+    setView(centre - (centre - view.low) * factor, centre + (view.high - centre) * factor);
+  }
+
+  function setCursor(t) {
+    cursor = t;
+    drawOverlays();
+  }
+
+  function attach(plot) {
+    let start = null, start_view = null;
+    const at = (event) => plot.t(event.offsetX, view);
+    plot.overlay.addEventListener("pointerdown", (event) => {
+      start = at(event);
+      start_view = event.shiftKey ? {...view} : null;
+      plot.overlay.setPointerCapture(event.pointerId);
+    });
+    plot.overlay.addEventListener("pointermove", (event) => {
+      if (start === null) return;
+      if (start_view) {
+        const shift = plot.t(event.offsetX, start_view) - start;
+        setView(start_view.low - shift, start_view.high - shift);
+      } else {
+        selection = [start, at(event)].sort((a, b) => a - b);
+        drawOverlays();
+      }
+    });
+    plot.overlay.addEventListener("pointerup", (event) => {
+      const chosen = selection, panned = start_view;
+      start = start_view = selection = null;
+      if (panned) return;
+      if (chosen && plot.x(chosen[1], view) - plot.x(chosen[0], view) > 4) setView(...chosen);
+      else onCursor(Math.min(Math.max(at(event), everything.low), everything.high));
+    });
+    plot.overlay.addEventListener("dblclick", () => setView(everything.low, everything.high));
+    plot.overlay.addEventListener("wheel", (event) => {
+      if (!event.ctrlKey) return;  // without the key the page scrolls
+      event.preventDefault();
+      zoom(Math.exp(0.002 * event.deltaY), at(event));
+    }, {passive: false});
+  }
+
+  return {
+    add(element, options) {
+      const plot = new Plot(element, time, options);
+      plots.push(plot);
+      attach(plot);
+    },
+    setCursor, zoom, drawAll,
+    showAll: () => setView(everything.low, everything.high),
+    pan: (share) => setView(view.low + share * (view.high - view.low), view.high + share * (view.high - view.low)),
+  };
+}

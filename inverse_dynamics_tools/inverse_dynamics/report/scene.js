@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A robot in 3D: links posed by forward kinematics, drawn with WebGL from boxes, cylinders and spheres.
+//
+//   const scene = createScene(canvas, run.links);   // null where WebGL is missing
+//   scene.draw(q);                                  // q: joint positions, rad or m
+//
+// A link: {parent, joint, kind, axis, pose, shapes}. parent: index or -1; joint: index in q or -1 (fixed);
+// pose: of its frame in the parent's at q = 0; a shape: {kind, size, pose, color}. Poses are 4 x 4,
+// column by column. The z axis points up, lengths in m.
+"use strict";
+
+// ---- 4 x 4 matrices, column by column ---------------------------------------------------------
+
+function multiply(a, b) {
+  const c = new Float32Array(16);
+  for (let column = 0; column < 4; ++column) {
+    for (let row = 0; row < 4; ++row) {
+      let sum = 0;
+      for (let k = 0; k < 4; ++k) sum += a[4 * k + row] * b[4 * column + k];
+      c[4 * column + row] = sum;
+    }
+  }
+  return c;
+}
+
+function translation(x, y, z) {
+  return new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1]);
+}
+
+function rotation(axis, angle) {
+  // Rodrigues' formula.
+  const [x, y, z] = axis;
+  const c = Math.cos(angle), s = Math.sin(angle), v = 1 - c;
+  return new Float32Array([
+    c + x * x * v, y * x * v + z * s, z * x * v - y * s, 0,
+    x * y * v - z * s, c + y * y * v, z * y * v + x * s, 0,
+    x * z * v + y * s, y * z * v - x * s, c + z * z * v, 0,
+    0, 0, 0, 1]);
+}
+
+function perspective(fovy, aspect, near, far) {
+  const f = 1 / Math.tan(fovy / 2), d = near - far;
+  return new Float32Array(
+      [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / d, -1, 0, 0, 2 * far * near / d, 0]);
+}
+
+function cross(a, b) {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+function normalised(a) {
+  const length = Math.hypot(...a) || 1;
+  return a.map((value) => value / length);
+}
+
+function lookAt(eye, target) {
+  const back = normalised(eye.map((value, i) => value - target[i]));
+  const right = normalised(cross([0, 0, 1], back));
+  const up = cross(back, right);
+  const dot = (a) => -(a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2]);
+  return new Float32Array([
+    right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0,
+    dot(right), dot(up), dot(back), 1]);
+}
+
+// ---- unit shapes: positions and normals of triangles ------------------------------------------
+
+// Triangles of a grid of points, point(u, v) -> [position, normal], u and v in [0, 1].
+function grid(columns, rows, point) {
+  const vertices = [];
+  const push = (i, j) => vertices.push(...point(i / columns, j / rows).flat());
+  for (let i = 0; i < columns; ++i) {
+    for (let j = 0; j < rows; ++j) {
+      push(i, j); push(i + 1, j); push(i + 1, j + 1);
+      push(i, j); push(i + 1, j + 1); push(i, j + 1);
+    }
+  }
+  return vertices;
+}
+
+function unitBox() {
+  const faces = [];
+  for (let axis = 0; axis < 3; ++axis) {
+    for (const side of [-1, 1]) {
+      faces.push(...grid(1, 1, (u, v) => {
+        const position = [0, 0, 0], normal = [0, 0, 0];
+        position[axis] = side / 2;
+        position[(axis + 1) % 3] = u - 0.5;
+        position[(axis + 2) % 3] = v - 0.5;
+        normal[axis] = side;
+        return [position, normal];
+      }));
+    }
+  }
+  return faces;
+}
+
+function unitCylinder() {
+  const circle = (u) => [Math.cos(2 * Math.PI * u), Math.sin(2 * Math.PI * u)];
+  const side = grid(48, 1, (u, v) => [[...circle(u), v - 0.5], [...circle(u), 0]]);
+  const cap = (z) => grid(48, 1, (u, v) => [[v * circle(u)[0], v * circle(u)[1], z], [0, 0, 2 * z]]);
+  return [...side, ...cap(-0.5), ...cap(0.5)];
+}
+
+function unitSphere() {
+  return grid(36, 18, (u, v) => {
+    const polar = Math.PI * v, [x, y] = [Math.cos(2 * Math.PI * u), Math.sin(2 * Math.PI * u)];
+    const normal = [x * Math.sin(polar), y * Math.sin(polar), Math.cos(polar)];
+    return [normal, normal];
+  });
+}
+
+// ---- drawing ----------------------------------------------------------------------------------
+
+const kVertexShader = `
+  attribute vec3 position, normal;
+  uniform mat4 view_projection, pose;
+  uniform vec3 scale;
+  uniform float shadow;  // 1: flatten onto the floor along the light
+  varying vec3 n;
+  varying vec3 p;
+  void main() {
+    vec4 world = pose * vec4(position * scale, 1.0);
+    if (shadow > 0.5) {
+      vec3 light = normalize(vec3(0.35, -0.45, 1.0));
+      world.xyz -= light * (world.z / light.z);
+      world.z = 0.001;
+    }
+    p = world.xyz;
+    n = mat3(pose) * normal;
+    gl_Position = view_projection * world;
+  }`;
+
+const kFragmentShader = `
+  precision mediump float;
+  varying vec3 n;
+  varying vec3 p;
+  uniform vec3 color, eye;
+  uniform float shadow;
+  void main() {
+    if (shadow > 0.5) {
+      gl_FragColor = vec4(0.16, 0.18, 0.22, 0.20);
+      return;
+    }
+    vec3 normal = normalize(n);
+    vec3 to_eye = normalize(eye - p);
+    if (dot(normal, to_eye) < 0.0) normal = -normal;
+    vec3 light = normalize(vec3(0.35, -0.45, 1.0));
+    float diffuse = max(dot(normal, light), 0.0);
+    float sky = 0.5 + 0.5 * normal.z;
+    float shine = pow(max(dot(normal, normalize(light + to_eye)), 0.0), 40.0);
+    gl_FragColor = vec4(color * (0.30 + 0.28 * sky + 0.50 * diffuse) + 0.12 * shine, 1.0);
+  }`;
+
+function compile(gl, vertex, fragment) {
+  const program = gl.createProgram();
+  for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+    const shader = gl.createShader(type);
+    gl.shaderSource(shader, source);
+    gl.compileShader(shader);
+    gl.attachShader(program, shader);
+  }
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw Error(gl.getProgramInfoLog(program));
+  return program;
+}
+
+function upload(gl, vertices) {
+  const buffer = gl.createBuffer();
+  gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+  gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(vertices), gl.STATIC_DRAW);
+  return {buffer, count: vertices.length / 6};
+}
+
+// Poses of all links in the frame of the root, by forward kinematics.
+function linkPoses(links, q) {
+  const poses = [];
+  for (const link of links) {
+    let pose = link.parent < 0 ? link.pose : multiply(poses[link.parent], link.pose);
+    if (link.joint >= 0) {
+      const value = q[link.joint];
+      pose = multiply(pose, link.kind === "prismatic"
+          ? translation(...link.axis.map((component) => component * value))
+          : rotation(link.axis, value));
+    }
+    poses.push(pose);
+  }
+  return poses;
+}
+
+// Lines of the floor as thin boxes: a square of 2.4 m, every 0.2 m.
+function floorLines() {
+  const lines = [];
+  for (let i = -6; i <= 6; ++i) {
+    const width = i === 0 ? 0.006 : 0.003;
+    lines.push({pose: translation(0.2 * i, 0, 0), scale: [width, 2.4, 0.0005]});
+    lines.push({pose: translation(0, 0.2 * i, 0), scale: [2.4, width, 0.0005]});
+  }
+  return lines;
+}
+
+// The scale that turns the unit shape into one of the given size (as in URDF: box x y z, cylinder radius length, sphere radius).
+function shapeScale(shape) {
+  const s = shape.size;
+  if (shape.kind === "box") return s;
+  return shape.kind === "cylinder" ? [s[0], s[0], s[1]] : [s[0], s[0], s[0]];
+}
+
+function createScene(canvas, links) {
+  const gl = canvas.getContext("webgl", {antialias: true, preserveDrawingBuffer: true});
+  if (!gl) return null;
+  const program = compile(gl, kVertexShader, kFragmentShader);
+  const meshes = {
+    box: upload(gl, unitBox()), cylinder: upload(gl, unitCylinder()), sphere: upload(gl, unitSphere())};
+  const uniform = (name) => gl.getUniformLocation(program, name);
+  const locations = Object.fromEntries(
+      ["view_projection", "pose", "scale", "color", "eye", "shadow"].map((name) => [name, uniform(name)]));
+  const lines = floorLines();
+  const home = {azimuth: -0.9, elevation: 0.38, distance: 2.9};
+  const view = {...home};
+  let last_q = null;
+
+  function bind(mesh) {
+    gl.bindBuffer(gl.ARRAY_BUFFER, mesh.buffer);
+    for (const [name, offset] of [["position", 0], ["normal", 12]]) {
+      const location = gl.getAttribLocation(program, name);
+      gl.enableVertexAttribArray(location);
+      gl.vertexAttribPointer(location, 3, gl.FLOAT, false, 24, offset);
+    }
+  }
+
+  function drawMesh(mesh, pose, scale, color) {
+    bind(mesh);
+    gl.uniformMatrix4fv(locations.pose, false, pose);
+    gl.uniform3fv(locations.scale, scale);
+    gl.uniform3fv(locations.color, color);
+    gl.drawArrays(gl.TRIANGLES, 0, mesh.count);
+  }
+
+  function drawRobot(poses) {
+    links.forEach((link, i) => {
+      for (const shape of link.shapes) {
+        drawMesh(meshes[shape.kind], multiply(poses[i], shape.pose), shapeScale(shape), shape.color);
+      }
+    });
+  }
+
+  function drawShadow(poses) {
+    // All shadows lie at one height, so the depth test lets each pixel of the floor be darkened once.
+    gl.uniform1f(locations.shadow, 1);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.depthFunc(gl.LESS);
+    drawRobot(poses);
+    gl.disable(gl.BLEND);
+    gl.uniform1f(locations.shadow, 0);
+  }
+
+  function draw(q) {
+    last_q = q;
+    const ratio = window.devicePixelRatio || 1;
+    const width = Math.round(canvas.clientWidth * ratio), height = Math.round(canvas.clientHeight * ratio);
+    if (width === 0 || height === 0) return;
+    if (canvas.width !== width || canvas.height !== height) {
+      canvas.width = width;
+      canvas.height = height;
+    }
+    const target = [0, 0, 0.45];
+    const horizontal = view.distance * Math.cos(view.elevation);
+    const eye = [
+      target[0] + horizontal * Math.cos(view.azimuth), target[1] + horizontal * Math.sin(view.azimuth),
+      target[2] + view.distance * Math.sin(view.elevation)];
+    gl.viewport(0, 0, width, height);
+    gl.clearColor(0.965, 0.97, 0.98, 1);
+    gl.enable(gl.DEPTH_TEST);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.useProgram(program);
+    gl.uniformMatrix4fv(locations.view_projection, false,
+        multiply(perspective(0.62, width / height, 0.05, 20), lookAt(eye, target)));
+    gl.uniform3fv(locations.eye, eye);
+    gl.uniform1f(locations.shadow, 0);
+    for (const line of lines) drawMesh(meshes.box, line.pose, line.scale, [0.80, 0.82, 0.86]);
+    const poses = linkPoses(links, q);
+    drawShadow(poses);
+    drawRobot(poses);
+  }
+
+  function turn(azimuth, elevation, zoom) {
+    view.azimuth += azimuth;
+    view.elevation = Math.min(1.5, Math.max(-0.2, view.elevation + elevation));
+    view.distance = Math.min(8, Math.max(0.8, view.distance * zoom));
+    if (last_q) draw(last_q);
+  }
+
+  function reset() {
+    Object.assign(view, home);
+    if (last_q) draw(last_q);
+  }
+
+  attachOrbit(canvas, turn, reset);
+  return {draw, turn, reset};
+}
+
+// Mouse, touch and keyboard turn the view; the wheel zooms once the view has the focus, so that a page can still be scrolled.
+function attachOrbit(canvas, turn, reset) {
+  canvas.tabIndex = 0;
+  canvas.addEventListener("pointermove", (event) => {
+    if (event.buttons & 1) turn(-0.008 * event.movementX, 0.008 * event.movementY, 1);
+  });
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.focus();
+    canvas.setPointerCapture(event.pointerId);
+  });
+  canvas.addEventListener("wheel", (event) => {
+    if (document.activeElement !== canvas) return;
+    event.preventDefault();
+    turn(0, 0, Math.exp(0.001 * event.deltaY));
+  }, {passive: false});
+  canvas.addEventListener("dblclick", reset);
+  const keys = {
+    ArrowLeft: [0.1, 0, 1], ArrowRight: [-0.1, 0, 1], ArrowUp: [0, 0.1, 1], ArrowDown: [0, -0.1, 1],
+    "+": [0, 0, 0.9], "-": [0, 0, 1.1]};
+  canvas.addEventListener("keydown", (event) => {
+    if (event.key in keys) turn(...keys[event.key]);
+    else if (event.key === "0") reset();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  });
+}

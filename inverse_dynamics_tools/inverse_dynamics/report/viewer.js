@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The page's behaviour: one player per run couples the robot in 3D with the plots of its joints.
+// Data of the page: <script type="application/json" id="runs">; arrays are base64 of little-endian float32.
+"use strict";
+
+function decode(base64) {
+  const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+  return new Float32Array(bytes.buffer);
+}
+
+// Rows of a matrix stored joint by joint.
+function rows(base64, count) {
+  const all = decode(base64), length = all.length / count;
+  return Array.from({length: count}, (_, j) => all.subarray(j * length, (j + 1) * length));
+}
+
+// Joint positions at time t, linear between samples.
+function positionsAt(time, q, t) {
+  const i = indexAt(time, t), next = Math.min(i + 1, time.length - 1);
+  const share = next > i ? Math.min(1, Math.max(0, (t - time[i]) / (time[next] - time[i]))) : 0;
+  return q.map((row) => row[i] + share * (row[next] - row[i]));
+}
+
+class Player {
+  constructor(section, run) {
+    this.section = section;
+    this.time = decode(run.time);
+    this.q = rows(run.q, run.joints.length);
+    this.now = this.time[0];
+    this.end = this.time[this.time.length - 1];
+    this.playing = false;
+    const canvas = section.querySelector(".robot canvas");
+    this.scene = run.links.length ? createScene(canvas, run.links) : null;
+    section.querySelector(".no-webgl").hidden = this.scene !== null;
+    this.plots = createPlotGroup(this.time, {onCursor: (t) => this.seek(t)});
+    this.addPlots(run);
+    this.connectControls();
+    this.seek(this.now);
+  }
+
+  addPlots(run) {
+    const measured = rows(run.measured, run.joints.length);
+    const computed = rows(run.computed, run.joints.length);
+    run.joints.forEach((joint, j) => {
+      const error = computed[j].map((value, i) => value - measured[j][i]);
+      const [torque_element, error_element] = this.section.querySelectorAll(`[data-joint="${j}"] .plot`);
+      this.plots.add(torque_element, {label: joint.name, unit: joint.unit, series: [
+        {name: "computed", values: computed[j], style: "computed"},
+        {name: "measured", values: measured[j], style: "measured"}]});
+      this.plots.add(error_element, {label: "computed - measured", unit: joint.unit, series: [
+        {name: "error", values: error, style: "error"}]});
+    });
+  }
+
+  connectControls() {
+    this.button = this.section.querySelector(".play");
+    this.slider = this.section.querySelector(".scrub");
+    this.clock = this.section.querySelector(".clock");
+    this.speed = this.section.querySelector(".speed");
+    this.slider.min = this.time[0];
+    this.slider.max = this.end;
+    this.button.addEventListener("click", () => this.toggle());
+    this.slider.addEventListener("input", () => this.seek(Number(this.slider.value)));
+    this.section.querySelector(".show-all").addEventListener("click", () => this.plots.showAll());
+    this.section.querySelector(".reset-view").addEventListener("click", () => this.scene?.reset());
+  }
+
+  seek(t) {
+    this.now = Math.min(Math.max(t, this.time[0]), this.end);
+    this.slider.value = this.now;
+    this.clock.textContent = `${this.now.toFixed(2)} s of ${this.end.toFixed(2)} s`;
+    this.section.dataset.time = this.now.toFixed(4);
+    this.plots.setCursor(this.now);
+    this.scene?.draw(positionsAt(this.time, this.q, this.now));
+  }
+
+  toggle() {
+    this.playing ? this.pause() : this.play();
+  }
+
+  play() {
+    if (this.now >= this.end) this.seek(this.time[0]);
+    this.playing = true;
+    this.button.textContent = "Pause";
+    this.button.setAttribute("aria-pressed", "true");
+    let before = null;
+    const step = (stamp) => {
+      if (!this.playing) return;
+      if (before !== null) this.seek(this.now + Number(this.speed.value) * (stamp - before) / 1000);
+      before = stamp;
+      if (this.now >= this.end) this.pause();
+      else requestAnimationFrame(step);
+    };
+    requestAnimationFrame(step);
+  }
+
+  pause() {
+    this.playing = false;
+    this.button.textContent = "Play";
+    this.button.setAttribute("aria-pressed", "false");
+  }
+
+  redraw() {
+    this.plots.drawAll();
+    this.seek(this.now);
+  }
+
+  // True when the key meant something.
+  key(name, shift) {
+    const step = shift ? 1 : 0.1;
+    const actions = {
+      " ": () => this.toggle(),
+      ArrowLeft: () => this.seek(this.now - step),
+      ArrowRight: () => this.seek(this.now + step),
+      Home: () => this.seek(this.time[0]),
+      End: () => this.seek(this.end),
+      "+": () => this.plots.zoom(0.7),
+      "-": () => this.plots.zoom(1 / 0.7),
+      "0": () => this.plots.showAll(),
+      "<": () => this.plots.pan(-0.2),
+      ">": () => this.plots.pan(0.2),
+    };
+    if (!(name in actions)) return false;
+    actions[name]();
+    return true;
+  }
+}
+
+function start() {
+  const runs = JSON.parse(document.getElementById("runs").textContent);
+  const players = runs.map((run) => new Player(document.getElementById(run.id), run));
+  const redraw = () => players.forEach((player) => player.redraw());
+
+  // Keys act on the run that fills most of the screen.
+  const visibleHeight = (player) => {
+    const box = player.section.getBoundingClientRect();
+    return Math.min(box.bottom, window.innerHeight) - Math.max(box.top, 0);
+  };
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.target.closest("input, select, button, a, summary")) return;  // they have keys of their own
+    const player = players.reduce((a, b) => visibleHeight(b) > visibleHeight(a) ? b : a);
+    if (player.key(event.key, event.shiftKey)) event.preventDefault();
+  });
+  new ResizeObserver(redraw).observe(document.body);
+  window.addEventListener("beforeprint", redraw);
+  redraw();
+}
+
+start();
