@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What a solver is told when it is initialized: the parameters that mean the same for all of them.
+///
+///     JointInfo MySolver::configure(const Configuration& configuration) {
+///       auto chain = chainFromDescription(configuration);   // URDF, root, tip, gravity, attached
+///       auto threads = configuration.get<std::int64_t>("max_threads");   // a parameter of its own
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "chain_dynamics/chain.hpp"
+#include "inverse_dynamics_solver/parameters.hpp"
+
+namespace inverse_dynamics_solver {
+
+/// The parameters every solver understands, read and checked, and a reader for a solver's own.
+///
+/// | parameter below the namespace | type         | default       |
+/// |-------------------------------|--------------|---------------|
+/// | root                          | string       | "": the URDF's root link |
+/// | tip                           | string       | "": the URDF's leaf, if all leaves have the
+/// same movable joints | | gravity                       | 3 doubles    | [0, 0, -9.81] | |
+/// attached                      | string       | "lump"        | | locked_joints.<joint>         |
+/// double       | 0             | | friction                      | bool         | true          |
+struct Configuration {
+  /// URDF text; empty if there is none.
+  std::string robot_description;
+
+  /// First and last link of the chain; empty: the URDF's root link and its leaf.
+  std::string root, tip;
+
+  /// Where things fall, in the frame of the root link [m/s^2].
+  Eigen::Vector3d gravity{0.0, 0.0, -9.81};
+
+  /// Whether `gravity` was given: a model file may state a default of its own.
+  bool gravity_given = false;
+
+  /// Whether what hangs on the chain beside it or beyond the tip counts (`attached`: "lump" or
+  /// "ignore").
+  bool lump_attached = true;
+
+  /// Whether a solver adds its friction model: false where the robot's controller compensates
+  /// friction.
+  bool friction = true;
+
+  /// Position [rad or m] at which a movable joint beside or beyond the chain is held; by joint
+  /// name.
+  std::function<double(const std::string&)> locked_position;
+
+  /// All parameters, and the namespace that the ones above were read from.
+  Parameters parameters;
+  std::string param_namespace;
+
+  /// Name of a parameter with the namespace, as find() and error texts want it: `ids.max_threads`.
+  std::string fullName(const std::string& name) const {
+    return param_namespace.empty() ? name : param_namespace + "." + name;
+  }
+
+  /// A solver's own parameter below the namespace, or nothing if absent. See Parameters::get().
+  template <class T>
+  std::optional<T> get(const std::string& name) const {
+    return parameters.get<T>(fullName(name));
+  }
+
+  /// A solver's own parameter that has no default. See Parameters::require().
+  template <class T>
+  T require(const std::string& name) const {
+    return parameters.require<T>(fullName(name));
+  }
+};
+
+/// Reads and checks the parameters of the table above.
+///
+/// @param robot_description  URDF text; if empty, the parameter `robot_description`, without
+/// namespace. Throws InvalidParameterValueException: wrong type, length or value.
+Configuration readConfiguration(const Parameters& parameters, const std::string& param_namespace,
+                                const std::string& robot_description);
+
+/// The chain of the robot description between root and tip.
+///
+/// Throws ParameterUninitializedException: no robot description. InvalidRobotDescriptionException:
+/// not a URDF, no such link, no chain, a joint or link that can't be computed with.
+chain_dynamics::Chain chainFromDescription(const Configuration& configuration);
+
+}  // namespace inverse_dynamics_solver

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What the interface and its solvers throw: one family, one class per reaction a caller may have.
+///
+///     try { solver->initialize(parameters, "ids"); }
+///     catch (const inverse_dynamics_solver::InvalidParameterValueException& e) {
+///     ask_user(e.what()); } catch (const inverse_dynamics_solver::Exception& e) {
+///     give_up(e.what()); }
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace inverse_dynamics_solver {
+
+/// Text of every error: `where: what: expected ..., got ...; remedy`. Empty parts are left out.
+///
+/// @param where     parameter with its namespace, file with its line, or method and argument.
+/// @param what      the mistake, in a few words.
+/// @param expected  what would have been right.
+/// @param got       what was found.
+/// @param remedy    what to do now.
+std::string errorText(const std::string& where, const std::string& what,
+                      const std::string& expected = "", const std::string& got = "",
+                      const std::string& remedy = "");
+
+/// Root of the family. Reaction: report `what()`, use another solver or none.
+class Exception : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A method was called before a successful initialize(). Reaction: initialize.
+class UninitializedException : public Exception {
+ public:
+  UninitializedException();
+  /// @param method  the method that was called too early.
+  explicit UninitializedException(const std::string& method);
+};
+
+/// A parameter without a default is missing. Reaction: set it.
+class ParameterUninitializedException : public Exception {
+ public:
+  using Exception::Exception;
+};
+
+/// A parameter is there, but of the wrong type, length or value. Reaction: correct it.
+class InvalidParameterValueException : public Exception {
+ public:
+  using Exception::Exception;
+};
+
+/// The robot description isn't usable: not a URDF, no such link, no chain. Reaction: correct it.
+class InvalidRobotDescriptionException : public InvalidParameterValueException {
+ public:
+  using InvalidParameterValueException::InvalidParameterValueException;
+};
+
+/// A vector or matrix has the wrong size. Reaction: one number per joint, in the order of
+/// jointNames().
+class SizeMismatchException : public Exception {
+ public:
+  using Exception::Exception;
+};
+
+/// No usable plugin of that name. Reaction: correct the name, or source the workspace that has it.
+class PluginNotFoundException : public Exception {
+ public:
+  using Exception::Exception;
+};
+
+}  // namespace inverse_dynamics_solver

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The torques of a robot arm's motion, whichever solver computes them.
+///
+///     auto solver = SolverLoader().load("kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL");
+///     solver->initialize({{"tip", "tool0"}}, "", urdf);
+///     Eigen::VectorXd tau = solver->getTorques(q, qd, qdd);   // H(q) qdd + C(q, qd) qd + f(qd) +
+///     g(q)
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "inverse_dynamics_solver/configuration.hpp"
+#include "inverse_dynamics_solver/exceptions.hpp"
+#include "inverse_dynamics_solver/parameters.hpp"
+
+namespace inverse_dynamics_solver {
+
+/// Number of the binary interface: layout of the class, order of its virtual functions, types they
+/// take.
+///
+/// It is part of the class's true name, so a plugin built against another one is reported as not
+/// found instead of crashing. Source code and plugin descriptions leave it out.
+inline namespace v1 {
+
+using ConstVectorRef = Eigen::Ref<const Eigen::VectorXd>;
+using ConstMatrixRef = Eigen::Ref<const Eigen::MatrixXd>;
+using VectorRef = Eigen::Ref<Eigen::VectorXd>;
+using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
+
+/// Base class of every solver.
+///
+/// Sizes and units: with n = jointCount(), q [rad], qd [rad/s], qdd [rad/s^2] have n numbers each
+/// in the order of jointNames(); torques [N m], H [kg m^2]; for prismatic joints m instead of rad,
+/// N instead of N m.
+///
+/// Every quantity comes in three forms: by value; into memory of the caller (outputs last, sized by
+/// the caller, overlapping no input); for many states at once (`...Batch`: one state a column, n x
+/// N).
+///
+/// Inputs may be any Eigen expression; one that isn't contiguous (a row of a matrix, a sum) is
+/// copied by Eigen into a temporary. Outputs must be contiguous columns.
+///
+/// All methods but initialize() throw UninitializedException before a successful initialize(), and
+/// SizeMismatchException for a wrong size. A NaN in gives NaN in every entry that depends on it.
+///
+/// Real time: calls into the caller's memory with contiguous inputs: no allocation, lock or system
+/// call, and for valid calls no exception. Threads: const methods are safe; initialize() needs the
+/// solver for itself.
+class InverseDynamicsSolver {
+ public:
+  virtual ~InverseDynamicsSolver() = default;
+  InverseDynamicsSolver(const InverseDynamicsSolver&) = delete;
+  InverseDynamicsSolver& operator=(const InverseDynamicsSolver&) = delete;
+
+  /// Makes the solver ready, or leaves it as it was.
+  ///
+  /// @param parameters         a node's parameters interface, a map, or YAML: see parameters.hpp.
+  /// @param param_namespace    where the parameters of Configuration stand, for example "ids".
+  /// @param robot_description  URDF text; if empty, the parameter `robot_description` without
+  /// namespace. Throws ParameterUninitializedException, InvalidParameterValueException,
+  /// InvalidRobotDescriptionException.
+  void initialize(const Parameters& parameters = {}, const std::string& param_namespace = "",
+                  const std::string& robot_description = "");
+
+  /// Whether initialize() has succeeded.
+  bool isInitialized() const noexcept { return initialized_; }
+
+  /// Number n of movable joints of the chain.
+  Eigen::Index jointCount() const;
+
+  /// Their names, in order along the chain from root to tip: the order of all vectors.
+  const std::vector<std::string>& jointNames() const;
+
+  /// What is odd about the robot but doesn't prevent computing, a sentence each.
+  const std::vector<std::string>& warnings() const;
+
+  /// Whether H(q) is symmetric and positive definite by construction. Only then may a controller
+  /// invert H or feed back through it.
+  bool inertiaIsPhysical() const;
+
+  /// @name By value
+  /// @{
+
+  /// Inertia matrix `H(q)`, n x n.
+  Eigen::MatrixXd getInertiaMatrix(const ConstVectorRef& q) const {
+    Eigen::MatrixXd H = squareMatrix("getInertiaMatrix", 1);
+    getInertiaMatrix(q, H);
+    return H;
+  }
+  /// Coriolis and centrifugal torques `C(q, qd) qd`.
+  Eigen::VectorXd getCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd) const {
+    Eigen::VectorXd c = vector("getCoriolisVector");
+    getCoriolisVector(q, qd, c);
+    return c;
+  }
+  /// Friction torques `f(qd)`; zero where the solver has no friction model or the parameter
+  /// `friction` is false.
+  Eigen::VectorXd getFrictionVector(const ConstVectorRef& qd) const {
+    Eigen::VectorXd f = vector("getFrictionVector");
+    getFrictionVector(qd, f);
+    return f;
+  }
+  /// Gravity torques `g(q)`: what holds the robot still.
+  Eigen::VectorXd getGravityVector(const ConstVectorRef& q) const {
+    Eigen::VectorXd g = vector("getGravityVector");
+    getGravityVector(q, g);
+    return g;
+  }
+  /// Inertia matrix, Coriolis and gravity torques: `H(q)`, `C(q, qd) qd`, `g(q)`.
+  std::tuple<Eigen::MatrixXd, Eigen::VectorXd, Eigen::VectorXd> getDynamicComponents(
+      const ConstVectorRef& q, const ConstVectorRef& qd) const {
+    Eigen::MatrixXd H = squareMatrix("getDynamicComponents", 1);
+    Eigen::VectorXd c(H.rows()), g(H.rows());
+    getDynamicComponents(q, qd, H, c, g);
+    return {std::move(H), std::move(c), std::move(g)};
+  }
+  /// Another name of getDynamicComponents().
+  std::tuple<Eigen::MatrixXd, Eigen::VectorXd, Eigen::VectorXd> getDynamicParameters(
+      const ConstVectorRef& q, const ConstVectorRef& qd) const {
+    return getDynamicComponents(q, qd);
+  }
+  /// Joint torques `tau = H(q) qdd + C(q, qd) qd + f(qd) + g(q)`.
+  Eigen::VectorXd getTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
+                             const ConstVectorRef& qdd) const {
+    Eigen::VectorXd tau = vector("getTorques");
+    getTorques(q, qd, qdd, tau);
+    return tau;
+  }
+  /// @}
+
+  /// @name Into memory of the caller
+  /// @{
+  void getInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const;
+  void getCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef c) const;
+  void getFrictionVector(const ConstVectorRef& qd, VectorRef f) const;
+  void getGravityVector(const ConstVectorRef& q, VectorRef g) const;
+  void getDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
+                            VectorRef c, VectorRef g) const;
+  void getDynamicParameters(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
+                            VectorRef c, VectorRef g) const {
+    getDynamicComponents(q, qd, H, c, g);
+  }
+  void getTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
+                  VectorRef tau) const;
+  /// @}
+
+  /// @name Many states at once
+  /// State k is column k of each n x N matrix; its H is columns k n to k n + n - 1 of the n x (n N)
+  /// matrix H.
+  /// @{
+  void getInertiaMatrixBatch(const ConstMatrixRef& q, MatrixRef H) const;
+  void getCoriolisVectorBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd, MatrixRef c) const;
+  void getFrictionVectorBatch(const ConstMatrixRef& qd, MatrixRef f) const;
+  void getGravityVectorBatch(const ConstMatrixRef& q, MatrixRef g) const;
+  void getDynamicComponentsBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd, MatrixRef H,
+                                 MatrixRef c, MatrixRef g) const;
+  void getTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd, const ConstMatrixRef& qdd,
+                       MatrixRef tau) const;
+
+  Eigen::MatrixXd getInertiaMatrixBatch(const ConstMatrixRef& q) const {
+    Eigen::MatrixXd H = squareMatrix("getInertiaMatrixBatch", q.cols());
+    getInertiaMatrixBatch(q, H);
+    return H;
+  }
+  Eigen::MatrixXd getCoriolisVectorBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd) const {
+    Eigen::MatrixXd c(q.rows(), q.cols());
+    getCoriolisVectorBatch(q, qd, c);
+    return c;
+  }
+  Eigen::MatrixXd getFrictionVectorBatch(const ConstMatrixRef& qd) const {
+    Eigen::MatrixXd f(qd.rows(), qd.cols());
+    getFrictionVectorBatch(qd, f);
+    return f;
+  }
+  Eigen::MatrixXd getGravityVectorBatch(const ConstMatrixRef& q) const {
+    Eigen::MatrixXd g(q.rows(), q.cols());
+    getGravityVectorBatch(q, g);
+    return g;
+  }
+  std::tuple<Eigen::MatrixXd, Eigen::MatrixXd, Eigen::MatrixXd> getDynamicComponentsBatch(
+      const ConstMatrixRef& q, const ConstMatrixRef& qd) const {
+    Eigen::MatrixXd H = squareMatrix("getDynamicComponentsBatch", q.cols());
+    Eigen::MatrixXd c(q.rows(), q.cols()), g(q.rows(), q.cols());
+    getDynamicComponentsBatch(q, qd, H, c, g);
+    return {std::move(H), std::move(c), std::move(g)};
+  }
+  Eigen::MatrixXd getTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
+                                  const ConstMatrixRef& qdd) const {
+    Eigen::MatrixXd tau(q.rows(), q.cols());
+    getTorquesBatch(q, qd, qdd, tau);
+    return tau;
+  }
+  /// @}
+
+ protected:
+  InverseDynamicsSolver() = default;
+
+  /// What configure() tells the base class.
+  struct JointInfo {
+    std::vector<std::string> joint_names;  ///< in order along the chain
+    std::vector<std::string> warnings;     ///< a sentence each
+  };
+
+  /// Makes the solver ready for the robot that the configuration names.
+  ///
+  /// All or nothing: if it throws, the solver must compute as before. Build everything in local
+  /// variables, the result too, and move them into members as the last statements.
+  virtual JointInfo configure(const Configuration& configuration) = 0;
+
+  /// @name What a solver computes
+  /// Called after a successful configure(), with sizes checked; outputs overlap no input, are not
+  /// initialized, and every entry must be written. Without allocation or lock; from many threads at
+  /// once.
+  /// @{
+  virtual void computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const = 0;
+  virtual void computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                     VectorRef c) const = 0;
+  virtual void computeGravityVector(const ConstVectorRef& q, VectorRef g) const = 0;
+
+  /// Zero by default. With Configuration::friction false it gives zero, and computeTorques() leaves
+  /// it out.
+  virtual void computeFriction(const ConstVectorRef& qd, VectorRef f) const;
+
+  /// By default the three functions above.
+  virtual void computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                        MatrixRef H, VectorRef c, VectorRef g) const;
+
+  /// By default the sum of the terms; up to 64 joints without allocation. Includes friction.
+  virtual void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
+                              const ConstVectorRef& qdd, VectorRef tau) const;
+
+  /// By default loops over the columns.
+  virtual void computeInertiaMatrixBatch(const ConstMatrixRef& q, MatrixRef H) const;
+  virtual void computeCoriolisVectorBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
+                                          MatrixRef c) const;
+  virtual void computeFrictionBatch(const ConstMatrixRef& qd, MatrixRef f) const;
+  virtual void computeGravityVectorBatch(const ConstMatrixRef& q, MatrixRef g) const;
+  virtual void computeDynamicComponentsBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
+                                             MatrixRef H, MatrixRef c, MatrixRef g) const;
+  virtual void computeTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
+                                   const ConstMatrixRef& qdd, MatrixRef tau) const;
+
+  /// Answer of inertiaIsPhysical(). No default: a wrong yes makes robots oscillate.
+  virtual bool inertiaIsPhysicalImpl() const = 0;
+  /// @}
+
+ private:
+  void requireInitialized(const char* method) const;
+  void requireVector(const char* method, const char* argument, Eigen::Index size) const;
+  void requireMatrix(const char* method, const char* argument, const ConstMatrixRef& matrix,
+                     Eigen::Index cols) const;
+
+  // Results of the methods by value: allocated and freed by the caller's code, whatever its
+  // alignment.
+  Eigen::VectorXd vector(const char* method) const {
+    requireInitialized(method);
+    return Eigen::VectorXd(static_cast<Eigen::Index>(info_.joint_names.size()));
+  }
+  Eigen::MatrixXd squareMatrix(const char* method, Eigen::Index states) const {
+    requireInitialized(method);
+    const auto n = static_cast<Eigen::Index>(info_.joint_names.size());
+    return Eigen::MatrixXd(n, n * states);
+  }
+
+  JointInfo info_;
+  bool initialized_ = false;
+};
+
+}  // namespace v1
+}  // namespace inverse_dynamics_solver

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Named parameters from wherever they are: a ROS 2 node, a map, a YAML text. No header of ROS is
+/// needed.
+///
+///     solver->initialize(node->get_node_parameters_interface(), "ids");       // rclcpp
+///     solver->initialize({{"root", "base_link"}, {"tip", "tool0"}});           // a map
+///     solver->initialize(Parameters::fromYamlFile("robot.yaml"), "ids");       // YAML
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace inverse_dynamics_solver {
+
+/// The types a parameter can have; those of ROS 2 but byte arrays.
+using ParameterValue =
+    std::variant<bool, std::int64_t, double, std::string, std::vector<bool>,
+                 std::vector<std::int64_t>, std::vector<double>, std::vector<std::string>>;
+
+namespace detail {
+
+/// True for what reads like rclcpp's NodeParametersInterface (or a whole rclcpp::Node).
+template <class T, class = void>
+struct IsParametersInterface : std::false_type {};
+template <class T>
+struct IsParametersInterface<
+    T, std::void_t<decltype(std::declval<T&>().has_parameter(std::string())),
+                   decltype(std::declval<T&>().get_parameter(std::string()).get_type())>>
+    : std::true_type {};
+
+/// The value of an object with the methods of rclcpp::Parameter; absent if its type is "not set".
+template <class Parameter>
+std::optional<ParameterValue> valueOf(const std::string& name, const Parameter& parameter);
+
+/// Value of the parameter `name` of such an interface; absent if undeclared or not set.
+template <class Interface>
+std::optional<ParameterValue> readParameter(Interface& interface, const std::string& name);
+
+}  // namespace detail
+
+/// A reader of named parameters, type-erased, cheap to copy.
+///
+/// Names are dotted (`ids.gravity`). Values are read at the moment of asking, so a change in a node
+/// is seen by the next initialize(). The reader keeps a shared_ptr source alive.
+class Parameters {
+ public:
+  /// No parameter at all.
+  Parameters() = default;
+  Parameters(std::nullptr_t) {}  // NOLINT(google-explicit-constructor)
+
+  /// The parameters of a ROS 2 node.
+  ///
+  /// @param interface  any shared_ptr, to const or not, to an object with has_parameter(name) and
+  ///     get_parameter(name) of rclcpp's NodeParametersInterface. A null pointer is no parameter at
+  ///     all.
+  template <class Interface,
+            class = std::enable_if_t<detail::IsParametersInterface<Interface>::value>>
+  Parameters(std::shared_ptr<Interface> interface) {  // NOLINT(google-explicit-constructor)
+    if (interface == nullptr) return;
+    find_ = [interface](const std::string& name) {
+      return detail::readParameter(*interface, name);
+    };
+  }
+
+  /// The parameters of a map from dotted name to value.
+  Parameters(std::map<std::string, ParameterValue> values);  // NOLINT(google-explicit-constructor)
+  Parameters(std::initializer_list<std::pair<const std::string, ParameterValue>> values);
+
+  /// The parameters of a YAML text. Nested maps become dotted names, null is absence; in a ROS 2
+  /// parameter file everything down to `ros__parameters` is left out of the names.
+  ///
+  /// @param text   the YAML.
+  /// @param where  what to call it in errors, for example its file name.
+  /// Throws InvalidParameterValueException with line: not YAML, not a map, a name twice, mixed or
+  /// nested list.
+  static Parameters fromYaml(const std::string& text, const std::string& where = "YAML");
+
+  /// The same from a file. Throws Exception if it can't be read.
+  static Parameters fromYamlFile(const std::string& path);
+
+  /// The value, or nothing if the parameter is absent or not set.
+  std::optional<ParameterValue> find(const std::string& name) const;
+
+  /// The value as a T (one of the types of ParameterValue), or nothing if absent.
+  ///
+  /// An integer is accepted where a double is asked for, in arrays too; an empty list is an empty
+  /// list of any type. Throws InvalidParameterValueException: another type.
+  template <class T>
+  std::optional<T> get(const std::string& name) const;
+
+  /// The value as a T. Throws ParameterUninitializedException: absent; else as get().
+  template <class T>
+  T require(const std::string& name) const;
+
+ private:
+  std::function<std::optional<ParameterValue>(const std::string&)> find_;
+};
+
+/// For error texts: `bool`, `integer`, `double`, `string`, `list of bools`, ...
+std::string typeName(const ParameterValue& value);
+
+namespace detail {
+
+/// Numbers of rcl_interfaces/msg/ParameterType, the same in every ROS 2.
+enum class ParameterType {
+  kNotSet = 0,
+  kBool = 1,
+  kInteger = 2,
+  kDouble = 3,
+  kString = 4,
+  kByteArray = 5,
+  kBoolArray = 6,
+  kIntegerArray = 7,
+  kDoubleArray = 8,
+  kStringArray = 9
+};
+
+[[noreturn]] void throwUnsupportedType(const std::string& name, int type);
+
+template <class Parameter>
+std::optional<ParameterValue> valueOf(const std::string& name, const Parameter& parameter) {
+  const int type = static_cast<int>(parameter.get_type());
+  switch (static_cast<ParameterType>(type)) {
+    case ParameterType::kNotSet:
+      return std::nullopt;
+    case ParameterType::kBool:
+      return ParameterValue(bool{parameter.as_bool()});
+    case ParameterType::kInteger:
+      return ParameterValue(std::int64_t{parameter.as_int()});
+    case ParameterType::kDouble:
+      return ParameterValue(double{parameter.as_double()});
+    case ParameterType::kString:
+      return ParameterValue(std::string(parameter.as_string()));
+    case ParameterType::kBoolArray:
+      return ParameterValue(std::vector<bool>(parameter.as_bool_array()));
+    case ParameterType::kIntegerArray:
+      return ParameterValue(std::vector<std::int64_t>(parameter.as_integer_array()));
+    case ParameterType::kDoubleArray:
+      return ParameterValue(std::vector<double>(parameter.as_double_array()));
+    case ParameterType::kStringArray:
+      return ParameterValue(std::vector<std::string>(parameter.as_string_array()));
+    case ParameterType::kByteArray:
+      break;
+  }
+  throwUnsupportedType(name, type);
+}
+
+/// True where `bool get_parameter(name, parameter&)` exists: it answers false, and doesn't throw,
+/// for a parameter that is declared with a type but not set.
+template <class T, class Parameter, class = void>
+struct HasGetInto : std::false_type {};
+template <class T, class Parameter>
+struct HasGetInto<T, Parameter,
+                  std::enable_if_t<std::is_same_v<decltype(std::declval<T&>().get_parameter(
+                                                      std::string(), std::declval<Parameter&>())),
+                                                  bool>>> : std::true_type {};
+
+template <class Interface>
+std::optional<ParameterValue> readParameter(Interface& interface, const std::string& name) {
+  using Parameter = std::decay_t<decltype(interface.get_parameter(name))>;
+  if (!interface.has_parameter(name)) return std::nullopt;
+  if constexpr (HasGetInto<Interface, Parameter>::value) {
+    Parameter parameter;
+    if (!interface.get_parameter(name, parameter)) return std::nullopt;
+    return valueOf(name, parameter);
+  } else {
+    return valueOf(name, interface.get_parameter(name));
+  }
+}
+
+}  // namespace detail
+}  // namespace inverse_dynamics_solver
