@@ -3,11 +3,11 @@
 #
 # What the commands of this directory share. Each of them starts with
 #
+#     set -euo pipefail
 #     source "$(dirname "${BASH_SOURCE[0]}")/common.bash"
 #
-# which switches to the root of the workspace and turns every error into a stop.
+# which switches to the root of the workspace.
 
-set -euo pipefail
 shopt -s inherit_errexit nullglob
 
 workspace=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
