@@ -11,7 +11,7 @@
 shopt -s inherit_errexit nullglob
 
 workspace=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-cd "$workspace"
+cd "$workspace" || exit
 
 venv=$workspace/.venv
 requirements=inverse_dynamics_tools/requirements.txt
@@ -62,6 +62,14 @@ enter_venv() {
   if [ -z "${ROS_DISTRO:-}" ]; then
     unset AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH PYTHONPATH
   fi
+}
+
+# Recordings of real robots are not part of the repository: IDS_DATA_DIR names them, or is unset.
+find_recordings() {
+  [ -n "${IDS_DATA_DIR:-}" ] || return 0
+  [ -d "$IDS_DATA_DIR" ] || fail "IDS_DATA_DIR names no directory: $IDS_DATA_DIR" "correct or unset it"
+  IDS_DATA_DIR=$(cd "$IDS_DATA_DIR" && pwd)
+  export IDS_DATA_DIR
 }
 
 # Sources what was built: libraries, plugins, the Python package and the `ids` command.
