@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// The joint-space inertia matrix.
+///
+///     Eigen::MatrixXd H(chain.jointCount(), chain.jointCount());
+///     inertiaMatrix(chain, q, H);
+
+#pragma once
+
+#include <Eigen/Core>
+
+#include "chain_dynamics/kinematics.hpp"
+
+namespace chain_dynamics {
+namespace internal {
+
+// Row and column i of H up to the diagonal, I_c being the inertia of link i and all links after it.
+// F = I_c S accelerates joint i by one unit; every joint before it must hold against F.
+template <typename Scalar, typename MatrixH>
+void inertiaUpToDiagonal(const Chain& chain, const SpatialInertia<Scalar>& I_c,
+                         const Scratch<Transform<Scalar>>& X, Eigen::Index i, MatrixH& H) {
+  Force<Scalar> F = timesAxis(I_c, joint(chain, i));
+  H(i, i) = alongAxis(joint(chain, i), F) + Scalar(joint(chain, i).rotor_inertia);
+  for (Eigen::Index j = i; j > 0; --j) {
+    F = X[j] * F;
+    H(i, j - 1) = alongAxis(joint(chain, j - 1), F);
+    H(j - 1, i) = H(i, j - 1);
+  }
+}
+
+// All of H, from the links' poses.
+template <typename Scalar, typename MatrixH>
+void inertiaOfPoses(const Chain& chain, const std::vector<LinkParameters>& links,
+                    const Scratch<Transform<Scalar>>& X, MatrixH& H) {
+  SpatialInertia<Scalar> I_c = SpatialInertia<Scalar>::zero();
+  for (Eigen::Index i = chain.jointCount() - 1; i >= 0; --i) {
+    I_c += link<Scalar>(links, i);
+    inertiaUpToDiagonal(chain, I_c, X, i, H);
+
+    // on to the link before
+    if (i > 0) {
+      I_c = X[i] * I_c;
+    }
+  }
+}
+
+}  // namespace internal
+
+/// Joint-space inertia matrix: `H(q)`, with `1/2 qd' H qd` the kinetic energy.
+///
+/// Composite rigid body algorithm in link frames [Featherstone 2008, sec. 6.2, table 6.2], O(n^2).
+/// Rotor inertia is on the diagonal. Symmetric exactly; positive definite where the links are
+/// bodies with mass (Chain::warnings() is empty).
+///
+/// @tparam Scalar  (of q, H) float, double or a dual number.
+/// @param q        n; rad (prismatic m); order of chain.jointNames().
+/// @param[out] H   n x n; kg m^2 (prismatic kg, mixed kg m).
+/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+template <typename Q, typename MatrixH>
+void inertiaMatrix(const Chain& chain, const Eigen::MatrixBase<Q>& q,
+                   const Eigen::MatrixBase<MatrixH>& H) {
+  using Scalar = typename Q::Scalar;
+  const Eigen::Index n = chain.jointCount();
+  assert(H.rows() == n && H.cols() == n);
+  Scratch<Transform<Scalar>> X(n);
+
+  internal::linkPoses(chain, q, X);
+  internal::inertiaOfPoses(chain, chain.links(), X, H.const_cast_derived());
+}
+
+}  // namespace chain_dynamics
