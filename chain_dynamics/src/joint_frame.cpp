@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "joint_frame.hpp"
+
+#include <Eigen/Geometry>
+
+namespace chain_dynamics {
+
+Matrix3<double> rotationFromZ(const Vector3<double>& axis) {
+  // below the horizon, turn about x by pi first: the formula that follows fails near -z
+  if (axis.z() < 0) {
+    const Vector3<double> flip(1, -1, -1);
+    return flip.asDiagonal() * rotationFromZ(flip.asDiagonal() * axis);
+  }
+
+  // R = 1 + [v]x + [v]x [v]x / (1 + cos), v = z x axis
+  const Matrix3<double> v_x = skew<double>(Vector3<double>::UnitZ().cross(axis));
+  return Matrix3<double>::Identity() + v_x + v_x * v_x / (1 + axis.z());
+}
+
+Matrix3<double> rotationFromRollPitchYaw(const Vector3<double>& rpy) {
+  using Eigen::AngleAxisd;
+  const Vector3<double> x = Vector3<double>::UnitX();
+  const Vector3<double> y = Vector3<double>::UnitY();
+  const Vector3<double> z = Vector3<double>::UnitZ();
+  return (AngleAxisd(rpy.z(), z) * AngleAxisd(rpy.y(), y) * AngleAxisd(rpy.x(), x))
+      .toRotationMatrix();
+}
+
+LinkParameters symmetric(const LinkParameters& link) {
+  return {link.mass, link.first_moment, 0.5 * (link.inertia + link.inertia.transpose())};
+}
+
+}  // namespace chain_dynamics

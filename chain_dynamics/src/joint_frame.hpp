@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// From joint axes of any direction to the z axis that a Chain asks for.
+///
+///     Matrix3 R_UE = rotationFromZ(axis);  // axes of the engine's frame E in the file's frame U
+///     joint.placement.R = R_PU * R_UE;
+///
+/// U is the link frame of the file (URDF, model file), E that of the Chain: same origin, turned so
+/// that z of E is the joint axis.
+
+#pragma once
+
+#include <string>
+
+#include "chain_dynamics/chain.hpp"
+
+namespace chain_dynamics {
+
+/// The smallest rotation that turns z onto an axis; identity for z, half a turn about x for -z.
+///
+/// @param axis  of unit length.
+Matrix3<double> rotationFromZ(const Vector3<double>& axis);
+
+/// URDF's roll, pitch, yaw [rad]: `RotZ(yaw) RotY(pitch) RotX(roll)`.
+Matrix3<double> rotationFromRollPitchYaw(const Vector3<double>& rpy);
+
+/// Parameters with the last bits of rounding removed that make a moved inertia asymmetric.
+LinkParameters symmetric(const LinkParameters& link);
+
+}  // namespace chain_dynamics

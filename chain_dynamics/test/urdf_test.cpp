@@ -1,0 +1,641 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/urdf.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <limits>
+#include <locale>
+#include <string>
+
+#include "chain_dynamics/dynamic_components.hpp"
+#include "chain_dynamics/torques.hpp"
+#include "reference.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// Two ways of rounding through the same few hundred operations on figures below 100.
+constexpr double kRounding = 1e-12;
+// What is asked for: the greatest difference from another program, in kg m^2 and N m.
+constexpr double kReference = 1e-10;
+
+// --- small robots, written by hand ---
+
+const char* const kLimit = R"(<limit lower="-1" upper="2" effort="3" velocity="4"/>)";
+
+std::string inertial(const std::string& mass = "2", const std::string& ixx = "0.1",
+                     const std::string& origin = "<origin xyz='0.1 0.2 0.3'/>") {
+  return "<inertial>" + origin + "<mass value='" + mass + "'/><inertia ixx='" + ixx +
+         "' ixy='0.01' ixz='0.02' iyy='0.2' iyz='0.03' izz='0.15'/></inertial>";
+}
+
+std::string link(const std::string& name, const std::string& content = inertial()) {
+  return "<link name='" + name + "'>" + content + "</link>\n";
+}
+
+std::string joint(const std::string& name, const std::string& type, const std::string& parent,
+                  const std::string& child, const std::string& content = kLimit) {
+  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent +
+         "'/><child link='" + child + "'/>" + content + "</joint>\n";
+}
+
+std::string robot(const std::string& content) {
+  return "<?xml version='1.0'?>\n<robot name='arm'>\n" + content + "</robot>\n";
+}
+
+/// base -shoulder-> upper -elbow-> lower -weld-> tool, with axes and offsets of every kind.
+std::string arm(const std::string& elbow_axis = "<axis xyz='0.6 0 -0.8'/>",
+                const std::string& more = "") {
+  return robot(link("base") + link("upper") + link("lower") + link("tool", inertial("0.5")) +
+               joint("shoulder", "revolute", "base", "upper",
+                     "<origin xyz='0.1 0 0.4' rpy='0.3 -0.2 0.1'/><axis xyz='0 1 0'/>" +
+                         std::string(kLimit)) +
+               joint("elbow", "continuous", "upper", "lower",
+                     "<origin xyz='0 0.2 0.5' rpy='1 2 3'/>" + elbow_axis) +
+               joint("weld", "fixed", "lower", "tool", "<origin xyz='0 0 0.3' rpy='0 0.5 0'/>") +
+               more);
+}
+
+Eigen::VectorXd someTorques(const Chain& chain) {
+  const Eigen::Index n = chain.jointCount();
+  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(n, 0.3, 1.1);
+  const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(n, -1.2, 2.0);
+  const Eigen::VectorXd qdd = Eigen::VectorXd::LinSpaced(n, 3.0, -2.0);
+  Eigen::VectorXd tau(n);
+  torques(chain, q, qd, qdd, tau);
+  return tau;
+}
+
+double difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
+
+std::string urdfError(const std::string& urdf, const UrdfOptions& options = {}) {
+  return errorOf([&] { chainFromUrdf(urdf, options); });
+}
+
+UrdfOptions between(const std::string& root, const std::string& tip) {
+  UrdfOptions options;
+  options.root = root;
+  options.tip = tip;
+  return options;
+}
+
+// --- what a chain is made of ---
+
+TEST(Urdf, PendulumWorkedByHand) {
+  const auto chain = chainFromUrdf(
+      robot(link("base", "") +
+            link("bob",
+                 "<inertial><origin xyz='0 0 -0.5'/><mass value='2'/><inertia ixx='0.1' ixy='0' "
+                 "ixz='0' iyy='0.2' iyz='0' izz='0.3'/></inertial>") +
+            joint("hinge", "continuous", "base", "bob", "<axis xyz='0 1 0'/>")));
+  const double q = 0.7, qdd = 3.0;
+  Eigen::VectorXd tau(1);
+  torques(chain, Eigen::VectorXd::Constant(1, q), Eigen::VectorXd::Zero(1),
+          Eigen::VectorXd::Constant(1, qdd), tau);
+  // (Iyy + m l^2) qdd + m g l sin q
+  EXPECT_NEAR(tau[0], (0.2 + 2 * 0.25) * qdd + 2 * 9.81 * 0.5 * std::sin(q), kRounding);
+}
+
+TEST(Urdf, JointsCarryNamesTypesAndLimits) {
+  const auto chain = chainFromUrdf(
+      robot(link("base", "") + link("a") + link("b") + link("c") +
+            joint("slide", "prismatic", "base", "a") + joint("turn", "revolute", "a", "b") +
+            joint("spin", "continuous", "b", "c", "<limit effort='30' velocity='40'/>")));
+  EXPECT_EQ(chain.name(), "arm");
+  EXPECT_THAT(chain.jointNames(), ElementsAre("slide", "turn", "spin"));
+  EXPECT_EQ(chain.joints()[0].type, JointType::kPrismatic);
+  EXPECT_EQ(chain.joints()[1].type, JointType::kRevolute);
+  EXPECT_EQ(chain.joints()[2].type, JointType::kContinuous);
+
+  const JointLimits& limits = chain.joints()[1].limits;
+  EXPECT_EQ(limits.lower, -1);
+  EXPECT_EQ(limits.upper, 2);
+  EXPECT_EQ(limits.effort, 3);
+  EXPECT_EQ(limits.velocity, 4);
+
+  const JointLimits& continuous = chain.joints()[2].limits;
+  EXPECT_EQ(continuous.lower, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(continuous.upper, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(continuous.effort, 30);
+  EXPECT_EQ(continuous.velocity, 40);
+}
+
+TEST(Urdf, WhatMayBeLeftOutHasUrdfsMeaning) {
+  // no origin: identity; no axis: x; no limit of a continuous joint: none
+  const auto chain = chainFromUrdf(
+      robot(link("base", "") + link("a") + joint("j", "continuous", "base", "a", "")));
+  const Joint& made = chain.joints()[0];
+  EXPECT_EQ(made.placement.p, Eigen::Vector3d::Zero());
+  EXPECT_EQ(made.placement.R * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX());
+  EXPECT_EQ(made.limits.effort, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(made.limits.velocity, std::numeric_limits<double>::infinity());
+}
+
+TEST(Urdf, AxisAlongZLeavesTheFrameAlone) {
+  const auto chain = chainFromUrdf(
+      robot(link("base", "") + link("a") +
+            joint("j", "continuous", "base", "a", "<origin xyz='1 2 3'/><axis xyz='0 0 2'/>")));
+  EXPECT_EQ(chain.joints()[0].placement.R, Eigen::Matrix3d::Identity());
+  EXPECT_EQ(chain.joints()[0].placement.p, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(chain.links()[0].first_moment, 2 * Eigen::Vector3d(0.1, 0.2, 0.3));
+}
+
+// The same robot with the same axis, written in a link frame turned by any rotation.
+TEST(Urdf, TorquesDoNotDependOnTheDirectionOfAnAxisInItsFrame) {
+  const auto turned = [](const std::string& axis, const std::string& rpy,
+                         const Eigen::Vector3d& c) {
+    const std::string center =
+        std::to_string(c.x()) + " " + std::to_string(c.y()) + " " + std::to_string(c.z());
+    return chainFromUrdf(robot(
+        link("base", "") +
+        link("a", "<inertial><origin xyz='" + center +
+                      "'/><mass value='2'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' "
+                      "izz='0.1'/></inertial>") +
+        joint("j", "continuous", "base", "a",
+              "<origin xyz='0.1 0.2 0.3' rpy='" + rpy + "'/><axis xyz='" + axis + "'/>")));
+  };
+  // axis x of the base throughout, center of mass 0.25 m along y of the base
+  const std::string right = "1.5707963267948966";
+  const auto plain = turned("1 0 0", "0 0 0", {0, 0.25, 0});
+  const auto on_z = turned("0 0 1", "0 " + right + " 0", {0, 0.25, 0});
+  const auto on_minus_z = turned("0 0 -1", "0 -" + right + " 0", {0, 0.25, 0});
+  const auto on_minus_y = turned("0 -1 0", "0 0 " + right, {0.25, 0, 0});
+  EXPECT_LT(difference(someTorques(plain), someTorques(on_z)), kRounding);
+  EXPECT_LT(difference(someTorques(plain), someTorques(on_minus_z)), kRounding);
+  EXPECT_LT(difference(someTorques(plain), someTorques(on_minus_y)), kRounding);
+}
+
+TEST(Urdf, OppositeAxisTurnsAllSigns) {
+  const auto forth =
+      chainFromUrdf(robot(link("base", "") + link("a") +
+                          joint("j", "continuous", "base", "a", "<axis xyz='3 1 -2'/>")));
+  const auto back =
+      chainFromUrdf(robot(link("base", "") + link("a") +
+                          joint("j", "continuous", "base", "a", "<axis xyz='-3 -1 2'/>")));
+  const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 0.4);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(1);
+  Eigen::VectorXd tau_forth(1), tau_back(1);
+  torques(forth, q, zero, zero, tau_forth);
+  torques(back, -q, zero, zero, tau_back);
+  EXPECT_GT(std::abs(tau_forth[0]), 0.1);
+  EXPECT_NEAR(tau_forth[0], -tau_back[0], kRounding);
+}
+
+// Adds the torques of two ways to weld one body: as a link of its own, or into its parent.
+TEST(Urdf, FixedLinksAreLumpedWhereTheyAre) {
+  const std::string first = joint("j", "continuous", "base", "a", "<axis xyz='1 1 0'/>");
+  const auto welded = chainFromUrdf(
+      robot(link("base", "") + link("a", "") +
+            link("b", inertial("2", "0.1", "<origin xyz='0.1 0.2 0.3' rpy='0.3 0.2 0.1'/>")) +
+            first + joint("weld", "fixed", "a", "b", "<origin xyz='0 0 0.5'/>")));
+  const auto one = chainFromUrdf(robot(
+      link("base", "") +
+      link("a", inertial("2", "0.1", "<origin xyz='0.1 0.2 0.8' rpy='0.3 0.2 0.1'/>")) + first));
+  EXPECT_LT(difference(someTorques(welded), someTorques(one)), kRounding);
+  EXPECT_LT(difference(welded.links()[0].toVector(), one.links()[0].toVector()), kRounding);
+}
+
+TEST(Urdf, InertiaBeforeTheFirstMovableJointHasNoInfluence) {
+  const std::string rest = link("a") + joint("root", "fixed", "ground", "base", "") +
+                           joint("j", "continuous", "base", "a", "");
+  const auto light = chainFromUrdf(robot(link("ground", "") + link("base", "") + rest));
+  const auto heavy =
+      chainFromUrdf(robot(link("ground", inertial("50")) + link("base", inertial("70")) + rest));
+  EXPECT_EQ(someTorques(light), someTorques(heavy));
+}
+
+TEST(Urdf, GravityIsInTheRootLinksFrame) {
+  const std::string urdf =
+      robot(link("world", "") + link("base", "") + link("a") +
+            joint("mount", "fixed", "world", "base", "<origin rpy='1.5707963267948966 0 0'/>") +
+            joint("j", "continuous", "base", "a", "<axis xyz='0 0 1'/>"));
+  UrdfOptions from_base = between("base", "a");
+  from_base.gravity = {0, -9.81, 0};  // z of world is y of base
+  EXPECT_LT(
+      difference(someTorques(chainFromUrdf(urdf)), someTorques(chainFromUrdf(urdf, from_base))),
+      kRounding);
+  EXPECT_GT(difference(someTorques(chainFromUrdf(urdf)),
+                       someTorques(chainFromUrdf(urdf, between("base", "a")))),
+            0.1);
+}
+
+TEST(Urdf, TipFrameIsKept) {
+  const auto chain = chainFromUrdf(
+      robot(link("base", "") + link("a") + link("tool", "") +
+            joint("j", "continuous", "base", "a", "<axis xyz='1 0 0'/>") +
+            joint("flange", "fixed", "a", "tool", "<origin xyz='0.1 0.2 0.3' rpy='0 0 1.5'/>")));
+  const Transform<double> X = chain.joints()[0].placement * chain.tip();
+  EXPECT_LT(difference(X.p, Eigen::Vector3d(0.1, 0.2, 0.3)), kRounding);
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(1.5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  EXPECT_LT(difference(X.R, R), kRounding);
+}
+
+/// A language that writes 1,5 for one and a half.
+struct DecimalComma : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+};
+
+TEST(Urdf, NumbersDoNotDependOnTheLocale) {
+  const Eigen::VectorXd plain = someTorques(chainFromUrdf(arm()));
+  const std::locale comma(std::locale::classic(), new DecimalComma);
+  const std::locale before = std::locale::global(comma);
+  const std::string error = urdfError(arm());
+  const Eigen::VectorXd other = error == "no error" ? someTorques(chainFromUrdf(arm())) : plain;
+  std::locale::global(before);
+  EXPECT_EQ(error, "no error");
+  EXPECT_EQ(plain, other);
+}
+
+TEST(Urdf, TextAfterAByteOrderMarkIsRead) {
+  EXPECT_EQ(someTorques(chainFromUrdf("\xEF\xBB\xBF" + arm())), someTorques(chainFromUrdf(arm())));
+}
+
+TEST(Urdf, LooksAndUnknownElementsHaveNoInfluence) {
+  const std::string looks =
+      "<visual><geometry><mesh/></geometry><material name='undefined'/></visual><collision/>";
+  const std::string parts = joint("j", "continuous", "base", "a", "");
+  const auto plain = chainFromUrdf(robot(link("base", "") + link("a") + parts));
+  testing::internal::CaptureStderr();
+  const auto dressed =
+      chainFromUrdf(robot(link("base", looks) + link("a", looks + inertial()) + parts +
+                          "<transmission name='t'><joint name='j'/></transmission>"));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // urdfdom would complain about the mesh
+  EXPECT_EQ(someTorques(plain), someTorques(dressed));
+}
+
+// --- what hangs on the chain ---
+
+/// arm() with a camera beside the chain, on a slider, and a finger beyond the tip.
+std::string armWithAttachments(const std::string& finger = "") {
+  return arm("", link("camera", inertial("1")) + link("finger", inertial("0.3")) +
+                     joint("focus", "prismatic", "upper", "camera",
+                           "<origin xyz='0.2 0 0'/><axis xyz='0 0 1'/>" + std::string(kLimit)) +
+                     joint("grip", "revolute", "tool", "finger",
+                           "<axis xyz='0 1 0'/>" + std::string(kLimit) + finger));
+}
+
+TEST(Urdf, AttachedBodiesAreLumpedWithTheirJointsAtZero) {
+  const auto lumped = chainFromUrdf(armWithAttachments(), between("base", "tool"));
+  const auto welded = chainFromUrdf(
+      arm("", link("camera", inertial("1")) + link("finger", inertial("0.3")) +
+                  joint("focus", "fixed", "upper", "camera", "<origin xyz='0.2 0 0'/>") +
+                  joint("grip", "fixed", "tool", "finger", "")),
+      between("base", "tool"));
+  EXPECT_LT(difference(someTorques(lumped), someTorques(welded)), kRounding);
+  EXPECT_GT(difference(someTorques(lumped), someTorques(chainFromUrdf(arm("")))), 0.1);
+}
+
+TEST(Urdf, AttachedBodiesAreHeldAtTheirLockedPositions) {
+  UrdfOptions options = between("base", "tool");
+  options.locked_position = [](const std::string& name) { return name == "focus" ? 0.15 : 0.4; };
+  const auto locked = chainFromUrdf(armWithAttachments(), options);
+  const auto welded = chainFromUrdf(
+      arm("", link("camera", inertial("1")) + link("finger", inertial("0.3")) +
+                  joint("focus", "fixed", "upper", "camera", "<origin xyz='0.2 0 0.15'/>") +
+                  joint("grip", "fixed", "tool", "finger", "<origin rpy='0 0.4 0'/>")),
+      between("base", "tool"));
+  EXPECT_LT(difference(someTorques(locked), someTorques(welded)), kRounding);
+  const auto at_zero = chainFromUrdf(armWithAttachments(), between("base", "tool"));
+  EXPECT_GT(difference(someTorques(locked), someTorques(at_zero)), 0.01);
+}
+
+TEST(Urdf, AttachedBodiesCanBeIgnored) {
+  UrdfOptions options = between("base", "tool");
+  options.lump_attached = false;
+  const auto ignored = chainFromUrdf(armWithAttachments(), options);
+  EXPECT_EQ(someTorques(ignored), someTorques(chainFromUrdf(arm(""))));
+
+  // on a shorter chain the tool beyond the tip is attached, too
+  options.tip = "lower";
+  EXPECT_GT(
+      difference(someTorques(chainFromUrdf(armWithAttachments(), options)), someTorques(ignored)),
+      0.1);
+}
+
+TEST(Urdf, AttachedMimicJointFollowsTheJointItMimics) {
+  const std::string mimic = "<mimic joint='focus' multiplier='2' offset='0.1'/>";
+  UrdfOptions options = between("base", "tool");
+  options.locked_position = [](const std::string& name) { return name == "focus" ? 0.15 : 99.0; };
+  const auto following = chainFromUrdf(armWithAttachments(mimic), options);
+  options.locked_position = [](const std::string& name) { return name == "focus" ? 0.15 : 0.4; };
+  const auto locked = chainFromUrdf(armWithAttachments(), options);
+  EXPECT_LT(difference(someTorques(following), someTorques(locked)), kRounding);
+}
+
+TEST(Urdf, AttachedMimicOfAChainJointIsAnError) {
+  const std::string urdf = armWithAttachments("<mimic joint='elbow'/>");
+  EXPECT_THAT(urdfError(urdf, between("base", "tool")),
+              AllOf(HasSubstr("joint grip"), HasSubstr("elbow"), HasSubstr("ignore attached")));
+  UrdfOptions ignoring = between("base", "tool");
+  ignoring.lump_attached = false;
+  EXPECT_EQ(urdfError(urdf, ignoring), "no error");
+}
+
+TEST(Urdf, AttachedMimicOfItselfIsAnError) {
+  EXPECT_THAT(urdfError(armWithAttachments("<mimic joint='grip'/>"), between("base", "tool")),
+              AllOf(HasSubstr("joint grip"), HasSubstr("follows itself")));
+}
+
+TEST(Urdf, AttachedFloatingJointIsAnError) {
+  const std::string urdf =
+      arm("", link("balloon") + joint("string", "floating", "upper", "balloon", ""));
+  EXPECT_THAT(urdfError(urdf, between("base", "tool")),
+              AllOf(HasSubstr("joint string"), HasSubstr("got floating")));
+}
+
+TEST(Urdf, LockedPositionThatIsNotFiniteIsAnError) {
+  UrdfOptions options = between("base", "tool");
+  options.locked_position = [](const std::string&) { return std::nan(""); };
+  EXPECT_THAT(urdfError(armWithAttachments(), options),
+              AllOf(HasSubstr("joint focus: locked position"), HasSubstr("got nan")));
+}
+
+// --- root and tip ---
+
+TEST(Urdf, EmptyTipIsTheLeafFarthestOut) {
+  // a second leaf on a fixed joint, and one before any movable joint, leave no doubt
+  const std::string urdf = arm("", link("base_label") + link("sensor", "") +
+                                       joint("label", "fixed", "base", "base_label", "") +
+                                       joint("mount", "fixed", "lower", "sensor", ""));
+  EXPECT_LT(difference(someTorques(chainFromUrdf(urdf)),
+                       someTorques(chainFromUrdf(urdf, between("base", "tool")))),
+            kRounding);
+  EXPECT_THAT(chainFromUrdf(urdf).jointNames(), ElementsAre("shoulder", "elbow"));
+}
+
+TEST(Urdf, RootMayBeAnyLinkOnTheWay) {
+  const auto part = chainFromUrdf(arm(), between("upper", ""));
+  EXPECT_THAT(part.jointNames(), ElementsAre("elbow"));
+}
+
+TEST(Urdf, LeavesThatDifferInMovableJointsAreListed) {
+  const std::string urdf =
+      arm("", link("left") + link("right") + joint("left_joint", "prismatic", "tool", "left") +
+                  joint("right_joint", "prismatic", "tool", "right"));
+  EXPECT_THAT(urdfError(urdf), AllOf(HasSubstr("tip: expected one leaf below 'base'"),
+                                     HasSubstr("left (moved by left_joint)"),
+                                     HasSubstr("right (moved by right_joint)"),
+                                     HasSubstr("name one of them as tip")));
+  EXPECT_EQ(urdfError(urdf, between("", "left")), "no error");
+}
+
+TEST(Urdf, UnknownRootOrTipIsAnsweredByTheNearestNames) {
+  EXPECT_EQ(urdfError(arm(), between("bsae", "")),
+            "URDF: robot arm: root: expected a link of the robot, got 'bsae'; links: base, lower, "
+            "tool, upper");
+  EXPECT_THAT(
+      urdfError(arm(), between("", "tol")),
+      AllOf(HasSubstr("tip: expected a link of the robot, got 'tol'"), HasSubstr("links: tool, ")));
+}
+
+TEST(Urdf, TipMustBeBelowRoot) {
+  EXPECT_THAT(urdfError(arm(), between("tool", "base")),
+              AllOf(HasSubstr("tip: expected a link below root 'tool', got 'base'"),
+                    HasSubstr("swap root and tip")));
+  EXPECT_THAT(urdfError(armWithAttachments(), between("camera", "tool")),
+              AllOf(HasSubstr("tip: expected a link below root 'camera', got 'tool'"),
+                    HasSubstr("choose a root nearer to 'base'")));
+}
+
+TEST(Urdf, ChainWithoutMovableJointIsAnError) {
+  EXPECT_THAT(urdfError(arm(), between("tool", "tool")),
+              AllOf(HasSubstr("chain: expected at least one movable joint"),
+                    HasSubstr("root and tip are the same link")));
+  EXPECT_THAT(urdfError(arm(), between("tool", "")), HasSubstr("at least one movable joint"));
+  EXPECT_THAT(urdfError(arm(), between("lower", "tool")),
+              HasSubstr("only fixed joints from lower to tool"));
+}
+
+// --- bad input ---
+
+TEST(UrdfError, NoUrdf) {
+  EXPECT_EQ(urdfError(""),
+            "URDF: robot description: expected the text of a URDF, got an empty text; give the "
+            "robot's URDF");
+  EXPECT_THAT(urdfError(" \n\t"), HasSubstr("got an empty text"));
+  EXPECT_THAT(urdfError("/robots/ur10.urdf"),
+              AllOf(HasSubstr("'/robots/ur10.urdf'"), HasSubstr("not its file name")));
+}
+
+TEST(UrdfError, BrokenXmlNamesTheLine) {
+  EXPECT_THAT(urdfError("<robot name='r'>\n<link name='a'>\n"),
+              AllOf(HasSubstr("URDF:2: "), HasSubstr("expected well-formed XML")));
+  EXPECT_THAT(urdfError(arm().substr(0, 400)), HasSubstr("expected well-formed XML"));
+}
+
+TEST(UrdfError, OtherXml) {
+  EXPECT_THAT(urdfError("<?xml version='1.0'?>\n<sdf version='1.6'/>"),
+              HasSubstr("URDF:2: robot description: expected <robot>, got <sdf>"));
+  EXPECT_THAT(urdfError("<robot name='r'/>"), HasSubstr("expected at least one <link>, got none"));
+  EXPECT_THAT(urdfError("<robot><link name='a'/></robot>"),
+              HasSubstr("robot: <robot>: expected attribute 'name', got none"));
+  EXPECT_THAT(urdfError("<robot name='r' version='7'><link name='a'/></robot>"),
+              HasSubstr("expected a URDF that urdfdom reads"));
+}
+
+TEST(UrdfError, XacroMustBeExpandedFirst) {
+  EXPECT_THAT(urdfError("<robot name='r' xmlns:xacro='x'>\n<xacro:include filename='f'/></robot>"),
+              AllOf(HasSubstr("URDF:2: <xacro:include>"), HasSubstr("expand the file with xacro")));
+}
+
+TEST(UrdfError, NamesMustBeGivenAndUnique) {
+  EXPECT_THAT(urdfError(robot(link(""))), HasSubstr("URDF:3: <link> name: expected a name"));
+  EXPECT_THAT(urdfError(robot("<link/>")), HasSubstr("<link>: expected attribute 'name'"));
+  EXPECT_THAT(urdfError(robot(link("a") + link("a"))),
+              HasSubstr("URDF:4: link a: name: expected a name of its own, got the one of line 3"));
+  EXPECT_THAT(urdfError(arm("", link("c") + joint("elbow", "fixed", "tool", "c", ""))),
+              HasSubstr("joint elbow: name: expected a name of its own"));
+}
+
+TEST(UrdfError, LinksMustBeATree) {
+  const std::string two = link("a") + link("b") + joint("ab", "fixed", "a", "b", "");
+  EXPECT_THAT(urdfError(robot(two + link("c"))),
+              AllOf(HasSubstr("root: expected one link"), HasSubstr("got 2: a, c")));
+  EXPECT_THAT(urdfError(robot(two + joint("ba", "fixed", "b", "a", ""))), HasSubstr("got 0"));
+  EXPECT_THAT(urdfError(robot(two + link("c") + joint("ba", "fixed", "b", "a", ""))),
+              AllOf(HasSubstr("link a: place in the tree"), HasSubstr("got a loop of joints")));
+  EXPECT_THAT(urdfError(robot(two + link("c") + joint("cb", "fixed", "c", "b", ""))),
+              AllOf(HasSubstr("joint cb: <child>"), HasSubstr("'b', which has one")));
+  EXPECT_THAT(urdfError(robot(two + joint("bx", "fixed", "b", "x", ""))),
+              HasSubstr("joint bx: <child>: expected a link of the robot, got 'x'"));
+  EXPECT_THAT(urdfError(robot(two + "<joint name='j' type='fixed'/>")),
+              HasSubstr("joint j: <joint>: expected <parent>, got none"));
+}
+
+TEST(UrdfError, ZeroAxisNamesTheJoint) {
+  EXPECT_THAT(urdfError(arm("<axis xyz='0 0 0'/>")),
+              AllOf(HasSubstr("joint elbow: <axis> xyz: expected a direction, got the zero vector"),
+                    HasSubstr("for example 0 0 1")));
+  EXPECT_THAT(urdfError(arm("<axis/>")),
+              HasSubstr("joint elbow: <axis>: expected attribute 'xyz', got none"));
+}
+
+TEST(UrdfError, MovableBodyWithoutMassNamesJointAndLink) {
+  const std::string urdf = robot(link("base") + link("a", "") + link("b") +
+                                 joint("first", "continuous", "base", "a", "") +
+                                 joint("second", "continuous", "a", "b", ""));
+  EXPECT_EQ(urdfError(urdf),
+            "URDF: joint first: the body it moves: expected a mass, got no mass and no inertia; "
+            "give link a an <inertial>, or allow massless bodies");
+  UrdfOptions options;
+  options.allow_massless = true;
+  EXPECT_EQ(urdfError(urdf, options), "no error");
+}
+
+TEST(UrdfError, NegativeMassNamesTheLink) {
+  EXPECT_THAT(urdfError(robot(link("base") + link("a", inertial("-1.5")) +
+                              joint("j", "continuous", "base", "a", ""))),
+              HasSubstr("URDF:4: link a: mass: expected a number >= 0 [kg], got -1.5"));
+}
+
+TEST(UrdfError, NumbersMustBeFinite) {
+  const auto with = [](const std::string& body, const std::string& joint_content) {
+    return urdfError(
+        robot(link("base") + link("a", body) + joint("j", "revolute", "base", "a", joint_content)));
+  };
+  for (const std::string bad : {"nan", "inf", "-inf", "1e999", "heavy", "1,5", "1.5kg", ""}) {
+    EXPECT_THAT(with(inertial(bad), kLimit),
+                HasSubstr("link a: <mass> value: expected a finite number, got '" + bad + "'"));
+    EXPECT_THAT(with(inertial("1", bad), kLimit), HasSubstr("link a: <inertia> ixx: expected"));
+    EXPECT_THAT(with(inertial("1", "1", "<origin xyz='0 0 " + bad + "'/>"), kLimit),
+                HasSubstr("link a: <origin> xyz: expected three finite numbers"));
+    EXPECT_THAT(with(inertial(), kLimit + ("<origin rpy='0 " + bad + " 0 '/>")),
+                HasSubstr("joint j: <origin> rpy: expected three finite numbers"));
+    EXPECT_THAT(with(inertial(), kLimit + ("<axis xyz='" + bad + " 0 1'/>")),
+                HasSubstr("joint j: <axis> xyz: expected three finite numbers"));
+    EXPECT_THAT(with(inertial(), "<limit lower='" + bad + "' upper='1' effort='1' velocity='1'/>"),
+                HasSubstr("joint j: <limit> lower: expected a finite number"));
+  }
+  EXPECT_THAT(with(inertial(), kLimit + std::string("<origin xyz='1 2 3 4'/>")),
+              HasSubstr("expected three finite numbers, got 4 in '1 2 3 4'"));
+}
+
+TEST(UrdfError, NumbersMustNotBeMissing) {
+  const auto with = [](const std::string& body) {
+    return urdfError(
+        robot(link("base") + link("a", body) + joint("j", "continuous", "base", "a", "")));
+  };
+  EXPECT_THAT(with("<inertial><mass value='1'/></inertial>"),
+              HasSubstr("link a: <inertial>: expected <inertia>, got none"));
+  EXPECT_THAT(with("<inertial><inertia ixx='1'/></inertial>"),
+              HasSubstr("link a: <inertial>: expected <mass>, got none"));
+  EXPECT_THAT(with("<inertial><mass/></inertial>"),
+              HasSubstr("link a: <mass>: expected attribute 'value', got none"));
+  EXPECT_THAT(with("<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial>"),
+              HasSubstr("link a: <inertia>: expected attribute 'ixy', got none"));
+  EXPECT_THAT(with(inertial() + inertial()),
+              HasSubstr("link a: <inertial>: expected at most one, got 2"));
+}
+
+TEST(UrdfError, LimitsOfRevoluteAndPrismaticJointsAreNeeded) {
+  const auto with = [](const std::string& content) {
+    return urdfError(
+        robot(link("base") + link("a") + joint("j", "revolute", "base", "a", content)));
+  };
+  EXPECT_THAT(with(""), AllOf(HasSubstr("joint j: <joint>: expected <limit>, got none"),
+                              HasSubstr("continuous")));
+  EXPECT_THAT(with("<limit lower='0' upper='1' effort='1'/>"),
+              HasSubstr("joint j: <limit>: expected attribute 'velocity', got none"));
+  EXPECT_THAT(with("<limit lower='3' upper='1' effort='1' velocity='1'/>"),
+              HasSubstr("joint j: position limits: expected lower <= upper"));
+}
+
+TEST(UrdfError, UnsupportedJointsAreNamed) {
+  const auto with = [](const std::string& type, const std::string& content) {
+    return urdfError(robot(link("base") + link("a") + link("b") +
+                           joint("first", "continuous", "base", "a", "") +
+                           joint("odd", type, "a", "b", content)));
+  };
+  EXPECT_THAT(with("planar", ""), HasSubstr("joint odd: type: expected revolute, continuous, "
+                                            "prismatic or fixed, got planar"));
+  EXPECT_THAT(with("floating", ""), HasSubstr("joint odd: type: expected revolute, continuous, "
+                                              "prismatic or fixed, got floating"));
+  EXPECT_THAT(with("screw", ""), AllOf(HasSubstr("URDF:7: joint odd"), HasSubstr("'screw'")));
+  EXPECT_THAT(with("continuous", "<mimic joint='first'/>"),
+              AllOf(HasSubstr("joint odd: <mimic>"), HasSubstr("follows joint first")));
+  EXPECT_THAT(with("continuous", "<mimic joint='x'/>"),
+              HasSubstr("joint odd: <mimic> joint: expected a joint of the robot, got 'x'"));
+}
+
+TEST(UrdfError, GravityMustBeFinite) {
+  UrdfOptions options;
+  options.gravity.z() = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(urdfError(arm(), options), HasSubstr("gravity: expected three finite numbers"));
+}
+
+TEST(UrdfError, NothingIsPrinted) {
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  urdfError("");
+  urdfError(arm().substr(0, 400));
+  urdfError(arm("<axis xyz='0 0 0'/>"));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+TEST(Urdf, TriangleInequalityBrokenIsAWarning) {
+  const auto chain = chainFromUrdf(robot(link("base") + link("a", inertial("1", "5")) +
+                                         joint("j", "continuous", "base", "a", "")));
+  ASSERT_EQ(chain.warnings().size(), 1U);
+  EXPECT_THAT(chain.warnings()[0], AllOf(HasSubstr("joint j"), HasSubstr("triangle inequality")));
+  EXPECT_TRUE(chainFromUrdf(arm()).warnings().empty());
+}
+
+// --- other people's values on real robots ---
+
+void expectReference(const std::string& urdf_file, const std::string& reference,
+                     const UrdfOptions& options) {
+  const auto chain = chainFromUrdf(textOf(dataFolder() + "/urdf/" + urdf_file), options);
+  const Eigen::Index n = chain.jointCount();
+  const auto states = referenceStates(reference);
+  ASSERT_EQ(states.size(), 25U);
+  for (const ReferenceState& state : states) {
+    Eigen::MatrixXd H(n, n);
+    Eigen::VectorXd c(n), g(n), tau(n);
+    dynamicComponents(chain, state.q, state.qd, H, c, g);
+    torques(chain, state.q, state.qd, state.qdd, tau);
+    EXPECT_LT(difference(H, state.H), kReference) << state.label;
+    EXPECT_LT(difference(c, state.coriolis), kReference) << state.label;
+    EXPECT_LT(difference(g, state.gravity), kReference) << state.label;
+    EXPECT_LT(difference(tau, state.torques), kReference) << state.label;
+  }
+}
+
+TEST(UrdfReference, UR10AgreesWithPinocchioAndKDL) {
+  if (dataFolder().empty()) {
+    GTEST_SKIP() << "IDS_DATA_DIR isn't set: it names the folder with urdf/ur10.urdf";
+  }
+  expectReference("ur10.urdf", "ur10_urdf.json", between("base_link", "tool0"));
+  // several leaves, all moved by the same joints: ft_frame, tool0 and (by none) base
+  expectReference("ur10.urdf", "ur10_urdf.json", {});
+}
+
+TEST(UrdfReference, PandaAgreesWithPinocchioAndKDL) {
+  if (dataFolder().empty()) {
+    GTEST_SKIP() << "IDS_DATA_DIR isn't set: it names the folder with urdf/panda.urdf";
+  }
+  expectReference("panda.urdf", "panda_urdf.json", between("fer_link0", "fer_link8"));
+}
+
+TEST(UrdfReference, PandaLink4BreaksTheTriangleInequality) {
+  if (dataFolder().empty()) {
+    GTEST_SKIP() << "IDS_DATA_DIR isn't set: it names the folder with urdf/panda.urdf";
+  }
+  const auto chain = chainFromUrdf(textOf(dataFolder() + "/urdf/panda.urdf"));
+  ASSERT_FALSE(chain.warnings().empty());
+  EXPECT_THAT(chain.warnings()[0], HasSubstr("fer_joint4"));
+}
+
+}  // namespace
+}  // namespace chain_dynamics
