@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The run configurations: complete, and true to the robot descriptions they name."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+PACKAGE = Path(__file__).resolve().parent.parent
+FILES = sorted((PACKAGE / "robots").glob("*.yaml"))
+OWN_SHARE = "package://inverse_dynamics_robots/"
+
+REQUIRED = {"schema", "name", "description", "plugin", "urdf", "root", "tip", "gravity", "topic"}
+REQUIRED |= {"joints", "friction", "effort", "accelerations", "source"}
+OPTIONAL = {"model", "simulation"}
+
+
+def read(file: Path) -> dict[str, Any]:
+    return yaml.safe_load(file.read_text(encoding="utf-8"))
+
+
+def chain_joints(urdf: Path, root: str, tip: str) -> list[str]:
+    """Names of the movable joints from root to tip."""
+    description = ElementTree.parse(urdf).getroot()
+    above = {joint.find("child").get("link"): joint for joint in description.findall("joint")}
+    names = []
+    link = tip
+    while link != root:
+        joint = above[link]
+        if joint.get("type") != "fixed":
+            names.append(joint.get("name"))
+        link = joint.find("parent").get("link")
+    return names[::-1]
+
+
+def test_the_four_robots_are_there() -> None:
+    names = [file.stem for file in FILES]
+    assert names == ["panda_real", "panda_simulated", "ur10_real", "ur10_simulated"]
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
+def test_keys_are_complete_known_and_explained(file: Path) -> None:
+    robot = read(file)
+    assert set(robot) >= REQUIRED
+    assert set(robot) <= REQUIRED | OPTIONAL
+    head = file.read_text(encoding="utf-8").partition("\nschema:")[0]
+    for key in [*REQUIRED, "model", "method", "cutoff"]:
+        assert f" {key} " in head.replace(",", " "), f"{key} is not explained"
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
+def test_files_exist_and_joints_are_those_of_the_chain(file: Path) -> None:
+    robot = read(file)
+    assert robot["name"] == file.stem
+    assert robot["urdf"].startswith(OWN_SHARE)
+    urdf = PACKAGE / robot["urdf"].removeprefix(OWN_SHARE)
+    assert robot["joints"] == chain_joints(urdf, robot["root"], robot["tip"])
