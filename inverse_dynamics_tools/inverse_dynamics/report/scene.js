@@ -2,9 +2,10 @@
 //
 // A robot in 3D: links posed by forward kinematics, drawn with WebGL from boxes, cylinders and spheres.
 //
-//   const scene = createScene(canvas, run.links);   // null where WebGL is missing
-//   scene.draw(q);                                  // q: joint positions, rad or m
+//   const scene = createScene(canvas, run.links, motion);   // null where WebGL is missing
+//   scene.draw(q);   // q: joint positions, rad or m
 //
+// motion: some joint positions of the recording; the view is made wide enough for all of them.
 // A link: {parent, joint, kind, axis, pose, shapes}. parent: index or -1; joint: index in q or -1 (fixed);
 // pose: of its frame in the parent's at q = 0; a shape: {kind, size, pose, color}. Poses are 4 x 4,
 // column by column. The z axis points up, lengths in m.
@@ -113,11 +114,13 @@ function unitSphere() {
 
 // ---- drawing ----------------------------------------------------------------------------------
 
+const kFieldOfView = 0.62;  // rad, from top to bottom
+
 const kVertexShader = `
   attribute vec3 position, normal;
   uniform mat4 view_projection, pose;
   uniform vec3 scale;
-  uniform float shadow;  // 1: flatten onto the floor along the light
+  uniform mediump float shadow;  // 1: flatten onto the floor along the light
   varying vec3 n;
   varying vec3 p;
   void main() {
@@ -137,7 +140,7 @@ const kFragmentShader = `
   varying vec3 n;
   varying vec3 p;
   uniform vec3 color, eye;
-  uniform float shadow;
+  uniform mediump float shadow;
   void main() {
     if (shadow > 0.5) {
       gl_FragColor = vec4(0.16, 0.18, 0.22, 0.20);
@@ -189,11 +192,26 @@ function linkPoses(links, q) {
   return poses;
 }
 
+// Middle and radius of the space that the robot's links need in some positions, m.
+function spaceOf(links, motion) {
+  const low = [0, 0, 0], high = [0, 0, 0];
+  for (const q of motion) {
+    for (const pose of linkPoses(links, q)) {
+      for (let k = 0; k < 3; ++k) {
+        low[k] = Math.min(low[k], pose[12 + k]);
+        high[k] = Math.max(high[k], pose[12 + k]);
+      }
+    }
+  }
+  const middle = low.map((value, k) => (value + high[k]) / 2);
+  return {middle, radius: 0.12 + Math.hypot(...high.map((value, k) => value - middle[k]))};
+}
+
 // Lines of the floor as thin boxes: a square of 2.4 m, every 0.2 m.
 function floorLines() {
   const lines = [];
   for (let i = -6; i <= 6; ++i) {
-    const width = i === 0 ? 0.006 : 0.003;
+    const width = i === 0 ? 0.012 : 0.007;
     lines.push({pose: translation(0.2 * i, 0, 0), scale: [width, 2.4, 0.0005]});
     lines.push({pose: translation(0, 0.2 * i, 0), scale: [2.4, width, 0.0005]});
   }
@@ -207,8 +225,8 @@ function shapeScale(shape) {
   return shape.kind === "cylinder" ? [s[0], s[0], s[1]] : [s[0], s[0], s[0]];
 }
 
-function createScene(canvas, links) {
-  const gl = canvas.getContext("webgl", {antialias: true, preserveDrawingBuffer: true});
+function createScene(canvas, links, motion) {
+  const gl = canvas.getContext("webgl", {alpha: false, antialias: true, stencil: true, preserveDrawingBuffer: true});
   if (!gl) return null;
   const program = compile(gl, kVertexShader, kFragmentShader);
   const meshes = {
@@ -217,7 +235,8 @@ function createScene(canvas, links) {
   const locations = Object.fromEntries(
       ["view_projection", "pose", "scale", "color", "eye", "shadow"].map((name) => [name, uniform(name)]));
   const lines = floorLines();
-  const home = {azimuth: -0.9, elevation: 0.38, distance: 2.9};
+  const space = spaceOf(links, motion);
+  const home = {azimuth: -0.9, elevation: 0.38, distance: space.radius / Math.tan(kFieldOfView / 2)};
   const view = {...home};
   let last_q = null;
 
@@ -247,12 +266,17 @@ function createScene(canvas, links) {
   }
 
   function drawShadow(poses) {
-    // All shadows lie at one height, so the depth test lets each pixel of the floor be darkened once.
+    // The stencil lets each pixel of the floor be darkened once, however many shapes lie above it.
     gl.uniform1f(locations.shadow, 1);
     gl.enable(gl.BLEND);
+    gl.enable(gl.STENCIL_TEST);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-    gl.depthFunc(gl.LESS);
+    gl.stencilFunc(gl.EQUAL, 0, 0xff);
+    gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
+    gl.depthMask(false);
     drawRobot(poses);
+    gl.depthMask(true);
+    gl.disable(gl.STENCIL_TEST);
     gl.disable(gl.BLEND);
     gl.uniform1f(locations.shadow, 0);
   }
@@ -266,7 +290,7 @@ function createScene(canvas, links) {
       canvas.width = width;
       canvas.height = height;
     }
-    const target = [0, 0, 0.45];
+    const target = space.middle;
     const horizontal = view.distance * Math.cos(view.elevation);
     const eye = [
       target[0] + horizontal * Math.cos(view.azimuth), target[1] + horizontal * Math.sin(view.azimuth),
@@ -274,13 +298,13 @@ function createScene(canvas, links) {
     gl.viewport(0, 0, width, height);
     gl.clearColor(0.965, 0.97, 0.98, 1);
     gl.enable(gl.DEPTH_TEST);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
     gl.useProgram(program);
     gl.uniformMatrix4fv(locations.view_projection, false,
-        multiply(perspective(0.62, width / height, 0.05, 20), lookAt(eye, target)));
+        multiply(perspective(kFieldOfView, width / height, 0.05, 30), lookAt(eye, target)));
     gl.uniform3fv(locations.eye, eye);
     gl.uniform1f(locations.shadow, 0);
-    for (const line of lines) drawMesh(meshes.box, line.pose, line.scale, [0.80, 0.82, 0.86]);
+    for (const line of lines) drawMesh(meshes.box, line.pose, line.scale, [0.86, 0.88, 0.91]);
     const poses = linkPoses(links, q);
     drawShadow(poses);
     drawRobot(poses);

@@ -31,7 +31,8 @@ class Player {
     this.end = this.time[this.time.length - 1];
     this.playing = false;
     const canvas = section.querySelector(".robot canvas");
-    this.scene = run.links.length ? createScene(canvas, run.links) : null;
+    const motion = Array.from({length: 60}, (_, k) => positionsAt(this.time, this.q, this.now + k / 59 * (this.end - this.now)));
+    this.scene = run.links.length ? createScene(canvas, run.links, motion) : null;
     section.querySelector(".no-webgl").hidden = this.scene !== null;
     this.plots = createPlotGroup(this.time, {onCursor: (t) => this.seek(t)});
     this.addPlots(run);
