@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A recorded motion as arrays: time, positions, velocities, efforts, one row per message."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, get_args
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+    Integers = NDArray[np.int64]
+
+    # Called now and then during long work: what is done, how much of it, out of how much.
+    Progress = Callable[[str, int, int], None]
+
+# Which stamps are the time: the header's, those of reception, or what is there.
+Clock = Literal["auto", "header", "receive"]
+CLOCKS: tuple[Clock, ...] = get_args(Clock)
+
+
+def no_progress(_what: str, _done: int, _total: int) -> None:
+    """Say nothing: the progress of a call from a script."""
+
+
+@dataclass(frozen=True)
+class JointLog:
+    """Joint states of one chain over time.
+
+    N messages, n joints in the order of `joint_names`; rad, rad/s, N m (prismatic m, m/s, N).
+    """
+
+    joint_names: tuple[str, ...]
+    header_stamps: Integers  # (N,) ns, as the publisher wrote them
+    receive_stamps: Integers  # (N,) ns, as the recorder wrote them
+    q: Floats  # (N, n)
+    qd: Floats  # (N, n)
+    effort: Floats  # (N, n)
+    frame_id: str = ""
+    clock: str = "header"  # which of the two stamps is the time
+    topic: str = "/joint_states"
+    storage: str = "sqlite3"
+    notes: tuple[str, ...] = ()  # what was left out or assumed, in words
+
+    @property
+    def stamps(self) -> Integers:
+        """(N,) ns: those stamps that are the time of the samples; they increase strictly."""
+        return self.receive_stamps if self.clock == "receive" else self.header_stamps
+
+    @property
+    def time(self) -> Floats:
+        """(N,) s since the first sample."""
+        return (self.stamps - self.stamps[:1]) * 1e-9
+
+    def __len__(self) -> int:
+        return len(self.q)

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings that tests make for themselves."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_typestore
+
+from inverse_dynamics.joint_log import JointLog
+
+STORE = get_typestore(Stores.ROS2_HUMBLE)
+JOINT_STATE = "sensor_msgs/msg/JointState"
+
+
+def joint_log(samples: int = 50, joints: int = 3, **changes: object) -> JointLog:
+    """A smooth motion at 100 Hz; `changes` replace fields."""
+    stamps = 10_000_000 * np.arange(1, samples + 1, dtype=np.int64)
+    phase = stamps[:, None] * 1e-9 + np.arange(joints)
+    fields = {
+        "joint_names": tuple(f"joint_{i + 1}" for i in range(joints)),
+        "header_stamps": stamps,
+        "receive_stamps": stamps + 500_000,
+        "q": np.sin(phase),
+        "qd": np.cos(phase),
+        "effort": 10.0 * np.sin(2 * phase),
+    }
+    return JointLog(**{**fields, **changes})
+
+
+def joint_state(
+    names: list[str],
+    position: list[float],
+    velocity: list[float],
+    effort: list[float],
+    stamp: int = 0,
+    frame_id: str = "",
+) -> object:
+    """A message as the rosbags library has it."""
+    types = STORE.types
+    time = types["builtin_interfaces/msg/Time"](sec=stamp // 10**9, nanosec=stamp % 10**9)
+    header = types["std_msgs/msg/Header"](stamp=time, frame_id=frame_id)
+    arrays = (np.array(a, dtype=np.float64) for a in (position, velocity, effort))
+    return types[JOINT_STATE](header, names, *arrays)
+
+
+def write_messages(
+    path: Path,
+    messages: list[object],
+    *,
+    topic: str = "/joint_states",
+    message_type: str = JOINT_STATE,
+    storage: StoragePlugin = StoragePlugin.SQLITE3,
+) -> Path:
+    """Record messages one by one, the k-th received at k ms; independent of what is tested."""
+    with Writer(path, version=9, storage_plugin=storage) as writer:
+        connection = writer.add_connection(topic, message_type, typestore=STORE)
+        for k, message in enumerate(messages):
+            raw = STORE.serialize_cdr(message, message_type)
+            writer.write(connection, (k + 1) * 1_000_000, raw)
+    return path
+
+
+@pytest.fixture(scope="session")
+def recordings() -> Path:
+    """Directory with recordings of real robots; skips where there is none."""
+    directory = os.environ.get("IDS_DATA_DIR")
+    if not directory:
+        pytest.skip("IDS_DATA_DIR is not set: no recordings of real robots")
+    return Path(directory) / "bags"
