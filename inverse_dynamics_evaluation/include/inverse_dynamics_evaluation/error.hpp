@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// The one exception of this package: samples that can't be evaluated.
+///
+///     throw EvaluationError("metrics", "samples", "3 columns", "2 columns", "pair each computed "
+///                           "sample with its measured one");
+///     // metrics: samples: expected 3 columns, got 2 columns; pair each computed sample with ...
+
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace inverse_dynamics_evaluation {
+
+/// A mistake in the arguments: sizes, too few samples, numbers that aren't finite, wrong stamps.
+///
+/// The text says where, what, what was expected, what was found, and the remedy.
+class EvaluationError : public std::invalid_argument {
+ public:
+  /// Text `where: what: expected ..., got ...; remedy`.
+  EvaluationError(const std::string& where, const std::string& what, const std::string& expected,
+                  const std::string& got, const std::string& remedy)
+      : std::invalid_argument(where + ": " + what + ": expected " + expected + ", got " + got +
+                              "; " + remedy) {}
+};
+
+}  // namespace inverse_dynamics_evaluation

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// What is wrong with recorded joint states, and when they were really taken.
+///
+///     SampleReport samples = examineSamples(time, q, qd, effort);
+///     samples.repeated.count();                      // messages that say nothing new
+///     metrics(computed, measured, samples.kept);     // beside metrics(computed, measured)
+///
+/// Recordings of real robots have faults that a derivative doesn't forgive. Each is found by a rule
+/// that uses the data only, is reported always, and is acted upon unless it is switched off:
+///
+/// 1. **Repeated samples.** q, qd and effort are, bit for bit, those of the sample before: the
+///    recorder was faster than the robot, or a state was late. The velocity didn't stand still, so
+///    the repeat is left out of the differentiation.
+/// 2. **Stamps that don't increase.** A sample whose stamp isn't later than all before it is left
+///    out of the differentiation.
+/// 3. **Time base.** Stamps say when a message was written, which may be later than its sample by
+///    a changing amount. Positions and velocities of the samples tell which time fits:
+///
+///        q_(i+1) - q_i = (t_(i+1) - t_i) (qd_i + qd_(i+1)) / 2
+///
+///    should hold over one interval and over 50. Three time bases are compared: the stamps; samples
+///    at equal distances (`kRegular`: a repeat stands for a sample that was missed); fresh samples
+///    at equal distances (`kRegularFresh`: repeats are extra). One of the latter two replaces the
+///    stamps if its disagreement is below 0.8 of theirs over one interval, and not above theirs
+///    over 50.
+/// 4. **Start transient.** When a controller takes over, efforts may jump from sample to sample in
+///    a way that no acceleration estimate resolves. With the second differences of the efforts, in
+///    units of their median, as a measure, everything up to the last sample in the first half
+///    second that exceeds 5 times the 90 % quantile of the whole recording doesn't count in the
+///    metrics over kept samples. Such samples are used in the differentiation.
+/// 5. **Gaps.** Where nothing was recorded for more than half a second and 20 sampling periods, the
+///    recording is cut, and each piece filtered by itself. Pieces too short to be filtered don't
+///    count.
+///
+/// Metrics over all samples need none of this: every sample has an acceleration. One that is left
+/// out of the differentiation gets that of its instant.
+
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "inverse_dynamics_evaluation/metrics.hpp"
+
+namespace inverse_dynamics_evaluation {
+
+/// Which rules are acted upon. What they find is reported in any case.
+struct SampleRules {
+  bool repeated = true;         ///< leave repeated samples out of the differentiation
+  bool non_increasing = true;   ///< leave out stamps that don't increase; else an error
+  bool time_base = true;        ///< replace stamps that q and qd contradict
+  bool start_transient = true;  ///< don't count the start transient in metrics over kept samples
+  double start_window = 0.5;    ///< where a start transient is looked for [s]
+  double longest_gap = 0.5;     ///< what may be bridged [s], or 20 sampling periods if longer
+  Eigen::Index shortest_piece = 10;  ///< samples a piece between gaps must have
+};
+
+/// When samples were taken.
+enum class TimeBase {
+  kStamps,        ///< as stamped
+  kRegular,       ///< at equal distances; a repeat stands in place of a sample that was missed
+  kRegularFresh,  ///< at equal distances, repeats aside: the recorder was faster than the robot
+};
+
+/// `stamps`, `regular` or `regular_fresh`.
+std::string name(TimeBase time_base);
+
+/// What was found in N samples, and what follows from it.
+struct SampleReport {
+  Mask repeated;         ///< N; rule 1
+  Mask non_increasing;   ///< N; rule 2
+  Mask start_transient;  ///< N; rule 4
+  Mask isolated;         ///< N; rule 5: in a piece that is too short
+  Mask used;             ///< N; enters the differentiation
+  Mask kept;             ///< N; counts in metrics over kept samples
+
+  TimeBase time_base = TimeBase::kStamps;  ///< which one is used
+  Eigen::VectorXd time;              ///< N; s; instant of each sample in it; a repeat has that
+                                     ///< of the sample it repeats
+  std::vector<Eigen::Index> pieces;  ///< first sample of each piece (rule 5)
+
+  double period = 0;          ///< s; mean distance of the used samples, gaps aside
+  double stamped_period = 0;  ///< s; median distance of the stamps
+  double jitter = 0;          ///< s; root mean square of that distance's deviation from its mean
+
+  /// Disagreement of q and qd over one interval, root mean square over samples and sum over joints
+  /// [rad], under each time base (in the order of TimeBase); NaN if it wasn't compared.
+  Eigen::Vector3d disagreement;
+  Eigen::Vector3d long_disagreement;  ///< the same over 50 intervals
+};
+
+/// Looks at recorded joint states by the rules above. O(N).
+///
+/// @param time    N; s; stamps.
+/// @param q       n x N, a sample a column; rad (prismatic m).
+/// @param qd      n x N; rad/s (prismatic m/s).
+/// @param effort  n x N; N m (prismatic N), or empty (0 x 0): then repeats are found by q and qd,
+/// and
+///                no start transient is looked for.
+/// @throws EvaluationError: sizes differ; fewer than 2 samples; a number that isn't finite (joint
+/// and
+///         sample are named); stamps that don't increase where that rule is off, or for more than
+///         half of the samples.
+SampleReport examineSamples(const Eigen::Ref<const Eigen::VectorXd>& time,
+                            const Eigen::Ref<const Eigen::MatrixXd>& q,
+                            const Eigen::Ref<const Eigen::MatrixXd>& qd,
+                            const Eigen::Ref<const Eigen::MatrixXd>& effort,
+                            const SampleRules& rules = {});
+
+}  // namespace inverse_dynamics_evaluation
