@@ -252,8 +252,8 @@ class InverseDynamicsSolver {
  private:
   void requireInitialized(const char* method) const;
   void requireVector(const char* method, const char* argument, Eigen::Index size) const;
-  void requireMatrix(const char* method, const char* argument, const ConstMatrixRef& matrix,
-                     Eigen::Index cols) const;
+  void requireMatrix(const char* method, const char* argument, Eigen::Index rows, Eigen::Index cols,
+                     Eigen::Index expected_cols) const;
 
   // Results of the methods by value: allocated and freed by the caller's code, whatever its
   // alignment.

@@ -44,7 +44,7 @@ class SolverLoader {
 
  private:
   struct Implementation;
-  std::shared_ptr<Implementation> implementation_;
+  std::unique_ptr<Implementation> implementation_;
 };
 
 }  // namespace inverse_dynamics_solver

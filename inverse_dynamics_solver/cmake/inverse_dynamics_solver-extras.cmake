@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+
+# inverse_dynamics_solver_add_plugin_test(<test> <source>... PLUGIN <target> [DESCRIPTION <file>]
+#                                         [TIMEOUT <seconds>])
+#
+# A GoogleTest program that loads the plugin library <target> by name before it is installed: the plugin
+# description (default <project>.xml) and the library are laid out in the build folder as an installation, and
+# AMENT_PREFIX_PATH of the test begins there. Call it after find_package(ament_cmake_gtest).
+function(inverse_dynamics_solver_add_plugin_test test)
+  cmake_parse_arguments(ARG "" "PLUGIN;DESCRIPTION;TIMEOUT" "" ${ARGN})
+  if(NOT ARG_PLUGIN)
+    message(FATAL_ERROR "inverse_dynamics_solver_add_plugin_test(${test}): PLUGIN is missing")
+  endif()
+  if(NOT ARG_DESCRIPTION)
+    set(ARG_DESCRIPTION ${PROJECT_NAME}.xml)
+  endif()
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+
+  # Once per package, however many tests load its plugin.
+  set(prefix
+    "${CMAKE_CURRENT_BINARY_DIR}/pluginlib_enable_plugin_testing/install/${PROJECT_NAME}__inverse_dynamics_solver")
+  if(NOT TARGET pluginlib_enable_plugin_testing__inverse_dynamics_solver__${PROJECT_NAME})
+    find_package(pluginlib REQUIRED)
+    pluginlib_enable_plugin_testing(
+      CMAKE_TARGET_VAR mock_install
+      AMENT_PREFIX_PATH_VAR prefix
+      PLUGIN_CATEGORY inverse_dynamics_solver
+      PLUGIN_DESCRIPTIONS ${ARG_DESCRIPTION}
+      PLUGIN_LIBRARIES ${ARG_PLUGIN})
+  endif()
+
+  # Before everything else, so that an older installation isn't what gets tested.
+  set(prefixes "${prefix}")
+  if(NOT "$ENV{AMENT_PREFIX_PATH}" STREQUAL "")
+    string(APPEND prefixes ":$ENV{AMENT_PREFIX_PATH}")
+  endif()
+  ament_add_gtest(${test} ${ARG_UNPARSED_ARGUMENTS}
+    TIMEOUT ${ARG_TIMEOUT} ENV "AMENT_PREFIX_PATH=${prefixes}")
+  target_link_libraries(${test} inverse_dynamics_solver::inverse_dynamics_solver)
+  add_dependencies(${test} ${ARG_PLUGIN})
+endfunction()

@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Conformance, part one: what every solver promises its callers. Include conformance_tests.hpp,
+/// not this.
+#pragma once
+
+#include <atomic>
+#include <limits>
+#include <set>
+#include <thread>
+
+#include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
+#include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
+
+namespace inverse_dynamics_solver::conformance {
+
+/// The text of the E that `call` throws; a failure if it throws nothing or something else.
+template <class E, class Call>
+std::string errorOf(Call call) {
+  try {
+    call();
+  } catch (const E& e) {
+    return e.what();
+  } catch (const std::exception& e) {
+    ADD_FAILURE() << "another exception than promised: " << e.what();
+    return "";
+  }
+  ADD_FAILURE() << "no exception";
+  return "";
+}
+
+/// Passes if `text` contains all `parts`.
+inline ::testing::AssertionResult contains(const std::string& text,
+                                           const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) {
+    if (text.find(part) == std::string::npos) {
+      return ::testing::AssertionFailure() << "\"" << part << "\" is missing in: " << text;
+    }
+  }
+  return ::testing::AssertionSuccess();
+}
+
+TYPED_TEST_P(SolverConformance, JointNamesAreDistinctAndCounted) {
+  const std::vector<std::string>& names = this->solver_->jointNames();
+  EXPECT_GT(this->solver_->jointCount(), 0);
+  EXPECT_EQ(static_cast<Eigen::Index>(names.size()), this->solver_->jointCount());
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).count(""), 0U);
+}
+
+TYPED_TEST_P(SolverConformance, ResultsHaveTheSizesOfTheRobotAndAreFinite) {
+  const Eigen::Index n = this->solver_->jointCount();
+  const State x = this->randomState();
+  EXPECT_EQ(this->solver_->getInertiaMatrix(x.q).rows(), n);
+  EXPECT_EQ(this->solver_->getInertiaMatrix(x.q).cols(), n);
+  EXPECT_EQ(this->solver_->getCoriolisVector(x.q, x.qd).size(), n);
+  EXPECT_EQ(this->solver_->getFrictionVector(x.qd).size(), n);
+  EXPECT_EQ(this->solver_->getGravityVector(x.q).size(), n);
+  EXPECT_EQ(this->solver_->getTorques(x.q, x.qd, x.qdd).size(), n);
+  for (const Quantity& quantity : quantities()) {
+    EXPECT_TRUE(quantity.value(*this->solver_, x).allFinite()) << quantity.name << toString(x);
+  }
+}
+
+TYPED_TEST_P(SolverConformance, UninitializedSolverRefusesEveryMethod) {
+  const auto solver = this->make();
+  const State x = this->randomState();
+  EXPECT_FALSE(solver->isInitialized());
+  for (const Quantity& quantity : quantities()) {
+    const std::string error = errorOf<UninitializedException>([&] { quantity.value(*solver, x); });
+    EXPECT_TRUE(contains(error, {quantity.name, "initialize()"}));
+  }
+  errorOf<UninitializedException>([&] { solver->jointCount(); });
+  errorOf<UninitializedException>([&] { solver->jointNames(); });
+  errorOf<UninitializedException>([&] { solver->inertiaIsPhysical(); });
+  errorOf<UninitializedException>([&] { solver->getTorquesBatch(x.q, x.qd, x.qdd); });
+}
+
+TYPED_TEST_P(SolverConformance, WrongSizeIsRefusedNamingArgumentExpectedAndGot) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  const Eigen::Index n = s.jointCount();
+  const Eigen::VectorXd ok = Eigen::VectorXd::Zero(n);
+  for (const Eigen::Index size : {Eigen::Index{0}, n - 1, n + 1}) {
+    const Eigen::VectorXd no = Eigen::VectorXd::Zero(size);
+    Eigen::VectorXd out = ok, short_out = no;
+    Eigen::MatrixXd H(n, n), short_H(n, size);
+    const std::string expected = "expected " + std::to_string(n);
+    const auto refuses = [&](const std::string& method, const std::string& argument,
+                             const std::function<void()>& call) {
+      const std::string error = errorOf<SizeMismatchException>(call);
+      EXPECT_TRUE(contains(error, {method, "argument " + argument + ":", expected,
+                                   std::to_string(size), s.jointNames().front()}));
+    };
+    refuses("getInertiaMatrix", "q", [&] { s.getInertiaMatrix(no); });
+    refuses("getInertiaMatrix", "H", [&] { s.getInertiaMatrix(ok, short_H); });
+    refuses("getCoriolisVector", "q", [&] { s.getCoriolisVector(no, ok); });
+    refuses("getCoriolisVector", "qd", [&] { s.getCoriolisVector(ok, no); });
+    refuses("getCoriolisVector", "c", [&] { s.getCoriolisVector(ok, ok, short_out); });
+    refuses("getFrictionVector", "qd", [&] { s.getFrictionVector(no); });
+    refuses("getFrictionVector", "f", [&] { s.getFrictionVector(ok, short_out); });
+    refuses("getGravityVector", "q", [&] { s.getGravityVector(no); });
+    refuses("getGravityVector", "g", [&] { s.getGravityVector(ok, short_out); });
+    refuses("getDynamicComponents", "q", [&] { s.getDynamicComponents(no, ok); });
+    refuses("getDynamicComponents", "qd", [&] { s.getDynamicParameters(ok, no); });
+    refuses("getDynamicComponents", "g",
+            [&] { s.getDynamicComponents(ok, ok, H, out, short_out); });
+    refuses("getTorques", "q", [&] { s.getTorques(no, ok, ok); });
+    refuses("getTorques", "qd", [&] { s.getTorques(ok, no, ok); });
+    refuses("getTorques", "qdd", [&] { s.getTorques(ok, ok, no); });
+    refuses("getTorques", "tau", [&] { s.getTorques(ok, ok, ok, short_out); });
+    refuses("getTorquesBatch", "qd", [&] { s.getTorquesBatch(ok, no, ok); });
+  }
+}
+
+TYPED_TEST_P(SolverConformance, BatchOfWrongShapeIsRefused) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  const Eigen::Index n = s.jointCount();
+  const Eigen::MatrixXd ok = Eigen::MatrixXd::Zero(n, 3), no = Eigen::MatrixXd::Zero(n, 2);
+  Eigen::MatrixXd short_out(n, 2), H(n, 3 * n - 1);
+  errorOf<SizeMismatchException>([&] { s.getTorquesBatch(ok, no, ok); });
+  errorOf<SizeMismatchException>([&] { s.getTorquesBatch(ok, ok, ok, short_out); });
+  errorOf<SizeMismatchException>([&] { s.getCoriolisVectorBatch(ok, no); });
+  errorOf<SizeMismatchException>([&] { s.getInertiaMatrixBatch(ok, H); });
+  errorOf<SizeMismatchException>([&] { s.getGravityVectorBatch(ok.transpose()); });
+}
+
+TYPED_TEST_P(SolverConformance, ResultsByValueEqualResultsInMemoryOfTheCaller) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  const Eigen::Index n = s.jointCount();
+  for (const State& x : this->randomStates(kStates)) {
+    SCOPED_TRACE(toString(x));
+    // A stale entry would show: the memory is filled with NaN before each call.
+    const Eigen::VectorXd nan =
+        Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN());
+    Eigen::MatrixXd H = nan.replicate(1, n);
+    Eigen::VectorXd c = nan, f = nan, g = nan, tau = nan;
+    s.getInertiaMatrix(x.q, H);
+    s.getCoriolisVector(x.q, x.qd, c);
+    s.getFrictionVector(x.qd, f);
+    s.getGravityVector(x.q, g);
+    s.getTorques(x.q, x.qd, x.qdd, tau);
+    EXPECT_TRUE(identical(flat(s.getInertiaMatrix(x.q)), flat(H)));
+    EXPECT_TRUE(identical(s.getCoriolisVector(x.q, x.qd), c));
+    EXPECT_TRUE(identical(s.getFrictionVector(x.qd), f));
+    EXPECT_TRUE(identical(s.getGravityVector(x.q), g));
+    EXPECT_TRUE(identical(s.getTorques(x.q, x.qd, x.qdd), tau));
+
+    H = nan.replicate(1, n);
+    c = nan;
+    g = nan;
+    s.getDynamicComponents(x.q, x.qd, H, c, g);
+    const auto [H_value, c_value, g_value] = s.getDynamicParameters(x.q, x.qd);
+    EXPECT_TRUE(identical(flat(H_value), flat(H)));
+    EXPECT_TRUE(identical(c_value, c));
+    EXPECT_TRUE(identical(g_value, g));
+  }
+}
+
+TYPED_TEST_P(SolverConformance, BatchEqualsSingleCalls) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  const Eigen::Index n = s.jointCount();
+  for (const int count : {0, 1, 7}) {
+    const std::vector<State> states = this->randomStates(count);
+    Eigen::MatrixXd q(n, count), qd(n, count), qdd(n, count);
+    for (int k = 0; k < count; ++k) {
+      q.col(k) = states[static_cast<std::size_t>(k)].q;
+      qd.col(k) = states[static_cast<std::size_t>(k)].qd;
+      qdd.col(k) = states[static_cast<std::size_t>(k)].qdd;
+    }
+
+    // Outputs with a stride: the lower rows of larger matrices.
+    Eigen::MatrixXd tau_memory(n + 3, count), H_memory(n + 1, n * count);
+    s.getTorquesBatch(q, qd, qdd, tau_memory.bottomRows(n));
+    s.getInertiaMatrixBatch(q, H_memory.bottomRows(n));
+    const Eigen::MatrixXd tau = tau_memory.bottomRows(n), H = H_memory.bottomRows(n);
+    const Eigen::MatrixXd c = s.getCoriolisVectorBatch(q, qd), f = s.getFrictionVectorBatch(qd);
+    const Eigen::MatrixXd g = s.getGravityVectorBatch(q);
+    const auto [H_all, c_all, g_all] = s.getDynamicComponentsBatch(q, qd);
+    EXPECT_EQ(g_all.cols(), count);
+    for (int k = 0; k < count; ++k) {
+      const State& x = states[static_cast<std::size_t>(k)];
+      SCOPED_TRACE(toString(x));
+      const Eigen::MatrixXd H_one = s.getInertiaMatrix(x.q);
+      const Eigen::VectorXd c_one = s.getCoriolisVector(x.q, x.qd);
+      const Eigen::VectorXd f_one = s.getFrictionVector(x.qd);
+      const Eigen::VectorXd g_one = s.getGravityVector(x.q);
+      const Eigen::VectorXd tau_one = s.getTorques(x.q, x.qd, x.qdd);
+      EXPECT_TRUE(near(H.middleCols(k * n, n), H_one, kRounding, sizeOf(H_one)));
+      EXPECT_TRUE(near(c.col(k), c_one, kRounding, sizeOf(c_one)));
+      EXPECT_TRUE(near(f.col(k), f_one, kRounding, sizeOf(f_one)));
+      EXPECT_TRUE(near(g.col(k), g_one, kRounding, sizeOf(g_one)));
+      EXPECT_TRUE(near(tau.col(k), tau_one, kRounding, sizeOf(tau_one)));
+      EXPECT_TRUE(near(H_all.middleCols(k * n, n), H_one, kRounding, sizeOf(H_one)));
+      EXPECT_TRUE(near(c_all.col(k), c_one, kRounding, sizeOf(c_one)));
+      EXPECT_TRUE(near(g_all.col(k), g_one, kRounding, sizeOf(g_one)));
+    }
+  }
+}
+
+TYPED_TEST_P(SolverConformance, CallsIntoMemoryOfTheCallerDoNotAllocate) {
+  if (!kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted in this build";
+  const InverseDynamicsSolver& s = *this->solver_;
+  const State x = this->randomState();
+  const Eigen::Index n = s.jointCount();
+  Eigen::MatrixXd H(n, n);
+  Eigen::VectorXd c(n), f(n), g(n), tau(n);
+
+  // The counter counts.
+  AllocationGuard proof;
+  Eigen::VectorXd().resize(n);
+  ASSERT_GT(proof.count(), 0) << "the allocation guard doesn't see allocations";
+
+  const auto allocations = [](const std::function<void()>& call) {
+    AllocationGuard guard;
+    call();
+    return guard.count();
+  };
+  EXPECT_EQ(allocations([&] { s.getInertiaMatrix(x.q, H); }), 0);
+  EXPECT_EQ(allocations([&] { s.getCoriolisVector(x.q, x.qd, c); }), 0);
+  EXPECT_EQ(allocations([&] { s.getFrictionVector(x.qd, f); }), 0);
+  EXPECT_EQ(allocations([&] { s.getGravityVector(x.q, g); }), 0);
+  EXPECT_EQ(allocations([&] { s.getDynamicComponents(x.q, x.qd, H, c, g); }), 0);
+  EXPECT_EQ(allocations([&] { s.getTorques(x.q, x.qd, x.qdd, tau); }), 0);
+}
+
+TYPED_TEST_P(SolverConformance, ManyThreadsGetTheNumbersOfOne) {
+  constexpr int kThreads = 8;
+  constexpr int kRounds = 20;
+  const std::vector<State> states = this->randomStates(32);
+
+  // What one thread computes.
+  std::vector<Eigen::VectorXd> expected;
+  for (const State& x : states) {
+    for (const Quantity& quantity : quantities()) {
+      expected.push_back(quantity.value(*this->solver_, x));
+    }
+  }
+
+  // Each thread begins at another state, so that different states are computed at the same time.
+  std::atomic<int> waiting{kThreads};
+  std::atomic<long> different{0};
+  const auto work = [&](std::size_t thread) {
+    for (--waiting; waiting > 0;) std::this_thread::yield();
+    for (std::size_t i = 0; i < states.size() * kRounds; ++i) {
+      const std::size_t k = (i + 4 * thread) % states.size();
+      for (std::size_t j = 0; j < quantities().size(); ++j) {
+        const Eigen::VectorXd value = quantities()[j].value(*this->solver_, states[k]);
+        if (!identical(value, expected[k * quantities().size() + j])) ++different;
+      }
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < kThreads; ++i) threads.emplace_back(work, i);
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(different, 0) << "results depend on what other threads do";
+}
+
+/// For each input number: the entries that change with it must become NaN with it.
+TYPED_TEST_P(SolverConformance, NanGoesToEveryEntryThatDependsOnIt) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  for (const Quantity& quantity : quantities()) {
+    for (Eigen::VectorXd State::*argument : {&State::q, &State::qd, &State::qdd}) {
+      for (Eigen::Index j = 0; j < s.jointCount(); ++j) {
+        using Flags = Eigen::Array<bool, Eigen::Dynamic, 1>;
+        Flags depends, is_nan;
+        for (const State& x : this->randomStates(4)) {
+          const Eigen::VectorXd value = quantity.value(s, x);
+          State changed = x, spoilt = x;
+          (changed.*argument)[j] += 0.7;
+          (spoilt.*argument)[j] = std::numeric_limits<double>::quiet_NaN();
+          const Eigen::VectorXd difference = quantity.value(s, changed) - value;
+          const Flags moved = difference.array().abs() > 1e-9 * sizeOf(value);
+          const Flags lost = quantity.value(s, spoilt).array().isNaN();
+          depends = depends.size() == 0 ? moved : Flags(depends || moved);
+          is_nan = is_nan.size() == 0 ? lost : Flags(is_nan && lost);
+        }
+        EXPECT_TRUE((!depends || is_nan).all()) << quantity.name << ": entries depend on number "
+                                                << j << " of an input, and hide that it is NaN";
+      }
+    }
+  }
+}
+
+/// All numbers of a solver at some states.
+inline std::vector<Eigen::VectorXd> fingerprint(const InverseDynamicsSolver& solver,
+                                                const std::vector<State>& states) {
+  std::vector<Eigen::VectorXd> values;
+  for (const State& x : states) {
+    for (const Quantity& quantity : quantities()) values.push_back(quantity.value(solver, x));
+  }
+  return values;
+}
+
+TYPED_TEST_P(SolverConformance, FailedInitializeLeavesTheSolverAsItWas) {
+  const std::vector<State> states = this->randomStates(kStates);
+  const std::vector<Eigen::VectorXd> before = fingerprint(*this->solver_, states);
+  const std::vector<std::string> names = this->solver_->jointNames();
+
+  // The mistakes, each with other parameters that would change the numbers.
+  const std::string description = TypeParam::robotDescription();
+  auto mistakes = TypeParam::badInitializations();
+  mistakes.push_back({{{"gravity", std::vector<double>{1.0, 2.0}}}, description});
+  mistakes.push_back({{{"gravity", std::string("down")}}, description});
+  mistakes.push_back({{{"friction", std::string("maybe")}}, description});
+  if (!description.empty()) {
+    mistakes.push_back({{}, "<robot name='broken'"});
+    mistakes.push_back({{{"tip", std::string("no_such_link")}}, description});
+    mistakes.push_back({{{"root", std::string("no_such_link")}}, description});
+  }
+  for (const auto& [changed, text] : mistakes) {
+    ParameterMap parameters = TypeParam::parameters();
+    parameters["gravity"] = std::vector<double>{1.0, -2.0, 3.0};
+    for (const auto& [name, value] : changed) parameters[name] = value;
+    EXPECT_THROW(this->solver_->initialize(parameters, "", text), Exception);
+
+    EXPECT_TRUE(this->solver_->isInitialized());
+    EXPECT_EQ(this->solver_->jointNames(), names);
+    const std::vector<Eigen::VectorXd> after = fingerprint(*this->solver_, states);
+    for (std::size_t i = 0; i < before.size(); ++i) EXPECT_TRUE(identical(before[i], after[i]));
+
+    // And a solver that never was initialized isn't after that.
+    const auto fresh = this->make();
+    EXPECT_THROW(fresh->initialize(parameters, "", text), Exception);
+    EXPECT_FALSE(fresh->isInitialized());
+  }
+}
+
+TYPED_TEST_P(SolverConformance, InitializingAgainTakesEffect) {
+  const std::vector<State> states = this->randomStates(kStates);
+  const std::vector<Eigen::VectorXd> before = fingerprint(*this->solver_, states);
+  this->initialize(*this->solver_, {{"gravity", std::vector<double>{3.0, -2.0, 1.0}}});
+  const std::vector<Eigen::VectorXd> other = fingerprint(*this->solver_, states);
+  const auto fresh = this->makeInitialized({{"gravity", std::vector<double>{3.0, -2.0, 1.0}}});
+  const std::vector<Eigen::VectorXd> expected = fingerprint(*fresh, states);
+  bool changed = false;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_TRUE(identical(other[i], expected[i]));
+    changed = changed || !identical(other[i], before[i]);
+  }
+  EXPECT_TRUE(changed) << "the new gravity has no effect";
+
+  // Back to the first parameters, back to the first numbers.
+  this->initialize(*this->solver_);
+  const std::vector<Eigen::VectorXd> after = fingerprint(*this->solver_, states);
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_TRUE(identical(before[i], after[i]));
+}
+
+TYPED_TEST_P(SolverConformance, ParametersAreReadBelowTheNamespace) {
+  const ParameterMap changed = {{"gravity", std::vector<double>{3.0, -2.0, 1.0}}};
+  ParameterMap parameters, elsewhere;
+  for (const auto& [name, value] : TypeParam::parameters()) parameters["arm.ids." + name] = value;
+  elsewhere = parameters;
+  for (const auto& [name, value] : changed) parameters["arm.ids." + name] = value;
+  for (const auto& [name, value] : changed) elsewhere[name] = value;  // not below: no effect
+
+  const auto solver = this->make(), untouched = this->make();
+  solver->initialize(parameters, "arm.ids", TypeParam::robotDescription());
+  untouched->initialize(elsewhere, "arm.ids", TypeParam::robotDescription());
+  const State x = this->randomState();
+  EXPECT_TRUE(identical(solver->getGravityVector(x.q),
+                        this->makeInitialized(changed)->getGravityVector(x.q)));
+  EXPECT_TRUE(identical(untouched->getGravityVector(x.q), this->solver_->getGravityVector(x.q)));
+}
+
+TYPED_TEST_P(SolverConformance, RobotDescriptionComesFromArgumentOrParameter) {
+  const std::string description = TypeParam::robotDescription();
+  if (description.empty()) GTEST_SKIP() << "this solver needs no robot description";
+
+  // Absent: the error says where it may come from.
+  const auto solver = this->make();
+  const std::string error = errorOf<ParameterUninitializedException>(
+      [&] { solver->initialize(TypeParam::parameters(), "", ""); });
+  EXPECT_TRUE(contains(error, {"robot description", "'robot_description'", "third argument"}));
+
+  // From the parameter, which has no namespace; the argument goes before it.
+  ParameterMap parameters;
+  for (const auto& [name, value] : TypeParam::parameters()) parameters["ids." + name] = value;
+  parameters["robot_description"] = description;
+  solver->initialize(parameters, "ids");
+  const State x = this->randomState();
+  const Eigen::VectorXd expected = this->solver_->getTorques(x.q, x.qd, x.qdd);
+  EXPECT_TRUE(identical(solver->getTorques(x.q, x.qd, x.qdd), expected));
+  parameters["robot_description"] = std::string("<robot name='broken'");
+  solver->initialize(parameters, "ids", description);
+  EXPECT_TRUE(identical(solver->getTorques(x.q, x.qd, x.qdd), expected));
+
+  // A description that is none.
+  errorOf<InvalidRobotDescriptionException>([&] { solver->initialize(parameters, "ids"); });
+}
+
+}  // namespace inverse_dynamics_solver::conformance

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Conformance, part two: laws of physics, which need no expected digits. Include
+/// conformance_tests.hpp, not this.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
+#include "inverse_dynamics_solver/motor_currents.hpp"
+
+namespace inverse_dynamics_solver::conformance {
+
+/// Derivative of `f` at zero by the five-point difference
+/// `(f(-2h) - 8 f(-h) + 8 f(h) - f(2h)) / 12h`, error `h^4/30` times the fifth derivative.
+template <class F>
+Eigen::MatrixXd derivative(const F& f, double h) {
+  const Eigen::MatrixXd outer = f(-2 * h) - f(2 * h);
+  const Eigen::MatrixXd inner = f(h) - f(-h);
+  return (outer + 8 * inner) / (12 * h);
+}
+
+TYPED_TEST_P(SolverConformance, TorquesAreTheSumOfTheirTerms) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  for (const State& x : this->randomStates(kStates)) {
+    SCOPED_TRACE(toString(x));
+    const Eigen::VectorXd inertial = s.getInertiaMatrix(x.q) * x.qdd;
+    const Eigen::VectorXd c = s.getCoriolisVector(x.q, x.qd), f = s.getFrictionVector(x.qd);
+    const Eigen::VectorXd g = s.getGravityVector(x.q);
+    const double size = sizeOf(inertial) + sizeOf(c) + sizeOf(f) + sizeOf(g);
+    EXPECT_TRUE(near(s.getTorques(x.q, x.qd, x.qdd), inertial + c + f + g, kRounding, size));
+  }
+}
+
+TYPED_TEST_P(SolverConformance, ComponentsEqualTheSingleMethods) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  for (const State& x : this->randomStates(kStates)) {
+    SCOPED_TRACE(toString(x));
+    const auto [H, c, g] = s.getDynamicComponents(x.q, x.qd);
+    EXPECT_TRUE(near(H, s.getInertiaMatrix(x.q), kRounding, sizeOf(H)));
+    EXPECT_TRUE(near(c, s.getCoriolisVector(x.q, x.qd), kRounding, sizeOf(c)));
+    EXPECT_TRUE(near(g, s.getGravityVector(x.q), kRounding, sizeOf(g)));
+  }
+}
+
+TYPED_TEST_P(SolverConformance, TorquesAreLinearInAcceleration) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  for (const State& x : this->randomStates(kStates)) {
+    SCOPED_TRACE(toString(x));
+    const Eigen::VectorXd other = this->randomVector(TypeParam::kAcceleration);
+    const Eigen::VectorXd rest = s.getTorques(x.q, x.qd, 0 * x.qdd);
+    const Eigen::VectorXd one = s.getTorques(x.q, x.qd, x.qdd) - rest;
+    const Eigen::VectorXd two = s.getTorques(x.q, x.qd, other) - rest;
+    const Eigen::VectorXd sum = s.getTorques(x.q, x.qd, 3 * x.qdd - 2 * other) - rest;
+    const double size = sizeOf(rest) + 3 * sizeOf(one) + 2 * sizeOf(two);
+    EXPECT_TRUE(near(sum, 3 * one - 2 * two, kRounding, size));
+  }
+}
+
+TYPED_TEST_P(SolverConformance, CoriolisTorquesAreQuadraticInVelocity) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  for (const State& x : this->randomStates(kStates)) {
+    SCOPED_TRACE(toString(x));
+    const Eigen::VectorXd c = s.getCoriolisVector(x.q, x.qd);
+    EXPECT_TRUE(near(s.getCoriolisVector(x.q, -3 * x.qd), 9 * c, kRounding, 9 * sizeOf(c)));
+    EXPECT_TRUE(near(s.getCoriolisVector(x.q, 0 * x.qd), 0 * c, 0.0, 1.0)) << "not zero at rest";
+  }
+}
+
+TYPED_TEST_P(SolverConformance, GravityTorquesAreProportionalToGravity) {
+  using Gravity = std::vector<double>;
+  const auto none = this->makeInitialized({{"gravity", Gravity{0, 0, 0}}});
+  const auto a = this->makeInitialized({{"gravity", Gravity{1, 2, -3}}});
+  const auto b = this->makeInitialized({{"gravity", Gravity{-2, 0, 7}}});
+  const auto sum = this->makeInitialized({{"gravity", Gravity{2 * 1 - 2, 2 * 2 + 0, 2 * -3 + 7}}});
+  for (const State& x : this->randomStates(kStates)) {
+    SCOPED_TRACE(toString(x));
+    const Eigen::VectorXd g_a = a->getGravityVector(x.q), g_b = b->getGravityVector(x.q);
+    EXPECT_TRUE(near(none->getGravityVector(x.q), 0 * g_a, 0.0, 1.0)) << "not zero without gravity";
+    EXPECT_TRUE(
+        near(sum->getGravityVector(x.q), 2 * g_a + g_b, kRounding, 2 * sizeOf(g_a) + sizeOf(g_b)));
+
+    // Gravity is in no other term.
+    EXPECT_TRUE(identical(a->getCoriolisVector(x.q, x.qd), b->getCoriolisVector(x.q, x.qd)));
+    EXPECT_TRUE(identical(a->getFrictionVector(x.qd), b->getFrictionVector(x.qd)));
+    const Eigen::MatrixXd H_a = a->getInertiaMatrix(x.q);
+    EXPECT_TRUE(identical(flat(H_a), flat(b->getInertiaMatrix(x.q))));
+    const Eigen::VectorXd tau = a->getTorques(x.q, x.qd, x.qdd);
+    EXPECT_TRUE(near(tau - g_a, b->getTorques(x.q, x.qd, x.qdd) - g_b, kRounding,
+                     sizeOf(tau) + sizeOf(g_a) + sizeOf(g_b)));
+  }
+}
+
+TYPED_TEST_P(SolverConformance, GravityPointsDownByDefault) {
+  ParameterMap parameters = TypeParam::parameters();
+  parameters.erase("gravity");
+  const auto by_default = this->make();
+  by_default->initialize(parameters, "", TypeParam::robotDescription());
+  const auto given = this->makeInitialized({{"gravity", std::vector<double>{0, 0, -9.81}}});
+  const State x = this->randomState();
+  EXPECT_TRUE(identical(by_default->getGravityVector(x.q), given->getGravityVector(x.q)));
+}
+
+/// Where g is the gradient of a potential, its Jacobian is symmetric.
+TYPED_TEST_P(SolverConformance, GravityTorquesHaveASymmetricJacobian) {
+  if (TypeParam::kGravityIsNotConservative != nullptr) {
+    GTEST_SKIP() << TypeParam::kGravityIsNotConservative;
+  }
+  const InverseDynamicsSolver& s = *this->solver_;
+  const Eigen::Index n = s.jointCount();
+  for (const State& x : this->randomStates(kStates)) {
+    SCOPED_TRACE(toString(x));
+    Eigen::MatrixXd jacobian(n, n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const auto moved = [&](double step) -> Eigen::MatrixXd {
+        return s.getGravityVector(x.q + step * Eigen::VectorXd::Unit(n, j));
+      };
+      jacobian.col(j) = derivative(moved, kDifferenceStep);
+    }
+    const double size = sizeOf(s.getGravityVector(x.q)) + sizeOf(jacobian);
+    EXPECT_TRUE(near(jacobian, jacobian.transpose(), kDifference, size));
+  }
+}
+
+TYPED_TEST_P(SolverConformance, PhysicalInertiaIsSymmetricPositiveDefinite) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  if (!s.inertiaIsPhysical()) GTEST_SKIP() << "inertiaIsPhysical() is false for this solver";
+  for (const State& x : this->randomStates(kStates)) {
+    SCOPED_TRACE(toString(x));
+    const Eigen::MatrixXd H = s.getInertiaMatrix(x.q);
+    EXPECT_TRUE(near(H, H.transpose(), kRounding, sizeOf(H)));
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigenvalues(H, Eigen::EigenvaluesOnly);
+    EXPECT_GT(eigenvalues.eigenvalues().minCoeff(), 0.0);
+  }
+}
+
+/// Power of all but gravity and friction = rate of the kinetic energy `1/2 qd' H qd`. With the
+/// inertial torques on both sides taken away: `qd' (C qd) = 1/2 qd' Hdot qd`.
+TYPED_TEST_P(SolverConformance, PowerIsTheRateOfKineticEnergy) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  if (!s.inertiaIsPhysical()) GTEST_SKIP() << "inertiaIsPhysical() is false for this solver";
+  for (const State& x : this->randomStates(kStates)) {
+    SCOPED_TRACE(toString(x));
+    const auto later = [&](double time) { return s.getInertiaMatrix(x.q + time * x.qd); };
+
+    // Step in time such that all joints together move by kDifferenceStep.
+    const double speed = x.qd.cwiseAbs().sum();
+    const Eigen::MatrixXd Hdot = derivative(later, kDifferenceStep / speed);
+    const double power = x.qd.dot(s.getCoriolisVector(x.q, x.qd));
+    const double size = speed * sizeOf(s.getInertiaMatrix(x.q)) * x.qd.squaredNorm();
+    EXPECT_NEAR(power, 0.5 * x.qd.dot(Hdot * x.qd), kDifference * std::max(1.0, size));
+  }
+}
+
+TYPED_TEST_P(SolverConformance, FrictionCanBeSwitchedOff) {
+  const auto with = this->makeInitialized({{"friction", true}});
+  const auto without = this->makeInitialized({{"friction", false}});
+  for (const State& x : this->randomStates(kStates)) {
+    SCOPED_TRACE(toString(x));
+    const Eigen::VectorXd f = with->getFrictionVector(x.qd);
+    const Eigen::VectorXd tau = with->getTorques(x.q, x.qd, x.qdd);
+    EXPECT_TRUE(near(without->getFrictionVector(x.qd), 0 * f, 0.0, 1.0));
+    EXPECT_TRUE(
+        near(without->getTorques(x.q, x.qd, x.qdd), tau - f, kRounding, sizeOf(tau) + sizeOf(f)));
+  }
+}
+
+TYPED_TEST_P(SolverConformance, FrictionIsFiniteAtAnyVelocity) {
+  for (const double velocity : {0.0, 1.0, 1e3, 1e12, 1e200}) {
+    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(this->solver_->jointCount());
+    EXPECT_TRUE(this->solver_->getFrictionVector(velocity * ones).allFinite()) << velocity;
+    EXPECT_TRUE(this->solver_->getFrictionVector(-velocity * ones).allFinite()) << -velocity;
+  }
+}
+
+TYPED_TEST_P(SolverConformance, MotorCurrentsTimesDriveGainsAreTorques) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  const auto* motors = dynamic_cast<const MotorCurrents*>(&s);
+  if (motors == nullptr) GTEST_SKIP() << "this solver has no MotorCurrents";
+  const Eigen::MatrixXd K = motors->getDriveGainsMatrix();
+  for (const State& x : this->randomStates(kStates)) {
+    SCOPED_TRACE(toString(x));
+    const auto equal = [&](const Eigen::MatrixXd& currents, const Eigen::MatrixXd& torques) {
+      return near(K * currents, torques, kRounding, sizeOf(torques));
+    };
+    EXPECT_TRUE(equal(motors->getCurrents(x.q, x.qd, x.qdd), s.getTorques(x.q, x.qd, x.qdd)));
+    EXPECT_TRUE(equal(motors->getInertiaCurrents(x.q), s.getInertiaMatrix(x.q)));
+    EXPECT_TRUE(equal(motors->getCoriolisCurrents(x.q, x.qd), s.getCoriolisVector(x.q, x.qd)));
+    EXPECT_TRUE(equal(motors->getGravityCurrents(x.q), s.getGravityVector(x.q)));
+    EXPECT_TRUE(equal(motors->getFrictionCurrents(x.qd), s.getFrictionVector(x.qd)));
+  }
+
+  // The same errors as the solver's own methods.
+  const Eigen::VectorXd no = Eigen::VectorXd::Zero(s.jointCount() + 1);
+  EXPECT_THROW(motors->getCurrents(no, no, no), SizeMismatchException);
+  EXPECT_THROW(motors->getInertiaCurrents(no), SizeMismatchException);
+  EXPECT_THROW(motors->getFrictionCurrents(no), SizeMismatchException);
+  const auto fresh = this->make();
+  EXPECT_THROW(dynamic_cast<const MotorCurrents&>(*fresh).getDriveGainsMatrix(),
+               UninitializedException);
+}
+
+}  // namespace inverse_dynamics_solver::conformance

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The tests that every solver passes: a GoogleTest suite, instantiated by each plugin package.
+///
+///     #include "inverse_dynamics_solver/conformance_tests.hpp"
+///
+///     struct MySolverTraits : inverse_dynamics_solver::conformance::SolverTraits {
+///       static constexpr const char* kPlugin = "my_solver/MySolver";
+///       static ParameterMap parameters() { return {{"tip", std::string("tool0")}}; }
+///       static std::string robotDescription() { return readFile("robot.urdf"); }
+///     };
+///     INVERSE_DYNAMICS_SOLVER_CONFORMANCE(MySolver, MySolverTraits);
+///
+/// In CMake: `inverse_dynamics_solver_add_plugin_test(my_solver_conformance_test
+/// test/my_solver_conformance_test.cpp PLUGIN my_solver_plugin)`. Part one (contract_tests.hpp) is
+/// what callers are promised: sizes, errors, initialization, memory, threads, NaN. Part two
+/// (law_tests.hpp) is physics. A test that doesn't apply to a solver is skipped and says why.
+///
+/// The plugin is loaded by name, as users do. Random states have a fixed seed, and a failure prints
+/// its state as C++ to be pasted. Tolerances and their reasons stand in solver_fixture.hpp.
+#pragma once
+
+#include "inverse_dynamics_solver/conformance/contract_tests.hpp"
+#include "inverse_dynamics_solver/conformance/law_tests.hpp"
+
+namespace inverse_dynamics_solver::conformance {
+
+REGISTER_TYPED_TEST_SUITE_P(
+    SolverConformance,
+    // What callers are promised.
+    JointNamesAreDistinctAndCounted, ResultsHaveTheSizesOfTheRobotAndAreFinite,
+    UninitializedSolverRefusesEveryMethod, WrongSizeIsRefusedNamingArgumentExpectedAndGot,
+    BatchOfWrongShapeIsRefused, ResultsByValueEqualResultsInMemoryOfTheCaller,
+    BatchEqualsSingleCalls, CallsIntoMemoryOfTheCallerDoNotAllocate, ManyThreadsGetTheNumbersOfOne,
+    NanGoesToEveryEntryThatDependsOnIt, FailedInitializeLeavesTheSolverAsItWas,
+    InitializingAgainTakesEffect, ParametersAreReadBelowTheNamespace,
+    RobotDescriptionComesFromArgumentOrParameter,
+    // Physics.
+    TorquesAreTheSumOfTheirTerms, ComponentsEqualTheSingleMethods, TorquesAreLinearInAcceleration,
+    CoriolisTorquesAreQuadraticInVelocity, GravityTorquesAreProportionalToGravity,
+    GravityPointsDownByDefault, GravityTorquesHaveASymmetricJacobian,
+    PhysicalInertiaIsSymmetricPositiveDefinite, PowerIsTheRateOfKineticEnergy,
+    FrictionCanBeSwitchedOff, FrictionIsFiniteAtAnyVelocity,
+    MotorCurrentsTimesDriveGainsAreTorques);
+
+}  // namespace inverse_dynamics_solver::conformance
+
+/// Runs all tests for the solver that `traits` describes, under the name `prefix`.
+#define INVERSE_DYNAMICS_SOLVER_CONFORMANCE(prefix, traits)      \
+  using inverse_dynamics_solver::conformance::SolverConformance; \
+  INSTANTIATE_TYPED_TEST_SUITE_P(prefix, SolverConformance, traits)

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/configuration.hpp"
+
+#include <cmath>
+#include <sstream>
+
+#include "chain_dynamics/error.hpp"
+#include "chain_dynamics/urdf.hpp"
+#include "inverse_dynamics_solver/exceptions.hpp"
+
+namespace inverse_dynamics_solver {
+namespace {
+
+std::string describe(const std::vector<double>& numbers) {
+  std::ostringstream text;
+  text << numbers.size() << " (";
+  for (std::size_t i = 0; i < numbers.size(); ++i) text << (i == 0 ? "" : ", ") << numbers[i];
+  text << ")";
+  return text.str();
+}
+
+void readGravity(Configuration& configuration) {
+  const auto gravity = configuration.get<std::vector<double>>("gravity");
+  if (!gravity) return;
+
+  bool valid = gravity->size() == 3;
+  for (const double component : *gravity) valid = valid && std::isfinite(component);
+  if (!valid) {
+    throw InvalidParameterValueException(
+        errorText("parameter '" + configuration.fullName("gravity") + "'", "wrong value",
+                  "3 finite numbers [m/s^2] in the frame of the root link", describe(*gravity),
+                  "for a robot that stands upright: [0.0, 0.0, -9.81]"));
+  }
+  configuration.gravity = Eigen::Vector3d((*gravity)[0], (*gravity)[1], (*gravity)[2]);
+  configuration.gravity_given = true;
+}
+
+void readAttached(Configuration& configuration) {
+  const std::string attached = configuration.get<std::string>("attached").value_or("lump");
+  if (attached != "lump" && attached != "ignore") {
+    throw InvalidParameterValueException(
+        errorText("parameter '" + configuration.fullName("attached") + "'", "wrong value",
+                  "\"lump\" or \"ignore\"", "\"" + attached + "\"",
+                  "lump: what hangs on the chain beside or beyond it counts; ignore: it doesn't"));
+  }
+  configuration.lump_attached = attached == "lump";
+}
+
+/// Reader of `locked_joints.<joint>`.
+std::function<double(const std::string&)> lockedPositions(const Configuration& configuration) {
+  return [parameters = configuration.parameters,
+          prefix = configuration.fullName("locked_joints.")](const std::string& joint) {
+    const double position = parameters.get<double>(prefix + joint).value_or(0.0);
+    if (!std::isfinite(position)) {
+      throw InvalidParameterValueException(
+          errorText("parameter '" + prefix + joint + "'", "wrong value",
+                    "a finite position [rad; prismatic m]", std::to_string(position),
+                    "give the position at which the joint is held"));
+    }
+    return position;
+  };
+}
+
+}  // namespace
+
+Configuration readConfiguration(const Parameters& parameters, const std::string& param_namespace,
+                                const std::string& robot_description) {
+  Configuration configuration;
+  configuration.parameters = parameters;
+  configuration.param_namespace = param_namespace;
+  configuration.robot_description =
+      robot_description.empty() ? parameters.get<std::string>("robot_description").value_or("")
+                                : robot_description;
+
+  configuration.root = configuration.get<std::string>("root").value_or("");
+  configuration.tip = configuration.get<std::string>("tip").value_or("");
+  configuration.friction = configuration.get<bool>("friction").value_or(true);
+  readGravity(configuration);
+  readAttached(configuration);
+  configuration.locked_position = lockedPositions(configuration);
+  return configuration;
+}
+
+chain_dynamics::Chain chainFromDescription(const Configuration& configuration) {
+  if (configuration.robot_description.empty()) {
+    throw ParameterUninitializedException(
+        errorText("robot description", "missing", "the text of a URDF", "nothing",
+                  "pass it to initialize() as third argument, or set the parameter "
+                  "'robot_description' (without namespace)"));
+  }
+  chain_dynamics::UrdfOptions options;
+  options.root = configuration.root;
+  options.tip = configuration.tip;
+  options.gravity = configuration.gravity;
+  options.lump_attached = configuration.lump_attached;
+  options.locked_position = configuration.locked_position;
+  try {
+    return chain_dynamics::chainFromUrdf(configuration.robot_description, options);
+  } catch (const chain_dynamics::ModelError& e) {
+    throw InvalidRobotDescriptionException(std::string("robot description: ") + e.what());
+  }
+}
+
+}  // namespace inverse_dynamics_solver

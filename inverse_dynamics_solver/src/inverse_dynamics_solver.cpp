@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
+
+#include <string>
+
+namespace inverse_dynamics_solver {
+namespace {
+
+using Eigen::Index;
+
+/// Chains up to this many joints are computed without allocation.
+constexpr int kMaxStackJoints = 64;
+using StackVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxStackJoints, 1>;
+using StackMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStackJoints, kMaxStackJoints>;
+
+std::string shape(Index rows, Index cols) {
+  return std::to_string(rows) + " x " + std::to_string(cols);
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+[[noreturn]] void throwSizeMismatch(const char* method, const char* argument,
+                                    const std::string& expected, const std::string& got,
+                                    const std::vector<std::string>& joint_names) {
+  throw SizeMismatchException(errorText(std::string(method) + ": argument " + argument,
+                                        "wrong size", expected, got,
+                                        "the joints are " + joined(joint_names)));
+}
+
+}  // namespace
+
+// ---------------------------------------------------------------- initialization
+
+void InverseDynamicsSolver::initialize(const Parameters& parameters,
+                                       const std::string& param_namespace,
+                                       const std::string& robot_description) {
+  const Configuration configuration =
+      readConfiguration(parameters, param_namespace, robot_description);
+  JointInfo info = configure(configuration);
+
+  // Nothing below can fail.
+  info_ = std::move(info);
+  initialized_ = true;
+}
+
+Index InverseDynamicsSolver::jointCount() const {
+  requireInitialized("jointCount");
+  return static_cast<Index>(info_.joint_names.size());
+}
+
+const std::vector<std::string>& InverseDynamicsSolver::jointNames() const {
+  requireInitialized("jointNames");
+  return info_.joint_names;
+}
+
+const std::vector<std::string>& InverseDynamicsSolver::warnings() const {
+  requireInitialized("warnings");
+  return info_.warnings;
+}
+
+bool InverseDynamicsSolver::inertiaIsPhysical() const {
+  requireInitialized("inertiaIsPhysical");
+  return inertiaIsPhysicalImpl();
+}
+
+// ---------------------------------------------------------------- checks
+
+void InverseDynamicsSolver::requireInitialized(const char* method) const {
+  if (!initialized_) throw UninitializedException(method);
+}
+
+void InverseDynamicsSolver::requireVector(const char* method, const char* argument,
+                                          Index size) const {
+  const auto n = static_cast<Index>(info_.joint_names.size());
+  if (size != n) {
+    throwSizeMismatch(method, argument, std::to_string(n) + " numbers", std::to_string(size),
+                      info_.joint_names);
+  }
+}
+
+void InverseDynamicsSolver::requireMatrix(const char* method, const char* argument, Index rows,
+                                          Index cols, Index expected_cols) const {
+  const auto n = static_cast<Index>(info_.joint_names.size());
+  if (rows != n || cols != expected_cols) {
+    throwSizeMismatch(method, argument, shape(n, expected_cols), shape(rows, cols),
+                      info_.joint_names);
+  }
+}
+
+// ---------------------------------------------------------------- one state
+
+void InverseDynamicsSolver::getInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const {
+  requireInitialized("getInertiaMatrix");
+  requireVector("getInertiaMatrix", "q", q.size());
+  requireMatrix("getInertiaMatrix", "H", H.rows(), H.cols(), q.size());
+  computeInertiaMatrix(q, H);
+}
+
+void InverseDynamicsSolver::getCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                              VectorRef c) const {
+  requireInitialized("getCoriolisVector");
+  requireVector("getCoriolisVector", "q", q.size());
+  requireVector("getCoriolisVector", "qd", qd.size());
+  requireVector("getCoriolisVector", "c", c.size());
+  computeCoriolisVector(q, qd, c);
+}
+
+void InverseDynamicsSolver::getFrictionVector(const ConstVectorRef& qd, VectorRef f) const {
+  requireInitialized("getFrictionVector");
+  requireVector("getFrictionVector", "qd", qd.size());
+  requireVector("getFrictionVector", "f", f.size());
+  computeFriction(qd, f);
+}
+
+void InverseDynamicsSolver::getGravityVector(const ConstVectorRef& q, VectorRef g) const {
+  requireInitialized("getGravityVector");
+  requireVector("getGravityVector", "q", q.size());
+  requireVector("getGravityVector", "g", g.size());
+  computeGravityVector(q, g);
+}
+
+void InverseDynamicsSolver::getDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                                 MatrixRef H, VectorRef c, VectorRef g) const {
+  requireInitialized("getDynamicComponents");
+  requireVector("getDynamicComponents", "q", q.size());
+  requireVector("getDynamicComponents", "qd", qd.size());
+  requireMatrix("getDynamicComponents", "H", H.rows(), H.cols(), q.size());
+  requireVector("getDynamicComponents", "c", c.size());
+  requireVector("getDynamicComponents", "g", g.size());
+  computeDynamicComponents(q, qd, H, c, g);
+}
+
+void InverseDynamicsSolver::getTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                       const ConstVectorRef& qdd, VectorRef tau) const {
+  requireInitialized("getTorques");
+  requireVector("getTorques", "q", q.size());
+  requireVector("getTorques", "qd", qd.size());
+  requireVector("getTorques", "qdd", qdd.size());
+  requireVector("getTorques", "tau", tau.size());
+  computeTorques(q, qd, qdd, tau);
+}
+
+// ---------------------------------------------------------------- many states
+
+void InverseDynamicsSolver::getInertiaMatrixBatch(const ConstMatrixRef& q, MatrixRef H) const {
+  const char* const method = "getInertiaMatrixBatch";
+  requireInitialized(method);
+  requireMatrix(method, "q", q.rows(), q.cols(), q.cols());
+  requireMatrix(method, "H", H.rows(), H.cols(), q.rows() * q.cols());
+  computeInertiaMatrixBatch(q, H);
+}
+
+void InverseDynamicsSolver::getCoriolisVectorBatch(const ConstMatrixRef& q,
+                                                   const ConstMatrixRef& qd, MatrixRef c) const {
+  const char* const method = "getCoriolisVectorBatch";
+  requireInitialized(method);
+  requireMatrix(method, "q", q.rows(), q.cols(), q.cols());
+  requireMatrix(method, "qd", qd.rows(), qd.cols(), q.cols());
+  requireMatrix(method, "c", c.rows(), c.cols(), q.cols());
+  computeCoriolisVectorBatch(q, qd, c);
+}
+
+void InverseDynamicsSolver::getFrictionVectorBatch(const ConstMatrixRef& qd, MatrixRef f) const {
+  const char* const method = "getFrictionVectorBatch";
+  requireInitialized(method);
+  requireMatrix(method, "qd", qd.rows(), qd.cols(), qd.cols());
+  requireMatrix(method, "f", f.rows(), f.cols(), qd.cols());
+  computeFrictionBatch(qd, f);
+}
+
+void InverseDynamicsSolver::getGravityVectorBatch(const ConstMatrixRef& q, MatrixRef g) const {
+  const char* const method = "getGravityVectorBatch";
+  requireInitialized(method);
+  requireMatrix(method, "q", q.rows(), q.cols(), q.cols());
+  requireMatrix(method, "g", g.rows(), g.cols(), q.cols());
+  computeGravityVectorBatch(q, g);
+}
+
+void InverseDynamicsSolver::getDynamicComponentsBatch(const ConstMatrixRef& q,
+                                                      const ConstMatrixRef& qd, MatrixRef H,
+                                                      MatrixRef c, MatrixRef g) const {
+  const char* const method = "getDynamicComponentsBatch";
+  requireInitialized(method);
+  requireMatrix(method, "q", q.rows(), q.cols(), q.cols());
+  requireMatrix(method, "qd", qd.rows(), qd.cols(), q.cols());
+  requireMatrix(method, "H", H.rows(), H.cols(), q.rows() * q.cols());
+  requireMatrix(method, "c", c.rows(), c.cols(), q.cols());
+  requireMatrix(method, "g", g.rows(), g.cols(), q.cols());
+  computeDynamicComponentsBatch(q, qd, H, c, g);
+}
+
+void InverseDynamicsSolver::getTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
+                                            const ConstMatrixRef& qdd, MatrixRef tau) const {
+  const char* const method = "getTorquesBatch";
+  requireInitialized(method);
+  requireMatrix(method, "q", q.rows(), q.cols(), q.cols());
+  requireMatrix(method, "qd", qd.rows(), qd.cols(), q.cols());
+  requireMatrix(method, "qdd", qdd.rows(), qdd.cols(), q.cols());
+  requireMatrix(method, "tau", tau.rows(), tau.cols(), q.cols());
+  computeTorquesBatch(q, qd, qdd, tau);
+}
+
+// ---------------------------------------------------------------- defaults
+
+void InverseDynamicsSolver::computeFriction(const ConstVectorRef&, VectorRef f) const { f.setZero(); }
+
+void InverseDynamicsSolver::computeDynamicComponents(const ConstVectorRef& q,
+                                                     const ConstVectorRef& qd, MatrixRef H,
+                                                     VectorRef c, VectorRef g) const {
+  computeInertiaMatrix(q, H);
+  computeCoriolisVector(q, qd, c);
+  computeGravityVector(q, g);
+}
+
+void InverseDynamicsSolver::computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                           const ConstVectorRef& qdd, VectorRef tau) const {
+  const Index n = q.size();
+
+  // tau = H qdd + C qd + f + g, each term added as it comes
+  const auto sum = [&](MatrixRef H, VectorRef term) {
+    computeInertiaMatrix(q, H);
+    tau.noalias() = H.lazyProduct(qdd);
+    computeCoriolisVector(q, qd, term);
+    tau += term;
+    computeFriction(qd, term);
+    tau += term;
+    computeGravityVector(q, term);
+    tau += term;
+  };
+  if (n <= kMaxStackJoints) {
+    StackMatrix H(n, n);
+    StackVector term(n);
+    sum(H, term);
+  } else {
+    Eigen::MatrixXd H(n, n);
+    Eigen::VectorXd term(n);
+    sum(H, term);
+  }
+}
+
+void InverseDynamicsSolver::computeInertiaMatrixBatch(const ConstMatrixRef& q, MatrixRef H) const {
+  const Index n = q.rows();
+  for (Index k = 0; k < q.cols(); ++k) computeInertiaMatrix(q.col(k), H.middleCols(k * n, n));
+}
+
+void InverseDynamicsSolver::computeCoriolisVectorBatch(const ConstMatrixRef& q,
+                                                       const ConstMatrixRef& qd,
+                                                       MatrixRef c) const {
+  for (Index k = 0; k < q.cols(); ++k) computeCoriolisVector(q.col(k), qd.col(k), c.col(k));
+}
+
+void InverseDynamicsSolver::computeFrictionBatch(const ConstMatrixRef& qd, MatrixRef f) const {
+  for (Index k = 0; k < qd.cols(); ++k) computeFriction(qd.col(k), f.col(k));
+}
+
+void InverseDynamicsSolver::computeGravityVectorBatch(const ConstMatrixRef& q, MatrixRef g) const {
+  for (Index k = 0; k < q.cols(); ++k) computeGravityVector(q.col(k), g.col(k));
+}
+
+void InverseDynamicsSolver::computeDynamicComponentsBatch(const ConstMatrixRef& q,
+                                                          const ConstMatrixRef& qd, MatrixRef H,
+                                                          MatrixRef c, MatrixRef g) const {
+  const Index n = q.rows();
+  for (Index k = 0; k < q.cols(); ++k) {
+    computeDynamicComponents(q.col(k), qd.col(k), H.middleCols(k * n, n), c.col(k), g.col(k));
+  }
+}
+
+void InverseDynamicsSolver::computeTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
+                                                const ConstMatrixRef& qdd, MatrixRef tau) const {
+  for (Index k = 0; k < q.cols(); ++k) {
+    computeTorques(q.col(k), qd.col(k), qdd.col(k), tau.col(k));
+  }
+}
+
+}  // namespace inverse_dynamics_solver

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/solver_loader.hpp"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <pluginlib/class_loader.hpp>
+#include <utility>
+
+namespace inverse_dynamics_solver {
+namespace {
+
+using PluginLoader = pluginlib::ClassLoader<InverseDynamicsSolver>;
+
+const char* const kSource = "source the workspace that has it: source install/local_setup.bash";
+
+/// A solver, and the loader that must stay as long as the solver's code is needed.
+struct LoadedSolver {
+  std::shared_ptr<PluginLoader> loader;
+  pluginlib::UniquePtr<InverseDynamicsSolver> solver;  // destroyed before the loader
+};
+
+/// Number of characters to insert, delete or replace to make b of a (Levenshtein).
+std::size_t editDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+/// "; did you mean NAME?" with the name nearest to the given one; empty if none is near.
+std::string suggestion(const std::string& name, const std::vector<std::string>& available) {
+  std::string nearest;
+  std::size_t least = name.size() / 2 + 1;
+  for (const std::string& candidate : available) {
+    // The class alone is a common shorthand of `package/Class`.
+    const std::string short_name = candidate.substr(candidate.find('/') + 1);
+    const std::size_t distance =
+        std::min(editDistance(name, candidate), editDistance(name, short_name));
+    if (distance < least) {
+      least = distance;
+      nearest = candidate;
+    }
+  }
+  return nearest.empty() ? "" : "did you mean " + nearest + "?";
+}
+
+}  // namespace
+
+struct SolverLoader::Implementation {
+  // Empty if there is no index of installed packages, or this package isn't in it.
+  std::shared_ptr<PluginLoader> loader;
+  std::vector<std::string> names;
+  std::string index_error;
+  std::mutex mutex;  // pluginlib's loader isn't thread-safe
+
+  Implementation() {
+    try {
+      loader = std::make_shared<PluginLoader>("inverse_dynamics_solver",
+                                              "inverse_dynamics_solver::InverseDynamicsSolver");
+      names = loader->getDeclaredClasses();
+      std::sort(names.begin(), names.end());
+    } catch (const std::exception& e) {
+      index_error = e.what();
+    }
+  }
+
+  void requireAvailable(const std::string& name) const {
+    const std::string where = "solver plugin '" + name + "'";
+    if (names.empty()) {
+      throw PluginNotFoundException(
+          errorText(where, "not found", "a plugin of an installed package",
+                    "no installed plugin at all" +
+                        (index_error.empty() ? "" : " (" + index_error + ")"),
+                    kSource));
+    }
+    if (std::binary_search(names.begin(), names.end(), name)) return;
+
+    std::string list;
+    for (const std::string& candidate : names) list += (list.empty() ? "" : ", ") + candidate;
+    const std::string nearest = suggestion(name, names);
+    throw PluginNotFoundException(errorText(where, "not found", "one of " + list, "'" + name + "'",
+                                            nearest.empty() ? kSource : nearest));
+  }
+};
+
+SolverLoader::SolverLoader() : implementation_(std::make_unique<Implementation>()) {}
+SolverLoader::~SolverLoader() = default;
+SolverLoader::SolverLoader(SolverLoader&&) noexcept = default;
+SolverLoader& SolverLoader::operator=(SolverLoader&&) noexcept = default;
+
+std::vector<std::string> SolverLoader::availableSolvers() const { return implementation_->names; }
+
+std::string SolverLoader::description(const std::string& name) const {
+  implementation_->requireAvailable(name);
+  const std::lock_guard<std::mutex> lock(implementation_->mutex);
+  return implementation_->loader->getClassDescription(name);
+}
+
+std::shared_ptr<InverseDynamicsSolver> SolverLoader::load(const std::string& name) const {
+  implementation_->requireAvailable(name);
+  const std::lock_guard<std::mutex> lock(implementation_->mutex);
+  const std::shared_ptr<PluginLoader>& loader = implementation_->loader;
+  const std::string where = "solver plugin '" + name + "'";
+  try {
+    auto loaded = std::make_shared<LoadedSolver>(
+        LoadedSolver{loader, loader->createUniqueInstance(name)});
+    return {loaded, loaded->solver.get()};
+  } catch (const pluginlib::CreateClassException&) {
+    throw PluginNotFoundException(errorText(
+        where, "its library has no such solver",
+        "class " + loader->getClassType(name) + " made with this version of the interface",
+        "none, or one made with another version",
+        "rebuild package " + loader->getClassPackage(name) + " against this workspace"));
+  } catch (const pluginlib::PluginlibException& e) {
+    throw PluginNotFoundException(errorText(where, "its library can't be opened", "", e.what(),
+                                            "rebuild package " + loader->getClassPackage(name)));
+  }
+}
+
+}  // namespace inverse_dynamics_solver

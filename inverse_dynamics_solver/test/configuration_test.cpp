@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/configuration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "inverse_dynamics_solver/exceptions.hpp"
+
+namespace inverse_dynamics_solver {
+namespace {
+
+template <class E, class Call>
+std::string errorOf(Call call) {
+  try {
+    call();
+  } catch (const E& e) {
+    return e.what();
+  }
+  ADD_FAILURE() << "no exception";
+  return "";
+}
+
+/// A shoulder and, beside the arm, a gripper finger that slides out by its joint position.
+const char* const kArm = R"(<robot name="arm">
+  <link name="base"/>
+  <link name="upper"><inertial><mass value="2"/><origin xyz="0 0 -0.5"/>
+    <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="tool"/>
+  <link name="finger"><inertial><mass value="1"/><origin xyz="0 0 0"/>
+    <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/>
+    <axis xyz="0 1 0"/></joint>
+  <joint name="flange" type="fixed"><parent link="upper"/><child link="tool"/></joint>
+  <joint name="slide" type="prismatic"><parent link="tool"/><child link="finger"/>
+    <axis xyz="0 0 -1"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint>
+</robot>)";
+
+TEST(Configuration, HasDefaults) {
+  const Configuration configuration = readConfiguration({}, "ids", "");
+  EXPECT_EQ(configuration.robot_description, "");
+  EXPECT_EQ(configuration.root, "");
+  EXPECT_EQ(configuration.tip, "");
+  EXPECT_EQ(configuration.gravity, Eigen::Vector3d(0, 0, -9.81));
+  EXPECT_FALSE(configuration.gravity_given);
+  EXPECT_TRUE(configuration.lump_attached);
+  EXPECT_TRUE(configuration.friction);
+  EXPECT_EQ(configuration.locked_position("finger"), 0.0);
+}
+
+TEST(Configuration, IsReadBelowTheNamespace) {
+  const Parameters parameters = {{"ids.root", "base"},
+                                 {"ids.tip", "tool"},
+                                 {"ids.gravity", std::vector<double>{1.0, 2.0, 3.0}},
+                                 {"ids.attached", "ignore"},
+                                 {"ids.friction", false},
+                                 {"ids.locked_joints.finger", 0.25},
+                                 {"ids.max_threads", 3},
+                                 {"tip", "another"}};
+  const Configuration configuration = readConfiguration(parameters, "ids", "");
+  EXPECT_EQ(configuration.root, "base");
+  EXPECT_EQ(configuration.tip, "tool");
+  EXPECT_EQ(configuration.gravity, Eigen::Vector3d(1, 2, 3));
+  EXPECT_TRUE(configuration.gravity_given);
+  EXPECT_FALSE(configuration.lump_attached);
+  EXPECT_FALSE(configuration.friction);
+  EXPECT_EQ(configuration.locked_position("finger"), 0.25);
+  EXPECT_EQ(configuration.get<std::int64_t>("max_threads"), 3);
+  EXPECT_EQ(readConfiguration(parameters, "", "").tip, "another");
+}
+
+TEST(Configuration, RobotDescriptionComesFromTheArgumentElseFromTheParameterWithoutNamespace) {
+  const Parameters parameters = {{"robot_description", "<a/>"}, {"ids.robot_description", "<b/>"}};
+  EXPECT_EQ(readConfiguration(parameters, "ids", "").robot_description, "<a/>");
+  EXPECT_EQ(readConfiguration(parameters, "ids", "<c/>").robot_description, "<c/>");
+}
+
+TEST(Configuration, MistakesNameTheParameterWithItsNamespace) {
+  const auto error = [](const std::string& name, const ParameterValue& value) {
+    return errorOf<InvalidParameterValueException>([&] {
+      readConfiguration({{"ids." + name, value}}, "ids", "");
+    });
+  };
+  EXPECT_EQ(error("gravity", std::vector<double>{1.0, 2.5}),
+            "parameter 'ids.gravity': wrong value: expected 3 finite numbers [m/s^2] in the frame "
+            "of the root link, got 2 (1, 2.5); for a robot that stands upright: [0.0, 0.0, -9.81]");
+  EXPECT_NE(error("gravity", std::vector<double>{0.0, 0.0, std::nan("")}).find("got 3 (0, 0, nan)"),
+            std::string::npos);
+  EXPECT_EQ(error("attached", "keep"),
+            "parameter 'ids.attached': wrong value: expected \"lump\" or \"ignore\", got \"keep\"; "
+            "lump: what hangs on the chain beside or beyond it counts; ignore: it doesn't");
+  EXPECT_EQ(error("friction", "off"),
+            "parameter 'ids.friction': wrong type: expected bool, got string; correct it where it "
+            "is set");
+  EXPECT_EQ(error("tip", 3),
+            "parameter 'ids.tip': wrong type: expected string, got integer; correct it where it is "
+            "set");
+}
+
+TEST(ChainFromDescription, TakesRootTipGravityAndWhatHangsOnTheChain) {
+  const auto chain = [](Parameters parameters) {
+    return chainFromDescription(readConfiguration(parameters, "", kArm));
+  };
+  const chain_dynamics::Chain lumped =
+      chain({{"tip", "tool"}, {"gravity", std::vector<double>{1.0, 2.0, 3.0}}});
+  EXPECT_EQ(lumped.jointNames(), std::vector<std::string>{"shoulder"});
+  EXPECT_EQ(lumped.gravity(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_DOUBLE_EQ(lumped.links()[0].mass, 3.0);
+  EXPECT_DOUBLE_EQ(chain({{"tip", "tool"}, {"attached", "ignore"}}).links()[0].mass, 2.0);
+
+  // The finger slides from the pivot down to 0.5 m below: first moment 2 * 0.5, and 1 * 0.5 more.
+  const auto moment = [&](Parameters parameters) {
+    return chain(std::move(parameters)).links()[0].first_moment.norm();
+  };
+  EXPECT_NEAR(moment({{"tip", "tool"}}), 1.0, 1e-15);
+  EXPECT_NEAR(moment({{"tip", "tool"}, {"locked_joints.slide", 0.5}}), 1.5, 1e-15);
+}
+
+TEST(ChainFromDescription, RefusesWhatIsNoRobot) {
+  const auto error = [](Parameters parameters, const std::string& text) {
+    return errorOf<InvalidRobotDescriptionException>(
+        [&] { chainFromDescription(readConfiguration(parameters, "ids", text)); });
+  };
+  EXPECT_EQ(error({}, "no robot").rfind("robot description: ", 0), 0U) << error({}, "no robot");
+  EXPECT_NE(error({{"ids.tip", "tol"}}, kArm).find("tol"), std::string::npos);
+  EXPECT_NE(error({{"ids.root", "bas"}}, kArm).find("bas"), std::string::npos);
+  EXPECT_EQ(errorOf<ParameterUninitializedException>(
+                [&] { chainFromDescription(readConfiguration({}, "ids", "")); }),
+            "robot description: missing: expected the text of a URDF, got nothing; pass it to "
+            "initialize() as third argument, or set the parameter 'robot_description' (without "
+            "namespace)");
+  EXPECT_EQ(errorOf<InvalidParameterValueException>([&] {
+              chainFromDescription(readConfiguration(
+                  {{"ids.tip", "tool"}, {"ids.locked_joints.slide", std::nan("")}}, "ids", kArm));
+            }),
+            "parameter 'ids.locked_joints.slide': wrong value: expected a finite position [rad; "
+            "prismatic m], got nan; give the position at which the joint is held");
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_solver

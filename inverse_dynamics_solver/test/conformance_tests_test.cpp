@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The conformance tests find what they are there for: for each fault, the test that must fail
+/// does.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <string>
+
+namespace {
+
+struct Fault {
+  const char* fault;
+  const char* test;  // empty: all tests pass
+};
+
+std::ostream& operator<<(std::ostream& stream, const Fault& fault) { return stream << fault.fault; }
+
+class ConformanceTests : public ::testing::TestWithParam<Fault> {};
+
+TEST_P(ConformanceTests, Find) {
+  const Fault& fault = GetParam();
+  const std::string command = "FAULT=\"" + std::string(fault.fault) +
+                              "\" " TWO_LINK_TEST_PROGRAM
+                              " --gtest_brief=1 --gtest_output= --gtest_filter='*." +
+                              (fault.test[0] == '\0' ? "*" : fault.test) + "' 2>&1";
+  FILE* const pipe = popen(command.c_str(), "r");
+  ASSERT_NE(pipe, nullptr);
+  std::string output;
+  for (int c = 0; (c = std::fgetc(pipe)) != EOF;) output.push_back(static_cast<char>(c));
+  const int status = pclose(pipe);
+  ASSERT_TRUE(WIFEXITED(status)) << output;
+
+  const bool found = output.find("[  FAILED  ] TwoLink") != std::string::npos;
+  EXPECT_EQ(found, fault.test[0] != '\0') << output;
+  EXPECT_EQ(WEXITSTATUS(status) != 0, found) << output;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Faults, ConformanceTests,
+    ::testing::Values(
+        Fault{"", ""},  //
+        Fault{"two joints of one name", "JointNamesAreDistinctAndCounted"},
+        Fault{"a result is not finite", "ResultsHaveTheSizesOfTheRobotAndAreFinite"},
+        Fault{"an entry is not written", "ResultsByValueEqualResultsInMemoryOfTheCaller"},
+        Fault{"last state of a batch is missed", "BatchEqualsSingleCalls"},
+        Fault{"allocates", "CallsIntoMemoryOfTheCallerDoNotAllocate"},
+        Fault{"state is shared", "ManyThreadsGetTheNumbersOfOne"},
+        Fault{"NaN is swallowed", "NanGoesToEveryEntryThatDependsOnIt"},
+        Fault{"members set before checks", "FailedInitializeLeavesTheSolverAsItWas"},
+        Fault{"first gravity is kept", "InitializingAgainTakesEffect"},
+        Fault{"namespace is ignored", "ParametersAreReadBelowTheNamespace"},
+        Fault{"any description will do", "RobotDescriptionComesFromArgumentOrParameter"},
+        Fault{"torques lack a term", "TorquesAreTheSumOfTheirTerms"},
+        Fault{"components differ", "ComponentsEqualTheSingleMethods"},
+        Fault{"torques are not linear", "TorquesAreLinearInAcceleration"},
+        Fault{"Coriolis torques are linear", "CoriolisTorquesAreQuadraticInVelocity"},
+        Fault{"gravity torques have an offset", "GravityTorquesAreProportionalToGravity"},
+        Fault{"another default gravity", "GravityPointsDownByDefault"},
+        Fault{"gravity torques have no potential", "GravityTorquesHaveASymmetricJacobian"},
+        Fault{"inertia is not symmetric", "PhysicalInertiaIsSymmetricPositiveDefinite"},
+        Fault{"inertia is not positive", "PhysicalInertiaIsSymmetricPositiveDefinite"},
+        Fault{"Coriolis torques with the wrong sign", "PowerIsTheRateOfKineticEnergy"},
+        Fault{"friction can't be switched off", "FrictionCanBeSwitchedOff"},
+        Fault{"friction overflows", "FrictionIsFiniteAtAnyVelocity"},
+        Fault{"wrong drive gain", "MotorCurrentsTimesDriveGainsAreTorques"}));
+
+}  // namespace

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "two_link_solver.hpp"
+
+#include <cmath>
+#include <limits>
+#include <pluginlib/class_list_macros.hpp>
+#include <thread>
+
+namespace two_link_solver {
+namespace {
+
+// Masses [kg] and lengths [m] of the two links.
+constexpr double m1 = 3.0, m2 = 2.0, l1 = 0.7, l2 = 0.5;
+
+bool known(const std::string& link) { return link.empty() || link == "base" || link == "tip"; }
+
+}  // namespace
+
+auto TwoLinkSolver::configure(const Configuration& configuration) -> JointInfo {
+  const std::string fault = configuration.get<std::string>("fault").value_or("");
+  if (fault == "members set before checks") gravity_ = configuration.gravity;
+
+  // Enough of a reader of robot descriptions to refuse what isn't one.
+  const std::string& text = configuration.robot_description;
+  if (fault != "any description will do") {
+    if (text.empty()) chainFromDescription(configuration);  // throws
+    if (text != "<robot/>") throw InvalidRobotDescriptionException("not a robot: " + text);
+  }
+  if (!known(configuration.root) || !known(configuration.tip)) {
+    throw InvalidRobotDescriptionException("no link " + configuration.root + configuration.tip);
+  }
+  JointInfo info;
+  info.joint_names = {"shoulder", fault == "two joints of one name" ? "shoulder" : "elbow"};
+
+  friction_ = configuration.friction || fault == "friction can't be switched off";
+  if (fault != "first gravity is kept" || !isInitialized()) gravity_ = configuration.gravity;
+  if (fault == "another default gravity" && !configuration.gravity_given) gravity_ *= -1.0;
+  if (fault == "namespace is ignored") {
+    const auto g = configuration.parameters.get<std::vector<double>>("gravity");
+    if (g) gravity_ = Eigen::Vector3d((*g)[0], (*g)[1], (*g)[2]);
+  }
+  fault_ = fault;
+  return info;
+}
+
+void TwoLinkSolver::computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const {
+  const double coupling = m2 * l1 * l2 * std::cos(q[1]);
+  H(0, 0) = (m1 + m2) * l1 * l1 + m2 * l2 * l2 + 2.0 * coupling;
+  H(0, 1) = m2 * l2 * l2 + coupling;
+  if (!has("an entry is not written")) H(1, 0) = H(0, 1);
+  H(1, 1) = m2 * l2 * l2;
+  if (has("inertia is not symmetric")) H(1, 0) *= 1.1;
+  if (has("inertia is not positive")) H *= -1.0;
+}
+
+void TwoLinkSolver::computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                          VectorRef c) const {
+  const double k = m2 * l1 * l2 * std::sin(q[1]);
+  c[0] = -k * (2.0 * qd[0] * qd[1] + qd[1] * qd[1]);
+  c[1] = k * qd[0] * qd[0];
+  if (has("Coriolis torques are linear")) c += qd;
+  if (has("Coriolis torques with the wrong sign")) c *= -1.0;
+  if (has("allocates")) c = Eigen::VectorXd(c + c) / 2.0;
+  if (has("NaN is swallowed") && std::isnan(c[1])) c[1] = 0.0;
+}
+
+void TwoLinkSolver::computeGravityVector(const ConstVectorRef& q, VectorRef g) const {
+  if (has("state is shared")) {
+    shared_ = q[0];
+    std::this_thread::yield();
+    g.setConstant(shared_);
+    return;
+  }
+  // A link that hangs at angle a pulls with s(a) per mass and length.
+  const auto s = [this](double a) {
+    return gravity_.x() * std::cos(a) - gravity_.z() * std::sin(a);
+  };
+  g[1] = m2 * l2 * s(q[0] + q[1]);
+  g[0] = (m1 + m2) * l1 * s(q[0]) + g[1];
+  if (has("gravity torques have an offset")) g[1] += 1.0;
+  if (has("gravity torques have no potential")) g[1] *= 1.1;
+  if (has("a result is not finite")) g[0] = std::numeric_limits<double>::infinity();
+}
+
+void TwoLinkSolver::computeFriction(const ConstVectorRef& qd, VectorRef f) const {
+  if (!friction_) {
+    f.setZero();
+  } else if (has("friction overflows")) {
+    f = qd.array().exp() / (1.0 + qd.array().exp());
+  } else {
+    f = 0.3 * qd.array() + qd.array().tanh();
+  }
+}
+
+void TwoLinkSolver::computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                             MatrixRef H, VectorRef c, VectorRef g) const {
+  InverseDynamicsSolver::computeDynamicComponents(q, qd, H, c, g);
+  if (has("components differ")) g[0] += 1e-6;
+}
+
+void TwoLinkSolver::computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                   const ConstVectorRef& qdd, VectorRef tau) const {
+  InverseDynamicsSolver::computeTorques(q, qd, qdd, tau);
+  if (has("torques lack a term")) tau[0] -= 1e-6 * qd[0];
+  if (has("torques are not linear")) tau += 1e-6 * qdd.cwiseAbs2();
+}
+
+void TwoLinkSolver::computeTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
+                                        const ConstMatrixRef& qdd, MatrixRef tau) const {
+  InverseDynamicsSolver::computeTorquesBatch(q, qd, qdd, tau);
+  if (has("last state of a batch is missed") && tau.cols() > 1) tau.rightCols(1) *= 0.99;
+}
+
+// Drive gains 2 and 4 N m/A.
+Eigen::MatrixXd TwoLinkSolver::getDriveGainsMatrix() const {
+  jointCount();  // throws if not initialized
+  return Eigen::Vector2d(2.0, has("wrong drive gain") ? 5.0 : 4.0).asDiagonal();
+}
+
+Eigen::VectorXd TwoLinkSolver::getCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                           const ConstVectorRef& qdd) const {
+  return Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getTorques(q, qd, qdd);
+}
+
+Eigen::MatrixXd TwoLinkSolver::getInertiaCurrents(const ConstVectorRef& q) const {
+  return Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getInertiaMatrix(q);
+}
+
+Eigen::VectorXd TwoLinkSolver::getCoriolisCurrents(const ConstVectorRef& q,
+                                                   const ConstVectorRef& qd) const {
+  return Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getCoriolisVector(q, qd);
+}
+
+Eigen::VectorXd TwoLinkSolver::getGravityCurrents(const ConstVectorRef& q) const {
+  return Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getGravityVector(q);
+}
+
+Eigen::VectorXd TwoLinkSolver::getFrictionCurrents(const ConstVectorRef& qd) const {
+  return Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getFrictionVector(qd);
+}
+
+}  // namespace two_link_solver
+
+PLUGINLIB_EXPORT_CLASS(two_link_solver::TwoLinkSolver,
+                       inverse_dynamics_solver::InverseDynamicsSolver)

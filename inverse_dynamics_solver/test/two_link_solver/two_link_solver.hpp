@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// A planar arm with two joints about the y axis and a point mass at the end of each link, in
+/// closed form; it hangs down at q = 0. With the parameter `fault` it breaks one promise or law:
+/// what the conformance tests must find.
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
+#include "inverse_dynamics_solver/motor_currents.hpp"
+
+namespace two_link_solver {
+
+using namespace inverse_dynamics_solver;
+
+class TwoLinkSolver : public InverseDynamicsSolver, public MotorCurrents {
+ public:
+  Eigen::VectorXd getCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                              const ConstVectorRef& qdd) const override;
+  Eigen::MatrixXd getInertiaCurrents(const ConstVectorRef& q) const override;
+  Eigen::VectorXd getCoriolisCurrents(const ConstVectorRef& q,
+                                      const ConstVectorRef& qd) const override;
+  Eigen::VectorXd getGravityCurrents(const ConstVectorRef& q) const override;
+  Eigen::VectorXd getFrictionCurrents(const ConstVectorRef& qd) const override;
+  Eigen::MatrixXd getDriveGainsMatrix() const override;
+
+ protected:
+  JointInfo configure(const Configuration& configuration) override;
+  void computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const override;
+  void computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
+                             VectorRef c) const override;
+  void computeGravityVector(const ConstVectorRef& q, VectorRef g) const override;
+  void computeFriction(const ConstVectorRef& qd, VectorRef f) const override;
+  void computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
+                                VectorRef c, VectorRef g) const override;
+  void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
+                      VectorRef tau) const override;
+  void computeTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
+                           const ConstMatrixRef& qdd, MatrixRef tau) const override;
+  bool inertiaIsPhysicalImpl() const override { return true; }
+
+ private:
+  bool has(const char* fault) const { return fault_ == fault; }
+
+  Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero();
+  bool friction_ = true;
+  std::string fault_;
+  mutable std::atomic<double> shared_{0.0};  // for the fault that isn't thread-safe
+};
+
+}  // namespace two_link_solver
