@@ -37,7 +37,7 @@ inline Eigen::VectorXd vectorOf(const YAML::Node& node) {
 
 /// JSON is YAML.
 inline std::vector<ReferenceState> referenceStates(const std::string& file) {
-  const YAML::Node data = YAML::LoadFile(std::string(CHAIN_DYNAMICS_REFERENCE_DIR) + "/" + file);
+  const YAML::Node data = YAML::LoadFile(CHAIN_DYNAMICS_ROBOTS_DIR "/reference/" + file);
   std::vector<ReferenceState> states;
   for (const YAML::Node& node : data["states"]) {
     ReferenceState state;

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// A robot as it was identified: a chain, and what was measured beyond rigid bodies.
+///
+///     Model ur10 = modelFromFile("ur10_identified.yaml");   // model_file.hpp
+///     torques(ur10, q, qd, qdd, tau);                       // tau = H qdd + C qd + g
+///     frictionVector(ur10, qd, f);                          // what the motors need is tau + f
+///
+/// An identified robot need not be one system of rigid bodies [parameter_sets.hpp]: rows of the
+/// torque may have parameters of their own, and so may gravity. The functions below have the names
+/// and meanings of those for a Chain and take that into account.
+///
+/// A model identified in motor currents is kept in torques: its parameters and friction have been
+/// multiplied by the drive gains, so the current of joint j is the torque divided by
+/// `drive_gains[j]`.
+
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/friction.hpp"
+
+namespace chain_dynamics {
+
+/// A chain with identified parameters, friction and drive gains. Plain data; see checkModel().
+struct Model {
+  /// A chain as it is: one parameter set, no friction.
+  explicit Model(Chain chain_of_model) : chain(std::move(chain_of_model)), name(chain.name()) {}
+
+  Chain chain;
+
+  /// Empty: chain.links() for every row of H, C qd, g. Otherwise n sets of n links, and row j is
+  /// that of a chain with set j; chain.links() are then without meaning.
+  std::vector<std::vector<LinkParameters>> row_parameters = {};
+
+  /// Empty: gravity has the same parameters. Otherwise n links, whose masses and first moments are
+  /// those of gravity.
+  std::vector<LinkParameters> gravity_parameters = {};
+
+  /// Empty: no friction is known. Otherwise one law per joint, in N m (prismatic N).
+  std::vector<FrictionLaw> friction = {};
+
+  /// Empty: nothing is known about motors. Otherwise torque per motor current of each joint; N m/A.
+  Eigen::VectorXd drive_gains = {};
+
+  std::string name;           ///< what messages call it
+  std::string source = {};    ///< where the figures come from
+  std::string validity = {};  ///< what they are good for
+
+  /// Whether H is symmetric positive definite for every q, because of what it is made of.
+  ///
+  /// So it is where H has one parameter set, each link could be a cloud of mass (mass >= 0, inertia
+  /// about the center of mass that isn't negative) and no joint moves nothing. Where this is false,
+  /// torques are still those of the model, but nobody should invert H or feed back through it.
+  bool inertiaIsPhysical() const;
+};
+
+/// Rejects a model whose parts don't fit together: wrong sizes, non-finite numbers, gains <= 0.
+///
+/// Call it once where a model was made by hand; the functions below only assert sizes.
+///
+/// @throws ModelError  naming part and joint.
+void checkModel(const Model& model);
+
+using ConstVectorRef = Eigen::Ref<const Eigen::VectorXd>;
+using VectorRef = Eigen::Ref<Eigen::VectorXd>;
+using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
+
+/// Joint torques of a given motion, without friction: `tau = H(q) qdd + C(q, qd) qd + g(q)`.
+///
+/// Recursive Newton-Euler, O(n), or once per row [parameter_sets.hpp], O(n^2).
+///
+/// @param q,qd,qdd  n each; rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2); order of
+///                  model.chain.jointNames().
+/// @param[out] tau  n; N m (prismatic N).
+/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+void torques(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+             const ConstVectorRef& qdd, VectorRef tau);
+
+/// Joint-space inertia matrix: `H(q)`; with row parameters neither symmetric nor definite.
+///
+/// @param q       n; rad (prismatic m).
+/// @param[out] H  n x n; kg m^2 (prismatic kg, mixed kg m).
+/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+void inertiaMatrix(const Model& model, const ConstVectorRef& q, MatrixRef H);
+
+/// Coriolis and centrifugal torques: `C(q, qd) qd`.
+///
+/// @param q,qd    n each; rad, rad/s (prismatic m, m/s).
+/// @param[out] c  n; N m (prismatic N).
+/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+void coriolisVector(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                    VectorRef c);
+
+/// Gravity torques: `g(q)`.
+///
+/// @param q       n; rad (prismatic m).
+/// @param[out] g  n; N m (prismatic N).
+/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+void gravityVector(const Model& model, const ConstVectorRef& q, VectorRef g);
+
+/// Inertia matrix, Coriolis and gravity torques in one pass: `H(q)`, `C(q, qd) qd`, `g(q)`.
+///
+/// @param q,qd    n each; rad, rad/s (prismatic m, m/s).
+/// @param[out] H  n x n; kg m^2 (prismatic kg, mixed kg m).
+/// @param[out] c  n; N m (prismatic N).
+/// @param[out] g  n; N m (prismatic N).
+/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+void dynamicComponents(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                       MatrixRef H, VectorRef c, VectorRef g);
+
+/// Friction torques: `f(qd)`; zero where the model knows no friction, but NaN for NaN.
+///
+/// @param qd      n; rad/s (prismatic m/s).
+/// @param[out] f  n; N m (prismatic N).
+/// Real time: no allocation, lock, exception or system call. Threads: safe.
+void frictionVector(const Model& model, const ConstVectorRef& qd, VectorRef f);
+
+}  // namespace chain_dynamics

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/model.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cassert>
+#include <cmath>
+#include <string>
+
+#include "chain_dynamics/error.hpp"
+#include "chain_dynamics/parameter_sets.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+// Of the greatest entry: what moving an inertia to its center of mass leaves of a zero moment.
+constexpr double kRounding = 1e-12;
+
+ParameterSets setsOf(const Model& model) {
+  return {model.row_parameters, model.gravity_parameters};
+}
+
+// No principal moment is negative. For mere masses, each two of them are no less than the third;
+// a body that breaks only this can't exist, but its kinetic energy is never negative.
+bool isNotNegative(const Matrix3<double>& inertia) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3<double>> solver(inertia, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[0] >= -kRounding * inertia.cwiseAbs().maxCoeff();
+}
+
+bool kineticEnergyIsNotNegative(const LinkParameters& link) {
+  if (link.mass > 0) {
+    // I_c = I + m [c]x [c]x
+    const Matrix3<double> mc_x = skew<double>(link.first_moment);
+    return isNotNegative(link.inertia + mc_x * mc_x / link.mass);
+  }
+  return link.mass == 0 && link.first_moment.isZero(0) && isNotNegative(link.inertia);
+}
+
+// Whether H is positive definite at a position without symmetry, where no lever arm vanishes by
+// chance.
+bool inertiaIsDefinite(const Chain& chain) {
+  const Eigen::Index n = chain.jointCount();
+  Eigen::VectorXd q(n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    q[j] = std::sin(1.0 + 2.0 * static_cast<double>(j));
+  }
+  Eigen::MatrixXd H(n, n);
+  inertiaMatrix(chain, q, H);
+  return Eigen::LLT<Eigen::MatrixXd>(H).info() == Eigen::Success;
+}
+
+}  // namespace
+
+bool Model::inertiaIsPhysical() const {
+  if (!row_parameters.empty()) {
+    return false;
+  }
+  for (const LinkParameters& link : chain.links()) {
+    if (!kineticEnergyIsNotNegative(link)) {
+      return false;
+    }
+  }
+  return inertiaIsDefinite(chain);
+}
+
+void checkModel(const Model& model) {
+  const std::string where = "model " + model.name;
+  const Eigen::Index n = model.chain.jointCount();
+  checkParameterSets(model.chain, setsOf(model));
+  if (!model.friction.empty() && model.friction.size() != model.chain.joints().size()) {
+    throw ModelError(where, "friction", "no law, or one per joint (" + std::to_string(n) + ")",
+                     std::to_string(model.friction.size()), "");
+  }
+  for (std::size_t j = 0; j < model.friction.size(); ++j) {
+    if (!std::isfinite(friction(model.friction[j], 0.0))) {
+      throw ModelError(where, "friction of joint " + model.chain.joints()[j].name,
+                       "finite coefficients", "a NaN or an infinity", "");
+    }
+  }
+  if (model.drive_gains.size() != 0 && model.drive_gains.size() != n) {
+    throw ModelError(where, "drive gains", "none, or one per joint (" + std::to_string(n) + ")",
+                     std::to_string(model.drive_gains.size()), "");
+  }
+  for (Eigen::Index j = 0; j < model.drive_gains.size(); ++j) {
+    if (!std::isfinite(model.drive_gains[j]) || model.drive_gains[j] <= 0) {
+      throw ModelError(
+          where, "drive gain of joint " + model.chain.joints()[static_cast<std::size_t>(j)].name,
+          "a finite number > 0 [N m/A]", std::to_string(model.drive_gains[j]), "");
+    }
+  }
+}
+
+void torques(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+             const ConstVectorRef& qdd, VectorRef tau) {
+  torques(model.chain, setsOf(model), q, qd, qdd, tau);
+}
+
+void inertiaMatrix(const Model& model, const ConstVectorRef& q, MatrixRef H) {
+  inertiaMatrix(model.chain, setsOf(model), q, H);
+}
+
+void coriolisVector(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                    VectorRef c) {
+  coriolisVector(model.chain, setsOf(model), q, qd, c);
+}
+
+void gravityVector(const Model& model, const ConstVectorRef& q, VectorRef g) {
+  gravityVector(model.chain, setsOf(model), q, g);
+}
+
+void dynamicComponents(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                       MatrixRef H, VectorRef c, VectorRef g) {
+  dynamicComponents(model.chain, setsOf(model), q, qd, H, c, g);
+}
+
+void frictionVector(const Model& model, const ConstVectorRef& qd, VectorRef f) {
+  if (model.friction.empty()) {
+    f = 0.0 * qd;  // keeps a NaN
+  } else {
+    frictionVector(model.friction, qd, f);
+  }
+}
+
+}  // namespace chain_dynamics

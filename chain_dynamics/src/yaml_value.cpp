@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "yaml_value.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "number.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) {
+    text += (text.empty() ? "" : ", ") + word;
+  }
+  return text;
+}
+
+// yaml-cpp counts lines from zero; a node that doesn't exist has none.
+std::string place(const std::string& file, const YAML::Mark& mark) {
+  return mark.is_null() ? file : file + ":" + std::to_string(mark.line + 1);
+}
+
+}  // namespace
+
+YamlValue YamlValue::ofText(const std::string& text, const std::string& file) {
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() != 1 || documents[0].IsNull()) {
+      throw ModelError(file, "file", "one YAML document",
+                       documents.size() > 1 ? std::to_string(documents.size()) : "an empty file",
+                       "");
+    }
+    return {documents[0], file, "file"};
+  } catch (const YAML::Exception& error) {
+    throw ModelError(place(file, error.mark), "file", "well-formed YAML", error.msg,
+                     "look at the lines above, too");
+  }
+}
+
+std::string YamlValue::where() const { return place(file_, node_.Mark()); }
+
+ModelError YamlValue::error(const std::string& expected, const std::string& remedy) const {
+  return {where(), what_, expected, description(), remedy};
+}
+
+std::string YamlValue::description() const {
+  switch (node_.Type()) {
+    case YAML::NodeType::Scalar:
+      return "'" + node_.Scalar() + "'";
+    case YAML::NodeType::Sequence:
+      return "a list of " + std::to_string(node_.size());
+    case YAML::NodeType::Map:
+      return "a map";
+    default:
+      return "nothing";
+  }
+}
+
+std::string YamlValue::text() const {
+  if (!node_.IsScalar() || node_.Scalar().empty()) {
+    throw error("a text");
+  }
+  return node_.Scalar();
+}
+
+double YamlValue::number() const {
+  constexpr const char* kQuoted = "!";  // yaml-cpp's tag of '1.5' in quotation marks
+  const auto value = node_.IsScalar() && node_.Tag() != kQuoted ? finiteNumber(node_.Scalar())
+                                                                : std::optional<double>();
+  if (!value) {
+    throw error("a finite number");
+  }
+  return *value;
+}
+
+int YamlValue::wholeNumber() const {
+  constexpr double kGreatest = 1000;
+  const double value = number();
+  if (value != std::round(value) || std::abs(value) > kGreatest) {
+    throw error("a small whole number");
+  }
+  return static_cast<int>(value);
+}
+
+std::vector<YamlValue> YamlValue::list() const {
+  if (!node_.IsSequence()) {
+    throw error("a list");
+  }
+  std::vector<YamlValue> values;
+  for (const YAML::Node& node : node_) {
+    values.emplace_back(node, file_, what_ + "[" + std::to_string(values.size()) + "]");
+  }
+  return values;
+}
+
+std::vector<YamlValue> YamlValue::list(std::size_t count) const {
+  if (!node_.IsSequence() || node_.size() != count) {
+    throw error("a list of " + std::to_string(count));
+  }
+  return list();
+}
+
+std::vector<double> YamlValue::numbers(std::size_t count) const {
+  if (!node_.IsSequence() || node_.size() != count) {
+    throw error(std::to_string(count) + " numbers");
+  }
+  std::vector<double> values;
+  for (const YamlValue& value : list()) {
+    values.push_back(value.number());
+  }
+  return values;
+}
+
+std::size_t YamlValue::choice(const std::vector<std::string>& words) const {
+  const auto found =
+      std::find(words.begin(), words.end(), node_.IsScalar() ? node_.Scalar() : std::string());
+  if (found == words.end()) {
+    throw error("one of " + joined(words));
+  }
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+YamlMap::YamlMap(const YamlValue& value, bool name)
+    : value_(value), prefix_(name ? value.what() + ": " : "") {
+  if (!value.node().IsMap()) {
+    throw value.error("a map of keys and values");
+  }
+  std::map<std::string, YAML::Mark> keys;
+  for (const auto& entry : value.node()) {
+    const YamlValue key(entry.first, value.file(), prefix_ + "key");
+    const auto [first, inserted] = keys.emplace(key.text(), entry.first.Mark());
+    if (!inserted) {
+      throw ModelError(key.where(), prefix_ + key.text(), "each key once",
+                       "it a second time, after line " + std::to_string(first->second.line + 1),
+                       "remove one of them");
+    }
+  }
+}
+
+std::optional<YamlValue> YamlMap::optional(const std::string& key) {
+  asked_.insert(key);
+  const YAML::Node node = value_.node()[key];
+  if (!node.IsDefined()) {
+    return std::nullopt;
+  }
+  return YamlValue(node, value_.file(), prefix_ + key);
+}
+
+YamlValue YamlMap::required(const std::string& key) {
+  const auto found = optional(key);
+  if (!found) {
+    throw ModelError(value_.where(), prefix_ + key, "this key", "none", "add it");
+  }
+  return *found;
+}
+
+void YamlMap::rejectOtherKeys() const {
+  for (const auto& entry : value_.node()) {
+    if (asked_.count(entry.first.Scalar()) == 0) {
+      const YamlValue key(entry.first, value_.file(), prefix_ + entry.first.Scalar());
+      throw ModelError(key.where(), key.what(), "a known key", "an unknown one",
+                       "known here: " + joined({asked_.begin(), asked_.end()}));
+    }
+  }
+}
+
+}  // namespace chain_dynamics

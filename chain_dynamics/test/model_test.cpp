@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/model.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+
+#include "allocation_guard.hpp"
+#include "chain_dynamics/dynamic_components.hpp"
+#include "chain_dynamics/model_file.hpp"
+#include "chain_dynamics/torques.hpp"
+#include "example_robots.hpp"
+#include "reference.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Two ways of adding the same few dozen terms of figures below 100.
+constexpr double kRounding = 1e-12;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+double difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff();
+}
+
+Model robotModel(const std::string& name) {
+  return modelFromFile(std::string(CHAIN_DYNAMICS_ROBOTS_DIR) + "/models/" + name + ".yaml");
+}
+
+/// All that a Model gives at one state.
+struct Values {
+  explicit Values(Eigen::Index n)
+      : H(n, n), H_alone(n, n), c(n), c_alone(n), g(n), g_alone(n), f(n), tau(n) {}
+
+  void compute(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
+               const Eigen::VectorXd& qdd) {
+    dynamicComponents(model, q, qd, H, c, g);
+    inertiaMatrix(model, q, H_alone);
+    coriolisVector(model, q, qd, c_alone);
+    gravityVector(model, q, g_alone);
+    frictionVector(model, qd, f);
+    torques(model, q, qd, qdd, tau);
+  }
+
+  Eigen::MatrixXd H, H_alone;
+  Eigen::VectorXd c, c_alone, g, g_alone, f, tau;
+};
+
+const char* const kModels[] = {"ur10_identified", "franka_inria_identified",
+                               "franka_gaz2019_feasible"};
+
+TEST(Model, ChainAsItIsHasTheChainsDynamicsAndNoFriction) {
+  const Chain chain = test::doublePendulum(1, 0.5, 2, 0.4, 9.81);
+  const Model model(chain);
+  EXPECT_EQ(model.name, "double_pendulum");
+  const Eigen::Vector2d q(0.3, 0.7), qd(1, -2), qdd(3, 4);
+  Values values(2);
+  values.compute(model, q, qd, qdd);
+  Eigen::MatrixXd H(2, 2);
+  Eigen::VectorXd c(2), g(2), tau(2);
+  dynamicComponents(chain, q, qd, H, c, g);
+  torques(chain, q, qd, qdd, tau);
+  EXPECT_LT(difference(values.H, H), kRounding);
+  EXPECT_LT(difference(values.c, c), kRounding);
+  EXPECT_LT(difference(values.g, g), kRounding);
+  EXPECT_LT(difference(values.tau, tau), kRounding);
+  EXPECT_EQ(values.f, Eigen::Vector2d::Zero());
+}
+
+TEST(Model, TorquesAreTheSumOfTheComponents) {
+  for (const char* name : kModels) {
+    const Model model = robotModel(name);
+    const Eigen::Index n = model.chain.jointCount();
+    const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(n, -2, 1.5);
+    const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(n, 2, -1.7);
+    const Eigen::VectorXd qdd = Eigen::VectorXd::LinSpaced(n, -5, 6);
+    Values values(n);
+    values.compute(model, q, qd, qdd);
+    EXPECT_LT(difference(values.tau, values.H * qdd + values.c + values.g), kRounding) << name;
+    EXPECT_LT(difference(values.H, values.H_alone), kRounding) << name;
+    EXPECT_LT(difference(values.c, values.c_alone), kRounding) << name;
+    EXPECT_LT(difference(values.g, values.g_alone), kRounding) << name;
+  }
+}
+
+TEST(Model, GravityMayBeChanged) {
+  Model model = robotModel("franka_inria_identified");
+  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(7, -2, 1.5);
+  Eigen::VectorXd g(7), g_doubled(7);
+  gravityVector(model, q, g);
+  model.chain = model.chain.withGravity({0, 0, -2 * 9.81});
+  gravityVector(model, q, g_doubled);
+  EXPECT_LT(difference(g_doubled, 2 * g), kRounding);
+}
+
+TEST(Model, NothingAllocates) {
+#if !CHAIN_DYNAMICS_COUNTS_ALLOCATIONS
+  GTEST_SKIP() << "allocations can't be counted under this sanitizer or C library";
+#endif
+  for (const char* name : kModels) {
+    const Model model = robotModel(name);
+    const Eigen::Index n = model.chain.jointCount();
+    const Eigen::VectorXd q = Eigen::VectorXd::Constant(n, 0.5);
+    Values values(n);
+    const test::AllocationGuard guard;
+    values.compute(model, q, q, q);
+    EXPECT_EQ(guard.count(), 0) << name;
+  }
+}
+
+TEST(Model, ColumnsOfABatchAreWrittenInPlace) {
+  const Model model = robotModel("ur10_identified");
+  const Eigen::MatrixXd q = Eigen::MatrixXd::Constant(6, 3, 0.5);
+  Eigen::MatrixXd tau(6, 3), H(6, 18);
+#if CHAIN_DYNAMICS_COUNTS_ALLOCATIONS
+  const test::AllocationGuard guard;
+#endif
+  torques(model, q.col(1), q.col(1), q.col(1), tau.col(1));
+  inertiaMatrix(model, q.col(1), H.middleCols(6, 6));
+#if CHAIN_DYNAMICS_COUNTS_ALLOCATIONS
+  EXPECT_EQ(guard.count(), 0);
+#endif
+  Values values(6);
+  values.compute(model, q.col(0), q.col(0), q.col(0));
+  EXPECT_EQ(tau.col(1), values.tau);
+  EXPECT_EQ(H.middleCols(6, 6), values.H_alone);
+}
+
+TEST(Model, NaNVelocityIsNaNFrictionEvenWithoutALaw) {
+  const Model model(test::pendulum(1, 1, 9.81));
+  Eigen::VectorXd f(1);
+  frictionVector(model, Eigen::VectorXd::Constant(1, kNaN), f);
+  EXPECT_TRUE(std::isnan(f[0]));
+}
+
+// --- physical or not ---
+
+TEST(ModelInertia, ChainOfBodiesIsPhysical) {
+  EXPECT_TRUE(Model(test::doublePendulum(1, 0.5, 2, 0.4, 9.81)).inertiaIsPhysical());
+}
+
+TEST(ModelInertia, FeasibleModelIsPositiveDefiniteWhereverItIsLookedAt) {
+  const Model model = robotModel("franka_gaz2019_feasible");
+  ASSERT_TRUE(model.inertiaIsPhysical());
+  Eigen::MatrixXd H(7, 7);
+  std::srand(7);
+  for (int k = 0; k < 1000; ++k) {
+    const Eigen::VectorXd q = 3 * Eigen::VectorXd::Random(7);
+    inertiaMatrix(model, q, H);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(H);
+    ASSERT_GT(solver.eigenvalues()[0], 0) << q.transpose();
+  }
+}
+
+TEST(ModelInertia, BodyThatBreaksTheTriangleInequalityIsStillDefinite) {
+  // no such body exists, but its kinetic energy is positive
+  Vector10<double> p;
+  p << 1, 0, 0, 0, 5, 0, 0, 0.1, 0, 0.1;
+  const Model model(Chain("odd", {Joint{"j"}}, {LinkParameters::fromVector(p)}, {0, 0, -9.81}));
+  EXPECT_FALSE(model.chain.warnings().empty());
+  EXPECT_TRUE(model.inertiaIsPhysical());
+}
+
+TEST(ModelInertia, NegativeMomentAboutTheCenterOfMassIsNotPhysical) {
+  // about the axis 0.1 - 1 * 0.5^2 < 0, though H = 0.1 is positive
+  Vector10<double> p;
+  p << 1, 0.5, 0, 0, 0.3, 0, 0, 0.5, 0, 0.1;
+  const Model model(Chain("odd", {Joint{"j"}}, {LinkParameters::fromVector(p)}, {0, 0, -9.81}));
+  EXPECT_FALSE(model.inertiaIsPhysical());
+}
+
+TEST(ModelInertia, JointThatMovesNothingIsNotPhysical) {
+  const Chain chain("odd", {Joint{"one"}, Joint{"two"}},
+                    {test::pointMass(1, {1, 0, 0}), LinkParameters::zero()}, {0, 0, -9.81});
+  EXPECT_FALSE(Model(chain).inertiaIsPhysical());
+}
+
+TEST(ModelInertia, RowsOfTheirOwnAreNotPhysical) {
+  Model model(test::pendulum(1, 1, 9.81));
+  ASSERT_TRUE(model.inertiaIsPhysical());
+  model.row_parameters = {model.chain.links()};
+  EXPECT_FALSE(model.inertiaIsPhysical());
+}
+
+// --- parts that don't fit ---
+
+TEST(ModelError, PartsMustFit) {
+  const Model pendulum(test::pendulum(1, 1, 9.81));
+  const auto error = [](const Model& model) { return errorOf([&] { checkModel(model); }); };
+  EXPECT_EQ(error(pendulum), "no error");
+
+  Model model = pendulum;
+  model.friction.resize(2);
+  EXPECT_EQ(error(model), "model pendulum: friction: expected no law, or one per joint (1), got 2");
+  model.friction = {ViscousCoulombOffset{kNaN, 0, 0}};
+  EXPECT_THAT(error(model), HasSubstr("friction of joint pivot: expected finite coefficients"));
+
+  model = pendulum;
+  model.drive_gains.resize(3);
+  EXPECT_THAT(error(model), HasSubstr("drive gains: expected none, or one per joint (1), got 3"));
+  model.drive_gains = Eigen::VectorXd::Constant(1, -2);
+  EXPECT_THAT(error(model), HasSubstr("drive gain of joint pivot: expected a finite number > 0"));
+
+  model = pendulum;
+  model.gravity_parameters.resize(2, LinkParameters::zero());
+  EXPECT_THAT(error(model), HasSubstr("parameter set of gravity"));
+}
+
+}  // namespace
+}  // namespace chain_dynamics
