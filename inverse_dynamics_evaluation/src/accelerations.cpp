@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "inverse_dynamics_evaluation/accelerations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "checks.hpp"
+
+namespace inverse_dynamics_evaluation {
+namespace {
+
+using Eigen::Index;
+using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
+using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
+
+// Used samples between two gaps.
+struct Piece {
+  std::vector<Index> sample;
+  double begin = 0;   // s
+  double period = 0;  // s; of the equidistant samples below
+  Stretch stretch;    // interpolated
+};
+
+// Values at equidistant instants, linearly between the samples of a piece.
+Eigen::MatrixXd equidistant(const ConstVector& time, const ConstMatrix& values, const Piece& piece,
+                            Index count) {
+  Eigen::MatrixXd result(values.rows(), count);
+  std::size_t right = 1;  // of the two samples around an instant
+  for (Index i = 0; i < count; ++i) {
+    const double t = piece.begin + static_cast<double>(i) * piece.period;
+    while (right + 1 < piece.sample.size() && time[piece.sample[right]] < t) {
+      ++right;
+    }
+    const Index before = piece.sample[right - 1];
+    const Index after = piece.sample[right];
+    const double share = std::clamp((t - time[before]) / (time[after] - time[before]), 0.0, 1.0);
+    result.col(i) = (1.0 - share) * values.col(before) + share * values.col(after);
+  }
+  return result;
+}
+
+std::vector<Piece> cutPieces(const SampleReport& samples, const ConstMatrix& q,
+                             const ConstMatrix& qd) {
+  std::vector<Piece> pieces;
+  std::size_t next = 0;
+  for (Index k = 0; k < samples.used.size(); ++k) {
+    if (!samples.used[k]) {
+      continue;
+    }
+    if (next < samples.pieces.size() && k == samples.pieces[next]) {
+      pieces.emplace_back();
+      ++next;
+    }
+    pieces.back().sample.push_back(k);
+  }
+  for (Piece& piece : pieces) {
+    piece.begin = samples.time[piece.sample.front()];
+    const double duration = samples.time[piece.sample.back()] - piece.begin;
+    const Index count = std::max(static_cast<Index>(std::llround(duration / samples.period)) + 1,
+                                 static_cast<Index>(piece.sample.size()));
+    piece.period = duration / static_cast<double>(count - 1);
+    piece.stretch.q = equidistant(samples.time, q, piece, count);
+    piece.stretch.qd = equidistant(samples.time, qd, piece, count);
+  }
+  return pieces;
+}
+
+// Accelerations of equidistant samples at any instants that don't decrease; between two pieces on
+// the straight line from the one to the other, beyond the ends constant.
+Eigen::MatrixXd atInstants(const std::vector<Piece>& pieces,
+                           const std::vector<Eigen::MatrixXd>& qdd, const Eigen::VectorXd& time) {
+  Eigen::MatrixXd result(qdd.front().rows(), time.size());
+  std::size_t p = 0;  // last piece that has begun
+  for (Index k = 0; k < time.size(); ++k) {
+    while (p + 1 < pieces.size() && time[k] >= pieces[p + 1].begin) {
+      ++p;
+    }
+    const Eigen::MatrixXd& values = qdd[p];
+    const double last = static_cast<double>(values.cols() - 1);
+    const double at = std::max((time[k] - pieces[p].begin) / pieces[p].period, 0.0);
+    if (at < last) {
+      const auto before = static_cast<Index>(at);
+      const double share = at - static_cast<double>(before);
+      result.col(k) = (1.0 - share) * values.col(before) + share * values.col(before + 1);
+    } else if (p + 1 == pieces.size()) {
+      result.col(k) = values.col(values.cols() - 1);
+    } else {
+      const double gap = pieces[p + 1].begin - pieces[p].begin - last * pieces[p].period;
+      const double share = std::clamp((at - last) * pieces[p].period / gap, 0.0, 1.0);
+      result.col(k) = (1.0 - share) * values.col(values.cols() - 1) + share * qdd[p + 1].col(0);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Eigen::MatrixXd backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& qd) {
+  requireSamples("backward difference", "qd", qd, 1);
+  requireStampPerSample("backward difference", time, qd);
+  requireFiniteStamps("backward difference", time);
+  requireFinite("backward difference", "qd", qd);
+  Eigen::MatrixXd qdd = Eigen::MatrixXd::Zero(qd.rows(), qd.cols());
+  for (Index k = 1; k < qd.cols(); ++k) {
+    const double dt = time[k] - time[k - 1];
+    if (dt > 0.0) {
+      qdd.col(k) = (qd.col(k) - qd.col(k - 1)) / dt;
+    }
+  }
+  return qdd;
+}
+
+Eigen::MatrixXd derivative(const Eigen::Ref<const Eigen::MatrixXd>& samples, double period) {
+  requireSamples("derivative", "samples", samples, 2);
+  if (!(period > 0)) {
+    throw EvaluationError("derivative", "period", "a positive number of seconds",
+                          std::to_string(period), "give the distance of the samples");
+  }
+  const Index last = samples.cols() - 1;
+  Eigen::MatrixXd result(samples.rows(), samples.cols());
+  for (Index k = 0; k <= last; ++k) {
+    if (k >= 2 && k + 2 <= last) {
+      result.col(k) = (8.0 * (samples.col(k + 1) - samples.col(k - 1)) -
+                       (samples.col(k + 2) - samples.col(k - 2))) /
+                      (12.0 * period);
+    } else {
+      const Index before = std::max<Index>(k - 1, 0);
+      const Index after = std::min(k + 1, last);
+      result.col(k) = (samples.col(after) - samples.col(before)) /
+                      (static_cast<double>(after - before) * period);
+    }
+  }
+  return result;
+}
+
+AccelerationEstimate lowPassAccelerations(const Eigen::Ref<const Eigen::VectorXd>& time,
+                                          const Eigen::Ref<const Eigen::MatrixXd>& q,
+                                          const Eigen::Ref<const Eigen::MatrixXd>& qd,
+                                          const Eigen::Ref<const Eigen::MatrixXd>& effort,
+                                          const LowPassOptions& options) {
+  // what the filter needs, every piece must have
+  SampleRules rules = options.rules;
+  rules.shortest_piece = std::max<Index>(rules.shortest_piece, 3 * (options.order + 1) + 1);
+  AccelerationEstimate estimate;
+  estimate.samples = examineSamples(time, q, qd, effort, rules);
+  const std::vector<Piece> pieces = cutPieces(estimate.samples, q, qd);
+  if (pieces.empty()) {
+    throw EvaluationError(
+        "low-pass accelerations", "samples",
+        std::to_string(rules.shortest_piece) + " or more that differ, without a gap",
+        std::to_string((!estimate.samples.repeated).count()) + " with gaps of more than " +
+            std::to_string(rules.longest_gap) + " s between them",
+        "record for longer, or take backward differences");
+  }
+
+  FilterChoice& filter = estimate.filter;
+  filter.order = options.order;
+  filter.sampling_frequency = 1.0 / estimate.samples.period;
+  filter.time_base = estimate.samples.time_base;
+  filter.pieces = static_cast<Index>(pieces.size());
+  filter.cutoff = options.cutoff;
+  filter.chosen = options.cutoff == 0;
+  if (filter.chosen) {
+    std::vector<Stretch> stretches;
+    for (const Piece& piece : pieces) {
+      stretches.push_back(piece.stretch);
+    }
+    filter.choice = chooseCutoff(stretches, filter.sampling_frequency, options.order);
+    filter.cutoff = filter.choice.cutoff;
+  }
+  filter.method = "zero-phase Butterworth low-pass of the velocities, then central differences";
+
+  std::vector<Eigen::MatrixXd> qdd;
+  for (const Piece& piece : pieces) {
+    const Eigen::MatrixXd smooth =
+        lowPass(piece.stretch.qd, 1.0 / piece.period, filter.cutoff, options.order);
+    qdd.push_back(derivative(smooth, piece.period));
+  }
+  estimate.qdd = atInstants(pieces, qdd, estimate.samples.time);
+  return estimate;
+}
+
+}  // namespace inverse_dynamics_evaluation
