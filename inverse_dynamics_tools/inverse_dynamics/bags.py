@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -27,10 +27,8 @@ if TYPE_CHECKING:
     from rosbags.interfaces import Connection
     from rosbags.rosbag2 import Reader
 
-    from inverse_dynamics.joint_log import Clock, Integers, JointLog, Progress
+    from inverse_dynamics.joint_log import Clock, Integers, JointLog, Progress, Storage
     from inverse_dynamics.joint_state_cdr import Block
-
-Storage = Literal["sqlite3", "mcap"]
 
 _BLOCK = 4096  # messages decoded together
 
@@ -181,7 +179,7 @@ class _Recording:
         self._reader.close()
 
     @property
-    def storage(self) -> str:
+    def storage(self) -> Storage:
         files = [self._path] if self._path.is_file() else list(self._path.iterdir())
         return "mcap" if any(f.suffix == ".mcap" for f in files) else "sqlite3"
 

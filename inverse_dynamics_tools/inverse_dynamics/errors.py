@@ -17,9 +17,36 @@ class RobotError(UserError):
     """A run configuration that isn't there or isn't right."""
 
 
+class OutputError(UserError):
+    """A result that can't be written where it should go, or one that can't be read back."""
+
+
+# What solvers raise: the C++ exceptions of inverse_dynamics_solver/exceptions.hpp, same texts.
+
+
 class SolverError(UserError):
     """A solver that isn't installed or refuses what it was given."""
 
 
-class OutputError(UserError):
-    """A result that can't be written where it should go, or one that can't be read back."""
+class PluginNotFoundError(SolverError):
+    """No usable plugin of that name."""
+
+
+class ParameterMissingError(SolverError):
+    """A parameter without a default is missing."""
+
+
+class InvalidParameterError(SolverError, ValueError):
+    """A parameter is there, but of the wrong type, length or value."""
+
+
+class InvalidRobotDescriptionError(InvalidParameterError):
+    """The robot description isn't usable: not a URDF, no such link, no chain."""
+
+
+class SizeMismatchError(SolverError, ValueError):
+    """An array has the wrong size: not one number per joint, or not one row per state."""
+
+
+class EvaluationError(UserError, ValueError):
+    """Samples that can't be evaluated: inverse_dynamics_evaluation/error.hpp, same texts."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Integers = NDArray[np.int64]
+    Mask = NDArray[np.bool_]
 
     # Called now and then during long work: what is done, how much of it, out of how much.
     Progress = Callable[[str, int, int], None]
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 # Which stamps are the time: the header's, those of reception, or what is there.
 Clock = Literal["auto", "header", "receive"]
 CLOCKS: tuple[Clock, ...] = get_args(Clock)
+
+# What rosbag2 keeps messages in.
+Storage = Literal["sqlite3", "mcap"]
 
 
 def no_progress(_what: str, _done: int, _total: int) -> None:
@@ -41,14 +45,14 @@ class JointLog:
     qd: Floats  # (N, n)
     effort: Floats  # (N, n)
     frame_id: str = ""
-    clock: str = "header"  # which of the two stamps is the time
+    clock: Clock = "header"  # which of the two stamps is the time
     topic: str = "/joint_states"
-    storage: str = "sqlite3"
+    storage: Storage = "sqlite3"
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
 
     @property
     def stamps(self) -> Integers:
-        """(N,) ns: those stamps that are the time of the samples; they increase strictly."""
+        """(N,) ns: those stamps that are the time of the samples."""
         return self.receive_stamps if self.clock == "receive" else self.header_stamps
 
     @property

@@ -7,8 +7,7 @@ The rules, said in the notes of the result wherever they change anything:
 - A message with none of the joints (the gripper's, on the same topic) is left out; one with only
   some of them is an error.
 - Time is the header's stamp; if no header has one, the time of reception.
-- A message that isn't later than those before it (equal or backward stamp) is left out; if that
-  befalls more than 5 % of the messages, it is an error.
+  Stamps are taken as they are, also where they don't increase: see accelerations.py.
 - Arrays that are empty or not as long as the names, and numbers that aren't finite, are errors.
 """
 
@@ -24,12 +23,9 @@ from inverse_dynamics.joint_log import JointLog
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
-    from inverse_dynamics.joint_log import Clock, Floats, Integers
+    from inverse_dynamics.joint_log import Clock, Floats, Integers, Storage
     from inverse_dynamics.joint_state_cdr import Block
 
-_MOST_NOT_LATER = 0.05  # of all messages
 _FIELDS = ("position", "velocity", "effort")
 
 
@@ -66,7 +62,7 @@ class JointLogBuilder:
             self._add_block(block)
         self.messages = end
 
-    def joint_log(self, clock: Clock, topic: str, storage: str) -> JointLog:
+    def joint_log(self, clock: Clock, topic: str, storage: Storage) -> JointLog:
         """Everything added, by the rules at the top of this file."""
         kept = self._has_joints[: self.messages].copy()
         count = int(kept.sum())
@@ -88,7 +84,6 @@ class JointLogBuilder:
             if not header[kept].any() and received[kept].any():
                 clock = "receive"
                 notes.append("no header has a stamp: the time of reception is used")
-        notes += self._leave_out_not_later(header if clock == "header" else received, kept, clock)
         q, qd, effort = (numbers[: self.messages] for numbers in self._numbers)
         rows = slice(None) if kept.all() else kept  # without a copy where all are kept
         return JointLog(
@@ -162,32 +157,6 @@ class JointLogBuilder:
             f"{self._joints[column]}: expected a finite number, got {values[row, column]}; cut "
             "such messages out of the recording, or record it again"
         )
-
-    def _leave_out_not_later(
-        self, stamps: Integers, kept: NDArray[np.bool_], clock: Clock
-    ) -> list[str]:
-        """Clear `kept` where time stands still or runs backward; say so."""
-        rows = np.flatnonzero(kept)
-        latest_before = np.maximum.accumulate(stamps[rows])[:-1]
-        not_later = rows[1:][stamps[rows[1:]] <= latest_before]
-        if len(not_later) == 0:
-            return []
-        first = int(not_later[0])
-        before = int(latest_before[np.searchsorted(rows, first) - 1])
-        example = (
-            f"message {first + 1} at {stamps[first] * 1e-9:.9f} s follows one at "
-            f"{before * 1e-9:.9f} s"
-        )
-        count = f"{len(not_later)} of {len(rows)} messages"
-        if len(not_later) > _MOST_NOT_LATER * len(rows):
-            other = "receive" if clock == "header" else "header"
-            raise BagError(
-                f"{self.where}: expected {clock} stamps that increase, got {count} with an equal "
-                f"or backward stamp ({example}); try --clock {other}, or check that only one "
-                "driver publishes on this topic"
-            )
-        kept[not_later] = False
-        return [f"{count} left out: equal or backward {clock} stamp ({example})"]
 
 
 def _wrong_length(where: str, field: str, got: int, expected: int) -> str:

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Joint accelerations of a recording, estimated in C++, and what was found in its samples.
+
+The rules are those of inverse_dynamics_evaluation/samples.hpp. What they find is said in words in
+any case; they are acted upon unless they are switched off.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from inverse_dynamics.joint_log import Floats, JointLog, Mask
+
+# What each method does, as --help says it.
+METHODS = {
+    "auto": "low-pass with a cut-off chosen from the data",
+    "low-pass": "zero-phase low-pass of the velocities, then their derivative",
+    "backward-difference": "(qd[k] - qd[k-1]) / (t[k] - t[k-1]), the first one zero; no filter",
+}
+
+# What each rule does, as --help says it.
+RULES = {
+    "repeated": "samples that repeat the one before are left out of the differentiation",
+    "non-increasing": "so are those whose stamp isn't later than all before it",
+    "time-base": "stamps that positions and velocities contradict give way to equal distances",
+    "start-transient": "efforts that jump at the very start don't count in the second metrics",
+}
+
+
+@dataclass(frozen=True)
+class Accelerations:
+    """How accelerations were estimated."""
+
+    method: str  # low-pass or backward-difference
+    cutoff: float | None = None  # Hz; gain one half there
+    chosen: bool = False  # whether the cut-off was chosen from the data
+    order: int | None = None  # of the Butterworth filter that runs forwards and backwards
+    time_base: str = "stamps"  # when samples were taken: stamps, regular, regular_fresh
+
+    @property
+    def summary(self) -> str:
+        """In words, as titles and tables show it."""
+        if self.cutoff is None:
+            return f"{self.method}, no filter"
+        how = "chosen from the data" if self.chosen else "given"
+        return f"zero-phase low-pass, cut-off {self.cutoff:.3g} Hz ({how}), then derivative"
+
+
+@dataclass(frozen=True)
+class Samples:
+    """What was found in N samples."""
+
+    repeated: Mask  # (N,) repeats the sample before
+    non_increasing: Mask  # (N,) not later than all before it
+    start_transient: Mask  # (N,) efforts jump as a controller takes over
+    isolated: Mask  # (N,) between gaps, in a piece too short to be filtered
+    kept: Mask  # (N,) counts in the second metrics
+    period: float  # s, mean distance
+    jitter: float  # s, root mean square of the stamps' deviation from it
+
+    @property
+    def left_out(self) -> int:
+        """How many samples don't count in the second metrics."""
+        return int((~self.kept).sum())
+
+
+def estimate_accelerations(
+    log: JointLog,
+    method: str = "auto",
+    cutoff: float | None = None,
+    without_rules: Collection[str] = (),
+) -> tuple[Floats, Accelerations, Samples]:
+    """Accelerations (N, n) of a recorded motion, how they came about, and what was found.
+
+    method: one of METHODS. cutoff: Hz, of a low-pass; None: chosen from the data. without_rules:
+    those of RULES that aren't to be acted upon.
+
+    Raises EvaluationError.
+    """
+    from inverse_dynamics import _core
+    from inverse_dynamics.errors import EvaluationError
+
+    if method not in METHODS:
+        raise EvaluationError(
+            f"accelerations: expected one of {', '.join(METHODS)}, got '{method}'"
+        )
+    for rule in without_rules:
+        if rule not in RULES:
+            raise EvaluationError(f"rules: expected some of {', '.join(RULES)}, got '{rule}'")
+    rules = _core.SampleRules(
+        **{rule.replace("-", "_"): rule not in without_rules for rule in RULES}
+    )
+    time = log.time
+    if method == "backward-difference":
+        if cutoff is not None:
+            raise EvaluationError(
+                f"accelerations: {method} has no cut-off, got {cutoff:g} Hz; use low-pass"
+            )
+        report = _core.examine_samples(time, log.q, log.qd, log.effort, rules)
+        qdd = _core.backward_difference(time, log.qd)
+        return qdd, Accelerations(method), _samples(report)
+    qdd, choice, report = _core.low_pass_accelerations(
+        time, log.q, log.qd, log.effort, cutoff or 0.0, rules
+    )
+    how = Accelerations("low-pass", choice.cutoff, choice.chosen, choice.order, choice.time_base)
+    return qdd, how, _samples(report)
+
+
+def findings(log: JointLog, how: Accelerations, samples: Samples) -> list[str]:
+    """What is odd about the samples and what follows, a sentence each."""
+    n = len(log)
+    left_out = "" if how.method == "backward-difference" else " (left out of the differentiation)"
+    said = []
+    if count := int(samples.repeated.sum()):
+        said.append(f"{count} of {n} samples repeat the one before{left_out}")
+    if count := int(samples.non_increasing.sum()):
+        first = int(samples.non_increasing.argmax())
+        stamps = log.stamps
+        latest = stamps[:first].max()
+        said.append(
+            f"{count} of {n} samples have an equal or backward {log.clock} stamp{left_out}: the "
+            f"first is sample {first + 1} at {stamps[first] * 1e-9:.9f} s after {latest * 1e-9:.9f} s"
+        )
+    if how.time_base != "stamps":
+        said.append(
+            "positions and velocities contradict the stamps: samples taken at equal distances of "
+            f"{1e3 * samples.period:.4g} ms fit them better"
+        )
+    if count := int(samples.isolated.sum()):
+        said.append(f"{count} of {n} samples lie between gaps, in pieces too short to be filtered")
+    if count := int(samples.start_transient.sum()):
+        said.append(f"the first {count} of {n} samples are a start transient: efforts jump")
+    return said
+
+
+def _samples(report: object) -> Samples:
+    names = ("repeated", "non_increasing", "start_transient", "isolated", "kept")
+    masks = {name: getattr(report, name) for name in names}
+    return Samples(**masks, period=report.period, jitter=report.jitter)  # type: ignore[attr-defined]

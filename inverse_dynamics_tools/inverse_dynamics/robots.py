@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Run configurations: what a robot is, in one YAML file.
+
+    robot = load_robot("ur10_real")        # one of the project's
+    robot = load_robot("my_robot.yaml")    # one's own
+
+Which solver, from which description or model, between which links, and what its recordings look
+like. Strict: unknown or missing keys and wrong types are errors with file, line and key.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.ament import package_share, resolve
+from inverse_dynamics.errors import RobotError
+from inverse_dynamics.located_yaml import read_mapping
+
+if TYPE_CHECKING:
+    from inverse_dynamics.located_yaml import Mapping, Value
+
+SCHEMA = 1
+DATA_PACKAGE = "inverse_dynamics_robots"
+EFFORT_MEANINGS = ("torque",)
+DEFAULT_TOPIC = "/joint_states"
+
+
+@dataclass(frozen=True)
+class Robot:
+    """One run configuration. Empty text or None: not stated, so the solver's own default."""
+
+    name: str
+    description: str
+    file: Path
+    plugin: str  # package/Class
+    urdf: Path | None = None
+    model: Path | None = None
+    root: str = ""
+    tip: str = ""
+    gravity: tuple[float, float, float] | None = None  # m/s^2, in the frame of the root link
+    friction: bool = True
+    topic: str = DEFAULT_TOPIC
+    joints: tuple[str, ...] = ()  # names in recordings, in the order of the chain
+    effort: str = "torque"  # what the field `effort` of a joint state means
+    accelerations: str = "auto"
+    cutoff: float | None = None  # Hz
+    source: str = ""  # where description and figures come from
+    # What only the simulator reads: not looked into here.
+    simulation: Mapping | None = field(default=None, repr=False, compare=False)
+
+
+def robot_names() -> list[str]:
+    """Names of the robots that the sourced workspaces bring."""
+    return sorted(file.stem for file in _directory().glob("*.yaml"))
+
+
+def load_robot(name_or_file: str | Path) -> Robot:
+    """Run configuration by the name of one of robot_names(), or from a file.
+
+    What ends in .yaml or .yml, or has a directory, is a file. Raises RobotError.
+    """
+    text = str(name_or_file)
+    file = Path(text).expanduser()
+    if file.suffix in {".yaml", ".yml"} or file.name != text:
+        if not file.is_file():
+            raise RobotError(
+                f"{text}: no such file; expected a run configuration, or one of the names "
+                f"{', '.join(_names_if_any())}"
+            )
+        return _read(file)
+    file = _directory() / f"{text}.yaml"
+    if not file.is_file():
+        raise RobotError(
+            f"robot '{text}': expected one of {', '.join(robot_names())}, or a file ending in .yaml"
+        )
+    return _read(file)
+
+
+def _directory() -> Path:
+    return package_share(DATA_PACKAGE) / "robots"
+
+
+def _names_if_any() -> list[str]:
+    from inverse_dynamics.ament import PackageNotFoundError
+
+    try:
+        return robot_names()
+    except PackageNotFoundError:
+        return ["(no workspace is sourced)"]
+
+
+def _read(file: Path) -> Robot:
+    top = read_mapping(file, RobotError)
+    schema = top.required("schema")
+    if schema.integer() != SCHEMA:
+        schema.fail(f"{SCHEMA}", "it was written for another version of this command")
+    name = top.required("name").text()
+    description = top.required("description").text()
+    plugin = top.required("plugin")
+    if plugin.text().count("/") != 1:
+        plugin.fail("package/Class", "`ids robots --plugins` lists what is installed")
+    method, cutoff = _accelerations(top.optional("accelerations"))
+    simulation = top.optional("simulation")
+    robot = Robot(
+        name=name,
+        description=description.strip(),
+        file=file,
+        plugin=plugin.text(),
+        urdf=_existing_file(top.optional("urdf")),
+        model=_existing_file(top.optional("model")),
+        root=_text(top.optional("root")),
+        tip=_text(top.optional("tip")),
+        gravity=_gravity(top.optional("gravity")),
+        friction=_truth(top.optional("friction"), default=True),
+        topic=_text(top.optional("topic"), DEFAULT_TOPIC),
+        joints=_names(top.optional("joints")),
+        effort=_text(top.optional("effort"), "torque", EFFORT_MEANINGS),
+        accelerations=method,
+        cutoff=cutoff,
+        source=_text(top.optional("source")).strip(),
+        simulation=simulation.mapping() if simulation else None,
+    )
+    top.reject_others()
+    return robot
+
+
+def _text(value: Value | None, default: str = "", one_of: tuple[str, ...] = ()) -> str:
+    return default if value is None else value.text(one_of)
+
+
+def _truth(value: Value | None, *, default: bool) -> bool:
+    return default if value is None else value.truth()
+
+
+def _existing_file(value: Value | None) -> Path | None:
+    if value is None:
+        return None
+    path = resolve(value.text(), value.file.parent)
+    if not path.is_file():
+        value.fail("a file", f"{path} isn't there")
+    return path
+
+
+def _gravity(value: Value | None) -> tuple[float, float, float] | None:
+    if value is None:
+        return None
+    x, y, z = (entry.number() for entry in value.entries(3))
+    return (x, y, z)
+
+
+def _names(value: Value | None) -> tuple[str, ...]:
+    if value is None:
+        return ()
+    names = tuple(entry.text() for entry in value.entries())
+    if len(set(names)) != len(names):
+        raise RobotError(f"{value.where}: expected each name once, got {', '.join(names)}")
+    return names
+
+
+def _accelerations(value: Value | None) -> tuple[str, float | None]:
+    from inverse_dynamics.accelerations import METHODS
+
+    if value is None:
+        return "auto", None
+    mapping = value.mapping()
+    method = _text(mapping.optional("method"), "auto", METHODS)
+    cutoff_value = mapping.optional("cutoff")
+    cutoff = None if cutoff_value is None else cutoff_value.number()
+    if cutoff_value is not None and cutoff is not None and cutoff <= 0:
+        cutoff_value.fail("a frequency in Hz above zero")
+    mapping.reject_others()
+    return method, cutoff

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: Apache-2.0
+from pathlib import Path
+
+import pytest
+
+from inverse_dynamics.ament import PackageNotFoundError
+from inverse_dynamics.errors import RobotError
+from inverse_dynamics.robots import load_robot, robot_names
+
+COMPLETE = """\
+schema: 1
+name: mine
+description: My robot
+plugin: kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL
+urdf: arm.urdf
+root: base_link
+tip: tool0
+gravity: [0, -9.81, 0]
+topic: /arm/joint_states
+joints: [shoulder, elbow]
+friction: false
+effort: torque
+accelerations:
+  method: low-pass
+  cutoff: 5
+source: measured
+"""
+
+LEAST = """\
+schema: 1
+name: mine
+description: My robot
+plugin: kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL
+"""
+
+
+@pytest.fixture
+def write(tmp_path):
+    (tmp_path / "arm.urdf").write_text("<robot/>")
+
+    def write_file(text: str) -> Path:
+        file = tmp_path / "mine.yaml"
+        file.write_text(text)
+        return file
+
+    return write_file
+
+
+def fails(file: Path, *expected: str) -> None:
+    with pytest.raises(RobotError) as caught:
+        load_robot(file)
+    text = str(caught.value)
+    assert text.startswith(str(file))
+    for part in expected:
+        assert part in text
+
+
+def test_every_key_is_read(write, tmp_path):
+    robot = load_robot(write(COMPLETE))
+    assert robot.name == "mine"
+    assert robot.description == "My robot"
+    assert robot.plugin == "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
+    assert robot.urdf == tmp_path / "arm.urdf"
+    assert robot.model is None
+    assert (robot.root, robot.tip) == ("base_link", "tool0")
+    assert robot.gravity == (0.0, -9.81, 0.0)
+    assert robot.topic == "/arm/joint_states"
+    assert robot.joints == ("shoulder", "elbow")
+    assert robot.friction is False
+    assert (robot.effort, robot.accelerations, robot.cutoff) == ("torque", "low-pass", 5.0)
+    assert robot.source == "measured"
+
+
+def test_four_keys_are_enough(write):
+    robot = load_robot(write(LEAST))
+    assert (robot.topic, robot.friction, robot.accelerations) == ("/joint_states", True, "auto")
+    assert (robot.gravity, robot.joints, robot.urdf) == (None, (), None)
+
+
+@pytest.mark.parametrize(
+    ("line", "changed", "expected"),
+    [
+        ("name: mine", "nam: mine", ":1: the key name is missing; keys: schema, nam, description"),
+        ("tip: tool0", "tpi: tool0", ":7: tpi: unknown key; known here: schema, name"),
+        ("tip: tool0", "root: tool0", ":7: root: stands here for a second time"),
+        ("schema: 1", "schema: 2", ":1: schema: expected 1, got '2'; it was written for another"),
+        ("schema: 1", "schema: one", ":1: schema: expected an integer, got 'one'"),
+        ("friction: false", "friction: 0", ":11: friction: expected true or false, got '0'"),
+        ("gravity: [0, -9.81, 0]", "gravity: -9.81", ":8: gravity: expected a list of 3, got"),
+        ("gravity: [0, -9.81, 0]", "gravity: [0, 1]", "expected a list of 3, got a list of 2"),
+        ("gravity: [0, -9.81, 0]", "gravity: [0, a, 0]", ":8: gravity[1]: expected a number"),
+        ("gravity: [0, -9.81, 0]", "gravity: [0, .nan, 0]", ":8: gravity[1]: expected a finite"),
+        ("joints: [shoulder, elbow]", "joints: [a, a]", ":10: joints: expected each name once"),
+        ("joints: [shoulder, elbow]", "joints: [a, 1]", ":10: joints[1]: expected a text, got '1'"),
+        ("effort: torque", "effort: force", ":12: effort: expected one of torque, got 'force'"),
+        ("  method: low-pass", "  method: best", ":14: accelerations.method: expected one of auto"),
+        ("  cutoff: 5", "  cutoff: -5", ":15: accelerations.cutoff: expected a frequency in Hz"),
+        ("  cutoff: 5", "  cut_off: 5", ":15: accelerations.cut_off: unknown key; known here: me"),
+        ("urdf: arm.urdf", "urdf: leg.urdf", ":5: urdf: expected a file, got 'leg.urdf'; "),
+        ("urdf: arm.urdf", "urdf: [arm.urdf]", ":5: urdf: expected a text, got a list of 1"),
+        ("tip: tool0", "tip: [tool0", ":8: isn't YAML: expected ',' or ']'"),
+        (
+            "plugin: kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL",
+            "plugin: kdl",
+            ":4: plugin: expected package/Class, got 'kdl'; `ids robots --plugins` lists",
+        ),
+    ],
+)
+def test_mistakes_are_found_with_line_and_key(write, line, changed, expected):
+    assert line in COMPLETE
+    fails(write(COMPLETE.replace(line, changed)), expected)
+
+
+@pytest.mark.parametrize("key", ["schema", "name", "description", "plugin"])
+def test_missing_key_is_named(write, key):
+    lines = [line for line in LEAST.splitlines() if not line.startswith(f"{key}:")]
+    fails(write("\n".join(lines)), f"the key {key} is missing")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [("", "is empty; expected keys with values"), ("- 1\n", "expected keys with values, got a li")],
+)
+def test_file_of_something_else_is_an_error(write, text, expected):
+    fails(write(text), expected)
+
+
+def test_binary_file_is_an_error(write):
+    file = write("")
+    file.write_bytes(b"\xff\xfe\x00\x01")
+    fails(file, "isn't")
+
+
+def test_missing_file_is_an_error(tmp_path):
+    fails(tmp_path / "mine.yaml", "no such file; expected a run configuration, or one of the names")
+
+
+def test_unknown_name_lists_what_there_is():
+    with pytest.raises(RobotError) as caught:
+        load_robot("ur11")
+    assert "robot 'ur11': expected one of" in str(caught.value)
+    assert "ur10_real" in str(caught.value)
+
+
+def test_without_a_workspace_the_remedy_is_named(monkeypatch):
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    with pytest.raises(PackageNotFoundError, match="no workspace is sourced; run `source install"):
+        load_robot("ur10_real")
+
+
+def test_in_a_workspace_without_the_data_it_is_named(monkeypatch, tmp_path):
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    with pytest.raises(PackageNotFoundError, match="package inverse_dynamics_robots: not in any"):
+        robot_names()
+
+
+def test_the_projects_robots_are_there():
+    assert {"ur10_real", "panda_real", "ur10_simulated", "panda_simulated"} <= set(robot_names())
+
+
+@pytest.mark.parametrize("name", ["ur10_real", "panda_real", "ur10_simulated", "panda_simulated"])
+def test_the_projects_robots_are_complete(name):
+    robot = load_robot(name)
+    assert robot.name == name
+    assert robot.urdf.is_file()
+    assert robot.source
+    assert robot.joints
