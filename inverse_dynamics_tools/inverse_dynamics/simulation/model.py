@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A robot arm in MuJoCo, with exactly the inertia its URDF states.
+
+    robot = SimulatedRobot.from_urdf(Path("ur10.urdf").read_text(), root="base_link", tip="tool0")
+    data = robot.new_data()
+
+What MuJoCo would do to a URDF on its own, and what is done about it:
+
+- it refuses inertia that breaks the triangle inequality (vendors publish such figures): it may balance them while it
+  compiles, then the URDF's inertia is written back;
+- it takes `<dynamics>` for damping and friction: left out, unless joint friction is asked for;
+- it pushes at position limits and contacts: switched off, since a trajectory must stay clear of both (limits.py and
+  collision.py check that).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+
+from inverse_dynamics.simulation.errors import SimulationError
+from inverse_dynamics.simulation.urdf import UrdfChain, chain_from_urdf
+
+if TYPE_CHECKING:
+    from inverse_dynamics.joint_log import Floats
+
+GRAVITY = (0.0, 0.0, -9.81)
+"""Acceleration of falling bodies in the frame of the root link [m/s^2], robot standing on the floor."""
+
+MOUNTS = {"floor": (0.0, 0.0, -9.81), "wall": (-9.81, 0.0, 0.0), "ceiling": (0.0, 0.0, 9.81)}
+"""Gravity in the frame of the root link: its z axis points up, away from the wall (x up), or down."""
+
+
+@dataclass(frozen=True)
+class Payload:
+    """A point mass fixed to the tip: kg; centre of mass in the tip's frame, m."""
+
+    mass: float
+    center: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class JointFriction:
+    """Friction in each joint: `coulomb tanh(qd / slip) + viscous qd`; n each.
+
+    The hyperbolic tangent is the sign function with a slope at rest, and a case of the sigmoid that identified models
+    use: 2 coulomb / (1 + exp(-2 qd / slip)) - coulomb.
+    """
+
+    coulomb: Floats  # N m
+    viscous: Floats  # N m s/rad
+    slip: float = 0.02  # rad/s
+
+    def torques(self, qd: Floats) -> Floats:
+        """Friction torques (..., n) at velocities (..., n), as the actuators must add them."""
+        return self.coulomb * np.tanh(qd / self.slip) + self.viscous * qd
+
+    def secant(self, qd: Floats) -> Floats:
+        """Torque over velocity, N m s/rad: at rest its limit, the slope."""
+        x = np.abs(qd) / self.slip
+        ratio = np.tanh(x) / np.maximum(x, 1e-9)
+        return self.coulomb / self.slip * np.where(x < 1e-9, 1.0, ratio) + self.viscous
+
+
+@dataclass(frozen=True)
+class SimulatedRobot:
+    """A chain and its MuJoCo model. One simulation at a time: friction and step size are set in the model."""
+
+    chain: UrdfChain
+    model: mujoco.MjModel
+    dofs: Floats = field(repr=False)  # (n,) index of each joint in MuJoCo's vectors
+    gravity: tuple[float, float, float]
+    payload: Payload | None
+    friction: JointFriction | None
+
+    @classmethod
+    def from_urdf(
+        cls,
+        urdf: str,
+        root: str = "",
+        tip: str = "",
+        *,
+        gravity: tuple[float, float, float] = GRAVITY,
+        payload: Payload | None = None,
+        friction: JointFriction | None = None,
+    ) -> SimulatedRobot:
+        """Model of the chain from root to tip (empty: the URDF's root and its only leaf)."""
+        chain = chain_from_urdf(urdf, root, tip)
+        spec = _read_spec(chain)
+        if payload is not None:
+            _attach(spec, chain.tip, payload)
+        try:
+            model = spec.compile()
+        except ValueError as error:
+            raise SimulationError(f"robot description: MuJoCo refuses it: {error}") from error
+        _write_true_inertia(model, chain)
+        dofs = np.array([model.joint(name).dofadr[0] for name in chain.joint_names])
+        _check_friction(friction, len(dofs))
+        model.dof_damping[:] = 0.0
+        model.dof_frictionloss[:] = 0.0
+        model.opt.gravity = _rotation_of_root(model, chain.root) @ np.array(gravity)
+        model.opt.integrator = (
+            mujoco.mjtIntegrator.mjINT_RK4
+            if friction is None
+            else mujoco.mjtIntegrator.mjINT_IMPLICITFAST  # friction is stiff: see physics.py
+        )
+        model.opt.disableflags |= int(
+            mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT
+        )
+        return cls(chain, model, dofs, gravity, payload, friction)
+
+    def new_data(self) -> mujoco.MjData:
+        """State of a simulation: q = qd = 0."""
+        return mujoco.MjData(self.model)
+
+    def torques(self, q: Floats, qd: Floats, qdd: Floats) -> Floats:
+        """Torques of given motions by MuJoCo: `H qdd + C qd + g`, without friction.
+
+        All (N, n), order of `chain.joint_names`; payload and gravity as in this model.
+        """
+        data = self.new_data()
+        out = np.empty_like(q)
+        acceleration, torque = np.empty(self.model.nv), np.empty(self.model.nv)
+        for k in range(len(q)):
+            data.qpos[self.dofs], data.qvel[self.dofs] = q[k], qd[k]
+            mujoco.mj_fwdPosition(self.model, data)
+            mujoco.mj_fwdVelocity(self.model, data)
+            acceleration[self.dofs] = qdd[k]
+            mujoco.mj_mulM(self.model, data, torque, acceleration)
+            out[k] = (torque + data.qfrc_bias)[self.dofs]
+        return out
+
+    def inertia_matrix(self, q: Floats) -> Floats:
+        """H(q), (n, n)."""
+        data = self.new_data()
+        data.qpos[self.dofs] = q
+        mujoco.mj_fwdPosition(self.model, data)
+        full = np.zeros((self.model.nv, self.model.nv))
+        mujoco.mj_fullM(self.model, data, full)
+        return np.array(full[np.ix_(self.dofs, self.dofs)])
+
+
+def _read_spec(chain: UrdfChain) -> mujoco.MjSpec:
+    try:
+        spec = mujoco.MjSpec.from_string(chain.urdf)
+    except ValueError as error:
+        raise SimulationError(f"robot description: MuJoCo can't read it: {error}") from error
+    spec.compiler.fusestatic = False  # each link stays a body, so its inertia can be compared
+    spec.compiler.balanceinertia = True
+    spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
+    return spec
+
+
+def _attach(spec: mujoco.MjSpec, tip: str, payload: Payload) -> None:
+    if not (np.isfinite(payload.mass) and payload.mass > 0 and np.isfinite(payload.center).all()):
+        raise SimulationError(
+            f"payload: expected a positive mass in kg and a finite centre of mass, got {payload}"
+        )
+    spec.body(tip).add_body(
+        name="ids_payload",
+        pos=payload.center,
+        mass=payload.mass,
+        inertia=[0.0, 0.0, 0.0],
+        explicitinertial=True,
+    )
+
+
+def _write_true_inertia(model: mujoco.MjModel, chain: UrdfChain) -> None:
+    """Puts back what balancing changed: moments about the principal axes, and the axes."""
+    for link, inertia in chain.inertia.items():
+        body = model.body(link).id
+        moments, axes = np.linalg.eigh(inertia.tensor)
+        if np.linalg.det(axes) < 0:
+            axes[:, 0] = -axes[:, 0]
+        model.body_mass[body] = inertia.mass
+        model.body_ipos[body] = inertia.center
+        model.body_inertia[body] = moments
+        mujoco.mju_mat2Quat(model.body_iquat[body], axes.flatten())
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+
+
+def _check_friction(friction: JointFriction | None, joints: int) -> None:
+    if friction is None:
+        return
+    for name, values in (("coulomb", friction.coulomb), ("viscous", friction.viscous)):
+        if np.shape(values) != (joints,) or not (np.isfinite(values).all() and min(values) >= 0):
+            raise SimulationError(
+                f"joint friction: {name}: expected {joints} numbers that aren't negative, got {values}"
+            )
+
+
+def _rotation_of_root(model: mujoco.MjModel, root: str) -> Floats:
+    """R_world_root: joints above the root are locked, so it is constant."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    return np.array(data.body(root).xmat).reshape(3, 3)

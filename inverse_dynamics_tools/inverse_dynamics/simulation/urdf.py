@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the simulator needs to know of a URDF beyond what MuJoCo reads by itself.
+
+    chain = chain_from_urdf(Path("ur10.urdf").read_text(), root="base_link", tip="tool0")
+    chain.joint_names, chain.lower, chain.urdf
+
+MuJoCo's own reader makes bodies, joints and inertia, so that the simulator is independent of the engine it is used to
+check. Here stand the choice of the chain, the limits, and the figures MuJoCo changes or drops while reading.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.simulation.errors import SimulationError
+
+if TYPE_CHECKING:
+    from inverse_dynamics.joint_log import Floats
+
+_MOVING = {"revolute", "continuous", "prismatic"}
+_IMPOSSIBLE = {"planar", "floating"}
+
+
+@dataclass(frozen=True)
+class Inertia:
+    """Inertia of one link as the URDF states it: mass [kg], tensor [kg m^2] about the centre of mass."""
+
+    mass: float
+    center: Floats  # (3,) m, in the link's frame
+    tensor: Floats  # (3, 3), along the axes of the link's frame
+
+
+@dataclass(frozen=True)
+class UrdfChain:
+    """A chain of movable joints from root to tip, and the URDF made ready for MuJoCo.
+
+    n joints. A limit the URDF doesn't state is infinite.
+    """
+
+    name: str
+    root: str
+    tip: str
+    joint_names: tuple[str, ...]
+    lower: Floats  # (n,) rad (prismatic m)
+    upper: Floats  # (n,)
+    velocity: Floats  # (n,) rad/s (prismatic m/s)
+    effort: Floats  # (n,) N m (prismatic N)
+    damping: Floats  # (n,) N m s/rad, what <dynamics> says
+    friction: Floats  # (n,) N m, what <dynamics> says
+    inertia: dict[str, Inertia]  # by link
+    urdf: str  # joints beside the chain are locked, <dynamics> and meshes are left out
+    notes: tuple[str, ...]  # what was left out, in words
+
+
+def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
+    """The chain from link `root` to link `tip`; empty names mean the URDF's root and its only leaf.
+
+    Movable joints that don't lie between the two are locked at zero.
+    """
+    try:
+        robot = ElementTree.fromstring(text)
+    except ElementTree.ParseError as error:
+        raise SimulationError(f"robot description: not well-formed XML: {error}") from error
+    if robot.tag != "robot":
+        raise SimulationError(
+            f"robot description: expected the element <robot>, got <{robot.tag}>; give a URDF"
+        )
+    links = [link.get("name", "") for link in robot.findall("link")]
+    joint_above = {_link_of(joint, "child"): joint for joint in robot.findall("joint")}
+    tree_root = _tree_root(links, joint_above)
+    root = root or tree_root
+    tip = tip or _only_leaf(links, joint_above)
+    for role, link in (("root", root), ("tip", tip)):
+        if link not in links:
+            known = ", ".join(links)
+            raise SimulationError(
+                f"robot description: there is no {role} link '{link}'; links: {known}"
+            )
+    chain = _movable_joints(root, tip, joint_above)
+    if not chain:
+        raise SimulationError(f"robot description: no joint moves between '{root}' and '{tip}'")
+    names = tuple(joint.get("name", "") for joint in chain)
+    limits = [joint.find("limit") for joint in chain]
+    dynamics = [joint.find("dynamics") for joint in chain]
+    inertia = _inertia_of_links(robot)
+    notes = _prepare_for_mujoco(robot, set(names))
+    bounded = np.array([joint.get("type") != "continuous" for joint in chain])
+    return UrdfChain(
+        name=robot.get("name", ""),
+        root=root,
+        tip=tip,
+        joint_names=names,
+        lower=np.where(bounded, _numbers(limits, "lower", -np.inf), -np.inf),
+        upper=np.where(bounded, _numbers(limits, "upper", np.inf), np.inf),
+        velocity=_numbers(limits, "velocity", np.inf),
+        effort=_numbers(limits, "effort", np.inf),
+        damping=_numbers(dynamics, "damping", 0.0),
+        friction=_numbers(dynamics, "friction", 0.0),
+        inertia=inertia,
+        urdf=ElementTree.tostring(robot, encoding="unicode"),
+        notes=notes,
+    )
+
+
+def _link_of(joint: ElementTree.Element, role: str) -> str:
+    element = joint.find(role)
+    return "" if element is None else element.get("link", "")
+
+
+def _tree_root(links: list[str], joint_above: dict[str, ElementTree.Element]) -> str:
+    roots = [link for link in links if link not in joint_above]
+    if len(roots) != 1:
+        raise SimulationError(
+            "robot description: expected one link without a joint above it, "
+            f"got {len(roots)}: {', '.join(roots)}"
+        )
+    return roots[0]
+
+
+def _only_leaf(links: list[str], joint_above: dict[str, ElementTree.Element]) -> str:
+    """The leaf, or any of several that lie below the same movable joints."""
+    parents = {_link_of(joint, "parent") for joint in joint_above.values()}
+    leaves = [link for link in links if link not in parents]
+    paths = {
+        tuple(j.get("name", "") for j in _movable_joints(None, leaf, joint_above))
+        for leaf in leaves
+    }
+    if len(paths) != 1:
+        raise SimulationError(
+            f"robot description: several tips are possible: {', '.join(leaves)}; name one as `tip`"
+        )
+    return leaves[-1]
+
+
+def _movable_joints(
+    root: str | None, tip: str, joint_above: dict[str, ElementTree.Element]
+) -> list[ElementTree.Element]:
+    """Movable joints from root (None: the URDF's root) to tip, in that order."""
+    found = []
+    link = tip
+    for _ in range(len(joint_above) + 1):
+        if link == root or link not in joint_above:
+            break
+        joint = joint_above[link]
+        kind = joint.get("type", "")
+        if kind in _IMPOSSIBLE or (kind in _MOVING and joint.find("mimic") is not None):
+            what = "mimic" if joint.find("mimic") is not None else kind
+            raise SimulationError(
+                f"robot description: joint {joint.get('name')}: expected revolute, continuous, "
+                f"prismatic or fixed, got {what}"
+            )
+        if kind in _MOVING:
+            found.append(joint)
+        link = _link_of(joint, "parent")
+    if root is not None and link != root:
+        raise SimulationError(f"robot description: tip '{tip}' is not below root '{root}'")
+    return found[::-1]
+
+
+def _numbers(elements: list[ElementTree.Element | None], attribute: str, absent: float) -> Floats:
+    """One attribute of each element; `absent` where element or attribute is missing."""
+    texts = [None if element is None else element.get(attribute) for element in elements]
+    return np.array([absent if text is None else float(text) for text in texts])
+
+
+def _vector(element: ElementTree.Element | None, attribute: str) -> Floats:
+    text = "0 0 0" if element is None else element.get(attribute, "0 0 0")
+    return np.array([float(word) for word in text.split()])
+
+
+def _rotation(rpy: Floats) -> Floats:
+    """R = RotZ(yaw) RotY(pitch) RotX(roll), as URDF defines it."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos(rpy), np.sin(rpy)
+    return np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+
+
+def _inertia_of_links(robot: ElementTree.Element) -> dict[str, Inertia]:
+    found = {}
+    for link in robot.findall("link"):
+        inertial = link.find("inertial")
+        if inertial is None:
+            continue
+        origin, mass, tensor = (inertial.find(tag) for tag in ("origin", "mass", "inertia"))
+        if mass is None or tensor is None:
+            raise SimulationError(
+                f"robot description: link {link.get('name')}: <inertial> needs <mass> and <inertia>"
+            )
+        i = {key: float(tensor.get(key, "0")) for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")}
+        rotation = _rotation(_vector(origin, "rpy"))
+        matrix = np.array(
+            [
+                [i["ixx"], i["ixy"], i["ixz"]],
+                [i["ixy"], i["iyy"], i["iyz"]],
+                [i["ixz"], i["iyz"], i["izz"]],
+            ]
+        )
+        found[link.get("name", "")] = Inertia(
+            mass=float(mass.get("value", "nan")),
+            center=_vector(origin, "xyz"),
+            tensor=rotation @ matrix @ rotation.T,
+        )
+    return found
+
+
+def _prepare_for_mujoco(robot: ElementTree.Element, chain: set[str]) -> tuple[str, ...]:
+    """Leaves out what would change the simulated dynamics or needs files; locks joints beside the chain."""
+    notes = []
+    for joint in robot.findall("joint"):
+        for dynamics in joint.findall("dynamics"):
+            joint.remove(dynamics)
+        if joint.get("type") in _MOVING and joint.get("name") not in chain:
+            joint.set("type", "fixed")
+            notes.append(f"joint {joint.get('name')} is locked at zero")
+    for link in robot.findall("link"):
+        for visual in link.findall("visual"):
+            if visual.find("geometry/mesh") is not None:
+                link.remove(visual)
+        for collision in link.findall("collision"):
+            if collision.find("geometry/mesh") is not None:
+                link.remove(collision)
+                notes.append(f"link {link.get('name')}: a collision mesh is not used")
+    return tuple(notes)
