@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Does an arm touch itself or the table it stands on?
+
+    checker = ContactChecker(robot, clearance=0.01)
+    checker.violations(q)               # (N,) m: how far each state is within the clearance, 0 where it is free
+    checker.closest_pair(q[k])          # names of the two links, and their distance
+
+Shapes are the URDF's collision boxes, cylinders and spheres. The table is the plane z = 0 of the root link, endless.
+Neighbours in the chain are not compared, nor are links whose shapes always overlap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+
+if TYPE_CHECKING:
+    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.simulation.model import SimulatedRobot
+
+TABLE = "the table"
+
+_RANDOM_STATES = 200  # to find links whose shapes always overlap
+_ALWAYS = 0.95  # touching in this part of them
+
+
+@dataclass(frozen=True)
+class Closeness:
+    """Two links and how far they are apart; negative: they overlap."""
+
+    distance: float  # m
+    links: tuple[str, str]
+
+
+@dataclass
+class ContactChecker:
+    """Distances between the links of one robot and to its table. Not for several threads at once."""
+
+    robot: SimulatedRobot
+    clearance: float = 0.01
+    """Distance to keep [m]."""
+    table: bool = True
+    _model: mujoco.MjModel = field(init=False, repr=False)
+    _data: mujoco.MjData = field(init=False, repr=False)
+    _ignored: set[tuple[int, int]] = field(init=False, repr=False, default_factory=set)
+
+    def __post_init__(self) -> None:
+        self._model = _collision_model(self.robot, self.clearance, self.table)
+        self._data = mujoco.MjData(self._model)
+        self._ignored = self._always_touching()
+
+    @property
+    def has_shapes(self) -> bool:
+        """Whether the description has shapes at all: without them nothing can be said."""
+        return bool(self._model.ngeom > int(self.table))
+
+    def violations(self, q: Floats) -> Floats:
+        """How far each state (N, n) is within the clearance: (N,) m, 0 where it is free."""
+        return np.array([self.clearance - self._distance(state) for state in q])
+
+    def closest_pair(self, q: Floats) -> Closeness:
+        """The two links that are closest within the clearance in one state (n,)."""
+        pairs = self._pairs(q)
+        distance, (a, b) = min(pairs, default=(self.clearance, (-1, -1)))
+        return Closeness(distance, (self._name(a), self._name(b)))
+
+    def _distance(self, q: Floats) -> float:
+        return min((distance for distance, _ in self._pairs(q)), default=self.clearance)
+
+    def _pairs(self, q: Floats) -> list[tuple[float, tuple[int, int]]]:
+        """Distance and geoms of what is within the clearance."""
+        self._data.qpos[self.robot.dofs] = q
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_collision(self._model, self._data)
+        contacts = self._data.contact
+        return [
+            (float(distance), pair)
+            for distance, a, b in zip(contacts.dist, contacts.geom1, contacts.geom2, strict=True)
+            if (pair := (int(a), int(b))) not in self._ignored and distance < self.clearance
+        ]
+
+    def _always_touching(self) -> set[tuple[int, int]]:
+        random = np.random.default_rng(0)
+        chain = self.robot.chain
+        lower, upper = np.maximum(chain.lower, -np.pi), np.minimum(chain.upper, np.pi)
+        counts: dict[tuple[int, int], int] = {}
+        for _ in range(_RANDOM_STATES):
+            for pair in {pair for _, pair in self._pairs(random.uniform(lower, upper))}:
+                counts[pair] = counts.get(pair, 0) + 1
+        return {pair for pair, count in counts.items() if count >= _ALWAYS * _RANDOM_STATES}
+
+    def _name(self, geom: int) -> str:
+        if geom < 0:
+            return ""
+        body = self._model.geom_bodyid[geom]
+        return TABLE if body == 0 else str(self._model.body(body).name)
+
+
+def _collision_model(robot: SimulatedRobot, clearance: float, table: bool) -> mujoco.MjModel:
+    spec = mujoco.MjSpec.from_string(robot.chain.urdf)
+    spec.compiler.fusestatic = False
+    spec.compiler.discardvisual = True
+    spec.compiler.balanceinertia = True
+    if table:
+        data = robot.new_data()
+        mujoco.mj_kinematics(robot.model, data)
+        root = data.body(robot.chain.root)
+        spec.worldbody.add_geom(
+            name=TABLE,
+            type=mujoco.mjtGeom.mjGEOM_PLANE,
+            size=[0.0, 0.0, 1.0],
+            pos=root.xpos,
+            quat=root.xquat,
+        )
+    model = spec.compile()
+    model.geom_margin[:] = clearance
+    return model

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a trajectory may ask of a robot, and where one asks too much.
+
+    check_trajectory(robot, trajectory, MotionLimits.of(robot), ContactChecker(robot))
+
+raises a TrajectoryError that names joint, time, value and limit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.simulation.errors import TrajectoryError
+
+if TYPE_CHECKING:
+    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.simulation.collision import ContactChecker
+    from inverse_dynamics.simulation.model import SimulatedRobot
+    from inverse_dynamics.simulation.trajectory import Trajectory
+
+TIME_TO_FULL_SPEED = 0.5
+"""A URDF states no acceleration limit; the default lets a joint reach its velocity limit in this time [s]."""
+
+CHECK_STEP = 0.01
+"""Trajectories are checked at points this far apart [s]."""
+
+_ROUNDING = 1e-9  # a trajectory that fills its limits isn't beyond them
+
+
+@dataclass(frozen=True)
+class MotionLimits:
+    """Greatest values of a motion, n each; infinite where there is none."""
+
+    lower: Floats  # rad
+    upper: Floats  # rad
+    velocity: Floats  # rad/s
+    acceleration: Floats  # rad/s^2
+    effort: Floats  # N m
+
+    @classmethod
+    def of(cls, robot: SimulatedRobot) -> MotionLimits:
+        """The URDF's limits, and the default for accelerations."""
+        chain = robot.chain
+        return cls(
+            chain.lower,
+            chain.upper,
+            chain.velocity,
+            chain.velocity / TIME_TO_FULL_SPEED,
+            chain.effort,
+        )
+
+    def fraction(self, fraction: float) -> MotionLimits:
+        """Limits with a margin: positions about the middle of their range."""
+        margin = np.where(
+            np.isfinite(self.upper - self.lower),
+            (1.0 - fraction) / 2 * (self.upper - self.lower),
+            0.0,
+        )
+        return MotionLimits(
+            self.lower + margin,
+            self.upper - margin,
+            fraction * self.velocity,
+            fraction * self.acceleration,
+            fraction * self.effort,
+        )
+
+
+def check_trajectory(
+    robot: SimulatedRobot,
+    trajectory: Trajectory,
+    limits: MotionLimits,
+    checker: ContactChecker | None,
+) -> None:
+    """Raises TrajectoryError naming joint, time, value and limit where a trajectory asks too much.
+
+    Torques are those of the robot with its payload and gravity, friction included. checker None: contacts are allowed.
+    """
+    if trajectory.joint_names != robot.chain.joint_names:
+        raise TrajectoryError(
+            f"trajectory: expected joints {', '.join(robot.chain.joint_names)} in this order; "
+            f"got {', '.join(trajectory.joint_names)}; is it for another robot?"
+        )
+    time = np.linspace(0.0, trajectory.duration, 1 + int(np.ceil(trajectory.duration / CHECK_STEP)))
+    q, qd, qdd = trajectory.at(time)
+    tau = robot.torques(q, qd, qdd)
+    if robot.friction is not None:
+        tau = tau + robot.friction.torques(qd)
+    for what, unit, values, least, greatest in (
+        ("position", "rad", q, limits.lower, limits.upper),
+        ("velocity", "rad/s", qd, -limits.velocity, limits.velocity),
+        ("acceleration", "rad/s^2", qdd, -limits.acceleration, limits.acceleration),
+        ("effort", "N m", tau, -limits.effort, limits.effort),
+    ):
+        _check_range(robot.chain.joint_names, time, what, unit, values, least, greatest)
+    if checker is not None:
+        _check_contacts(time, q, checker)
+
+
+def _check_range(
+    joints: tuple[str, ...],
+    time: Floats,
+    what: str,
+    unit: str,
+    values: Floats,
+    least: Floats,
+    greatest: Floats,
+) -> None:
+    tolerance = _ROUNDING * (1.0 + np.abs(values))
+    beyond = (values < least - tolerance) | (values > greatest + tolerance)
+    if not beyond.any():
+        return
+    k, j = np.argwhere(beyond)[0]
+    raise TrajectoryError(
+        f"trajectory: joint {joints[j]}: {what} at {time[k]:.2f} s: expected "
+        f"{least[j]:.4g} to {greatest[j]:.4g} {unit}, got {values[k, j]:.4g}; "
+        "make the motion slower or smaller, or let --optimise find one"
+    )
+
+
+def _check_contacts(time: Floats, q: Floats, checker: ContactChecker) -> None:
+    violations = checker.violations(q)
+    if not (violations > 0).any():
+        return
+    k = int(np.argmax(violations > 0))
+    pair = checker.closest_pair(q[k])
+    raise TrajectoryError(
+        f"trajectory: at {time[k]:.2f} s {pair.links[0]} and {pair.links[1]}: expected a distance of "
+        f"at least {checker.clearance:g} m, got {pair.distance:.3f} m; "
+        "change the motion, or let --optimise find one"
+    )

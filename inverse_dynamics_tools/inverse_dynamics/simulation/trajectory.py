@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Desired motions: joint positions, velocities and accelerations at any time.
+
+    trajectory = FourierTrajectory(joint_names, period=20.0, center=q0, sine=a, cosine=b)
+    q, qd, qdd = trajectory.at(np.linspace(0.0, trajectory.duration, 1000))
+
+A finite Fourier series [Swevers et al., IEEE T-RA 13(5), 1997] with w = 2 pi / period, harmonics l = 1..L:
+
+    q(t)  = center + sum_l  sine_l / (w l) sin(w l t) - cosine_l / (w l) cos(w l t)
+    qd(t) =          sum_l  sine_l cos(w l t) + cosine_l sin(w l t)
+
+It is band-limited, so the acceleration can be had from samples without loss, and it repeats, so measurements can be
+averaged. It starts and ends at rest, with zero acceleration, where sum_l sine_l = 0 and sum_l l cosine_l = 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from inverse_dynamics.simulation.errors import TrajectoryError
+
+if TYPE_CHECKING:
+    from inverse_dynamics.joint_log import Floats
+
+
+class Trajectory(Protocol):
+    """A desired motion of n joints over `duration` seconds."""
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints, in the order of the columns of `at`."""
+
+    @property
+    def duration(self) -> float:
+        """How long the motion takes [s]."""
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the motion goes on after `duration` by starting over."""
+
+    def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
+        """q, qd, qdd (N, n) at times (N,) s from the start."""
+
+
+@dataclass(frozen=True)
+class FourierTrajectory:
+    """Periodic motion: a finite Fourier series per joint."""
+
+    joint_names: tuple[str, ...]
+    period: float  # s
+    center: Floats  # (n,) rad
+    sine: Floats  # (n, L) rad/s
+    cosine: Floats  # (n, L) rad/s
+    repeats = True
+
+    @property
+    def duration(self) -> float:
+        """One period [s]."""
+        return self.period
+
+    def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
+        """q, qd, qdd (N, n) at times (N,) s; any time, since it repeats."""
+        w = 2.0 * np.pi / self.period * np.arange(1, self.sine.shape[1] + 1)
+        sines, cosines = np.sin(np.outer(time, w)), np.cos(np.outer(time, w))
+        q = self.center + sines @ (self.sine / w).T - cosines @ (self.cosine / w).T
+        qd = cosines @ self.sine.T + sines @ self.cosine.T
+        qdd = cosines @ (self.cosine * w).T - sines @ (self.sine * w).T
+        return q, qd, qdd
+
+
+@dataclass(frozen=True)
+class WaypointTrajectory:
+    """Motion through waypoints, smooth up to the jerk; at rest, with zero acceleration, at both ends.
+
+    Quintic pieces: the waypoints' velocities and accelerations are those that make jerk and its rate continuous.
+    """
+
+    joint_names: tuple[str, ...]
+    times: Floats  # (K,) s, from zero, increasing
+    positions: Floats  # (K, n) rad
+    velocities: Floats  # (K, n) rad/s
+    accelerations: Floats  # (K, n) rad/s^2
+    repeats = False
+
+    @classmethod
+    def through(
+        cls, joint_names: tuple[str, ...], times: Floats, positions: Floats
+    ) -> WaypointTrajectory:
+        """The smooth motion that is at `positions[k]` at `times[k]`."""
+        times = np.asarray(times, dtype=np.float64)
+        if len(times) < 2 or times[0] != 0.0 or not (np.diff(times) > 0).all():
+            raise TrajectoryError(
+                "waypoints: expected at least two times, increasing from 0 s; "
+                f"got {', '.join(f'{t:g}' for t in times)}"
+            )
+        velocities, accelerations = _smooth_derivatives(times, positions)
+        return cls(joint_names, times, positions, velocities, accelerations)
+
+    @property
+    def duration(self) -> float:
+        """Time of the last waypoint [s]."""
+        return float(self.times[-1])
+
+    def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
+        """q, qd, qdd (N, n) at times (N,) s; before and after the motion: at rest at its ends."""
+        time = np.clip(time, 0.0, self.duration)
+        k = np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, len(self.times) - 2)
+        h = (self.times[k + 1] - self.times[k])[:, None]
+        s = (time[:, None] - self.times[k, None]) / h
+        ends = [
+            scale * values[side]
+            for side in (k, k + 1)
+            for scale, values in (
+                (1.0, self.positions),
+                (h, self.velocities),
+                (h * h, self.accelerations),
+            )
+        ]
+        q, qd, qdd = (
+            sum(np.polyval(np.polyder(p, d), s) * e for p, e in zip(_QUINTICS, ends, strict=True))
+            for d in range(3)
+        )
+        return np.asarray(q), np.asarray(qd) / h, np.asarray(qdd) / h**2
+
+
+# Quintic Hermite polynomials on [0, 1], highest power first: value 1 of position, velocity or acceleration
+# at the left end, then at the right end; the five others are zero.
+_QUINTICS = (
+    (-6.0, 15.0, -10.0, 0.0, 0.0, 1.0),
+    (-3.0, 8.0, -6.0, 0.0, 1.0, 0.0),
+    (-0.5, 1.5, -1.5, 0.5, 0.0, 0.0),
+    (6.0, -15.0, 10.0, 0.0, 0.0, 0.0),
+    (-3.0, 7.0, -4.0, 0.0, 0.0, 0.0),
+    (0.5, -1.0, 0.5, 0.0, 0.0, 0.0),
+)
+
+
+def _smooth_derivatives(times: Floats, positions: Floats) -> tuple[Floats, Floats]:
+    """Velocities and accelerations (K, n) of the waypoints that make third and fourth derivatives continuous."""
+    count, joints = positions.shape
+    matrix = np.zeros(
+        (2 * count, 2 * count)
+    )  # unknowns: velocity and acceleration of each waypoint
+    right = np.zeros((2 * count, joints))
+    # at rest at both ends
+    for row, unknown in enumerate((0, 1, 2 * count - 2, 2 * count - 1)):
+        matrix[row, unknown] = 1.0
+    # derivative d of piece k at its end equals that of piece k + 1 at its beginning
+    row = 4
+    for k in range(1, count - 1):
+        for d in (3, 4):
+            for piece, s, sign in ((k - 1, 1.0, 1.0), (k, 0.0, -1.0)):
+                h = times[piece + 1] - times[piece]
+                factors = [sign * np.polyval(np.polyder(p, d), s) / h**d for p in _QUINTICS]
+                for side in (0, 1):
+                    unknown = 2 * (piece + side)
+                    matrix[row, unknown] += factors[3 * side + 1] * h
+                    matrix[row, unknown + 1] += factors[3 * side + 2] * h**2
+                    right[row] -= factors[3 * side] * positions[piece + side]
+            row += 1
+    solution = np.linalg.solve(matrix, right)
+    return solution[0::2], solution[1::2]

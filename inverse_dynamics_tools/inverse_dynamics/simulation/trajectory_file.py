@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trajectories as YAML files, to give to `ids simulate --trajectory` and stored with each simulated recording.
+
+A Fourier series (see trajectory.py for the formula), all joints of the chain in any order:
+
+    schema: 1
+    kind: fourier
+    source: in words                                  # optional
+    joints: [joint_1, joint_2]
+    period: 20.0                                      # s
+    center: [0.0, -1.57]                              # rad
+    sine: [[0.1, -0.1], [0.3, -0.3]]                  # rad/s, a row per joint, an entry per harmonic
+    cosine: [[0.2, -0.1], [0.0, 0.0]]
+
+or waypoints, passed smoothly, at rest at both ends:
+
+    schema: 1
+    kind: waypoints
+    joints: [joint_1, joint_2]
+    times: [0.0, 1.5, 3.0]                            # s, from 0
+    positions: [[0.0, 0.0], [0.5, -0.5], [0.0, 0.0]]  # rad, a row per time
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.located_yaml import read_mapping
+from inverse_dynamics.simulation.errors import TrajectoryError
+from inverse_dynamics.simulation.trajectory import FourierTrajectory, WaypointTrajectory
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.located_yaml import Mapping, Value
+    from inverse_dynamics.simulation.trajectory import Trajectory
+
+SCHEMA = 1
+
+
+def read_trajectory(file: Path, joint_names: Sequence[str]) -> Trajectory:
+    """The trajectory of a file, its joints in the order of `joint_names`. Raises TrajectoryError."""
+    top = read_mapping(file, TrajectoryError)
+    schema = top.required("schema")
+    if schema.integer() != SCHEMA:
+        schema.fail(f"{SCHEMA}", "it was written for another version of this command")
+    kind = top.required("kind").text(("fourier", "waypoints"))
+    source = top.optional("source")
+    if source is not None:
+        source.text()
+    order = _order(top.required("joints"), joint_names)
+    names = tuple(joint_names)
+    trajectory: Trajectory
+    if kind == "fourier":
+        period = top.required("period")
+        if period.number() <= 0:
+            period.fail("a time in s above zero")
+        center = _row(top.required("center"), len(names))
+        sine = _table(top.required("sine"), rows=len(names))
+        cosine = _table(top.required("cosine"), rows=len(names), columns=sine.shape[1])
+        trajectory = FourierTrajectory(
+            names, period.number(), center[order], sine[order], cosine[order]
+        )
+    else:
+        trajectory = _waypoints(top, names, order)
+    top.reject_others()
+    return trajectory
+
+
+def _waypoints(top: Mapping, names: tuple[str, ...], order: list[int]) -> WaypointTrajectory:
+    times_value = top.required("times")
+    times = _row(times_value)
+    if len(times) < 2 or times[0] != 0.0 or not (np.diff(times) > 0).all():
+        times_value.fail("at least two times that increase from 0")
+    positions = _table(top.required("positions"), rows=len(times), columns=len(names))
+    return WaypointTrajectory.through(names, times, positions[:, order])
+
+
+def trajectory_text(trajectory: Trajectory, source: str) -> str:
+    """The file of a trajectory; all digits are kept."""
+    lines = ["# SPDX-License-Identifier: Apache-2.0", f"schema: {SCHEMA}"]
+    rows: dict[str, Floats]
+    if isinstance(trajectory, FourierTrajectory):
+        kind, rows = "fourier", {"sine": trajectory.sine, "cosine": trajectory.cosine}
+        head = [f"period: {float(trajectory.period)!r}", f"center: {_flow(trajectory.center)}"]
+    elif isinstance(trajectory, WaypointTrajectory):
+        kind, rows = "waypoints", {"positions": trajectory.positions}
+        head = [f"times: {_flow(trajectory.times)}"]
+    else:
+        raise TypeError(f"no file format for {type(trajectory).__name__}")
+    lines += [f"kind: {kind}", f"source: >-\n  {source}"]
+    lines += [f"joints: [{', '.join(trajectory.joint_names)}]", *head]
+    for key, table in rows.items():
+        lines.append(f"{key}:")
+        lines += [f"  - {_flow(row)}" for row in table]
+    return "\n".join(lines) + "\n"
+
+
+def _flow(numbers: Floats) -> str:
+    return f"[{', '.join(repr(float(number)) for number in numbers)}]"
+
+
+def _order(value: Value, joint_names: Sequence[str]) -> list[int]:
+    """Where each joint of the chain stands in the file."""
+    there = [entry.text() for entry in value.entries()]
+    if sorted(there) != sorted(joint_names):
+        raise TrajectoryError(
+            f"{value.where}: expected the joints {', '.join(joint_names)}, got {', '.join(there)}; "
+            "is the trajectory for another robot?"
+        )
+    return [there.index(name) for name in joint_names]
+
+
+def _row(value: Value, length: int | None = None) -> Floats:
+    return np.array([entry.number() for entry in value.entries(length)])
+
+
+def _table(value: Value, rows: int, columns: int | None = None) -> Floats:
+    lists = value.entries(rows)
+    columns = columns or max(1, len(lists[0].entries()))
+    return np.array([_row(entry, columns) for entry in lists])
