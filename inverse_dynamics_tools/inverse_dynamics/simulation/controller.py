@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A joint trajectory controller as ros2_control users know it, with effort as command interface.
+
+    controller = JointTrajectoryController(gains, desired, effort_limit, period=1 / 500)
+    command = controller.update(k, q, qd)          # at tick k
+
+    command = ff_velocity_scale qd_d + effort_d + p (q_d - q) + i integral(q_d - q) + d (qd_d - qd)
+
+limited to what the actuator can give. `effort_d` is the `effort` of the trajectory's points, the feed-forward of
+joint_trajectory_controller. The integral term stays within +-i_clamp, and doesn't grow while the command is at its
+limit and the error would drive it further (conditional integration, as in control_toolbox).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.simulation.model import SimulatedRobot
+
+FASTEST = 40.0
+"""Of the default gains: greatest natural frequency of a joint's error [rad/s]."""
+
+_SAMPLED_DAMPING = 1.2  # damping rate times period; a sampled velocity loop is unstable from 2 on
+
+
+@dataclass(frozen=True)
+class Gains:
+    """Gains per joint, n each; names as in the parameters of joint_trajectory_controller."""
+
+    p: Floats  # N m/rad
+    i: Floats  # N m/(rad s)
+    d: Floats  # N m s/rad
+    i_clamp: Floats  # N m
+    ff_velocity_scale: Floats  # N m s/rad
+
+    @classmethod
+    def of(cls, robot: SimulatedRobot, q: Floats, period: float) -> Gains:
+        """Gains that suit a robot along states q (N, n), for a controller with this period [s].
+
+        Critically damped for the least inertia h_j each joint shows along the way while the others yield,
+        1 / (H^-1)_jj. All joints get one natural frequency w: as fast as the sampled damping allows where the arm is
+        lightest, which the greatest eigenvalue of H^-1 diag(h) tells. Where it is heaviest (the least eigenvalue) the
+        integral must be slow enough.
+        """
+        inverses = np.linalg.inv([robot.inertia_matrix(x) for x in q])
+        h = 1.0 / np.diagonal(inverses, axis1=1, axis2=2).max(axis=0)
+        # H^-1 diag(h) has the eigenvalues of this symmetric matrix
+        eigenvalues = np.linalg.eigvalsh(np.sqrt(h)[:, None] * inverses * np.sqrt(h))
+        w = min(FASTEST, 0.5 * _SAMPLED_DAMPING / (eigenvalues.max() * period))
+        no_friction = np.zeros_like(h)
+        return cls(
+            p=h * w**2,
+            i=h * w**3 * eigenvalues.min() / 5,
+            d=2 * h * w,
+            i_clamp=np.where(np.isfinite(robot.chain.effort), 0.2 * robot.chain.effort, np.inf),
+            ff_velocity_scale=no_friction if robot.friction is None else robot.friction.viscous,
+        )
+
+
+@dataclass(frozen=True)
+class DesiredMotion:
+    """Trajectory points at the ticks of the controller, (K, n) each."""
+
+    q: Floats
+    qd: Floats
+    effort: Floats  # feed-forward, for the period that follows the tick
+
+
+class JointTrajectoryController:
+    """Follows desired points; one update a tick. Holds the integral of the error."""
+
+    def __init__(
+        self, gains: Gains, desired: DesiredMotion, effort_limit: Floats, period: float
+    ) -> None:
+        self._gains, self._desired = gains, desired
+        self._limit, self._period = effort_limit, period
+        self._feed_forward = desired.effort + gains.ff_velocity_scale * desired.qd
+        self._integral = np.zeros_like(effort_limit)  # N m
+        self._saturated = self._integral  # -1, 0, 1 per joint, at the last tick
+
+    def update(self, k: int, q: Floats, qd: Floats) -> Floats:
+        """Command (n,) at tick k for the measured state; within the effort limits."""
+        gains = self._gains
+        error = self._desired.q[k] - q
+        grows = error * self._saturated > 0
+        integral = self._integral + np.where(grows, 0.0, gains.i * error * self._period)
+        self._integral = np.minimum(np.maximum(integral, -gains.i_clamp), gains.i_clamp)
+        wanted = (
+            self._feed_forward[k]
+            + gains.p * error
+            + self._integral
+            + gains.d * (self._desired.qd[k] - qd)
+        )
+        command: Floats = np.minimum(np.maximum(wanted, -self._limit), self._limit)
+        self._saturated = np.sign(wanted - command)
+        return command

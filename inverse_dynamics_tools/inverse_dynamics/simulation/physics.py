@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The robot under its controller, step by step: from a trajectory to a motion with its torques.
+
+    motion = follow(robot, trajectory, rate=500, duration=20.0)
+    motion.q, motion.effort, motion.qdd
+
+The controller's command is held between its updates (zero-order hold); the actuator applies it. A sample is taken in
+the middle of each period: there position, velocity, applied torque and MuJoCo's own acceleration belong to one instant,
+
+    effort = H(q) qdd + C(q, qd) qd + g(q) + friction,
+
+and the steps of the held torque lie half a period before and after it, so that differences of velocities are estimates
+of that very acceleration. (At the ticks the acceleration jumps, and they would be late by half a period.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+
+from inverse_dynamics.joint_log import no_progress
+from inverse_dynamics.simulation.controller import DesiredMotion, Gains, JointTrajectoryController
+from inverse_dynamics.simulation.errors import SimulationError
+
+if TYPE_CHECKING:
+    from inverse_dynamics.joint_log import Floats, Progress
+    from inverse_dynamics.simulation.model import SimulatedRobot
+    from inverse_dynamics.simulation.trajectory import Trajectory
+
+RATES = (125, 500, 1000)
+"""Update rates of the controller [Hz]."""
+
+LONGEST_STEP = 5e-4
+"""Of the integrator (Runge-Kutta of fourth order) [s]."""
+
+_STATES_FOR_GAINS = 50
+_PROGRESS_EVERY = 500  # ticks
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A simulated motion: N samples of n joints, as they are, without any sensor's error."""
+
+    time: Floats  # (N,) s since the start of the trajectory; likewise (N, n):
+    q: Floats  # rad
+    qd: Floats  # rad/s
+    qdd: Floats  # rad/s^2, MuJoCo's
+    effort: Floats  # N m, what the actuators applied
+    friction: Floats  # N m, the part of effort that friction takes
+    q_desired: Floats  # rad
+    gains: Gains
+
+
+def follow(
+    robot: SimulatedRobot,
+    trajectory: Trajectory,
+    *,
+    rate: int,
+    duration: float,
+    gains: Gains | None = None,
+    progress: Progress = no_progress,
+) -> Motion:
+    """Motion of a robot that starts on a trajectory and follows it for `duration` seconds."""
+    if rate not in RATES:
+        raise SimulationError(
+            f"rate: expected one of {', '.join(map(str, RATES))} Hz, got {rate:g}"
+        )
+    ticks = int(np.floor(duration * rate + 1e-9))
+    if ticks < 2:
+        raise SimulationError(
+            f"duration: expected at least two periods of the controller ({2 / rate:g} s), got {duration:g} s"
+        )
+    time = np.arange(ticks) / rate
+    desired = _desired_motion(robot, trajectory, time, time + 0.5 / rate)
+    gains = gains or default_gains(robot, trajectory, rate)
+    controller = JointTrajectoryController(gains, desired, robot.chain.effort, 1.0 / rate)
+
+    model, data, dofs = robot.model, robot.new_data(), robot.dofs
+    half = int(np.ceil(0.5 / rate / LONGEST_STEP))
+    model.opt.timestep = 0.5 / rate / half
+    data.qpos[dofs], data.qvel[dofs] = desired.q[0], desired.qd[0]
+    samples = [np.empty_like(desired.q) for _ in range(5)]
+    q, qd, qdd, effort, friction = samples
+    for k in range(ticks):
+        command = controller.update(k, data.qpos[dofs], data.qvel[dofs])
+        data.qfrc_applied[dofs] = command
+        _advance(robot, data, half)
+        # the acceleration that belongs to this state and this torque
+        _hold_friction(robot, data)
+        mujoco.mj_forward(model, data)
+        q[k], qd[k], qdd[k] = data.qpos[dofs], data.qvel[dofs], data.qacc[dofs]
+        effort[k] = command
+        friction[k] = -data.qfrc_passive[dofs]
+        _advance(robot, data, half)
+        if k % _PROGRESS_EVERY == 0 or k == ticks - 1:
+            progress("simulating", k + 1, ticks)
+    if not np.isfinite(qdd).all():
+        raise SimulationError("the simulation became unstable: lower the controller's gains")
+    middle = time + 0.5 / rate
+    return Motion(middle, q, qd, qdd, effort, friction, trajectory.at(middle)[0], gains)
+
+
+def default_gains(robot: SimulatedRobot, trajectory: Trajectory, rate: int) -> Gains:
+    """Gains that suit a robot along a trajectory."""
+    states = trajectory.at(np.linspace(0.0, trajectory.duration, _STATES_FOR_GAINS))[0]
+    return Gains.of(robot, states, 1.0 / rate)
+
+
+def _advance(robot: SimulatedRobot, data: mujoco.MjData, steps: int) -> None:
+    if robot.friction is None:
+        mujoco.mj_step(robot.model, data, steps)
+        return
+    for _ in range(steps):
+        _hold_friction(robot, data)
+        mujoco.mj_step(robot.model, data)
+
+
+def _hold_friction(robot: SimulatedRobot, data: mujoco.MjData) -> None:
+    """Makes MuJoCo's linear damping equal to the friction law at the present velocity.
+
+    Friction over velocity, held for one implicit step: stable however steep the law is at rest, and exact at the
+    beginning of the step, where samples are taken.
+    """
+    if robot.friction is not None:
+        robot.model.dof_damping[robot.dofs] = robot.friction.secant(data.qvel[robot.dofs])
+
+
+def _desired_motion(
+    robot: SimulatedRobot, trajectory: Trajectory, time: Floats, middle: Floats
+) -> DesiredMotion:
+    """Points of the trajectory; their effort is what the robot's model needs in the middle of the period."""
+    q, qd, qdd = trajectory.at(middle)
+    effort = robot.torques(q, qd, qdd)
+    if robot.friction is not None:
+        # the viscous part is what ff_velocity_scale is for
+        effort = effort + robot.friction.torques(qd) - robot.friction.viscous * qd
+    q, qd, _ = trajectory.at(time)
+    return DesiredMotion(q, qd, effort)

@@ -1,0 +1,304 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a run configuration to a simulated recording: what `ids simulate` does, for scripts.
+
+    run = simulate(load_robot("ur10_simulated"), rate=500, seed=1)
+    write_run(run, Path("bag"))
+
+The run configuration's key `simulation` may say
+
+    simulation:
+      trajectory: package://inverse_dynamics_robots/trajectories/ur10.yaml   # the default one; a path as for urdf
+      rate: 125                                                              # Hz, the default one
+      gains:                                                                 # those left out are chosen
+        shoulder_pan_joint: {p: 100, i: 10, d: 20, i_clamp: 50, ff_velocity_scale: 0}
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics.ament import resolve
+from inverse_dynamics.descriptions import read_description
+from inverse_dynamics.joint_log import JointLog, no_progress
+from inverse_dynamics.simulation.collision import ContactChecker
+from inverse_dynamics.simulation.controller import Gains
+from inverse_dynamics.simulation.errors import SimulationError
+from inverse_dynamics.simulation.excitation import condition_of, optimise_excitation
+from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
+from inverse_dynamics.simulation.model import GRAVITY, JointFriction, SimulatedRobot
+from inverse_dynamics.simulation.physics import RATES, Motion, default_gains, follow
+from inverse_dynamics.simulation.sensors import Recorded, Sensors
+from inverse_dynamics.simulation.trajectory import FourierTrajectory
+from inverse_dynamics.simulation.trajectory_file import read_trajectory
+from inverse_dynamics.simulation.urdf import chain_from_urdf
+
+if TYPE_CHECKING:
+    from inverse_dynamics.joint_log import Progress
+    from inverse_dynamics.located_yaml import Mapping
+    from inverse_dynamics.robots import Robot
+    from inverse_dynamics.simulation.model import Payload
+    from inverse_dynamics.simulation.trajectory import Trajectory
+    from inverse_dynamics.simulation.urdf import UrdfChain
+
+DEFAULT_RATE = 500  # Hz, where neither caller nor run configuration says
+
+
+@dataclass(frozen=True)
+class SimulatedRun:
+    """A simulated recording, the truth behind it, and how it was made."""
+
+    log: JointLog  # what the recording says
+    motion: Motion  # every sample as it was
+    recorded: Recorded  # which samples became messages
+    trajectory: Trajectory
+    trajectory_source: str
+    condition_number: float | None  # of the base regressor; None: not a Fourier series
+    settings: dict[str, Any]  # everything needed to make it again, ready for YAML
+    notes: tuple[str, ...]  # what was left out or assumed, in words
+
+
+def simulate(
+    robot: Robot,
+    *,
+    trajectory: Path | Trajectory | None = None,
+    optimise: bool = False,
+    rate: int | None = None,
+    duration: float | None = None,
+    seed: int = 0,
+    sensors: Sensors | None = None,
+    payload: Payload | None = None,
+    joint_friction: JointFriction | float | str | None = None,
+    gravity: tuple[float, float, float] | None = None,
+    table: bool = True,
+    progress: Progress = no_progress,
+) -> SimulatedRun:
+    """Simulates a robot under a joint trajectory controller, and records its joint states.
+
+    trajectory: a file or an object; None: the run configuration's; without one, or with `optimise`, a new exciting
+        trajectory is searched for, which takes a minute or two.
+    rate: of controller and recording, 125, 500 or 1000 Hz.
+    duration: s; None: once through the trajectory. A periodic one goes on as long as is asked.
+    seed: of the search and of the sensors' random numbers.
+    joint_friction: the friction itself; a number: Coulomb friction that part of each joint's effort limit, and as much
+        viscous friction at its velocity limit; "urdf": what <dynamics> says; None: none.
+    gravity: m/s^2, in the frame of the root link; None: the run configuration's.
+    table: whether the plane z = 0 of the root link must not be touched.
+
+    Raises UserError: SimulationError, TrajectoryError, RobotError.
+    """
+    if robot.urdf is None:
+        raise SimulationError(
+            f"{robot.file}: names no urdf; a simulation needs the robot's description"
+        )
+    description = read_description(robot.urdf)
+    chain = chain_from_urdf(description, robot.root, robot.tip)
+    simulated = SimulatedRobot.from_urdf(
+        description,
+        robot.root,
+        robot.tip,
+        gravity=gravity or robot.gravity or GRAVITY,
+        payload=payload,
+        friction=_friction(joint_friction, chain),
+    )
+    wishes = _Wishes.of(robot, chain)
+    rate = rate or wishes.rate
+    chosen, source = _choose_trajectory(
+        simulated, trajectory, wishes.trajectory, optimise, seed, table, progress
+    )
+    checker = ContactChecker(simulated, table=table)
+    notes = list(chain.notes)
+    if not checker.has_shapes:
+        notes.append("the description has no collision shapes: self-collision can't be checked")
+    check_trajectory(simulated, chosen, MotionLimits.of(simulated), checker)
+    duration = duration or chosen.duration
+    gains = wishes.gains.apply(default_gains(simulated, chosen, rate))
+    motion = follow(simulated, chosen, rate=rate, duration=duration, gains=gains, progress=progress)
+    sensors = sensors or Sensors()
+    recorded = sensors.record(motion, seed)
+    settings = _settings(robot, simulated, sensors, gains, rate, duration, seed, source)
+    settings["robot_description_sha256"] = hashlib.sha256(description.encode()).hexdigest()
+    condition = condition_of(simulated, chosen) if isinstance(chosen, FourierTrajectory) else None
+    return SimulatedRun(
+        log=_joint_log(robot, chain, recorded),
+        motion=motion,
+        recorded=recorded,
+        trajectory=chosen,
+        trajectory_source=source,
+        condition_number=condition,
+        settings=settings,
+        notes=tuple(notes),
+    )
+
+
+def _choose_trajectory(
+    robot: SimulatedRobot,
+    given: Path | Trajectory | None,
+    default: Path | None,
+    optimise: bool,
+    seed: int,
+    table: bool,
+    progress: Progress,
+) -> tuple[Trajectory, str]:
+    """The trajectory, and in words where it comes from."""
+    if optimise and given is not None:
+        raise SimulationError("expected either a trajectory or the wish to optimise one, got both")
+    if given is None and not optimise:
+        given = default
+    if given is None:
+        found = optimise_excitation(robot, seed=seed, table=table, progress=progress)
+        return found.trajectory, (
+            f"Exciting trajectory for {robot.chain.name}, optimised with seed {seed}: condition number of "
+            f"the base regressor {found.condition_number:.4g}."
+        )
+    if isinstance(given, Path):
+        return read_trajectory(given, robot.chain.joint_names), f"From the file {given.name}."
+    return given, "Given by the caller."
+
+
+def _friction(wish: JointFriction | float | str | None, chain: UrdfChain) -> JointFriction | None:
+    if wish is None or isinstance(wish, JointFriction):
+        return wish
+    if wish == "urdf":
+        return JointFriction(chain.friction, chain.damping)
+    try:
+        part = float(wish)
+    except ValueError:
+        part = np.nan
+    if not 0 <= part < 1:
+        raise SimulationError(
+            f"joint friction: expected a part of the effort limit, 0 to below 1, or urdf, got {wish}"
+        )
+    for name, limits in (("effort", chain.effort), ("velocity", chain.velocity)):
+        for joint, limit in zip(chain.joint_names, limits, strict=True):
+            if not (np.isfinite(limit) and limit > 0):
+                raise SimulationError(
+                    f"joint friction: joint {joint} has no {name} limit to take a part of; "
+                    "state one in the URDF"
+                )
+    return JointFriction(part * chain.effort, part * chain.effort / chain.velocity)
+
+
+def _joint_log(robot: Robot, chain: UrdfChain, recorded: Recorded) -> JointLog:
+    """Messages under the names that the run configuration gives the joints in recordings."""
+    names = robot.joints or chain.joint_names
+    if len(names) != len(chain.joint_names):
+        raise SimulationError(
+            f"{robot.file}: joints: expected {len(chain.joint_names)} names, one per joint of the chain "
+            f"({', '.join(chain.joint_names)}), got {len(names)}"
+        )
+    return JointLog(
+        joint_names=names,
+        header_stamps=recorded.stamps,
+        receive_stamps=recorded.stamps,
+        q=recorded.q,
+        qd=recorded.qd,
+        effort=recorded.effort,
+        topic=robot.topic,
+    )
+
+
+@dataclass(frozen=True)
+class _GainWishes:
+    """Gains that a run configuration states: (joint index, name) to value."""
+
+    values: dict[tuple[int, str], float]
+
+    def apply(self, gains: Gains) -> Gains:
+        columns = {field.name: np.array(getattr(gains, field.name)) for field in fields(gains)}
+        for (joint, name), value in self.values.items():
+            columns[name][joint] = value
+        return replace(gains, **columns)
+
+
+@dataclass(frozen=True)
+class _Wishes:
+    """What a run configuration says under `simulation`."""
+
+    trajectory: Path | None
+    rate: int
+    gains: _GainWishes
+
+    @classmethod
+    def of(cls, robot: Robot, chain: UrdfChain) -> _Wishes:
+        if robot.simulation is None:
+            return cls(None, DEFAULT_RATE, _GainWishes({}))
+        mapping = robot.simulation
+        trajectory = mapping.optional("trajectory")
+        file = None if trajectory is None else resolve(trajectory.text(), robot.file.parent)
+        if trajectory is not None and file is not None and not file.is_file():
+            trajectory.fail("a file", f"{file} isn't there")
+        rate = mapping.optional("rate")
+        if rate is not None and rate.integer() not in RATES:
+            rate.fail(f"one of {', '.join(map(str, RATES))} Hz")
+        gains = mapping.optional("gains")
+        wishes = _GainWishes({} if gains is None else _gains(gains.mapping(), chain))
+        mapping.reject_others()
+        return cls(file, DEFAULT_RATE if rate is None else rate.integer(), wishes)
+
+
+def _gains(mapping: Mapping, chain: UrdfChain) -> dict[tuple[int, str], float]:
+    found = {}
+    for index, joint in enumerate(chain.joint_names):
+        value = mapping.optional(joint)
+        if value is None:
+            continue
+        gains = value.mapping()
+        for field in fields(Gains):
+            number = gains.optional(field.name)
+            if number is not None:
+                found[index, field.name] = number.number()
+        gains.reject_others()
+    mapping.reject_others()
+    return found
+
+
+def _settings(
+    robot: Robot,
+    simulated: SimulatedRobot,
+    sensors: Sensors,
+    gains: Gains,
+    rate: int,
+    duration: float,
+    seed: int,
+    source: str,
+) -> dict[str, Any]:
+    """Everything that decides the result, as plain data."""
+    import mujoco
+
+    def plain(thing: object) -> dict[str, Any] | None:
+        if thing is None:
+            return None
+        out: dict[str, Any] = {}
+        for field in fields(thing):  # type: ignore[arg-type]
+            value = getattr(thing, field.name)
+            if isinstance(value, np.ndarray | tuple):
+                value = [float(number) for number in value]
+            out[field.name] = value
+        return out
+
+    return {
+        "robot": robot.name,
+        "joints": list(simulated.chain.joint_names),
+        "root": simulated.chain.root,
+        "tip": simulated.chain.tip,
+        "gravity": [float(g) for g in simulated.gravity],
+        "rate": rate,
+        "duration": float(duration),
+        "seed": seed,
+        "trajectory": source,
+        "payload": plain(simulated.payload),
+        "joint_friction": plain(simulated.friction),
+        "noise": plain(sensors.noise),
+        "quantisation": plain(sensors.quantisation),
+        "drop": sensors.drop,
+        "repeat": sensors.repeat,
+        "jitter": sensors.jitter,
+        "start_stamp": sensors.epoch,
+        "gains": plain(gains),
+        "mujoco": mujoco.__version__,
+    }

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A simulated recording on disk: a bag like any other, with the truth beside its messages.
+
+    BAG/metadata.yaml, BAG/BAG.db3 or BAG/BAG.mcap      what rosbag2 would have recorded
+    BAG/simulation.yaml                                 how it was made
+    BAG/trajectory.yaml                                 the desired motion, for --trajectory
+    BAG/truth.npz                                       one row per message: the motion without any sensor's error
+
+rosbag2 and its tools read only what metadata.yaml names.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.bags import write_joint_logs
+from inverse_dynamics.files import written_whole
+from inverse_dynamics.joint_log import no_progress
+from inverse_dynamics.simulation.trajectory_file import trajectory_text
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from inverse_dynamics.joint_log import Progress, Storage
+    from inverse_dynamics.simulation.run import SimulatedRun
+
+MARK = "simulation.yaml"
+"""The file by which a directory is known as a simulated recording."""
+
+
+def write_run(
+    run: SimulatedRun,
+    out: Path,
+    *,
+    storage: Storage = "sqlite3",
+    overwrite: bool = False,
+    progress: Progress = no_progress,
+) -> None:
+    """Writes a simulated recording to the directory `out`, whole or not at all.
+
+    overwrite: replace an older simulated recording. Raises OutputError, BagError.
+    """
+    import yaml
+
+    with written_whole(out, overwrite=overwrite, mark=MARK) as directory:
+        _write_bag(run, directory, out.name, storage, progress)
+        (directory / MARK).write_text(
+            yaml.safe_dump({**run.settings, "storage": storage}, sort_keys=False)
+        )
+        (directory / "trajectory.yaml").write_text(
+            trajectory_text(run.trajectory, run.trajectory_source)
+        )
+        motion, rows = run.motion, run.recorded.rows
+        np.savez(
+            directory / "truth.npz",
+            joint_names=np.array(run.settings["joints"]),
+            time=motion.time[rows],
+            q=motion.q[rows],
+            qd=motion.qd[rows],
+            qdd=motion.qdd[rows],
+            effort=motion.effort[rows],
+            friction=motion.friction[rows],
+            q_desired=motion.q_desired[rows],
+        )
+
+
+def _write_bag(
+    run: SimulatedRun, directory: Path, name: str, storage: Storage, progress: Progress
+) -> None:
+    """Files of the bag, named after the directory they will be in."""
+    bag = directory / name
+    write_joint_logs(bag, {run.log.topic: run.log}, storage=storage, progress=progress)
+    for file in bag.iterdir():
+        file.rename(directory / f"{file.name}.moved")
+    bag.rmdir()
+    for file in directory.glob("*.moved"):
+        file.rename(file.with_suffix(""))

@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids simulate`: a recording of a simulated robot."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.verbs.common import positive_number, progress_bar, three_numbers
+
+if TYPE_CHECKING:
+    from inverse_dynamics.simulation import Payload, Resolution, SimulatedRun
+
+_MOUNTS = ("floor", "wall", "ceiling")
+
+_EPILOG = """\
+examples:
+  ids simulate --robot ur10_simulated --out recording
+      a UR10 follows its exciting trajectory; then: ids evaluate recording --robot ur10_simulated
+
+  ids simulate --robot panda_simulated --out recording --rate 500 --noise --joint-friction
+      what a real robot adds: friction in the joints, noise of the sensors
+
+  ids simulate --robot ur10_simulated --out recording --payload 5,0,0,0.1 --mount ceiling
+      5 kg, 0.1 m before the tip; base upside down
+
+  ids simulate --robot my_robot.yaml --out recording --optimise --seed 1
+      look for another exciting trajectory first (a minute or two); it is stored in the recording
+
+  ids simulate --robot ur10_simulated --out recording --trajectory other/trajectory.yaml
+      a motion of your own: waypoints or a Fourier series
+
+results, written whole or not at all:
+  metadata.yaml, .db3 or .mcap   recording of sensor_msgs/JointState, as rosbag2 writes it
+  simulation.yaml                how it was made
+  trajectory.yaml                the desired motion
+  truth.npz                      per message, without the sensors' errors: time, q, qd, effort, and the simulator's qdd
+                                 and friction
+"""
+
+
+def add_parser(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+) -> argparse.ArgumentParser:
+    """Declare the verb."""
+    parser = subparsers.add_parser(
+        "simulate",
+        help="record a simulated robot (MuJoCo) following an exciting trajectory",
+        description=(
+            "Simulate a robot (MuJoCo) under a joint trajectory controller that commands efforts, "
+            "while it follows an exciting trajectory, and record its joint states to a bag."
+        ),
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--robot",
+        metavar="NAME|FILE",
+        required=True,
+        help="run configuration: a name that `ids robots` lists, or a YAML file",
+    )
+    parser.add_argument("--out", metavar="BAG", type=Path, required=True, help="the new recording")
+    parser.add_argument(
+        "--overwrite", action="store_true", help="replace an older simulated recording"
+    )
+    parser.add_argument(
+        "--storage", choices=("sqlite3", "mcap"), default="sqlite3", help="default: sqlite3"
+    )
+    parser.add_argument(
+        "--seed",
+        type=_seed,
+        default=0,
+        help="of all random numbers: the same seed gives the same recording (default: 0)",
+    )
+
+    motion = parser.add_argument_group("motion")
+    motion.add_argument(
+        "--trajectory",
+        metavar="FILE",
+        type=Path,
+        help="desired motion (YAML: waypoints or Fourier series; default: the run configuration's)",
+    )
+    motion.add_argument(
+        "--optimise",
+        action="store_true",
+        help="search for a new exciting trajectory instead: the best condition number of the base "
+        "regressor within the limits, clear of the robot itself and of the table",
+    )
+    motion.add_argument(
+        "--duration",
+        metavar="S",
+        type=positive_number,
+        help="how long (default: once through the trajectory; exciting ones repeat)",
+    )
+    motion.add_argument(
+        "--rate",
+        metavar="HZ",
+        type=int,
+        help="of controller and recording: 125, 500 or 1000 (default: the run configuration's)",
+    )
+    motion.add_argument(
+        "--no-table",
+        dest="table",
+        action="store_false",
+        help="the arm may reach below its base",
+    )
+
+    robot = parser.add_argument_group("robot")
+    robot.add_argument(
+        "--payload", metavar="KG[,X,Y,Z]", type=_payload, help="point mass at the tip [kg; m]"
+    )
+    robot.add_argument(
+        "--joint-friction",
+        metavar="PART|urdf",
+        nargs="?",
+        const="0.02",
+        help="Coulomb friction, that part of each effort limit, and as much viscous friction at the "
+        "velocity limit (without a value: 0.02); urdf: what the description's <dynamics> says",
+    )
+    gravity = robot.add_mutually_exclusive_group()
+    gravity.add_argument(
+        "--gravity",
+        metavar="X,Y,Z",
+        type=three_numbers,
+        help="where things fall [m/s^2], in the frame of the root link (usually 0,0,-9.81)",
+    )
+    gravity.add_argument(
+        "--mount", choices=_MOUNTS, help="floor; wall: the x axis up; ceiling: upside down"
+    )
+
+    recording = parser.add_argument_group("recording")
+    recording.add_argument(
+        "--noise",
+        metavar="Q,QD,EFFORT",
+        nargs="?",
+        const="default",
+        type=_resolution,
+        help="standard deviations of Gaussian noise [rad, rad/s, N m] (without a value: 1e-5,1e-3,0.1)",
+    )
+    recording.add_argument(
+        "--quantisation",
+        metavar="Q,QD,EFFORT",
+        nargs="?",
+        const="default",
+        type=_resolution,
+        help="steps of the figures [rad, rad/s, N m] (without a value: 1e-5,1e-3,0.01)",
+    )
+    recording.add_argument(
+        "--drop", metavar="P", type=float, default=0.0, help="part of the messages that is lost"
+    )
+    recording.add_argument(
+        "--repeat",
+        metavar="P",
+        type=float,
+        default=0.0,
+        help="part of the messages that repeats the figures of the one before",
+    )
+    recording.add_argument(
+        "--jitter",
+        metavar="S",
+        type=float,
+        default=0.0,
+        help="standard deviation of the stamps [s]",
+    )
+    recording.add_argument(
+        "--start-stamp",
+        metavar="S",
+        type=float,
+        help="stamp of the start [s] (default: 1700000000; never the time of day)",
+    )
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.files import check_output_directory
+    from inverse_dynamics.robots import load_robot
+
+    robot = load_robot(arguments.robot)
+    check_output_directory(
+        arguments.out, overwrite=arguments.overwrite, mark="simulation.yaml"
+    )  # before the work
+
+    from inverse_dynamics.simulation import MOUNTS, NOISE, QUANTISATION, simulate, write_run
+    from inverse_dynamics.simulation.sensors import EPOCH, Sensors
+
+    def chosen(three: Resolution | str | None, default: Resolution) -> Resolution | None:
+        return default if isinstance(three, str) else three
+
+    sensors = Sensors(
+        noise=chosen(arguments.noise, NOISE),
+        quantisation=chosen(arguments.quantisation, QUANTISATION),
+        drop=arguments.drop,
+        repeat=arguments.repeat,
+        jitter=arguments.jitter,
+        epoch=EPOCH if arguments.start_stamp is None else arguments.start_stamp,
+    )
+    with progress_bar() as progress:
+        result = simulate(
+            robot,
+            trajectory=arguments.trajectory,
+            optimise=arguments.optimise,
+            rate=arguments.rate,
+            duration=arguments.duration,
+            seed=arguments.seed,
+            sensors=sensors,
+            payload=arguments.payload,
+            joint_friction=arguments.joint_friction,
+            gravity=MOUNTS[arguments.mount] if arguments.mount else arguments.gravity,
+            table=arguments.table,
+            progress=progress,
+        )
+        write_run(
+            result,
+            arguments.out,
+            storage=arguments.storage,
+            overwrite=arguments.overwrite,
+            progress=progress,
+        )
+    _print(result, arguments.out)
+
+
+def _print(result: SimulatedRun, out: Path) -> None:
+    from rich.console import Console
+
+    console = Console(highlight=False, markup=False, soft_wrap=True)
+    settings, log = result.settings, result.log
+    excitation = (
+        ""
+        if result.condition_number is None
+        else f", condition number of the base regressor {result.condition_number:.1f}"
+    )
+    for note in result.notes:
+        console.print(f"note        {note}")
+    console.print(f"trajectory  {result.trajectory.duration:g} s{excitation}")
+    console.print(
+        f"recording   {out}, {log.topic}: {len(log)} messages of {len(log.joint_names)} joints, "
+        f"{settings['duration']:g} s at {settings['rate']} Hz"
+    )
+
+
+def _seed(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"expected an integer that isn't negative, got '{text}'")
+    return int(text)
+
+
+def _payload(text: str) -> Payload:
+    from inverse_dynamics.simulation.model import Payload
+
+    numbers = _numbers(text, (1, 4))
+    x, y, z = numbers[1:] or [0.0, 0.0, 0.0]
+    return Payload(numbers[0], (x, y, z))
+
+
+def _resolution(text: str) -> Resolution | str:
+    if text == "default":
+        return text
+    from inverse_dynamics.simulation.sensors import Resolution
+
+    return Resolution(*_numbers(text, (3,)))
+
+
+def _numbers(text: str, counts: tuple[int, ...]) -> list[float]:
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in counts or not all(math.isfinite(number) for number in numbers):
+        expected = " or ".join(map(str, counts))
+        raise argparse.ArgumentTypeError(
+            f"expected {expected} numbers, separated by commas, got '{text}'"
+        )
+    return numbers
