@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Inverse dynamics of any serial robot, from a URDF or from a model file, by the engine
+/// chain_dynamics.
+///
+///     auto solver = SolverLoader().load(
+///         "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody");
+///     solver->initialize({{"tip", "tool0"}}, "", urdf);           // rigid bodies of a URDF
+///     solver->initialize({{"model", "franka_gaz2019_feasible"}});   // a model file
+#pragma once
+
+#include <memory>
+
+#include "chain_dynamics/model.hpp"
+#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
+
+namespace rigid_body_inverse_dynamics_solver {
+
+using inverse_dynamics_solver::Configuration;
+using inverse_dynamics_solver::ConstVectorRef;
+using inverse_dynamics_solver::MatrixRef;
+using inverse_dynamics_solver::VectorRef;
+
+/// The engine as a solver.
+///
+/// Parameters beside those of every solver [configuration.hpp]:
+///
+/// | parameter | type   | default | meaning |
+/// |-----------|--------|---------|-----------------------------------------------------------------|
+/// | model     | string | ""      | model file: its path, or the name of one in the package | | |
+/// |         | inverse_dynamics_robots; empty: the robot description (URDF)    |
+///
+/// A model file goes before a robot description, which a node often carries for other programs. It
+/// states geometry, inertia, gravity, friction and drive gains itself; then `gravity` replaces the
+/// file's only where it is given, and `root`, `tip`, `attached`, `locked_joints` have no meaning:
+/// warnings() says so.
+///
+/// A URDF's friction isn't used [chain_dynamics/urdf.hpp]: friction is zero there.
+///
+/// Real time and threads: as the base class promises, for up to 64 joints. There is no state but
+/// the model.
+class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDynamicsSolver {
+ protected:
+  JointInfo configure(const Configuration& configuration) override;
+
+  /// For solvers of one particular robot: computes with this model from now on, with gravity and
+  /// friction as the configuration says. All or nothing, as configure().
+  JointInfo use(chain_dynamics::Model model, const Configuration& configuration);
+
+  /// The model in use; only after a successful initialize().
+  const chain_dynamics::Model& model() const { return *model_; }
+
+  void computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const override;
+  void computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
+                             VectorRef c) const override;
+  void computeGravityVector(const ConstVectorRef& q, VectorRef g) const override;
+  void computeFriction(const ConstVectorRef& qd, VectorRef f) const override;
+  void computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
+                                VectorRef c, VectorRef g) const override;
+  void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
+                      VectorRef tau) const override;
+  bool inertiaIsPhysicalImpl() const override { return inertia_is_physical_; }
+
+ private:
+  std::unique_ptr<const chain_dynamics::Model> model_;
+  bool inertia_is_physical_ = false;  // known once for all: model_ doesn't change
+};
+
+}  // namespace rigid_body_inverse_dynamics_solver

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
+
+#include <string>
+#include <utility>
+
+#include "rigid_body_inverse_dynamics_solver/model_files.hpp"
+
+namespace rigid_body_inverse_dynamics_solver {
+namespace {
+
+using inverse_dynamics_solver::errorText;
+using inverse_dynamics_solver::Exception;
+using inverse_dynamics_solver::InvalidParameterValueException;
+using inverse_dynamics_solver::ParameterUninitializedException;
+
+chain_dynamics::Model modelOfFile(const Configuration& configuration, const std::string& name) {
+  try {
+    return readModel(name);
+  } catch (const Exception& e) {
+    throw InvalidParameterValueException("parameter '" + configuration.fullName("model") +
+                                         "': " + e.what());
+  }
+}
+
+chain_dynamics::Model modelOfDescription(const Configuration& configuration) {
+  if (configuration.robot_description.empty()) {
+    throw ParameterUninitializedException(
+        errorText("robot description", "missing", "the text of a URDF, or a model file", "neither",
+                  "pass a URDF to initialize() as third argument, or set the parameter "
+                  "'robot_description' (without namespace) or '" +
+                      configuration.fullName("model") + "'"));
+  }
+  return chain_dynamics::Model(chainFromDescription(configuration));
+}
+
+/// A sentence for each parameter that a model file leaves without meaning.
+std::vector<std::string> unusedParameters(const Configuration& configuration) {
+  std::vector<std::string> warnings;
+  for (const char* const name : {"root", "tip", "attached"}) {
+    if (configuration.get<std::string>(name).value_or("").empty()) continue;
+    warnings.push_back("parameter '" + configuration.fullName(name) +
+                       "' isn't used: a model file states its chain itself");
+  }
+  return warnings;
+}
+
+/// What is odd about a model, a sentence each.
+std::vector<std::string> warningsOf(const chain_dynamics::Model& model, bool inertia_is_physical) {
+  if (inertia_is_physical) return model.chain.warnings();
+
+  // Link by link it would be a long list, and the figures of an identified link mean nothing.
+  return {"model " + model.name +
+          ": its inertia matrix isn't that of rigid bodies; fit for torques, unfit for forward "
+          "dynamics"};
+}
+
+}  // namespace
+
+auto InverseDynamicsSolverRigidBody::configure(const Configuration& configuration) -> JointInfo {
+  const std::string name = configuration.get<std::string>("model").value_or("");
+  if (name.empty()) return use(modelOfDescription(configuration), configuration);
+
+  std::vector<std::string> unused = unusedParameters(configuration);
+  JointInfo info = use(modelOfFile(configuration, name), configuration);
+  info.warnings.swap(unused);
+  info.warnings.insert(info.warnings.end(), unused.begin(), unused.end());
+  return info;
+}
+
+auto InverseDynamicsSolverRigidBody::use(chain_dynamics::Model model,
+                                         const Configuration& configuration) -> JointInfo {
+  if (configuration.gravity_given) model.chain = model.chain.withGravity(configuration.gravity);
+  if (!configuration.friction) model.friction.clear();
+  const bool inertia_is_physical = model.inertiaIsPhysical();
+  JointInfo info{model.chain.jointNames(), warningsOf(model, inertia_is_physical)};
+  auto complete = std::make_unique<const chain_dynamics::Model>(std::move(model));
+
+  // Keep; nothing below can throw.
+  model_ = std::move(complete);
+  inertia_is_physical_ = inertia_is_physical;
+  return info;
+}
+
+void InverseDynamicsSolverRigidBody::computeInertiaMatrix(const ConstVectorRef& q,
+                                                          MatrixRef H) const {
+  chain_dynamics::inertiaMatrix(model(), q, H);
+}
+
+void InverseDynamicsSolverRigidBody::computeCoriolisVector(const ConstVectorRef& q,
+                                                           const ConstVectorRef& qd,
+                                                           VectorRef c) const {
+  chain_dynamics::coriolisVector(model(), q, qd, c);
+}
+
+void InverseDynamicsSolverRigidBody::computeGravityVector(const ConstVectorRef& q,
+                                                          VectorRef g) const {
+  chain_dynamics::gravityVector(model(), q, g);
+}
+
+void InverseDynamicsSolverRigidBody::computeFriction(const ConstVectorRef& qd, VectorRef f) const {
+  chain_dynamics::frictionVector(model(), qd, f);
+}
+
+void InverseDynamicsSolverRigidBody::computeDynamicComponents(const ConstVectorRef& q,
+                                                              const ConstVectorRef& qd, MatrixRef H,
+                                                              VectorRef c, VectorRef g) const {
+  chain_dynamics::dynamicComponents(model(), q, qd, H, c, g);
+}
+
+void InverseDynamicsSolverRigidBody::computeTorques(const ConstVectorRef& q,
+                                                    const ConstVectorRef& qd,
+                                                    const ConstVectorRef& qdd,
+                                                    VectorRef tau) const {
+  // tau = H qdd + C qd + g, and f on top
+  chain_dynamics::torques(model(), q, qd, qdd, tau);
+  const auto& laws = model().friction;
+  for (std::size_t j = 0; j < laws.size(); ++j) {
+    const auto i = static_cast<Eigen::Index>(j);
+    tau[i] += chain_dynamics::friction(laws[j], qd[i]);
+  }
+}
+
+}  // namespace rigid_body_inverse_dynamics_solver
