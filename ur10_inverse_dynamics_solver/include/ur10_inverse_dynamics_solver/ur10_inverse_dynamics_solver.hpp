@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Inverse dynamics of the Universal Robots UR10 (CB series), identified at motor-current level.
+///
+///     ur10_inverse_dynamics_solver::InverseDynamicsSolverUR10 solver;
+///     solver.initialize();                                     // no parameter is needed
+///     Eigen::VectorXd tau = solver.getTorques(q, qd, qdd);     // N m, with friction
+///     Eigen::VectorXd i = solver.getCurrents(q, qd, qdd);      // A: tau = K i
+#pragma once
+
+#include <Eigen/Core>
+
+#include "inverse_dynamics_solver/motor_currents.hpp"
+#include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
+
+namespace ur10_inverse_dynamics_solver {
+
+// The names that programs written for the solver of this name know.
+// NOLINTBEGIN(readability-identifier-naming)
+inline constexpr unsigned short int NUMBER_OF_JOINTS = 6;
+using Vector6d = Eigen::Matrix<double, NUMBER_OF_JOINTS, 1>;
+using Matrix6d = Eigen::Matrix<double, NUMBER_OF_JOINTS, NUMBER_OF_JOINTS>;
+// NOLINTEND(readability-identifier-naming)
+
+/// The UR10 of Petrone, Ferrentino, Chiacchio, IEEE Transactions on Industrial Informatics, 2025,
+/// doi 10.1109/TII.2025.3534415: the engine with the file ur10_identified.yaml of the package
+/// inverse_dynamics_robots, where the figures stand.
+///
+/// Each joint was identified by itself, so H is neither symmetric nor positive definite:
+/// inertiaIsPhysical() is false; good for feed-forward torques, unfit for forward dynamics.
+/// Friction is not zero at rest.
+///
+/// Parameters: `gravity` and `friction` [configuration.hpp]. Others have no meaning here, and a
+/// robot description isn't read.
+///
+/// Real time: methods that return by value allocate the result; the others, inherited, don't.
+/// Threads: const methods are safe.
+class InverseDynamicsSolverUR10
+    : public rigid_body_inverse_dynamics_solver::InverseDynamicsSolverRigidBody,
+      public inverse_dynamics_solver::MotorCurrents {
+ public:
+  using ConstVectorRef = inverse_dynamics_solver::ConstVectorRef;
+
+  Eigen::VectorXd getCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                              const ConstVectorRef& qdd) const override;
+  Eigen::MatrixXd getInertiaCurrents(const ConstVectorRef& q) const override;
+  Eigen::VectorXd getCoriolisCurrents(const ConstVectorRef& q,
+                                      const ConstVectorRef& qd) const override;
+  Eigen::VectorXd getGravityCurrents(const ConstVectorRef& q) const override;
+  Eigen::VectorXd getFrictionCurrents(const ConstVectorRef& qd) const override;
+  Eigen::MatrixXd getDriveGainsMatrix() const override;
+
+ protected:
+  JointInfo configure(const inverse_dynamics_solver::Configuration& configuration) override;
+};
+
+}  // namespace ur10_inverse_dynamics_solver

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ur10_inverse_dynamics_solver/ur10_inverse_dynamics_solver.hpp"
+
+#include <string>
+#include <utility>
+
+#include "inverse_dynamics_solver/exceptions.hpp"
+#include "rigid_body_inverse_dynamics_solver/model_files.hpp"
+
+namespace ur10_inverse_dynamics_solver {
+namespace {
+
+const char* const kModel = "ur10_identified";
+
+}  // namespace
+
+auto InverseDynamicsSolverUR10::configure(
+    const inverse_dynamics_solver::Configuration& configuration) -> JointInfo {
+  chain_dynamics::Model model = rigid_body_inverse_dynamics_solver::readModel(kModel);
+
+  // An overlaid workspace may bring another file of that name.
+  if (model.chain.jointCount() != NUMBER_OF_JOINTS ||
+      model.drive_gains.size() != NUMBER_OF_JOINTS) {
+    throw inverse_dynamics_solver::Exception(inverse_dynamics_solver::errorText(
+        std::string("model ") + kModel, "not a UR10's",
+        std::to_string(NUMBER_OF_JOINTS) + " joints with a drive gain each",
+        std::to_string(model.chain.jointCount()) + " joints, " +
+            std::to_string(model.drive_gains.size()) + " drive gains",
+        "for another robot use rigid_body_inverse_dynamics_solver with its model"));
+  }
+  return use(std::move(model), configuration);
+}
+
+// The current of each term is its torque divided by the gain of its joint, i = K^-1 tau. The
+// methods of the base class check their arguments.
+
+Eigen::VectorXd InverseDynamicsSolverUR10::getCurrents(const ConstVectorRef& q,
+                                                       const ConstVectorRef& qd,
+                                                       const ConstVectorRef& qdd) const {
+  Eigen::VectorXd i = getTorques(q, qd, qdd);
+  i.array() /= model().drive_gains.array();
+  return i;
+}
+
+Eigen::MatrixXd InverseDynamicsSolverUR10::getInertiaCurrents(const ConstVectorRef& q) const {
+  Eigen::MatrixXd B = getInertiaMatrix(q);
+  B.array().colwise() /= model().drive_gains.array();
+  return B;
+}
+
+Eigen::VectorXd InverseDynamicsSolverUR10::getCoriolisCurrents(const ConstVectorRef& q,
+                                                               const ConstVectorRef& qd) const {
+  Eigen::VectorXd i = getCoriolisVector(q, qd);
+  i.array() /= model().drive_gains.array();
+  return i;
+}
+
+Eigen::VectorXd InverseDynamicsSolverUR10::getGravityCurrents(const ConstVectorRef& q) const {
+  Eigen::VectorXd i = getGravityVector(q);
+  i.array() /= model().drive_gains.array();
+  return i;
+}
+
+Eigen::VectorXd InverseDynamicsSolverUR10::getFrictionCurrents(const ConstVectorRef& qd) const {
+  Eigen::VectorXd i = getFrictionVector(qd);
+  i.array() /= model().drive_gains.array();
+  return i;
+}
+
+Eigen::MatrixXd InverseDynamicsSolverUR10::getDriveGainsMatrix() const {
+  if (!isInitialized()) {
+    throw inverse_dynamics_solver::UninitializedException("getDriveGainsMatrix");
+  }
+  return model().drive_gains.asDiagonal();
+}
+
+}  // namespace ur10_inverse_dynamics_solver

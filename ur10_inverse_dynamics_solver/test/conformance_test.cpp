@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/conformance_tests.hpp"
+
+namespace {
+
+using namespace inverse_dynamics_solver::conformance;
+
+struct UR10 : SolverTraits {
+  static constexpr const char* kPlugin = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10";
+  static constexpr const char* kGravityIsNotConservative =
+      "each row of the identified model has parameters of its own";
+};
+
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(UR10, UR10);
+
+}  // namespace
