@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "franka_inria_inverse_dynamics_solver/franka_inria_inverse_dynamics_solver.hpp"
+
+#include "rigid_body_inverse_dynamics_solver/model_files.hpp"
+
+namespace franka_inria_inverse_dynamics_solver {
+
+auto InverseDynamicsSolverFrankaInria::configure(
+    const inverse_dynamics_solver::Configuration& configuration) -> JointInfo {
+  return use(rigid_body_inverse_dynamics_solver::readModel("franka_inria_identified"),
+             configuration);
+}
+
+}  // namespace franka_inria_inverse_dynamics_solver
