@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Collection
 
+    from inverse_dynamics._core import SampleReport
     from inverse_dynamics.joint_log import Floats, JointLog, Mask
 
 # What each method does, as --help says it.
@@ -137,7 +138,7 @@ def findings(log: JointLog, how: Accelerations, samples: Samples) -> list[str]:
     return said
 
 
-def _samples(report: object) -> Samples:
+def _samples(report: SampleReport) -> Samples:
     names = ("repeated", "non_increasing", "start_transient", "isolated", "kept")
     masks = {name: getattr(report, name) for name in names}
-    return Samples(**masks, period=report.period, jitter=report.jitter)  # type: ignore[attr-defined]
+    return Samples(**masks, period=report.period, jitter=report.jitter)

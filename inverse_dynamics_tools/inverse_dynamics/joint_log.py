@@ -58,7 +58,7 @@ class JointLog:
     @property
     def time(self) -> Floats:
         """(N,) s since the first sample."""
-        return (self.stamps - self.stamps[:1]) * 1e-9
+        return (self.stamps - self.stamps[:1]).astype("float64") * 1e-9
 
     def __len__(self) -> int:
         return len(self.q)

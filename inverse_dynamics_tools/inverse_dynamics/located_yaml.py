@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import yaml
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection
     from pathlib import Path
 
     from inverse_dynamics.errors import UserError
@@ -47,7 +47,7 @@ class Value:
         """The value as plain Python data."""
         return yaml.SafeLoader("").construct_document(self.node)
 
-    def text(self, one_of: Sequence[str] = ()) -> str:
+    def text(self, one_of: Collection[str] = ()) -> str:
         """A text; one of these, if any are given."""
         value = self.data()
         if not isinstance(value, str):

@@ -19,6 +19,8 @@ from inverse_dynamics.errors import RobotError
 from inverse_dynamics.located_yaml import read_mapping
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from inverse_dynamics.located_yaml import Mapping, Value
 
 SCHEMA = 1
@@ -126,7 +128,7 @@ def _read(file: Path) -> Robot:
     return robot
 
 
-def _text(value: Value | None, default: str = "", one_of: tuple[str, ...] = ()) -> str:
+def _text(value: Value | None, default: str = "", one_of: Collection[str] = ()) -> str:
     return default if value is None else value.text(one_of)
 
 

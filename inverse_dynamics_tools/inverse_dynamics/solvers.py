@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A solver made ready for a robot."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from inverse_dynamics import _core
+from inverse_dynamics.errors import SolverError
+
+if TYPE_CHECKING:
+    from inverse_dynamics.robots import Robot
+
+
+def open_solver(robot: Robot, description: str = "") -> _core.Solver:
+    """The solver that a run configuration names. description: URDF text, or none.
+
+    Raises SolverError: the solver's, with the robot before its text.
+    """
+    try:
+        return _core.Solver(
+            robot.plugin,
+            urdf=description,
+            root=robot.root,
+            tip=robot.tip,
+            gravity=robot.gravity,
+            friction=robot.friction,
+            model=None if robot.model is None else str(robot.model),
+        )
+    except SolverError as error:
+        where = f"robot {robot.name}" + (f" ({robot.urdf})" if robot.urdf else "")
+        raise type(error)(f"{where}: {robot.plugin}: {error}") from error

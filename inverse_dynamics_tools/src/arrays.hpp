@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// numpy arrays as Eigen matrices, without a copy: states are rows there, columns here.
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace inverse_dynamics_tools {
+
+/// Doubles, row after row; an array of another type or layout is copied into one.
+using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
+
+using ConstMap = Eigen::Map<const Eigen::MatrixXd>;
+using Map = Eigen::Map<Eigen::MatrixXd>;
+
+/// The states of an array (n,) or (N, n) as columns of an n x N matrix.
+///
+/// @throws pybind11::value_error  another number of dimensions; `name` is what the text calls it.
+inline ConstMap states(const Array& array, const char* name) {
+  if (array.ndim() != 1 && array.ndim() != 2) {
+    throw pybind11::value_error(std::string(name) +
+                                ": expected an array (n,) or (N, n), one state a row, got " +
+                                std::to_string(array.ndim()) + " dimensions");
+  }
+  const auto n = array.shape(array.ndim() - 1);
+  return {array.data(), n, array.ndim() == 1 ? 1 : array.shape(0)};
+}
+
+/// A new array of the same shape.
+inline Array like(const Array& array) {
+  return Array(std::vector<pybind11::ssize_t>(array.shape(), array.shape() + array.ndim()));
+}
+
+/// The columns of a new array that is written to.
+inline Map columns(Array& array) {
+  const auto n = array.shape(array.ndim() - 1);
+  return {array.mutable_data(), n, array.ndim() == 1 ? 1 : array.shape(0)};
+}
+
+}  // namespace inverse_dynamics_tools

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "errors.hpp"
+
+#include <pybind11/pybind11.h>
+
+#include <chain_dynamics/error.hpp>
+#include <exception>
+#include <inverse_dynamics_evaluation/error.hpp>
+#include <inverse_dynamics_solver/exceptions.hpp>
+
+namespace inverse_dynamics_tools {
+namespace {
+
+namespace py = pybind11;
+namespace ids = inverse_dynamics_solver;
+
+void raise(const char* class_name, const std::exception& error) {
+  const py::object type = py::module_::import("inverse_dynamics.errors").attr(class_name);
+  PyErr_SetString(type.ptr(), error.what());
+}
+
+void translate(std::exception_ptr thrown) {
+  if (!thrown) return;
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const ids::PluginNotFoundException& e) {
+    raise("PluginNotFoundError", e);
+  } catch (const ids::ParameterUninitializedException& e) {
+    raise("ParameterMissingError", e);
+  } catch (const ids::InvalidRobotDescriptionException& e) {
+    raise("InvalidRobotDescriptionError", e);
+  } catch (const ids::InvalidParameterValueException& e) {
+    raise("InvalidParameterError", e);
+  } catch (const ids::SizeMismatchException& e) {
+    raise("SizeMismatchError", e);
+  } catch (const ids::Exception& e) {
+    raise("SolverError", e);
+  } catch (const inverse_dynamics_evaluation::EvaluationError& e) {
+    raise("EvaluationError", e);
+  } catch (const chain_dynamics::ModelError& e) {
+    raise("SolverError", e);
+  }
+}
+
+}  // namespace
+
+void bindErrors() { py::register_local_exception_translator(&translate); }
+
+}  // namespace inverse_dynamics_tools
