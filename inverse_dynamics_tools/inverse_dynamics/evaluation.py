@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a recording to computed torques and their errors.
+
+result = evaluate("recording", "ur10_real")
+for error in result.errors:
+    print(error.joint, error.rmse, error.unit)
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.accelerations import (
+    Accelerations,
+    Samples,
+    estimate_accelerations,
+    findings,
+)
+from inverse_dynamics.bags import read_joint_log
+from inverse_dynamics.descriptions import joint_units, read_description
+from inverse_dynamics.errors import EvaluationError, RobotError
+from inverse_dynamics.joint_log import no_progress
+from inverse_dynamics.robots import Robot, load_robot
+from inverse_dynamics.solvers import open_solver
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics.joint_log import Clock, Floats, JointLog, Mask, Progress
+
+
+@dataclass(frozen=True)
+class JointError:
+    """How far the computed torques of one joint are from the measured ones: see docs/notation.md.
+
+    NaN where a figure is undefined (nrmse and r2 of a joint whose measured torque never changes).
+    """
+
+    joint: str
+    unit: str  # of mae, rmse, bias: N m or N
+    mae: float
+    rmse: float
+    nrmse: float  # share of the measured range: 0.01 is 1 %
+    bias: float
+    r2: float
+    max_abs: float
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Measured and computed torques of a recorded motion. N samples, n joints; order of the chain.
+
+    robot: the run configuration with everything that was overridden; root, tip, joints filled in.
+    """
+
+    robot: Robot
+    bag: Path
+    log: JointLog
+    joint_names: tuple[str, ...]  # those of the solver; the recording's are log.joint_names
+    units: tuple[str, ...]
+    accelerations: Accelerations
+    samples: Samples
+    qdd: Floats  # (N, n) rad/s^2 or m/s^2
+    computed: Floats  # (N, n) N m or N
+    errors: tuple[JointError, ...]  # over all samples
+    errors_of_kept: tuple[JointError, ...]  # over samples.kept: to be shown beside the others
+    notes: tuple[str, ...] = ()  # what was left out or assumed, in words
+    seconds: dict[str, float] = field(default_factory=dict)  # what took how long
+
+    @property
+    def measured(self) -> Floats:
+        """(N, n) N m or N: the recorded efforts."""
+        return self.log.effort
+
+    @property
+    def time(self) -> Floats:
+        """(N,) s since the first sample."""
+        return self.log.time
+
+    @property
+    def mean_rmse(self) -> float:
+        """Mean over the joints of the root mean square errors."""
+        return sum(e.rmse for e in self.errors) / len(self.errors)
+
+
+def evaluate(
+    bag: Path | str,
+    robot: Robot | Path | str,
+    *,
+    plugin: str | None = None,
+    friction: bool | None = None,
+    urdf: Path | str | None = None,
+    root: str | None = None,
+    tip: str | None = None,
+    gravity: tuple[float, float, float] | None = None,
+    topic: str | None = None,
+    joints: Sequence[str] | None = None,
+    accelerations: str | None = None,
+    cutoff: float | None = None,
+    clock: Clock = "auto",
+    without_rules: Sequence[str] = (),
+    progress: Progress = no_progress,
+) -> Evaluation:
+    """Compute the torques of a recorded motion and compare them with the measured ones.
+
+    bag: rosbag2 recording of sensor_msgs/JointState. robot: a name of robot_names(), the file of a
+    run configuration, or one that is loaded. What else is given replaces what the configuration
+    says: see Robot. accelerations: one of accelerations.METHODS; cutoff: Hz, of a low-pass. clock:
+    which stamps are the time. without_rules: those of accelerations.RULES not to be acted upon.
+
+    Raises UserError: BagError, RobotError, SolverError, EvaluationError.
+    """
+    if not isinstance(robot, Robot):
+        robot = load_robot(robot)
+    given = {
+        "plugin": plugin,
+        "friction": friction,
+        "urdf": None if urdf is None else Path(urdf),
+        "root": root,
+        "tip": tip,
+        "gravity": gravity,
+        "topic": topic,
+        "joints": None if joints is None else tuple(joints),
+        "accelerations": accelerations,
+        "cutoff": cutoff,
+    }
+    robot = replace(robot, **{k: v for k, v in given.items() if v is not None})  # type: ignore[arg-type]
+    if accelerations is not None and cutoff is None:
+        robot = replace(robot, cutoff=None)  # the configuration's belongs to its own method
+    if urdf is not None:
+        robot = replace(robot, model=None)
+    bag = Path(bag)
+
+    clock_start = time.perf_counter()
+    description = "" if robot.urdf is None else read_description(robot.urdf)
+    solver = open_solver(robot, description)
+    joint_names = tuple(solver.joint_names)
+    recorded_names = _recorded_names(robot, joint_names)
+    solver_ready = time.perf_counter()
+    log = read_joint_log(bag, recorded_names, topic=robot.topic, clock=clock, progress=progress)
+    read = time.perf_counter()
+    progress("computing", 0, len(log))
+    try:
+        qdd, how, samples = estimate_accelerations(
+            log, robot.accelerations, robot.cutoff, without_rules
+        )
+    except EvaluationError as error:
+        raise EvaluationError(f"{bag}: {log.topic}: {error}") from error
+    filtered = time.perf_counter()
+    computed = solver.torques(log.q, log.qd, qdd)
+    units = joint_units(description, joint_names)
+    errors = joint_errors(joint_names, units, computed, log.effort)
+    errors_of_kept = errors
+    if samples.left_out:
+        errors_of_kept = joint_errors(joint_names, units, computed, log.effort, samples.kept)
+    done = time.perf_counter()
+    progress("computing", len(log), len(log))
+    return Evaluation(
+        robot=replace(robot, joints=recorded_names, topic=log.topic),
+        bag=bag,
+        log=log,
+        joint_names=joint_names,
+        units=units,
+        accelerations=how,
+        samples=samples,
+        qdd=qdd,
+        computed=computed,
+        errors=errors,
+        errors_of_kept=errors_of_kept,
+        notes=(*solver.warnings, *log.notes, *findings(log, how, samples)),
+        seconds={
+            "solver": solver_ready - clock_start,
+            "reading": read - solver_ready,
+            "accelerations": filtered - read,
+            "torques": done - filtered,
+        },
+    )
+
+
+def joint_errors(
+    joint_names: Sequence[str],
+    units: Sequence[str],
+    computed: Floats,
+    measured: Floats,
+    kept: Mask | None = None,
+) -> tuple[JointError, ...]:
+    """Errors of each joint; computed and measured are (N, n), kept (N,) says which samples count."""
+    from inverse_dynamics import _core
+
+    metrics = _core.metrics(computed, measured, kept)
+    return tuple(
+        JointError(joint, unit, m.mae, m.rmse, m.nrmse, m.bias, m.r2, m.max_abs)
+        for joint, unit, m in zip(joint_names, units, metrics, strict=True)
+    )
+
+
+def _recorded_names(robot: Robot, joint_names: tuple[str, ...]) -> tuple[str, ...]:
+    """Names in the recording of the solver's joints, in the order of the chain."""
+    if not robot.joints:
+        return joint_names
+    if len(robot.joints) != len(joint_names):
+        raise RobotError(
+            f"joints: expected {len(joint_names)} names, one per joint of the chain "
+            f"({', '.join(joint_names)}), got {len(robot.joints)} ({', '.join(robot.joints)})"
+        )
+    if set(robot.joints) == set(joint_names) and robot.joints != joint_names:
+        raise RobotError(
+            f"joints: expected the order of the chain, {', '.join(joint_names)}, got "
+            f"{', '.join(robot.joints)}; the recording's order doesn't matter, so leave --joints out"
+        )
+    return robot.joints

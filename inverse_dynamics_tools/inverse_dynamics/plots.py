@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Figures of an evaluation.
+
+Measured is black and dashed, computed red, the error blue: told apart in black and white, and by
+colour-blind readers.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from typing import Any
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from inverse_dynamics.evaluation import Evaluation
+    from inverse_dynamics.joint_log import Floats
+
+MEASURED: dict[str, Any] = {"color": "black", "linestyle": (0, (3.0, 1.6)), "linewidth": 0.9}
+COMPUTED: dict[str, Any] = {"color": "#d7191c", "linewidth": 1.2}
+ERROR: dict[str, Any] = {"color": "#2c5f9e", "linewidth": 0.7}
+_MUTED = "#555555"
+
+_MOST_POINTS = 6000  # of a line; beyond it, lowest and highest of each of half as many stretches
+
+_STYLE: Any = {
+    "font.size": 8.5,
+    "font.family": "sans-serif",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "#999999",
+    "axes.linewidth": 0.6,
+    "axes.grid": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.5,
+    "xtick.color": _MUTED,
+    "ytick.color": _MUTED,
+    "svg.fonttype": "none",
+    "pdf.fonttype": 42,
+    "path.simplify": True,
+    "path.simplify_threshold": 0.3,
+}
+
+
+def save_torque_figure(evaluation: Evaluation, file: Path) -> None:
+    """Save torque_figure(); the format is that of the suffix. The same evaluation, the same bytes."""
+    import matplotlib as mpl
+
+    with mpl.rc_context({**_STYLE, "svg.hashsalt": "inverse_dynamics"}):
+        figure = torque_figure(evaluation)
+        metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(file.suffix)
+        figure.savefig(file, dpi=160, metadata=metadata)
+
+
+def torque_figure(evaluation: Evaluation) -> Figure:
+    """Measured and computed torque over time, and the error, a joint a row."""
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+
+    n = len(evaluation.joint_names)
+    height = 1.25 * n + 1.7
+    figure = Figure(figsize=(11.0, height))
+    axes = figure.subplots(n, 2, sharex=True, squeeze=False, width_ratios=(1.7, 1.0))
+    figure.subplots_adjust(
+        left=0.065,
+        right=0.985,
+        top=1 - 1.32 / height,
+        bottom=0.5 / height,
+        hspace=0.42,
+        wspace=0.13,
+    )
+    time = evaluation.time
+    for j, (left, right) in enumerate(axes):
+        _draw_torques(left, evaluation, time, j)
+        _draw_error(right, evaluation, time, j)
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]", color=_MUTED)
+        axis.set_xlim(time[0], time[-1])
+
+    def at(inches_from_top: float) -> float:
+        return 1 - inches_from_top / height
+
+    robot = evaluation.robot
+    title = robot.description or robot.name
+    size = min(13.0, 13.0 * 100 / len(title))  # long ones on one line too
+    figure.text(0.012, at(0.3), title, fontsize=size, fontweight="bold")
+    figure.text(0.012, at(0.52), _subtitle(evaluation), color=_MUTED)
+    figure.text(0.012, at(0.7), _assumptions(evaluation), color=_MUTED)
+    columns = (
+        {"measured torque": MEASURED, "computed torque": COMPUTED},
+        {"error: computed - measured": ERROR},
+    )
+    for axis, lines in zip(axes[0], columns, strict=True):
+        figure.legend(
+            handles=[Line2D([], [], label=label, **style) for label, style in lines.items()],
+            loc="upper left",
+            bbox_to_anchor=(axis.get_position().x0, at(0.87)),
+            borderaxespad=0,
+            borderpad=0,
+            ncols=2,
+            frameon=False,
+            fontsize=9,
+        )
+    return figure
+
+
+def _draw_torques(axes: Axes, evaluation: Evaluation, time: Floats, j: int) -> None:
+    axes.plot(*_thinned(time, evaluation.computed[:, j]), **COMPUTED)
+    axes.plot(*_thinned(time, evaluation.measured[:, j]), **MEASURED)
+    axes.set_title(
+        f"{evaluation.joint_names[j]} [{evaluation.units[j]}]", loc="left", fontsize=9, pad=3
+    )
+    axes.margins(y=0.08)
+
+
+def _draw_error(axes: Axes, evaluation: Evaluation, time: Floats, j: int) -> None:
+    error = evaluation.errors[j]
+    t, difference = _thinned(time, evaluation.computed[:, j] - evaluation.measured[:, j])
+    axes.axhline(0, color="#999999", linewidth=0.6)
+    axes.fill_between(t, 0, difference, color=ERROR["color"], alpha=0.15, linewidth=0)
+    axes.plot(t, difference, **ERROR)
+    largest = float(np.max(np.abs(difference))) or 1.0
+    axes.set_ylim(-1.1 * largest, 1.1 * largest)
+    share = "" if np.isnan(error.nrmse) else f", {100 * error.nrmse:.1f} % of measured range"
+    axes.set_title(
+        f"RMSE {error.rmse:.3g} {error.unit}{share}", loc="left", fontsize=9, pad=3, color=_MUTED
+    )
+
+
+def _subtitle(evaluation: Evaluation) -> str:
+    friction = "" if evaluation.robot.friction else ", friction left out"
+    return f"{evaluation.robot.name}   ·   solver {evaluation.robot.plugin}{friction}"
+
+
+def _assumptions(evaluation: Evaluation) -> str:
+    return (
+        f"{evaluation.bag.name}, {len(evaluation.log)} samples, {evaluation.time[-1]:.1f} s   ·   "
+        f"accelerations: {evaluation.accelerations.summary}"
+    )
+
+
+def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """At most _MOST_POINTS points that look the same: lowest and highest of each stretch."""
+    if len(x) <= _MOST_POINTS:
+        return x, y
+    stretch = -(-2 * len(x) // _MOST_POINTS)
+    whole = len(x) // stretch * stretch
+    rows = y[:whole].reshape(-1, stretch)
+    first = np.arange(0, whole, stretch)
+    picked = np.concatenate(
+        [first + rows.argmin(axis=1), first + rows.argmax(axis=1), [len(x) - 1]]
+    )
+    picked = np.unique(picked)
+    return x[picked], y[picked]

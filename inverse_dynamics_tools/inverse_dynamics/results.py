@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An evaluation as a directory of files, and back.
+
+evaluation.json   what was evaluated, how, and what was assumed; marks the directory
+metrics.json      errors of each joint
+series.npz        time, q, qd, qdd, measured and computed torques, stamps; one row per sample
+bag/              recording with /torques (computed) and /torques_gt (measured)
+torques.png, .svg, .pdf
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics.accelerations import Accelerations, Samples
+from inverse_dynamics.bags import write_joint_logs
+from inverse_dynamics.errors import OutputError
+from inverse_dynamics.evaluation import Evaluation, JointError
+from inverse_dynamics.files import written_whole
+from inverse_dynamics.joint_log import JointLog, no_progress
+from inverse_dynamics.robots import Robot
+
+if TYPE_CHECKING:
+    from inverse_dynamics.joint_log import Progress, Storage
+
+SCHEMA = 1
+MARK = "evaluation.json"
+PLOT_FORMATS = ("png", "svg", "pdf")
+
+_MASKS = ("repeated", "non_increasing", "start_transient", "isolated", "kept")
+
+COMPUTED_TOPIC = "/torques"
+MEASURED_TOPIC = "/torques_gt"
+
+
+def write_evaluation(
+    evaluation: Evaluation,
+    directory: Path | str,
+    *,
+    overwrite: bool = False,
+    storage: Storage | None = None,
+    progress: Progress = no_progress,
+) -> None:
+    """Write all files of an evaluation, or none of them.
+
+    overwrite: replace an older result. storage: sqlite3 or mcap; None: that of the recording.
+    Raises OutputError, BagError.
+    """
+    from inverse_dynamics.plots import save_torque_figure
+
+    with written_whole(Path(directory), overwrite=overwrite, mark=MARK) as target:
+        log = evaluation.log
+        topics = {
+            COMPUTED_TOPIC: replace(log, effort=evaluation.computed),
+            MEASURED_TOPIC: log,
+        }
+        write_joint_logs(target / "bag", topics, storage=storage or log.storage, progress=progress)
+        _write_json(target / "metrics.json", _metrics(evaluation))
+        _write_json(target / MARK, _summary(evaluation))
+        np.savez(target / "series.npz", allow_pickle=False, **_series(evaluation))
+        for i, suffix in enumerate(PLOT_FORMATS):
+            progress("plotting", i, len(PLOT_FORMATS))
+            save_torque_figure(evaluation, target / f"torques.{suffix}")
+        progress("plotting", len(PLOT_FORMATS), len(PLOT_FORMATS))
+
+
+def read_evaluation(directory: Path | str) -> Evaluation:
+    """An evaluation that write_evaluation() wrote. Raises OutputError."""
+    directory = Path(directory)
+    file = directory / MARK
+    if not file.is_file():
+        raise OutputError(
+            f"{directory}: holds no {MARK}; expected a directory written by `ids evaluate`"
+        )
+    try:
+        data = json.loads(file.read_text())
+        if data["schema"] != SCHEMA:
+            raise OutputError(
+                f"{file}: expected schema {SCHEMA}, got {data['schema']}; evaluate again"
+            )
+        metrics = json.loads((directory / "metrics.json").read_text())
+        with np.load(directory / "series.npz", allow_pickle=False) as series:
+            arrays = {name: series[name] for name in series.files}
+        return _from_files(data, metrics, arrays)
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise OutputError(
+            f"{directory}: isn't a complete evaluation ({type(error).__name__}: {error}); evaluate "
+            "again"
+        ) from error
+
+
+def _series(evaluation: Evaluation) -> dict[str, Any]:
+    log = evaluation.log
+    return {
+        "time": evaluation.time,
+        "header_stamps": log.header_stamps,
+        "receive_stamps": log.receive_stamps,
+        "q": log.q,
+        "qd": log.qd,
+        "qdd": evaluation.qdd,
+        "measured": log.effort,
+        "computed": evaluation.computed,
+        **{name: getattr(evaluation.samples, name) for name in _MASKS},
+    }
+
+
+def _metrics(evaluation: Evaluation) -> dict[str, Any]:
+    """For people and scripts: errors, and enough to know of what."""
+    return {
+        "robot": evaluation.robot.name,
+        "plugin": evaluation.robot.plugin,
+        "friction": evaluation.robot.friction,
+        "bag": str(evaluation.bag),
+        "samples": len(evaluation.log),
+        "accelerations": asdict(evaluation.accelerations),
+        "joints": [_without_nan(error) for error in evaluation.errors],
+        "mean_rmse": evaluation.mean_rmse if len(set(evaluation.units)) == 1 else None,
+        "kept": {
+            "samples": len(evaluation.log) - evaluation.samples.left_out,
+            "joints": [_without_nan(error) for error in evaluation.errors_of_kept],
+        },
+    }
+
+
+def _summary(evaluation: Evaluation) -> dict[str, Any]:
+    log, robot = evaluation.log, evaluation.robot
+    return {
+        "schema": SCHEMA,
+        "bag": str(evaluation.bag),
+        "samples": len(log),
+        "duration": float(evaluation.time[-1]),
+        "robot": {
+            f.name: _plain(getattr(robot, f.name)) for f in fields(robot) if f.name != "simulation"
+        },
+        "joint_names": list(evaluation.joint_names),
+        "units": list(evaluation.units),
+        "accelerations": asdict(evaluation.accelerations),
+        "sampling": {"period": evaluation.samples.period, "jitter": evaluation.samples.jitter},
+        "recording": {
+            "joint_names": list(log.joint_names),
+            "frame_id": log.frame_id,
+            "clock": log.clock,
+            "topic": log.topic,
+            "storage": log.storage,
+            "notes": list(log.notes),
+        },
+        "notes": list(evaluation.notes),
+        "seconds": evaluation.seconds,
+    }
+
+
+def _from_files(
+    data: dict[str, Any], metrics: dict[str, Any], arrays: dict[str, Any]
+) -> Evaluation:
+    robot = data["robot"]
+    for name in ("file", "urdf", "model"):
+        robot[name] = None if robot[name] is None else Path(robot[name])
+    robot["gravity"] = None if robot["gravity"] is None else tuple(robot["gravity"])
+    robot["joints"] = tuple(robot["joints"])
+    recording = data["recording"]
+    log = JointLog(
+        joint_names=tuple(recording["joint_names"]),
+        header_stamps=arrays["header_stamps"],
+        receive_stamps=arrays["receive_stamps"],
+        q=arrays["q"],
+        qd=arrays["qd"],
+        effort=arrays["measured"],
+        frame_id=recording["frame_id"],
+        clock=recording["clock"],
+        topic=recording["topic"],
+        storage=recording["storage"],
+        notes=tuple(recording["notes"]),
+    )
+    samples = Samples(**{name: arrays[name] for name in _MASKS}, **data["sampling"])
+    return Evaluation(
+        robot=Robot(**robot),
+        bag=Path(data["bag"]),
+        log=log,
+        joint_names=tuple(data["joint_names"]),
+        units=tuple(data["units"]),
+        accelerations=Accelerations(**data["accelerations"]),
+        samples=samples,
+        qdd=arrays["qdd"],
+        computed=arrays["computed"],
+        errors=_errors(metrics["joints"]),
+        errors_of_kept=_errors(metrics["kept"]["joints"]),
+        notes=tuple(data["notes"]),
+        seconds=data["seconds"],
+    )
+
+
+def _write_json(file: Path, data: dict[str, Any]) -> None:
+    file.write_text(json.dumps(data, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
+
+
+def _plain(value: object) -> object:
+    return str(value) if isinstance(value, Path) else value
+
+
+def _without_nan(error: JointError) -> dict[str, Any]:
+    """Undefined figures are null: JSON has no NaN."""
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value
+        for name, value in asdict(error).items()
+    }
+
+
+def _errors(joints: list[dict[str, Any]]) -> tuple[JointError, ...]:
+    def error(joint: dict[str, Any]) -> JointError:
+        figures: dict[str, Any] = {k: math.nan if v is None else v for k, v in joint.items()}
+        return JointError(**figures)
+
+    return tuple(error(joint) for joint in joints)

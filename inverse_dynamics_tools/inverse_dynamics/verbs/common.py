@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What verbs share: types of options, progress on the screen."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from inverse_dynamics.joint_log import Progress
+
+
+def three_numbers(text: str) -> tuple[float, float, float]:
+    """`x,y,z` of an option."""
+    try:
+        x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"expected three numbers, x,y,z, got '{text}'") from None
+    if not all(math.isfinite(number) for number in (x, y, z)):
+        raise argparse.ArgumentTypeError(f"expected finite numbers, got '{text}'")
+    return (x, y, z)
+
+
+def names(text: str) -> tuple[str, ...]:
+    """`a,b,c` of an option."""
+    parts = tuple(part.strip() for part in text.split(","))
+    if not all(parts):
+        raise argparse.ArgumentTypeError(f"expected names, a,b,c, got '{text}'")
+    return parts
+
+
+def positive_number(text: str) -> float:
+    """A number above zero of an option."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not (number > 0 and math.isfinite(number)):
+        raise argparse.ArgumentTypeError(f"expected a number above zero, got '{text}'")
+    return number
+
+
+@contextmanager
+def progress_bar() -> Iterator[Progress]:
+    """A bar per kind of work, on stderr, gone at the end; none where stderr isn't a terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    console = Console(stderr=True)
+    with Progress(
+        TextColumn("{task.description:<16}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        console=console,
+        transient=True,
+        disable=not console.is_terminal,
+    ) as bars:
+        tasks: dict[str, object] = {}
+
+        def show(what: str, done: int, total: int) -> None:
+            if what not in tasks:
+                tasks[what] = bars.add_task(what, total=total)
+            bars.update(tasks[what], completed=done, total=total)  # type: ignore[arg-type]
+
+        yield show

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids evaluate`: from a recording to computed torques, errors and plots."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.verbs.common import names, positive_number, progress_bar, three_numbers
+
+if TYPE_CHECKING:
+    from inverse_dynamics.evaluation import Evaluation
+
+_EPILOG = """\
+examples:
+  ids evaluate recording --robot ur10_real
+      computed against measured torques, as the run configuration ur10_real says
+
+  ids evaluate recording --robot my_robot.yaml --out result
+      a robot of your own, results into the directory result
+
+  ids evaluate recording --robot ur10_real \\
+      --plugin kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL
+      another solver on the same robot
+
+  ids evaluate recording --robot panda_real --accelerations low-pass --cutoff 5
+      another filter; backward-difference is the raw one
+
+  ids evaluate recording --robot ur10_real --gravity 0,-9.81,0
+      mounted on a wall: where things fall, in the frame of the root link
+
+results, written whole or not at all:
+  metrics.json            errors of each joint
+  torques.png .svg .pdf   measured and computed torques and the error, over time
+  bag/                    recording with /torques (computed) and /torques_gt (measured)
+  series.npz              time, q, qd, qdd, measured, computed, for numpy.load()
+  evaluation.json         what was assumed: filter, messages left out, model
+"""
+
+
+def add_parser(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+) -> argparse.ArgumentParser:
+    """Declare the verb."""
+    from inverse_dynamics.accelerations import METHODS, RULES
+    from inverse_dynamics.joint_log import CLOCKS
+
+    parser = subparsers.add_parser(
+        "evaluate",
+        help="compute the torques of a recorded motion and compare them with the measured ones",
+        description=(
+            "Compute the torques of a recorded motion and compare them with the measured ones."
+        ),
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "bag",
+        metavar="BAG",
+        type=Path,
+        help="rosbag2 recording of sensor_msgs/JointState: a directory, or a .db3 or .mcap file",
+    )
+    parser.add_argument(
+        "--robot",
+        metavar="NAME|FILE",
+        required=True,
+        help="run configuration: a name that `ids robots` lists, or a YAML file",
+    )
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        help="where results go (default: BAG_ROBOT in the working directory)",
+    )
+    parser.add_argument(
+        "--overwrite", action="store_true", help="replace an older result in that directory"
+    )
+    parser.add_argument(
+        "--storage",
+        choices=("sqlite3", "mcap"),
+        help="storage of the output recording (default: that of BAG)",
+    )
+
+    robot = parser.add_argument_group("instead of what the run configuration says")
+    robot.add_argument("--plugin", metavar="PACKAGE/CLASS", help="solver (`ids robots --plugins`)")
+    robot.add_argument(
+        "--no-friction",
+        dest="friction",
+        action="store_false",
+        default=None,
+        help="leave the solver's friction out: for a robot whose controller compensates it",
+    )
+    robot.add_argument(
+        "--urdf",
+        metavar="FILE",
+        type=Path,
+        help="robot description; a .xacro file needs the tool xacro",
+    )
+    robot.add_argument("--root", metavar="LINK", help="first link of the chain")
+    robot.add_argument("--tip", metavar="LINK", help="last link of the chain")
+    robot.add_argument(
+        "--gravity",
+        metavar="X,Y,Z",
+        type=three_numbers,
+        help="where things fall [m/s^2], in the frame of the root link (usually 0,0,-9.81)",
+    )
+    robot.add_argument("--topic", metavar="NAME", help="topic of the joint states")
+    robot.add_argument(
+        "--joints",
+        metavar="A,B,...",
+        type=names,
+        help="names of the joints in the recording, in the order of the chain",
+    )
+
+    samples = parser.add_argument_group("time and accelerations")
+    samples.add_argument(
+        "--accelerations",
+        metavar="METHOD",
+        choices=tuple(METHODS),
+        help="; ".join(f"{name}: {text}" for name, text in METHODS.items()),
+    )
+    samples.add_argument(
+        "--cutoff", metavar="HZ", type=positive_number, help="cut-off of the low-pass"
+    )
+    samples.add_argument(
+        "--clock",
+        choices=CLOCKS,
+        default="auto",
+        help="stamps that are the time: the header's, those of reception, or the header's if "
+        "there are any (auto)",
+    )
+    samples.add_argument(
+        "--without-rule",
+        metavar="RULE",
+        choices=tuple(RULES),
+        action="append",
+        default=[],
+        help="don't act upon what this rule finds (it is still said); may be given several times. "
+        + "; ".join(f"{name}: {text}" for name, text in RULES.items()),
+    )
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.files import check_output_directory
+    from inverse_dynamics.robots import load_robot
+
+    robot = load_robot(arguments.robot)
+    out = arguments.out or Path(f"{arguments.bag.absolute().stem}_{robot.name}")
+    mark = "evaluation.json"
+    check_output_directory(out, overwrite=arguments.overwrite, mark=mark)  # before the work
+
+    from inverse_dynamics.evaluation import evaluate
+    from inverse_dynamics.results import write_evaluation
+
+    with progress_bar() as progress:
+        evaluation = evaluate(
+            arguments.bag,
+            robot,
+            plugin=arguments.plugin,
+            friction=arguments.friction,
+            urdf=arguments.urdf,
+            root=arguments.root,
+            tip=arguments.tip,
+            gravity=arguments.gravity,
+            topic=arguments.topic,
+            joints=arguments.joints,
+            accelerations=arguments.accelerations,
+            cutoff=arguments.cutoff,
+            clock=arguments.clock,
+            without_rules=arguments.without_rule,
+            progress=progress,
+        )
+        write_evaluation(
+            evaluation,
+            out,
+            overwrite=arguments.overwrite,
+            storage=arguments.storage,
+            progress=progress,
+        )
+    _print(evaluation, out)
+
+
+def _print(evaluation: Evaluation, out: Path) -> None:
+    from rich.console import Console
+
+    from inverse_dynamics.tables import error_table
+
+    console = Console(highlight=False, markup=False, soft_wrap=True)
+    robot, log = evaluation.robot, evaluation.log
+    console.print(robot.description or robot.name, style="bold")
+    friction = "" if robot.friction else ", friction left out"
+    console.print(f"solver         {robot.plugin}{friction}")
+    console.print(
+        f"recording      {evaluation.bag}, {log.topic}: {len(log)} samples, "
+        f"{evaluation.time[-1]:.1f} s"
+    )
+    console.print(f"accelerations  {evaluation.accelerations.summary}")
+    for note in evaluation.notes:
+        console.print(f"note           {note}")
+    console.print(error_table(evaluation))
+    console.print(f"figure         {out / 'torques.png'} (.svg, .pdf)")
+    console.print(f"bag            {out / 'bag'}: /torques (computed), /torques_gt (measured)")
+    console.print(f"errors         {out / 'metrics.json'}")

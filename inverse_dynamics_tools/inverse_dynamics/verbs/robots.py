@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids robots`: which robots and solvers there are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import argparse
+
+_EPILOG = """\
+examples:
+  ids robots                     a line each
+  ids robots ur10_real           what one of them says
+  ids robots my_robot.yaml       the same of a file: also checks it
+  ids robots --plugins           installed solvers
+
+A robot of your own is one more file: see docs/add_a_robot.md.
+"""
+
+
+def add_parser(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+) -> argparse.ArgumentParser:
+    """Declare the verb."""
+    import argparse
+
+    parser = subparsers.add_parser(
+        "robots",
+        help="list robots, show one",
+        description="List the run configurations of the sourced workspaces, or show one.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("robot", nargs="?", metavar="NAME|FILE", help="show this one")
+    parser.add_argument("--plugins", action="store_true", help="list installed solvers instead")
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    if arguments.plugins:
+        from inverse_dynamics import _core
+
+        print("\n".join(_core.available_solvers()))
+    elif arguments.robot:
+        _show(arguments.robot)
+    else:
+        _list()
+
+
+def _list() -> None:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    from inverse_dynamics.robots import load_robot, robot_names
+
+    table = Table(box=None, pad_edge=False, show_header=False)
+    for name in robot_names():
+        table.add_row(Text(name, "bold"), Text(load_robot(name).description))
+    Console().print(table)
+
+
+def _show(robot: str) -> None:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    from inverse_dynamics.accelerations import METHODS
+    from inverse_dynamics.robots import load_robot
+
+    shown = load_robot(robot)
+    gravity = shown.gravity
+    cutoff = "" if shown.cutoff is None else f", cut-off {shown.cutoff:g} Hz"
+    rows = {
+        "description": shown.description,
+        "plugin": shown.plugin,
+        "urdf": str(shown.urdf or ""),
+        "model": str(shown.model or ""),
+        "root, tip": f"{shown.root or '(the first link)'}, {shown.tip or '(the last link)'}",
+        "gravity": "(the solver's default)" if gravity is None else f"{list(gravity)} m/s²",
+        "friction": "yes" if shown.friction else "no",
+        "topic": shown.topic,
+        "joints": ", ".join(shown.joints) or "(named as in the chain)",
+        "effort": shown.effort,
+        "accelerations": f"{shown.accelerations}{cutoff}: {METHODS[shown.accelerations]}",
+        "source": shown.source,
+        "file": str(shown.file),
+    }
+    table = Table(box=None, pad_edge=False, show_header=False)
+    table.add_column()
+    table.add_column(overflow="fold")  # paths whole
+    for key, text in rows.items():
+        if text:
+            table.add_row(Text(key, "bold"), Text(text))
+    console = Console()
+    console.print(Text(shown.name, "bold"))
+    console.print(table)
