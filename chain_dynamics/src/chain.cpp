@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kRotationTolerance = 1e-9;  // entries of R'R - 1: what ten printed digits leave
 constexpr double kInertiaTolerance = 1e-9;  // of the greatest moment: published figures are rounded
+constexpr double kSymmetryTolerance = 1e-12;  // of the greatest entry: a frame changed by R I R'
 
 // Any printable value, with enough digits to find it in a file.
 template <typename Value>
@@ -78,7 +79,7 @@ void checkLink(const std::string& where, const LinkParameters& link) {
     throw ModelError(where, "mass", "a number >= 0 [kg]", text(link.mass), "");
   }
   const double asymmetry = (link.inertia - link.inertia.transpose()).cwiseAbs().maxCoeff();
-  if (asymmetry > 0) {
+  if (asymmetry > kSymmetryTolerance * link.inertia.cwiseAbs().maxCoeff()) {
     throw ModelError(where, "moment of inertia", "a symmetric matrix",
                      "entries that differ by " + text(asymmetry), "");
   }
@@ -128,6 +129,7 @@ Chain::Chain(std::string name, std::vector<Joint> joints, std::vector<LinkParame
     const std::string link = where + ": link moved by joint " + joints_[i].name;
     checkJoint(joint, joints_[i]);
     checkLink(link, links_[i]);
+    links_[i].inertia = (0.5 * (links_[i].inertia + links_[i].inertia.transpose())).eval();
 
     const std::string defect = inertiaDefect(links_[i]);
     if (!defect.empty()) {

@@ -141,7 +141,7 @@ struct SpatialInertia {
   static SpatialInertia fromCenterOfMass(const Scalar& mass, const Vector3<Scalar>& center,
                                          const Matrix3<Scalar>& inertia_about_center) {
     const Matrix3<Scalar> c_x = skew<Scalar>(center);
-    return {mass, mass * center, inertia_about_center - mass * c_x * c_x};
+    return {mass, mass * center, inertia_about_center - mass * (c_x * c_x)};
   }
 
   /// From `[m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz]`, the order of files and regressor.

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "example_robots.hpp"
+#include "random_chains.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+const Eigen::Vector3d kGravity(0, 0, -9.81);
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A sound arm of three joints, to be spoilt by one change at a time.
+struct Parts {
+  std::vector<Joint> joints;
+  std::vector<LinkParameters> links;
+  Eigen::Vector3d gravity = kGravity;
+  Transform<double> tip = Transform<double>::identity();
+};
+
+Parts soundParts() {
+  const Chain chain = test::randomChain(3);
+  return {chain.joints(), chain.links()};
+}
+
+// The text of the error that a chain with one change gives; empty if it gives none.
+std::string errorAfter(const std::function<void(Parts&)>& change) {
+  Parts parts = soundParts();
+  change(parts);
+  try {
+    Chain("arm", parts.joints, parts.links, parts.gravity, parts.tip);
+  } catch (const ModelError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ModelError, SaysWhereWhatExpectedGotAndRemedy) {
+  EXPECT_STREQ(ModelError("arm.yaml:31: joint elbow", "friction", "5 numbers", "4 numbers",
+                          "give fv, fo, fc, alpha, nu")
+                   .what(),
+               "arm.yaml:31: joint elbow: friction: expected 5 numbers, got 4 numbers; give fv, "
+               "fo, fc, alpha, nu");
+  EXPECT_STREQ(ModelError("arm", "mass", "a number", "none", "").what(),
+               "arm: mass: expected a number, got none");
+}
+
+TEST(Chain, KeepsWhatItWasGiven) {
+  const Parts parts = soundParts();
+  const Transform<double> tip = test::shiftedBy({0, 0, 0.1});
+  const Chain chain("arm", parts.joints, parts.links, kGravity, tip);
+  EXPECT_EQ(chain.name(), "arm");
+  EXPECT_EQ(chain.jointCount(), 3);
+  EXPECT_EQ(chain.jointNames(), (std::vector<std::string>{"joint1", "joint2", "joint3"}));
+  EXPECT_EQ(chain.joints()[1].placement.R, parts.joints[1].placement.R);
+  EXPECT_EQ(chain.links()[2].toVector(), parts.links[2].toVector());
+  EXPECT_EQ(chain.gravity(), kGravity);
+  EXPECT_EQ(chain.tip().p, tip.p);
+  EXPECT_TRUE(chain.warnings().empty());
+}
+
+TEST(Chain, WithOtherGravityIsTheSameChainOtherwise) {
+  const Chain chain = test::randomChain(3);
+  const Chain floating = chain.withGravity({0, 0, 0});
+  EXPECT_EQ(floating.gravity(), Eigen::Vector3d(0, 0, 0));
+  EXPECT_NE(chain.gravity(), Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(floating.jointNames(), chain.jointNames());
+  EXPECT_EQ(floating.links()[0].toVector(), chain.links()[0].toVector());
+}
+
+TEST(Chain, AcceptsSoundParts) {
+  EXPECT_EQ(errorAfter([](Parts&) {}), "");
+}
+
+TEST(Chain, RejectsNoJoints) {
+  EXPECT_EQ(errorAfter([](Parts& parts) {
+              parts.joints.clear();
+              parts.links.clear();
+            }),
+            "chain arm: joints: expected at least one movable joint, got none; a chain without "
+            "joints has no torques");
+}
+
+TEST(Chain, RejectsAnotherNumberOfLinksThanJoints) {
+  EXPECT_EQ(errorAfter([](Parts& parts) { parts.links.pop_back(); }),
+            "chain arm: links: expected one per joint (3), got 2");
+}
+
+TEST(Chain, RejectsJointsWithoutANameOrWithTheSame) {
+  EXPECT_EQ(errorAfter([](Parts& parts) { parts.joints[1].name = ""; }),
+            "chain arm: name of joint 2: expected a name, got none");
+  EXPECT_EQ(errorAfter([](Parts& parts) { parts.joints[2].name = "joint1"; }),
+            "chain arm: joint names: expected each once, got 'joint1' twice");
+}
+
+TEST(Chain, RejectsNumbersThatAreNotFiniteAndNamesTheJoint) {
+  EXPECT_EQ(errorAfter([](Parts& parts) { parts.gravity.x() = kNan; }),
+            "chain arm: gravity: expected three finite numbers [m/s^2], got [nan, 0, -9.81]; for "
+            "example [0, 0, -9.81]");
+  EXPECT_EQ(errorAfter([](Parts& parts) { parts.joints[1].placement.p.y() = kInfinity; }),
+            "chain arm: joint joint2: placement: expected finite numbers, got a NaN or an "
+            "infinity");
+  EXPECT_EQ(errorAfter([](Parts& parts) { parts.tip.p.y() = kNan; }),
+            "chain arm: tip: expected finite numbers, got a NaN or an infinity");
+  EXPECT_EQ(errorAfter([](Parts& parts) { parts.links[2].inertia(0, 0) = kNan; }),
+            "chain arm: link moved by joint joint3: inertial parameters: expected ten finite "
+            "numbers, got a NaN or an infinity");
+}
+
+TEST(Chain, RejectsNonFiniteGravityLaterOn) {
+  EXPECT_THROW(test::randomChain(2).withGravity({0, kInfinity, 0}), ModelError);
+}
+
+TEST(Chain, RejectsAPlacementThatIsNoRotation) {
+  EXPECT_EQ(errorAfter([](Parts& parts) {
+              parts.joints[0].placement.R = Eigen::Vector3d(1, 1, 2).asDiagonal();
+            }),
+            "chain arm: joint joint1: placement: expected a rotation matrix, got columns off "
+            "orthonormal by 3, determinant 2; make it from angles or a unit quaternion");
+  EXPECT_EQ(errorAfter([](Parts& parts) {
+              parts.joints[0].placement.R = Eigen::Vector3d(1, 1, -1).asDiagonal();
+            }),
+            "chain arm: joint joint1: placement: expected a rotation matrix, got columns off "
+            "orthonormal by 0, determinant -1; make it from angles or a unit quaternion");
+}
+
+TEST(Chain, RejectsLimitsThatExcludeEverything) {
+  EXPECT_EQ(errorAfter([](Parts& parts) {
+              parts.joints[2].limits.lower = 1;
+              parts.joints[2].limits.upper = -1;
+            }),
+            "chain arm: joint joint3: position limits: expected lower <= upper, got 1 and -1; "
+            "leave out what is unknown");
+  EXPECT_EQ(errorAfter([](Parts& parts) { parts.joints[2].limits.velocity = -3; }),
+            "chain arm: joint joint3: velocity and effort limits: expected numbers >= 0, got -3 "
+            "and inf; leave out what is unknown");
+  EXPECT_NE(errorAfter([](Parts& parts) { parts.joints[2].limits.upper = kNan; }), "");
+}
+
+TEST(Chain, RejectsNegativeMassAndRotorInertia) {
+  EXPECT_EQ(errorAfter([](Parts& parts) { parts.links[1].mass = -0.5; }),
+            "chain arm: link moved by joint joint2: mass: expected a number >= 0 [kg], got -0.5");
+  EXPECT_EQ(errorAfter([](Parts& parts) { parts.joints[1].rotor_inertia = -1e-3; }),
+            "chain arm: joint joint2: rotor inertia: expected a finite number >= 0, got -0.001");
+}
+
+TEST(Chain, RejectsAnInertiaThatIsNotSymmetric) {
+  EXPECT_EQ(errorAfter([](Parts& parts) {
+              parts.links[1].inertia = Eigen::Matrix3d::Identity();
+              parts.links[1].inertia(0, 1) = 0.25;
+            }),
+            "chain arm: link moved by joint joint2: moment of inertia: expected a symmetric "
+            "matrix, got entries that differ by 0.25");
+}
+
+// 1, 1 and 3 kg m^2: no body is that flat.
+TEST(Chain, WarnsOfABrokenTriangleInequality) {
+  Parts parts = soundParts();
+  parts.links[1] =
+      LinkParameters::fromCenterOfMass(1, {0, 0, 0}, Eigen::Vector3d(1, 3, 1).asDiagonal());
+  const Chain chain("arm", parts.joints, parts.links, kGravity);
+  ASSERT_EQ(chain.warnings().size(), 1U);
+  EXPECT_EQ(chain.warnings()[0],
+            "chain arm: link moved by joint joint2: principal moments of inertia [1, 1, 3] about "
+            "the center of mass break the triangle inequality");
+}
+
+TEST(InertiaDefect, IsNoneForAnyBody) {
+  test::Random random(1);
+  for (int trial = 0; trial < 100; ++trial) {
+    EXPECT_EQ(inertiaDefect(test::randomLink(random)), "");
+  }
+}
+
+// A point and a thin rod lie on the edge of what is possible: rounding must not push them off.
+TEST(InertiaDefect, IsNoneForAPointAndARodFarFromTheOrigin) {
+  EXPECT_EQ(inertiaDefect(test::pointMass(0.3, {0.7, -1.1, 12.3})), "");
+  EXPECT_EQ(inertiaDefect(test::pointMass(0.3, {0.7, -1.1, 2.3}) +
+                          test::pointMass(0.1, {-0.7, 1.1, 0.3})),
+            "");
+}
+
+TEST(InertiaDefect, IsNoneForNothingAtAll) { EXPECT_EQ(inertiaDefect(LinkParameters::zero()), ""); }
+
+TEST(InertiaDefect, SeesWhatNoBodyHas) {
+  EXPECT_EQ(inertiaDefect(LinkParameters::fromCenterOfMass(
+                1, {0, 0, 0}, Eigen::Vector3d(1, 1, -0.5).asDiagonal())),
+            "principal moments of inertia [-0.5, 1, 1] about the center of mass aren't positive");
+  EXPECT_EQ(inertiaDefect({0, {0.1, 0, 0}, Eigen::Matrix3d::Zero()}), "inertia without mass");
+  EXPECT_EQ(inertiaDefect({-2, {0, 0, 0}, Eigen::Matrix3d::Zero()}), "negative mass -2");
+}
+
+}  // namespace
+}  // namespace chain_dynamics

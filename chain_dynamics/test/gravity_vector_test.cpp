@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/gravity_vector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "chain_dynamics/dual.hpp"
+#include "chain_dynamics/energy.hpp"
+#include "chain_dynamics/torques.hpp"
+#include "example_robots.hpp"
+#include "lagrange.hpp"
+#include "random_chains.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+
+// A handful of operations on numbers of size ten.
+constexpr double kByHand = 1e-13;
+
+template <typename Scalar>
+VectorX<Scalar> gravityOf(const Chain& chain, const VectorX<Scalar>& q) {
+  VectorX<Scalar> g(chain.jointCount());
+  gravityVector(chain, q, g);
+  return g;
+}
+
+// What gravity torques are made of, cancelling or not: the whole weight, times a reach of 1 m.
+double weightOf(const Chain& chain) {
+  double mass = 0;
+  for (const LinkParameters& link : chain.links()) {
+    mass += link.mass;
+  }
+  return mass * chain.gravity().norm();
+}
+
+template <typename Scalar>
+class GravityVectorOf : public ::testing::Test {};
+using Scalars = ::testing::Types<double, float>;
+TYPED_TEST_SUITE(GravityVectorOf, Scalars);
+
+TEST(GravityVector, OfAPendulumIsItsWeightTimesItsHorizontalReach) {
+  const Chain chain = pendulum(2, 0.5, 9.81);
+  for (const double q : {0.0, 0.7, -2.5}) {
+    EXPECT_NEAR(gravityOf<double>(chain, VectorX<double>::Constant(1, q))[0],
+                2 * 9.81 * 0.5 * std::cos(q), kByHand);
+  }
+}
+
+// Derived in torques_test.cpp.
+TEST(GravityVector, OfADoublePendulumByHand) {
+  const Chain chain = doublePendulum(1.5, 0.6, 0.8, 0.4, 9.81);
+  const double g2 = 0.8 * 9.81 * 0.4 * std::cos(0.4 - 1.1);
+  const double g1 = (1.5 + 0.8) * 9.81 * 0.6 * std::cos(0.4) + g2;
+  EXPECT_TRUE(agree(gravityOf<double>(chain, Eigen::Vector2d(0.4, -1.1)), Eigen::Vector2d(g1, g2),
+                    1, kByHand));
+}
+
+// A lift carries all that hangs on it, 2 kg and 3 kg, wherever that is.
+TEST(GravityVector, OfALiftIsTheWeight) {
+  Joint lift;
+  lift.name = "lift";
+  lift.type = JointType::kPrismatic;
+  Joint arm;
+  arm.name = "arm";
+  const Chain chain("lift", {lift, arm}, {pointMass(2, {1, 2, 3}), pointMass(3, {4, 5, 6})},
+                    {0, 0, -10});
+  const VectorX<double> g = gravityOf<double>(chain, Eigen::Vector2d(0.3, 0.4));
+  EXPECT_TRUE(agree(g, Eigen::Vector2d(50, 0), 1, kByHand));
+}
+
+TYPED_TEST(GravityVectorOf, AnyRobotIsTheGradientOfPotentialEnergy) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    EXPECT_TRUE(agree(gravityOf(chain, state.q), gradientOfPotentialEnergy(chain, state.q),
+                      weightOf(chain), rounding<Scalar>(chain)));
+  });
+}
+
+TYPED_TEST(GravityVectorOf, AnyRobotIsTheTorqueAtRest) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    const VectorX<Scalar> rest = VectorX<Scalar>::Zero(chain.jointCount());
+    VectorX<Scalar> tau(chain.jointCount());
+    torques(chain, state.q, rest, rest, tau);
+    EXPECT_TRUE(agree(gravityOf(chain, state.q), tau, weightOf(chain), rounding<Scalar>(chain)));
+  });
+}
+
+// dg_i/dq_j = d^2 U / (dq_i dq_j)
+TYPED_TEST(GravityVectorOf, AnyRobotHasASymmetricJacobian) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    const Eigen::Index n = chain.jointCount();
+    MatrixX<Scalar> jacobian(n, n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const auto g = gravityOf(chain, variable(state.q, j));
+      for (Eigen::Index i = 0; i < n; ++i) {
+        jacobian(i, j) = g[i].derivative[0];
+      }
+    }
+    EXPECT_TRUE(agree(jacobian, jacobian.transpose(), weightOf(chain), rounding<Scalar>(chain)));
+  });
+}
+
+TEST(GravityVector, IsZeroInFreeFallAndTurnsAroundWithGravity) {
+  const Chain chain = randomChain(6);
+  const VectorX<double> q = randomState<double>(chain, 1).q;
+  EXPECT_EQ(gravityOf(chain.withGravity({0, 0, 0}), q).norm(), 0);
+  EXPECT_EQ(gravityOf(chain.withGravity(-chain.gravity()), q), -gravityOf(chain, q));
+}
+
+TEST(GravityVector, IsNanWhereItDependsOnANan) {
+  const Chain chain = randomChain(6);
+  const State<double> state = randomState<double>(chain, 0);
+  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
+    VectorX<double> q = state.q;
+    q[i] = std::numeric_limits<double>::quiet_NaN();
+    const auto derivative = gravityOf(chain, variable(state.q, i));
+    const VectorX<double> g = gravityOf(chain, q);
+    for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
+      EXPECT_TRUE(derivative[j].derivative[0] == 0 || std::isnan(g[j])) << j << " by " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chain_dynamics

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/inertia_matrix.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+
+#include "chain_dynamics/dual.hpp"
+#include "chain_dynamics/energy.hpp"
+#include "chain_dynamics/torques.hpp"
+#include "example_robots.hpp"
+#include "lagrange.hpp"
+#include "random_chains.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+
+// A handful of operations on numbers of size one.
+constexpr double kByHand = 1e-14;
+
+template <typename Scalar>
+MatrixX<Scalar> inertiaMatrixOf(const Chain& chain, const VectorX<Scalar>& q) {
+  MatrixX<Scalar> H(chain.jointCount(), chain.jointCount());
+  inertiaMatrix(chain, q, H);
+  return H;
+}
+
+template <typename Scalar>
+class InertiaMatrixOf : public ::testing::Test {};
+using Scalars = ::testing::Types<double, float>;
+TYPED_TEST_SUITE(InertiaMatrixOf, Scalars);
+
+TEST(InertiaMatrix, OfAPendulumIsMassTimesLengthSquaredAndRotor) {
+  const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 0.3);
+  EXPECT_NEAR(inertiaMatrixOf(pendulum(2, 0.5, 9.81, 0.25), q)(0, 0), 0.75, kByHand);
+}
+
+// Derived in torques_test.cpp: with k = m2 l1 l2,
+//   H11 = (m1 + m2) l1^2 + m2 l2^2 + 2 k cos q2, H12 = m2 l2^2 + k cos q2, H22 = m2 l2^2
+TEST(InertiaMatrix, OfADoublePendulumByHand) {
+  const Eigen::Vector2d q(0.4, -1.1);
+  const double k = 0.8 * 0.6 * 0.4;
+  const double H22 = 0.8 * 0.4 * 0.4;
+  const double H12 = H22 + k * std::cos(-1.1);
+  const double H11 = (1.5 + 0.8) * 0.6 * 0.6 + H22 + 2 * k * std::cos(-1.1);
+  Eigen::Matrix2d expected;
+  expected << H11, H12, H12, H22;
+  const Chain chain = doublePendulum(1.5, 0.6, 0.8, 0.4, 9.81);
+  EXPECT_TRUE(agree(inertiaMatrixOf<double>(chain, q), expected, 1, kByHand));
+}
+
+// A mass at radius r on a turntable: m r^2 about the axis, m along the radius, nothing mixed.
+TEST(InertiaMatrix, OfATurntableWithASlideByHand) {
+  Eigen::Matrix2d expected;
+  expected << 3 * 0.4 * 0.4, 0, 0, 3;
+  EXPECT_TRUE(agree(inertiaMatrixOf<double>(turntable(3), Eigen::Vector2d(0.3, 0.4)), expected, 1,
+                    kByHand));
+}
+
+// u' H v = d^2 T / (du dv): derivative along u of the derivative along v, for random u and v.
+TYPED_TEST(InertiaMatrixOf, AnyRobotIsTheSecondDerivativeOfKineticEnergy) {
+  using Scalar = TypeParam;
+  using Once = Dual<Scalar, 1>;
+  using Twice = Dual<Once, 1>;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    const VectorX<Scalar> u = state.qd;
+    const VectorX<Scalar> v = state.qdd;
+    const MatrixX<Scalar> H = inertiaMatrixOf(chain, state.q);
+    const VectorX<Once> zero = VectorX<Once>::Zero(chain.jointCount());
+    const VectorX<Twice> qd = moving<Once>(moving<Scalar>(VectorX<Scalar>::Zero(u.size()), u),
+                                           zero + v.template cast<Once>());
+    const VectorX<Twice> q = state.q.template cast<Twice>();
+    const Scalar expected = kineticEnergy(chain, q, qd).derivative[0].derivative[0];
+    const Scalar scale = u.cwiseAbs().dot(H.cwiseAbs() * v.cwiseAbs());
+    EXPECT_NEAR(u.dot(H * v), expected, rounding<Scalar>(chain) * scale);
+  });
+}
+
+TYPED_TEST(InertiaMatrixOf, AnyRobotIsTheDerivativeOfTorqueByAcceleration) {
+  using Scalar = TypeParam;
+  using Varied = Dual<Scalar, 1>;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    const MatrixX<Scalar> H = inertiaMatrixOf(chain, state.q);
+    const State<Varied> varied = state.template cast<Varied>();
+    for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
+      VectorX<Varied> tau(chain.jointCount());
+      torques(chain, varied.q, varied.qd, variable(state.qdd, j), tau);
+      const VectorX<Scalar> column = tau.unaryExpr([](const Varied& x) { return x.derivative[0]; });
+      EXPECT_TRUE(agree(H.col(j), column, largest(H), rounding<Scalar>(chain)));
+    }
+  });
+}
+
+TYPED_TEST(InertiaMatrixOf, AnyRobotIsExactlySymmetric) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    const MatrixX<Scalar> H = inertiaMatrixOf(chain, state.q);
+    EXPECT_EQ(H, H.transpose());
+  });
+}
+
+// The smallest eigenvalue of a long chain is far below the largest; rounding must not reach it.
+TEST(InertiaMatrix, IsPositiveDefinite) {
+  forEachState<double>([](const Chain& chain, const State<double>& state) {
+    const MatrixX<double> H = inertiaMatrixOf(chain, state.q);
+    const Eigen::SelfAdjointEigenSolver<MatrixX<double>> solver(H, Eigen::EigenvaluesOnly);
+    EXPECT_GT(solver.eigenvalues()[0], 1e-12 * solver.eigenvalues().tail(1)[0]);
+  });
+}
+
+TEST(InertiaMatrix, DependsNeitherOnGravityNorOnTheFirstJoint) {
+  const Chain chain = randomChain(5);
+  const State<double> state = randomState<double>(chain, 1);
+  const MatrixX<double> H = inertiaMatrixOf(chain, state.q);
+  VectorX<double> turned = state.q;
+  turned[0] += 1;
+  EXPECT_EQ(inertiaMatrixOf(chain.withGravity({0, 0, 0}), state.q), H);
+  EXPECT_EQ(inertiaMatrixOf(chain, turned), H);
+}
+
+TEST(InertiaMatrix, IsNanWhereItDependsOnANan) {
+  const Chain chain = randomChain(6);
+  const State<double> state = randomState<double>(chain, 0);
+  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
+    VectorX<double> q = state.q;
+    q[i] = std::numeric_limits<double>::quiet_NaN();
+    const MatrixX<double> H = inertiaMatrixOf(chain, q);
+    const auto derivative = inertiaMatrixOf(chain, variable(state.q, i));
+    for (Eigen::Index k = 0; k < H.size(); ++k) {
+      EXPECT_TRUE(derivative(k).derivative[0] == 0 || std::isnan(H(k))) << k << " by " << i;
+    }
+  }
+}
+
+TEST(InertiaMatrix, GoesIntoABlockOfAMatrix) {
+  const Chain chain = randomChain(4);
+  const State<double> state = randomState<double>(chain, 2);
+  MatrixX<double> batch = MatrixX<double>::Zero(4, 12);
+  inertiaMatrix(chain, state.q, batch.middleCols(4, 4));
+  EXPECT_EQ(batch.middleCols(4, 4), inertiaMatrixOf(chain, state.q));
+  EXPECT_EQ(batch.leftCols(4).norm() + batch.rightCols(4).norm(), 0);
+}
+
+}  // namespace
+}  // namespace chain_dynamics

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/parameter_sets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "chain_dynamics/coriolis_vector.hpp"
+#include "chain_dynamics/dynamic_components.hpp"
+#include "example_robots.hpp"
+#include "random_chains.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+
+using Links = std::vector<LinkParameters>;
+using Rows = std::vector<Links>;
+
+// All quantities of one robot in one state.
+template <typename Scalar>
+struct Quantities {
+  explicit Quantities(Eigen::Index n) : H(n, n), c(n), g(n), tau(n) {}
+  MatrixX<Scalar> H;
+  VectorX<Scalar> c, g, tau;
+};
+
+template <typename Scalar>
+Quantities<Scalar> quantitiesOf(const Chain& chain, const State<Scalar>& state) {
+  Quantities<Scalar> out(chain.jointCount());
+  dynamicComponents(chain, state.q, state.qd, out.H, out.c, out.g);
+  torques(chain, state.q, state.qd, state.qdd, out.tau);
+  return out;
+}
+
+template <typename Scalar>
+Quantities<Scalar> quantitiesOf(const Chain& chain, const ParameterSets& sets,
+                                const State<Scalar>& state) {
+  Quantities<Scalar> out(chain.jointCount());
+  dynamicComponents(chain, sets, state.q, state.qd, out.H, out.c, out.g);
+  torques(chain, sets, state.q, state.qd, state.qdd, out.tau);
+  return out;
+}
+
+// Parameters that no body has, except that a Chain wants no negative mass.
+Links identifiedLinks(Random& random, const Chain& chain) {
+  Links links;
+  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
+    links.push_back(randomIdentifiedLink(random));
+    links.back().mass = std::abs(links.back().mass);
+  }
+  return links;
+}
+
+Rows identifiedRows(const Chain& chain) {
+  Random random(7);
+  Rows rows;
+  for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
+    rows.push_back(identifiedLinks(random, chain));
+  }
+  return rows;
+}
+
+// The quantities that a chain with set j has in its row j: one whole chain per row.
+template <typename Scalar>
+Quantities<Scalar> rowByRow(const Chain& chain, const Rows& rows, const State<Scalar>& state) {
+  Quantities<Scalar> out(chain.jointCount());
+  for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
+    const Chain own("own", chain.joints(), rows[static_cast<std::size_t>(j)], chain.gravity());
+    const Quantities<Scalar> all = quantitiesOf(own, state);
+    out.H.row(j) = all.H.row(j);
+    out.c[j] = all.c[j];
+    out.g[j] = all.g[j];
+    out.tau[j] = all.tau[j];
+  }
+  return out;
+}
+
+template <typename Scalar>
+void expectSame(const Chain& chain, const Quantities<Scalar>& a, const Quantities<Scalar>& b,
+                const State<Scalar>& state) {
+  const double terms =
+      largest(b.H.cwiseAbs() * state.qdd.cwiseAbs()) + largest(b.c) + largest(b.g) + largest(b.tau);
+  EXPECT_TRUE(agree(a.H, b.H, largest(b.H), rounding<Scalar>(chain))) << "H";
+  EXPECT_TRUE(agree(a.c, b.c, terms, rounding<Scalar>(chain))) << "c";
+  EXPECT_TRUE(agree(a.g, b.g, terms, rounding<Scalar>(chain))) << "g";
+  EXPECT_TRUE(agree(a.tau, b.tau, terms, rounding<Scalar>(chain))) << "tau";
+}
+
+template <typename Scalar>
+class ParameterSetsOf : public ::testing::Test {};
+using Scalars = ::testing::Types<double, float>;
+TYPED_TEST_SUITE(ParameterSetsOf, Scalars);
+
+TYPED_TEST(ParameterSetsOf, TheChainItselfChangeNothing) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    const Quantities<Scalar> expected = quantitiesOf(chain, state);
+    const Rows none;
+    const Rows same(static_cast<std::size_t>(chain.jointCount()), chain.links());
+    const Links no_links;
+    expectSame(chain, quantitiesOf(chain, ParameterSets{none, no_links}, state), expected, state);
+    expectSame(chain, quantitiesOf(chain, ParameterSets{same, no_links}, state), expected, state);
+    expectSame(chain, quantitiesOf(chain, ParameterSets{none, chain.links()}, state), expected,
+               state);
+    expectSame(chain, quantitiesOf(chain, ParameterSets{same, chain.links()}, state), expected,
+               state);
+  });
+}
+
+TYPED_TEST(ParameterSetsOf, TheRowsAreThoseOfAChainPerRow) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    const Rows rows = identifiedRows(chain);
+    const Links none;
+    expectSame(chain, quantitiesOf(chain, ParameterSets{rows, none}, state),
+               rowByRow(chain, rows, state), state);
+  });
+}
+
+TYPED_TEST(ParameterSetsOf, GravityReplaceThatOfEveryRow) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    Random random(11);
+    const Links gravity = identifiedLinks(random, chain);
+    const Chain heavy("heavy", chain.joints(), gravity, chain.gravity());
+    for (const Rows& rows : {Rows(), identifiedRows(chain)}) {
+      Quantities<Scalar> expected =
+          rows.empty() ? quantitiesOf(chain, state) : rowByRow(chain, rows, state);
+      expected.g = quantitiesOf(heavy, state).g;
+      expected.tau = expected.H * state.qdd + expected.c + expected.g;
+      expectSame(chain, quantitiesOf(chain, ParameterSets{rows, gravity}, state), expected, state);
+    }
+  });
+}
+
+TYPED_TEST(ParameterSetsOf, SingleFunctionsGiveWhatDynamicComponentsGive) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    const Rows rows = identifiedRows(chain);
+    const Links gravity = rows.back();
+    for (const Links& own : {Links(), gravity}) {
+      const ParameterSets sets{rows, own};
+      const Quantities<Scalar> expected = quantitiesOf(chain, sets, state);
+      Quantities<Scalar> single = expected;
+      inertiaMatrix(chain, sets, state.q, single.H);
+      coriolisVector(chain, sets, state.q, state.qd, single.c);
+      gravityVector(chain, sets, state.q, single.g);
+      expectSame(chain, single, expected, state);
+    }
+  });
+}
+
+TEST(ParameterSets, OfDifferentRowsGiveAnInertiaMatrixThatIsNotSymmetric) {
+  const Chain chain = randomChain(4);
+  const Rows rows = identifiedRows(chain);
+  const Links none;
+  const Quantities<double> all =
+      quantitiesOf(chain, ParameterSets{rows, none}, randomState<double>(chain, 0));
+  EXPECT_GT((all.H - all.H.transpose()).norm(), 0.1);
+}
+
+TEST(ParameterSets, TorquesMayOverwriteAnInput) {
+  const Chain chain = randomChain(4);
+  State<double> state = randomState<double>(chain, 0);
+  const Rows rows = identifiedRows(chain);
+  const ParameterSets sets{rows, rows[0]};
+  const VectorX<double> expected = quantitiesOf(chain, sets, state).tau;
+  torques(chain, sets, state.q, state.qd, state.qdd, state.qdd);
+  EXPECT_EQ(state.qdd, expected);
+}
+
+std::string errorOf(const Chain& chain, const Rows& rows, const Links& gravity) {
+  try {
+    checkParameterSets(chain, ParameterSets{rows, gravity});
+  } catch (const ModelError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CheckParameterSets, AcceptsWhatFitsAndNegativeMasses) {
+  const Chain chain = randomChain(3);
+  Rows rows(3, chain.links());
+  rows[1][2].mass = -1;
+  EXPECT_EQ(errorOf(chain, {}, {}), "");
+  EXPECT_EQ(errorOf(chain, rows, rows[0]), "");
+}
+
+TEST(CheckParameterSets, NamesTheSetAndTheJointThatDoNotFit) {
+  const Chain chain = randomChain(3);
+  Rows rows(3, chain.links());
+  EXPECT_EQ(errorOf(chain, Rows(2, chain.links()), {}),
+            "chain random3: parameter sets: expected none, or one per joint (3), got 2");
+  EXPECT_EQ(errorOf(chain, {}, Links(2, chain.links()[0])),
+            "chain random3: parameter set of gravity: links: expected one per joint (3), got 2");
+  rows[1].pop_back();
+  EXPECT_EQ(errorOf(chain, rows, {}),
+            "chain random3: parameter set of joint joint2: links: expected one per joint (3), "
+            "got 2");
+  rows[1] = chain.links();
+  rows[1][2].mass = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(errorOf(chain, rows, {}),
+            "chain random3: parameter set of joint joint2: link moved by joint joint3: expected "
+            "ten finite numbers, got a NaN or an infinity");
+}
+
+}  // namespace
+}  // namespace chain_dynamics

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/regressor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "chain_dynamics/torques.hpp"
+#include "example_robots.hpp"
+#include "random_chains.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+
+// A handful of operations on numbers of size ten.
+constexpr double kByHand = 1e-13;
+
+template <typename Scalar>
+MatrixX<Scalar> regressorOf(const Chain& chain, const State<Scalar>& state) {
+  MatrixX<Scalar> Y(chain.jointCount(), 10 * chain.jointCount());
+  regressor(chain, state.q, state.qd, state.qdd, Y);
+  return Y;
+}
+
+VectorX<double> rotorInertia(const Chain& chain) {
+  VectorX<double> rotor(chain.jointCount());
+  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
+    rotor[i] = chain.joints()[static_cast<std::size_t>(i)].rotor_inertia;
+  }
+  return rotor;
+}
+
+template <typename Scalar>
+class RegressorOf : public ::testing::Test {};
+using Scalars = ::testing::Types<double, float>;
+TYPED_TEST_SUITE(RegressorOf, Scalars);
+
+// A body turning about the horizontal z axis, y up. Torque about z:
+//   Izz qdd + mcx (g cos q) - mcy (g sin q)
+// and nothing else: m and the other moments load the bearing only.
+TEST(Regressor, OfAPendulumByHand) {
+  const Chain chain = pendulum(2, 0.5, 9.81);
+  State<double> state{VectorX<double>(1), VectorX<double>(1), VectorX<double>(1)};
+  state.q << 0.7;
+  state.qd << 2;
+  state.qdd << -3;
+  Eigen::Matrix<double, 1, 10> expected;
+  expected << 0, 9.81 * std::cos(0.7), -9.81 * std::sin(0.7), 0, 0, 0, 0, 0, 0, -3;
+  EXPECT_TRUE(agree(regressorOf(chain, state), expected, 1, kByHand));
+}
+
+TEST(Parameters, StandTenPerLinkInTheOrderOfTheChain) {
+  const Chain chain = doublePendulum(1.5, 0.6, 0.8, 0.4, 9.81);
+  VectorX<double> expected(20);
+  expected << 1.5, 1.5 * 0.6, 0, 0, 0, 0, 0, 1.5 * 0.6 * 0.6, 0, 1.5 * 0.6 * 0.6,  //
+      0.8, 0.8 * 0.4, 0, 0, 0, 0, 0, 0.8 * 0.4 * 0.4, 0, 0.8 * 0.4 * 0.4;
+  EXPECT_TRUE(agree(parameters(chain), expected, 1, kByHand));
+}
+
+TYPED_TEST(RegressorOf, AnyRobotTimesItsParametersIsTheTorque) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    const MatrixX<Scalar> Y = regressorOf(chain, state);
+    const VectorX<Scalar> p = parameters(chain).cast<Scalar>();
+    const VectorX<Scalar> rotor = rotorInertia(chain).cast<Scalar>();
+    VectorX<Scalar> tau(chain.jointCount());
+    torques(chain, state.q, state.qd, state.qdd, tau);
+    EXPECT_TRUE(agree(Y * p + rotor.cwiseProduct(state.qdd), tau,
+                      largest(Y.cwiseAbs() * p.cwiseAbs()), rounding<Scalar>(chain)));
+  });
+}
+
+// The regressor knows the motion only: other parameters, the same matrix. These have all ten
+// numbers of any sign, so that no column can hide behind a sum that bodies always fulfil.
+TEST(Regressor, HoldsForParametersNoBodyHas) {
+  forEachState<double>([](const Chain& chain, const State<double>& state) {
+    Random random(5);
+    std::vector<LinkParameters> links;
+    for (std::size_t i = 0; i < chain.links().size(); ++i) {
+      links.push_back(randomIdentifiedLink(random));
+      links.back().mass = std::abs(links.back().mass);
+    }
+    const Chain other("other", chain.joints(), links, chain.gravity());
+    const MatrixX<double> Y = regressorOf(chain, state);
+    EXPECT_EQ(Y, regressorOf(other, state));
+
+    const VectorX<double> p = parameters(other);
+    VectorX<double> tau(chain.jointCount());
+    torques(other, state.q, state.qd, state.qdd, tau);
+    tau -= rotorInertia(chain).cwiseProduct(state.qdd);
+    EXPECT_TRUE(agree(Y * p, tau, largest(Y.cwiseAbs() * p.cwiseAbs()), rounding<double>(chain)));
+  });
+}
+
+TEST(Regressor, HasZerosForLinksBeforeTheJoint) {
+  const Chain chain = randomChain(6);
+  const MatrixX<double> Y = regressorOf(chain, randomState<double>(chain, 0));
+  for (Eigen::Index j = 1; j < chain.jointCount(); ++j) {
+    EXPECT_EQ(Y.row(j).head(10 * j).norm(), 0) << "row " << j;
+  }
+}
+
+TEST(Regressor, IsNanWhereItDependsOnANan) {
+  const Chain chain = randomChain(4);
+  State<double> state = randomState<double>(chain, 0);
+  state.qd[3] = std::numeric_limits<double>::quiet_NaN();
+  // the last link's first moments load every joint through qd of the last
+  const MatrixX<double> Y = regressorOf(chain, state);
+  EXPECT_TRUE(Y.rightCols(10).middleCols(1, 3).topRows(3).array().isNaN().all());
+}
+
+}  // namespace
+}  // namespace chain_dynamics
