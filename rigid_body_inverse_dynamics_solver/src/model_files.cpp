@@ -48,7 +48,7 @@ path modelFile(const std::string& name_or_path) {
                               "give its path, or the name of an installed model, without .yaml: " +
                                   joined(installedModels())));
   }
-  const path file = modelsFolder() / (name_or_path + ".yaml");
+  path file = modelsFolder() / (name_or_path + ".yaml");
   if (std::filesystem::is_regular_file(file)) return file;
   throw Exception(errorText("model '" + name_or_path + "'", "not found",
                             "one of " + joined(installedModels()), "'" + name_or_path + "'",

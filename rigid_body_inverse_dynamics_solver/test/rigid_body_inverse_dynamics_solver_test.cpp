@@ -93,12 +93,17 @@ TEST(RigidBody, IsLoadedByName) {
 }
 
 TEST(RigidBody, ModelCanBeNamedOrGivenByItsPath) {
-  InverseDynamicsSolverRigidBody by_name, by_path;
+  InverseDynamicsSolverRigidBody by_name, by_path, by_file_name;
   by_name.initialize({{"model", kFeasible}});
   by_path.initialize({{"model", robotsFile("models/" + kFeasible + ".yaml")}});
+  const std::filesystem::path here = std::filesystem::current_path();
+  std::filesystem::current_path(robotsFile("models"));
+  by_file_name.initialize({{"model", kFeasible + ".yaml"}});
+  std::filesystem::current_path(here);
   const Eigen::VectorXd q = ramp(7, -1.0, 0.4), qd = ramp(7, 0.5, -0.2), qdd = ramp(7, 2.0, 0.1);
   EXPECT_EQ(by_name.jointNames(), by_path.jointNames());
   EXPECT_EQ(by_name.getTorques(q, qd, qdd), by_path.getTorques(q, qd, qdd));
+  EXPECT_EQ(by_name.getTorques(q, qd, qdd), by_file_name.getTorques(q, qd, qdd));
 }
 
 TEST(RigidBody, ModelFileGoesBeforeTheRobotDescription) {
