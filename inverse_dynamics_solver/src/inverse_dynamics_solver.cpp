@@ -207,7 +207,9 @@ void InverseDynamicsSolver::getTorquesBatch(const ConstMatrixRef& q, const Const
 
 // ---------------------------------------------------------------- defaults
 
-void InverseDynamicsSolver::computeFriction(const ConstVectorRef&, VectorRef f) const { f.setZero(); }
+void InverseDynamicsSolver::computeFriction(const ConstVectorRef&, VectorRef f) const {
+  f.setZero();
+}
 
 void InverseDynamicsSolver::computeDynamicComponents(const ConstVectorRef& q,
                                                      const ConstVectorRef& qd, MatrixRef H,

@@ -2,7 +2,8 @@
 #include "inverse_dynamics_solver/solver_loader.hpp"
 
 #include <algorithm>
-#include <map>
+#include <ament_index_cpp/get_resources.hpp>
+#include <atomic>
 #include <mutex>
 #include <numeric>
 #include <pluginlib/class_loader.hpp>
@@ -14,6 +15,32 @@ namespace {
 using PluginLoader = pluginlib::ClassLoader<InverseDynamicsSolver>;
 
 const char* const kSource = "source the workspace that has it: source install/local_setup.bash";
+
+/// True from the moment when static objects are being destroyed.
+std::atomic<bool> exiting{false};
+
+/// Made after the first solver, hence after class_loader's static objects, hence destroyed before
+/// them.
+struct ExitNotice {
+  ~ExitNotice() { exiting = true; }
+};
+
+/// Loader of the plugins in the index; null if there are none.
+///
+/// A loader that lives until the end of the program (in a static variable) isn't destroyed:
+/// class_loader's static objects, which it would use, are gone by then.
+std::shared_ptr<PluginLoader> makePluginLoader() {
+  // Asked first: with an empty index Debian's pluginlib would search for ROS 1 packages, slowly and
+  // loudly.
+  if (ament_index_cpp::get_resources("inverse_dynamics_solver__pluginlib__plugin").empty()) {
+    return nullptr;
+  }
+  return {
+      new PluginLoader("inverse_dynamics_solver", "inverse_dynamics_solver::InverseDynamicsSolver"),
+      [](PluginLoader* loader) {
+        if (!exiting) delete loader;
+      }};
+}
 
 /// A solver, and the loader that must stay as long as the solver's code is needed.
 struct LoadedSolver {
@@ -57,7 +84,7 @@ std::string suggestion(const std::string& name, const std::vector<std::string>& 
 }  // namespace
 
 struct SolverLoader::Implementation {
-  // Empty if there is no index of installed packages, or this package isn't in it.
+  // Null if no workspace is sourced, or none has a plugin.
   std::shared_ptr<PluginLoader> loader;
   std::vector<std::string> names;
   std::string index_error;
@@ -65,9 +92,8 @@ struct SolverLoader::Implementation {
 
   Implementation() {
     try {
-      loader = std::make_shared<PluginLoader>("inverse_dynamics_solver",
-                                              "inverse_dynamics_solver::InverseDynamicsSolver");
-      names = loader->getDeclaredClasses();
+      loader = makePluginLoader();
+      if (loader != nullptr) names = loader->getDeclaredClasses();
       std::sort(names.begin(), names.end());
     } catch (const std::exception& e) {
       index_error = e.what();
@@ -77,11 +103,10 @@ struct SolverLoader::Implementation {
   void requireAvailable(const std::string& name) const {
     const std::string where = "solver plugin '" + name + "'";
     if (names.empty()) {
-      throw PluginNotFoundException(
-          errorText(where, "not found", "a plugin of an installed package",
-                    "no installed plugin at all" +
-                        (index_error.empty() ? "" : " (" + index_error + ")"),
-                    kSource));
+      throw PluginNotFoundException(errorText(
+          where, "not found", "a plugin of an installed package",
+          "no installed plugin at all" + (index_error.empty() ? "" : " (" + index_error + ")"),
+          kSource));
     }
     if (std::binary_search(names.begin(), names.end(), name)) return;
 
@@ -112,8 +137,9 @@ std::shared_ptr<InverseDynamicsSolver> SolverLoader::load(const std::string& nam
   const std::shared_ptr<PluginLoader>& loader = implementation_->loader;
   const std::string where = "solver plugin '" + name + "'";
   try {
-    auto loaded = std::make_shared<LoadedSolver>(
-        LoadedSolver{loader, loader->createUniqueInstance(name)});
+    auto loaded =
+        std::make_shared<LoadedSolver>(LoadedSolver{loader, loader->createUniqueInstance(name)});
+    static const ExitNotice notice;
     return {loaded, loaded->solver.get()};
   } catch (const pluginlib::CreateClassException&) {
     throw PluginNotFoundException(errorText(

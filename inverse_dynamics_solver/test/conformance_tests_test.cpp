@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <cctype>
 #include <cstdlib>
 #include <string>
 
@@ -19,7 +20,7 @@ std::ostream& operator<<(std::ostream& stream, const Fault& fault) { return stre
 
 class ConformanceTests : public ::testing::TestWithParam<Fault> {};
 
-TEST_P(ConformanceTests, Find) {
+TEST_P(ConformanceTests, FindTheFault) {
   const Fault& fault = GetParam();
   const std::string command = "FAULT=\"" + std::string(fault.fault) +
                               "\" " TWO_LINK_TEST_PROGRAM
@@ -64,6 +65,16 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"Coriolis torques with the wrong sign", "PowerIsTheRateOfKineticEnergy"},
         Fault{"friction can't be switched off", "FrictionCanBeSwitchedOff"},
         Fault{"friction overflows", "FrictionIsFiniteAtAnyVelocity"},
-        Fault{"wrong drive gain", "MotorCurrentsTimesDriveGainsAreTorques"}));
+        Fault{"wrong drive gain", "MotorCurrentsTimesDriveGainsAreTorques"}),
+    // The name of a test is its fault in letters: `NanIsSwallowed`.
+    [](const ::testing::TestParamInfo<Fault>& fault) {
+      std::string name = fault.param.fault[0] == '\0' ? "none" : "";
+      bool upper = false;
+      for (const char* c = fault.param.fault; *c != '\0'; ++c) {
+        if (std::isalpha(*c)) name.push_back(upper ? static_cast<char>(std::toupper(*c)) : *c);
+        upper = *c == ' ';
+      }
+      return name;
+    });
 
 }  // namespace

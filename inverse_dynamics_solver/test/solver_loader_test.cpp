@@ -89,6 +89,14 @@ TEST(SolverLoader, SolverOutlivesItsLoader) {
   EXPECT_DOUBLE_EQ(third->getGravityVector(kHorizontal)[0], kTorque);
 }
 
+/// The program must end well: its exit status is part of the test.
+TEST(SolverLoader, MayLiveUntilTheEndOfTheProgram) {
+  static const SolverLoader loader;
+  static std::shared_ptr<InverseDynamicsSolver> solver;
+  solver = loader.load(kPendulum);
+  EXPECT_NE(solver, nullptr);
+}
+
 TEST(SolverLoader, MayBeMovedAndUsedFromManyThreads) {
   SolverLoader first;
   const SolverLoader loader = std::move(first);

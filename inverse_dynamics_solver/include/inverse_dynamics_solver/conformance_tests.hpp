@@ -12,29 +12,33 @@
 ///     INVERSE_DYNAMICS_SOLVER_CONFORMANCE(MySolver, MySolverTraits);
 ///
 /// In CMake: `inverse_dynamics_solver_add_plugin_test(my_solver_conformance_test
-/// test/my_solver_conformance_test.cpp PLUGIN my_solver_plugin)`. Part one (contract_tests.hpp) is
-/// what callers are promised: sizes, errors, initialization, memory, threads, NaN. Part two
-/// (law_tests.hpp) is physics. A test that doesn't apply to a solver is skipped and says why.
+/// test/my_solver_conformance_test.cpp PLUGIN my_solver_plugin)`.
+///
+/// Part one, initialization_tests.hpp, and part two, contract_tests.hpp, are what callers are
+/// promised; part three, law_tests.hpp, is physics. A test that doesn't apply to a solver is
+/// skipped and says why.
 ///
 /// The plugin is loaded by name, as users do. Random states have a fixed seed, and a failure prints
 /// its state as C++ to be pasted. Tolerances and their reasons stand in solver_fixture.hpp.
 #pragma once
 
 #include "inverse_dynamics_solver/conformance/contract_tests.hpp"
+#include "inverse_dynamics_solver/conformance/initialization_tests.hpp"
 #include "inverse_dynamics_solver/conformance/law_tests.hpp"
 
 namespace inverse_dynamics_solver::conformance {
 
 REGISTER_TYPED_TEST_SUITE_P(
     SolverConformance,
-    // What callers are promised.
+    // Initialization.
+    FailedInitializeLeavesTheSolverAsItWas, InitializingAgainTakesEffect,
+    ParametersAreReadBelowTheNamespace, RobotDescriptionComesFromArgumentOrParameter,
+    // Contract.
     JointNamesAreDistinctAndCounted, ResultsHaveTheSizesOfTheRobotAndAreFinite,
     UninitializedSolverRefusesEveryMethod, WrongSizeIsRefusedNamingArgumentExpectedAndGot,
     BatchOfWrongShapeIsRefused, ResultsByValueEqualResultsInMemoryOfTheCaller,
     BatchEqualsSingleCalls, CallsIntoMemoryOfTheCallerDoNotAllocate, ManyThreadsGetTheNumbersOfOne,
-    NanGoesToEveryEntryThatDependsOnIt, FailedInitializeLeavesTheSolverAsItWas,
-    InitializingAgainTakesEffect, ParametersAreReadBelowTheNamespace,
-    RobotDescriptionComesFromArgumentOrParameter,
+    NanGoesToEveryEntryThatDependsOnIt,
     // Physics.
     TorquesAreTheSumOfTheirTerms, ComponentsEqualTheSingleMethods, TorquesAreLinearInAcceleration,
     CoriolisTorquesAreQuadraticInVelocity, GravityTorquesAreProportionalToGravity,

@@ -145,6 +145,32 @@ inline double sizeOf(const Eigen::MatrixXd& values) {
   return values.size() == 0 ? 1.0 : std::max(1.0, values.cwiseAbs().maxCoeff());
 }
 
+/// The text of the E that `call` throws; a failure if it throws nothing or something else.
+template <class E, class Call>
+std::string errorOf(Call call) {
+  try {
+    call();
+  } catch (const E& e) {
+    return e.what();
+  } catch (const std::exception& e) {
+    ADD_FAILURE() << "another exception than promised: " << e.what();
+    return "";
+  }
+  ADD_FAILURE() << "no exception";
+  return "";
+}
+
+/// Passes if `text` contains all `parts`.
+inline ::testing::AssertionResult contains(const std::string& text,
+                                           const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) {
+    if (text.find(part) == std::string::npos) {
+      return ::testing::AssertionFailure() << "\"" << part << "\" is missing in: " << text;
+    }
+  }
+  return ::testing::AssertionSuccess();
+}
+
 /// Fixture: a loaded solver, initialized as its traits say.
 template <class Traits>
 class SolverConformance : public ::testing::Test {
