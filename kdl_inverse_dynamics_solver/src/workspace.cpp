@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workspace.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <thread>
+
+#include "inverse_dynamics_solver/exceptions.hpp"
+
+namespace kdl_inverse_dynamics_solver {
+namespace {
+
+/// KDL reports mistakes by number. None is possible with checked sizes; if one comes, it isn't
+/// swallowed.
+void check(int code, const KDL::SolverI& solver, const char* what) {
+  if (code == KDL::SolverI::E_NOERROR) return;
+  throw inverse_dynamics_solver::Exception(inverse_dynamics_solver::errorText(
+      what, "KDL failed", "",
+      std::string(solver.strError(code)) + " (" + std::to_string(code) + ")",
+      "report this with the robot description and the joint state"));
+}
+
+/// A number that differs between threads. (Not a thread_local index: its first use could allocate.)
+std::size_t threadNumber() {
+  const std::uint64_t id = std::hash<std::thread::id>()(std::this_thread::get_id());
+  return static_cast<std::size_t>((id * 0x9E3779B97F4A7C15U) >> 32U);
+}
+
+}  // namespace
+
+Workspace::Workspace(const KDL::Chain& chain, const KDL::Vector& gravity)
+    : chain_(chain),
+      components_(chain_, gravity),
+      newton_euler_(chain_, gravity),
+      q_(chain_.getNrOfJoints()),
+      qd_(chain_.getNrOfJoints()),
+      qdd_(chain_.getNrOfJoints()),
+      result_(chain_.getNrOfJoints()),
+      H_(chain_.getNrOfJoints()),
+      no_forces_(chain_.getNrOfSegments(), KDL::Wrench::Zero()) {}
+
+void Workspace::inertiaMatrix(const Vector& q, Eigen::Ref<Eigen::MatrixXd> H) {
+  q_.data = q;
+  check(components_.JntToMass(q_, H_), components_, "inertia matrix");
+  H = H_.data;
+}
+
+void Workspace::coriolisVector(const Vector& q, const Vector& qd, Eigen::Ref<Eigen::VectorXd> c) {
+  q_.data = q;
+  qd_.data = qd;
+  check(components_.JntToCoriolis(q_, qd_, result_), components_, "Coriolis torques");
+  c = result_.data;
+}
+
+void Workspace::gravityVector(const Vector& q, Eigen::Ref<Eigen::VectorXd> g) {
+  q_.data = q;
+  check(components_.JntToGravity(q_, result_), components_, "gravity torques");
+  g = result_.data;
+}
+
+void Workspace::torques(const Vector& q, const Vector& qd, const Vector& qdd,
+                        Eigen::Ref<Eigen::VectorXd> tau) {
+  q_.data = q;
+  qd_.data = qd;
+  qdd_.data = qdd;
+  check(newton_euler_.CartToJnt(q_, qd_, qdd_, no_forces_, result_), newton_euler_, "torques");
+  tau = result_.data;
+}
+
+WorkspacePool::WorkspacePool(const KDL::Chain& chain, const KDL::Vector& gravity, std::size_t count)
+    : chain_(chain), gravity_(gravity), slots_(count) {
+  for (Slot& slot : slots_) slot.workspace = std::make_unique<Workspace>(chain_, gravity_);
+}
+
+WorkspacePool::Lease WorkspacePool::acquire() {
+  // Threads begin at different places, and so seldom meet.
+  const std::size_t start = threadNumber();
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    Slot& slot = slots_[(start + i) % slots_.size()];
+    if (!slot.busy.test_and_set(std::memory_order_acquire)) {
+      return Lease(slot.workspace.get(), &slot.busy);
+    }
+  }
+  return Lease(std::make_unique<Workspace>(chain_, gravity_));
+}
+
+}  // namespace kdl_inverse_dynamics_solver

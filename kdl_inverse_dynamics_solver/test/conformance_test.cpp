@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "files.hpp"
+#include "inverse_dynamics_solver/conformance_tests.hpp"
+
+namespace {
+
+using namespace inverse_dynamics_solver::conformance;
+using namespace kdl_inverse_dynamics_solver::test;
+
+struct Kdl : SolverTraits {
+  static constexpr const char* kPlugin = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL";
+  static std::vector<std::pair<ParameterMap, std::string>> badInitializations() {
+    return {{{{"max_threads", 0}}, obliqueArm()}, {{{"max_threads", "many"}}, obliqueArm()}};
+  }
+};
+
+struct KdlOblique : Kdl {
+  static std::string robotDescription() { return obliqueArm(); }
+  static ParameterMap parameters() { return {{"tip", "tool"}}; }
+};
+
+struct KdlUr10 : Kdl {
+  static std::string robotDescription() { return textOf(robotsFile("urdf/ur10.urdf")); }
+};
+
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Oblique, KdlOblique);
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Ur10, KdlUr10);
+
+}  // namespace
