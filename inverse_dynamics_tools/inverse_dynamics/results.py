@@ -15,6 +15,7 @@ import math
 from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -88,7 +89,7 @@ def read_evaluation(directory: Path | str) -> Evaluation:
         with np.load(directory / "series.npz", allow_pickle=False) as series:
             arrays = {name: series[name] for name in series.files}
         return _from_files(data, metrics, arrays)
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, BadZipFile) as error:
         raise OutputError(
             f"{directory}: isn't a complete evaluation ({type(error).__name__}: {error}); evaluate "
             "again"

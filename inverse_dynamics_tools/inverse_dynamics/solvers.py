@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from inverse_dynamics import _core
-from inverse_dynamics.errors import SolverError
+from inverse_dynamics.errors import InvalidRobotDescriptionError, SolverError
 
 if TYPE_CHECKING:
     from inverse_dynamics.robots import Robot
@@ -28,5 +28,6 @@ def open_solver(robot: Robot, description: str = "") -> _core.Solver:
             model=None if robot.model is None else str(robot.model),
         )
     except SolverError as error:
-        where = f"robot {robot.name}" + (f" ({robot.urdf})" if robot.urdf else "")
-        raise type(error)(f"{where}: {robot.plugin}: {error}") from error
+        at_fault = isinstance(error, InvalidRobotDescriptionError)
+        where = f"robot {robot.name}" + (f" ({robot.urdf})" if at_fault else "")
+        raise type(error)(f"{where}: {error}") from error

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: Apache-2.0
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+from conftest import joint_log
+from test_evaluation import RIGID_BODY, UR10, URDF, recording
+
+from inverse_dynamics import Solver, cli, read_evaluation
+from inverse_dynamics.bags import write_joint_logs
+
+RAW = ("--accelerations", "backward-difference")
+
+
+@pytest.fixture(scope="module")
+def bag(tmp_path_factory):
+    path = tmp_path_factory.mktemp("recording") / "motion"
+    recording(path, Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0"))
+    return path
+
+
+@pytest.fixture
+def ids(tmp_path, monkeypatch, capsys):
+    """Run `ids` in an empty directory; gives exit code, stdout, stderr."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "120")
+
+    def run(*arguments):
+        try:
+            code = cli.main([str(a) for a in arguments])
+        except SystemExit as exit_:  # argparse
+            code = exit_.code
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err
+
+    return run
+
+
+def fails(result, *expected):
+    """The user is told, on stderr, without a traceback; exit code 2."""
+    code, out, err = result
+    assert code == 2
+    assert out == ""
+    assert "Traceback" not in err
+    for part in expected:
+        assert part in err
+
+
+def test_evaluate_prints_errors_and_writes_results(ids, bag, tmp_path):
+    code, out, err = ids("evaluate", bag, "--robot", "ur10_simulated", "--out", "result")
+    assert (code, err) == (0, "")
+    assert re.search(r"joint +unit +MAE +RMSE +NRMSE +bias +R²", out)
+    assert re.search(r"elbow_joint +N m( +[+-]?[\d.]+){2} +[\d.]+ % +[+-][\d.]+ +[\d.]+", out)
+    assert re.search(r"mean +N m", out)
+    assert "cut-off" in out
+    assert "result/torques.png" in out
+    result = read_evaluation(tmp_path / "result")
+    assert f"{result.mean_rmse:.3f}" in out
+    metrics = json.loads((tmp_path / "result/metrics.json").read_text())
+    assert [j["joint"] for j in metrics["joints"]] == list(result.joint_names)
+
+
+def test_results_go_beside_where_one_is_if_nothing_is_said(ids, bag, tmp_path):
+    code, _, _ = ids("evaluate", bag, "--robot", "ur10_simulated", *RAW)
+    assert code == 0
+    assert (tmp_path / "motion_ur10_simulated" / "metrics.json").is_file()
+
+
+def test_every_override_reaches_the_evaluation(ids, tmp_path):
+    log = recording(tmp_path / "bag", Solver(UR10), topic="/arm")
+    urdf = shutil.copy(URDF, tmp_path / "arm.urdf")
+    renamed = tuple(f"arm_{name}" for name in log.joint_names)
+    log = replace(log, joint_names=renamed, storage="mcap")
+    write_joint_logs(tmp_path / "renamed", {"/arm": log})
+    arguments = ["--plugin", RIGID_BODY, "--no-friction", "--urdf", urdf, "--root", "base_link"]
+    arguments += ["--tip", "wrist_3_link", "--gravity", "-1,2,-9", "--topic", "/arm"]
+    arguments += ["--joints", ",".join(renamed), "--accelerations", "low-pass", "--cutoff", "7"]
+    arguments += ["--clock", "receive", "--without-rule", "repeated", "--storage", "mcap"]
+    code, _, err = ids("evaluate", "renamed", "--robot", "ur10_real", "--out", "out", *arguments)
+    assert (code, err) == (0, "")
+    result = read_evaluation("out")
+    robot = result.robot
+    assert (robot.plugin, robot.friction, str(robot.urdf)) == (RIGID_BODY, False, str(urdf))
+    assert (robot.root, robot.tip, robot.topic) == ("base_link", "wrist_3_link", "/arm")
+    assert robot.gravity == (-1.0, 2.0, -9.0)
+    assert robot.joints == renamed
+    assert (result.accelerations.cutoff, result.log.clock) == (7.0, "receive")
+    assert (tmp_path / "out/bag/bag.mcap").is_file()
+
+
+def test_an_existing_result_is_kept_unless_told_otherwise(ids, bag, tmp_path):
+    command = ("evaluate", bag, "--robot", "ur10_simulated", "--out", "out", *RAW)
+    assert ids(*command)[0] == 0
+    before = (tmp_path / "out/series.npz").stat().st_mtime_ns
+    fails(ids(*command), "ids: error: out: exists already", "--overwrite")
+    assert (tmp_path / "out/series.npz").stat().st_mtime_ns == before
+    assert ids(*command, "--overwrite")[0] == 0
+    assert (tmp_path / "out/series.npz").stat().st_mtime_ns != before
+
+
+def test_mistakes_of_the_user_are_told_and_nothing_is_written(ids, bag, tmp_path):
+    robot = ("--robot", "ur10_simulated")
+    fails(ids("evaluate", "nothing", *robot), "nothing: no such file or directory")
+    fails(ids("evaluate", bag, "--robot", "ur11"), "robot 'ur11': expected one of", "ur10_real")
+    fails(ids("evaluate", bag, *robot, "--plugin", "a/B"), "'a/B': not found: expected one of")
+    fails(ids("evaluate", bag, *robot, "--topic", "/x"), "has no topic /x", "/joint_states")
+    fails(ids("evaluate", bag, *robot, "--joints", "a,b"), "expected 6 names", "got 2 (a, b)")
+    fails(ids("evaluate", bag, *robot, "--tip", "hand"), "hand")
+    fails(ids("evaluate", bag, *robot, "--urdf", "arm.urdf"), "arm.urdf: no such file")
+    fails(ids("evaluate", bag, *robot, *RAW, "--cutoff", "5"), "has no cut-off, got 5 Hz")
+    (tmp_path / "file").touch()
+    fails(ids("evaluate", bag, *robot, "--out", "file"), "file: exists and isn't a directory")
+    fails(ids("evaluate", bag, *robot, *RAW, "--out", "file/x"), "file/x: can't be written")
+    assert os.listdir(tmp_path) == ["file"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        ((), "the following arguments are required: VERB"),
+        (("torque",), "invalid choice: 'torque'"),
+        (("evaluate", "bag"), "the following arguments are required: --robot"),
+        (("evaluate", "bag", "--robot", "x", "--gravity", "1,2"), "expected three numbers, x,y,z"),
+        (("evaluate", "bag", "--robot", "x", "--gravity", "1,2,nan"), "expected finite numbers"),
+        (("evaluate", "bag", "--robot", "x", "--cutoff", "-1"), "expected a number above zero"),
+        (("evaluate", "bag", "--robot", "x", "--joints", "a,,b"), "expected names, a,b,c"),
+        (("evaluate", "bag", "--robot", "x", "--accelerations", "best"), "choose from"),
+    ],
+)
+def test_options_that_make_no_sense_are_told(ids, arguments, expected):
+    fails(ids(*arguments), expected)
+
+
+def test_a_short_recording_says_so(ids, tmp_path):
+    log = joint_log(1, 6, joint_names=("a", "b", "c", "d", "e", "f"))
+    write_joint_logs(tmp_path / "bag", {log.topic: log})
+    names = ",".join(log.joint_names)
+    fails(ids("evaluate", "bag", "--robot", "ur10_simulated", "--joints", names), "bag: /joint_st")
+
+
+def test_robots_lists_them_with_a_line_each(ids):
+    code, out, _ = ids("robots")
+    assert code == 0
+    assert re.search(r"^ur10_real +Real UR10", out, re.MULTILINE)
+    assert re.search(r"^panda_simulated ", out, re.MULTILINE)
+
+
+def test_robots_shows_one(ids):
+    code, out, _ = ids("robots", "panda_real")
+    assert code == 0
+    for part in ("panda_real", "franka_inria_inverse_dynamics_solver/", "fer_joint7", "Gaz"):
+        assert part in out
+    fails(ids("robots", "ur11"), "expected one of")
+
+
+def test_robots_lists_solvers(ids):
+    assert UR10 in ids("robots", "--plugins")[1].splitlines()
+
+
+@pytest.mark.parametrize("verb", [(), *((verb,) for verb in cli.VERBS)])
+def test_help_teaches_by_examples(ids, verb):
+    code, out, _ = ids(*verb, "--help")
+    assert code == 0
+    assert re.search(rf"^  ids {verb[0] if verb else ''}", out, re.MULTILINE)
+
+
+def test_help_is_quick_to_load():
+    """No array, plot or recording library is loaded before it is needed."""
+    program = "import sys; from inverse_dynamics.cli import make_parser; make_parser(); " + (
+        "print({'numpy', 'matplotlib', 'rosbags', 'rich', 'mujoco'} & set(sys.modules))"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert result.stdout.strip() == "set()"
+
+
+def test_the_installed_command_runs_without_a_virtual_environment(bag, tmp_path):
+    command = shutil.which("ids")
+    assert command is not None
+    environment = {k: v for k, v in os.environ.items() if k != "VIRTUAL_ENV"}
+    environment["PATH"] = "/usr/bin:/bin"
+    arguments = ["evaluate", bag, "--robot", "ur10_simulated", "--out", tmp_path / "out", *RAW]
+    result = subprocess.run(
+        [command, *arguments], capture_output=True, text=True, check=False, env=environment
+    )
+    assert result.returncode == 0, result.stderr
+    assert "elbow_joint" in result.stdout
+    arguments = ["evaluate", tmp_path / "nothing", "--robot", "ur10_simulated"]
+    result = subprocess.run(
+        [command, *arguments], capture_output=True, text=True, check=False, env=environment
+    )
+    assert result.returncode == 2
+    assert result.stderr.startswith("ids: error: ")
+
+
+def test_without_a_sourced_workspace_the_command_names_the_remedy():
+    environment = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
+    result = subprocess.run(
+        [shutil.which("ids")], capture_output=True, text=True, check=False, env=environment
+    )
+    assert result.returncode != 0
+    assert "source install/local_setup.bash" in result.stderr

@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: Apache-2.0
+import json
+import pickle
+import threading
+
+import numpy as np
+import pytest
+from scipy import signal
+
+from inverse_dynamics import Solver, UserError, _core, available_solvers, errors
+from inverse_dynamics.ament import package_share
+
+UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
+PANDA = "franka_inria_inverse_dynamics_solver/InverseDynamicsSolverFrankaInria"
+RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
+KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
+
+# What shared reference values are reproduced to [rad, N m]; the C++ tests hold the same.
+TOLERANCE = 1e-10
+
+DATA = package_share("inverse_dynamics_robots")
+
+# A pendulum of 2 kg whose centre of mass is 0.5 m from the horizontal axis, and a slider on it.
+PENDULUM = """
+<robot name="pendulum">
+  <link name="base"/>
+  <link name="arm"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
+    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
+  <joint name="swing" type="continuous"><parent link="base"/><child link="arm"/>
+    <axis xyz="0 1 0"/></joint>
+</robot>"""
+
+
+def states(name):
+    """Arrays (N, n) or (N, n, n) of a file of reference values, by quantity."""
+    data = json.loads((DATA / "reference" / f"{name}.json").read_text())
+    rows = data["states"]
+    arrays = {key: np.array([row[key] for row in rows]) for key in rows[0] if key != "kind"}
+    return data["joint_names"], arrays
+
+
+@pytest.fixture(scope="module")
+def ur10():
+    return Solver(UR10)
+
+
+def test_installed_solvers_are_listed():
+    assert {UR10, PANDA, RIGID_BODY, KDL} <= set(available_solvers())
+
+
+@pytest.mark.parametrize(("plugin", "file"), [(UR10, "ur10"), (PANDA, "franka_inria")])
+def test_batches_of_identified_models_have_the_reference_values(plugin, file):
+    joint_names, expected = states(file)
+    solver = Solver(plugin)
+    q, qd, qdd = expected["q"], expected["qd"], expected["qdd"]
+    assert list(solver.joint_names) == joint_names
+    results = {
+        "torques": solver.torques(q, qd, qdd),
+        "inertia": solver.inertia_matrix(q),
+        "coriolis": solver.coriolis_vector(q, qd),
+        "gravity": solver.gravity_vector(q),
+        "friction": solver.friction_vector(qd),
+    }
+    for quantity, values in results.items():
+        assert values.shape == expected[quantity].shape
+        np.testing.assert_allclose(values, expected[quantity], rtol=0, atol=TOLERANCE)
+
+
+def test_inertia_that_is_not_symmetric_is_not_turned_round(ur10):
+    expected = states("ur10")[1]
+    H = ur10.inertia_matrix(expected["q"][3])
+    assert np.abs(H - H.T).max() > 0.1
+    np.testing.assert_allclose(H, expected["inertia"][3], rtol=0, atol=TOLERANCE)
+
+
+@pytest.mark.parametrize("plugin", [KDL, RIGID_BODY])
+def test_urdf_solvers_have_the_reference_values(plugin):
+    _, expected = states("panda_urdf")
+    urdf = (DATA / "urdf" / "panda.urdf").read_text()
+    solver = Solver(plugin, urdf=urdf, root="fer_link0", tip="fer_link8")
+    H, c, g = solver.dynamic_components(expected["q"], expected["qd"])
+    for values, quantity in ((H, "inertia"), (c, "coriolis"), (g, "gravity")):
+        np.testing.assert_allclose(values, expected[quantity], rtol=0, atol=TOLERANCE)
+    assert solver.inertia_is_physical
+    assert solver.drive_gains is None
+
+
+def test_pendulum_has_the_torques_worked_by_hand():
+    solver = Solver(RIGID_BODY, urdf=PENDULUM)
+    # It hangs at 0. Inertia about the axis: 0.1 + 2 * 0.5^2; held level: 2 * 9.81 * 0.5.
+    assert solver.joint_names == ("swing",)
+    assert solver.inertia_matrix([0.3]) == pytest.approx(0.6, abs=1e-12)
+    assert abs(solver.gravity_vector([np.pi / 2])[0]) == pytest.approx(9.81, abs=1e-12)
+    sideways = Solver(RIGID_BODY, urdf=PENDULUM, gravity=(0, 9.81, 0))
+    assert sideways.gravity_vector([np.pi / 2]) == pytest.approx(0, abs=1e-12)
+
+
+def test_one_state_gives_what_it_gives_within_a_batch(ur10):
+    _, expected = states("ur10")
+    q, qd, qdd = expected["q"], expected["qd"], expected["qdd"]
+    batch = ur10.torques(q, qd, qdd)
+    for k in range(len(q)):
+        assert ur10.torques(q[k], qd[k], qdd[k]).shape == (6,)
+        np.testing.assert_array_equal(ur10.torques(q[k], qd[k], qdd[k]), batch[k])
+    assert ur10.inertia_matrix(q[0]).shape == (6, 6)
+    assert ur10.inertia_matrix(q).shape == (len(q), 6, 6)
+
+
+@pytest.mark.parametrize(
+    "layout",
+    [
+        np.asfortranarray,
+        lambda a: np.repeat(a, 2, axis=0)[::2],
+        lambda a: a[::-1][::-1],
+        lambda a: a.tolist(),
+    ],
+    ids=["columns", "strided", "reversed", "list"],
+)
+def test_arrays_of_any_layout_give_the_same(ur10, layout):
+    _, expected = states("ur10")
+    arrays = [expected[name] for name in ("q", "qd", "qdd")]
+    np.testing.assert_array_equal(ur10.torques(*(layout(a) for a in arrays)), ur10.torques(*arrays))
+
+
+def test_an_empty_batch_gives_an_empty_result(ur10):
+    nothing = np.zeros((0, 6))
+    assert ur10.torques(nothing, nothing, nothing).shape == (0, 6)
+    assert ur10.inertia_matrix(nothing).shape == (0, 6, 6)
+
+
+def test_not_a_number_stays_one(ur10):
+    q = np.zeros((3, 6))
+    q[1, 5] = np.nan
+    tau = ur10.torques(q, 0 * q, np.zeros_like(q))
+    assert np.isfinite(tau[[0, 2]]).all()
+    assert np.isnan(tau[1]).any()
+
+
+def test_friction_can_be_left_out(ur10):
+    _, expected = states("ur10")
+    without = Solver(UR10, friction=False)
+    motion = [expected[name] for name in ("q", "qd", "qdd")]
+    np.testing.assert_allclose(
+        ur10.torques(*motion) - without.torques(*motion), expected["friction"], atol=TOLERANCE
+    )
+    assert not without.friction_vector(motion[1]).any()
+
+
+def test_drive_gains_of_a_model_in_currents(ur10):
+    gains = json.loads((DATA / "reference/ur10.json").read_text())["drive_gains"]
+    np.testing.assert_array_equal(ur10.drive_gains, gains)
+    assert not ur10.inertia_is_physical
+
+
+def test_a_solver_is_pickled_with_all_it_was_made_from():
+    solver = Solver(
+        RIGID_BODY, urdf=PENDULUM, gravity=(1, 2, 3), parameters={"locked_joints.x": 1.0}
+    )
+    copy = pickle.loads(pickle.dumps(solver))
+    assert copy.plugin == RIGID_BODY
+    q = np.linspace(-3, 3, 7)[:, None]
+    np.testing.assert_array_equal(copy.gravity_vector(q), solver.gravity_vector(q))
+
+
+def test_threads_compute_at_once_and_the_same(ur10):
+    rng = np.random.default_rng(0)
+    q, qd, qdd = rng.normal(size=(3, 2000, 6))
+    expected = ur10.torques(q, qd, qdd)
+    results = [None] * 4
+
+    def compute(i):
+        results[i] = ur10.torques(q, qd, qdd)
+
+    threads = [threading.Thread(target=compute, args=(i,)) for i in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for result in results:
+        np.testing.assert_array_equal(result, expected)
+
+
+# Errors: of the C++ exceptions' kinds, with their texts.
+
+
+def test_unknown_plugin_lists_what_there_is():
+    with pytest.raises(errors.PluginNotFoundError) as caught:
+        Solver("ur11/Solver")
+    assert "'ur11/Solver': not found: expected one of" in str(caught.value)
+    assert UR10 in str(caught.value)
+
+
+def test_missing_description_is_an_error():
+    with pytest.raises(errors.ParameterMissingError, match="robot description"):
+        Solver(KDL)
+
+
+@pytest.mark.parametrize("urdf", ["<robot", "<robot name='x'/>", PENDULUM.replace('"2"', '"-2"')])
+def test_broken_description_is_an_error(urdf):
+    with pytest.raises(errors.InvalidRobotDescriptionError):
+        Solver(RIGID_BODY, urdf=urdf)
+
+
+def test_unknown_link_is_an_error():
+    with pytest.raises(errors.InvalidRobotDescriptionError, match="hand"):
+        Solver(RIGID_BODY, urdf=PENDULUM, tip="hand")
+
+
+def test_parameter_of_the_wrong_type_is_an_error():
+    with pytest.raises(errors.InvalidParameterError, match="attached"):
+        Solver(RIGID_BODY, urdf=PENDULUM, parameters={"attached": 3})
+    with pytest.raises(TypeError, match=r"parameter 'x': expected bool, int, .* got complex"):
+        Solver(RIGID_BODY, urdf=PENDULUM, parameters={"x": 1j})
+
+
+def test_arrays_of_the_wrong_size_are_an_error(ur10):
+    six = np.zeros(6)
+    with pytest.raises(errors.SizeMismatchError, match="qd"):
+        ur10.torques(six, np.zeros(5), six)
+    with pytest.raises(errors.SizeMismatchError):
+        ur10.torques(np.zeros((4, 6)), np.zeros((3, 6)), np.zeros((4, 6)))
+    with pytest.raises(ValueError, match=r"q: expected an array \(n,\) or \(N, n\)"):
+        ur10.gravity_vector(np.zeros((2, 2, 6)))
+
+
+def test_errors_of_solvers_are_user_errors():
+    assert issubclass(errors.PluginNotFoundError, UserError)
+    assert issubclass(errors.InvalidRobotDescriptionError, errors.InvalidParameterError)
+
+
+# Filters and metrics: against scipy and numpy.
+
+
+@pytest.mark.parametrize("order", [1, 2, 4])
+@pytest.mark.parametrize("cutoff", [0.7, 5.0, 40.0])
+def test_low_pass_is_that_of_scipy(order, cutoff):
+    rate = 125.0
+    samples = np.cumsum(np.random.default_rng(1).normal(size=(800, 3)), axis=0)
+    padding = 150
+    sections = signal.butter(order, cutoff, fs=rate, output="sos")
+    expected = signal.sosfiltfilt(sections, samples, axis=0, padtype="odd", padlen=padding)
+    result = _core.low_pass(samples, rate, cutoff, order, padding)
+    scale = np.abs(samples).max()
+    np.testing.assert_allclose(result, expected, rtol=0, atol=1e-9 * scale)
+
+
+def test_gain_of_low_pass_is_that_of_scipy():
+    sections = signal.butter(2, 10.0, fs=500.0, output="sos")
+    for frequency in (1.0, 10.0, 100.0):
+        _, response = signal.sosfreqz(sections, [frequency], fs=500.0)
+        expected = abs(response[0]) ** 2
+        assert _core.low_pass_gain(frequency, 10.0, 500.0) == pytest.approx(expected, rel=1e-9)
+
+
+def test_backward_difference_is_that_of_numpy():
+    rng = np.random.default_rng(2)
+    time = np.cumsum(rng.uniform(0.001, 0.01, 100))
+    qd = rng.normal(size=(100, 2))
+    qdd = _core.backward_difference(time, qd)
+    np.testing.assert_array_equal(qdd[0], 0)
+    np.testing.assert_allclose(qdd[1:], np.diff(qd, axis=0) / np.diff(time)[:, None], rtol=1e-12)
+
+
+def test_low_pass_accelerations_of_a_sine_are_its_derivative():
+    time = np.arange(4000) * 0.002
+    phase = 2 * np.pi * 0.5 * time[:, None] + [0.0, 1.0]
+    rate = 2 * np.pi * 0.5
+    q, qd, qdd = np.sin(phase), rate * np.cos(phase), -(rate**2) * np.sin(phase)
+    result, choice, report = _core.low_pass_accelerations(time, q, qd, q, cutoff=50.0)
+    assert (choice.cutoff, choice.chosen) == (50.0, False)
+    assert report.kept.all()
+    # In the middle, away from where the filter begins and ends: gain at 0.5 Hz is 1 - 1e-8.
+    np.testing.assert_allclose(result[500:-500], qdd[500:-500], rtol=0, atol=1e-6)
+
+
+def test_metrics_are_those_of_numpy():
+    rng = np.random.default_rng(3)
+    measured, computed = rng.normal(size=(2, 500, 2))
+    measured[:, 1] = 4.0  # never changes
+    mask = rng.random(500) < 0.8
+    for kept in (None, mask):
+        chosen = slice(None) if kept is None else kept
+        m, e = measured[chosen], (computed - measured)[chosen]
+        first, second = _core.metrics(computed, measured, kept)
+        assert first.count == len(e)
+        assert first.mae == pytest.approx(np.abs(e[:, 0]).mean(), rel=1e-12)
+        rmse = np.sqrt((e[:, 0] ** 2).mean())
+        assert first.rmse == pytest.approx(rmse, rel=1e-12)
+        assert first.nrmse == pytest.approx(rmse / np.ptp(m[:, 0]), rel=1e-12)
+        assert first.bias == pytest.approx(e[:, 0].mean(), rel=1e-9)
+        deviation = m[:, 0] - m[:, 0].mean()
+        assert first.r2 == pytest.approx(1 - (e[:, 0] ** 2).sum() / (deviation**2).sum(), rel=1e-9)
+        assert first.max_abs == pytest.approx(np.abs(e[:, 0]).max(), rel=1e-12)
+        assert np.isnan(second.nrmse)
+        assert np.isnan(second.r2)
+
+
+def test_samples_that_can_not_be_evaluated_are_an_error():
+    with pytest.raises(errors.EvaluationError):
+        _core.metrics(np.zeros((3, 2)), np.zeros((4, 2)))
+    with pytest.raises(errors.EvaluationError):
+        _core.backward_difference(np.zeros(4), np.zeros((3, 2)))

@@ -1,0 +1,338 @@
+# SPDX-License-Identifier: Apache-2.0
+import shutil
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import joint_log
+
+from inverse_dynamics import Solver, evaluate, load_robot
+from inverse_dynamics.ament import package_share
+from inverse_dynamics.bags import write_joint_logs
+from inverse_dynamics.errors import (
+    BagError,
+    EvaluationError,
+    InvalidRobotDescriptionError,
+    PluginNotFoundError,
+    RobotError,
+)
+from inverse_dynamics.joint_log import JointLog
+
+UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
+RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
+URDF = package_share("inverse_dynamics_robots") / "urdf" / "ur10.urdf"
+
+JOINTS = (
+    "shoulder_pan_joint",
+    "shoulder_lift_joint",
+    "elbow_joint",
+    "wrist_1_joint",
+    "wrist_2_joint",
+    "wrist_3_joint",
+)
+
+
+def motion(samples: int = 1500, rate: float = 250.0) -> tuple[np.ndarray, ...]:
+    """Smooth q, qd, qdd (N, 6) and stamps [ns] of a UR10."""
+    stamps = np.round(1e9 / rate * np.arange(1, samples + 1)).astype(np.int64)
+    speed = 2 * np.pi * np.array([0.20, 0.15, 0.25, 0.30, 0.35, 0.40])
+    phase = stamps[:, None] * 1e-9 * speed + np.arange(6)
+    return np.sin(phase), speed * np.cos(phase), -(speed**2) * np.sin(phase), stamps
+
+
+def recording(path: Path, solver: Solver, **changes: object) -> JointLog:
+    """Record the motion with the efforts that a solver computes for it."""
+    q, qd, qdd, stamps = motion()
+    log = JointLog(JOINTS, stamps, stamps, q, qd, solver.torques(q, qd, qdd))
+    log = replace(log, **changes)
+    write_joint_logs(path, {log.topic: log})
+    return log
+
+
+@pytest.fixture(scope="module")
+def solver():
+    return Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0")
+
+
+@pytest.fixture(scope="module")
+def bag(tmp_path_factory, solver):
+    path = tmp_path_factory.mktemp("recording") / "bag"
+    recording(path, solver)
+    return path
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return replace(load_robot("ur10_simulated"), plugin=RIGID_BODY)
+
+
+def test_a_recording_of_the_model_itself_has_next_to_no_error(bag, robot):
+    result = evaluate(bag, robot)
+    assert result.accelerations.method == "low-pass"
+    assert result.accelerations.chosen
+    for error in result.errors:
+        assert error.nrmse < 0.005
+        assert error.r2 > 0.9999
+    assert result.joint_names == JOINTS
+    assert result.units == ("N m",) * 6
+    assert result.notes == ()
+
+
+def test_backward_differences_are_computed_as_the_formula_says(bag, robot, solver):
+    result = evaluate(bag, robot, accelerations="backward-difference")
+    q, qd, qdd_true, stamps = motion()
+    qdd = np.zeros_like(qd)
+    qdd[1:] = np.diff(qd, axis=0) / np.diff(stamps * 1e-9)[:, None]
+    np.testing.assert_allclose(result.qdd, qdd, rtol=1e-9, atol=1e-9)
+    computed = solver.torques(q, qd, qdd)
+    np.testing.assert_allclose(result.computed, computed, rtol=0, atol=1e-8)
+    difference = computed - solver.torques(q, qd, qdd_true)
+    rmse = np.sqrt((difference**2).mean(axis=0))
+    np.testing.assert_allclose([e.rmse for e in result.errors], rmse, rtol=1e-6)
+    assert result.mean_rmse == pytest.approx(rmse.mean(), rel=1e-6)
+    assert result.accelerations.cutoff is None
+
+
+def test_nothing_is_printed(bag, robot, capfd):
+    evaluate(bag, robot)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_joints_are_matched_by_name_whatever_their_order(tmp_path, bag, robot, solver):
+    q, qd, qdd, stamps = motion()
+    tau = solver.torques(q, qd, qdd)
+    order = [3, 0, 5, 1, 4, 2]
+    extra = np.full((len(q), 1), 7.0)
+    names = (*(JOINTS[i] for i in order), "finger")
+    arrays = (np.hstack([a[:, order], extra]) for a in (q, qd, tau))
+    log = JointLog(names, stamps, stamps, *arrays)
+    write_joint_logs(tmp_path / "bag", {log.topic: log})
+    permuted, plain = evaluate(tmp_path / "bag", robot), evaluate(bag, robot)
+    np.testing.assert_array_equal(permuted.computed, plain.computed)
+    assert permuted.errors == plain.errors
+
+
+def test_joints_of_other_names_are_given_in_the_order_of_the_chain(tmp_path, robot, solver):
+    renamed = tuple(f"left_{name}" for name in JOINTS)
+    recording(tmp_path / "bag", solver, joint_names=renamed)
+    with pytest.raises(BagError, match=r"expected the joints shoulder_pan_joint, .*--joints"):
+        evaluate(tmp_path / "bag", robot)
+    result = evaluate(tmp_path / "bag", robot, joints=renamed)
+    assert result.joint_names == JOINTS
+    assert result.log.joint_names == renamed
+    assert result.errors[0].nrmse < 0.005
+
+
+def test_wrong_number_of_joints_is_an_error(bag, robot):
+    with pytest.raises(RobotError, match=r"joints: expected 6 names, one per joint .*, got 2 \(a,"):
+        evaluate(bag, robot, joints=["a", "b"])
+
+
+def test_joints_in_another_order_than_the_chain_are_an_error(bag, robot):
+    with pytest.raises(RobotError, match=r"expected the order of the chain, shoulder_pan_joint"):
+        evaluate(bag, robot, joints=JOINTS[::-1])
+
+
+# What is given goes before what the configuration says.
+
+
+def test_another_plugin(bag, robot):
+    result = evaluate(bag, robot, plugin=UR10, friction=True)
+    assert result.robot.plugin == UR10
+    assert result.errors[0].nrmse > 0.01
+    assert "unfit for forward dynamics" in result.notes[0]
+
+
+def test_without_friction(tmp_path, robot):
+    recording(tmp_path / "bag", Solver(UR10, friction=False))
+    ur10 = replace(robot, plugin=UR10, friction=True)
+    assert evaluate(tmp_path / "bag", ur10).errors[0].nrmse > 0.01
+    result = evaluate(tmp_path / "bag", ur10, friction=False)
+    assert result.errors[0].nrmse < 0.005
+    assert result.robot.friction is False
+
+
+def test_another_gravity(tmp_path, robot):
+    wall = (0.0, -9.81, 0.0)
+    solver = Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0", gravity=wall)
+    recording(tmp_path / "bag", solver)
+    assert evaluate(tmp_path / "bag", robot).errors[1].nrmse > 0.1
+    assert evaluate(tmp_path / "bag", robot, gravity=wall).errors[1].nrmse < 0.005
+
+
+def test_another_topic(tmp_path, robot, solver):
+    recording(tmp_path / "bag", solver, topic="/arm/joint_states")
+    with pytest.raises(BagError, match="has no topic /joint_states"):
+        evaluate(tmp_path / "bag", robot)
+    result = evaluate(tmp_path / "bag", robot, topic="/arm/joint_states")
+    assert result.robot.topic == "/arm/joint_states"
+
+
+def test_another_description_root_and_tip(tmp_path, robot, bag):
+    urdf = tmp_path / "arm.urdf"
+    urdf.write_text(URDF.read_text().replace('"tool0"', '"hand"'))
+    with pytest.raises(InvalidRobotDescriptionError, match="tool0"):
+        evaluate(bag, robot, urdf=urdf)
+    result = evaluate(bag, robot, urdf=urdf, tip="hand")
+    assert result.robot.urdf == urdf
+    assert result.errors[0].nrmse < 0.005
+    with pytest.raises(InvalidRobotDescriptionError, match="cellar"):
+        evaluate(bag, robot, root="cellar")
+
+
+def test_a_given_cutoff_is_used_and_said(bag, robot):
+    result = evaluate(bag, robot, accelerations="low-pass", cutoff=10.0)
+    assert (result.accelerations.cutoff, result.accelerations.chosen) == (10.0, False)
+    assert "10 Hz (given)" in result.accelerations.summary
+    assert result.robot.cutoff == 10.0
+
+
+def test_a_configurations_cutoff_goes_with_its_own_method_only(bag, robot):
+    configured = replace(robot, accelerations="low-pass", cutoff=10.0)
+    assert evaluate(bag, configured).accelerations.cutoff == 10.0
+    raw = evaluate(bag, configured, accelerations="backward-difference")
+    assert raw.accelerations.cutoff is None
+
+
+def test_backward_difference_with_a_cutoff_is_an_error(bag, robot):
+    with pytest.raises(EvaluationError, match="backward-difference has no cut-off, got 5 Hz"):
+        evaluate(bag, robot, accelerations="backward-difference", cutoff=5.0)
+
+
+def test_unknown_method_and_rule_are_errors(bag, robot):
+    with pytest.raises(EvaluationError, match=r"expected one of auto, low-pass, .* got 'best'"):
+        evaluate(bag, robot, accelerations="best")
+    with pytest.raises(EvaluationError, match=r"expected some of repeated, .* got 'all'"):
+        evaluate(bag, robot, without_rules=["all"])
+
+
+# What is odd about samples is said.
+
+
+def test_repeated_samples_are_found_said_and_left_out_unless_told_otherwise(
+    tmp_path, robot, solver
+):
+    q, qd, qdd, stamps = motion()
+    arrays = [q, qd, solver.torques(q, qd, qdd)]
+    repeats = np.arange(200, 1500, 100)
+    for array in arrays:
+        array[repeats] = array[repeats - 1]
+    log = JointLog(JOINTS, stamps, stamps, *arrays)
+    write_joint_logs(tmp_path / "bag", {log.topic: log})
+    result = evaluate(tmp_path / "bag", robot)
+    np.testing.assert_array_equal(np.flatnonzero(result.samples.repeated), repeats)
+    assert "13 of 1500 samples repeat the one before (left out of the differentiation)" in (
+        result.notes
+    )
+    assert result.samples.left_out == 13
+    assert result.errors != result.errors_of_kept
+    kept = evaluate(tmp_path / "bag", robot, without_rules=["repeated"])
+    np.testing.assert_array_equal(kept.samples.repeated, result.samples.repeated)
+    assert kept.samples.left_out == 0
+
+
+def test_equal_and_backward_stamps_are_found_and_said(tmp_path, robot, solver):
+    stamps = motion()[3].copy()
+    stamps[400] = stamps[399]
+    stamps[700] = stamps[650]
+    recording(tmp_path / "bag", solver, header_stamps=stamps)
+    result = evaluate(tmp_path / "bag", robot)
+    np.testing.assert_array_equal(np.flatnonzero(result.samples.non_increasing), [400, 700])
+    assert (
+        "2 of 1500 samples have an equal or backward header stamp (left out of the "
+        "differentiation): the first is sample 401 at 1.600000000 s after 1.600000000 s"
+    ) in result.notes
+    assert len(result.computed) == 1500
+    assert max(e.nrmse for e in result.errors) < 0.01
+
+
+def test_stamps_that_never_increase_are_an_error(tmp_path, robot, solver):
+    stamps = motion()[3]
+    recording(tmp_path / "bag", solver, header_stamps=0 * stamps + 5, receive_stamps=stamps)
+    with pytest.raises(EvaluationError) as caught:
+        evaluate(tmp_path / "bag", robot)
+    assert str(caught.value).startswith(f"{tmp_path / 'bag'}: /joint_states: ")
+    assert evaluate(tmp_path / "bag", robot, clock="receive").errors[0].nrmse < 0.005
+
+
+@pytest.mark.parametrize("samples", [1, 5])
+def test_a_recording_too_short_to_be_filtered_is_an_error(tmp_path, robot, samples):
+    log = joint_log(samples, 6, joint_names=JOINTS)
+    write_joint_logs(tmp_path / "bag", {log.topic: log})
+    with pytest.raises(EvaluationError) as caught:
+        evaluate(tmp_path / "bag", robot)
+    assert str(tmp_path / "bag") in str(caught.value)
+
+
+def test_unknown_plugin_names_the_robot_and_lists_what_there_is(bag, robot):
+    with pytest.raises(PluginNotFoundError, match=r"robot ur10_simulated.*'a/B'.*expected one of"):
+        evaluate(bag, robot, plugin="a/B")
+
+
+# Robot descriptions.
+
+
+def test_missing_description_is_an_error(bag, robot, tmp_path):
+    with pytest.raises(RobotError, match=r"arm\.urdf: no such file; expected a robot description"):
+        evaluate(bag, robot, urdf=tmp_path / "arm.urdf")
+
+
+XACRO = """\
+<robot name="slide" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:property name="mass" value="${1 + 1}"/>
+  <link name="base"/>
+  <link name="cart"><inertial><mass value="${mass}"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <joint name="rail" type="prismatic"><parent link="base"/><child link="cart"/>
+    <axis xyz="0 0 1"/><limit lower="-9" upper="9" velocity="9" effort="99"/></joint>
+</robot>"""
+
+
+@pytest.fixture
+def xacro_file(tmp_path):
+    file = tmp_path / "slide.urdf.xacro"
+    file.write_text(XACRO)
+    return file
+
+
+def slide_recording(tmp_path: Path) -> Path:
+    """A cart of 2 kg that is lifted: weight and acceleration, by hand."""
+    stamps = 10_000_000 * np.arange(1, 401, dtype=np.int64)
+    phase = 2 * np.pi * 0.5 * stamps[:, None] * 1e-9
+    rate = 2 * np.pi * 0.5
+    q, qd, qdd = np.sin(phase), rate * np.cos(phase), -(rate**2) * np.sin(phase)
+    log = JointLog(("rail",), stamps, stamps, q, qd, 2 * (qdd + 9.81))
+    write_joint_logs(tmp_path / "slide", {log.topic: log})
+    return tmp_path / "slide"
+
+
+@pytest.mark.skipif(
+    not (shutil.which("xacro") or (Path(sys.executable).parent / "xacro").exists()),
+    reason="the tool xacro isn't installed",
+)
+def test_xacro_files_are_expanded_and_forces_of_prismatic_joints_are_newtons(tmp_path, xacro_file):
+    robot = replace(
+        load_robot("ur10_simulated"), plugin=RIGID_BODY, joints=(), root="base", tip="cart"
+    )
+    result = evaluate(slide_recording(tmp_path), robot, urdf=xacro_file)
+    assert result.units == ("N",)
+    assert result.errors[0].unit == "N"
+    assert result.errors[0].nrmse < 0.01
+
+
+def test_without_the_tool_xacro_the_error_names_it(bag, robot, xacro_file, monkeypatch):
+    monkeypatch.setattr(shutil, "which", lambda *_, **__: None)
+    with pytest.raises(RobotError, match=r"needs the tool xacro, which isn't installed; `pip inst"):
+        evaluate(bag, robot, urdf=xacro_file)
+
+
+@pytest.mark.skipif(
+    not (shutil.which("xacro") or (Path(sys.executable).parent / "xacro").exists()),
+    reason="the tool xacro isn't installed",
+)
+def test_broken_xacro_file_is_an_error_with_the_tools_words(bag, robot, xacro_file):
+    xacro_file.write_text(XACRO.replace("${mass}", "${weight}"))
+    with pytest.raises(RobotError, match=r"slide.urdf.xacro: xacro can't expand it: .*weight"):
+        evaluate(bag, robot, urdf=xacro_file)

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from test_results import make_evaluation
+
+from inverse_dynamics import save_torque_figure, torque_figure
+from inverse_dynamics.accelerations import Accelerations
+
+
+def texts(figure):
+    """Everything that is written in a figure."""
+    found = [t.get_text() for t in figure.texts]
+    for axes in figure.axes:
+        found += [axes.get_title(loc="left"), axes.get_xlabel()]
+    for legend in figure.legends:
+        found += [t.get_text() for t in legend.get_texts()]
+    return "\n".join(found)
+
+
+def test_every_joint_has_a_row_with_torques_and_error():
+    evaluation = make_evaluation(joints=4)
+    figure = torque_figure(evaluation)
+    assert len(figure.axes) == 8
+    for j, (left, right) in enumerate(zip(figure.axes[::2], figure.axes[1::2], strict=True)):
+        computed, measured = left.get_lines()
+        np.testing.assert_array_equal(computed.get_ydata(), evaluation.computed[:, j])
+        np.testing.assert_array_equal(measured.get_ydata(), evaluation.measured[:, j])
+        np.testing.assert_array_equal(measured.get_xdata(), evaluation.time)
+        assert measured.get_color() == "black"
+        assert measured.is_dashed()
+        assert not computed.is_dashed()
+        error = right.get_lines()[-1]
+        np.testing.assert_array_equal(
+            error.get_ydata(), evaluation.computed[:, j] - evaluation.measured[:, j]
+        )
+        low, high = right.get_ylim()
+        assert low == -high
+
+
+def test_the_figure_says_robot_solver_filter_and_units():
+    evaluation = make_evaluation()
+    shown = texts(torque_figure(evaluation))
+    for part in (
+        "Arm [of a test]",
+        "solver a/B",
+        "recording, 400 samples, 4.0 s",
+        "cut-off 3.25 Hz (chosen from the data)",
+        "joint_2 [N m]",
+        f"RMSE {evaluation.errors[0].rmse:.3g} N m",
+        "measured torque",
+        "computed torque",
+        "time [s]",
+    ):
+        assert part in shown
+    raw = replace(evaluation, accelerations=Accelerations("backward-difference"))
+    raw = replace(raw, robot=replace(raw.robot, friction=False))
+    shown = texts(torque_figure(raw))
+    assert "backward-difference, no filter" in shown
+    assert "friction left out" in shown
+
+
+def test_no_text_is_cut_off_or_covers_another():
+    evaluation = make_evaluation()
+    long = replace(evaluation.robot, description="A description that is long, " * 8)
+    figure = torque_figure(replace(evaluation, robot=long))
+    figure.canvas.draw()
+    whole = figure.bbox
+    boxes = [t.get_window_extent() for t in figure.texts]
+    boxes += [legend.get_window_extent() for legend in figure.legends]
+    for i, box in enumerate(boxes):
+        assert whole.x0 <= box.x0
+        assert box.x1 <= whole.x1
+        assert box.y1 <= whole.y1
+        assert not any(box.overlaps(other) for other in boxes[i + 1 :])
+
+
+def test_many_samples_are_thinned_without_losing_an_extreme():
+    evaluation = make_evaluation(100_001, 1)
+    spike = evaluation.computed.copy()
+    spike[54_321] = 1e3
+    spike[77_777] = -1e3
+    left = torque_figure(replace(evaluation, computed=spike)).axes[0]
+    x, y = left.get_lines()[0].get_data()
+    assert len(x) < 7000
+    assert (y.max(), y.min()) == (1e3, -1e3)
+    assert x[y.argmax()] == evaluation.time[54_321]
+    assert (np.diff(x) > 0).all()
+    assert (x[0], x[-1]) == pytest.approx((0, evaluation.time[-1]), abs=0.5)
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+def test_the_same_evaluation_gives_the_same_bytes(tmp_path, suffix):
+    evaluation = make_evaluation(100)
+    files = [tmp_path / f"{i}.{suffix}" for i in range(2)]
+    for file in files:
+        save_torque_figure(evaluation, file)
+    assert files[0].read_bytes() == files[1].read_bytes()
+    start = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[suffix]
+    assert files[0].read_bytes().startswith(start)

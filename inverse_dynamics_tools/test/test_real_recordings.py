@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings of real robots: figures that the reference implementation's method gives on them."""
+
+import pytest
+
+from inverse_dynamics import evaluate
+
+BACKWARD_DIFFERENCE = {
+    "ur10": "4.257 4.710 1.772 0.756 0.748 1.317",
+    "panda": "1.083 0.738 0.860 1.070 0.173 0.242 0.078",
+}
+
+# What the default filter must not exceed: mean over the joints [N m].
+MOST_BY_DEFAULT = {"ur10": 2.27, "panda": 0.49}
+
+ROBOTS = pytest.mark.parametrize("name", ["ur10", "panda"])
+
+
+@ROBOTS
+def test_backward_differences_give_the_published_errors_to_all_digits(recordings, name):
+    bag = recordings / f"{name}_exciting_trajectory"
+    result = evaluate(bag, f"{name}_real", accelerations="backward-difference")
+    assert " ".join(f"{e.rmse:.3f}" for e in result.errors) == BACKWARD_DIFFERENCE[name]
+
+
+@ROBOTS
+def test_the_default_filter_is_at_least_as_good_as_promised(recordings, name):
+    result = evaluate(recordings / f"{name}_exciting_trajectory", f"{name}_real")
+    assert result.accelerations.chosen
+    assert result.mean_rmse <= MOST_BY_DEFAULT[name]
+
+
+def test_faults_of_the_panda_recording_are_said(recordings):
+    result = evaluate(recordings / "panda_exciting_trajectory", "panda_real")
+    assert int(result.samples.repeated.sum()) == 14
+    assert result.samples.start_transient[:3].all()
+    assert result.accelerations.time_base != "stamps"
+    assert 1e3 * result.samples.period == pytest.approx(34, abs=0.1)
+
+
+def test_rigid_bodies_without_friction_fit_the_real_ur10_less(recordings):
+    result = evaluate(
+        recordings / "ur10_exciting_trajectory",
+        "ur10_real",
+        plugin="kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL",
+        accelerations="backward-difference",
+    )
+    published = [21.4, 21.7, 16.3, 5.9, 4.1, 5.7]  # the last digit may be rounded twice
+    assert [e.rmse for e in result.errors] == pytest.approx(published, abs=0.055)

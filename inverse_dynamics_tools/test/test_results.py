@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: Apache-2.0
+import json
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import joint_log
+
+from inverse_dynamics import read_evaluation, read_joint_log, write_evaluation
+from inverse_dynamics.accelerations import Accelerations, Samples
+from inverse_dynamics.errors import BagError, OutputError
+from inverse_dynamics.evaluation import Evaluation, joint_errors
+from inverse_dynamics.robots import Robot
+
+FILES = {
+    "bag",
+    "evaluation.json",
+    "metrics.json",
+    "series.npz",
+    "torques.pdf",
+    "torques.png",
+    "torques.svg",
+}
+
+
+def make_evaluation(samples: int = 400, joints: int = 3) -> Evaluation:
+    """An evaluation as evaluate() gives it, without a solver."""
+    log = joint_log(samples, joints, frame_id="base")
+    computed = log.effort + 0.5 * np.cos(np.arange(samples))[:, None]
+    units = ("N m",) * joints
+    kept = np.arange(samples) >= 5
+    no = np.zeros(samples, dtype=bool)
+    names = log.joint_names
+    return Evaluation(
+        robot=Robot(
+            name="arm",
+            description="Arm [of a test]",
+            file=Path("arm.yaml"),
+            plugin="a/B",
+            urdf=Path("arm.urdf"),
+            gravity=(0.0, 0.0, -9.81),
+            joints=names,
+        ),
+        bag=Path("recording"),
+        log=log,
+        joint_names=names,
+        units=units,
+        accelerations=Accelerations("low-pass", 3.25, True, 2, "regular"),
+        samples=Samples(no, no, ~kept, no, kept, 0.01, 0.0),
+        qdd=np.sin(log.q),
+        computed=computed,
+        errors=joint_errors(names, units, computed, log.effort),
+        errors_of_kept=joint_errors(names, units, computed, log.effort, kept),
+        notes=("the first 5 of 400 samples are a start transient: efforts jump",),
+        seconds={"reading": 0.1},
+    )
+
+
+@pytest.fixture(scope="module")
+def evaluation():
+    return make_evaluation()
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory, evaluation):
+    target = tmp_path_factory.mktemp("results") / "result"
+    write_evaluation(evaluation, target)
+    return target
+
+
+def test_all_files_are_there(result):
+    assert set(os.listdir(result)) == FILES
+    assert os.listdir(result.parent) == ["result"]
+
+
+def test_a_result_is_read_back_whole(result, evaluation):
+    read = read_evaluation(result)
+    for field in ("robot", "bag", "joint_names", "units", "accelerations", "errors", "notes"):
+        assert getattr(read, field) == getattr(evaluation, field)
+    assert read.errors_of_kept == evaluation.errors_of_kept
+    for field in ("qdd", "computed", "measured", "time"):
+        np.testing.assert_array_equal(getattr(read, field), getattr(evaluation, field))
+    for field in ("repeated", "start_transient", "kept"):
+        np.testing.assert_array_equal(
+            getattr(read.samples, field), getattr(evaluation.samples, field)
+        )
+    assert read.log.frame_id == "base"
+    np.testing.assert_array_equal(read.log.receive_stamps, evaluation.log.receive_stamps)
+
+
+def test_metrics_say_what_they_are_of(result, evaluation):
+    metrics = json.loads((result / "metrics.json").read_text())
+    assert (metrics["robot"], metrics["plugin"], metrics["bag"]) == ("arm", "a/B", "recording")
+    assert metrics["samples"] == 400
+    assert metrics["accelerations"]["cutoff"] == 3.25
+    first = metrics["joints"][0]
+    assert (first["joint"], first["unit"]) == ("joint_1", "N m")
+    for name in ("mae", "rmse", "nrmse", "bias", "r2"):
+        assert first[name] == getattr(evaluation.errors[0], name)
+    assert metrics["mean_rmse"] == pytest.approx(evaluation.mean_rmse)
+    assert metrics["kept"]["samples"] == 395
+
+
+def test_undefined_figures_are_null(tmp_path, evaluation):
+    undefined = tuple(replace(e, nrmse=float("nan"), r2=float("nan")) for e in evaluation.errors)
+    write_evaluation(replace(evaluation, errors=undefined), tmp_path / "result")
+    metrics = json.loads((tmp_path / "result/metrics.json").read_text())
+    assert metrics["joints"][0]["nrmse"] is None
+    assert np.isnan(read_evaluation(tmp_path / "result").errors[0].r2)
+
+
+def test_the_output_recording_keeps_stamps_names_and_motion(result, evaluation):
+    for topic, effort in (("/torques", evaluation.computed), ("/torques_gt", evaluation.measured)):
+        log = read_joint_log(result / "bag", evaluation.log.joint_names, topic=topic)
+        np.testing.assert_array_equal(log.effort, effort)
+        for field in ("header_stamps", "receive_stamps", "q", "qd"):
+            np.testing.assert_array_equal(getattr(log, field), getattr(evaluation.log, field))
+        assert log.frame_id == "base"
+        assert log.storage == "sqlite3"
+
+
+@pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
+def test_the_output_recording_has_the_storage_of_the_input_or_the_one_given(
+    tmp_path, evaluation, storage
+):
+    other = replace(evaluation, log=replace(evaluation.log, storage="mcap"))
+    write_evaluation(other, tmp_path / "same")
+    assert read_joint_log(tmp_path / "same/bag", topic="/torques").storage == "mcap"
+    write_evaluation(other, tmp_path / "given", storage=storage)
+    assert read_joint_log(tmp_path / "given/bag", topic="/torques").storage == storage
+
+
+def test_an_older_result_is_replaced_only_on_demand(tmp_path, evaluation):
+    write_evaluation(evaluation, tmp_path / "result")
+    with pytest.raises(OutputError, match="exists already"):
+        write_evaluation(evaluation, tmp_path / "result")
+    short = make_evaluation(50)
+    write_evaluation(short, tmp_path / "result", overwrite=True)
+    assert len(read_evaluation(tmp_path / "result").log) == 50
+
+
+def test_nothing_is_written_if_the_last_file_fails(tmp_path, evaluation, monkeypatch):
+    from inverse_dynamics import plots
+
+    def fail(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(plots, "save_torque_figure", fail)
+    with pytest.raises(OutputError, match="No space left on device"):
+        write_evaluation(evaluation, tmp_path / "result")
+    assert os.listdir(tmp_path) == []
+
+
+def test_unknown_storage_is_an_error_and_nothing_is_written(tmp_path, evaluation):
+    with pytest.raises(BagError, match="expected one of sqlite3, mcap"):
+        write_evaluation(evaluation, tmp_path / "result", storage="csv")
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_directory_of_something_else_is_no_result(tmp_path):
+    with pytest.raises(OutputError, match="expected a directory written by `ids evaluate`"):
+        read_evaluation(tmp_path)
+
+
+@pytest.mark.parametrize("file", ["metrics.json", "series.npz"])
+def test_an_incomplete_result_is_an_error(tmp_path, evaluation, file):
+    write_evaluation(evaluation, tmp_path / "result")
+    os.truncate(tmp_path / "result" / file, 20)
+    with pytest.raises(OutputError, match="isn't a complete evaluation"):
+        read_evaluation(tmp_path / "result")
+
+
+def test_a_result_of_another_version_is_an_error(tmp_path, evaluation):
+    write_evaluation(evaluation, tmp_path / "result")
+    file = tmp_path / "result/evaluation.json"
+    file.write_text(file.read_text().replace('"schema": 1', '"schema": 7'))
+    with pytest.raises(OutputError, match="expected schema 1, got 7; evaluate again"):
+        read_evaluation(tmp_path / "result")
