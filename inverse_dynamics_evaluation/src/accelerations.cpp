@@ -18,16 +18,16 @@ using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
 struct Piece {
   std::vector<Index> sample;
   double begin = 0;   // s
-  double period = 0;  // s; of the equidistant samples below
-  Stretch stretch;    // interpolated
+  double period = 0;  // s; of the equidistant samples
+  Index count = 0;    // of them
 };
 
 // Values at equidistant instants, linearly between the samples of a piece.
-Eigen::MatrixXd equidistant(const ConstVector& time, const ConstMatrix& values, const Piece& piece,
-                            Index count) {
-  Eigen::MatrixXd result(values.rows(), count);
+Eigen::MatrixXd equidistant(const ConstVector& time, const ConstMatrix& values,
+                            const Piece& piece) {
+  Eigen::MatrixXd result(values.rows(), piece.count);
   std::size_t right = 1;  // of the two samples around an instant
-  for (Index i = 0; i < count; ++i) {
+  for (Index i = 0; i < piece.count; ++i) {
     const double t = piece.begin + static_cast<double>(i) * piece.period;
     while (right + 1 < piece.sample.size() && time[piece.sample[right]] < t) {
       ++right;
@@ -40,8 +40,7 @@ Eigen::MatrixXd equidistant(const ConstVector& time, const ConstMatrix& values, 
   return result;
 }
 
-std::vector<Piece> cutPieces(const SampleReport& samples, const ConstMatrix& q,
-                             const ConstMatrix& qd) {
+std::vector<Piece> cutPieces(const SampleReport& samples) {
   std::vector<Piece> pieces;
   std::size_t next = 0;
   for (Index k = 0; k < samples.used.size(); ++k) {
@@ -57,11 +56,9 @@ std::vector<Piece> cutPieces(const SampleReport& samples, const ConstMatrix& q,
   for (Piece& piece : pieces) {
     piece.begin = samples.time[piece.sample.front()];
     const double duration = samples.time[piece.sample.back()] - piece.begin;
-    const Index count = std::max(static_cast<Index>(std::llround(duration / samples.period)) + 1,
-                                 static_cast<Index>(piece.sample.size()));
-    piece.period = duration / static_cast<double>(count - 1);
-    piece.stretch.q = equidistant(samples.time, q, piece, count);
-    piece.stretch.qd = equidistant(samples.time, qd, piece, count);
+    piece.count = std::max(static_cast<Index>(std::llround(duration / samples.period)) + 1,
+                           static_cast<Index>(piece.sample.size()));
+    piece.period = duration / static_cast<double>(piece.count - 1);
   }
   return pieces;
 }
@@ -145,7 +142,7 @@ AccelerationEstimate lowPassAccelerations(const Eigen::Ref<const Eigen::VectorXd
   rules.shortest_piece = std::max<Index>(rules.shortest_piece, 3 * (options.order + 1) + 1);
   AccelerationEstimate estimate;
   estimate.samples = examineSamples(time, q, qd, effort, rules);
-  const std::vector<Piece> pieces = cutPieces(estimate.samples, q, qd);
+  const std::vector<Piece> pieces = cutPieces(estimate.samples);
   if (pieces.empty()) {
     throw EvaluationError(
         "low-pass accelerations", "samples",
@@ -153,6 +150,13 @@ AccelerationEstimate lowPassAccelerations(const Eigen::Ref<const Eigen::VectorXd
         std::to_string((!estimate.samples.repeated).count()) + " with gaps of more than " +
             std::to_string(rules.longest_gap) + " s between them",
         "record for longer, or take backward differences");
+  }
+
+  // equidistant samples, as the filter and the spectra need them
+  std::vector<Stretch> stretches;
+  for (const Piece& piece : pieces) {
+    stretches.push_back({equidistant(estimate.samples.time, q, piece),
+                         equidistant(estimate.samples.time, qd, piece)});
   }
 
   FilterChoice& filter = estimate.filter;
@@ -163,20 +167,17 @@ AccelerationEstimate lowPassAccelerations(const Eigen::Ref<const Eigen::VectorXd
   filter.cutoff = options.cutoff;
   filter.chosen = options.cutoff == 0;
   if (filter.chosen) {
-    std::vector<Stretch> stretches;
-    for (const Piece& piece : pieces) {
-      stretches.push_back(piece.stretch);
-    }
     filter.choice = chooseCutoff(stretches, filter.sampling_frequency, options.order);
     filter.cutoff = filter.choice.cutoff;
   }
   filter.method = "zero-phase Butterworth low-pass of the velocities, then central differences";
 
   std::vector<Eigen::MatrixXd> qdd;
-  for (const Piece& piece : pieces) {
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    const double period = pieces[p].period;
     const Eigen::MatrixXd smooth =
-        lowPass(piece.stretch.qd, 1.0 / piece.period, filter.cutoff, options.order);
-    qdd.push_back(derivative(smooth, piece.period));
+        lowPass(stretches[p].qd, 1.0 / period, filter.cutoff, options.order);
+    qdd.push_back(derivative(smooth, period));
   }
   estimate.qdd = atInstants(pieces, qdd, estimate.samples.time);
   return estimate;

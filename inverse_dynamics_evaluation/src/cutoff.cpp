@@ -17,7 +17,7 @@ namespace {
 constexpr Eigen::Index kLeastSamples = 16;
 constexpr int kCandidates = 100;    // cut-offs tried, in equal ratios
 constexpr int kLinePoints = 15;     // of the straight line of the residual
-constexpr double kLineBegin = 0.2;  // of the sampling frequency
+constexpr double kLineBegin = 0.3;  // of the sampling frequency
 constexpr double kLineEnd = 0.4;    // of the sampling frequency: also the highest cut-off
 constexpr double kLowest = 0.25;    // Hz
 constexpr double kPeriods = 2.0;    // of the lowest cut-off, in the recording

@@ -37,6 +37,17 @@ JointMetrics rowMetrics(const Eigen::RowVectorXd& computed, const Eigen::RowVect
   return result;
 }
 
+[[noreturn]] void throwNotFinite(const Eigen::Ref<const Eigen::MatrixXd>& computed,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& measured, Eigen::Index j,
+                                 Eigen::Index k) {
+  const bool in_computed = !std::isfinite(computed(j, k));
+  throw EvaluationError("metrics", in_computed ? "computed" : "measured", "finite numbers",
+                        std::to_string(in_computed ? computed(j, k) : measured(j, k)) +
+                            " for joint " + std::to_string(j) + " in sample " + std::to_string(k) +
+                            " (counted from 0)",
+                        "leave such samples out by a mask");
+}
+
 }  // namespace
 
 std::vector<JointMetrics> metrics(const Eigen::Ref<const Eigen::MatrixXd>& computed,
@@ -67,14 +78,8 @@ std::vector<JointMetrics> metrics(const Eigen::Ref<const Eigen::MatrixXd>& compu
     Eigen::RowVectorXd measured_row(computed_row.size());
     for (std::size_t i = 0; i < selected.size(); ++i) {
       const Eigen::Index k = selected[i];
-      for (const auto& [what, value] : {std::pair<const char*, double>{"computed", computed(j, k)},
-                                        {"measured", measured(j, k)}}) {
-        if (!std::isfinite(value)) {
-          throw EvaluationError("metrics", what, "finite numbers",
-                                std::to_string(value) + " for joint " + std::to_string(j) +
-                                    " in sample " + std::to_string(k) + " (counted from 0)",
-                                "leave such samples out by a mask");
-        }
+      if (!std::isfinite(computed(j, k)) || !std::isfinite(measured(j, k))) {
+        throwNotFinite(computed, measured, j, k);
       }
       computed_row[static_cast<Eigen::Index>(i)] = computed(j, k);
       measured_row[static_cast<Eigen::Index>(i)] = measured(j, k);

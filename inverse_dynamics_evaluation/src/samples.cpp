@@ -17,6 +17,7 @@ using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
 
 constexpr double kGapPeriods = 20.0;        // a gap is longer than this many sampling periods
 constexpr double kClearlyBetter = 0.8;      // of the stamps' disagreement: then another time base
+constexpr double kNotWorse = 1.1;           // of the stamps' disagreement in the long run
 constexpr Index kLongIntervals = 50;        // over how many intervals time bases must agree too
 constexpr double kTransientQuantile = 0.9;  // of the roughness of the efforts,
 constexpr double kTransientFactor = 5.0;    // and how far a transient exceeds it
@@ -136,7 +137,7 @@ TimeBase chooseTimeBase(const std::vector<TimedSamples>& bases, const ConstMatri
   for (const TimeBase base : {TimeBase::kRegular, TimeBase::kRegularFresh}) {
     const auto b = static_cast<Index>(base);
     if (report.disagreement[b] < least &&
-        report.long_disagreement[b] <= report.long_disagreement[0]) {
+        report.long_disagreement[b] <= kNotWorse * report.long_disagreement[0]) {
       best = base;
       least = report.disagreement[b];
     }

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kSegmentSeconds = 20.0;
+constexpr Eigen::Index kMostSegments = 40;  // of a stretch: spread evenly over a long one
 // a central difference hardly sees frequencies near half the sampling frequency: no more than this
 // is divided out
 constexpr double kLeastDifferenceGain = 0.05;
@@ -106,7 +107,9 @@ VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sa
     if (spare < 0) {
       continue;
     }
-    const Eigen::Index steps = (spare + length / 2 - 1) / std::max<Eigen::Index>(length / 2, 1);
+    const Eigen::Index overlapping =
+        (spare + length / 2 - 1) / std::max<Eigen::Index>(length / 2, 1);
+    const Eigen::Index steps = std::min(overlapping, kMostSegments - 1);
     for (Eigen::Index s = 0; s <= steps; ++s) {
       const Eigen::Index begin = steps == 0 ? 0 : s * spare / steps;
       for (Eigen::Index j = 0; j < joints; ++j) {

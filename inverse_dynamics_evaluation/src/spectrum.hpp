@@ -24,7 +24,8 @@ struct VelocitySpectra {
 };
 
 /// Linear trend removed, Hann window, half overlap, 20 s a segment or the longest stretch, padded
-/// with zeros to a power of two. Stretches shorter than a segment are left out.
+/// with zeros to a power of two; 40 segments of a stretch at most, evenly spread. Stretches shorter
+/// than a segment are left out.
 VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sampling_frequency);
 
 }  // namespace inverse_dynamics_evaluation

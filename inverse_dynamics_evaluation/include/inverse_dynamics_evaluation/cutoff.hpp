@@ -22,7 +22,7 @@
 ///    gives the cut-off. This look is blind where a driver made qd from q: they share their noise.
 /// 2. **Residual.** [Winter, Biomechanics and Motor Control of Human Movement, 4th ed. 2009, ch. 3]
 ///    The root mean square r(f_c) of what the filter takes away falls along a straight line while
-///    it is noise alone. That line, fitted between 0.2 and 0.4 f_s and extended to f_c = 0, is the
+///    it is noise alone. That line, fitted between 0.3 and 0.4 f_s and extended to f_c = 0, is the
 ///    level of the noise; the cut-off is where r reaches it. This look is misled by noise that
 ///    isn't white, upwards.
 ///

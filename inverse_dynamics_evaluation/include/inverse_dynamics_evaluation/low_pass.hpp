@@ -15,8 +15,8 @@
 /// no delay at any frequency. That needs the future, so it is for recordings only.
 ///
 /// At both ends the samples are continued by their point reflection, 2 x_0 - x_k, and the filter
-/// starts in the steady state of the first value, so a ramp passes unchanged. The result is that of
-/// scipy.signal.sosfiltfilt with the same `padlen`.
+/// starts in the steady state of the first value, so a constant passes unchanged. The result is
+/// that of scipy.signal.sosfiltfilt with the same `padlen`.
 
 #pragma once
 

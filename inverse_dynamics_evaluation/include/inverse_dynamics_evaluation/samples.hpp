@@ -23,8 +23,8 @@
 ///    should hold over one interval and over 50. Three time bases are compared: the stamps; samples
 ///    at equal distances (`kRegular`: a repeat stands for a sample that was missed); fresh samples
 ///    at equal distances (`kRegularFresh`: repeats are extra). One of the latter two replaces the
-///    stamps if its disagreement is below 0.8 of theirs over one interval, and not above theirs
-///    over 50.
+///    stamps if its disagreement is below 0.8 of theirs over one interval, and over 50 not more
+///    than a tenth above theirs.
 /// 4. **Start transient.** When a controller takes over, efforts may jump from sample to sample in
 ///    a way that no acceleration estimate resolves. With the second differences of the efforts, in
 ///    units of their median, as a measure, everything up to the last sample in the first half

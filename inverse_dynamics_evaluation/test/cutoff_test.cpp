@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "inverse_dynamics_evaluation/cutoff.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "inverse_dynamics_evaluation/accelerations.hpp"
+#include "inverse_dynamics_evaluation/error.hpp"
+#include "motion.hpp"
+
+namespace inverse_dynamics_evaluation {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+// The criterion is an average over noise, and the residual may choose lower: what the chosen
+// cut-off may cost in acceleration, against the best one found by knowing the truth.
+constexpr double kNearBest = 1.35;
+
+double accelerationError(const Motion& motion, double sampling_frequency, double cutoff) {
+  return rms(derivative(lowPass(motion.qd, sampling_frequency, cutoff), 1.0 / sampling_frequency),
+             motion.qdd);
+}
+
+double leastAccelerationError(const Motion& motion, double sampling_frequency) {
+  double least = std::numeric_limits<double>::infinity();
+  for (double cutoff = 0.3; cutoff < 0.4 * sampling_frequency; cutoff *= 1.1) {
+    least = std::min(least, accelerationError(motion, sampling_frequency, cutoff));
+  }
+  return least;
+}
+
+TEST(ChooseCutoff, IsNearTheBestForWhiteNoise) {
+  for (const double rate : {30.0, 125.0, 1000.0}) {
+    for (const double frequency : {0.2, 1.0, 2.0}) {
+      Motion motion = sines(rate, 20.0, {frequency, 0.8 * frequency, 0.6 * frequency});
+      addVelocityNoise(motion, 0.005, 1);
+      const CutoffChoice choice = chooseCutoff({{motion.q, motion.qd}}, rate);
+      EXPECT_LT(accelerationError(motion, rate, choice.cutoff),
+                kNearBest * leastAccelerationError(motion, rate))
+          << rate << " Hz, motion " << frequency << " Hz, cut-off " << choice.cutoff << " Hz";
+    }
+  }
+}
+
+TEST(ChooseCutoff, IsNearTheBestForColouredNoise) {
+  // noise below 40 Hz, where residual analysis takes it for motion
+  Motion motion = sines(1000.0, 20.0, {1.0, 0.7});
+  Motion noise = motion;
+  noise.qd.setZero();
+  addVelocityNoise(noise, 0.02, 2);
+  motion.qd += lowPass(noise.qd, 1000.0, 40.0, 1);
+  const CutoffChoice choice = chooseCutoff({{motion.q, motion.qd}}, 1000.0);
+  EXPECT_GT(choice.residual, 5.0 * choice.agreement);
+  EXPECT_EQ(choice.cutoff, choice.agreement);
+  EXPECT_LT(accelerationError(motion, 1000.0, choice.cutoff),
+            kNearBest * leastAccelerationError(motion, 1000.0));
+}
+
+TEST(ChooseCutoff, FallsBackToTheResidualWhereVelocityCameFromPosition) {
+  // q is noisy and qd is its derivative: both say the same, noise and all
+  Motion motion = sines(500.0, 20.0, {1.0, 0.7});
+  std::mt19937 generator(4);
+  std::normal_distribution<double> noise(0.0, 1e-5);
+  motion.q = motion.q.unaryExpr([&](double x) { return x + noise(generator); }).eval();
+  motion.qd = derivative(motion.q, 1.0 / 500.0);
+  const CutoffChoice choice = chooseCutoff({{motion.q, motion.qd}}, 500.0);
+  EXPECT_GT(choice.agreement, 100.0);
+  EXPECT_EQ(choice.cutoff, choice.residual);
+  // noise rises with frequency, which Winter's straight line doesn't expect: within a factor of 3
+  EXPECT_LT(accelerationError(motion, 500.0, choice.cutoff),
+            3.0 * leastAccelerationError(motion, 500.0));
+}
+
+TEST(ChooseCutoff, TakesLittleAwayFromExactSamples) {
+  const Motion motion = sines(125.0, 20.0, {1.0, 0.7});
+  const CutoffChoice choice = chooseCutoff({{motion.q, motion.qd}}, 125.0);
+  EXPECT_LT(accelerationError(motion, 125.0, choice.cutoff), 0.01 * rms(motion.qdd, 0 * motion.qdd))
+      << choice.cutoff;
+}
+
+TEST(ChooseCutoff, DoesNotDependOnUnits) {
+  Motion motion = sines(250.0, 10.0, {1.0, 2.0});
+  addVelocityNoise(motion, 0.01, 5);
+  const CutoffChoice here = chooseCutoff({{motion.q, motion.qd}}, 250.0);
+  const CutoffChoice scaled = chooseCutoff({{1000.0 * motion.q, 1000.0 * motion.qd}}, 250.0);
+  EXPECT_NEAR(here.cutoff, scaled.cutoff, 1e-9);
+}
+
+TEST(ChooseCutoff, ScalesWithTime) {
+  // the same samples played twice as fast: velocities and the cut-off double
+  Motion motion = sines(250.0, 10.0, {2.0, 3.0});
+  addVelocityNoise(motion, 0.01, 5);
+  const CutoffChoice slow = chooseCutoff({{motion.q, motion.qd}}, 250.0);
+  const CutoffChoice fast = chooseCutoff({{motion.q, 2.0 * motion.qd}}, 500.0);
+  // candidates stand in ratios of a few per cent
+  EXPECT_NEAR(fast.cutoff / slow.cutoff, 2.0, 0.2);
+}
+
+TEST(ChooseCutoff, IgnoresJointsThatNeverMove) {
+  Motion motion = sines(250.0, 10.0, {1.0, 2.0});
+  addVelocityNoise(motion, 0.01, 5);
+  const double expected = chooseCutoff({{motion.q.topRows(1), motion.qd.topRows(1)}}, 250.0).cutoff;
+  motion.q.row(1).setConstant(0.3);
+  motion.qd.row(1).setZero();
+  EXPECT_NEAR(chooseCutoff({{motion.q, motion.qd}}, 250.0).cutoff, expected, 1e-9);
+}
+
+TEST(ChooseCutoff, TakesNothingAwayWhereNothingMoves) {
+  const Eigen::MatrixXd still = Eigen::MatrixXd::Zero(2, 100);
+  const CutoffChoice choice = chooseCutoff({{still, still}}, 100.0);
+  EXPECT_EQ(choice.cutoff, choice.highest);
+  EXPECT_DOUBLE_EQ(choice.highest, 40.0);
+}
+
+TEST(ChooseCutoff, UsesAllStretches) {
+  // the noise of the second stretch counts as much as that of the first
+  Motion quiet = sines(250.0, 10.0, {1.0});
+  Motion noisy = quiet;
+  addVelocityNoise(quiet, 1e-4, 6);
+  addVelocityNoise(noisy, 3e-2, 7);
+  const double alone = chooseCutoff({{quiet.q, quiet.qd}}, 250.0).cutoff;
+  const double both = chooseCutoff({{quiet.q, quiet.qd}, {noisy.q, noisy.qd}}, 250.0).cutoff;
+  EXPECT_LT(both, 0.8 * alone);
+}
+
+TEST(ChooseCutoff, RefusesTooFewSamples) {
+  const Eigen::MatrixXd few = Eigen::MatrixXd::Ones(2, 15);
+  EXPECT_THAT(
+      [&] {
+        chooseCutoff({{few, few}}, 100.0);
+      },
+      ThrowsMessage<EvaluationError>(
+          HasSubstr("cut-off: samples: expected 16 or more without a gap, got 15; give")));
+  EXPECT_THROW(chooseCutoff({}, 100.0), EvaluationError);
+  EXPECT_THAT(
+      [&] {
+        chooseCutoff({{few, few.topRows(1)}}, 100.0);
+      },
+      ThrowsMessage<EvaluationError>(HasSubstr("cut-off: q: expected 1 joints x 15")));
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_evaluation

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "inverse_dynamics_evaluation/samples.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "inverse_dynamics_evaluation/error.hpp"
+#include "motion.hpp"
+
+namespace inverse_dynamics_evaluation {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+SampleReport examine(const Motion& motion, const SampleRules& rules = {}) {
+  return examineSamples(motion.time, motion.q, motion.qd, motion.effort, rules);
+}
+
+TEST(ExamineSamples, FindsNothingWrongWithACleanRecording) {
+  Motion motion = sines(125.0, 4.0, {0.5, 1.0});
+  addVelocityNoise(motion, 0.005, 1);
+  const SampleReport report = examine(motion);
+  EXPECT_FALSE(report.repeated.any());
+  EXPECT_FALSE(report.non_increasing.any());
+  EXPECT_FALSE(report.start_transient.any());
+  EXPECT_FALSE(report.isolated.any());
+  EXPECT_TRUE(report.used.all());
+  EXPECT_TRUE(report.kept.all());
+  EXPECT_EQ(report.time_base, TimeBase::kStamps);
+  EXPECT_EQ(report.time, motion.time);
+  EXPECT_THAT(report.pieces, ElementsAre(0));
+  EXPECT_NEAR(report.period, 0.008, 1e-12);
+  EXPECT_NEAR(report.stamped_period, 0.008, 1e-12);
+  EXPECT_LT(report.jitter, 1e-9);
+}
+
+TEST(ExamineSamples, LeavesRepeatedSamplesOut) {
+  Motion motion = sines(100.0, 4.0, {0.5, 1.0});
+  addVelocityNoise(motion, 0.005, 1);
+  motion = withRepeats(motion, 10);
+  const SampleReport report = examine(motion);
+  for (Eigen::Index k = 0; k < motion.count(); ++k) {
+    EXPECT_EQ(report.repeated[k], k % 10 == 9) << k;
+  }
+  EXPECT_TRUE((report.used == !report.repeated).all());
+  EXPECT_TRUE((report.kept == !report.repeated).all());
+  EXPECT_EQ(report.time[9], report.time[8]);  // the instant of the sample it repeats
+
+  SampleRules rules;
+  rules.repeated = false;  // found all the same, not acted upon
+  const SampleReport all = examine(motion, rules);
+  EXPECT_TRUE((all.repeated == report.repeated).all());
+  EXPECT_TRUE(all.used.all());
+  EXPECT_TRUE(all.kept.all());
+}
+
+TEST(ExamineSamples, TakesASampleForRepeatedOnlyIfEverythingIs) {
+  Motion motion = withRepeats(sines(100.0, 4.0, {0.5, 1.0}), 10);
+  motion.effort(1, 19) += 1e-12;
+  const SampleReport report = examine(motion);
+  EXPECT_TRUE(report.repeated[9]);
+  EXPECT_FALSE(report.repeated[19]);
+  // without efforts, positions and velocities decide
+  EXPECT_TRUE(examineSamples(motion.time, motion.q, motion.qd, Eigen::MatrixXd()).repeated[19]);
+}
+
+TEST(ExamineSamples, DoesNotTakeRestForRepetition) {
+  Motion motion = sines(100.0, 4.0, {0.5, 1.0});
+  for (Eigen::Index k = 100; k < 200; ++k) {
+    motion.q.col(k) = motion.q.col(100);
+    motion.qd.col(k).setZero();
+    motion.effort.col(k) = motion.effort.col(100);
+  }
+  EXPECT_FALSE(examine(motion).repeated.any());
+}
+
+TEST(ExamineSamples, LeavesStampsThatDoNotIncreaseOut) {
+  Motion motion = sines(100.0, 4.0, {0.5, 1.0});
+  motion.time[50] = motion.time[49];
+  motion.time[80] = motion.time[70];  // later samples must pass sample 79 again
+  SampleRules rules;
+  rules.time_base = false;
+  const SampleReport report = examine(motion, rules);
+  for (Eigen::Index k = 0; k < motion.count(); ++k) {
+    EXPECT_EQ(report.non_increasing[k], k == 50 || k == 80) << k;
+    EXPECT_EQ(report.kept[k], !(k == 50 || k == 80)) << k;
+  }
+  EXPECT_NEAR(report.time[80], 0.80, 1e-12);  // between its neighbours
+
+  rules.non_increasing = false;
+  EXPECT_THAT(
+      [&] { examine(motion, rules); },
+      ThrowsMessage<EvaluationError>(HasSubstr(
+          "samples: time: expected stamps that increase, got 2 of 401 that don't, the first "
+          "in sample 50 (counted from 0)")));
+}
+
+TEST(ExamineSamples, ReplacesJitteringStampsByEqualDistances) {
+  const Motion clean = sines(1000.0, 5.0, {0.5, 1.0});
+  Motion motion = clean;
+  addVelocityNoise(motion, 0.005, 1);
+  jitterStamps(motion, 0.8, 2);
+  const SampleReport report = examine(motion);
+  EXPECT_EQ(report.time_base, TimeBase::kRegular);
+  EXPECT_LT(report.disagreement[1], 0.2 * report.disagreement[0]);
+  // exact but for where the first and the last stamp lie
+  EXPECT_LT((report.time - clean.time).cwiseAbs().maxCoeff(), 0.001);
+  EXPECT_GT(report.jitter, 2e-4);
+
+  SampleRules rules;
+  rules.time_base = false;
+  EXPECT_EQ(examine(motion, rules).time_base, TimeBase::kStamps);
+  EXPECT_EQ(examine(motion, rules).time, motion.time);
+}
+
+TEST(ExamineSamples, KeepsJitteringStampsThatAreRight) {
+  // samples really taken at irregular instants
+  Motion motion = sines(1000.0, 5.0, {0.5, 1.0});
+  const Motion dense = sines(10000.0, 5.0, {0.5, 1.0});
+  std::mt19937 generator(5);
+  std::vector<Eigen::Index> samples;
+  Eigen::VectorXd time(5000);
+  for (Eigen::Index k = 0; k < 5000; ++k) {
+    samples.push_back(10 * k + static_cast<Eigen::Index>(generator() % 8));
+    time[k] = dense.time[samples.back()];
+  }
+  motion = pick(dense, samples, time);
+  addVelocityNoise(motion, 0.005, 1);
+  EXPECT_EQ(examine(motion).time_base, TimeBase::kStamps);
+}
+
+TEST(ExamineSamples, TellsMissedStatesFromARecorderThatIsTooFast) {
+  Motion motion = sines(100.0, 10.0, {0.5, 1.0});
+  addVelocityNoise(motion, 0.002, 1);
+
+  // a state came too late: the repeat stands in its place
+  Motion missed = withRepeats(motion, 12);
+  jitterStamps(missed, 0.5, 3);
+  EXPECT_EQ(examine(missed).time_base, TimeBase::kRegular);
+
+  // a recorder of 100 Hz beside a robot of 96 Hz: each 25th message repeats, none is missed
+  std::vector<Eigen::Index> samples;
+  for (Eigen::Index k = 0; k < motion.count(); ++k) {
+    samples.push_back(k - k / 25);
+  }
+  const Motion polled = pick(motion, samples, 0.96 * motion.time);
+  const SampleReport report = examine(polled);
+  EXPECT_EQ(report.time_base, TimeBase::kRegularFresh);
+  EXPECT_EQ(report.repeated.count(), motion.count() / 25);
+  EXPECT_NEAR(report.period, 0.01, 1e-4);
+}
+
+TEST(ExamineSamples, KeepsTheStampsWhereMessagesWereLost) {
+  // equal distances would fit one interval, but not 50: the clock would run away
+  Motion motion = sines(1000.0, 10.0, {0.5, 1.0});
+  addVelocityNoise(motion, 0.002, 1);
+  std::mt19937 generator(6);
+  std::vector<Eigen::Index> samples;
+  for (Eigen::Index k = 0; k < motion.count(); ++k) {
+    if (generator() % 50 != 0) {
+      samples.push_back(k);
+    }
+  }
+  Eigen::VectorXd time(static_cast<Eigen::Index>(samples.size()));
+  for (Eigen::Index k = 0; k < time.size(); ++k) {
+    time[k] = motion.time[samples[static_cast<std::size_t>(k)]];
+  }
+  Motion lossy = pick(motion, samples, time);
+  jitterStamps(lossy, 0.6, 4);
+  const SampleReport report = examine(lossy);
+  EXPECT_LT(report.disagreement[1], 0.8 * report.disagreement[0]);
+  EXPECT_EQ(report.time_base, TimeBase::kStamps);
+}
+
+TEST(ExamineSamples, UsesSamplesOfEqualStampsIfEqualDistancesFit) {
+  // messages that arrive in threes and are stamped on arrival
+  Motion motion = sines(100.0, 10.0, {0.5, 1.0});
+  addVelocityNoise(motion, 0.002, 1);
+  for (Eigen::Index k = 0; k + 2 < motion.count(); k += 3) {
+    motion.time[k] = motion.time[k + 1] = motion.time[k + 2];
+  }
+  const SampleReport report = examine(motion);
+  EXPECT_EQ(report.time_base, TimeBase::kRegular);
+  EXPECT_GT(2 * report.non_increasing.count(), motion.count());
+  EXPECT_TRUE(report.used.all());
+}
+
+TEST(ExamineSamples, DoesNotCountAStartTransient) {
+  Motion motion = sines(50.0, 10.0, {0.5, 1.0});
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    motion.effort(0, k) += k % 2 == 0 ? 8.0 : -8.0;
+  }
+  const SampleReport report = examine(motion);
+  EXPECT_TRUE(report.start_transient.head(6).all());
+  EXPECT_LE(report.start_transient.count(), 7);  // the jump back touches one more
+  EXPECT_TRUE((report.kept == !report.start_transient).all());
+  EXPECT_TRUE(report.used.all());
+
+  SampleRules rules;
+  rules.start_transient = false;
+  EXPECT_TRUE(examine(motion, rules).kept.all());
+  EXPECT_TRUE(examine(motion, rules).start_transient[0]);  // said all the same
+}
+
+TEST(ExamineSamples, TakesOnlyTheStartForAStartTransient) {
+  Motion motion = sines(50.0, 10.0, {0.5, 1.0});
+  for (Eigen::Index k = 200; k < 206; ++k) {
+    motion.effort(0, k) += k % 2 == 0 ? 8.0 : -8.0;
+  }
+  EXPECT_FALSE(examine(motion).start_transient.any());
+}
+
+TEST(ExamineSamples, CutsAtGapsAndDropsShortPieces) {
+  Motion motion = sines(100.0, 10.0, {0.5, 1.0});
+  motion.time.tail(motion.count() - 400).array() += 3.0;  // a gap before sample 400,
+  motion.time.tail(motion.count() - 405).array() += 2.0;  // and another before sample 405
+  const SampleReport report = examine(motion);
+  EXPECT_THAT(report.pieces, ElementsAre(0, 405));
+  for (Eigen::Index k = 0; k < motion.count(); ++k) {
+    EXPECT_EQ(report.isolated[k], k >= 400 && k < 405) << k;
+  }
+  EXPECT_TRUE((report.kept == !report.isolated).all());
+  EXPECT_NEAR(report.period, 0.01, 1e-9);  // gaps aside
+
+  SampleRules rules;
+  rules.longest_gap = 5.0;
+  EXPECT_THAT(examine(motion, rules).pieces, ElementsAre(0));
+}
+
+TEST(ExamineSamples, SurvivesAFirstStampOfZero) {
+  // a recorder that started before its clock was set
+  Motion motion = sines(100.0, 5.0, {0.5, 1.0});
+  motion.time.tail(motion.count() - 1).array() += 1.7e9;
+  const SampleReport report = examine(motion);
+  EXPECT_TRUE(report.isolated[0]);
+  EXPECT_EQ(report.isolated.count(), 1);
+  EXPECT_NEAR(report.period, 0.01, 1e-6);
+}
+
+TEST(ExamineSamples, NamesTheTimeBases) {
+  EXPECT_EQ(name(TimeBase::kStamps), "stamps");
+  EXPECT_EQ(name(TimeBase::kRegular), "regular");
+  EXPECT_EQ(name(TimeBase::kRegularFresh), "regular_fresh");
+}
+
+TEST(ExamineSamples, RefusesWhatItCannotExamine) {
+  const Motion motion = sines(100.0, 1.0, {0.5, 1.0});
+  Motion bad = motion;
+  bad.q(1, 7) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT([&] { examine(bad); },
+              ThrowsMessage<EvaluationError>(HasSubstr(
+                  "samples: q: expected finite numbers, got nan for joint 1 in sample 7")));
+  bad = motion;
+  bad.time[3] = std::numeric_limits<double>::infinity();
+  EXPECT_THAT([&] { examine(bad); }, ThrowsMessage<EvaluationError>(HasSubstr(
+                                         "time: expected finite stamps, got inf in sample 3")));
+  bad = motion;
+  bad.time.conservativeResize(100);
+  EXPECT_THAT([&] { examine(bad); },
+              ThrowsMessage<EvaluationError>(
+                  HasSubstr("time: expected 101 stamps, one per column of the samples, got 100")));
+  bad = motion;
+  bad.effort = bad.effort.topRows(1).eval();
+  EXPECT_THAT([&] { examine(bad); },
+              ThrowsMessage<EvaluationError>(HasSubstr("effort: expected 2 joints x 101 samples")));
+  EXPECT_THAT(
+      [&] {
+        examineSamples(motion.time.head(1), motion.q.leftCols(1), motion.qd.leftCols(1),
+                       Eigen::MatrixXd());
+      },
+      ThrowsMessage<EvaluationError>(HasSubstr("qd: expected 2 samples or more")));
+  bad = motion;
+  bad.time.reverseInPlace();
+  EXPECT_THAT([&] { examine(bad); },
+              ThrowsMessage<EvaluationError>(HasSubstr("stamps of which half increase or more")));
+  bad.time.setConstant(3.0);
+  EXPECT_THROW(examine(bad), EvaluationError);
+  const Eigen::MatrixXd same = Eigen::MatrixXd::Ones(2, 5);
+  EXPECT_THAT([&] { examineSamples(Eigen::VectorXd::LinSpaced(5, 0, 1), same, same, same); },
+              ThrowsMessage<EvaluationError>(HasSubstr("2 or more that differ")));
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_evaluation
