@@ -25,21 +25,26 @@ struct ExitNotice {
   ~ExitNotice() { exiting = true; }
 };
 
-/// Loader of the plugins in the index; null if there are none.
+/// Owner of an object of class_loader, or of one whose code is in a plugin library.
 ///
-/// A loader that lives until the end of the program (in a static variable) isn't destroyed:
-/// class_loader's static objects, which it would use, are gone by then.
+/// What lives until the end of the program (in a static variable) isn't destroyed: class_loader's
+/// static objects are gone by then, and with them the plugin libraries.
+template <class T>
+std::shared_ptr<T> ownUnlessExiting(std::unique_ptr<T> object) {
+  return {object.release(), [](T* owned) {
+            if (!exiting) delete owned;
+          }};
+}
+
+/// Loader of the plugins in the index; null if there are none.
 std::shared_ptr<PluginLoader> makePluginLoader() {
   // Asked first: with an empty index Debian's pluginlib would search for ROS 1 packages, slowly and
   // loudly.
   if (ament_index_cpp::get_resources("inverse_dynamics_solver__pluginlib__plugin").empty()) {
     return nullptr;
   }
-  return {
-      new PluginLoader("inverse_dynamics_solver", "inverse_dynamics_solver::InverseDynamicsSolver"),
-      [](PluginLoader* loader) {
-        if (!exiting) delete loader;
-      }};
+  return ownUnlessExiting(std::make_unique<PluginLoader>(
+      "inverse_dynamics_solver", "inverse_dynamics_solver::InverseDynamicsSolver"));
 }
 
 /// A solver, and the loader that must stay as long as the solver's code is needed.
@@ -137,9 +142,10 @@ std::shared_ptr<InverseDynamicsSolver> SolverLoader::load(const std::string& nam
   const std::shared_ptr<PluginLoader>& loader = implementation_->loader;
   const std::string where = "solver plugin '" + name + "'";
   try {
-    auto loaded =
-        std::make_shared<LoadedSolver>(LoadedSolver{loader, loader->createUniqueInstance(name)});
+    std::unique_ptr<LoadedSolver> made(
+        new LoadedSolver{loader, loader->createUniqueInstance(name)});
     static const ExitNotice notice;
+    const std::shared_ptr<LoadedSolver> loaded = ownUnlessExiting(std::move(made));
     return {loaded, loaded->solver.get()};
   } catch (const pluginlib::CreateClassException&) {
     throw PluginNotFoundException(errorText(

@@ -89,12 +89,19 @@ TEST(SolverLoader, SolverOutlivesItsLoader) {
   EXPECT_DOUBLE_EQ(third->getGravityVector(kHorizontal)[0], kTorque);
 }
 
-/// The program must end well: its exit status is part of the test.
-TEST(SolverLoader, MayLiveUntilTheEndOfTheProgram) {
-  static const SolverLoader loader;
-  static std::shared_ptr<InverseDynamicsSolver> solver;
-  solver = loader.load(kPendulum);
-  EXPECT_NE(solver, nullptr);
+/// In a process of its own, so that nothing of another test is there before: the exit status is the
+/// test.
+TEST(SolverLoaderDeathTest, LoaderAndSolverMayLiveUntilTheEndOfTheProgram) {
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(
+      {
+        static std::shared_ptr<InverseDynamicsSolver> before;
+        static const SolverLoader loader;
+        before = loader.load(kPendulum);
+        static const std::shared_ptr<InverseDynamicsSolver> after = loader.load(kPendulum);
+        std::exit(before != nullptr && after != nullptr ? 0 : 1);
+      },
+      ::testing::ExitedWithCode(0), "");
 }
 
 TEST(SolverLoader, MayBeMovedAndUsedFromManyThreads) {
