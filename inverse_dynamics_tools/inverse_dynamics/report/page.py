@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """One HTML page, complete in itself (no network), from any number of runs.
 
-    write_page(Path("report.html"), "Four robots", [run, ...])
+write_page(Path("report.html"), "Four robots", [run, ...])
 """
 
 from __future__ import annotations
@@ -13,28 +13,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+if TYPE_CHECKING:
+    from inverse_dynamics.evaluation import JointError
+    from inverse_dynamics.joint_log import Floats
 
-# More samples than this are thinned in the page (never in metrics, bags and tables): a page of 4 robots stays below 10 MB.
+# More samples than this are thinned in the page, never in metrics, bags and tables: four robots stay below 10 MB.
 MAX_SAMPLES = 12_000
-
-
-@dataclass(frozen=True)
-class MetricRow:
-    """Error figures of one joint; `unit` is that of mae, rmse and bias, nrmse is a share of the measured range."""
-
-    joint: str
-    unit: str
-    mae: float
-    rmse: float
-    nrmse: float
-    bias: float
-    r2: float
 
 
 @dataclass(frozen=True)
@@ -47,19 +35,19 @@ class Figure:
 
 @dataclass(frozen=True)
 class ReportRun:
-    """What the page shows of one evaluation. Arrays: time N [s], the others N x n; order of joints as `table`."""
+    """What the page shows of one evaluation. Floatss: time N [s], the others N x n; order of joints as `table`."""
 
     title: str
     description: str
     solver: str
-    time: Array
-    q: Array
-    measured: Array
-    computed: Array
-    table: Sequence[MetricRow]
+    time: Floats
+    q: Floats
+    measured: Floats
+    computed: Floats
+    table: Sequence[JointError]
     assumptions: Sequence[tuple[str, str]]
     links: Sequence[dict[str, Any]] = ()
-    other_table: Sequence[MetricRow] = ()
+    other_table: Sequence[JointError] = ()
     other_table_title: str = ""
     notes: Sequence[str] = ()
     figures: Sequence[Figure] = field(default_factory=list)
@@ -103,7 +91,7 @@ def _view(run: ReportRun, index: int) -> dict[str, Any]:
         "id": _identifier(index),
         "title": run.title,
         "description": run.description,
-        "solver": run.solver,
+        "solver": run.solver.partition("/")[2] or run.solver,
         "samples": len(run.time),
         "mean_rmse": float(np.mean([row.rmse for row in rows])),
         "mean_nrmse": float(np.nanmean([row.nrmse for row in rows])),
@@ -133,7 +121,7 @@ def _data(run: ReportRun, index: int) -> dict[str, Any]:
     }
 
 
-def _base64(values: Array) -> str:
+def _base64(values: Floats) -> str:
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode("ascii")
 
 

@@ -26,8 +26,14 @@ function ticks(low, high, count) {
   const first = Math.ceil(low / step - 1e-9);
   const last = Math.floor(high / step + 1e-9);
   const values = [];
-  for (let i = first; i <= last; ++i) values.push(i * step);
+  for (let i = first; i <= last; ++i) values.push(i === 0 ? 0 : i * step);
   return {values, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9))};
+}
+
+// A number short enough for an axis or a readout, with the given digits where they say something.
+function short(value, digits) {
+  if (value === 0 || Math.abs(value) >= 1e-3) return value.toFixed(digits);
+  return value.toExponential(1);
 }
 
 // Index of the last sample at or before t.
@@ -128,7 +134,7 @@ class Plot {
       context.moveTo(kMargin.left, y);
       context.lineTo(width - kMargin.right, y);
       context.stroke();
-      context.fillText(value.toFixed(vertical.digits), kMargin.left - 5, y);
+      context.fillText(short(value, vertical.digits), kMargin.left - 5, y);
     }
     const horizontal = ticks(view.low, view.high, width / 80);
     context.textAlign = "center";
@@ -210,7 +216,7 @@ class Plot {
     context.textAlign = "right";
     let x = width - kMargin.right;
     for (const series of [...this.options.series].reverse()) {
-      const text = `${series.name} ${series.values[i].toFixed(3)}`;
+      const text = `${series.name} ${short(series.values[i], 3)}`;
       context.fillStyle = kStyles[series.style].color;
       context.fillText(text, x, 12);
       x -= context.measureText(text).width + 12;

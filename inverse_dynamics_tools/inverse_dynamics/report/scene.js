@@ -236,7 +236,7 @@ function createScene(canvas, links, motion) {
       ["view_projection", "pose", "scale", "color", "eye", "shadow"].map((name) => [name, uniform(name)]));
   const lines = floorLines();
   const space = spaceOf(links, motion);
-  const home = {azimuth: -0.9, elevation: 0.38, distance: space.radius / Math.tan(kFieldOfView / 2)};
+  const home = {azimuth: -0.9, elevation: 0.38, distance: 0.85 * space.radius / Math.tan(kFieldOfView / 2)};
   const view = {...home};
   let last_q = null;
 

@@ -58,7 +58,11 @@ def _link(
     index: dict[str, int],
     shapes: list[dict[str, Any]],
 ) -> dict[str, Any]:
-    axis = _numbers(joint.find("axis"), "xyz", (1.0, 0.0, 0.0)) if joint is not None else [0.0, 0.0, 1.0]
+    axis = (
+        _numbers(joint.find("axis"), "xyz", (1.0, 0.0, 0.0))
+        if joint is not None
+        else [0.0, 0.0, 1.0]
+    )
     length = math.hypot(*axis) or 1.0
     return {
         "parent": parent,
@@ -108,7 +112,9 @@ def _color(material: ElementTree.Element) -> list[float] | None:
     return None if element is None else _numbers(element, "rgba", (*DEFAULT_COLOR, 1.0))[:3]
 
 
-def _numbers(element: ElementTree.Element | None, key: str, default: Sequence[float]) -> list[float]:
+def _numbers(
+    element: ElementTree.Element | None, key: str, default: Sequence[float]
+) -> list[float]:
     text = None if element is None else element.get(key)
     return list(default) if text is None else [float(word) for word in text.split()]
 

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Evaluations as runs of the report's page."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.descriptions import read_description
+from inverse_dynamics.report.figures import error_figure
+from inverse_dynamics.report.page import Figure, ReportRun
+from inverse_dynamics.report.scene import scene_from_urdf
+
+if TYPE_CHECKING:
+    from inverse_dynamics.evaluation import Evaluation
+
+
+def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
+    """What the page shows of an evaluation; `title` stands for the robot's name."""
+    robot, log = evaluation.robot, evaluation.log
+    links = []
+    if robot.urdf is not None:
+        links = scene_from_urdf(read_description(robot.urdf), evaluation.joint_names)
+    left_out = evaluation.samples.left_out
+    return ReportRun(
+        title=title or robot.name,
+        description=robot.description,
+        solver=robot.plugin,
+        time=evaluation.time,
+        q=log.q,
+        measured=evaluation.measured,
+        computed=evaluation.computed,
+        table=evaluation.errors,
+        other_table=evaluation.errors_of_kept if left_out else (),
+        other_table_title=f"The same without {left_out} samples that don't count",
+        assumptions=_assumptions(evaluation),
+        notes=evaluation.notes,
+        links=links,
+        figures=[
+            Figure(
+                _inline(error_figure(evaluation)),
+                "Left: errors as a share of each joint's measured range; a box holds the middle half of the samples, "
+                "whiskers 90 %. Right: spectra of measured torque and error, mean over the joints, in the same unit; "
+                "what lies above the cut-off can't be explained by filtered accelerations.",
+            )
+        ],
+    )
+
+
+def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:
+    robot, log = evaluation.robot, evaluation.log
+    model = robot.model or robot.urdf
+    gravity = (
+        "the model's own"
+        if robot.gravity is None
+        else "{:g}, {:g}, {:g} m/s²".format(*robot.gravity)
+    )
+    rows = [
+        ("solver", robot.plugin),
+        ("model", model.name if model is not None else "the solver's own"),
+        ("friction", "as the solver models it" if robot.friction else "left out"),
+        ("gravity", gravity),
+        ("effort means", robot.effort),
+        ("accelerations", evaluation.accelerations.summary),
+        (
+            "recording",
+            f"{evaluation.bag.name}, {log.topic}, {len(log)} samples, {evaluation.time[-1]:.1f} s",
+        ),
+        ("source", robot.source),
+    ]
+    return [(name, text) for name, text in rows if text]
+
+
+def _inline(svg: str) -> str:
+    """An SVG file as an element of a page."""
+    return re.sub(r"^.*?(?=<svg)", "", svg, flags=re.DOTALL)

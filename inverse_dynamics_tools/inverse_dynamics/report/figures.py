@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where the errors of an evaluation are: how large, and at which frequencies."""
+
+from __future__ import annotations
+
+from io import StringIO
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from inverse_dynamics.evaluation import Evaluation
+    from inverse_dynamics.joint_log import Floats
+
+_BLUE = "#0072B2"
+_MUTED = "#555555"
+
+
+def error_figure(evaluation: Evaluation) -> str:
+    """Distribution and spectrum of the errors, as SVG text. The same evaluation, the same text."""
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    style = {
+        "font.size": 9,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "svg.fonttype": "none",
+        "svg.hashsalt": evaluation.robot.name,
+    }
+    with mpl.rc_context(style):  # type: ignore[arg-type]
+        figure = Figure(figsize=(11, 2.9), layout="constrained")
+        left, right = figure.subplots(1, 2)
+        measured, error = _shares(evaluation)
+        _draw_distribution(left, evaluation.joint_names, error)
+        _draw_spectra(right, evaluation, measured, error)
+        text = StringIO()
+        figure.savefig(text, format="svg", metadata={"Date": None})
+    return text.getvalue()
+
+
+def _shares(evaluation: Evaluation) -> tuple[Floats, Floats]:
+    """Measured torque and error, (N, n), in percent of each joint's measured range."""
+    span = np.ptp(evaluation.measured, axis=0)
+    unit = np.where(span > 0, span, 1.0) / 100
+    return evaluation.measured / unit, (evaluation.computed - evaluation.measured) / unit
+
+
+def _draw_distribution(axes: Axes, names: tuple[str, ...], error: Floats) -> None:
+    boxes = axes.boxplot(
+        list(error.T[::-1]),
+        orientation="horizontal",
+        whis=(5, 95),
+        showfliers=False,
+        widths=0.55,
+        patch_artist=True,
+        medianprops={"color": "black"},
+    )
+    for box in boxes["boxes"]:
+        box.set(facecolor=_BLUE, alpha=0.45)
+    axes.set_yticks(range(1, len(names) + 1), names[::-1])
+    axes.axvline(0, color="#999999", linewidth=0.8)
+    axes.grid(axis="x", color="#e3e6ea")
+    axes.set_xlabel("computed - measured [% of measured range]", color=_MUTED)
+
+
+def _draw_spectra(axes: Axes, evaluation: Evaluation, measured: Floats, error: Floats) -> None:
+    period = float(evaluation.time[-1]) / (len(evaluation.time) - 1)
+    for values, color, label in ((measured, "black", "measured torque"), (error, _BLUE, "error")):
+        frequency, amplitude = _spectrum(values, period)
+        axes.loglog(frequency, amplitude, color=color, linewidth=1.1, label=label,
+                    linestyle="--" if color == "black" else "-")  # fmt: skip
+    if evaluation.accelerations.cutoff is not None:
+        axes.axvline(
+            evaluation.accelerations.cutoff, color="#009E73", linewidth=1.3, label="cut-off"
+        )
+    axes.grid(color="#e3e6ea")
+    axes.legend(frameon=False)
+    axes.set_xlabel("frequency [Hz]", color=_MUTED)
+    axes.set_ylabel("% of range / √Hz", color=_MUTED)
+
+
+def _spectrum(values: Floats, period: float) -> tuple[Floats, Floats]:
+    """Amplitude spectral density of (N, n) samples, mean over the columns, by Welch's method (Hann, half overlap)."""
+    length = max(2, min(len(values), 2 ** int(np.log2(max(4, len(values) / 4)))))
+    window = np.hanning(length + 1)[:-1] if length > 2 else np.ones(length)
+    starts = range(0, len(values) - length + 1, max(1, length // 2))
+    power = np.zeros(length // 2 + 1)
+    for start in starts:
+        piece = values[start : start + length]
+        piece = (piece - piece.mean(axis=0)) * window[:, None]
+        power += (np.abs(np.fft.rfft(piece, axis=0)) ** 2).mean(axis=1)
+    density = np.sqrt(2 * period * power / (len(starts) * np.sum(window**2)))
+    return np.fft.rfftfreq(length, period)[1:], density[1:]
