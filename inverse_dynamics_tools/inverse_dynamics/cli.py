@@ -19,7 +19,7 @@ from inverse_dynamics.errors import UserError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-VERBS = ("robots", "simulate", "evaluate")
+VERBS = ("robots", "simulate", "evaluate", "compare", "report")
 
 _EPILOG = """\
 start here:

@@ -40,6 +40,28 @@ def check_output_directory(target: Path, *, overwrite: bool = False, mark: str =
         )
 
 
+def check_output_file(target: Path, *, overwrite: bool = False) -> None:
+    """Raise OutputError unless a file may be made at `target`."""
+    if target.is_dir():
+        raise OutputError(f"{target}: is a directory; expected the name of a file to write")
+    if target.exists() and not overwrite:
+        raise OutputError(
+            f"{target}: exists already; name another file with --out, or replace it with --overwrite"
+        )
+
+
+def write_text_whole(target: Path, text: str) -> None:
+    """Write a file, or leave what was there. Raises OutputError."""
+    work = target.with_name(f".{target.name}.part")
+    try:
+        target.absolute().parent.mkdir(parents=True, exist_ok=True)
+        work.write_text(text, encoding="utf-8")
+        os.replace(work, target)
+    except OSError as error:
+        work.unlink(missing_ok=True)
+        raise OutputError(_cannot_write(target, error)) from error
+
+
 @contextmanager
 def written_whole(target: Path, *, overwrite: bool = False, mark: str = "") -> Iterator[Path]:
     """Directory to write into; it becomes `target` at the end, and vanishes on an error.

@@ -12,18 +12,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
     from typing import Any
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from inverse_dynamics.comparison import Comparison
     from inverse_dynamics.evaluation import Evaluation
     from inverse_dynamics.joint_log import Floats
 
 MEASURED: dict[str, Any] = {"color": "black", "linestyle": (0, (3.0, 1.6)), "linewidth": 0.9}
 COMPUTED: dict[str, Any] = {"color": "#d7191c", "linewidth": 1.2}
 ERROR: dict[str, Any] = {"color": "#2c5f9e", "linewidth": 0.7}
+_RUNS = ("#E69F00", "#0072B2", "#009E73", "#CC79A7", "#56B4E9")  # Okabe and Ito: for all eyes
 _MUTED = "#555555"
 
 _MOST_POINTS = 6000  # of a line; beyond it, lowest and highest of each of half as many stretches
@@ -49,12 +52,20 @@ _STYLE: Any = {
 
 def save_torque_figure(evaluation: Evaluation, file: Path) -> None:
     """Save torque_figure(); the format is that of the suffix. The same evaluation, the same bytes."""
+    _save(lambda: torque_figure(evaluation), file)
+
+
+def save_comparison_figure(comparison: Comparison, file: Path) -> None:
+    """Save comparison_figure(); the format is that of the suffix. The same runs, the same bytes."""
+    _save(lambda: comparison_figure(comparison), file)
+
+
+def _save(make: Callable[[], Figure], file: Path) -> None:
     import matplotlib as mpl
 
     with mpl.rc_context({**_STYLE, "svg.hashsalt": "inverse_dynamics"}):
-        figure = torque_figure(evaluation)
         metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(file.suffix)
-        figure.savefig(file, dpi=160, metadata=metadata)
+        make().savefig(file, dpi=160, metadata=metadata)
 
 
 def torque_figure(evaluation: Evaluation) -> Figure:
@@ -106,6 +117,42 @@ def torque_figure(evaluation: Evaluation) -> Figure:
             frameon=False,
             fontsize=9,
         )
+    return figure
+
+
+def comparison_figure(comparison: Comparison) -> Figure:
+    """Measured torque and that of each run over time, and the runs' errors, a joint a row."""
+    from matplotlib.figure import Figure
+
+    first = comparison.evaluations[0]
+    n = len(comparison.joint_names)
+    figure = Figure(figsize=(11.0, 1.25 * n + 1.2), layout="constrained")
+    figure.suptitle(
+        f"{first.bag.name}: {' against '.join(comparison.labels)}", fontsize=12, fontweight="bold"
+    )
+    axes = figure.subplots(n, 2, sharex=True, squeeze=False, width_ratios=(1.7, 1.0))
+    for j, (left, right) in enumerate(axes):
+        for k, evaluation in enumerate(comparison.evaluations):
+            error = evaluation.computed[:, j] - evaluation.measured[:, j]
+            style = {
+                "color": _RUNS[k % len(_RUNS)],
+                "linewidth": 1.1,
+                "label": comparison.labels[k],
+            }
+            left.plot(*_thinned(first.time, evaluation.computed[:, j]), **style)
+            right.plot(*_thinned(first.time, error), **style)
+        left.plot(*_thinned(first.time, first.measured[:, j]), **MEASURED, label="measured")
+        left.set_title(f"{comparison.joint_names[j]} [{first.units[j]}]", loc="left", fontsize=9)
+        rmse = " / ".join(f"{value:.3g}" for value in comparison.rmse[:, j])
+        right.set_title(
+            f"error: RMSE {rmse} {first.units[j]}", loc="left", fontsize=9, color=_MUTED
+        )
+        right.axhline(0, color="#999999", linewidth=0.6)
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]", color=_MUTED)
+        axis.set_xlim(first.time[0], first.time[-1])
+    handles, labels = axes[0][0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper left", ncols=len(labels), frameon=False)
     return figure
 
 

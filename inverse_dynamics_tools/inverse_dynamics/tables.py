@@ -10,6 +10,7 @@ from rich import box
 from rich.table import Table
 
 if TYPE_CHECKING:
+    from inverse_dynamics.comparison import Comparison
     from inverse_dynamics.evaluation import Evaluation
 
 
@@ -32,26 +33,48 @@ def error_table(evaluation: Evaluation) -> Table:
         table.add_row(
             error.joint,
             error.unit,
-            f"{error.mae:.3f}",
-            f"{error.rmse:.3f}",
+            figure(error.mae),
+            figure(error.rmse),
             _percent(error.nrmse),
             f"{error.bias:+.3f}",
             _number(error.r2),
-            *([f"{kept.rmse:.3f}"] if left_out else []),
+            *([figure(kept.rmse)] if left_out else []),
         )
     if len(set(evaluation.units)) == 1 and len(evaluation.errors) > 1:
         table.add_section()
         table.add_row(
             "mean",
             evaluation.units[0],
-            f"{_mean([e.mae for e in evaluation.errors]):.3f}",
-            f"{evaluation.mean_rmse:.3f}",
+            figure(_mean([e.mae for e in evaluation.errors])),
+            figure(evaluation.mean_rmse),
             "",
             "",
             "",
-            *([f"{_mean([e.rmse for e in evaluation.errors_of_kept]):.3f}"] if left_out else []),
+            *([figure(_mean([e.rmse for e in evaluation.errors_of_kept]))] if left_out else []),
         )
     return table
+
+
+def comparison_table(comparison: Comparison) -> Table:
+    """Root mean square errors, a run a column."""
+    table = Table(box=box.SIMPLE_HEAD, title="RMSE", title_justify="left")
+    table.add_column("joint")
+    table.add_column("unit")
+    for label in comparison.labels:
+        table.add_column(label, justify="right", overflow="fold")
+    units = comparison.evaluations[0].units
+    for joint, unit, row in zip(comparison.joint_names, units, comparison.rmse.T, strict=True):
+        table.add_row(joint, unit, *(figure(value) for value in row))
+    if len(set(units)) == 1 and len(units) > 1:
+        table.add_section()
+        means = comparison.rmse.mean(axis=1)
+        table.add_row("mean", units[0], *(figure(value) for value in means))
+    return table
+
+
+def figure(value: float) -> str:
+    """Three decimals, or three significant digits where that says nothing."""
+    return f"{value:.3f}" if abs(value) >= 0.1 or value == 0 else f"{value:.3g}"
 
 
 def _mean(numbers: list[float]) -> float:

@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics.files import write_text_whole
+
 if TYPE_CHECKING:
     from inverse_dynamics.evaluation import JointError
     from inverse_dynamics.joint_log import Floats
@@ -54,8 +56,8 @@ class ReportRun:
 
 
 def write_page(path: Path, title: str, runs: Sequence[ReportRun]) -> None:
-    """Writes the page; the caller makes sure that `path` may be written."""
-    path.write_text(render_page(title, runs), encoding="utf-8")
+    """Write the page, whole or not at all; what is there is replaced. Raises OutputError."""
+    write_text_whole(path, render_page(title, runs))
 
 
 def render_page(title: str, runs: Sequence[ReportRun]) -> str:

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A comparison as a directory of files.
+
+comparison.json             root mean square errors of each joint and run; marks the directory
+comparison.png, .svg, .pdf  measured torque and that of each run, over time
+report.html                 all runs on one page
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from inverse_dynamics.files import written_whole
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from inverse_dynamics.comparison import Comparison
+
+MARK = "comparison.json"
+
+
+def write_comparison(
+    comparison: Comparison, directory: Path, *, overwrite: bool = False, title: str = ""
+) -> None:
+    """Write all files of a comparison, or none of them. Raises OutputError."""
+    from inverse_dynamics.plots import save_comparison_figure
+    from inverse_dynamics.report import report_run, write_page
+    from inverse_dynamics.results import PLOT_FORMATS
+
+    first = comparison.evaluations[0]
+    title = title or f"{first.bag.name}: {' against '.join(comparison.labels)}"
+    with written_whole(directory, overwrite=overwrite, mark=MARK) as target:
+        text = json.dumps(_figures(comparison), indent=2, allow_nan=False, ensure_ascii=False)
+        (target / MARK).write_text(text + "\n", encoding="utf-8")
+        for suffix in PLOT_FORMATS:
+            save_comparison_figure(comparison, target / f"comparison.{suffix}")
+        runs = [
+            report_run(evaluation, label)
+            for evaluation, label in zip(comparison.evaluations, comparison.labels, strict=True)
+        ]
+        write_page(target / "report.html", title, runs)
+
+
+def _figures(comparison: Comparison) -> dict[str, Any]:
+    first = comparison.evaluations[0]
+    return {
+        "schema": 1,
+        "bag": str(first.bag),
+        "joints": list(comparison.joint_names),
+        "units": list(first.units),
+        "runs": [
+            {"label": label, "plugin": evaluation.robot.plugin, "rmse": list(map(float, rmse))}
+            for label, evaluation, rmse in zip(
+                comparison.labels, comparison.evaluations, comparison.rmse, strict=True
+            )
+        ],
+    }

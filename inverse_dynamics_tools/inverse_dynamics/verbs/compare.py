@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids compare`: solvers or models on the same recording, side by side."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.verbs.common import names
+
+if TYPE_CHECKING:
+    from inverse_dynamics.comparison import Comparison
+
+_EPILOG = """\
+examples:
+  ids evaluate recording --robot ur10_real --out identified
+  ids evaluate recording --robot ur10_real --out urdf \\
+      --plugin rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody
+  ids compare urdf identified --labels URDF,identified --out comparison
+      what identification and friction bring
+
+results, written whole or not at all:
+  comparison.png .svg .pdf   measured torque, and each run's, over time
+  comparison.json            root mean square errors of each joint and run
+  report.html                all runs on one page
+"""
+
+
+def add_parser(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+) -> argparse.ArgumentParser:
+    """Declare the verb."""
+    parser = subparsers.add_parser(
+        "compare",
+        help="put evaluations of one recording side by side",
+        description="Put evaluations of one recording side by side: solvers, models, filters.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "runs", metavar="RUN", type=Path, nargs="+", help="results of `ids evaluate`, two or more"
+    )
+    parser.add_argument(
+        "--labels",
+        metavar="A,B,...",
+        type=names,
+        default=(),
+        help="what to call the runs (default: what differs)",
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, help="where figure and page go (default: only the table)"
+    )
+    parser.add_argument(
+        "--overwrite", action="store_true", help="replace an older result in that directory"
+    )
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.comparison import compare
+    from inverse_dynamics.comparison_results import MARK, write_comparison
+    from inverse_dynamics.files import check_output_directory
+    from inverse_dynamics.results import read_evaluation
+
+    if arguments.out is not None:
+        check_output_directory(arguments.out, overwrite=arguments.overwrite, mark=MARK)
+    comparison = compare([read_evaluation(run) for run in arguments.runs], arguments.labels)
+    if arguments.out is not None:
+        write_comparison(comparison, arguments.out, overwrite=arguments.overwrite)
+    _print(comparison, arguments.out)
+
+
+def _print(comparison: Comparison, out: Path | None) -> None:
+    from rich.console import Console
+
+    from inverse_dynamics.tables import comparison_table
+
+    console = Console(highlight=False, markup=False, soft_wrap=True)
+    console.print(comparison_table(comparison))
+    if out is not None:
+        console.print(f"figure         {out / 'comparison.png'} (.svg, .pdf)")
+        console.print(f"page           {out / 'report.html'}")
