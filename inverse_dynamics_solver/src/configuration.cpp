@@ -40,7 +40,7 @@ void readAttached(Configuration& configuration) {
   if (attached != "lump" && attached != "ignore") {
     throw InvalidParameterValueException(
         errorText("parameter '" + configuration.fullName("attached") + "'", "wrong value",
-                  "\"lump\" or \"ignore\"", "\"" + attached + "\"",
+                  R"("lump" or "ignore")", "\"" + attached + "\"",
                   "lump: what hangs on the chain beside or beyond it counts; ignore: it doesn't"));
   }
   configuration.lump_attached = attached == "lump";

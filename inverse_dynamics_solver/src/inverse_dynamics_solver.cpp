@@ -6,6 +6,9 @@
 namespace inverse_dynamics_solver {
 namespace {
 
+// What computeFriction() gets for q where only velocities are known.
+const Eigen::VectorXd kNoPositions;
+
 using Eigen::Index;
 
 /// Chains up to this many joints are computed without allocation.
@@ -114,7 +117,7 @@ void InverseDynamicsSolver::getFrictionVector(const ConstVectorRef& qd, VectorRe
   requireInitialized("getFrictionVector");
   requireVector("getFrictionVector", "qd", qd.size());
   requireVector("getFrictionVector", "f", f.size());
-  computeFriction(qd, f);
+  computeFriction(kNoPositions, qd, f);
 }
 
 void InverseDynamicsSolver::getGravityVector(const ConstVectorRef& q, VectorRef g) const {
@@ -207,7 +210,8 @@ void InverseDynamicsSolver::getTorquesBatch(const ConstMatrixRef& q, const Const
 
 // ---------------------------------------------------------------- defaults
 
-void InverseDynamicsSolver::computeFriction(const ConstVectorRef&, VectorRef f) const {
+void InverseDynamicsSolver::computeFriction(const ConstVectorRef&, const ConstVectorRef&,
+                                            VectorRef f) const {
   f.setZero();
 }
 
@@ -229,7 +233,7 @@ void InverseDynamicsSolver::computeTorques(const ConstVectorRef& q, const ConstV
     tau.noalias() = H.lazyProduct(qdd);
     computeCoriolisVector(q, qd, term);
     tau += term;
-    computeFriction(qd, term);
+    computeFriction(q, qd, term);
     tau += term;
     computeGravityVector(q, term);
     tau += term;
@@ -257,7 +261,9 @@ void InverseDynamicsSolver::computeCoriolisVectorBatch(const ConstMatrixRef& q,
 }
 
 void InverseDynamicsSolver::computeFrictionBatch(const ConstMatrixRef& qd, MatrixRef f) const {
-  for (Index k = 0; k < qd.cols(); ++k) computeFriction(qd.col(k), f.col(k));
+  for (Index k = 0; k < qd.cols(); ++k) {
+    computeFriction(kNoPositions, qd.col(k), f.col(k));
+  }
 }
 
 void InverseDynamicsSolver::computeGravityVectorBatch(const ConstMatrixRef& q, MatrixRef g) const {

@@ -144,7 +144,7 @@ std::shared_ptr<InverseDynamicsSolver> SolverLoader::load(const std::string& nam
   try {
     std::unique_ptr<LoadedSolver> made(
         new LoadedSolver{loader, loader->createUniqueInstance(name)});
-    static const ExitNotice notice;
+    static const ExitNotice kNotice;
     const std::shared_ptr<LoadedSolver> loaded = ownUnlessExiting(std::move(made));
     return {loaded, loaded->solver.get()};
   } catch (const pluginlib::CreateClassException&) {

@@ -49,7 +49,10 @@ class MadeUp : public InverseDynamicsSolver {
 /// The same with friction.
 class MadeUpWithFriction : public MadeUp {
  protected:
-  void computeFriction(const ConstVectorRef& qd, VectorRef f) const override { f = 1e4 * qd; }
+  void computeFriction(const ConstVectorRef&, const ConstVectorRef& qd,
+                       VectorRef f) const override {
+    f = 1e4 * qd;
+  }
 };
 
 template <class Solver = MadeUp>

@@ -98,7 +98,9 @@ void InverseDynamicsSolverRigidBody::computeGravityVector(const ConstVectorRef& 
   chain_dynamics::gravityVector(model(), q, g);
 }
 
-void InverseDynamicsSolverRigidBody::computeFriction(const ConstVectorRef& qd, VectorRef f) const {
+void InverseDynamicsSolverRigidBody::computeFriction(const ConstVectorRef&,
+                                                     const ConstVectorRef& qd,
+                                                     VectorRef f) const {
   chain_dynamics::frictionVector(model(), qd, f);
 }
 

@@ -223,8 +223,10 @@ class InverseDynamicsSolver {
   virtual void computeGravityVector(const ConstVectorRef& q, VectorRef g) const = 0;
 
   /// Zero by default. With Configuration::friction false it gives zero, and computeTorques() leaves
-  /// it out.
-  virtual void computeFriction(const ConstVectorRef& qd, VectorRef f) const;
+  /// it out. q is for friction that depends on load; it is empty where getFrictionVector() asks,
+  /// which knows velocities only.
+  virtual void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
+                               VectorRef f) const;
 
   /// By default the three functions above.
   virtual void computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd,

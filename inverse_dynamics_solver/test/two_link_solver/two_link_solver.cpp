@@ -82,7 +82,8 @@ void TwoLinkSolver::computeGravityVector(const ConstVectorRef& q, VectorRef g) c
   if (has("a result is not finite")) g[0] = std::numeric_limits<double>::infinity();
 }
 
-void TwoLinkSolver::computeFriction(const ConstVectorRef& qd, VectorRef f) const {
+void TwoLinkSolver::computeFriction(const ConstVectorRef&, const ConstVectorRef& qd,
+                                    VectorRef f) const {
   if (!friction_) {
     f.setZero();
   } else if (has("friction overflows")) {

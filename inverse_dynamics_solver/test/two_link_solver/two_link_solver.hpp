@@ -32,7 +32,8 @@ class TwoLinkSolver : public InverseDynamicsSolver, public MotorCurrents {
   void computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
                              VectorRef c) const override;
   void computeGravityVector(const ConstVectorRef& q, VectorRef g) const override;
-  void computeFriction(const ConstVectorRef& qd, VectorRef f) const override;
+  void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
+                       VectorRef f) const override;
   void computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
                                 VectorRef c, VectorRef g) const override;
   void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,

@@ -54,7 +54,8 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
   void computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
                              VectorRef c) const override;
   void computeGravityVector(const ConstVectorRef& q, VectorRef g) const override;
-  void computeFriction(const ConstVectorRef& qd, VectorRef f) const override;
+  void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
+                       VectorRef f) const override;
   void computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
                                 VectorRef c, VectorRef g) const override;
   void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,

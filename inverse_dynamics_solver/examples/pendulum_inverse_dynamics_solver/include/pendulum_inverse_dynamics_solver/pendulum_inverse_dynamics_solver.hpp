@@ -23,7 +23,8 @@ class InverseDynamicsSolverPendulum : public inverse_dynamics_solver::InverseDyn
   void computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
                              VectorRef c) const override;
   void computeGravityVector(const ConstVectorRef& q, VectorRef g) const override;
-  void computeFriction(const ConstVectorRef& qd, VectorRef f) const override;
+  void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
+                       VectorRef f) const override;
   bool inertiaIsPhysicalImpl() const override { return true; }
 
  private:
