@@ -99,8 +99,7 @@ void InverseDynamicsSolverRigidBody::computeGravityVector(const ConstVectorRef& 
 }
 
 void InverseDynamicsSolverRigidBody::computeFriction(const ConstVectorRef&,
-                                                     const ConstVectorRef& qd,
-                                                     VectorRef f) const {
+                                                     const ConstVectorRef& qd, VectorRef f) const {
   chain_dynamics::frictionVector(model(), qd, f);
 }
 

@@ -43,8 +43,7 @@ void InverseDynamicsSolverPendulum::computeGravityVector(const ConstVectorRef& q
   g[0] = mass_ * length_ * (gravity_.x() * std::cos(q[0]) - gravity_.z() * std::sin(q[0]));
 }
 
-void InverseDynamicsSolverPendulum::computeFriction(const ConstVectorRef&,
-                                                    const ConstVectorRef& qd,
+void InverseDynamicsSolverPendulum::computeFriction(const ConstVectorRef&, const ConstVectorRef& qd,
                                                     VectorRef f) const {
   f[0] = damping_ * qd[0];
 }
