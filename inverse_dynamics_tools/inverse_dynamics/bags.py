@@ -181,7 +181,7 @@ class _Recording:
     @property
     def storage(self) -> Storage:
         files = [self._path] if self._path.is_file() else list(self._path.iterdir())
-        return "mcap" if any(f.suffix == ".mcap" for f in files) else "sqlite3"
+        return "mcap" if any(".mcap" in f.suffixes for f in files) else "sqlite3"
 
     def topics(self) -> list[TopicSummary]:
         return [
@@ -247,6 +247,8 @@ def _check_there(path: Path) -> None:
         )
     if path.is_dir():
         if (path / "metadata.yaml").exists():
+            for log in sorted(path.glob("*.db3-wal")):
+                _check_complete(path / log.name.removesuffix("-wal"))
             return
         files = sorted(f.name for f in path.iterdir() if f.suffix in {".db3", ".mcap"})
         remedy = (
@@ -268,6 +270,17 @@ def _check_there(path: Path) -> None:
     if path.stat().st_size == 0:
         raise BagError(
             f"{path}: is empty (0 bytes); expected a rosbag2 recording; copy or record it again"
+        )
+    _check_complete(path)
+
+
+def _check_complete(file: Path) -> None:
+    """A recorder that was killed leaves messages in a log beside the database."""
+    log = file.with_name(f"{file.name}-wal")
+    if log.exists() and log.stat().st_size > 0:
+        raise BagError(
+            f"{file}: is incomplete: some of its messages are in {log.name} still; put them in with "
+            f"`sqlite3 {file} 'PRAGMA wal_checkpoint(TRUNCATE)'`"
         )
 
 

@@ -25,14 +25,22 @@ def read_description(file: Path) -> str:
         raise RobotError(f"{file}: isn't a text file; expected a URDF") from error
 
 
-def joint_units(description: str, joint_names: tuple[str, ...]) -> tuple[str, ...]:
-    """Unit of each joint's torque: N for a prismatic joint of the URDF, else N m."""
+def joint_units(
+    file: Path | None, description: str, joint_names: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Unit of each joint's torque: N for a prismatic joint of the URDF, else N m.
+
+    file: where the description is from, for errors. Raises RobotError if it isn't XML.
+    """
     import xml.etree.ElementTree as ElementTree
 
     prismatic = set()
     if description:
-        root = ElementTree.fromstring(description)
-        prismatic = {j.get("name") for j in root.iter("joint") if j.get("type") == "prismatic"}
+        try:
+            joints = ElementTree.fromstring(description).iter("joint")
+        except ElementTree.ParseError as error:
+            raise RobotError(f"{file}: isn't a robot description: no XML ({error})") from error
+        prismatic = {j.get("name") for j in joints if j.get("type") == "prismatic"}
     return tuple("N" if name in prismatic else "N m" for name in joint_names)
 
 

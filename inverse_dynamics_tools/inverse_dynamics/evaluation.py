@@ -139,6 +139,7 @@ def evaluate(
     solver = open_solver(robot, description)
     joint_names = tuple(solver.joint_names)
     recorded_names = _recorded_names(robot, joint_names)
+    units = joint_units(robot.urdf, description, joint_names)
     solver_ready = time.perf_counter()
     log = read_joint_log(bag, recorded_names, topic=robot.topic, clock=clock, progress=progress)
     read = time.perf_counter()
@@ -151,7 +152,6 @@ def evaluate(
         raise EvaluationError(f"{bag}: {log.topic}: {error}") from error
     filtered = time.perf_counter()
     computed = solver.torques(log.q, log.qd, qdd)
-    units = joint_units(description, joint_names)
     errors = joint_errors(joint_names, units, computed, log.effort)
     errors_of_kept = errors
     if samples.left_out:

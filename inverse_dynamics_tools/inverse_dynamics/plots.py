@@ -152,7 +152,7 @@ def comparison_figure(comparison: Comparison) -> Figure:
         axis.set_xlabel("time [s]", color=_MUTED)
         axis.set_xlim(first.time[0], first.time[-1])
     handles, labels = axes[0][0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper left", ncols=len(labels), frameon=False)
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
     return figure
 
 
@@ -166,6 +166,8 @@ def _draw_torques(axes: Axes, evaluation: Evaluation, time: Floats, j: int) -> N
 
 
 def _draw_error(axes: Axes, evaluation: Evaluation, time: Floats, j: int) -> None:
+    from matplotlib.ticker import EngFormatter
+
     error = evaluation.errors[j]
     t, difference = _thinned(time, evaluation.computed[:, j] - evaluation.measured[:, j])
     axes.axhline(0, color="#999999", linewidth=0.6)
@@ -173,7 +175,9 @@ def _draw_error(axes: Axes, evaluation: Evaluation, time: Floats, j: int) -> Non
     axes.plot(t, difference, **ERROR)
     largest = float(np.max(np.abs(difference))) or 1.0
     axes.set_ylim(-1.1 * largest, 1.1 * largest)
-    share = "" if np.isnan(error.nrmse) else f", {100 * error.nrmse:.1f} % of measured range"
+    if largest < 0.01:
+        axes.yaxis.set_major_formatter(EngFormatter(sep=""))  # 200µ instead of 0.0002
+    share = "" if np.isnan(error.nrmse) else f", {100 * error.nrmse:.2g} % of measured range"
     axes.set_title(
         f"RMSE {error.rmse:.3g} {error.unit}{share}", loc="left", fontsize=9, pad=3, color=_MUTED
     )

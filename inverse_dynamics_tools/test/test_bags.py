@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import joint_log, joint_state, write_messages
-from rosbags.rosbag2 import Reader, StoragePlugin
+from conftest import JOINT_STATE, STORE, joint_log, joint_state, write_messages
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, Reader, StoragePlugin, Writer
 
 from inverse_dynamics.bags import TopicSummary, read_joint_log, read_topics, write_joint_logs
 from inverse_dynamics.errors import BagError
@@ -111,6 +111,22 @@ def test_a_recording_without_message_definitions_is_read(bag):
     assert len(read_joint_log(bag)) == 50
 
 
+@STORAGES
+@pytest.mark.parametrize("mode", [CompressionMode.FILE, CompressionMode.MESSAGE])
+def test_a_compressed_recording_is_read(tmp_path, storage, mode):
+    plugin = StoragePlugin.MCAP if storage == "mcap" else StoragePlugin.SQLITE3
+    writer = Writer(tmp_path / "bag", version=9, storage_plugin=plugin)
+    writer.set_compression(mode, CompressionFormat.ZSTD)
+    with writer:
+        connection = writer.add_connection(TOPIC, JOINT_STATE, typestore=STORE)
+        for k in range(20):
+            message = joint_state(["a"], [k], [0], [0], k)
+            writer.write(connection, k, STORE.serialize_cdr(message, JOINT_STATE))
+    log = read_joint_log(tmp_path / "bag")
+    np.testing.assert_array_equal(log.q[:, 0], np.arange(20))
+    assert log.storage == storage
+
+
 def test_no_topic_given_means_the_only_one_with_joint_states(bag):
     assert read_joint_log(bag).topic == TOPIC
 
@@ -202,6 +218,14 @@ def test_arrays_of_another_length_than_the_names_are_an_error(
         tmp_path / "bag",
         f"message 2: {field}: expected 2 numbers, one per name, got {shown}; {reason}",
     )
+
+
+def test_of_several_mistakes_the_first_message_is_named(tmp_path):
+    messages = [joint_state(["a"], [1], [1], [1], k) for k in range(8)]
+    messages[3] = joint_state(["a"], [1], [1, 2, 3], [1], 3)  # longer than the others
+    messages[5] = joint_state(["a"], [1], [], [1], 5)  # shorter
+    write_messages(tmp_path / "bag", messages)
+    fails(tmp_path / "bag", "message 4: velocity: expected 1 numbers, one per name, got 3")
 
 
 @pytest.mark.parametrize("field", ["q", "qd", "effort"])
@@ -330,6 +354,22 @@ def test_fewer_messages_than_the_metadata_say_are_an_error(bag):
     fails(bag, "expected 50 messages, as its metadata say, got 30", "cut off")
 
 
+def test_recording_of_a_recorder_that_was_killed_names_the_remedy(bag):
+    import sqlite3
+
+    file = storage_file(bag)
+    database = sqlite3.connect(file)
+    database.execute("PRAGMA journal_mode=WAL")
+    database.execute("DELETE FROM messages WHERE id > 40")
+    database.commit()  # and no checkpoint
+    text = "is incomplete: some of its messages are in bag.db3-wal still; put them in with `sqlite3"
+    with pytest.raises(BagError, match=text):
+        read_joint_log(bag)
+    with pytest.raises(BagError, match=text):
+        read_joint_log(file)
+    database.close()
+
+
 def test_metadata_that_are_no_yaml_are_an_error(bag):
     (bag / "metadata.yaml").write_text("a: [1, 2")
     fails(bag, "can't be read as a rosbag2 recording")
@@ -365,8 +405,6 @@ def test_missing_topic_lists_what_there_is(bag):
 
 
 def test_topic_of_another_type_is_an_error(tmp_path):
-    from conftest import STORE
-
     kind = "std_msgs/msg/String"
     text = STORE.types[kind]("hello")
     write_messages(tmp_path / "bag", [text], topic="/chatter", message_type=kind)

@@ -279,6 +279,14 @@ def test_missing_description_is_an_error(bag, robot, tmp_path):
         evaluate(bag, robot, urdf=tmp_path / "arm.urdf")
 
 
+def test_description_that_is_no_xml_is_an_error_whoever_reads_it(bag, robot, tmp_path):
+    (tmp_path / "arm.urdf").write_text("<robot")
+    with pytest.raises(InvalidRobotDescriptionError, match=r"arm\.urdf"):
+        evaluate(bag, robot, urdf=tmp_path / "arm.urdf")
+    with pytest.raises(RobotError, match=r"arm\.urdf: isn't a robot description: no XML"):
+        evaluate(bag, robot, urdf=tmp_path / "arm.urdf", plugin=UR10)
+
+
 XACRO = """\
 <robot name="slide" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:property name="mass" value="${1 + 1}"/>

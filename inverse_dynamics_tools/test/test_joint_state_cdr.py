@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 from conftest import JOINT_STATE, STORE, joint_state
 
+from inverse_dynamics import joint_state_cdr
 from inverse_dynamics.joint_state_cdr import Decoder, encode, layout_of
 
 
@@ -43,21 +44,25 @@ def test_messages_of_any_shape_are_decoded_as_rosbags_does_each_once(seed):
 
 
 def test_messages_of_one_layout_are_one_block_whatever_their_padding_holds():
-    names = ["a", "bcd"]  # both need padding after them
-    messages = [joint_state(names, [k, 1], [2, 3], [4, 5], k) for k in range(20)]
+    # After the empty frame, after "a", and before the numbers of velocity and of effort.
+    padding = [17, 18, 19, 30, 31, *range(64, 68), *range(88, 92)]
+    messages = [joint_state(["a", "bcd"], [k, 1], [2, 3], [4, 5], k) for k in range(20)]
     raw = [bytearray(serialized(m)) for m in messages]
-    fixed = set(layout_of(bytes(raw[0])).fixed.tolist())
-    numbers = {
-        i for at, count in layout_of(bytes(raw[0])).arrays for i in range(at, at + 8 * count)
-    }
-    padding = set(range(4, len(raw[0]))) - fixed - numbers - set(range(4, 12))
-    assert len(padding) >= 5
     for k, message in enumerate(raw):
         for i in padding:
+            assert message[i] == 0
             message[i] = (17 * k + i) % 256
     blocks = list(Decoder().decode([bytes(m) for m in raw]))
     assert len(blocks) == 1
     check_block(blocks[0], messages)
+
+
+def test_more_layouts_of_one_size_than_are_remembered_are_told_apart():
+    messages = [joint_state([f"joint_{k % 90:03}"], [k], [2], [3], k) for k in range(200)]
+    blocks = list(Decoder().decode([serialized(m) for m in messages]))
+    for block in blocks:
+        check_block(block, messages)
+    assert sorted(np.concatenate([b.rows for b in blocks])) == list(range(200))
 
 
 def test_big_endian_messages_are_decoded_too():
@@ -68,13 +73,21 @@ def test_big_endian_messages_are_decoded_too():
         check_block(block, [message, message])
 
 
-def test_a_decoder_remembers_layouts_from_one_call_to_the_next():
+def test_a_decoder_remembers_layouts_from_one_call_to_the_next(monkeypatch):
+    looked_at = []
+
+    def counted(message):
+        looked_at.append(message)
+        return layout_of(message)
+
+    monkeypatch.setattr(joint_state_cdr, "layout_of", counted)
     decoder = Decoder()
     first = [serialized(joint_state(["a"], [1], [2], [3], 4))]
     assert [len(b.rows) for b in decoder.decode(first)] == [1]
-    later = [serialized(joint_state(["b"], [1], [2], [3], 4))] + 3 * first
+    later = [serialized(joint_state(["b"], [1], [2], [3], 4)), *(3 * first)]
     blocks = {b.names: b.rows.tolist() for b in decoder.decode(later)}
     assert blocks == {("a",): [1, 2, 3], ("b",): [0]}
+    assert looked_at == [first[0], later[0]]
 
 
 @pytest.mark.parametrize("length", [3, 10, 20, 40, 60])
