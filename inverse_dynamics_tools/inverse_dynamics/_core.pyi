@@ -11,7 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Parameter = bool | int | float | str | Sequence[bool] | Sequence[int] | Sequence[float] | Sequence[str]
+Parameter = (
+    bool | int | float | str | Sequence[bool] | Sequence[int] | Sequence[float] | Sequence[str]
+)
 
 def available_solvers() -> list[str]:
     """Names of the installed solver plugins, sorted; none if no workspace is sourced."""
