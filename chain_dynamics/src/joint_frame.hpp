@@ -17,8 +17,9 @@
 
 namespace chain_dynamics {
 
-/// The smallest rotation that turns z onto an axis; identity for z, half a turn about x for -z.
+/// A rotation that turns z onto an axis; identity for z itself, half a turn about x for -z.
 ///
+/// The smallest one for axes above the xy plane; after that half turn for those below.
 /// @param axis  of unit length.
 Matrix3<double> rotationFromZ(const Vector3<double>& axis);
 

@@ -117,7 +117,7 @@ void readPlacement(YamlMap map, JointEntry& entry) {
   if (direction.isZero(0)) {
     throw axis.error("a direction", "the zero vector has none; for example [0, 0, 1]");
   }
-  const Matrix3<double> R_UE = rotationFromZ(direction.normalized());
+  const Matrix3<double> R_UE = rotationFromZ(direction.stableNormalized());
   entry.joint.placement = {X.R * R_UE, X.p};
   entry.X_EU = {R_UE.transpose(), Eigen::Vector3d::Zero()};
 }

@@ -226,7 +226,7 @@ class Builder {
                        "one that follows joint " + joint.mimic->joint_name,
                        "choose root and tip so that it isn't between them");
     }
-    const Matrix3<double> R_UE = rotationFromZ(vector(joint.axis).normalized());
+    const Matrix3<double> R_UE = rotationFromZ(vector(joint.axis).stableNormalized());
     Joint result;
     result.name = joint.name;
     result.type = joint.type == urdf::Joint::PRISMATIC    ? JointType::kPrismatic
@@ -286,7 +286,7 @@ class Builder {
                        "ignore attached bodies, or make it fixed");
     }
     const double position = lockedPosition(joint, robot_.joints_.size());
-    const Eigen::Vector3d axis = vector(joint.axis).normalized();
+    const Eigen::Vector3d axis = vector(joint.axis).stableNormalized();
     if (joint.type == urdf::Joint::PRISMATIC) {
       X.p = position * axis;
     } else {

@@ -11,6 +11,7 @@
 #include <locale>
 #include <string>
 
+#include "chain_dynamics/urdf.hpp"
 #include "reference.hpp"
 
 namespace chain_dynamics {
@@ -202,6 +203,23 @@ TEST(ModelFile, PlacementAndModifiedDescribeTheSameRobot) {
   EXPECT_LT(difference(someTorques(in_dh), someTorques(placed)), kRounding);
 }
 
+TEST(ModelFile, PlacementsMeanWhatTheyMeanInAUrdf) {
+  const Model placed = model(replaced(
+      file("placements",
+           joint("one",
+                 "placement: {xyz: [0.1, 0.2, 0.3], rpy: [0.4, 0.5, 0.6], axis: [1, -2, -3]}"
+                 "\n  link: [2, 0.1, 0.2, 0.3, 0.1, 0.01, 0.02, 0.2, 0.03, 0.25]")),
+      "about_origin", "about_center_of_mass"));
+  const Model in_urdf(chainFromUrdf(R"(
+    <robot name="arm"><link name="base"/>
+      <link name="one"><inertial><origin xyz="0.1 0.2 0.3"/><mass value="2"/>
+        <inertia ixx="0.1" ixy="0.01" ixz="0.02" iyy="0.2" iyz="0.03" izz="0.25"/></inertial></link>
+      <joint name="one" type="continuous"><parent link="base"/><child link="one"/>
+        <origin xyz="0.1 0.2 0.3" rpy="0.4 0.5 0.6"/><axis xyz="1 -2 -3"/></joint>
+    </robot>)"));
+  EXPECT_LT(difference(someTorques(placed), someTorques(in_urdf)), kRounding);
+}
+
 TEST(ModelFile, AxisOfAPlacementTurnsTheLinkFrameOnlyInside) {
   // about y of frame 1: the link's z component of mc and its Iyy, about the same origin
   const Model robot = model(file(
@@ -298,28 +316,32 @@ TEST(ModelFile, RowsAreThoseOfRobotsWithOneParameterSetEach) {
 }
 
 TEST(ModelFile, LevelsSayWhatTheDriveGainsMultiply) {
-  const Eigen::Vector2d qd(1, 1);
+  const Eigen::Vector2d qd(1, -1);
   Eigen::VectorXd f(2);
   frictionVector(model(rowsFile()), qd, f);
-  EXPECT_EQ(f, Eigen::Vector2d(30, 15));  // gain (2 qd + 1)
+  EXPECT_EQ(f, Eigen::Vector2d(10 * (2 + 1), 5 * (-2 + 1)));  // gain (2 qd + 1)
   const Model in_torques = model(rowsFile("{parameters: torque, friction: torque}"));
   frictionVector(in_torques, qd, f);
-  EXPECT_EQ(f, Eigen::Vector2d(3, 3));
+  EXPECT_EQ(f, Eigen::Vector2d(3, -1));
   EXPECT_NEAR(someTorques(in_torques)[0], someTorques(model(rowsFile()))[0] / 10, kRounding);
 }
 
+// In a convention whose link frame isn't the chain's, so that moments must be moved.
 TEST(ModelFile, GravityFirstMomentsReplaceThoseOfTheLinksInGravityOnly) {
-  const std::string plain = joint("one", withLink(dh("0", "0.5", "0", "0")));
-  const Model with_own =
-      model(file("modified_dh", plain + "  gravity_first_moment: [0.5, 0.6, 0.7]\n"));
-  const Model without = model(file("modified_dh", plain));
-  const Model as_link =
-      model(file("modified_dh", replaced(plain, "0.2, 0.4, 0.6", "0.5, 0.6, 0.7")));
+  const std::string plain = joint("one", withLink(dh("0.3", "0.5", "0", "0")));
+  const auto robot = [](const std::string& joints) {
+    return model(replaced(file("standard_dh", joints), "[0, 0, -9.81]", "[0, -9.81, 0]"));
+  };
+  const Model with_own = robot(plain + "  gravity_first_moment: [0.5, 0.6, 0.7]\n");
+  const Model without = robot(plain);
+  const Model as_link = robot(replaced(plain, "0.2, 0.4, 0.6", "0.5, 0.6, 0.7"));
   const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 0.3);
-  Eigen::VectorXd own(1), expected(1);
+  Eigen::VectorXd own(1), expected(1), other(1);
   gravityVector(with_own, q, own);
   gravityVector(as_link, q, expected);
+  gravityVector(without, q, other);
   EXPECT_NEAR(own[0], expected[0], kRounding);
+  EXPECT_GT(std::abs(own[0] - other[0]), 0.1);
   Eigen::MatrixXd H(1, 1), H_without(1, 1);
   inertiaMatrix(with_own, q, H);
   inertiaMatrix(without, q, H_without);
@@ -423,6 +445,19 @@ TEST(ModelFileError, TextThatIsNotOneYamlDocument) {
             "arm.yaml:1: file: expected a map of keys and values, got a list of 2");
 }
 
+// YAML cut off between two lines is YAML still: what is missing must be noticed, or was optional.
+TEST(ModelFileError, TruncatedFileIsNeverReadAsAnotherRobot) {
+  const std::string whole = documentedFile();
+  const std::size_t optional_rest = whole.find("  - name: hinge");
+  for (std::size_t size = 0; size < optional_rest; ++size) {
+    const std::string error = fileError(whole.substr(0, size));
+    // the first joint is a robot, too, once it is complete
+    if (size < whole.find("link: [3") + 30) {
+      EXPECT_THAT(error, StartsWith("arm.yaml")) << whole.substr(0, size);
+    }
+  }
+}
+
 TEST(ModelFileError, UnknownKeysNameLineAndKnownKeys) {
   EXPECT_THAT(fileError(documentedFile() + "mass: 3\n"),
               AllOf(HasSubstr("mass: expected a known key"), HasSubstr("known here: checks, ")));
@@ -471,6 +506,8 @@ TEST(ModelFileError, WrongLength) {
             "arm.yaml:13: joint one: link: expected 10 numbers, got a list of 2");
   EXPECT_THAT(fileError(replaced(documentedFile(), "[0, 0, -9.81]", "[0, -9.81]")),
               HasSubstr("arm.yaml:8: gravity: expected 3 numbers, got a list of 2"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "[0, 0, -9.81]", "[0, 0, 0, -9.81]")),
+              HasSubstr("arm.yaml:8: gravity: expected 3 numbers, got a list of 4"));
   EXPECT_THAT(fileError(replaced(documentedFile(), "q: [0.2, 0]", "q: [0.2]")),
               HasSubstr("checks: states[0]: q: expected 2 numbers, got a list of 1"));
   EXPECT_THAT(fileError(replaced(rowsFile(), std::string("[") + kLink + ", ", "[")),

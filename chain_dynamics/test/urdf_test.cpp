@@ -176,6 +176,14 @@ TEST(Urdf, TorquesDoNotDependOnTheDirectionOfAnAxisInItsFrame) {
   EXPECT_LT(difference(someTorques(plain), someTorques(on_minus_y)), kRounding);
 }
 
+TEST(Urdf, LengthOfAnAxisHasNoInfluence) {
+  const auto plain = chainFromUrdf(arm("<axis xyz='0.6 0 -0.8'/>"));
+  for (const std::string axis : {"3 0 -4", "3e-200 0 -4e-200", "3e300 0 -4e300"}) {
+    const auto other = chainFromUrdf(arm("<axis xyz='" + axis + "'/>"));
+    EXPECT_LT(difference(someTorques(plain), someTorques(other)), kRounding) << axis;
+  }
+}
+
 TEST(Urdf, OppositeAxisTurnsAllSigns) {
   const auto forth =
       chainFromUrdf(robot(link("base", "") + link("a") +
@@ -276,35 +284,46 @@ TEST(Urdf, LooksAndUnknownElementsHaveNoInfluence) {
 
 // --- what hangs on the chain ---
 
-/// arm() with a camera beside the chain, on a slider, and a finger beyond the tip.
+const char* const kFocusOrigin = "<origin xyz='0.2 0 0' rpy='0.3 0.7 0'/>";
+
+/// arm() with a camera and its lens beside the chain, on a slider, and a finger beyond the tip.
 std::string armWithAttachments(const std::string& finger = "") {
-  return arm("", link("camera", inertial("1")) + link("finger", inertial("0.3")) +
+  return arm("", link("camera", inertial("1")) + link("lens", inertial("0.7")) +
+                     link("finger", inertial("0.3")) +
                      joint("focus", "prismatic", "upper", "camera",
-                           "<origin xyz='0.2 0 0'/><axis xyz='0 0 1'/>" + std::string(kLimit)) +
+                           kFocusOrigin + std::string("<axis xyz='0 0 1'/>") + kLimit) +
+                     joint("thread", "fixed", "camera", "lens", "<origin xyz='0 0.1 0'/>") +
                      joint("grip", "revolute", "tool", "finger",
                            "<axis xyz='0 1 0'/>" + std::string(kLimit) + finger));
 }
 
+/// The same, all of it welded on: with the camera moved along its slider, and the finger turned.
+std::string armWithWeldedAttachments(const std::string& focus, const std::string& grip) {
+  return arm("",
+             link("slider", "") + link("camera", inertial("1")) + link("lens", inertial("0.7")) +
+                 link("finger", inertial("0.3")) +
+                 joint("rail", "fixed", "upper", "slider", kFocusOrigin) +
+                 joint("focus", "fixed", "slider", "camera", "<origin xyz='0 0 " + focus + "'/>") +
+                 joint("thread", "fixed", "camera", "lens", "<origin xyz='0 0.1 0'/>") +
+                 joint("grip", "fixed", "tool", "finger", "<origin rpy='0 " + grip + " 0'/>"));
+}
+
 TEST(Urdf, AttachedBodiesAreLumpedWithTheirJointsAtZero) {
   const auto lumped = chainFromUrdf(armWithAttachments(), between("base", "tool"));
-  const auto welded = chainFromUrdf(
-      arm("", link("camera", inertial("1")) + link("finger", inertial("0.3")) +
-                  joint("focus", "fixed", "upper", "camera", "<origin xyz='0.2 0 0'/>") +
-                  joint("grip", "fixed", "tool", "finger", "")),
-      between("base", "tool"));
+  const auto welded = chainFromUrdf(armWithWeldedAttachments("0", "0"), between("base", "tool"));
   EXPECT_LT(difference(someTorques(lumped), someTorques(welded)), kRounding);
-  EXPECT_GT(difference(someTorques(lumped), someTorques(chainFromUrdf(arm("")))), 0.1);
+
+  // all masses that move: upper and lower 2 each, tool 0.5, camera 1, lens 0.7, finger 0.3
+  EXPECT_NEAR(lumped.links()[0].mass, 2 + 1 + 0.7, kRounding);
+  EXPECT_NEAR(lumped.links()[1].mass, 2 + 0.5 + 0.3, kRounding);
 }
 
 TEST(Urdf, AttachedBodiesAreHeldAtTheirLockedPositions) {
   UrdfOptions options = between("base", "tool");
   options.locked_position = [](const std::string& name) { return name == "focus" ? 0.15 : 0.4; };
   const auto locked = chainFromUrdf(armWithAttachments(), options);
-  const auto welded = chainFromUrdf(
-      arm("", link("camera", inertial("1")) + link("finger", inertial("0.3")) +
-                  joint("focus", "fixed", "upper", "camera", "<origin xyz='0.2 0 0.15'/>") +
-                  joint("grip", "fixed", "tool", "finger", "<origin rpy='0 0.4 0'/>")),
-      between("base", "tool"));
+  const auto welded =
+      chainFromUrdf(armWithWeldedAttachments("0.15", "0.4"), between("base", "tool"));
   EXPECT_LT(difference(someTorques(locked), someTorques(welded)), kRounding);
   const auto at_zero = chainFromUrdf(armWithAttachments(), between("base", "tool"));
   EXPECT_GT(difference(someTorques(locked), someTorques(at_zero)), 0.01);
@@ -364,14 +383,17 @@ TEST(Urdf, LockedPositionThatIsNotFiniteIsAnError) {
 // --- root and tip ---
 
 TEST(Urdf, EmptyTipIsTheLeafFarthestOut) {
-  // a second leaf on a fixed joint, and one before any movable joint, leave no doubt
-  const std::string urdf = arm("", link("base_label") + link("sensor", "") +
-                                       joint("label", "fixed", "base", "base_label", "") +
-                                       joint("mount", "fixed", "lower", "sensor", ""));
+  // a second leaf on a fixed joint, and one before any movable joint, however far, leave no doubt
+  const std::string urdf = arm(
+      "", link("label") + link("letter") + link("dot") + link("ink") + link("sensor", "") +
+              joint("plate", "fixed", "base", "label", "") +
+              joint("print", "fixed", "label", "letter", "") +
+              joint("over", "fixed", "letter", "dot", "") + joint("in", "fixed", "dot", "ink", "") +
+              joint("mount", "fixed", "lower", "sensor", ""));
+  EXPECT_THAT(chainFromUrdf(urdf).jointNames(), ElementsAre("shoulder", "elbow"));
   EXPECT_LT(difference(someTorques(chainFromUrdf(urdf)),
                        someTorques(chainFromUrdf(urdf, between("base", "tool")))),
             kRounding);
-  EXPECT_THAT(chainFromUrdf(urdf).jointNames(), ElementsAre("shoulder", "elbow"));
 }
 
 TEST(Urdf, RootMayBeAnyLinkOnTheWay) {
@@ -432,6 +454,15 @@ TEST(UrdfError, BrokenXmlNamesTheLine) {
   EXPECT_THAT(urdfError("<robot name='r'>\n<link name='a'>\n"),
               AllOf(HasSubstr("URDF:2: "), HasSubstr("expected well-formed XML")));
   EXPECT_THAT(urdfError(arm().substr(0, 400)), HasSubstr("expected well-formed XML"));
+}
+
+TEST(UrdfError, TruncatedDescriptionIsNeverRead) {
+  const std::string whole = arm();
+  const std::size_t end = whole.rfind("</robot>");
+  for (std::size_t size = 0; size < end + 7; size += 3) {
+    EXPECT_THAT(urdfError(whole.substr(0, size)), HasSubstr("robot description: expected"))
+        << "first " << size << " characters";
+  }
 }
 
 TEST(UrdfError, OtherXml) {
@@ -616,7 +647,7 @@ TEST(UrdfReference, UR10AgreesWithPinocchioAndKDL) {
   if (dataFolder().empty()) {
     GTEST_SKIP() << "IDS_DATA_DIR isn't set: it names the folder with urdf/ur10.urdf";
   }
-  expectReference("ur10.urdf", "ur10_urdf.json", between("base_link", "tool0"));
+  expectReference("ur10.urdf", "ur10_urdf.json", {"base_link", "tool0"});
   // several leaves, all moved by the same joints: ft_frame, tool0 and (by none) base
   expectReference("ur10.urdf", "ur10_urdf.json", {});
 }

@@ -11,8 +11,9 @@
 ///
 /// - The chain's joints are the movable ones on the path from root to tip. Links joined by fixed
 ///   joints become one link: their parameters are moved into one frame and added.
-/// - URDF joint axes are arbitrary, a chain's are z: the frame of each link is turned, by the
-///   smallest rotation, so that z is its joint's axis. Joint torques don't depend on that choice.
+/// - URDF joint axes are arbitrary, a chain's are z: where it isn't z already, the frame of the
+/// link
+///   is turned so that it is. Joint torques don't depend on how.
 /// - Inertia before the first movable joint doesn't move, and so has no influence.
 /// - What hangs on the chain beside the path or beyond the tip moves with it and is lumped into
 ///   the link it hangs on, unless `lump_attached` is false. Movable joints out there are held at
