@@ -19,10 +19,11 @@ from inverse_dynamics.errors import UserError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-VERBS = ("robots", "simulate", "evaluate", "compare", "report")
+VERBS = ("demo", "robots", "simulate", "evaluate", "compare", "report", "video")
 
 _EPILOG = """\
 start here:
+  ids demo                                       four robots on one page
   ids robots                                     which robots there are
   ids simulate --robot ur10_simulated --out BAG  record a simulated one
   ids evaluate RECORDING --robot ur10_real       computed against measured torques: table and plots

@@ -26,7 +26,7 @@ def write_comparison(
 ) -> None:
     """Write all files of a comparison, or none of them. Raises OutputError."""
     from inverse_dynamics.plots import save_comparison_figure
-    from inverse_dynamics.report import report_run, write_page
+    from inverse_dynamics.report import report_comparison, report_run, write_page
     from inverse_dynamics.results import PLOT_FORMATS
 
     first = comparison.evaluations[0]
@@ -40,7 +40,7 @@ def write_comparison(
             report_run(evaluation, label)
             for evaluation, label in zip(comparison.evaluations, comparison.labels, strict=True)
         ]
-        write_page(target / "report.html", title, runs)
+        write_page(target / "report.html", title, runs, [report_comparison(comparison)])
 
 
 def _figures(comparison: Comparison) -> dict[str, Any]:

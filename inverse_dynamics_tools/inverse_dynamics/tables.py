@@ -10,6 +10,8 @@ from rich import box
 from rich.table import Table
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from inverse_dynamics.comparison import Comparison
     from inverse_dynamics.evaluation import Evaluation
 
@@ -51,6 +53,27 @@ def error_table(evaluation: Evaluation) -> Table:
             "",
             "",
             *([figure(_mean([e.rmse for e in evaluation.errors_of_kept]))] if left_out else []),
+        )
+    return table
+
+
+def mean_table(evaluations: Mapping[str, Evaluation]) -> Table:
+    """Mean over the joints of the root mean square errors, a robot a row."""
+    table = Table(box=box.SIMPLE_HEAD)
+    table.add_column("robot")
+    table.add_column("solver")
+    for heading in ("samples", "mean RMSE", "mean NRMSE"):
+        table.add_column(heading, justify="right")
+    for title, evaluation in evaluations.items():
+        units = set(evaluation.units)
+        mean = f"{figure(evaluation.mean_rmse)} {units.pop()}" if len(units) == 1 else "-"
+        shares = [e.nrmse for e in evaluation.errors if not math.isnan(e.nrmse)]
+        table.add_row(
+            title,
+            evaluation.robot.plugin.partition("/")[2],
+            str(len(evaluation.log)),
+            mean,
+            _percent(_mean(shares)) if shares else "-",
         )
     return table
 

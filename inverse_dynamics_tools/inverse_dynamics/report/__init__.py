@@ -4,7 +4,7 @@
 write_page(Path("report.html"), "My robot", [report_run(evaluation)])
 """
 
-from inverse_dynamics.report.evaluations import report_run
+from inverse_dynamics.report.evaluations import report_comparison, report_run
 from inverse_dynamics.report.page import write_page
 
-__all__ = ["report_run", "write_page"]
+__all__ = ["report_comparison", "report_run", "write_page"]

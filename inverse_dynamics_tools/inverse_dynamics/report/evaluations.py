@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Evaluations as runs of the report's page."""
+"""Evaluations and comparisons as the report's page wants them."""
 
 from __future__ import annotations
 
 import re
+import tempfile
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.descriptions import read_description
 from inverse_dynamics.report.figures import error_figure
-from inverse_dynamics.report.page import Figure, ReportRun
+from inverse_dynamics.report.page import Figure, ReportComparison, ReportRun
 from inverse_dynamics.report.scene import scene_from_urdf
 
 if TYPE_CHECKING:
+    from inverse_dynamics.comparison import Comparison
     from inverse_dynamics.evaluation import Evaluation
 
 
@@ -44,6 +47,31 @@ def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
                 "what lies above the cut-off can't be explained by filtered accelerations.",
             )
         ],
+    )
+
+
+def report_comparison(
+    comparison: Comparison, title: str = "", description: str = ""
+) -> ReportComparison:
+    """What the page shows of a comparison; empty texts: the recording's name and the labels."""
+    from inverse_dynamics.plots import save_comparison_figure
+
+    first = comparison.evaluations[0]
+    with tempfile.TemporaryDirectory() as directory:
+        file = Path(directory) / "comparison.svg"
+        save_comparison_figure(comparison, file)
+        svg = file.read_text(encoding="utf-8")
+    return ReportComparison(
+        title=title or " against ".join(comparison.labels),
+        description=description or f"The same recording, {first.bag.name}, computed in more ways.",
+        labels=comparison.labels,
+        joints=comparison.joint_names,
+        units=first.units,
+        rmse=comparison.rmse,
+        figure=Figure(
+            _inline(svg),
+            "Left: measured torque (dashed) and what each run computes. Right: computed - measured.",
+        ),
     )
 
 

@@ -92,5 +92,6 @@ def _spectrum(values: Floats, period: float) -> tuple[Floats, Floats]:
         piece = values[start : start + length]
         piece = (piece - piece.mean(axis=0)) * window[:, None]
         power += (np.abs(np.fft.rfft(piece, axis=0)) ** 2).mean(axis=1)
-    density = np.sqrt(2 * period * power / (len(starts) * np.sum(window**2)))
-    return np.fft.rfftfreq(length, period)[1:], density[1:]
+    density: Floats = np.sqrt(2 * period * power / (len(starts) * np.sum(window**2)))
+    frequency: Floats = np.arange(length // 2 + 1) / (length * period)
+    return frequency[1:], density[1:]

@@ -20,10 +20,13 @@ import numpy as np
 from inverse_dynamics.files import write_text_whole
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from inverse_dynamics.evaluation import JointError
     from inverse_dynamics.joint_log import Floats
 
-# More samples than this are thinned in the page, never in metrics, bags and tables: four robots stay below 10 MB.
+# Of longer recordings the page draws the lowest and the highest value of each of half as many stretches, so that no
+# peak is lost; metrics, bags and tables use every sample. Four robots stay below 10 MB.
 MAX_SAMPLES = 12_000
 
 
@@ -37,7 +40,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class ReportRun:
-    """What the page shows of one evaluation. Floatss: time N [s], the others N x n; order of joints as `table`."""
+    """What the page shows of one evaluation. Arrays: time N [s], the others N x n; order of joints as `table`."""
 
     title: str
     description: str
@@ -55,12 +58,39 @@ class ReportRun:
     figures: Sequence[Figure] = field(default_factory=list)
 
 
-def write_page(path: Path, title: str, runs: Sequence[ReportRun]) -> None:
-    """Write the page, whole or not at all; what is there is replaced. Raises OutputError."""
-    write_text_whole(path, render_page(title, runs))
+@dataclass(frozen=True)
+class ReportComparison:
+    """Runs of one recording side by side: root mean square errors, (runs, n), and a figure."""
+
+    title: str
+    description: str
+    labels: Sequence[str]
+    joints: Sequence[str]
+    units: Sequence[str]
+    rmse: Floats
+    figure: Figure
 
 
-def render_page(title: str, runs: Sequence[ReportRun]) -> str:
+def write_page(
+    path: Path,
+    title: str,
+    runs: Sequence[ReportRun],
+    comparisons: Sequence[ReportComparison] = (),
+    notes: Sequence[str] = (),
+) -> None:
+    """Write the page, whole or not at all; what is there is replaced. Raises OutputError.
+
+    notes: what a reader should know of the page as a whole: a robot that is missing, for one.
+    """
+    write_text_whole(path, render_page(title, runs, comparisons, notes))
+
+
+def render_page(
+    title: str,
+    runs: Sequence[ReportRun],
+    comparisons: Sequence[ReportComparison] = (),
+    notes: Sequence[str] = (),
+) -> str:
     """The page as text."""
     from jinja2 import Environment, StrictUndefined
 
@@ -74,6 +104,8 @@ def render_page(title: str, runs: Sequence[ReportRun]) -> str:
         script=script,
         data=_json_for_html([_data(run, i) for i, run in enumerate(runs)]),
         runs=[_view(run, i) for i, run in enumerate(runs)],
+        comparisons=[_comparison_view(comparison, i) for i, comparison in enumerate(comparisons)],
+        notes=notes,
     )
 
 
@@ -106,21 +138,71 @@ def _view(run: ReportRun, index: int) -> dict[str, Any]:
         "notes": run.notes,
         "joints": [row.joint for row in rows],
         "figures": run.figures,
+        "thinned": f"{MAX_SAMPLES:,}" if len(run.time) > MAX_SAMPLES else "",
+    }
+
+
+def _comparison_view(comparison: ReportComparison, index: int) -> dict[str, Any]:
+    units = set(comparison.units)
+    rows = list(zip(comparison.joints, comparison.units, comparison.rmse.T, strict=True))
+    if len(units) == 1 and len(rows) > 1:
+        rows.append(("mean", units.pop(), comparison.rmse.mean(axis=1)))
+    return {
+        "id": f"comparison-{index + 1}",
+        "title": comparison.title,
+        "description": comparison.description,
+        "labels": comparison.labels,
+        "rows": rows,
+        "figure": comparison.figure,
     }
 
 
 def _data(run: ReportRun, index: int) -> dict[str, Any]:
     """What the script draws."""
-    keep = slice(None, None, math.ceil(len(run.time) / MAX_SAMPLES))
+    # The motion in 3D is drawn at screen rate and interpolated: evenly spaced samples serve it.
+    stride = math.ceil(len(run.time) / MAX_SAMPLES)
+    keep = np.unique(np.append(np.arange(0, len(run.time), stride), len(run.time) - 1))
+    time = run.time - run.time[0]
+    error = run.computed - run.measured
     return {
         "id": _identifier(index),
-        "joints": [{"name": row.joint, "unit": row.unit} for row in run.table],
-        "time": _base64(run.time[keep] - run.time[0]),
+        "joints": [
+            {
+                "name": row.joint,
+                "unit": row.unit,
+                "measured": _series(time, run.measured[:, j]),
+                "computed": _series(time, run.computed[:, j]),
+                "error": _series(time, error[:, j]),
+            }
+            for j, row in enumerate(run.table)
+        ],
+        "time": _base64(time[keep]),
         "q": _base64(run.q[keep].T),
-        "measured": _base64(run.measured[keep].T),
-        "computed": _base64(run.computed[keep].T),
         "links": list(run.links),
     }
+
+
+def _series(time: Floats, values: Floats) -> dict[str, str]:
+    """Values for a plot; with times of their own where they are thinned."""
+    if len(time) <= MAX_SAMPLES:
+        return {"values": _base64(values)}
+    kept = peaks(values, MAX_SAMPLES)
+    return {"time": _base64(time[kept]), "values": _base64(values[kept])}
+
+
+def peaks(values: Floats, most: int) -> NDArray[np.int64]:
+    """Indices of at most `most` samples, the first and last and the peaks among them.
+
+    Lowest and highest of each of `most` / 2 stretches or fewer.
+    """
+    if len(values) <= most:
+        return np.arange(len(values))
+    stretch = math.ceil(2 * len(values) / (most - 2))
+    starts = np.arange(0, len(values), stretch)
+    pieces = [values[start : start + stretch] for start in starts]
+    lowest = [start + int(np.argmin(piece)) for start, piece in zip(starts, pieces, strict=True)]
+    highest = [start + int(np.argmax(piece)) for start, piece in zip(starts, pieces, strict=True)]
+    return np.unique(np.array([0, *lowest, *highest, len(values) - 1], dtype=np.int64))
 
 
 def _base64(values: Floats) -> str:

@@ -3,10 +3,10 @@
 // Time series on a canvas: zoom and pan in time shared by a group of plots, a cursor on a canvas of its own.
 //
 //   const group = createPlotGroup(time, {onCursor: (t) => ...});
-//   group.add(element, {label: "elbow_joint", unit: "N m", series: [{name, values, style: "measured"}]});
+//   group.add(element, {label: "elbow_joint", unit: "N m", series: [{name, time, values, style: "measured"}]});
 //   group.setCursor(1.5);
 //
-// time: s, increasing; values: as many as time. Dragging zooms, shift and dragging pans, a click sets
+// time: s, increasing, of a series as many as its values. Dragging zooms, shift and dragging pans, a click sets
 // the cursor, a double click shows everything.
 "use strict";
 
@@ -83,8 +83,7 @@ function prepare(canvas) {
 }
 
 class Plot {
-  constructor(element, time, options) {
-    this.time = time;
+  constructor(element, options) {
     this.options = options;
     this.range = range(options.series);
     this.base = makeCanvas(element, "plot-base");
@@ -159,22 +158,23 @@ class Plot {
     context.lineWidth = style.width;
     context.setLineDash(style.dash);
     context.beginPath();
-    const first = indexAt(this.time, view.low);
-    const last = Math.min(this.time.length - 1, indexAt(this.time, view.high) + 1);
+    const {time, values} = series;
+    const first = indexAt(time, view.low);
+    const last = Math.min(time.length - 1, indexAt(time, view.high) + 1);
     const pixels = width - kMargin.left - kMargin.right;
-    if (last - first > 4 * pixels) this.traceColumns(context, series.values, first, last, view);
+    if (last - first > 4 * pixels) this.traceColumns(context, series, first, last, view);
     else {
-      for (let i = first; i <= last; ++i) context.lineTo(this.x(this.time[i], view), this.y(series.values[i]));
+      for (let i = first; i <= last; ++i) context.lineTo(this.x(time[i], view), this.y(values[i]));
     }
     context.stroke();
     context.setLineDash([]);
   }
 
   // More samples than pixels: from each column of pixels its least and greatest value, so that no peak is lost.
-  traceColumns(context, values, first, last, view) {
+  traceColumns(context, {time, values}, first, last, view) {
     let column = -1, low = 0, high = 0;
     for (let i = first; i <= last; ++i) {
-      const x = Math.round(this.x(this.time[i], view));
+      const x = Math.round(this.x(time[i], view));
       if (x !== column) {
         if (column >= 0) {
           context.lineTo(column, this.y(low));
@@ -211,12 +211,11 @@ class Plot {
   }
 
   drawReadout(context, width, cursor) {
-    const i = indexAt(this.time, cursor);
     context.font = "11px system-ui, sans-serif";
     context.textAlign = "right";
     let x = width - kMargin.right;
     for (const series of [...this.options.series].reverse()) {
-      const text = `${series.name} ${short(series.values[i], 3)}`;
+      const text = `${series.name} ${short(series.values[indexAt(series.time, cursor)], 3)}`;
       context.fillStyle = kStyles[series.style].color;
       context.fillText(text, x, 12);
       x -= context.measureText(text).width + 12;
@@ -290,7 +289,7 @@ function createPlotGroup(time, {onCursor}) {
 
   return {
     add(element, options) {
-      const plot = new Plot(element, time, options);
+      const plot = new Plot(element, options);
       plots.push(plot);
       attach(plot);
     },

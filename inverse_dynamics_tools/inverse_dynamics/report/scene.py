@@ -38,10 +38,12 @@ def scene_from_urdf(urdf: str, joints: Sequence[str]) -> list[dict[str, Any]]:
         children.add(_link_of(joint, "child"))
     index = {name: i for i, name in enumerate(joints)}
     links: list[dict[str, Any]] = []
-    waiting = [(name, -1, None) for name in shapes if name not in children]
+    waiting: list[tuple[str, int, ElementTree.Element | None]] = [
+        (name, -1, None) for name in shapes if name not in children
+    ]
     while waiting:
-        name, parent, joint = waiting.pop(0)
-        links.append(_link(parent, joint, index, shapes[name]))
+        name, parent, above = waiting.pop(0)
+        links.append(_link(parent, above, index, shapes[name]))
         here = len(links) - 1
         waiting.extend((_link_of(child, "child"), here, child) for child in by_parent.get(name, []))
     return links

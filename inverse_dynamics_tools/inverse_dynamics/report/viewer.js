@@ -41,16 +41,15 @@ class Player {
   }
 
   addPlots(run) {
-    const measured = rows(run.measured, run.joints.length);
-    const computed = rows(run.computed, run.joints.length);
+    // A series has times of its own where the page holds only its peaks.
+    const series = (name, data) => ({
+      name, style: name, values: decode(data.values), time: data.time ? decode(data.time) : this.time});
     run.joints.forEach((joint, j) => {
-      const error = computed[j].map((value, i) => value - measured[j][i]);
       const [torque_element, error_element] = this.section.querySelectorAll(`[data-joint="${j}"] .plot`);
       this.plots.add(torque_element, {label: joint.name, unit: joint.unit, series: [
-        {name: "computed", values: computed[j], style: "computed"},
-        {name: "measured", values: measured[j], style: "measured"}]});
+        series("computed", joint.computed), series("measured", joint.measured)]});
       this.plots.add(error_element, {label: "computed - measured", unit: joint.unit, series: [
-        {name: "error", values: error, style: "error"}]});
+        series("error", joint.error)]});
     });
   }
 

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids demo`: simulated and real robots on one page."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.verbs.common import progress_bar
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from inverse_dynamics.demo import Demo
+
+_EPILOG = """\
+examples:
+  ids demo                                  simulated robots; real ones where IDS_DATA_DIR is set
+  ids demo --recordings bags --out robots   real ones too, from recordings in the directory bags
+  ids demo --quick                          a few seconds of motion, no videos: does it work here?
+
+results, written whole or not at all:
+  report.html      all robots: 3D view beside the torques, errors, assumptions; needs no network
+  ROBOT/           figures (.png, .svg, .pdf), errors and series of each robot, as of `ids evaluate`
+  ROBOT.gif        the robot in motion beside its torques, for slides
+  comparison/      URDF against identified model on the real UR10, as of `ids compare`
+"""
+
+
+def add_parser(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+) -> argparse.ArgumentParser:
+    """Declare the verb."""
+    parser = subparsers.add_parser(
+        "demo",
+        help="simulate and evaluate four robots, show them on one page",
+        description="Simulate a UR10 and a Panda, compute the torques of their motion and, with "
+        "recordings, of the real ones; compare them with the measured torques; show it on one page.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", type=Path, default=Path("demo"), help="results (default: demo)"
+    )
+    parser.add_argument(
+        "--recordings",
+        metavar="DIR",
+        type=Path,
+        help="directory with ur10_exciting_trajectory and panda_exciting_trajectory "
+        "(default: $IDS_DATA_DIR/bags, if IDS_DATA_DIR is set)",
+    )
+    parser.add_argument("--overwrite", action="store_true", help="replace an older demonstration")
+    parser.add_argument(
+        "--quick", action="store_true", help="a few seconds of simulated motion, no videos"
+    )
+    parser.add_argument("--no-video", dest="video", action="store_false", help="no videos")
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from rich.console import Console
+
+    from inverse_dynamics.demo import find_recordings, run_demo
+
+    console = Console(highlight=False, markup=False, soft_wrap=True)
+    with progress_bar() as progress:
+        demo = run_demo(
+            arguments.out,
+            recordings=arguments.recordings or find_recordings(),
+            overwrite=arguments.overwrite,
+            quick=arguments.quick,
+            video=arguments.video,
+            say=lambda text: console.print(f"{text} ..."),
+            progress=progress,
+        )
+    _print(demo, console)
+
+
+def _print(demo: Demo, console: Console) -> None:
+    from inverse_dynamics.demo import TITLES
+    from inverse_dynamics.tables import comparison_table, mean_table
+
+    console.print(mean_table({TITLES[name]: e for name, e in demo.evaluations.items()}))
+    if demo.comparison is not None:
+        console.print("UR10, real: what identification brings")
+        console.print(comparison_table(demo.comparison))
+    for note in demo.notes:
+        console.print(f"note           {note}")
+    console.print(f"figures        {demo.directory}/*/torques.png (.svg, .pdf)")
+    for video in demo.videos:
+        console.print(f"video          {video}")
+    console.print(f"page           {demo.page.absolute()}")

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids video`: an evaluation as an animated GIF."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from inverse_dynamics.verbs.common import positive_number, progress_bar
+
+_EPILOG = """\
+examples:
+  ids video result                               result.gif
+  ids video result --out slides/ur10.gif --seconds 6
+
+The robot is drawn by MuJoCo without a screen. MUJOCO_GL says by what: osmesa (in software, the
+default; Debian package libosmesa6), egl (graphics card), glfw (needs a screen).
+"""
+
+
+def add_parser(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+) -> argparse.ArgumentParser:
+    """Declare the verb."""
+    parser = subparsers.add_parser(
+        "video",
+        help="make an animated GIF: the robot in motion beside its torques",
+        description="Make an animated GIF of an evaluation: the robot in motion beside its torques.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("evaluation", metavar="RUN", type=Path, help="result of `ids evaluate`")
+    parser.add_argument("--out", metavar="FILE", type=Path, help="the video (default: RUN.gif)")
+    parser.add_argument("--title", metavar="TEXT", default="", help="instead of the robot's name")
+    parser.add_argument(
+        "--seconds",
+        metavar="S",
+        type=positive_number,
+        default=10.0,
+        help="length; a longer motion is shown faster (default: 10)",
+    )
+    parser.add_argument("--overwrite", action="store_true", help="replace an older file")
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.files import check_output_file
+    from inverse_dynamics.results import read_evaluation
+    from inverse_dynamics.video import write_video
+
+    out = arguments.out or Path(f"{arguments.evaluation.absolute().name}.gif")
+    check_output_file(out, overwrite=arguments.overwrite)
+    with progress_bar() as progress:
+        write_video(
+            read_evaluation(arguments.evaluation),
+            out,
+            title=arguments.title,
+            seconds=arguments.seconds,
+            progress=progress,
+        )
+    print(out)
