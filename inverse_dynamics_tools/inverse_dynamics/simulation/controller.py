@@ -22,10 +22,14 @@ if TYPE_CHECKING:
     from inverse_dynamics.joint_log import Floats
     from inverse_dynamics.simulation.model import SimulatedRobot
 
-FASTEST = 40.0
+FASTEST = 60.0
 """Of the default gains: greatest natural frequency of a joint's error [rad/s]."""
 
-_SAMPLED_DAMPING = 1.2  # damping rate times period; a sampled velocity loop is unstable from 2 on
+# Of the default gains, where a joint is lightest; stiff enough against gravity where it is heaviest.
+_DAMPING_RATIO = 0.75
+
+# Damping rate times period; a sampled velocity loop is unstable from 2 on.
+_SAMPLED_DAMPING = 1.2
 
 
 @dataclass(frozen=True)
@@ -42,21 +46,21 @@ class Gains:
     def of(cls, robot: SimulatedRobot, q: Floats, period: float) -> Gains:
         """Gains that suit a robot along states q (N, n), for a controller with this period [s].
 
-        Critically damped for the least inertia h_j each joint shows along the way while the others yield,
-        1 / (H^-1)_jj. All joints get one natural frequency w: as fast as the sampled damping allows where the arm is
-        lightest, which the greatest eigenvalue of H^-1 diag(h) tells. Where it is heaviest (the least eigenvalue) the
-        integral must be slow enough.
+        Well damped for the least inertia h_j each joint shows along the way while the others yield, 1 / (H^-1)_jj.
+        All joints get one natural frequency w: as fast as the sampled damping allows where the arm is lightest, which
+        the greatest eigenvalue of H^-1 diag(h) tells. Where it is heaviest (the least eigenvalue) the integral must be
+        slow enough.
         """
         inverses = np.linalg.inv([robot.inertia_matrix(x) for x in q])
         h = 1.0 / np.diagonal(inverses, axis1=1, axis2=2).max(axis=0)
         # H^-1 diag(h) has the eigenvalues of this symmetric matrix
         eigenvalues = np.linalg.eigvalsh(np.sqrt(h)[:, None] * inverses * np.sqrt(h))
-        w = min(FASTEST, 0.5 * _SAMPLED_DAMPING / (eigenvalues.max() * period))
+        w = min(FASTEST, 0.5 * _SAMPLED_DAMPING / _DAMPING_RATIO / (eigenvalues.max() * period))
         no_friction = np.zeros_like(h)
         return cls(
             p=h * w**2,
             i=h * w**3 * eigenvalues.min() / 5,
-            d=2 * h * w,
+            d=2 * _DAMPING_RATIO * h * w,
             i_clamp=np.where(np.isfinite(robot.chain.effort), 0.2 * robot.chain.effort, np.inf),
             ff_velocity_scale=no_friction if robot.friction is None else robot.friction.viscous,
         )

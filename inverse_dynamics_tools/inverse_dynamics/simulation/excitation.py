@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 PERIOD = 20.0  # s
 HARMONICS = 8  # the highest at 0.4 Hz
 MARGIN = 0.8  # part of each limit that a trajectory may use
+TIME_TO_FULL_SPEED = 0.5  # s, what limits accelerations, since a URDF states no limit of them
 
 _EVALUATIONS = 6000
 _SAMPLES = 120  # points of a trajectory at which a trial is judged
@@ -73,7 +74,7 @@ def optimise_excitation(
 
     Raises SimulationError if none was found within the limits, and where the URDF lacks limits.
     """
-    limits = MotionLimits.of(robot).fraction(MARGIN)
+    limits = MotionLimits.of(robot, TIME_TO_FULL_SPEED).fraction(MARGIN)
     for name, values in (("velocity", limits.velocity), ("effort", limits.effort)):
         for joint, value in zip(robot.chain.joint_names, values, strict=True):
             if not (np.isfinite(value) and value > 0):

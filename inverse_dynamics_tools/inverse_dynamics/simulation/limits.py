@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory
 
-TIME_TO_FULL_SPEED = 0.5
-"""A URDF states no acceleration limit; the default lets a joint reach its velocity limit in this time [s]."""
-
 CHECK_STEP = 0.01
 """Trajectories are checked at points this far apart [s]."""
 
@@ -41,16 +38,18 @@ class MotionLimits:
     effort: Floats  # N m
 
     @classmethod
-    def of(cls, robot: SimulatedRobot) -> MotionLimits:
-        """The URDF's limits, and the default for accelerations."""
+    def of(cls, robot: SimulatedRobot, time_to_full_speed: float = 0.0) -> MotionLimits:
+        """The URDF's limits. It states none for accelerations: they are what the effort limits leave.
+
+        time_to_full_speed: s; above zero, accelerations are limited to what reaches the velocity limit in this time.
+        """
         chain = robot.chain
-        return cls(
-            chain.lower,
-            chain.upper,
-            chain.velocity,
-            chain.velocity / TIME_TO_FULL_SPEED,
-            chain.effort,
+        acceleration = (
+            chain.velocity / time_to_full_speed
+            if time_to_full_speed > 0
+            else np.full_like(chain.velocity, np.inf)
         )
+        return cls(chain.lower, chain.upper, chain.velocity, acceleration, chain.effort)
 
     def fraction(self, fraction: float) -> MotionLimits:
         """Limits with a margin: positions about the middle of their range."""

@@ -8,7 +8,7 @@ What MuJoCo would do to a URDF on its own, and what is done about it:
 
 - it refuses inertia that breaks the triangle inequality (vendors publish such figures): it may balance them while it
   compiles, then the URDF's inertia is written back;
-- it takes `<dynamics>` for damping and friction: left out, unless joint friction is asked for;
+- it takes `<dynamics>` for damping and friction: set to zero; the friction that is asked for has its own law;
 - it pushes at position limits and contacts: switched off, since a trajectory must stay clear of both (limits.py and
   collision.py check that).
 """
@@ -95,7 +95,9 @@ class SimulatedRobot:
         try:
             model = spec.compile()
         except ValueError as error:
-            raise SimulationError(f"robot description: MuJoCo refuses it: {error}") from error
+            raise SimulationError(
+                f"robot description: MuJoCo refuses it: {_line(error)}"
+            ) from error
         _write_true_inertia(model, chain)
         dofs = np.array([model.joint(name).dofadr[0] for name in chain.joint_names])
         _check_friction(friction, len(dofs))
@@ -147,11 +149,16 @@ def _read_spec(chain: UrdfChain) -> mujoco.MjSpec:
     try:
         spec = mujoco.MjSpec.from_string(chain.urdf)
     except ValueError as error:
-        raise SimulationError(f"robot description: MuJoCo can't read it: {error}") from error
+        raise SimulationError(f"robot description: MuJoCo can't read it: {_line(error)}") from error
     spec.compiler.fusestatic = False  # each link stays a body, so its inertia can be compared
     spec.compiler.balanceinertia = True
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
     return spec
+
+
+def _line(error: Exception) -> str:
+    """MuJoCo's text in one line."""
+    return " ".join(str(error).split())
 
 
 def _attach(spec: mujoco.MjSpec, tip: str, payload: Payload) -> None:
@@ -161,7 +168,8 @@ def _attach(spec: mujoco.MjSpec, tip: str, payload: Payload) -> None:
         )
     spec.body(tip).add_body(
         name="ids_payload",
-        pos=payload.center,
+        pos=[0.0, 0.0, 0.0],
+        ipos=payload.center,
         mass=payload.mass,
         inertia=[0.0, 0.0, 0.0],
         explicitinertial=True,

@@ -54,6 +54,12 @@ class Motion:
     gains: Gains
 
 
+def check_rate(rate: int) -> None:
+    """Raises SimulationError unless it is one of RATES."""
+    if rate not in RATES:
+        raise SimulationError(f"rate: expected one of {', '.join(map(str, RATES))} Hz, got {rate}")
+
+
 def follow(
     robot: SimulatedRobot,
     trajectory: Trajectory,
@@ -64,10 +70,7 @@ def follow(
     progress: Progress = no_progress,
 ) -> Motion:
     """Motion of a robot that starts on a trajectory and follows it for `duration` seconds."""
-    if rate not in RATES:
-        raise SimulationError(
-            f"rate: expected one of {', '.join(map(str, RATES))} Hz, got {rate:g}"
-        )
+    check_rate(rate)
     ticks = int(np.floor(duration * rate + 1e-9))
     if ticks < 2:
         raise SimulationError(

@@ -140,9 +140,10 @@ def base_columns(arm: ArmGeometry) -> NDArray[np.intp]:
 
 def condition_number(Y: Floats, columns: NDArray[np.intp]) -> float:
     """Condition number (2-norm) of the stacked base regressor."""
-    stacked = Y.reshape(-1, Y.shape[-1])[:, columns]
+    base = Y[:, :, columns]
     # the square of the condition, from a small matrix: enough digits up to about 1e6
-    squares = np.linalg.eigvalsh(stacked.T @ stacked)
+    # (summed sample by sample: one large product would start threads, which costs more than it saves)
+    squares = np.linalg.eigvalsh((base.transpose(0, 2, 1) @ base).sum(axis=0))
     return float(np.sqrt(squares[-1] / max(squares[0], 1e-16 * squares[-1])))
 
 

@@ -31,7 +31,7 @@ from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.excitation import condition_of, optimise_excitation
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
 from inverse_dynamics.simulation.model import GRAVITY, JointFriction, SimulatedRobot
-from inverse_dynamics.simulation.physics import RATES, Motion, default_gains, follow
+from inverse_dynamics.simulation.physics import RATES, Motion, check_rate, default_gains, follow
 from inverse_dynamics.simulation.sensors import Recorded, Sensors
 from inverse_dynamics.simulation.trajectory import FourierTrajectory
 from inverse_dynamics.simulation.trajectory_file import read_trajectory
@@ -106,7 +106,8 @@ def simulate(
         friction=_friction(joint_friction, chain),
     )
     wishes = _Wishes.of(robot, chain)
-    rate = rate or wishes.rate
+    rate = wishes.rate if rate is None else rate
+    check_rate(rate)
     chosen, source = _choose_trajectory(
         simulated, trajectory, wishes.trajectory, optimise, seed, table, progress
     )
@@ -156,7 +157,7 @@ def _choose_trajectory(
             f"the base regressor {found.condition_number:.4g}."
         )
     if isinstance(given, Path):
-        return read_trajectory(given, robot.chain.joint_names), f"From the file {given.name}."
+        return read_trajectory(given, robot.chain.joint_names)
     return given, "Given by the caller."
 
 

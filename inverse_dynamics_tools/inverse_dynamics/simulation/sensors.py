@@ -116,7 +116,7 @@ class Sensors:
 
     def _stamps(self, time: Floats, random: np.random.Generator) -> Integers:
         """Increasing stamps [ns], one ns apart at least."""
-        jittered = np.sort(time + self.jitter * random.standard_normal(len(time)))
+        jittered = time + self.jitter * random.standard_normal(len(time))
         offsets = np.round(1e9 * jittered).astype(np.int64)
         order = np.arange(len(time))
         apart = np.maximum.accumulate(offsets - order) + order

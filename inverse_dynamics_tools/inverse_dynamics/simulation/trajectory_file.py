@@ -42,16 +42,18 @@ if TYPE_CHECKING:
 SCHEMA = 1
 
 
-def read_trajectory(file: Path, joint_names: Sequence[str]) -> Trajectory:
-    """The trajectory of a file, its joints in the order of `joint_names`. Raises TrajectoryError."""
+def read_trajectory(file: Path, joint_names: Sequence[str]) -> tuple[Trajectory, str]:
+    """The trajectory of a file, its joints in the order of `joint_names`, and its source in words.
+
+    Raises TrajectoryError.
+    """
     top = read_mapping(file, TrajectoryError)
     schema = top.required("schema")
     if schema.integer() != SCHEMA:
         schema.fail(f"{SCHEMA}", "it was written for another version of this command")
     kind = top.required("kind").text(("fourier", "waypoints"))
     source = top.optional("source")
-    if source is not None:
-        source.text()
+    words = f"From the file {file.name}." if source is None else source.text().strip()
     order = _order(top.required("joints"), joint_names)
     names = tuple(joint_names)
     trajectory: Trajectory
@@ -68,7 +70,7 @@ def read_trajectory(file: Path, joint_names: Sequence[str]) -> Trajectory:
     else:
         trajectory = _waypoints(top, names, order)
     top.reject_others()
-    return trajectory
+    return trajectory, words
 
 
 def _waypoints(top: Mapping, names: tuple[str, ...], order: list[int]) -> WaypointTrajectory:
@@ -92,7 +94,7 @@ def trajectory_text(trajectory: Trajectory, source: str) -> str:
         head = [f"times: {_flow(trajectory.times)}"]
     else:
         raise TypeError(f"no file format for {type(trajectory).__name__}")
-    lines += [f"kind: {kind}", f"source: >-\n  {source}"]
+    lines += [f"kind: {kind}", f"source: >-\n  {' '.join(source.split())}"]
     lines += [f"joints: [{', '.join(trajectory.joint_names)}]", *head]
     for key, table in rows.items():
         lines.append(f"{key}:")

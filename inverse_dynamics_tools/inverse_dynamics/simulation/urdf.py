@@ -52,7 +52,7 @@ class UrdfChain:
     damping: Floats  # (n,) N m s/rad, what <dynamics> says
     friction: Floats  # (n,) N m, what <dynamics> says
     inertia: dict[str, Inertia]  # by link
-    urdf: str  # joints beside the chain are locked, <dynamics> and meshes are left out
+    urdf: str  # joints beside the chain are locked, meshes are left out
     notes: tuple[str, ...]  # what was left out, in words
 
 
@@ -80,6 +80,9 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
             raise SimulationError(
                 f"robot description: there is no {role} link '{link}'; links: {known}"
             )
+    for joint in joint_above.values():
+        for tag, attribute in (("origin", "xyz"), ("origin", "rpy"), ("axis", "xyz")):
+            _vector(joint.find(tag), attribute)
     chain = _movable_joints(root, tip, joint_above)
     if not chain:
         raise SimulationError(f"robot description: no joint moves between '{root}' and '{tip}'")
@@ -163,13 +166,31 @@ def _movable_joints(
 
 def _numbers(elements: list[ElementTree.Element | None], attribute: str, absent: float) -> Floats:
     """One attribute of each element; `absent` where element or attribute is missing."""
-    texts = [None if element is None else element.get(attribute) for element in elements]
-    return np.array([absent if text is None else float(text) for text in texts])
+    return np.array(
+        [
+            absent
+            if element is None or element.get(attribute) is None
+            else _vector(element, attribute, 1)[0]
+            for element in elements
+        ]
+    )
 
 
-def _vector(element: ElementTree.Element | None, attribute: str) -> Floats:
-    text = "0 0 0" if element is None else element.get(attribute, "0 0 0")
-    return np.array([float(word) for word in text.split()])
+def _vector(element: ElementTree.Element | None, attribute: str, length: int = 3) -> Floats:
+    """Numbers of an attribute; zeros where element or attribute is missing."""
+    text = None if element is None else element.get(attribute)
+    if element is None or text is None:
+        return np.zeros(length)
+    try:
+        numbers = np.array([float(word) for word in text.split()])
+    except ValueError:
+        numbers = np.empty(0)
+    if len(numbers) != length or not np.isfinite(numbers).all():
+        what = "a finite number" if length == 1 else f"{length} finite numbers"
+        raise SimulationError(
+            f"robot description: <{element.tag} {attribute}=...>: expected {what}, got '{text}'"
+        )
+    return numbers
 
 
 def _rotation(rpy: Floats) -> Floats:
@@ -195,17 +216,13 @@ def _inertia_of_links(robot: ElementTree.Element) -> dict[str, Inertia]:
             raise SimulationError(
                 f"robot description: link {link.get('name')}: <inertial> needs <mass> and <inertia>"
             )
-        i = {key: float(tensor.get(key, "0")) for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")}
-        rotation = _rotation(_vector(origin, "rpy"))
-        matrix = np.array(
-            [
-                [i["ixx"], i["ixy"], i["ixz"]],
-                [i["ixy"], i["iyy"], i["iyz"]],
-                [i["ixz"], i["iyz"], i["izz"]],
-            ]
+        xx, xy, xz, yy, yz, zz = (
+            _vector(tensor, key, 1)[0] for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
         )
+        matrix = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        rotation = _rotation(_vector(origin, "rpy"))
         found[link.get("name", "")] = Inertia(
-            mass=float(mass.get("value", "nan")),
+            mass=_vector(mass, "value", 1)[0],
             center=_vector(origin, "xyz"),
             tensor=rotation @ matrix @ rotation.T,
         )
@@ -213,11 +230,9 @@ def _inertia_of_links(robot: ElementTree.Element) -> dict[str, Inertia]:
 
 
 def _prepare_for_mujoco(robot: ElementTree.Element, chain: set[str]) -> tuple[str, ...]:
-    """Leaves out what would change the simulated dynamics or needs files; locks joints beside the chain."""
+    """Leaves out meshes, which need files; locks joints beside the chain."""
     notes = []
     for joint in robot.findall("joint"):
-        for dynamics in joint.findall("dynamics"):
-            joint.remove(dynamics)
         if joint.get("type") in _MOVING and joint.get("name") not in chain:
             joint.set("type", "fixed")
             notes.append(f"joint {joint.get('name')} is locked at zero")

@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The simulated robot has exactly the dynamics its URDF states."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from simulation_arms import CHAINS, joint, link, pendulum, robot, robots_package, simulated, urdf_of
+
+from inverse_dynamics.simulation.errors import SimulationError
+from inverse_dynamics.simulation.model import JointFriction, Payload, SimulatedRobot
+
+G = 9.81
+ZERO = np.zeros((1, 1))
+
+
+@pytest.mark.parametrize("name", CHAINS)
+def test_dynamics_are_those_of_the_reference_states(name: str) -> None:
+    # computed by another library from the vendor's URDF, given with 1e-16; the greatest torque is about 200 N m
+    states = json.loads((robots_package() / f"reference/{name}_urdf.json").read_text())["states"]
+    q, qd, qdd, tau = (
+        np.array([state[key] for state in states]) for key in ("q", "qd", "qdd", "torques")
+    )
+    arm = simulated(name)
+    np.testing.assert_allclose(arm.torques(q, qd, qdd), tau, rtol=0, atol=1e-11)
+    for state in states:
+        H = np.reshape(state["inertia"], (len(state["q"]),) * 2)
+        np.testing.assert_allclose(arm.inertia_matrix(np.array(state["q"])), H, rtol=0, atol=1e-12)
+
+
+def test_inertia_that_breaks_the_triangle_inequality_is_kept() -> None:
+    moments = simulated("panda").model.body("fer_link4").inertia
+    expected = np.linalg.eigvalsh(
+        [
+            [0.00784585566, -0.00339591957, 0.00158704074],
+            [-0.00339591957, 0.00649543136, -0.00181477884],
+            [0.00158704074, -0.00181477884, 0.01003079917],
+        ]
+    )
+    assert expected[0] + expected[1] < expected[2]
+    np.testing.assert_allclose(np.sort(moments), expected, rtol=1e-12)
+
+
+def test_gravity_torque_of_a_pendulum() -> None:
+    # lying along x it falls about +y, so the motor holds it with -m g l
+    arm = SimulatedRobot.from_urdf(pendulum())
+    assert arm.torques(ZERO, ZERO, ZERO)[0, 0] == pytest.approx(-2 * G * 0.5, abs=1e-12)
+    assert arm.torques(ZERO, ZERO, ZERO + 1.0)[0, 0] == pytest.approx(
+        -2 * G * 0.5 + 2 * 0.25 + 0.02, abs=1e-12
+    )
+
+
+def test_payload_is_a_point_mass_in_the_frame_of_the_tip() -> None:
+    urdf = robot(
+        link("base"),
+        link("arm", 2.0, "0.5 0 0"),
+        link("tip"),
+        joint("swing", "base", "arm"),
+        joint("end", "arm", "tip", kind="fixed", xyz="1 0 0", rpy="0 0 1.5707963267948966"),
+    )
+    # the tip's -y is the arm's x: 0.2 m further out
+    arm = SimulatedRobot.from_urdf(urdf, payload=Payload(3.0, (0.0, -0.2, 0.0)))
+    assert arm.torques(ZERO, ZERO, ZERO)[0, 0] == pytest.approx(-(2 * 0.5 + 3 * 1.2) * G, abs=1e-9)
+    assert arm.inertia_matrix(np.zeros(1))[0, 0] == pytest.approx(0.52 + 3 * 1.2**2, abs=1e-9)
+
+
+def test_gravity_is_a_vector_in_the_frame_of_the_root_link() -> None:
+    urdf = robot(
+        link("world"),
+        link("base"),
+        link("arm", 2.0, "0.5 0 0"),
+        joint("mount", "world", "base", kind="fixed", rpy="0.3 -1.1 2.0"),
+        joint("swing", "base", "arm"),
+    )
+    arm = SimulatedRobot.from_urdf(urdf, root="base")
+    assert arm.torques(ZERO, ZERO, ZERO)[0, 0] == pytest.approx(-2 * G * 0.5, abs=1e-12)
+    wall = SimulatedRobot.from_urdf(urdf, root="base", gravity=(-G, 0.0, 0.0))
+    assert wall.torques(ZERO, ZERO, ZERO)[0, 0] == pytest.approx(0.0, abs=1e-12)
+    up = wall.torques(ZERO - np.pi / 2, ZERO, ZERO)[0, 0]  # along z: falls towards -x
+    assert up == pytest.approx(2 * G * 0.5, abs=1e-12)
+
+
+def test_shapes_have_no_mass_of_their_own() -> None:
+    shape = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
+    urdf = robot(
+        link("base"),
+        link("arm", 2.0, "0.5 0 0", shape),
+        link("cover", shapes=shape),
+        joint("swing", "base", "arm"),
+        joint("fixed", "arm", "cover", kind="fixed"),
+    )
+    arm = SimulatedRobot.from_urdf(urdf)
+    assert arm.torques(ZERO, ZERO, ZERO)[0, 0] == pytest.approx(-2 * G * 0.5, abs=1e-12)
+
+
+def test_dynamics_element_does_nothing_by_itself() -> None:
+    arm = SimulatedRobot.from_urdf(pendulum(inner='<dynamics damping="5" friction="7"/>'))
+    assert arm.model.dof_damping[0] == 0
+    assert arm.model.dof_frictionloss[0] == 0
+    assert (arm.chain.damping[0], arm.chain.friction[0]) == (5, 7)
+
+
+def test_friction_law_and_its_secant() -> None:
+    law = JointFriction(np.array([3.0]), np.array([0.5]), slip=0.1)
+    assert law.torques(np.array([10.0]))[0] == pytest.approx(3.0 + 5.0)
+    assert law.torques(np.array([-0.1]))[0] == pytest.approx(-3.0 * np.tanh(1.0) - 0.05)
+    for qd in (-2.0, -1e-3, 1e-12, 0.4):
+        velocity = np.array([qd])
+        assert law.secant(velocity) * qd == pytest.approx(law.torques(velocity), rel=1e-9)
+    assert law.secant(np.zeros(1))[0] == pytest.approx(3.0 / 0.1 + 0.5)
+
+
+def test_limits_are_read_and_absent_ones_are_infinite() -> None:
+    chain = simulated("ur10").chain
+    assert chain.effort.tolist() == [330, 330, 150, 56, 56, 56]
+    assert chain.upper[2] == pytest.approx(np.pi)
+    bare = SimulatedRobot.from_urdf(pendulum(limit="")).chain
+    assert np.isinf([bare.lower, bare.upper, bare.velocity, bare.effort]).all()
+    turning = SimulatedRobot.from_urdf(pendulum(kind="continuous")).chain
+    assert np.isinf(turning.upper[0])
+    assert turning.velocity[0] == 2
+
+
+def test_joints_beside_the_chain_are_locked_and_said_so() -> None:
+    urdf = robot(
+        link("base"),
+        link("arm", 2.0, "0.5 0 0"),
+        link("finger", 1.0, "0.1 0 0"),
+        joint("swing", "base", "arm"),
+        joint("grip", "arm", "finger", kind="prismatic", xyz="1 0 0"),
+    )
+    arm = SimulatedRobot.from_urdf(urdf, tip="arm")
+    assert arm.chain.joint_names == ("swing",)
+    assert arm.chain.notes == ("joint grip is locked at zero",)
+    assert arm.model.nv == 1
+    assert arm.torques(ZERO, ZERO, ZERO)[0, 0] == pytest.approx(-(2 * 0.5 + 1.1) * G, abs=1e-12)
+
+
+FORKED = robot(
+    link("base"),
+    link("arm", 1.0),
+    link("left", 1.0),
+    link("right", 1.0),
+    joint("swing", "base", "arm"),
+    joint("l", "arm", "left"),
+    joint("r", "arm", "right"),
+)
+
+
+@pytest.mark.parametrize(
+    ("urdf", "chain", "text"),
+    [
+        ("<robot", {}, "not well-formed XML"),
+        ("<model/>", {}, "expected the element <robot>, got <model>"),
+        (pendulum(), {"root": "bse"}, "there is no root link 'bse'; links: base, arm"),
+        (pendulum(), {"tip": "hand"}, "there is no tip link 'hand'"),
+        (pendulum(), {"root": "arm", "tip": "base"}, "tip 'base' is not below root 'arm'"),
+        (pendulum(), {"tip": "base"}, "no joint moves between 'base' and 'base'"),
+        (FORKED, {}, "several tips are possible: left, right"),
+        (pendulum(kind="floating"), {}, "joint swing: expected revolute"),
+        (
+            pendulum(inner='<mimic joint="other"/>'),
+            {},
+            "joint swing: expected revolute, continuous, prismatic or fixed, got mimic",
+        ),
+        (robot(link("base"), link("arm"), joint("swing", "base", "arm")), {}, "MuJoCo refuses it"),
+        (robot(link("a"), link("b")), {}, "expected one link without a joint above it, got 2"),
+        (
+            pendulum(xyz="0 0 nan"),
+            {},
+            "<origin xyz=...>: expected 3 finite numbers, got '0 0 nan'",
+        ),
+        (
+            pendulum(limit='<limit effort="a"/>'),
+            {},
+            "<limit effort=...>: expected a finite number, got 'a'",
+        ),
+        (
+            pendulum().replace('ixx="0.02"', 'ixx="x"'),
+            {},
+            "<inertia ixx=...>: expected a finite number, got 'x'",
+        ),
+    ],
+)
+def test_descriptions_that_cannot_be_simulated(urdf: str, chain: dict[str, str], text: str) -> None:
+    with pytest.raises(SimulationError) as error:
+        SimulatedRobot.from_urdf(urdf, **chain)
+    assert text in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("payload", [Payload(-1.0), Payload(0.0), Payload(np.nan)])
+def test_payload_needs_a_mass(payload: Payload) -> None:
+    with pytest.raises(SimulationError, match="payload: expected a positive mass"):
+        SimulatedRobot.from_urdf(pendulum(), payload=payload)
+
+
+def test_friction_needs_a_figure_per_joint() -> None:
+    with pytest.raises(SimulationError, match="coulomb: expected 6 numbers"):
+        simulated("ur10", friction=JointFriction(np.ones(5), np.ones(6)))
+    with pytest.raises(SimulationError, match="viscous: expected 6 numbers"):
+        simulated("ur10", friction=JointFriction(np.ones(6), -np.ones(6)))
+
+
+def test_meshes_are_left_out() -> None:
+    mesh = '<collision><geometry><mesh filename="package://none/arm.stl"/></geometry></collision>'
+    urdf = pendulum().replace('<link name="arm">', f'<link name="arm">{mesh}')
+    assert mesh in urdf
+    assert "collision mesh" in SimulatedRobot.from_urdf(urdf).chain.notes[0]
+
+
+def test_both_robots_state_their_own_chain() -> None:
+    assert urdf_of("ur10").count('type="revolute"') == 6
+    assert SimulatedRobot.from_urdf(urdf_of("ur10")).chain.joint_names[0] == "shoulder_pan_joint"
+    assert SimulatedRobot.from_urdf(urdf_of("panda")).chain.joint_names[-1] == "fer_joint7"

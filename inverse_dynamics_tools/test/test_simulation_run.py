@@ -1,0 +1,301 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a run configuration to files: content, form, reproducibility, mistakes."""
+
+from __future__ import annotations
+
+import sqlite3
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from simulation_arms import CHAINS, pendulum, robots_package, two_links, write_robot
+
+from inverse_dynamics.bags import read_joint_log, read_topics
+from inverse_dynamics.errors import OutputError, RobotError, UserError
+from inverse_dynamics.robots import Robot, load_robot
+from inverse_dynamics.simulation import (
+    Payload,
+    Resolution,
+    Sensors,
+    SimulationError,
+    TrajectoryError,
+    simulate,
+    write_run,
+)
+from inverse_dynamics.simulation import run as run_module
+from inverse_dynamics.simulation.excitation import optimise_excitation
+from inverse_dynamics.simulation.trajectory import WaypointTrajectory
+
+SWING = WaypointTrajectory.through(("swing",), np.array([0.0, 1.0]), np.array([[0.0], [-0.5]]))
+SWING_FILE = """\
+schema: 1
+kind: waypoints
+source: up and down
+joints: [swing]
+times: [0, 0.5, 1]
+positions: [[0], [-0.3], [0]]
+"""
+
+
+def robot(directory: Path, simulation: str = "", extra: str = "", urdf: str = "") -> Robot:
+    return load_robot(write_robot(directory, urdf or pendulum(), simulation, extra))
+
+
+def stored(name: str) -> Robot:
+    """One of the project's, without anything installed."""
+    package = robots_package()
+    return Robot(
+        name=f"{name}_simulated",
+        description="",
+        file=package / f"robots/{name}_simulated.yaml",
+        plugin="some/Solver",
+        urdf=package / f"urdf/{name}.urdf",
+        root=CHAINS[name][0],
+        tip=CHAINS[name][1],
+    )
+
+
+def test_recording_reads_back_as_simulated(tmp_path: Path) -> None:
+    arm = robot(tmp_path, extra="topic: /arm/joint_states\njoints: [motor]\n")
+    sensors = Sensors(noise=Resolution(1e-3, 1e-3, 0.1), drop=0.1)
+    run = simulate(arm, trajectory=SWING, rate=500, sensors=sensors, seed=3)
+    for storage in ("sqlite3", "mcap"):
+        out = tmp_path / storage
+        write_run(run, out, storage=storage)
+        log = read_joint_log(out, ["motor"], topic="/arm/joint_states")
+        assert log.storage == storage
+        for field in ("q", "qd", "effort", "header_stamps", "receive_stamps"):
+            np.testing.assert_array_equal(getattr(log, field), getattr(run.log, field))
+        assert len(log) == len(run.recorded.rows) < 500
+
+
+def test_truth_has_a_row_per_message_and_fits_the_equation_of_motion(tmp_path: Path) -> None:
+    sensors = Sensors(noise=Resolution(1e-3, 1e-3, 0.1), drop=0.2)
+    run = simulate(robot(tmp_path), trajectory=SWING, rate=500, sensors=sensors, joint_friction=0.1)
+    write_run(run, tmp_path / "bag")
+    truth = np.load(tmp_path / "bag/truth.npz")
+    log = read_joint_log(tmp_path / "bag")
+    assert list(truth["joint_names"]) == ["swing"]
+    assert len(truth["q"]) == len(log)
+    assert 0 < np.abs(truth["q"] - log.q).max() < 6e-3
+    np.testing.assert_allclose(truth["time"] - truth["time"][0], log.time, atol=1e-9)
+    q, qd, qdd = truth["q"][:, 0], truth["qd"][:, 0], truth["qdd"][:, 0]
+    needed = (0.02 + 2 * 0.25) * qdd - 2 * 9.81 * 0.5 * np.cos(q)
+    friction = 10.0 * np.tanh(qd / 0.02) + 5.0 * qd
+    np.testing.assert_allclose(truth["friction"][:, 0], friction, atol=1e-9)
+    np.testing.assert_allclose(truth["effort"][:, 0], needed + friction, atol=1e-9)
+    assert np.abs(truth["q_desired"] - truth["q"]).max() < 0.05
+
+
+def test_form_is_that_of_a_recorded_bag(tmp_path: Path) -> None:
+    write_run(simulate(robot(tmp_path), trajectory=SWING, rate=125), tmp_path / "bag")
+    info = yaml.safe_load((tmp_path / "bag/metadata.yaml").read_text())[
+        "rosbag2_bagfile_information"
+    ]
+    assert info["version"] == 9
+    assert info["relative_file_paths"] == ["bag.db3"]
+    assert info["message_count"] == 125
+    assert info["starting_time"]["nanoseconds_since_epoch"] == 1_700_000_000_004_000_000
+    (topic,) = read_topics(tmp_path / "bag")
+    assert topic == ("/joint_states", "sensor_msgs/msg/JointState", 125)
+    with sqlite3.connect(tmp_path / "bag/bag.db3") as data:
+        assert data.execute("SELECT count(*) FROM messages").fetchone() == (125,)
+    names = sorted(file.name for file in (tmp_path / "bag").iterdir())
+    assert names == ["bag.db3", "metadata.yaml", "simulation.yaml", "trajectory.yaml", "truth.npz"]
+
+
+@pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
+def test_same_seed_same_bytes(tmp_path: Path, storage: str) -> None:
+    arm = robot(tmp_path)
+    sensors = Sensors(noise=Resolution(1e-3, 1e-3, 0.1), jitter=1e-4)
+    for name, seed in (("first", 7), ("again", 7), ("other", 8)):
+        run = simulate(arm, trajectory=SWING, rate=125, seed=seed, sensors=sensors)
+        write_run(run, tmp_path / name / "bag", storage=storage)
+    files = sorted(file.name for file in (tmp_path / "first/bag").iterdir())
+    for file in files:
+        content = [(tmp_path / name / "bag" / file).read_bytes() for name in ("first", "again")]
+        assert content[0] == content[1], file
+    data = "bag.mcap" if storage == "mcap" else "bag.db3"
+    assert (tmp_path / "other/bag" / data).read_bytes() != (
+        tmp_path / "first/bag" / data
+    ).read_bytes()
+
+
+def test_stored_trajectory_makes_the_same_recording_again(tmp_path: Path) -> None:
+    arm = robot(tmp_path)
+    write_run(simulate(arm, trajectory=SWING, rate=125), tmp_path / "one")
+    file = tmp_path / "one/trajectory.yaml"
+    again = simulate(arm, trajectory=file, rate=125)
+    np.testing.assert_array_equal(again.log.effort, read_joint_log(tmp_path / "one").effort)
+    assert again.trajectory_source == "Given by the caller."
+
+
+def test_nothing_is_overwritten_unless_asked_and_only_simulations(tmp_path: Path) -> None:
+    run = simulate(robot(tmp_path), trajectory=SWING, rate=125)
+    out = tmp_path / "bag"
+    write_run(run, out)
+    before = (out / "metadata.yaml").read_bytes()
+    with pytest.raises(OutputError, match="exists already"):
+        write_run(run, out)
+    assert (out / "metadata.yaml").read_bytes() == before
+    write_run(simulate(robot(tmp_path), trajectory=SWING, rate=500), out, overwrite=True)
+    assert len(read_joint_log(out)) == 500
+    (out / "simulation.yaml").unlink()
+    with pytest.raises(OutputError, match=r"won't be overwritten: it holds no simulation.yaml"):
+        write_run(run, out, overwrite=True)
+
+
+def test_nothing_is_left_where_writing_fails(tmp_path: Path) -> None:
+    run = simulate(robot(tmp_path), trajectory=SWING, rate=125)
+    broken = replace(run, trajectory=object())
+    parent = tmp_path / "results"
+    with pytest.raises(TypeError):
+        write_run(broken, parent / "bag")
+    assert list(parent.iterdir()) == []
+
+
+def test_settings_of_the_run_configuration_are_used_and_said(tmp_path: Path) -> None:
+    (tmp_path / "swing.yaml").write_text(SWING_FILE)
+    simulation = (
+        "simulation:\n  trajectory: swing.yaml\n  rate: 125\n  gains:\n    swing: {p: 77, i: 0}\n"
+    )
+    run = simulate(robot(tmp_path, simulation, "gravity: [0, 0, -3.7]\n"))
+    assert len(run.log) == 125
+    assert run.trajectory_source == "up and down"
+    assert run.settings["rate"] == 125
+    assert run.settings["gravity"] == [0, 0, -3.7]
+    assert run.settings["gains"]["p"] == [77]
+    assert run.settings["gains"]["i"] == [0]
+    assert run.settings["gains"]["d"][0] > 1
+    assert run.motion.gains.p == [77]
+    assert run.log.effort[0, 0] == pytest.approx(-2 * 3.7 * 0.5, rel=0.1)
+    other = simulate(robot(tmp_path, simulation), rate=500, gravity=(0, 0, -1.0), duration=0.25)
+    assert len(other.log) == 125
+    assert other.log.effort[0, 0] == pytest.approx(-2 * 1.0 * 0.5, rel=0.1)
+
+
+def test_trajectory_is_searched_for_where_none_is_stored(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        run_module, "optimise_excitation", partial(optimise_excitation, evaluations=40)
+    )
+    arm = robot(tmp_path, urdf=two_links())
+    seen: set[str] = set()
+    run = simulate(arm, rate=125, duration=0.5, progress=lambda what, *_: seen.add(what))
+    assert "optimised with seed 0" in run.trajectory_source
+    assert run.condition_number is not None
+    assert run.condition_number < 1000
+    assert seen == {"optimising", "simulating"}
+
+
+def test_friction_by_part_by_the_description_and_by_figures(tmp_path: Path) -> None:
+    urdf = pendulum(inner='<dynamics damping="0.25" friction="1.5"/>')
+    arm = robot(tmp_path, urdf=urdf)
+
+    def friction(wish: object) -> dict[str, list[float]]:
+        run = simulate(arm, trajectory=SWING, rate=125, duration=0.1, joint_friction=wish)
+        return run.settings["joint_friction"]
+
+    assert friction(None) is None
+    assert friction("urdf") == {"coulomb": [1.5], "viscous": [0.25], "slip": 0.02}
+    assert friction(0.05) == {"coulomb": [5.0], "viscous": [2.5], "slip": 0.02}
+    assert friction("0.05") == friction(0.05)
+
+
+def test_payload_and_settings_are_plain_data(tmp_path: Path) -> None:
+    run = simulate(
+        robot(tmp_path),
+        trajectory=SWING,
+        rate=125,
+        payload=Payload(0.5, (0.1, 0, 0)),
+        sensors=Sensors(quantisation=Resolution(1e-4, 1e-3, 0.1)),
+    )
+    write_run(run, tmp_path / "bag")
+    settings = yaml.safe_load((tmp_path / "bag/simulation.yaml").read_text())
+    assert settings["payload"] == {"mass": 0.5, "center": [0.1, 0.0, 0.0]}
+    assert settings["quantisation"] == {"position": 1e-4, "velocity": 1e-3, "effort": 0.1}
+    assert settings["storage"] == "sqlite3"
+    assert settings["robot_description_sha256"] == run.settings["robot_description_sha256"]
+    assert run.log.effort[0, 0] == pytest.approx(-(2 * 0.5 + 0.5 * 0.1) * 9.81, rel=0.01)
+
+
+def test_description_without_shapes_is_said(tmp_path: Path) -> None:
+    notes = simulate(robot(tmp_path), trajectory=SWING, rate=125).notes
+    assert notes == ("the description has no collision shapes: self-collision can't be checked",)
+
+
+@pytest.mark.parametrize(
+    ("simulation", "text"),
+    [
+        (
+            "simulation: {rate: 200}",
+            "simulation.rate: expected one of 125, 500, 1000 Hz, got '200'",
+        ),
+        ("simulation: {trajectory: none.yaml}", "simulation.trajectory: expected a file"),
+        ("simulation: {speed: 1}", "simulation.speed: unknown key"),
+        ("simulation: {gains: {elbow: {p: 1}}}", "simulation.gains.elbow: unknown key"),
+        ("simulation: {gains: {swing: {k: 1}}}", "simulation.gains.swing.k: unknown key"),
+        ("simulation: {gains: {swing: {p: x}}}", "gains.swing.p: expected a number, got 'x'"),
+        ("joints: [a, b]", "joints: expected 1 names, one per joint of the chain (swing), got 2"),
+    ],
+)
+def test_mistakes_in_the_run_configuration_are_pointed_at(
+    tmp_path: Path, simulation: str, text: str
+) -> None:
+    with pytest.raises(UserError) as error:
+        simulate(robot(tmp_path, simulation + "\n"), trajectory=SWING)
+    assert text in str(error.value)
+    assert "arm.yaml" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"rate": 0}, "rate: expected one of 125, 500, 1000 Hz, got 0"),
+        ({"optimise": True}, "expected either a trajectory or the wish to optimise one, got both"),
+        ({"joint_friction": "some"}, "joint friction: expected a part of the effort limit"),
+        ({"joint_friction": 1.5}, "joint friction: expected a part of the effort limit"),
+        ({"duration": 0.001}, "duration: expected at least two periods"),
+        (
+            {"payload": Payload(20.0, (0.5, 0, 0))},
+            "trajectory: joint swing: effort at 0.00 s: expected -100 to",
+        ),
+    ],
+)
+def test_impossible_wishes_are_refused(
+    tmp_path: Path, options: dict[str, object], text: str
+) -> None:
+    with pytest.raises((SimulationError, TrajectoryError)) as error:
+        simulate(robot(tmp_path, urdf=pendulum()), **{"trajectory": SWING, "rate": 125, **options})
+    if "payload" in options:
+        assert "got -" in str(error.value)
+    assert text in str(error.value)
+
+
+def test_friction_by_part_needs_limits(tmp_path: Path) -> None:
+    arm = robot(tmp_path, urdf=pendulum(limit='<limit lower="-1" upper="1" effort="90"/>'))
+    with pytest.raises(SimulationError, match="joint friction: joint swing has no velocity limit"):
+        simulate(arm, trajectory=SWING, rate=125, joint_friction=0.1)
+
+
+def test_robot_without_description_cannot_be_simulated(tmp_path: Path) -> None:
+    arm = replace(robot(tmp_path), urdf=None)
+    with pytest.raises(SimulationError, match=r"arm.yaml: names no urdf; a simulation needs"):
+        simulate(arm)
+    with pytest.raises(RobotError, match=r"gone.urdf: no such file"):
+        simulate(replace(arm, urdf=tmp_path / "gone.urdf"))
+
+
+@pytest.mark.parametrize("name", CHAINS)
+def test_stored_configuration_names_its_trajectory(name: str) -> None:
+    package = robots_package()
+    config = yaml.safe_load((package / f"robots/{name}_simulated.yaml").read_text())["simulation"]
+    file = config["trajectory"].removeprefix("package://inverse_dynamics_robots/")
+    run = simulate(stored(name), trajectory=package / file, rate=config["rate"], duration=0.1)
+    assert run.condition_number is not None
+    assert run.condition_number < 20
+    assert f"{run.condition_number:.4g}" in run.trajectory_source

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids simulate` on the command line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from simulation_arms import pendulum, two_links, write_robot
+
+from inverse_dynamics.bags import read_joint_log
+from inverse_dynamics.cli import main
+
+TRAJECTORY = """\
+schema: 1
+kind: waypoints
+joints: [swing]
+times: [0, 0.5, 1]
+positions: [[0], [-0.3], [0]]
+"""
+
+
+@pytest.fixture
+def arm(tmp_path: Path) -> list[str]:
+    """Arguments that name a robot and a trajectory."""
+    (tmp_path / "motion.yaml").write_text(TRAJECTORY)
+    robot = write_robot(tmp_path, pendulum())
+    return ["simulate", "--robot", str(robot), "--trajectory", str(tmp_path / "motion.yaml")]
+
+
+def settings(bag: Path) -> dict[str, object]:
+    return yaml.safe_load((bag / "simulation.yaml").read_text())
+
+
+def test_says_what_was_made(
+    arm: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bag = tmp_path / "bag"
+    assert main([*arm, "--out", str(bag), "--rate", "125"]) == 0
+    printed = capsys.readouterr()
+    assert "trajectory  1 s" in printed.out
+    assert (
+        f"recording   {bag}, /joint_states: 125 messages of 1 joints, 1 s at 125 Hz" in printed.out
+    )
+    assert printed.err == ""
+    assert len(read_joint_log(bag)) == 125
+
+
+def test_all_options_arrive(arm: list[str], tmp_path: Path) -> None:
+    bag = tmp_path / "bag"
+    options = (
+        "--rate 1000 --duration 0.5 --seed 4 --storage mcap --payload 0.5,0.1,0,0.2 --joint-friction 0.1 "
+        "--gravity -1,0,-9 --noise 1e-4,1e-3,0.2 --quantisation 1e-5,1e-4,0.1 --drop 0.1 --repeat 0.2 "
+        "--jitter 1e-4 --start-stamp 5 --no-table"
+    )
+    assert main([*arm, "--out", str(bag), *options.split()]) == 0
+    made = settings(bag)
+    expected = {
+        "rate": 1000,
+        "duration": 0.5,
+        "seed": 4,
+        "storage": "mcap",
+        "payload": {"mass": 0.5, "center": [0.1, 0.0, 0.2]},
+        "gravity": [-1, 0, -9],
+        "noise": {"position": 1e-4, "velocity": 1e-3, "effort": 0.2},
+        "quantisation": {"position": 1e-5, "velocity": 1e-4, "effort": 0.1},
+        "drop": 0.1,
+        "repeat": 0.2,
+        "jitter": 1e-4,
+        "start_stamp": 5,
+    }
+    assert {key: made[key] for key in expected} == expected
+    assert made["joint_friction"]["coulomb"] == [10.0]
+    log = read_joint_log(bag)
+    assert 420 < len(log) < 480
+    assert 5e9 <= log.header_stamps[0] < 5.01e9
+
+
+def test_options_without_a_value_have_stated_defaults(arm: list[str], tmp_path: Path) -> None:
+    bag = tmp_path / "bag"
+    options = "--rate 125 --noise --quantisation --joint-friction --mount ceiling --payload 1"
+    assert main([*arm, "--out", str(bag), *options.split()]) == 0
+    made = settings(bag)
+    assert made["noise"] == {"position": 1e-5, "velocity": 1e-3, "effort": 0.1}
+    assert made["quantisation"] == {"position": 1e-5, "velocity": 1e-3, "effort": 0.01}
+    assert made["joint_friction"]["coulomb"] == [2.0]
+    assert made["gravity"] == [0, 0, 9.81]
+    assert made["payload"] == {"mass": 1.0, "center": [0.0, 0.0, 0.0]}
+
+
+def test_optimise_stores_what_it_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    robot, bag = write_robot(tmp_path, two_links(), "", "tip: tip\n"), tmp_path / "bag"
+    command = ["simulate", "--robot", str(robot), "--rate", "125", "--duration", "0.2"]
+    assert main([*command, "--out", str(bag), "--optimise", "--seed", "1"]) == 0
+    assert "condition number of the base regressor" in capsys.readouterr().out
+    found = yaml.safe_load((bag / "trajectory.yaml").read_text())
+    assert "seed 1" in found["source"]
+    assert np.abs(found["sine"]).max() > 0.01
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        (["--rate", "100"], "rate: expected one of 125, 500, 1000 Hz, got 100"),
+        (["--drop", "2"], "drop: expected a probability from 0 to below 1, got 2"),
+        (["--joint-friction", "much"], "joint friction: expected a part of the effort limit"),
+        (["--payload", "30,0.5,0,0"], "joint swing: effort at 0.00 s"),
+        (["--optimise"], "expected either a trajectory or the wish to optimise one"),
+        (["--trajectory", "no.yaml"], "no.yaml: can't be read"),
+        (["--robot", "no.yaml"], "no.yaml"),
+    ],
+)
+def test_mistakes_end_with_code_2_and_leave_nothing(
+    arm: list[str],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    options: list[str],
+    text: str,
+) -> None:
+    bag = tmp_path / "bag"
+    assert main([*arm, "--out", str(bag), *options]) == 2
+    error = capsys.readouterr().err
+    assert text in error
+    assert error.count("\n") == 1
+    assert not bag.exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        (["--noise", "1"], "expected 3 numbers, separated by commas, got '1'"),
+        (["--payload", "1,2"], "expected 1 or 4 numbers, separated by commas, got '1,2'"),
+        (["--seed", "-1"], "expected an integer that isn't negative"),
+        (["--duration", "0"], "expected a number above zero"),
+        (["--gravity", "0,0"], "expected three numbers"),
+        (["--mount", "wall", "--gravity", "0,0,1"], "not allowed with"),
+        (["--storage", "bag"], "invalid choice"),
+    ],
+)
+def test_malformed_options_are_explained(
+    arm: list[str], capsys: pytest.CaptureFixture[str], options: list[str], text: str
+) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main([*arm, "--out", "unused", *options])
+    assert stop.value.code == 2
+    assert text in capsys.readouterr().err
+
+
+def test_existing_output_is_refused_before_the_work(
+    arm: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "bag").mkdir()
+    (tmp_path / "bag/notes.txt").write_text("mine")
+    for overwrite in ([], ["--overwrite"]):
+        assert main([*arm, "--out", str(tmp_path / "bag"), *overwrite]) == 2
+    assert "exists already" in capsys.readouterr().err
+    assert (tmp_path / "bag/notes.txt").read_text() == "mine"
