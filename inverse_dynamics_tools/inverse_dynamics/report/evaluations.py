@@ -77,7 +77,6 @@ def report_comparison(
 
 def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:
     robot, log = evaluation.robot, evaluation.log
-    model = robot.model or robot.urdf
     gravity = (
         "the model's own"
         if robot.gravity is None
@@ -85,7 +84,8 @@ def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:
     )
     rows = [
         ("solver", robot.plugin),
-        ("model", model.name if model is not None else "the solver's own"),
+        ("model file", robot.model.name if robot.model else ""),
+        ("description", robot.urdf.name if robot.urdf else ""),
         ("friction", "as the solver models it" if robot.friction else "left out"),
         ("gravity", gravity),
         ("effort means", robot.effort),
