@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,8 @@ from simulation_arms import pendulum, two_links, write_robot
 
 from inverse_dynamics.bags import read_joint_log
 from inverse_dynamics.cli import main
+from inverse_dynamics.simulation import run as run_module
+from inverse_dynamics.simulation.excitation import optimise_excitation
 
 TRAJECTORY = """\
 schema: 1
@@ -90,7 +93,11 @@ def test_options_without_a_value_have_stated_defaults(arm: list[str], tmp_path: 
     assert made["payload"] == {"mass": 1.0, "center": [0.0, 0.0, 0.0]}
 
 
-def test_optimise_stores_what_it_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_optimise_stores_what_it_found(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    short = partial(optimise_excitation, evaluations=40)
+    monkeypatch.setattr(run_module, "optimise_excitation", short)
     robot, bag = write_robot(tmp_path, two_links(), "", "tip: tip\n"), tmp_path / "bag"
     command = ["simulate", "--robot", str(robot), "--rate", "125", "--duration", "0.2"]
     assert main([*command, "--out", str(bag), "--optimise", "--seed", "1"]) == 0
