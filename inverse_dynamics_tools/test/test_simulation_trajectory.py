@@ -52,7 +52,6 @@ def test_fourier_series_by_hand() -> None:
 
 def test_fourier_series_repeats() -> None:
     trajectory = fourier()
-    assert trajectory.repeats
     for now, later in zip(
         trajectory.at(np.array([0.3])), trajectory.at(np.array([8.3])), strict=True
     ):

@@ -10,7 +10,7 @@ amplitudes are scaled into the limits of position, velocity and acceleration, so
 effort limits or comes too close to itself or to the table is penalised until nothing does.
 
 The search is an evolution strategy (CMA-ES with a diagonal covariance [Ros and Hansen 2008]): no gradients, few
-parameters, and the same seed gives the same trajectory.
+parameters, and the same seed gives the same trajectory (on one kind of machine: rounding differs between processors).
 """
 
 from __future__ import annotations
@@ -57,7 +57,6 @@ class Excitation:
 
     trajectory: FourierTrajectory
     condition_number: float
-    seed: int
 
 
 def optimise_excitation(
@@ -92,7 +91,7 @@ def optimise_excitation(
         judge.cost, start, step=0.2, evaluations=evaluations, seed=seed, progress=progress
     )
     trajectory = _shrunk_until_free(robot, family.member(best), checker)
-    return Excitation(trajectory, condition_of(robot, trajectory), seed)
+    return Excitation(trajectory, condition_of(robot, trajectory))
 
 
 def condition_of(robot: SimulatedRobot, trajectory: FourierTrajectory) -> float:

@@ -4,34 +4,28 @@
     run = simulate(load_robot("ur10_simulated"), rate=500, seed=1)
     write_run(run, Path("bag"))
 
-The run configuration's key `simulation` may say
-
-    simulation:
-      trajectory: package://inverse_dynamics_robots/trajectories/ur10.yaml   # the default one; a path as for urdf
-      rate: 125                                                              # Hz, the default one
-      gains:                                                                 # those left out are chosen
-        shoulder_pan_joint: {p: 100, i: 10, d: 20, i_clamp: 50, ff_velocity_scale: 0}
+What a run configuration may say about it is in configuration.py.
 """
 
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.ament import resolve
 from inverse_dynamics.descriptions import read_description
 from inverse_dynamics.joint_log import JointLog, no_progress
 from inverse_dynamics.simulation.collision import ContactChecker
+from inverse_dynamics.simulation.configuration import Wishes
 from inverse_dynamics.simulation.controller import Gains
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.excitation import condition_of, optimise_excitation
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
 from inverse_dynamics.simulation.model import GRAVITY, JointFriction, SimulatedRobot
-from inverse_dynamics.simulation.physics import RATES, Motion, check_rate, default_gains, follow
+from inverse_dynamics.simulation.physics import Motion, check_rate, default_gains, follow
 from inverse_dynamics.simulation.sensors import Recorded, Sensors
 from inverse_dynamics.simulation.trajectory import FourierTrajectory
 from inverse_dynamics.simulation.trajectory_file import read_trajectory
@@ -39,13 +33,10 @@ from inverse_dynamics.simulation.urdf import chain_from_urdf
 
 if TYPE_CHECKING:
     from inverse_dynamics.joint_log import Progress
-    from inverse_dynamics.located_yaml import Mapping
     from inverse_dynamics.robots import Robot
     from inverse_dynamics.simulation.model import Payload
     from inverse_dynamics.simulation.trajectory import Trajectory
     from inverse_dynamics.simulation.urdf import UrdfChain
-
-DEFAULT_RATE = 500  # Hz, where neither caller nor run configuration says
 
 
 @dataclass(frozen=True)
@@ -105,7 +96,7 @@ def simulate(
         payload=payload,
         friction=_friction(joint_friction, chain),
     )
-    wishes = _Wishes.of(robot, chain)
+    wishes = Wishes.of(robot, chain)
     rate = wishes.rate if rate is None else rate
     check_rate(rate)
     chosen, source = _choose_trajectory(
@@ -201,61 +192,6 @@ def _joint_log(robot: Robot, chain: UrdfChain, recorded: Recorded) -> JointLog:
         effort=recorded.effort,
         topic=robot.topic,
     )
-
-
-@dataclass(frozen=True)
-class _GainWishes:
-    """Gains that a run configuration states: (joint index, name) to value."""
-
-    values: dict[tuple[int, str], float]
-
-    def apply(self, gains: Gains) -> Gains:
-        columns = {field.name: np.array(getattr(gains, field.name)) for field in fields(gains)}
-        for (joint, name), value in self.values.items():
-            columns[name][joint] = value
-        return replace(gains, **columns)
-
-
-@dataclass(frozen=True)
-class _Wishes:
-    """What a run configuration says under `simulation`."""
-
-    trajectory: Path | None
-    rate: int
-    gains: _GainWishes
-
-    @classmethod
-    def of(cls, robot: Robot, chain: UrdfChain) -> _Wishes:
-        if robot.simulation is None:
-            return cls(None, DEFAULT_RATE, _GainWishes({}))
-        mapping = robot.simulation
-        trajectory = mapping.optional("trajectory")
-        file = None if trajectory is None else resolve(trajectory.text(), robot.file.parent)
-        if trajectory is not None and file is not None and not file.is_file():
-            trajectory.fail("a file", f"{file} isn't there")
-        rate = mapping.optional("rate")
-        if rate is not None and rate.integer() not in RATES:
-            rate.fail(f"one of {', '.join(map(str, RATES))} Hz")
-        gains = mapping.optional("gains")
-        wishes = _GainWishes({} if gains is None else _gains(gains.mapping(), chain))
-        mapping.reject_others()
-        return cls(file, DEFAULT_RATE if rate is None else rate.integer(), wishes)
-
-
-def _gains(mapping: Mapping, chain: UrdfChain) -> dict[tuple[int, str], float]:
-    found = {}
-    for index, joint in enumerate(chain.joint_names):
-        value = mapping.optional(joint)
-        if value is None:
-            continue
-        gains = value.mapping()
-        for field in fields(Gains):
-            number = gains.optional(field.name)
-            if number is not None:
-                found[index, field.name] = number.number()
-        gains.reject_others()
-    mapping.reject_others()
-    return found
 
 
 def _settings(

@@ -37,10 +37,6 @@ class Trajectory(Protocol):
     def duration(self) -> float:
         """How long the motion takes [s]."""
 
-    @property
-    def repeats(self) -> bool:
-        """Whether the motion goes on after `duration` by starting over."""
-
     def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
         """q, qd, qdd (N, n) at times (N,) s from the start."""
 
@@ -54,7 +50,6 @@ class FourierTrajectory:
     center: Floats  # (n,) rad
     sine: Floats  # (n, L) rad/s
     cosine: Floats  # (n, L) rad/s
-    repeats = True
 
     @property
     def duration(self) -> float:
@@ -83,7 +78,6 @@ class WaypointTrajectory:
     positions: Floats  # (K, n) rad
     velocities: Floats  # (K, n) rad/s
     accelerations: Floats  # (K, n) rad/s^2
-    repeats = False
 
     @classmethod
     def through(

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a run configuration says about its simulation.
+
+The run configuration's key `simulation` may say
+
+    simulation:
+      trajectory: package://inverse_dynamics_robots/trajectories/ur10.yaml   # the default one; a path as for urdf
+      rate: 125                                                              # Hz, the default one
+      gains:                                                                 # those left out are chosen
+        shoulder_pan_joint: {p: 100, i: 10, d: 20, i_clamp: 50, ff_velocity_scale: 0}
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.ament import resolve
+from inverse_dynamics.simulation.controller import Gains
+from inverse_dynamics.simulation.physics import RATES
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from inverse_dynamics.located_yaml import Mapping
+    from inverse_dynamics.robots import Robot
+    from inverse_dynamics.simulation.urdf import UrdfChain
+
+DEFAULT_RATE = 500  # Hz, where neither caller nor run configuration says
+
+
+@dataclass(frozen=True)
+class GainWishes:
+    """Gains that a run configuration states: (joint index, name) to value."""
+
+    values: dict[tuple[int, str], float]
+
+    def apply(self, gains: Gains) -> Gains:
+        """The gains with those that are stated in their places."""
+        columns = {field.name: np.array(getattr(gains, field.name)) for field in fields(gains)}
+        for (joint, name), value in self.values.items():
+            columns[name][joint] = value
+        return replace(gains, **columns)
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What a run configuration says under `simulation`."""
+
+    trajectory: Path | None
+    rate: int  # Hz
+    gains: GainWishes
+
+    @classmethod
+    def of(cls, robot: Robot, chain: UrdfChain) -> Wishes:
+        """Reads them. Raises RobotError with file, line and key."""
+        if robot.simulation is None:
+            return cls(None, DEFAULT_RATE, GainWishes({}))
+        mapping = robot.simulation
+        trajectory = mapping.optional("trajectory")
+        file = None if trajectory is None else resolve(trajectory.text(), robot.file.parent)
+        if trajectory is not None and file is not None and not file.is_file():
+            trajectory.fail("a file", f"{file} isn't there")
+        rate = mapping.optional("rate")
+        if rate is not None and rate.integer() not in RATES:
+            rate.fail(f"one of {', '.join(map(str, RATES))} Hz")
+        gains = mapping.optional("gains")
+        wishes = GainWishes({} if gains is None else _gains(gains.mapping(), chain))
+        mapping.reject_others()
+        return cls(file, DEFAULT_RATE if rate is None else rate.integer(), wishes)
+
+
+def _gains(mapping: Mapping, chain: UrdfChain) -> dict[tuple[int, str], float]:
+    found = {}
+    for index, joint in enumerate(chain.joint_names):
+        value = mapping.optional(joint)
+        if value is None:
+            continue
+        gains = value.mapping()
+        for field in fields(Gains):
+            number = gains.optional(field.name)
+            if number is not None:
+                found[index, field.name] = number.number()
+        gains.reject_others()
+    mapping.reject_others()
+    return found
