@@ -70,9 +70,9 @@ function makeCanvas(parent, name) {
   return canvas;
 }
 
-// Sizes a canvas to its element in device pixels; drawing then goes in CSS pixels.
-function prepare(canvas) {
-  const ratio = window.devicePixelRatio || 1;
+// Sizes a canvas to its element, in device pixels or finer; drawing then goes in CSS pixels.
+function prepare(canvas, least_ratio) {
+  const ratio = Math.max(window.devicePixelRatio || 1, least_ratio);
   const width = canvas.clientWidth, height = canvas.clientHeight;
   if (canvas.width !== Math.round(width * ratio)) canvas.width = Math.round(width * ratio);
   if (canvas.height !== Math.round(height * ratio)) canvas.height = Math.round(height * ratio);
@@ -108,7 +108,7 @@ class Plot {
   }
 
   draw(view) {
-    const {context, width, height} = prepare(this.base);
+    const {context, width, height} = prepare(this.base, 2);  // fine enough for paper
     if (width === 0) return;
     this.drawAxes(context, width, height, view);
     context.save();
@@ -191,7 +191,7 @@ class Plot {
   }
 
   drawOverlay(view, cursor, selection) {
-    const {context, width, height} = prepare(this.overlay);
+    const {context, width, height} = prepare(this.overlay, 1);
     if (width === 0) return;
     if (selection) {
       context.fillStyle = "rgba(0, 114, 178, 0.15)";

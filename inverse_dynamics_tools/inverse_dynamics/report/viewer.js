@@ -144,7 +144,8 @@ function start() {
     if (player.key(event.key, event.shiftKey)) event.preventDefault();
   });
   new ResizeObserver(redraw).observe(document.body);
-  window.addEventListener("beforeprint", redraw);
+  // On paper everything is unfolded. Plots aren't redrawn then: Chromium may print a canvas empty that this event has drawn upon.
+  window.addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((part) => { part.open = true; }));
   redraw();
 }
 

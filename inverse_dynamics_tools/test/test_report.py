@@ -1,0 +1,437 @@
+# SPDX-License-Identifier: Apache-2.0
+import base64
+import json
+import re
+import shutil
+import subprocess
+import time
+from contextlib import contextmanager
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from test_evaluation import RIGID_BODY, URDF, recording
+
+from inverse_dynamics import Solver, cli, evaluate, write_evaluation
+from inverse_dynamics.comparison import compare
+from inverse_dynamics.errors import UserError
+from inverse_dynamics.report import report_comparison, report_run
+from inverse_dynamics.report.page import MAX_SAMPLES, peaks, render_page
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+DRIVER = shutil.which("chromedriver")
+FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--enable-unsafe-swiftshader",
+    "--use-angle=swiftshader",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--force-prefers-reduced-motion",  # scrolling is then immediate
+    "--window-size=1400,1300",
+)
+
+
+@pytest.fixture(scope="module")
+def evaluation(tmp_path_factory):
+    bag = tmp_path_factory.mktemp("recording") / "motion"
+    recording(bag, Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0"))
+    return evaluate(bag, "ur10_simulated", accelerations="low-pass", cutoff=2.0)
+
+
+@pytest.fixture(scope="module")
+def comparison(evaluation):
+    other = replace(evaluation, computed=evaluation.computed + 1.0)
+    return compare([evaluation, other], ("as it is", "one N m off"))
+
+
+@pytest.fixture(scope="module")
+def page(evaluation, comparison, tmp_path_factory):
+    """The page as a file: two runs and a comparison."""
+    file = tmp_path_factory.mktemp("page") / "report.html"
+    runs = [report_run(evaluation, "first"), report_run(evaluation, "second")]
+    file.write_text(render_page("A page", runs, [report_comparison(comparison)], ["A note."]))
+    return file
+
+
+def data_of(html):
+    text = re.search(r'<script type="application/json" id="runs">(.*?)</script>', html, re.DOTALL)
+    return json.loads(text[1])
+
+
+def floats(text):
+    return np.frombuffer(base64.b64decode(text), dtype="<f4")
+
+
+# ---- the page as text ------------------------------------------------------------------------------------------------
+
+
+def test_page_needs_no_network(page):
+    html = page.read_text()
+    fetches = re.findall(r"""(?:src|href|action|poster|data|srcset)\s*=\s*["']([^"']*)""", html)
+    fetches += re.findall(r"url\(\s*[\"']?([^)\"']*)", html)
+    assert fetches
+    assert {f for f in fetches if not f.startswith(("#", "data:"))} == set()
+    for word in ("@import", "fetch(", "XMLHttpRequest", "WebSocket", "<iframe", "<object"):
+        assert word not in html
+
+
+def test_series_come_through_in_single_precision(page, evaluation):
+    run = data_of(page.read_text())[0]
+    assert [joint["name"] for joint in run["joints"]] == list(evaluation.joint_names)
+    np.testing.assert_array_equal(floats(run["time"]), evaluation.time.astype("f4"))
+    np.testing.assert_array_equal(floats(run["q"]).reshape(6, -1), evaluation.log.q.T.astype("f4"))
+    for j, joint in enumerate(run["joints"]):
+        error = evaluation.computed[:, j] - evaluation.measured[:, j]
+        series = {
+            "measured": evaluation.measured[:, j],
+            "computed": evaluation.computed[:, j],
+            "error": error,
+        }
+        for name, values in series.items():
+            assert "time" not in joint[name]
+            np.testing.assert_array_equal(floats(joint[name]["values"]), values.astype("f4"))
+
+
+def test_long_recordings_keep_their_peaks(evaluation):
+    count = 3 * MAX_SAMPLES + 17
+    t = np.linspace(0.0, 60.0, count)
+    q, measured = np.sin(t)[:, None], np.cos(t)[:, None]
+    computed = measured.copy()
+    computed[12_346] += 50.0  # one sample each: every third would miss one of them
+    computed[20_003] -= 70.0
+    run = replace(
+        report_run(evaluation), time=t, q=q, measured=measured, computed=computed,
+        table=evaluation.errors[:1],
+    )  # fmt: skip
+    html = render_page("Long", [run])
+    joint = data_of(html)[0]["joints"][0]
+    values, times = floats(joint["computed"]["values"]), floats(joint["computed"]["time"])
+    assert len(values) == len(times) <= MAX_SAMPLES
+    assert np.all(np.diff(times) > 0)
+    assert (times[0], times[-1]) == (0.0, 60.0)
+    assert values.max() == np.float32(computed.max())
+    assert values.min() == np.float32(computed.min())
+    assert floats(joint["error"]["values"]).min() == pytest.approx(-70.0)
+    assert f"at most {MAX_SAMPLES:,} of them" in html
+
+
+@pytest.mark.parametrize("count", [3, 10, 11, 12, 99, 1000])
+def test_peaks_are_no_more_than_asked_for(count):
+    values = np.random.default_rng(count).normal(size=count)
+    kept = peaks(values, 10)
+    assert len(kept) <= 10
+    assert {0, count - 1, int(values.argmin()), int(values.argmax())} <= set(kept.tolist())
+
+
+def test_names_are_text_and_never_markup(evaluation, comparison):
+    evil = "</script><script>alert(1)</script>"
+    errors = tuple(replace(error, joint=evil, unit=evil) for error in evaluation.errors)
+    robot = replace(evaluation.robot, description=evil, source=evil)
+    bad = replace(evaluation, errors=errors, robot=robot, notes=(evil,), joint_names=(evil,) * 6)
+    bad_comparison = replace(comparison, labels=(evil, evil + "2"), evaluations=(bad, bad))
+    html = render_page(evil, [report_run(bad, evil)], [report_comparison(bad_comparison)], [evil])
+    assert "<script>alert" not in html
+    assert html.count("</script") == 2
+    assert data_of(html)[0]["joints"][0]["name"] == evil
+
+
+def test_comparison_is_a_table_and_a_figure(page, comparison):
+    section = re.search(r'<section class="comparison".*?</section>', page.read_text(), re.DOTALL)[0]
+    assert "as it is" in section
+    assert "one N m off" in section
+    cells = re.findall(r"<td>([^<]*)</td>", section)
+    row = cells[cells.index("elbow_joint") :][:4]
+    assert [float(c) for c in row[1:3]] == pytest.approx(comparison.rmse[:, 2], rel=0.01)
+    assert row[3] == "N m"
+    assert "mean" in cells
+    assert "<svg" in section
+
+
+def test_report_verb_writes_the_page(evaluation, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_evaluation(evaluation, tmp_path / "result")
+    assert cli.main(["report", "result", "--labels", "arm"]) == 0
+    assert capsys.readouterr().out == "report.html\n"
+    assert "<h2>arm</h2>" in (tmp_path / "report.html").read_text()
+    assert cli.main(["report", "result"]) == 2
+    assert "exists already" in capsys.readouterr().err
+
+
+# ---- the page in a browser -------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def browser(profile, *flags):
+    if not (CHROMIUM and DRIVER):
+        pytest.skip("no Chromium here: install the packages chromium and chromium-driver")
+    webdriver = pytest.importorskip("selenium.webdriver")
+    options = webdriver.ChromeOptions()
+    options.binary_location = CHROMIUM
+    for flag in (*FLAGS, f"--user-data-dir={profile}", *flags):
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    service = webdriver.ChromeService(executable_path=DRIVER)
+    driver = webdriver.Chrome(options=options, service=service)
+    try:
+        yield driver
+    finally:
+        driver.quit()
+
+
+@pytest.fixture(scope="module")
+def opened(page, tmp_path_factory):
+    with browser(tmp_path_factory.mktemp("profile")) as driver:
+        driver.get(page.as_uri())
+        yield driver
+
+
+@pytest.fixture
+def section(opened):
+    """The first run, rewound, with the keyboard on the page."""
+    from selenium.webdriver.common.by import By
+
+    opened.execute_script("document.activeElement.blur(); window.scrollTo(0, 0);")
+    found = opened.find_element(By.ID, "run-1")
+    press(opened, "Home")
+    press(opened, "0")
+    assert time_of(found) == 0.0
+    return found
+
+
+def press(driver, key):
+    from selenium.webdriver import ActionChains
+    from selenium.webdriver.common.keys import Keys
+
+    named = {"Home": Keys.HOME, "Left": Keys.ARROW_LEFT, "Right": Keys.ARROW_RIGHT}
+    ActionChains(driver).send_keys(named.get(key, key)).perform()
+
+
+def child(section, selector):
+    from selenium.webdriver.common.by import By
+
+    return section.find_element(By.CSS_SELECTOR, selector)
+
+
+def time_of(section):
+    return float(section.get_attribute("data-time"))
+
+
+def pixels(driver, canvas):
+    return driver.execute_script("return arguments[0].toDataURL();", canvas)
+
+
+def wait_until(condition, what, seconds=10.0):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, f"{what}: not within {seconds} s"
+        time.sleep(0.03)
+
+
+def complaints(driver):
+    return [entry for entry in driver.get_log("browser") if entry["level"] in ("SEVERE", "ERROR")]
+
+
+def test_browser_shows_robot_and_plots_without_complaints(opened, section):
+    assert not child(section, ".no-webgl").is_displayed()
+    robot = child(section, ".robot canvas")
+    blank = opened.execute_script(
+        "const c = document.createElement('canvas'); c.width = arguments[0].width;"
+        "c.height = arguments[0].height; return c.toDataURL();",
+        robot,
+    )
+    assert pixels(opened, robot) != blank
+    ink = opened.execute_script(
+        "return [...arguments[0].querySelectorAll('.plot-base')].map((c) => c.getContext('2d')"
+        ".getImageData(0, 0, c.width, c.height).data.filter((v, i) => i % 4 === 3 && v > 0).length);",
+        section,
+    )
+    assert len(ink) == 12
+    assert min(ink) > 1000
+    assert complaints(opened) == []
+
+
+@pytest.mark.parametrize("how", ["click", "space key"])
+def test_playing_moves_the_time_and_the_robot(opened, section, how):
+    play, robot = child(section, ".play"), child(section, ".robot canvas")
+    before = pixels(opened, robot)
+
+    def toggle():
+        if how == "click":
+            play.click()
+        else:
+            press(opened, " ")
+
+    toggle()
+    assert play.text == "Pause"
+    wait_until(lambda: time_of(section) > 0.2, "time of the player")
+    toggle()
+    assert play.text == "Play"
+    stopped = time_of(section)
+    assert pixels(opened, robot) != before
+    time.sleep(0.2)
+    assert time_of(section) == stopped
+    assert complaints(opened) == []
+
+
+def test_scrubbing_sets_time_and_robot(opened, section):
+    slider, robot = child(section, ".scrub"), child(section, ".robot canvas")
+    before = pixels(opened, robot)
+    opened.execute_script(
+        "arguments[0].value = 3.25; arguments[0].dispatchEvent(new Event('input'));", slider
+    )
+    assert time_of(section) == pytest.approx(3.25, abs=1e-3)
+    assert "3.25 s" in child(section, ".clock").text
+    assert pixels(opened, robot) != before
+
+
+def test_keys_step_zoom_and_reset(opened, section):
+    plot = child(section, ".plot-base")
+    whole = pixels(opened, plot)
+    press(opened, "Right")
+    assert time_of(section) == pytest.approx(0.1, abs=1e-3)
+    press(opened, "Left")
+    assert time_of(section) == 0.0
+    press(opened, "+")
+    zoomed = pixels(opened, plot)
+    assert zoomed != whole
+    press(opened, ">")
+    assert pixels(opened, plot) not in (zoomed, whole)
+    press(opened, "0")
+    assert pixels(opened, plot) == whole
+    assert complaints(opened) == []
+
+
+def test_the_view_turns_and_resets(opened, section):
+    robot = child(section, ".robot canvas")
+    home = pixels(opened, robot)
+    opened.execute_script("arguments[0].focus();", robot)
+    press(opened, "Left")
+    assert pixels(opened, robot) != home
+    child(section, ".reset-view").click()
+    assert pixels(opened, robot) == home
+
+
+def test_a_page_of_a_browser_without_webgl_says_so_and_still_plots(page, tmp_path):
+    with browser(tmp_path, "--disable-3d-apis") as driver:
+        driver.get(page.as_uri())
+        from selenium.webdriver.common.by import By
+
+        section = driver.find_element(By.ID, "run-1")
+        assert "offers no WebGL" in child(section, ".no-webgl").text
+        plot = child(section, ".plot-base")
+        whole = pixels(driver, plot)
+        child(section, ".play").click()
+        wait_until(lambda: time_of(section) > 0.05, "time of the player")
+        child(section, ".play").click()
+        press(driver, "+")
+        ink = "return arguments[0].getContext('2d').getImageData(0, 0, 800, 300).data.some((v) => v > 0);"
+        assert driver.execute_script(ink, plot)
+        assert len(whole) > 2000
+        assert complaints(driver) == []
+
+
+def test_paper_shows_the_plots(page, tmp_path):
+    pdftoppm = shutil.which("pdftoppm")
+    if not (CHROMIUM and pdftoppm):
+        pytest.skip("needs the packages chromium and poppler-utils, to print and to look at it")
+    printed, profile = (
+        f"--print-to-pdf={tmp_path / 'page.pdf'}",
+        f"--user-data-dir={tmp_path}/profile",
+    )
+    command = [CHROMIUM, *FLAGS, profile, printed, "--virtual-time-budget=1000", page.as_uri()]
+    subprocess.run(command, check=True, timeout=60, capture_output=True)
+    subprocess.run([pdftoppm, "-r", "90", tmp_path / "page.pdf", tmp_path / "sheet"], check=True)
+    from matplotlib.image import imread
+
+    sheets = [imread(file) for file in sorted(tmp_path.glob("sheet*.ppm"))]
+    vermilion = sum(
+        int(np.sum((s[..., 0] > 180) & (s[..., 1] < 140) & (s[..., 2] < 80))) for s in sheets
+    )
+    assert vermilion > 600  # the curves of computed torques; the legends alone have fewer than 300
+
+
+# ---- videos and the demonstration ------------------------------------------------------------------------------------
+
+
+def test_video_shows_the_robot_in_motion(evaluation, tmp_path):
+    from PIL import Image, ImageChops
+
+    from inverse_dynamics.video import VideoError, write_video
+
+    file = tmp_path / "film.gif"
+    try:
+        write_video(evaluation, file, seconds=0.6)
+    except VideoError as error:
+        pytest.skip(str(error))
+    with Image.open(file) as film:
+        assert film.n_frames == 6
+        frames = []
+        for k in range(film.n_frames):
+            film.seek(k)
+            frames.append(film.convert("RGB"))
+    half = (0, 0, 360, 480)
+    for before, after in pairwise(frames):
+        moved = ImageChops.difference(before.crop(half), after.crop(half)).convert("L")
+        assert sum(moved.point(lambda value: value > 30).histogram()[1:]) > 500
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_video_says_so_where_nothing_can_be_drawn(evaluation, tmp_path, monkeypatch):
+    from inverse_dynamics.video import VideoError, write_video
+
+    monkeypatch.setenv("MUJOCO_GL", "no_such_backend")
+    with pytest.raises(VideoError, match=r"isn't possible here.*no_such_backend.*libosmesa6"):
+        write_video(evaluation, tmp_path / "film.gif", seconds=0.2)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_video_refuses_other_formats(evaluation, tmp_path):
+    from inverse_dynamics.video import write_video
+
+    with pytest.raises(UserError, match="gif"):
+        write_video(evaluation, tmp_path / "film.mp4")
+
+
+def test_demo_shows_the_simulated_robots_and_how_to_get_the_others(tmp_path, capsys, monkeypatch):
+    monkeypatch.delenv("IDS_DATA_DIR", raising=False)
+    out = tmp_path / "demo"
+    assert cli.main(["demo", "--quick", "--out", str(out)]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "Panda, simulated" in printed
+    assert "unisa-acg/inverse-dynamics-solver" in printed
+    assert str(out / "report.html") in printed
+    html = (out / "report.html").read_text()
+    assert "Two robots" in html
+    assert "there is no recording ur10_exciting_trajectory" in html
+    assert (out / "ur10_simulated" / "torques.pdf").is_file()
+    assert json.loads((out / "demo.json").read_text())["robots"]["panda_simulated"]["samples"] > 0
+    assert cli.main(["demo", "--quick", "--out", str(out)]) == 2
+    assert "exists already" in capsys.readouterr().err
+
+
+def test_demo_that_fails_leaves_nothing(tmp_path, monkeypatch):
+    from inverse_dynamics import demo
+
+    def fails(*arguments, **options):
+        raise UserError("no page today")
+
+    monkeypatch.setattr("inverse_dynamics.report.write_page", fails)
+    monkeypatch.setattr(demo, "SIMULATED", ("ur10_simulated",))
+    with pytest.raises(UserError, match="no page today"):
+        demo.run_demo(tmp_path / "demo", quick=True)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_demo_wants_recordings_where_they_are_said_to_be(tmp_path, capsys, monkeypatch):
+    assert cli.main(["demo", "--recordings", str(tmp_path), "--out", str(tmp_path / "demo")]) == 2
+    assert "holds no recording ur10_exciting_trajectory" in capsys.readouterr().err
+    monkeypatch.setenv("IDS_DATA_DIR", str(tmp_path))
+    assert cli.main(["demo", "--out", str(tmp_path / "demo")]) == 2
+    assert "IDS_DATA_DIR: expected a directory with recordings" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
