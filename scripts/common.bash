@@ -38,6 +38,8 @@ apt_packages=(
   libeigen3-dev libgtest-dev liborocos-kdl-dev liburdfdom-dev libyaml-cpp-dev
   # Pictures of simulated robots without a screen.
   libosmesa6
+  # Tests of the report's page: in a browser, and on paper.
+  chromium chromium-driver poppler-utils
 )
 
 say() { printf '==> %s\n' "$*"; }
