@@ -422,7 +422,6 @@ def test_demo_that_fails_leaves_nothing(tmp_path, monkeypatch):
         raise UserError("no page today")
 
     monkeypatch.setattr("inverse_dynamics.report.write_page", fails)
-    monkeypatch.setattr(demo, "SIMULATED", ("ur10_simulated",))
     with pytest.raises(UserError, match="no page today"):
         demo.run_demo(tmp_path / "demo", quick=True)
     assert list(tmp_path.iterdir()) == []
