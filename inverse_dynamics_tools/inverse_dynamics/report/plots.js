@@ -32,6 +32,7 @@ function ticks(low, high, count) {
 
 // A number short enough for an axis or a readout, with the given digits where they say something.
 function short(value, digits) {
+  if (value === 0 && digits > 4) return "0";
   if (value === 0 || Math.abs(value) >= 1e-3) return value.toFixed(digits);
   return value.toExponential(1);
 }
@@ -124,7 +125,7 @@ class Plot {
     context.fillStyle = "#333";
     context.strokeStyle = "#e3e6ea";
     context.lineWidth = 1;
-    const vertical = ticks(this.range[0], this.range[1], height / 34);
+    const vertical = ticks(this.range[0], this.range[1], height / 26);
     context.textAlign = "right";
     context.textBaseline = "middle";
     for (const value of vertical.values) {
