@@ -74,7 +74,7 @@ Eigen::MatrixXd atInstants(const std::vector<Piece>& pieces,
       ++p;
     }
     const Eigen::MatrixXd& values = qdd[p];
-    const double last = static_cast<double>(values.cols() - 1);
+    const auto last = static_cast<double>(values.cols() - 1);
     const double at = std::max((time[k] - pieces[p].begin) / pieces[p].period, 0.0);
     if (at < last) {
       const auto before = static_cast<Index>(at);
@@ -89,6 +89,32 @@ Eigen::MatrixXd atInstants(const std::vector<Piece>& pieces,
     }
   }
   return result;
+}
+
+void requirePieces(const std::vector<Piece>& pieces, const SampleRules& rules,
+                   const SampleReport& samples) {
+  if (pieces.empty()) {
+    throw EvaluationError(
+        "low-pass accelerations", "samples",
+        std::to_string(rules.shortest_piece) + " or more that differ, without a gap",
+        std::to_string((!samples.repeated).count()) + " with gaps of more than " +
+            std::to_string(rules.longest_gap) + " s between them",
+        "record for longer, or take backward differences");
+  }
+}
+
+// Low-pass and derivative of each piece.
+std::vector<Eigen::MatrixXd> filterPieces(const std::vector<Piece>& pieces,
+                                          const std::vector<Stretch>& stretches,
+                                          const FilterChoice& filter) {
+  std::vector<Eigen::MatrixXd> qdd;
+  qdd.reserve(pieces.size());
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    const double period = pieces[p].period;
+    qdd.push_back(
+        derivative(lowPass(stretches[p].qd, 1.0 / period, filter.cutoff, filter.order), period));
+  }
+  return qdd;
 }
 
 }  // namespace
@@ -143,17 +169,11 @@ AccelerationEstimate lowPassAccelerations(const Eigen::Ref<const Eigen::VectorXd
   AccelerationEstimate estimate;
   estimate.samples = examineSamples(time, q, qd, effort, rules);
   const std::vector<Piece> pieces = cutPieces(estimate.samples);
-  if (pieces.empty()) {
-    throw EvaluationError(
-        "low-pass accelerations", "samples",
-        std::to_string(rules.shortest_piece) + " or more that differ, without a gap",
-        std::to_string((!estimate.samples.repeated).count()) + " with gaps of more than " +
-            std::to_string(rules.longest_gap) + " s between them",
-        "record for longer, or take backward differences");
-  }
+  requirePieces(pieces, rules, estimate.samples);
 
   // equidistant samples, as the filter and the spectra need them
   std::vector<Stretch> stretches;
+  stretches.reserve(pieces.size());
   for (const Piece& piece : pieces) {
     stretches.push_back({equidistant(estimate.samples.time, q, piece),
                          equidistant(estimate.samples.time, qd, piece)});
@@ -172,14 +192,7 @@ AccelerationEstimate lowPassAccelerations(const Eigen::Ref<const Eigen::VectorXd
   }
   filter.method = "zero-phase Butterworth low-pass of the velocities, then central differences";
 
-  std::vector<Eigen::MatrixXd> qdd;
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    const double period = pieces[p].period;
-    const Eigen::MatrixXd smooth =
-        lowPass(stretches[p].qd, 1.0 / period, filter.cutoff, options.order);
-    qdd.push_back(derivative(smooth, period));
-  }
-  estimate.qdd = atInstants(pieces, qdd, estimate.samples.time);
+  estimate.qdd = atInstants(pieces, filterPieces(pieces, stretches, filter), estimate.samples.time);
   return estimate;
 }
 

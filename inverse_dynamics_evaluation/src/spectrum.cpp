@@ -75,16 +75,35 @@ void addSegment(const Stretch& stretch, Eigen::Index j, Eigen::Index begin,
   }
 }
 
-}  // namespace
-
-VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sampling_frequency) {
-  // segments as long as the longest stretch allows
+// Samples of a segment: as many as the longest stretch allows, up to 20 s.
+Eigen::Index segmentLength(const std::vector<Stretch>& stretches, double sampling_frequency) {
   Eigen::Index longest = 0;
   for (const Stretch& stretch : stretches) {
     longest = std::max(longest, stretch.qd.cols());
   }
-  const Eigen::Index length =
-      std::min(longest, static_cast<Eigen::Index>(std::ceil(kSegmentSeconds * sampling_frequency)));
+  return std::min(longest,
+                  static_cast<Eigen::Index>(std::ceil(kSegmentSeconds * sampling_frequency)));
+}
+
+// Where the segments of a stretch begin; the last one ends where the stretch ends.
+std::vector<Eigen::Index> segmentBegins(Eigen::Index samples, Eigen::Index length) {
+  const Eigen::Index spare = samples - length;
+  if (spare < 0) {
+    return {};
+  }
+  const Eigen::Index half = std::max<Eigen::Index>(length / 2, 1);
+  const Eigen::Index steps = std::min((spare + half - 1) / half, kMostSegments - 1);
+  std::vector<Eigen::Index> begins = {0};
+  for (Eigen::Index s = 1; s <= steps; ++s) {
+    begins.push_back(s * spare / steps);
+  }
+  return begins;
+}
+
+}  // namespace
+
+VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sampling_frequency) {
+  const Eigen::Index length = segmentLength(stretches, sampling_frequency);
   Eigen::Index padded = 1;
   while (padded < length) {
     padded *= 2;
@@ -97,21 +116,12 @@ VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sa
   spectra.total = Eigen::ArrayXXd::Zero(frequencies, joints);
   spectra.common = Eigen::ArrayXXd::Zero(frequencies, joints);
 
-  // all segments of all stretches; the last one ends where the stretch ends
   const Eigen::ArrayXd window = hann(length);
   Eigen::FFT<double> fft;
   std::vector<Complex> signal(static_cast<std::size_t>(padded), Complex(0.0, 0.0));
   std::vector<Complex> transform;
   for (const Stretch& stretch : stretches) {
-    const Eigen::Index spare = stretch.qd.cols() - length;
-    if (spare < 0) {
-      continue;
-    }
-    const Eigen::Index overlapping =
-        (spare + length / 2 - 1) / std::max<Eigen::Index>(length / 2, 1);
-    const Eigen::Index steps = std::min(overlapping, kMostSegments - 1);
-    for (Eigen::Index s = 0; s <= steps; ++s) {
-      const Eigen::Index begin = steps == 0 ? 0 : s * spare / steps;
+    for (const Eigen::Index begin : segmentBegins(stretch.qd.cols(), length)) {
       for (Eigen::Index j = 0; j < joints; ++j) {
         addSegment(stretch, j, begin, sampling_frequency, window, fft, signal, transform, spectra);
       }
