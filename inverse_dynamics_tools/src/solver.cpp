@@ -60,30 +60,30 @@ class Solver {
 
   Array torques(const Array& q, const Array& qd, const Array& qdd) const {
     const ConstMap q_in = states(q, "q"), qd_in = states(qd, "qd"), qdd_in = states(qdd, "qdd");
-    return vectors(q, [&](Map out) { get().getTorquesBatch(q_in, qd_in, qdd_in, out); });
+    return vectors(q, [&](Map& out) { get().getTorquesBatch(q_in, qd_in, qdd_in, out); });
   }
   Array coriolisVector(const Array& q, const Array& qd) const {
     const ConstMap q_in = states(q, "q"), qd_in = states(qd, "qd");
-    return vectors(q, [&](Map out) { get().getCoriolisVectorBatch(q_in, qd_in, out); });
+    return vectors(q, [&](Map& out) { get().getCoriolisVectorBatch(q_in, qd_in, out); });
   }
   Array gravityVector(const Array& q) const {
     const ConstMap q_in = states(q, "q");
-    return vectors(q, [&](Map out) { get().getGravityVectorBatch(q_in, out); });
+    return vectors(q, [&](Map& out) { get().getGravityVectorBatch(q_in, out); });
   }
   Array frictionVector(const Array& qd) const {
     const ConstMap qd_in = states(qd, "qd");
-    return vectors(qd, [&](Map out) { get().getFrictionVectorBatch(qd_in, out); });
+    return vectors(qd, [&](Map& out) { get().getFrictionVectorBatch(qd_in, out); });
   }
   py::array inertiaMatrix(const Array& q) const {
     const ConstMap q_in = states(q, "q");
-    return matrices(q, [&](Map out) { get().getInertiaMatrixBatch(q_in, out); });
+    return matrices(q, [&](Map& out) { get().getInertiaMatrixBatch(q_in, out); });
   }
   py::tuple dynamicComponents(const Array& q, const Array& qd) const {
     const ConstMap q_in = states(q, "q"), qd_in = states(qd, "qd");
     Array c = like(q), g = like(q);
     Map c_out = columns(c), g_out = columns(g);
     const py::array H = matrices(
-        q, [&](Map H_out) { get().getDynamicComponentsBatch(q_in, qd_in, H_out, c_out, g_out); });
+        q, [&](Map& H_out) { get().getDynamicComponentsBatch(q_in, qd_in, H_out, c_out, g_out); });
     return py::make_tuple(H, c, g);
   }
 
@@ -100,7 +100,7 @@ class Solver {
   template <class Compute>
   static Array vectors(const Array& like_this, Compute compute) {
     Array result = like(like_this);
-    const Map out = columns(result);
+    Map out = columns(result);
     {
       const py::gil_scoped_release release;
       compute(out);
@@ -119,7 +119,7 @@ class Solver {
       strides.insert(strides.begin(), n * n * size);
     }
     py::array_t<double> result(shape, strides);
-    const Map out(result.mutable_data(), n, n * (q.ndim() == 2 ? q.shape(0) : 1));
+    Map out(result.mutable_data(), n, n * (q.ndim() == 2 ? q.shape(0) : 1));
     {
       const py::gil_scoped_release release;
       compute(out);
