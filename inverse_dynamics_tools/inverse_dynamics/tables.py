@@ -38,7 +38,7 @@ def error_table(evaluation: Evaluation) -> Table:
             figure(error.mae),
             figure(error.rmse),
             _percent(error.nrmse),
-            f"{error.bias:+.3f}",
+            f"{error.bias:+.3g}" if abs(error.bias) < 0.1 else f"{error.bias:+.3f}",
             _number(error.r2),
             *([figure(kept.rmse)] if left_out else []),
         )
