@@ -292,7 +292,7 @@ class Tree {
 
   std::string linkOf(const Item& joint, const char* tag) const {
     const XMLElement& end = joint.child(joint.element(), tag, "");
-    const std::string name = joint.attribute(end, "link");
+    std::string name = joint.attribute(end, "link");
     if (links_.count(name) == 0) {
       throw ModelError(joint.where(end), Item::tag(end), "a link of the robot", "'" + name + "'",
                        "define it, or correct the name");

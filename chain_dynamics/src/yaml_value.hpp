@@ -25,8 +25,8 @@ namespace chain_dynamics {
 /// One value: the node, its file, and what messages call it.
 class YamlValue {
  public:
-  YamlValue(YAML::Node node, std::string file, std::string what)
-      : node_(std::move(node)), file_(std::move(file)), what_(std::move(what)) {}
+  YamlValue(const YAML::Node& node, std::string file, std::string what)
+      : node_(node), file_(std::move(file)), what_(std::move(what)) {}
 
   /// The one document of a text.
   static YamlValue ofText(const std::string& text, const std::string& file);

@@ -9,8 +9,8 @@ using inverse_dynamics_solver::InvalidParameterValueException;
 
 auto InverseDynamicsSolverPendulum::configure(const Configuration& configuration) -> JointInfo {
   // Read and check; whatever throws here leaves the solver as it was.
-  const double mass = configuration.require<double>("mass");
-  const double length = configuration.require<double>("length");
+  const auto mass = configuration.require<double>("mass");
+  const auto length = configuration.require<double>("length");
   const double damping = configuration.get<double>("damping").value_or(0.0);
   if (!(mass > 0.0) || !(length > 0.0)) {
     throw InvalidParameterValueException(inverse_dynamics_solver::errorText(
