@@ -19,11 +19,14 @@ const char* const kSource = "source the workspace that has it: source install/lo
 /// True from the moment when static objects are being destroyed.
 std::atomic<bool> exiting{false};
 
-/// Made after the first solver, hence after class_loader's static objects, hence destroyed before
-/// them.
-struct ExitNotice {
-  ~ExitNotice() { exiting = true; }
-};
+/// Call it after class_loader was used: what tells of the exit is made after class_loader's static
+/// objects, and hence destroyed before them.
+void watchForExit() {
+  struct Notice {
+    ~Notice() { exiting = true; }
+  };
+  static const Notice kNotice;
+}
 
 /// Owner of an object of class_loader, or of one whose code is in a plugin library.
 ///
@@ -141,22 +144,25 @@ std::shared_ptr<InverseDynamicsSolver> SolverLoader::load(const std::string& nam
   const std::lock_guard<std::mutex> lock(implementation_->mutex);
   const std::shared_ptr<PluginLoader>& loader = implementation_->loader;
   const std::string where = "solver plugin '" + name + "'";
+  std::string why;
   try {
     std::unique_ptr<LoadedSolver> made(
         new LoadedSolver{loader, loader->createUniqueInstance(name)});
-    static const ExitNotice kNotice;
+    watchForExit();
     const std::shared_ptr<LoadedSolver> loaded = ownUnlessExiting(std::move(made));
     return {loaded, loaded->solver.get()};
   } catch (const pluginlib::CreateClassException&) {
-    throw PluginNotFoundException(errorText(
+    why = errorText(
         where, "its library has no such solver",
         "class " + loader->getClassType(name) + " made with this version of the interface",
         "none, or one made with another version",
-        "rebuild package " + loader->getClassPackage(name) + " against this workspace"));
+        "rebuild package " + loader->getClassPackage(name) + " against this workspace");
   } catch (const pluginlib::PluginlibException& e) {
-    throw PluginNotFoundException(errorText(where, "its library can't be opened", "", e.what(),
-                                            "rebuild package " + loader->getClassPackage(name)));
+    why = errorText(where, "its library can't be opened", "", e.what(),
+                    "rebuild package " + loader->getClassPackage(name));
   }
+  watchForExit();
+  throw PluginNotFoundException(why);
 }
 
 }  // namespace inverse_dynamics_solver
