@@ -35,7 +35,7 @@ apt_packages=(
   ament-cmake ament-cmake-googletest ament-cmake-pytest ament-cmake-python
   libament-index-cpp-dev python3-ament-index libclass-loader-dev pluginlib-dev
   # Mathematics, robot descriptions, data files, tests.
-  libeigen3-dev libgtest-dev liborocos-kdl-dev liburdfdom-dev libyaml-cpp-dev
+  libeigen3-dev libgtest-dev liborocos-kdl-dev libtinyxml2-dev liburdfdom-dev libyaml-cpp-dev
   # Pictures of simulated robots without a screen.
   libosmesa6
   # Tests of the report's page: in a browser, and on paper.

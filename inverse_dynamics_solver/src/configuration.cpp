@@ -74,6 +74,7 @@ Configuration readConfiguration(const Parameters& parameters, const std::string&
 
   configuration.root = configuration.get<std::string>("root").value_or("");
   configuration.tip = configuration.get<std::string>("tip").value_or("");
+  configuration.allow_massless = configuration.get<bool>("allow_massless").value_or(false);
   configuration.friction = configuration.get<bool>("friction").value_or(true);
   readGravity(configuration);
   readAttached(configuration);
@@ -93,6 +94,7 @@ chain_dynamics::Chain chainFromDescription(const Configuration& configuration) {
   options.tip = configuration.tip;
   options.gravity = configuration.gravity;
   options.lump_attached = configuration.lump_attached;
+  options.allow_massless = configuration.allow_massless;
   options.locked_position = configuration.locked_position;
   try {
     return chain_dynamics::chainFromUrdf(configuration.robot_description, options);

@@ -116,6 +116,17 @@ TEST(ChainFromDescription, TakesRootTipGravityAndWhatHangsOnTheChain) {
   EXPECT_NEAR(moment({{"tip", "tool"}, {"locked_joints.slide", 0.5}}), 1.5, 1e-15);
 }
 
+TEST(ChainFromDescription, TakesMasslessBodiesOnlyWhereAllowed) {
+  const std::string massless = R"(<robot name="arm"><link name="base"/><link name="arm"/>
+    <joint name="shoulder" type="continuous"><parent link="base"/><child link="arm"/></joint></robot>)";
+  const auto chain = [&](Parameters parameters) {
+    return chainFromDescription(readConfiguration(parameters, "", massless));
+  };
+  EXPECT_NE(errorOf<InvalidRobotDescriptionException>([&] { chain({}); }).find("massless"),
+            std::string::npos);
+  EXPECT_EQ(chain({{"allow_massless", true}}).links()[0].mass, 0.0);
+}
+
 TEST(ChainFromDescription, RefusesWhatIsNoRobot) {
   const auto error = [](Parameters parameters, const std::string& text) {
     return errorOf<InvalidRobotDescriptionException>(

@@ -218,15 +218,15 @@ struct Transform {
   /// `I_A = X_AB I_B`: the same body, stated in frame A [Featherstone 2008, sec. 2.13].
   friend SpatialInertia<Scalar> operator*(const Transform& X_AB,
                                           const SpatialInertia<Scalar>& I_B) {
-    const Vector3<Scalar>& p = X_AB.p;
+    const Vector3<Scalar>& p_AB = X_AB.p;
     const Vector3<Scalar> mc = X_AB.R * I_B.first_moment;  // about the origin of B, axes of A
 
     // I_A = R I R' - [mc]x [p]x - [p]x [mc]x - m [p]x [p]x, written with k = mc + m p / 2
-    const Vector3<Scalar> k = mc + (Scalar(0.5) * I_B.mass) * p;
-    const Matrix3<Scalar> k_p = k * p.transpose();
+    const Vector3<Scalar> k = mc + (Scalar(0.5) * I_B.mass) * p_AB;
+    const Matrix3<Scalar> k_p = k * p_AB.transpose();
     Matrix3<Scalar> inertia = X_AB.R * I_B.inertia * X_AB.R.transpose() - k_p - k_p.transpose();
-    inertia.diagonal().array() += Scalar(2) * k.dot(p);
-    return {I_B.mass, mc + I_B.mass * p, inertia};
+    inertia.diagonal().array() += Scalar(2) * k.dot(p_AB);
+    return {I_B.mass, mc + I_B.mass * p_AB, inertia};
   }
 
   /// `V_B` of a given `V_A`, without forming the inverse.

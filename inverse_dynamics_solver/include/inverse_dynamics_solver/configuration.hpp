@@ -20,13 +20,17 @@ namespace inverse_dynamics_solver {
 
 /// The parameters every solver understands, read and checked, and a reader for a solver's own.
 ///
-/// | parameter below the namespace | type         | default       |
-/// |-------------------------------|--------------|---------------|
-/// | root                          | string       | "": the URDF's root link |
-/// | tip                           | string       | "": the URDF's leaf, if all leaves have the
-/// same movable joints | | gravity                       | 3 doubles    | [0, 0, -9.81] | |
-/// attached                      | string       | "lump"        | | locked_joints.<joint>         |
-/// double       | 0             | | friction                      | bool         | true          |
+// clang-format off
+/// | parameter below the namespace | type      | default                                     |
+/// |-------------------------------|-----------|---------------------------------------------|
+/// | root                          | string    | "": the URDF's root link                    |
+/// | tip                           | string    | "": its leaf, if that leaves no choice      |
+/// | gravity                       | 3 doubles | [0, 0, -9.81]                               |
+/// | attached                      | string    | "lump"                                      |
+/// | locked_joints.<joint>         | double    | 0                                           |
+/// | allow_massless                | bool      | false                                       |
+/// | friction                      | bool      | true                                        |
+// clang-format on
 struct Configuration {
   /// URDF text; empty if there is none.
   std::string robot_description;
@@ -43,6 +47,9 @@ struct Configuration {
   /// Whether what hangs on the chain beside it or beyond the tip counts (`attached`: "lump" or
   /// "ignore").
   bool lump_attached = true;
+
+  /// Whether a movable body without any mass is taken as it is, instead of being an error.
+  bool allow_massless = false;
 
   /// Whether a solver adds its friction model: false where the robot's controller compensates
   /// friction.
