@@ -36,6 +36,7 @@ class JointLog:
     """Joint states of one chain over time.
 
     N messages, n joints in the order of `joint_names`; rad, rad/s, N m (prismatic m, m/s, N).
+    `effort` is as recorded, so A where it is a current: see effort_is.
     """
 
     joint_names: tuple[str, ...]
@@ -48,6 +49,7 @@ class JointLog:
     clock: Clock = "header"  # which of the two stamps is the time
     topic: str = "/joint_states"
     storage: Storage = "sqlite3"
+    effort_is: str = ""  # the meaning that the file's format states, of EFFORT_MEANINGS; "": none
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
 
     @property
