@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.thinning import peaks
+
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
@@ -29,7 +31,7 @@ ERROR: dict[str, Any] = {"color": "#2c5f9e", "linewidth": 0.7}
 _RUNS = ("#E69F00", "#0072B2", "#009E73", "#CC79A7", "#56B4E9")  # Okabe and Ito: for all eyes
 _MUTED = "#555555"
 
-_MOST_POINTS = 6000  # of a line; beyond it, lowest and highest of each of half as many stretches
+_MOST_POINTS = 6000  # of a line
 
 _STYLE: Any = {
     "font.size": 8.5,
@@ -196,15 +198,5 @@ def _assumptions(evaluation: Evaluation) -> str:
 
 
 def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """At most _MOST_POINTS points that look the same: lowest and highest of each stretch."""
-    if len(x) <= _MOST_POINTS:
-        return x, y
-    stretch = -(-2 * len(x) // _MOST_POINTS)
-    whole = len(x) // stretch * stretch
-    rows = y[:whole].reshape(-1, stretch)
-    first = np.arange(0, whole, stretch)
-    picked = np.concatenate(
-        [first + rows.argmin(axis=1), first + rows.argmax(axis=1), [len(x) - 1]]
-    )
-    picked = np.unique(picked)
-    return x[picked], y[picked]
+    shown = peaks(y, _MOST_POINTS)
+    return x[shown], y[shown]

@@ -17,7 +17,7 @@ from inverse_dynamics import Solver, cli, evaluate, write_evaluation
 from inverse_dynamics.comparison import compare
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.report import report_comparison, report_run
-from inverse_dynamics.report.page import MAX_SAMPLES, peaks, render_page
+from inverse_dynamics.report.page import MAX_SAMPLES, render_page
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 DRIVER = shutil.which("chromedriver")
@@ -119,14 +119,6 @@ def test_long_recordings_keep_their_peaks(evaluation):
     assert values.min() == np.float32(computed.min())
     assert floats(joint["error"]["values"]).min() == pytest.approx(-70.0)
     assert f"at most {MAX_SAMPLES:,} of them" in html
-
-
-@pytest.mark.parametrize("count", [3, 10, 11, 12, 99, 1000])
-def test_peaks_are_no_more_than_asked_for(count):
-    values = np.random.default_rng(count).normal(size=count)
-    kept = peaks(values, 10)
-    assert len(kept) <= 10
-    assert {0, count - 1, int(values.argmin()), int(values.argmax())} <= set(kept.tolist())
 
 
 def test_names_are_text_and_never_markup(evaluation, comparison):

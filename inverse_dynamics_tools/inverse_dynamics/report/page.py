@@ -18,10 +18,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics.files import write_text_whole
+from inverse_dynamics.thinning import peaks
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from inverse_dynamics.evaluation import JointError
     from inverse_dynamics.joint_log import Floats
 
@@ -188,21 +187,6 @@ def _series(time: Floats, values: Floats) -> dict[str, str]:
         return {"values": _base64(values)}
     kept = peaks(values, MAX_SAMPLES)
     return {"time": _base64(time[kept]), "values": _base64(values[kept])}
-
-
-def peaks(values: Floats, most: int) -> NDArray[np.int64]:
-    """Indices of at most `most` samples, the first and last and the peaks among them.
-
-    Lowest and highest of each of `most` / 2 stretches or fewer.
-    """
-    if len(values) <= most:
-        return np.arange(len(values))
-    stretch = math.ceil(2 * len(values) / (most - 2))
-    starts = np.arange(0, len(values), stretch)
-    pieces = [values[start : start + stretch] for start in starts]
-    lowest = [start + int(np.argmin(piece)) for start, piece in zip(starts, pieces, strict=True)]
-    highest = [start + int(np.argmax(piece)) for start, piece in zip(starts, pieces, strict=True)]
-    return np.unique(np.array([0, *lowest, *highest, len(values) - 1], dtype=np.int64))
 
 
 def _base64(values: Floats) -> str:
