@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// From decoded messages to samples: which joints, which messages, which time.
+///
+///     JointLogBuilder builder("recording: /joint_states", {"joint_1", "joint_2"});
+///     for (const JointSample& sample : messages) builder.add(sample);
+///     const JointLog log = builder.finish();
+///
+/// The rules, said in the notes of the result wherever they change anything:
+///
+/// - Joints are matched by name. Other joints may be there, in any order, in some messages or in
+///   all.
+/// - A message with none of the joints (the gripper's, on the same topic) is left out; one with
+///   only some of them is an error.
+/// - Time is the header's stamp; if no header has one, the time of reception. Stamps are taken as
+///   they are, also where they don't increase: see samples.hpp.
+/// - Arrays that are empty or not as long as the names, and numbers that aren't finite, are errors.
+
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "inverse_dynamics_evaluation/joint_matching.hpp"
+
+namespace inverse_dynamics_evaluation {
+
+/// A recording that doesn't hold what is asked of it.
+///
+/// The text says where, what was expected, what was found, and the remedy.
+class RecordingError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Stamps of N samples; ns since the epoch of whoever wrote them.
+using Stamps = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>;
+
+/// Which stamps are the time: the header's, those of reception, or what is there.
+enum class Clock { kAuto, kHeader, kReceive };
+
+/// `auto`, `header` or `receive`.
+std::string name(Clock clock);
+
+/// The state of some joints in a message, looked at where it lies.
+struct JointSample {
+  using Numbers = Eigen::Map<const Eigen::VectorXd>;
+
+  const std::vector<std::string>& names;
+  Numbers position{nullptr, 0};      ///< rad (prismatic m); as long as the names
+  Numbers velocity{nullptr, 0};      ///< rad/s (prismatic m/s)
+  Numbers effort{nullptr, 0};        ///< as recorded: N m, A, ...
+  Numbers acceleration{nullptr, 0};  ///< rad/s^2 (prismatic m/s^2); empty where none is recorded
+  std::int64_t header_stamp = 0;     ///< ns
+  std::int64_t receive_stamp = 0;    ///< ns
+  Eigen::Index message = 0;          ///< number of its message, counted from 0
+  Eigen::Index point = -1;           ///< number of it in a message with several, counted from 0
+};
+
+/// Joint states of one chain over time: N samples of n joints, a sample a column.
+struct JointLog {
+  std::vector<std::string> joint_names;  ///< n; the order of the rows
+  Stamps header_stamps;                  ///< N; as the publisher wrote them
+  Stamps receive_stamps;                 ///< N; as the recorder wrote them
+  Eigen::MatrixXd q;                     ///< n x N; rad (prismatic m)
+  Eigen::MatrixXd qd;                    ///< n x N; rad/s (prismatic m/s)
+  Eigen::MatrixXd effort;                ///< n x N; as recorded; empty (0 x 0) if none was
+  Eigen::MatrixXd qdd;                   ///< n x N; as recorded; empty (0 x 0) if none was
+  std::vector<Eigen::Index> message;     ///< N; which message each sample is of
+  Clock clock = Clock::kHeader;          ///< which of the stamps is the time
+  std::vector<std::string> notes;        ///< what was left out or assumed, a sentence each
+
+  /// N; those stamps that are the time of the samples.
+  const Stamps& stamps() const { return clock == Clock::kReceive ? receive_stamps : header_stamps; }
+
+  /// N; s since the first sample.
+  Eigen::VectorXd time() const;
+};
+
+/// What a JointLogBuilder is to insist on, and how its texts name things.
+struct JointLogOptions {
+  bool effort_required = true;           ///< else efforts may be absent, from all samples
+  std::string joints_option = "joints";  ///< where a user gives the recording's joint names
+};
+
+/// Collects samples into a JointLog.
+class JointLogBuilder {
+ public:
+  /// @param where   file and topic, for error texts.
+  /// @param joints  names in the order wanted; none: those of the first sample.
+  /// @throws RecordingError: a name twice.
+  JointLogBuilder(std::string where, std::vector<std::string> joints, JointLogOptions options = {});
+
+  /// Adds a sample. @throws RecordingError by the rules at the top of this file.
+  void add(const JointSample& sample);
+
+  /// Everything added. @throws RecordingError: no sample with the joints.
+  JointLog finish(Clock clock = Clock::kAuto) const;
+
+ private:
+  struct Column {
+    const char* field;
+    const char* reason;  // why it is needed
+    std::vector<double> numbers;
+  };
+
+  bool matches(const JointSample& sample);
+  void append(Column& column, const JointSample::Numbers& numbers, const JointSample& sample,
+              bool required);
+  std::string place(const JointSample& sample) const;
+  Eigen::MatrixXd matrix(const Column& column) const;
+
+  std::string where_;
+  JointLogOptions options_;
+  JointMatching matching_;
+  std::vector<std::string> other_names_;  // of the first message left out
+  Eigen::Index samples_ = 0;              // all that came
+  std::vector<std::int64_t> header_stamps_, receive_stamps_;
+  std::vector<Eigen::Index> message_;
+  Column position_, velocity_, effort_, acceleration_;
+};
+
+}  // namespace inverse_dynamics_evaluation

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Accelerations of a JointLog, by the method a user names, and in words how they came about.
+///
+///     LogAccelerations found = logAccelerations(log, accelerationMethod("auto"));
+///     std::cout << found.summary << "\n";   // zero-phase low-pass, cut-off 1.72 Hz (chosen ...
+///     for (const std::string& sentence : found.findings) std::cout << sentence << "\n";
+
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "inverse_dynamics_evaluation/joint_log.hpp"
+#include "inverse_dynamics_evaluation/samples.hpp"
+
+namespace inverse_dynamics_evaluation {
+
+/// How accelerations are estimated where none are recorded.
+enum class AccelerationMethod {
+  kAuto,                ///< low-pass with a cut-off chosen from the data
+  kLowPass,             ///< zero-phase low-pass of the velocities, then their derivative
+  kBackwardDifference,  ///< backward differences; no filter
+};
+
+/// `auto`, `low-pass` or `backward-difference`.
+std::string name(AccelerationMethod method);
+
+/// The method of that name. @throws EvaluationError: another text.
+AccelerationMethod accelerationMethod(const std::string& name);
+
+/// Accelerations, how they came about, and what was found in the samples.
+struct LogAccelerations {
+  Eigen::MatrixXd qdd;                ///< n x N; rad/s^2 (prismatic m/s^2)
+  std::string summary;                ///< how they came about, in words
+  SampleReport samples;               ///< what was found
+  std::vector<std::string> findings;  ///< what is odd about the samples, a sentence each
+};
+
+/// Accelerations of a log: those recorded, else those estimated.
+///
+/// @param cutoff  Hz, of the low-pass; 0: chosen from the data.
+/// @param rules   which faults of the samples are acted upon.
+/// @throws EvaluationError as lowPassAccelerations() and backwardDifference() do; a cut-off for a
+///         method that has none.
+LogAccelerations logAccelerations(const JointLog& log,
+                                  AccelerationMethod method = AccelerationMethod::kAuto,
+                                  double cutoff = 0, const SampleRules& rules = {});
+
+}  // namespace inverse_dynamics_evaluation

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "inverse_dynamics_evaluation/joint_log.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <utility>
+
+namespace inverse_dynamics_evaluation {
+namespace {
+
+using Eigen::Index;
+
+std::vector<std::string> withoutRepeats(std::vector<std::string> joints) {
+  if (std::set<std::string>(joints.begin(), joints.end()).size() != joints.size()) {
+    throw RecordingError("joints: expected each name once, got " + listed(joints));
+  }
+  return joints;
+}
+
+std::string numberText(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
+Stamps stampsOf(const std::vector<std::int64_t>& stamps) {
+  return Eigen::Map<const Stamps>(stamps.data(), static_cast<Index>(stamps.size()));
+}
+
+}  // namespace
+
+std::string name(Clock clock) {
+  switch (clock) {
+    case Clock::kAuto:
+      return "auto";
+    case Clock::kHeader:
+      return "header";
+    case Clock::kReceive:
+      return "receive";
+  }
+  return "unknown";
+}
+
+Eigen::VectorXd JointLog::time() const {
+  const Stamps& all = stamps();
+  return (all.array() - all[0]).cast<double>() * 1e-9;
+}
+
+JointLogBuilder::JointLogBuilder(std::string where, std::vector<std::string> joints,
+                                 JointLogOptions options)
+    : where_(std::move(where)),
+      options_(std::move(options)),
+      matching_(withoutRepeats(std::move(joints))),
+      position_{"position", "joint positions are needed", {}},
+      velocity_{"velocity", "joint velocities are needed (accelerations come from them)", {}},
+      effort_{"effort", "measured efforts are what computed torques are compared with", {}},
+      acceleration_{"acceleration", "others before it have some", {}} {}
+
+void JointLogBuilder::add(const JointSample& sample) {
+  ++samples_;
+  if (!matches(sample)) {
+    return;
+  }
+  const bool first = message_.empty();
+  append(position_, sample.position, sample, true);
+  append(velocity_, sample.velocity, sample, true);
+  append(effort_, sample.effort, sample,
+         options_.effort_required || (!first && !effort_.numbers.empty()));
+  append(acceleration_, sample.acceleration, sample, !first && !acceleration_.numbers.empty());
+  header_stamps_.push_back(sample.header_stamp);
+  receive_stamps_.push_back(sample.receive_stamp);
+  message_.push_back(sample.message);
+}
+
+JointLog JointLogBuilder::finish(Clock clock) const {
+  if (message_.empty()) {
+    if (samples_ == 0) {
+      throw RecordingError(where_ +
+                           ": expected joint states, got no message; was the robot's driver "
+                           "running while it was recorded?");
+    }
+    throw RecordingError(where_ + ": expected the joints " + listed(matching_.joints()) +
+                         ", got only " + listed(other_names_) +
+                         "; give the recording's names with " + options_.joints_option +
+                         ", in the order of the chain");
+  }
+  JointLog log;
+  log.joint_names = matching_.joints();
+  log.header_stamps = stampsOf(header_stamps_);
+  log.receive_stamps = stampsOf(receive_stamps_);
+  log.q = matrix(position_);
+  log.qd = matrix(velocity_);
+  log.effort = matrix(effort_);
+  log.qdd = matrix(acceleration_);
+  log.message = message_;
+  const Index left_out = samples_ - static_cast<Index>(message_.size());
+  if (left_out > 0) {
+    log.notes.push_back(std::to_string(left_out) + " of " + std::to_string(samples_) +
+                        " messages left out: they hold none of the joints, but " +
+                        listed(other_names_));
+  }
+  log.clock = clock;
+  if (clock == Clock::kAuto) {
+    log.clock = Clock::kHeader;
+    if (log.header_stamps.isZero() && !log.receive_stamps.isZero()) {
+      log.clock = Clock::kReceive;
+      log.notes.emplace_back("no header has a stamp: the time of reception is used");
+    }
+  }
+  return log;
+}
+
+// Whether the sample is of the joints.
+bool JointLogBuilder::matches(const JointSample& sample) {
+  if (matching_.joints().empty()) {
+    if (sample.names.empty()) {
+      throw RecordingError(place(sample) + ": expected joint names, got none; record it again");
+    }
+    matching_ = JointMatching(sample.names);
+  }
+  switch (matching_.match(sample.names)) {
+    case JointMatching::Found::kAll:
+      return true;
+    case JointMatching::Found::kNone:
+      if (other_names_.empty()) {
+        other_names_ = sample.names;
+      }
+      return false;
+    case JointMatching::Found::kMissing:
+      throw RecordingError(place(sample) + ": expected the joints " + listed(matching_.joints()) +
+                           ", got " + listed(sample.names) + "; missing: " +
+                           listed(matching_.culprits()) + "; give the recording's names with " +
+                           options_.joints_option + ", in the order of the chain");
+    case JointMatching::Found::kRepeated:
+      throw RecordingError(place(sample) + ": expected each joint once, got " +
+                           listed(sample.names) + "; repeated: " + listed(matching_.culprits()) +
+                           "; do two drivers publish on this topic?");
+  }
+  return false;
+}
+
+// Appends the numbers of the joints, which must be there if they are required.
+void JointLogBuilder::append(Column& column, const JointSample::Numbers& numbers,
+                             const JointSample& sample, bool required) {
+  const auto names = static_cast<Index>(sample.names.size());
+  const bool late = !message_.empty() && column.numbers.empty();  // absent from those before
+  if (numbers.size() == 0 && !required) {
+    return;
+  }
+  if (numbers.size() != names || late) {
+    const std::string expected =
+        late ? "none, as in those before it" : std::to_string(names) + " numbers, one per name";
+    const std::string got = numbers.size() == 0 ? "an empty array" : std::to_string(numbers.size());
+    throw RecordingError(place(sample) + ": " + column.field + ": expected " + expected + ", got " +
+                         got + "; " + column.reason + ": does the driver publish them?");
+  }
+  for (std::size_t j = 0; j < matching_.columns().size(); ++j) {
+    const double number = numbers[static_cast<Index>(matching_.columns()[j])];
+    if (!std::isfinite(number)) {
+      throw RecordingError(place(sample) + ": " + column.field + " of joint " +
+                           matching_.joints()[j] + ": expected a finite number, got " +
+                           numberText(number) +
+                           "; cut such messages out of the recording, or record it again");
+    }
+    column.numbers.push_back(number);
+  }
+}
+
+// `recording: /joint_states, message 3`, counted from 1.
+std::string JointLogBuilder::place(const JointSample& sample) const {
+  std::string text = where_ + ", message " + std::to_string(sample.message + 1);
+  if (sample.point >= 0) {
+    text += ", point " + std::to_string(sample.point + 1);
+  }
+  return text;
+}
+
+Eigen::MatrixXd JointLogBuilder::matrix(const Column& column) const {
+  if (column.numbers.empty()) {
+    return {};
+  }
+  return Eigen::Map<const Eigen::MatrixXd>(column.numbers.data(),
+                                           static_cast<Index>(matching_.joints().size()),
+                                           static_cast<Index>(message_.size()));
+}
+
+}  // namespace inverse_dynamics_evaluation

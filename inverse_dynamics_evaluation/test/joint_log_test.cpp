@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "inverse_dynamics_evaluation/joint_log.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+namespace inverse_dynamics_evaluation {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+using Strings = std::vector<std::string>;
+using Doubles = std::vector<double>;
+
+// A message of its own: owns what a JointSample looks at.
+struct Message {
+  Strings names;
+  Doubles position, velocity, effort, acceleration;
+  std::int64_t header_stamp = 0, receive_stamp = 0;
+  Eigen::Index number = 0;
+
+  JointSample sample() const {
+    const auto numbers = [](const Doubles& values) {
+      return JointSample::Numbers(values.data(), static_cast<Eigen::Index>(values.size()));
+    };
+    return {names,
+            numbers(position),
+            numbers(velocity),
+            numbers(effort),
+            numbers(acceleration),
+            header_stamp,
+            receive_stamp,
+            number};
+  }
+};
+
+Message armMessage() {
+  return {{"b", "gripper", "a"}, {2, 9, 1}, {20, 90, 10}, {200, 900, 100}, {}, 5, 7, 0};
+}
+
+std::string errorOf(const Message& message, JointLogOptions options = {}) {
+  JointLogBuilder builder("bag: /joint_states", {"a", "b"}, std::move(options));
+  try {
+    builder.add(message.sample());
+    builder.finish();
+  } catch (const RecordingError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(JointLog, MatchesJointsByNameAndLeavesOthersOut) {
+  JointLogBuilder builder("bag", {"a", "b"});
+  builder.add(armMessage().sample());
+  Message other_order{{"a", "b"}, {3, 4}, {30, 40}, {300, 400}, {}, 6, 8, 1};
+  builder.add(other_order.sample());
+  const JointLog log = builder.finish();
+  EXPECT_EQ(log.q, (Eigen::MatrixXd(2, 2) << 1, 3, 2, 4).finished());
+  EXPECT_EQ(log.qd, 10 * log.q);
+  EXPECT_EQ(log.effort, 100 * log.q);
+  EXPECT_EQ(log.qdd.size(), 0);
+  EXPECT_THAT(log.message, ElementsAre(0, 1));
+  EXPECT_TRUE(log.notes.empty());
+}
+
+TEST(JointLog, LeavesMessagesOfOtherJointsOutAndSaysSo) {
+  JointLogBuilder builder("bag", {"a", "b"});
+  Message gripper{{"finger"}, {0}, {0}, {0}, {}, 1, 1, 0};
+  builder.add(gripper.sample());
+  Message arm = armMessage();
+  arm.number = 1;
+  builder.add(arm.sample());
+  const JointLog log = builder.finish();
+  EXPECT_EQ(log.q.cols(), 1);
+  EXPECT_THAT(log.message, ElementsAre(1));
+  EXPECT_THAT(log.notes, ElementsAre("1 of 2 messages left out: they hold none of the joints, but "
+                                     "finger"));
+}
+
+TEST(JointLog, TakesTheJointsOfTheFirstSampleIfNoneAreNamed) {
+  JointLogBuilder builder("bag", {});
+  builder.add(armMessage().sample());
+  EXPECT_EQ(builder.finish().joint_names, (Strings{"b", "gripper", "a"}));
+}
+
+TEST(JointLog, TakesHeadersStampsAndThoseOfReceptionIfNoHeaderHasOne) {
+  for (const bool stamped : {true, false}) {
+    JointLogBuilder builder("bag", {"a", "b"});
+    for (const std::int64_t k : {0, 1}) {
+      Message message = armMessage();
+      message.header_stamp = stamped ? 1'000'000'000 * k : 0;
+      message.receive_stamp = 9 + 2'000'000'000 * k;
+      builder.add(message.sample());
+    }
+    const JointLog log = builder.finish();
+    EXPECT_EQ(log.clock, stamped ? Clock::kHeader : Clock::kReceive);
+    EXPECT_EQ(log.time(), Eigen::Vector2d(0.0, stamped ? 1.0 : 2.0));
+    EXPECT_EQ(log.notes.size(), stamped ? 0U : 1U);
+    EXPECT_EQ(builder.finish(Clock::kReceive).time()[1], 2.0);
+  }
+}
+
+TEST(JointLog, SaysWhichJointsAreMissing) {
+  Message message = armMessage();
+  message.names[0] = "c";
+  EXPECT_EQ(errorOf(message, {true, "--joints"}),
+            "bag: /joint_states, message 1: expected the joints a, b, got c, gripper, a; missing: "
+            "b; give the recording's names with --joints, in the order of the chain");
+}
+
+TEST(JointLog, SaysWhichJointsAreThereTwice) {
+  Message message = armMessage();
+  message.names[1] = "a";
+  EXPECT_THAT(errorOf(message), HasSubstr("expected each joint once, got b, a, a; repeated: a"));
+}
+
+TEST(JointLog, SaysThatNoMessageHasAnyOfTheJoints) {
+  Message message = armMessage();
+  message.names = {"x", "y", "z"};
+  EXPECT_EQ(errorOf(message),
+            "bag: /joint_states: expected the joints a, b, got only x, y, z; give the recording's "
+            "names with joints, in the order of the chain");
+  EXPECT_THAT([] { JointLogBuilder("bag", {"a"}).finish(); },
+              ThrowsMessage<RecordingError>(HasSubstr("expected joint states, got no message")));
+}
+
+TEST(JointLog, SaysWhichArrayIsTooShortOrEmpty) {
+  Message message = armMessage();
+  message.number = 4;
+  message.velocity.clear();
+  EXPECT_EQ(
+      errorOf(message),
+      "bag: /joint_states, message 5: velocity: expected 3 numbers, one per name, got an empty "
+      "array; joint velocities are needed (accelerations come from them): does the driver "
+      "publish them?");
+  message = armMessage();
+  message.effort.pop_back();
+  EXPECT_THAT(errorOf(message), HasSubstr("effort: expected 3 numbers, one per name, got 2"));
+}
+
+TEST(JointLog, SaysWhichNumberIsNotFinite) {
+  Message message = armMessage();
+  message.position[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(errorOf(message),
+              HasSubstr("position of joint b: expected a finite number, got nan"));
+  message = armMessage();
+  message.position[1] = std::numeric_limits<double>::quiet_NaN();  // the gripper's
+  EXPECT_EQ(errorOf(message), "no error");
+}
+
+TEST(JointLog, MayLackEffortsWhereTheyAreNotRequired) {
+  Message message = armMessage();
+  message.effort.clear();
+  EXPECT_THAT(errorOf(message), HasSubstr("effort: expected 3 numbers"));
+  EXPECT_EQ(errorOf(message, {false}), "no error");
+
+  JointLogBuilder builder("bag", {"a", "b"}, {false});
+  builder.add(message.sample());
+  EXPECT_THAT(
+      [&] { builder.add(armMessage().sample()); },
+      ThrowsMessage<RecordingError>(HasSubstr("effort: expected none, as in those before")));
+}
+
+TEST(JointLog, KeepsRecordedAccelerations) {
+  JointLogBuilder builder("bag", {"a", "b"});
+  Message message = armMessage();
+  message.acceleration = {2000, 9000, 1000};
+  builder.add(message.sample());
+  EXPECT_EQ(builder.finish().qdd, Eigen::Vector2d(1000, 2000));
+  EXPECT_THAT([&] { builder.add(armMessage().sample()); },
+              ThrowsMessage<RecordingError>(HasSubstr(
+                  "acceleration: expected 3 numbers, one per name, got an empty array; others "
+                  "before it have some")));
+}
+
+TEST(JointLog, RefusesANameTwice) {
+  EXPECT_THAT(
+      [] {
+        JointLogBuilder("bag", {"a", "a"});
+      },
+      ThrowsMessage<RecordingError>(HasSubstr("expected each name once, got a, a")));
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_evaluation

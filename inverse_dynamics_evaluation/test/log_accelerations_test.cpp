@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "inverse_dynamics_evaluation/log_accelerations.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "inverse_dynamics_evaluation/accelerations.hpp"
+#include "inverse_dynamics_evaluation/error.hpp"
+
+namespace inverse_dynamics_evaluation {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+// A sine of 0.5 Hz, 10 s at 100 Hz.
+JointLog sine() {
+  constexpr Eigen::Index kCount = 1000;
+  const double w = 3.14159265358979323846;
+  JointLog log;
+  log.joint_names = {"a"};
+  log.header_stamps = Stamps::LinSpaced(kCount, 0, 10'000'000 * (kCount - 1));
+  log.receive_stamps = log.header_stamps;
+  const Eigen::RowVectorXd t = log.time().transpose();
+  log.q = (w * t.array()).sin();
+  log.qd = w * (w * t.array()).cos();
+  log.effort = log.q;
+  return log;
+}
+
+TEST(LogAccelerations, AreThoseOfTheMethodThatWasNamed) {
+  const JointLog log = sine();
+  const Eigen::VectorXd time = log.time();
+
+  const LogAccelerations raw = logAccelerations(log, accelerationMethod("backward-difference"));
+  EXPECT_EQ(raw.qdd, backwardDifference(time, log.qd));
+  EXPECT_EQ(raw.summary, "backward-difference, no filter");
+
+  const LogAccelerations given = logAccelerations(log, accelerationMethod("low-pass"), 5.0);
+  LowPassOptions options;
+  options.cutoff = 5.0;
+  EXPECT_EQ(given.qdd, lowPassAccelerations(time, log.q, log.qd, log.effort, options).qdd);
+  EXPECT_EQ(given.summary, "zero-phase low-pass, cut-off 5 Hz (given), then derivative");
+
+  const LogAccelerations chosen = logAccelerations(log);
+  EXPECT_EQ(chosen.qdd, lowPassAccelerations(time, log.q, log.qd, log.effort).qdd);
+  EXPECT_THAT(chosen.summary, HasSubstr("chosen from the data"));
+  EXPECT_TRUE(chosen.findings.empty());
+}
+
+TEST(LogAccelerations, AreThoseRecordedIfThereAreAny) {
+  JointLog log = sine();
+  log.qdd = 7 * log.q;
+  const LogAccelerations found = logAccelerations(log);
+  EXPECT_EQ(found.qdd, log.qdd);
+  EXPECT_EQ(found.summary, "as recorded");
+  EXPECT_THAT([&] { logAccelerations(log, AccelerationMethod::kAuto, 5.0); },
+              ThrowsMessage<EvaluationError>(HasSubstr("as accelerations are recorded, got 5 Hz")));
+}
+
+TEST(LogAccelerations, SayWhatIsOddAboutTheSamples) {
+  JointLog log = sine();
+  for (Eigen::MatrixXd* numbers : {&log.q, &log.qd, &log.effort}) {
+    numbers->col(500) = numbers->col(499);
+  }
+  log.header_stamps[700] = log.header_stamps[699] - 1'000'000;
+  const LogAccelerations found = logAccelerations(log);
+  EXPECT_THAT(
+      found.findings,
+      Contains("1 of 1000 samples repeat the one before (left out of the differentiation)"));
+  EXPECT_THAT(found.findings,
+              Contains("1 of 1000 samples have an equal or backward header stamp (left out of the "
+                       "differentiation): the first is sample 701 at 6.989000000 s after "
+                       "6.990000000 s"));
+  EXPECT_THAT(logAccelerations(log, AccelerationMethod::kBackwardDifference).findings,
+              Contains("1 of 1000 samples repeat the one before"));
+}
+
+TEST(LogAccelerations, RefuseAnUnknownMethodAndACutOffWithoutAFilter) {
+  EXPECT_THAT([] { accelerationMethod("savgol"); },
+              ThrowsMessage<EvaluationError>(
+                  HasSubstr("expected one of auto, low-pass, backward-difference, got 'savgol'")));
+  EXPECT_THAT([] { logAccelerations(sine(), AccelerationMethod::kBackwardDifference, 5.0); },
+              ThrowsMessage<EvaluationError>(HasSubstr("backward-difference has none, got 5 Hz")));
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_evaluation
