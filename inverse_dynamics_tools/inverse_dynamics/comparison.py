@@ -78,6 +78,7 @@ def _facets(evaluation: Evaluation) -> dict[str, str]:
         "model": "" if model is None else model.name,
         "friction": "" if robot.friction else "without friction",
         "accelerations": evaluation.accelerations.summary,
+        "effort": "" if robot.effort == "torque" else f"effort is {robot.effort}",
         "gravity": str(robot.gravity),
         "chain": f"{robot.root} to {robot.tip}",
     }

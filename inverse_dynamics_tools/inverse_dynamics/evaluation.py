@@ -21,6 +21,14 @@ from inverse_dynamics.accelerations import (
 )
 from inverse_dynamics.bags import read_joint_log
 from inverse_dynamics.descriptions import joint_units, read_description
+from inverse_dynamics.effort import (
+    Effort,
+    compared_torques,
+    drive_gains,
+    effort_notes,
+    effort_of_data,
+    stated_effort,
+)
 from inverse_dynamics.errors import EvaluationError, RobotError
 from inverse_dynamics.joint_log import no_progress
 from inverse_dynamics.robots import Robot, load_robot
@@ -53,27 +61,28 @@ class JointError:
 class Evaluation:
     """Measured and computed torques of a recorded motion. N samples, n joints; order of the chain.
 
-    robot: the run configuration with everything that was overridden; root, tip, joints filled in.
+    robot: the run configuration with everything that was overridden; joints and effort filled in.
     """
 
     robot: Robot
     bag: Path
-    log: JointLog
+    log: JointLog  # its efforts are as recorded: see measured
     joint_names: tuple[str, ...]  # those of the solver; the recording's are log.joint_names
     units: tuple[str, ...]
     accelerations: Accelerations
     samples: Samples
     qdd: Floats  # (N, n) rad/s^2 or m/s^2
-    computed: Floats  # (N, n) N m or N
+    computed: Floats  # (N, n) N m or N; without gravity if the efforts are
     errors: tuple[JointError, ...]  # over all samples
     errors_of_kept: tuple[JointError, ...]  # over samples.kept: to be shown beside the others
+    effort: Effort = field(default_factory=Effort)  # what recorded efforts mean
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
     seconds: dict[str, float] = field(default_factory=dict)  # what took how long
 
     @property
     def measured(self) -> Floats:
-        """(N, n) N m or N: the recorded efforts."""
-        return self.log.effort
+        """(N, n) N m or N: the torques that recorded efforts mean."""
+        return self.effort.torques(self.log.effort)
 
     @property
     def time(self) -> Floats:
@@ -98,6 +107,7 @@ def evaluate(
     gravity: tuple[float, float, float] | None = None,
     topic: str | None = None,
     joints: Sequence[str] | None = None,
+    effort_is: str | None = None,
     accelerations: str | None = None,
     cutoff: float | None = None,
     clock: Clock = "auto",
@@ -108,8 +118,9 @@ def evaluate(
 
     bag: rosbag2 recording of sensor_msgs/JointState. robot: a name of robot_names(), the file of a
     run configuration, or one that is loaded. What else is given replaces what the configuration
-    says: see Robot. accelerations: one of accelerations.METHODS; cutoff: Hz, of a low-pass. clock:
-    which stamps are the time. without_rules: those of accelerations.RULES not to be acted upon.
+    says: see Robot. effort_is: what recorded efforts mean, one of effort.EFFORT_CHOICES.
+    accelerations: one of accelerations.METHODS; cutoff: Hz, of a low-pass. clock: which stamps are
+    the time. without_rules: those of accelerations.RULES not to be acted upon.
 
     Raises UserError: BagError, RobotError, SolverError, EvaluationError.
     """
@@ -137,11 +148,13 @@ def evaluate(
     clock_start = time.perf_counter()
     description = "" if robot.urdf is None else read_description(robot.urdf)
     solver = open_solver(robot, description)
+    gains = drive_gains(robot, solver)
     joint_names = tuple(solver.joint_names)
     recorded_names = _recorded_names(robot, joint_names)
     units = joint_units(robot.urdf, description, joint_names)
     solver_ready = time.perf_counter()
     log = read_joint_log(bag, recorded_names, topic=robot.topic, clock=clock, progress=progress)
+    effort = stated_effort(effort_is, log, robot, gains)
     read = time.perf_counter()
     progress("computing", 0, len(log))
     try:
@@ -152,14 +165,18 @@ def evaluate(
         raise EvaluationError(f"{bag}: {log.topic}: {error}") from error
     filtered = time.perf_counter()
     computed = solver.torques(log.q, log.qd, qdd)
-    errors = joint_errors(joint_names, units, computed, log.effort)
+    if effort.meaning == "auto":
+        effort = effort_of_data(solver, robot, log, computed, gains, samples.kept)
+    computed, measured = compared_torques(effort, solver, log, computed)
+    errors = joint_errors(joint_names, units, computed, measured)
     errors_of_kept = errors
     if samples.left_out:
-        errors_of_kept = joint_errors(joint_names, units, computed, log.effort, samples.kept)
+        errors_of_kept = joint_errors(joint_names, units, computed, measured, samples.kept)
     done = time.perf_counter()
     progress("computing", len(log), len(log))
+    notes = [*solver.warnings, *log.notes, *effort_notes(effort, solver, robot, log)]
     return Evaluation(
-        robot=replace(robot, joints=recorded_names, topic=log.topic),
+        robot=replace(robot, joints=recorded_names, topic=log.topic, effort=effort.meaning),
         bag=bag,
         log=log,
         joint_names=joint_names,
@@ -170,7 +187,8 @@ def evaluate(
         computed=computed,
         errors=errors,
         errors_of_kept=errors_of_kept,
-        notes=(*solver.warnings, *log.notes, *findings(log, how, samples)),
+        effort=effort,
+        notes=(*notes, *findings(log, how, samples)),
         seconds={
             "solver": solver_ready - clock_start,
             "reading": read - solver_ready,

@@ -3,7 +3,8 @@
 
 evaluation.json   what was evaluated, how, and what was assumed; marks the directory
 metrics.json      errors of each joint
-series.npz        time, q, qd, qdd, measured and computed torques, stamps; one row per sample
+series.npz        time, q, qd, qdd, effort as recorded, measured and computed torques, stamps; one row
+                  per sample
 bag/              recording with /torques (computed) and /torques_gt (measured)
 torques.png, .svg, .pdf
 """
@@ -21,6 +22,8 @@ import numpy as np
 
 from inverse_dynamics.accelerations import Accelerations, Samples
 from inverse_dynamics.bags import write_joint_logs
+from inverse_dynamics.effort import Effort
+from inverse_dynamics.effort_verdict import Candidate, Verdict
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.evaluation import Evaluation, JointError
 from inverse_dynamics.files import written_whole
@@ -30,7 +33,7 @@ from inverse_dynamics.robots import Robot
 if TYPE_CHECKING:
     from inverse_dynamics.joint_log import Progress, Storage
 
-SCHEMA = 1
+SCHEMA = 2
 MARK = "evaluation.json"
 PLOT_FORMATS = ("png", "svg", "pdf")
 
@@ -59,7 +62,7 @@ def write_evaluation(
         log = evaluation.log
         topics = {
             COMPUTED_TOPIC: replace(log, effort=evaluation.computed),
-            MEASURED_TOPIC: log,
+            MEASURED_TOPIC: replace(log, effort=evaluation.measured),
         }
         write_joint_logs(target / "bag", topics, storage=storage or log.storage, progress=progress)
         _write_json(target / "metrics.json", _metrics(evaluation))
@@ -105,7 +108,8 @@ def _series(evaluation: Evaluation) -> dict[str, Any]:
         "q": log.q,
         "qd": log.qd,
         "qdd": evaluation.qdd,
-        "measured": log.effort,
+        "effort": log.effort,
+        "measured": evaluation.measured,
         "computed": evaluation.computed,
         **{name: getattr(evaluation.samples, name) for name in _MASKS},
     }
@@ -120,6 +124,7 @@ def _metrics(evaluation: Evaluation) -> dict[str, Any]:
         "bag": str(evaluation.bag),
         "samples": len(evaluation.log),
         "accelerations": asdict(evaluation.accelerations),
+        "effort": asdict(evaluation.effort),
         "joints": [_without_nan(error) for error in evaluation.errors],
         "mean_rmse": evaluation.mean_rmse if len(set(evaluation.units)) == 1 else None,
         "kept": {
@@ -142,6 +147,7 @@ def _summary(evaluation: Evaluation) -> dict[str, Any]:
         "joint_names": list(evaluation.joint_names),
         "units": list(evaluation.units),
         "accelerations": asdict(evaluation.accelerations),
+        "effort": asdict(evaluation.effort),
         "sampling": {"period": evaluation.samples.period, "jitter": evaluation.samples.jitter},
         "recording": {
             "joint_names": list(log.joint_names),
@@ -149,6 +155,7 @@ def _summary(evaluation: Evaluation) -> dict[str, Any]:
             "clock": log.clock,
             "topic": log.topic,
             "storage": log.storage,
+            "effort_is": log.effort_is,
             "notes": list(log.notes),
         },
         "notes": list(evaluation.notes),
@@ -163,7 +170,8 @@ def _from_files(
     for name in ("file", "urdf", "model"):
         robot[name] = None if robot[name] is None else Path(robot[name])
     robot["gravity"] = None if robot["gravity"] is None else tuple(robot["gravity"])
-    robot["joints"] = tuple(robot["joints"])
+    for name in ("joints", "drive_gains"):
+        robot[name] = tuple(robot[name])
     recording = data["recording"]
     log = JointLog(
         joint_names=tuple(recording["joint_names"]),
@@ -171,11 +179,12 @@ def _from_files(
         receive_stamps=arrays["receive_stamps"],
         q=arrays["q"],
         qd=arrays["qd"],
-        effort=arrays["measured"],
+        effort=arrays["effort"],
         frame_id=recording["frame_id"],
         clock=recording["clock"],
         topic=recording["topic"],
         storage=recording["storage"],
+        effort_is=recording["effort_is"],
         notes=tuple(recording["notes"]),
     )
     samples = Samples(**{name: arrays[name] for name in _MASKS}, **data["sampling"])
@@ -191,9 +200,19 @@ def _from_files(
         computed=arrays["computed"],
         errors=_errors(metrics["joints"]),
         errors_of_kept=_errors(metrics["kept"]["joints"]),
+        effort=_effort(data["effort"]),
         notes=tuple(data["notes"]),
         seconds=data["seconds"],
     )
+
+
+def _effort(data: dict[str, Any]) -> Effort:
+    verdict = data["verdict"]
+    if verdict is not None:
+        candidates = tuple(Candidate(**candidate) for candidate in verdict["candidates"])
+        verdict = Verdict(**{**verdict, "candidates": candidates})
+    gains = tuple(data["drive_gains"])
+    return Effort(**{**data, "drive_gains": gains, "verdict": verdict})
 
 
 def _write_json(file: Path, data: dict[str, Any]) -> None:

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.ament import package_share, resolve
+from inverse_dynamics.effort import EFFORT_CHOICES
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.located_yaml import read_mapping
 
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 
 SCHEMA = 1
 DATA_PACKAGE = "inverse_dynamics_robots"
-EFFORT_MEANINGS = ("torque",)
 DEFAULT_TOPIC = "/joint_states"
 
 
@@ -45,7 +45,10 @@ class Robot:
     friction: bool = True
     topic: str = DEFAULT_TOPIC
     joints: tuple[str, ...] = ()  # names in recordings, in the order of the chain
-    effort: str = "torque"  # what the field `effort` of a joint state means
+    effort: str = (
+        "torque"  # what the field `effort` of a joint state means, of effort.EFFORT_CHOICES
+    )
+    drive_gains: tuple[float, ...] = ()  # N m/A (prismatic N/A); empty: the solver's, if it has any
     accelerations: str = "auto"
     cutoff: float | None = None  # Hz
     source: str = ""  # where description and figures come from
@@ -118,7 +121,8 @@ def _read(file: Path) -> Robot:
         friction=_truth(top.optional("friction"), default=True),
         topic=_text(top.optional("topic"), DEFAULT_TOPIC),
         joints=_names(top.optional("joints")),
-        effort=_text(top.optional("effort"), "torque", EFFORT_MEANINGS),
+        effort=_text(top.optional("effort"), "torque", EFFORT_CHOICES),
+        drive_gains=_drive_gains(top.optional("drive_gains")),
         accelerations=method,
         cutoff=cutoff,
         source=_text(top.optional("source")).strip(),
@@ -150,6 +154,18 @@ def _gravity(value: Value | None) -> tuple[float, float, float] | None:
         return None
     x, y, z = (entry.number() for entry in value.entries(3))
     return (x, y, z)
+
+
+def _drive_gains(value: Value | None) -> tuple[float, ...]:
+    if value is None:
+        return ()
+    entries = value.entries()
+    if not entries:
+        value.fail("a figure per joint")
+    for entry in entries:
+        if entry.number() <= 0:
+            entry.fail("a drive gain above zero, in N m/A", "turn the sign of the efforts instead")
+    return tuple(entry.number() for entry in entries)
 
 
 def _names(value: Value | None) -> tuple[str, ...]:

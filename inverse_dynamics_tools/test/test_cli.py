@@ -93,6 +93,21 @@ def test_every_override_reaches_the_evaluation(ids, tmp_path):
     assert (tmp_path / "out/bag/bag.mcap").is_file()
 
 
+def test_the_data_are_asked_what_efforts_mean(ids, tmp_path):
+    ur10 = Solver(UR10)
+    log = recording(tmp_path / "torques", ur10)
+    currents = replace(log, effort=log.effort / ur10.drive_gains)
+    write_joint_logs(tmp_path / "currents", {log.topic: currents})
+    command = ("evaluate", "currents", "--robot", "ur10_real", "--out", "out")
+    code, out, _ = ids(*command, "--effort-is", "auto")
+    assert code == 0
+    assert re.search(r"^effort means +current, found from the data, .*; sure: curr", out, re.M)
+    assert re.search(r"torque [\d.]+ % \(worse in 20 of 20 stretches", out)
+    metrics = json.loads((tmp_path / "out/metrics.json").read_text())
+    assert metrics["effort"]["verdict"]["sure"] is True
+    assert read_evaluation("out").effort.meaning == "current"
+
+
 def test_an_existing_result_is_kept_unless_told_otherwise(ids, bag, tmp_path):
     command = ("evaluate", bag, "--robot", "ur10_simulated", "--out", "out", *RAW)
     assert ids(*command)[0] == 0
@@ -130,6 +145,7 @@ def test_mistakes_of_the_user_are_told_and_nothing_is_written(ids, bag, tmp_path
         (("evaluate", "bag", "--robot", "x", "--cutoff", "-1"), "expected a number above zero"),
         (("evaluate", "bag", "--robot", "x", "--joints", "a,,b"), "expected names, a,b,c"),
         (("evaluate", "bag", "--robot", "x", "--accelerations", "best"), "choose from"),
+        (("evaluate", "bag", "--robot", "x", "--effort-is", "force"), "invalid choice: 'force'"),
     ],
 )
 def test_options_that_make_no_sense_are_told(ids, arguments, expected):

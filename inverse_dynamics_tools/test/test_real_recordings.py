@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings of real robots: figures that the reference implementation's method gives on them."""
 
+from dataclasses import replace
+
 import pytest
 
-from inverse_dynamics import evaluate
+from inverse_dynamics import evaluate, load_robot, read_joint_log, write_joint_logs
+from inverse_dynamics.effort import EFFORT_MEANINGS
+from inverse_dynamics.solvers import open_solver
 
 BACKWARD_DIFFERENCE = {
     "ur10": "4.257 4.710 1.772 0.756 0.748 1.317",
@@ -47,3 +51,36 @@ def test_rigid_bodies_without_friction_fit_the_real_ur10_less(recordings):
     )
     published = [21.4, 21.7, 16.3, 5.9, 4.1, 5.7]  # the last digit may be rounded twice
     assert [e.rmse for e in result.errors] == pytest.approx(published, abs=0.055)
+
+
+@ROBOTS
+@pytest.mark.parametrize("meaning", EFFORT_MEANINGS)
+def test_what_efforts_mean_is_found_and_the_table_stays_the_same(
+    recordings, tmp_path, name, meaning
+):
+    bag, robot = recordings / f"{name}_exciting_trajectory", load_robot(f"{name}_real")
+    solver = open_solver(robot)
+    if solver.drive_gains is None:
+        robot = replace(robot, drive_gains=(10.0,) * len(robot.joints))
+    log = read_joint_log(bag, robot.joints)
+    efforts = {
+        "torque": log.effort,
+        "current": log.effort / (robot.drive_gains or solver.drive_gains),
+        "torque_without_gravity": log.effort - solver.gravity_vector(log.q),
+    }
+    write_joint_logs(tmp_path / "bag", {log.topic: replace(log, effort=efforts[meaning])})
+    result = evaluate(tmp_path / "bag", robot, effort_is="auto")
+    assert (result.effort.meaning, result.effort.verdict.sure) == (meaning, True)
+    expected = evaluate(bag, robot)
+    assert [e.rmse for e in result.errors] == pytest.approx([e.rmse for e in expected.errors])
+    kept = [e.rmse for e in expected.errors_of_kept]
+    assert [e.rmse for e in result.errors_of_kept] == pytest.approx(kept)
+
+
+def test_currents_whose_drive_gains_arent_known_end_in_no_confident_answer(recordings, tmp_path):
+    robot = load_robot("panda_real")
+    log = read_joint_log(recordings / "panda_exciting_trajectory", robot.joints)
+    write_joint_logs(tmp_path / "bag", {log.topic: replace(log, effort=log.effort / 10)})
+    result = evaluate(tmp_path / "bag", robot, effort_is="auto")
+    assert (result.effort.meaning, result.effort.verdict.sure) == ("torque", False)
+    assert "efforts are proportional to torque, by" in result.effort.verdict.reason

@@ -15,6 +15,8 @@ from test_evaluation import RIGID_BODY, URDF, recording
 
 from inverse_dynamics import Solver, cli, evaluate, write_evaluation
 from inverse_dynamics.comparison import compare
+from inverse_dynamics.effort import DATA, Effort
+from inverse_dynamics.effort_verdict import Candidate, Verdict
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.report import report_comparison, report_run
 from inverse_dynamics.report.page import MAX_SAMPLES, render_page
@@ -131,6 +133,16 @@ def test_names_are_text_and_never_markup(evaluation, comparison):
     assert "<script>alert" not in html
     assert html.count("</script") == 2
     assert data_of(html)[0]["joints"][0]["name"] == evil
+
+
+def test_what_efforts_mean_and_how_sure_that_is_stands_among_the_assumptions(evaluation):
+    stated = dict(report_run(evaluation).assumptions)
+    assert stated["effort means"] == "torque, as the run configuration says"
+    candidates = (Candidate("current", 0.01, 1.0, 0), Candidate("torque", 0.9, 30.0, 19))
+    found = Effort("current", DATA, (2.0,) * 6, Verdict(candidates, sure=True, stretches=20))
+    page = render_page("A page", [report_run(replace(evaluation, effort=found))])
+    assert "current, found from the data, with drive gains 2 2 2 2 2 2 N m/A; sure: " in page
+    assert "torque 90 % (worse in 19 of 20 stretches, 30 times)" in page
 
 
 def test_comparison_is_a_table_and_a_figure(page, comparison):

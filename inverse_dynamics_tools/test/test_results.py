@@ -10,6 +10,8 @@ from conftest import joint_log
 
 from inverse_dynamics import read_evaluation, read_joint_log, write_evaluation
 from inverse_dynamics.accelerations import Accelerations, Samples
+from inverse_dynamics.effort import DATA, Effort
+from inverse_dynamics.effort_verdict import Candidate, Verdict
 from inverse_dynamics.errors import BagError, OutputError
 from inverse_dynamics.evaluation import Evaluation, joint_errors
 from inverse_dynamics.robots import Robot
@@ -25,7 +27,9 @@ FILES = {
 }
 
 
-def make_evaluation(samples: int = 400, joints: int = 3) -> Evaluation:
+def make_evaluation(
+    samples: int = 400, joints: int = 3, effort: Effort | None = None
+) -> Evaluation:
     """An evaluation as evaluate() gives it, without a solver."""
     log = joint_log(samples, joints, frame_id="base")
     computed = log.effort + 0.5 * np.cos(np.arange(samples))[:, None]
@@ -53,6 +57,7 @@ def make_evaluation(samples: int = 400, joints: int = 3) -> Evaluation:
         computed=computed,
         errors=joint_errors(names, units, computed, log.effort),
         errors_of_kept=joint_errors(names, units, computed, log.effort, kept),
+        effort=effort or Effort(),
         notes=("the first 5 of 400 samples are a start transient: efforts jump",),
         seconds={"reading": 0.1},
     )
@@ -88,6 +93,30 @@ def test_a_result_is_read_back_whole(result, evaluation):
         )
     assert read.log.frame_id == "base"
     np.testing.assert_array_equal(read.log.receive_stamps, evaluation.log.receive_stamps)
+
+
+def test_currents_are_kept_beside_the_torques_that_they_mean(tmp_path):
+    candidates = (Candidate("current", 0.01, 1.0, 0), Candidate("torque", 0.9, 30.0, 20))
+    verdict = Verdict(candidates, sure=True, stretches=20)
+    effort = Effort("current", DATA, (2.0, 3.0, 4.0), verdict)
+    evaluation = make_evaluation(effort=effort)
+    evaluation = replace(evaluation, log=replace(evaluation.log, effort_is="current"))
+    write_evaluation(evaluation, tmp_path / "result")
+    read = read_evaluation(tmp_path / "result")
+    assert read.effort == effort
+    assert read.log.effort_is == "current"
+    np.testing.assert_array_equal(read.log.effort, evaluation.log.effort)
+    np.testing.assert_array_equal(read.measured, evaluation.log.effort * [2.0, 3.0, 4.0])
+    with np.load(tmp_path / "result/series.npz") as series:
+        np.testing.assert_array_equal(series["effort"], evaluation.log.effort)
+        np.testing.assert_array_equal(series["measured"], read.measured)
+    recorded = read_joint_log(tmp_path / "result/bag", topic="/torques_gt")
+    np.testing.assert_array_equal(recorded.effort, read.measured)
+    metrics = json.loads((tmp_path / "result/metrics.json").read_text())
+    assert metrics["effort"]["meaning"] == "current"
+    assert metrics["effort"]["drive_gains"] == [2.0, 3.0, 4.0]
+    assert metrics["effort"]["verdict"]["sure"] is True
+    assert metrics["effort"]["verdict"]["candidates"][1]["worse_in"] == 20
 
 
 def test_metrics_say_what_they_are_of(result, evaluation):
@@ -175,6 +204,6 @@ def test_an_incomplete_result_is_an_error(tmp_path, evaluation, file):
 def test_a_result_of_another_version_is_an_error(tmp_path, evaluation):
     write_evaluation(evaluation, tmp_path / "result")
     file = tmp_path / "result/evaluation.json"
-    file.write_text(file.read_text().replace('"schema": 1', '"schema": 7'))
-    with pytest.raises(OutputError, match="expected schema 1, got 7; evaluate again"):
+    file.write_text(file.read_text().replace('"schema": 2', '"schema": 7'))
+    with pytest.raises(OutputError, match="expected schema 2, got 7; evaluate again"):
         read_evaluation(tmp_path / "result")

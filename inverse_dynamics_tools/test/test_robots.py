@@ -20,11 +20,14 @@ topic: /arm/joint_states
 joints: [shoulder, elbow]
 friction: false
 effort: torque
+drive_gains: [13.5, 9]
 accelerations:
   method: low-pass
   cutoff: 5
 source: measured
 """
+
+GAINS = "drive_gains: [13.5, 9]"
 
 LEAST = """\
 schema: 1
@@ -68,6 +71,7 @@ def test_every_key_is_read(write, tmp_path):
     assert robot.joints == ("shoulder", "elbow")
     assert robot.friction is False
     assert (robot.effort, robot.accelerations, robot.cutoff) == ("torque", "low-pass", 5.0)
+    assert robot.drive_gains == (13.5, 9.0)
     assert robot.source == "measured"
 
 
@@ -92,10 +96,17 @@ def test_four_keys_are_enough(write):
         ("gravity: [0, -9.81, 0]", "gravity: [0, .nan, 0]", ":8: gravity[1]: expected a finite"),
         ("joints: [shoulder, elbow]", "joints: [a, a]", ":10: joints: expected each name once"),
         ("joints: [shoulder, elbow]", "joints: [a, 1]", ":10: joints[1]: expected a text, got '1'"),
-        ("effort: torque", "effort: force", ":12: effort: expected one of torque, got 'force'"),
-        ("  method: low-pass", "  method: best", ":14: accelerations.method: expected one of auto"),
-        ("  cutoff: 5", "  cutoff: -5", ":15: accelerations.cutoff: expected a frequency in Hz"),
-        ("  cutoff: 5", "  cut_off: 5", ":15: accelerations.cut_off: unknown key; known here: me"),
+        ("effort: torque", "effort: force", ":12: effort: expected one of torque, current, to"),
+        ("effort: torque", "effort: [torque]", ":12: effort: expected a text, got a list of 1"),
+        (GAINS, "drive_gains: 13.5", ":13: drive_gains: expected a list, got '13.5'"),
+        (GAINS, "drive_gains: []", ":13: drive_gains: expected a figure per joint, got a"),
+        (GAINS, "drive_gains: [13.5, 0]", ":13: drive_gains[1]: expected a drive gain above zero"),
+        (GAINS, "drive_gains: [-1, 9]", ":13: drive_gains[0]: expected a drive gain above zero"),
+        (GAINS, "drive_gains: [.inf, 9]", ":13: drive_gains[0]: expected a finite number, got"),
+        (GAINS, "drive_gains: [a, 9]", ":13: drive_gains[0]: expected a number, got 'a'"),
+        ("  method: low-pass", "  method: best", ":15: accelerations.method: expected one of auto"),
+        ("  cutoff: 5", "  cutoff: -5", ":16: accelerations.cutoff: expected a frequency in Hz"),
+        ("  cutoff: 5", "  cut_off: 5", ":16: accelerations.cut_off: unknown key; known here: me"),
         ("urdf: arm.urdf", "urdf: leg.urdf", ":5: urdf: expected a file, got 'leg.urdf'; "),
         ("urdf: arm.urdf", "urdf: [arm.urdf]", ":5: urdf: expected a text, got a list of 1"),
         ("tip: tool0", "tip: [tool0", ":8: isn't YAML: expected ',' or ']'"),

@@ -88,7 +88,7 @@ def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:
         ("description", robot.urdf.name if robot.urdf else ""),
         ("friction", "as the solver models it" if robot.friction else "left out"),
         ("gravity", gravity),
-        ("effort means", robot.effort),
+        ("effort means", evaluation.effort.summary),
         ("accelerations", evaluation.accelerations.summary),
         (
             "recording",

@@ -107,6 +107,11 @@ def simulate(
     if not checker.has_shapes:
         notes.append("the description has no collision shapes: self-collision can't be checked")
     check_trajectory(simulated, chosen, MotionLimits.of(simulated), checker)
+    if robot.effort not in ("torque", "auto"):
+        notes.append(
+            f"efforts are recorded as torques, though the run configuration says {robot.effort}: "
+            "evaluate them with --effort-is torque"
+        )
     duration = duration or chosen.duration
     gains = wishes.gains.apply(default_gains(simulated, chosen, rate))
     motion = follow(simulated, chosen, rate=rate, duration=duration, gains=gains, progress=progress)

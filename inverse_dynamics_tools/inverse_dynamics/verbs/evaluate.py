@@ -30,12 +30,15 @@ examples:
   ids evaluate recording --robot ur10_real --gravity 0,-9.81,0
       mounted on a wall: where things fall, in the frame of the root link
 
+  ids evaluate recording --robot ur10_real --effort-is auto
+      torques, motor currents, or torques without gravity? the data tell
+
 results, written whole or not at all:
   metrics.json            errors of each joint
   torques.png .svg .pdf   measured and computed torques and the error, over time
   bag/                    recording with /torques (computed) and /torques_gt (measured)
-  series.npz              time, q, qd, qdd, measured, computed, for numpy.load()
-  evaluation.json         what was assumed: filter, messages left out, model
+  series.npz              time, q, qd, qdd, effort (as recorded), measured, computed, for numpy.load()
+  evaluation.json         what was assumed: filter, messages left out, model, what effort means
 """
 
 
@@ -44,6 +47,7 @@ def add_parser(
 ) -> argparse.ArgumentParser:
     """Declare the verb."""
     from inverse_dynamics.accelerations import METHODS, RULES
+    from inverse_dynamics.effort import EFFORT_CHOICES
     from inverse_dynamics.joint_log import CLOCKS
 
     parser = subparsers.add_parser(
@@ -113,6 +117,14 @@ def add_parser(
         help="names of the joints in the recording, in the order of the chain",
     )
 
+    robot.add_argument(
+        "--effort-is",
+        metavar="MEANING",
+        choices=tuple(EFFORT_CHOICES),
+        help="what recorded efforts mean. "
+        + "; ".join(f"{name}: {text}" for name, text in EFFORT_CHOICES.items()),
+    )
+
     samples = parser.add_argument_group("time and accelerations")
     samples.add_argument(
         "--accelerations",
@@ -167,6 +179,7 @@ def run(arguments: argparse.Namespace) -> None:
             gravity=arguments.gravity,
             topic=arguments.topic,
             joints=arguments.joints,
+            effort_is=arguments.effort_is,
             accelerations=arguments.accelerations,
             cutoff=arguments.cutoff,
             clock=arguments.clock,
@@ -198,6 +211,7 @@ def _print(evaluation: Evaluation, out: Path) -> None:
         f"{evaluation.time[-1]:.1f} s"
     )
     console.print(f"accelerations  {evaluation.accelerations.summary}")
+    console.print(f"effort means   {evaluation.effort.summary}")
     for note in evaluation.notes:
         console.print(f"note           {note}")
     console.print(error_table(evaluation))

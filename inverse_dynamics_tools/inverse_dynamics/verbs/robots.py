@@ -68,6 +68,7 @@ def _show(robot: str) -> None:
     from rich.text import Text
 
     from inverse_dynamics.accelerations import METHODS
+    from inverse_dynamics.effort import EFFORT_CHOICES
     from inverse_dynamics.robots import load_robot
 
     shown = load_robot(robot)
@@ -83,7 +84,8 @@ def _show(robot: str) -> None:
         "friction": "yes" if shown.friction else "no",
         "topic": shown.topic,
         "joints": ", ".join(shown.joints) or "(named as in the chain)",
-        "effort": shown.effort,
+        "effort": f"{shown.effort}: {EFFORT_CHOICES[shown.effort]}",
+        "drive gains": f"{list(shown.drive_gains)} N m/A" if shown.drive_gains else "",
         "accelerations": f"{shown.accelerations}{cutoff}: {METHODS[shown.accelerations]}",
         "source": shown.source,
         "file": str(shown.file),
