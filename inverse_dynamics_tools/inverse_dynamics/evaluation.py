@@ -32,7 +32,7 @@ from inverse_dynamics.effort import (
 from inverse_dynamics.errors import EvaluationError, RobotError
 from inverse_dynamics.joint_log import no_progress
 from inverse_dynamics.robots import Robot, load_robot
-from inverse_dynamics.solvers import open_solver
+from inverse_dynamics.solvers import brings_own_model, open_solver
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -175,6 +175,11 @@ def evaluate(
     done = time.perf_counter()
     progress("computing", len(log), len(log))
     notes = [*solver.warnings, *log.notes, *effort_notes(effort, solver, robot, log)]
+    if urdf is not None and brings_own_model(robot):
+        notes.append(
+            f"{urdf} is drawn, not computed from: {robot.plugin} brings its own model; another "
+            "--plugin computes from a description"
+        )
     return Evaluation(
         robot=replace(robot, joints=recorded_names, topic=log.topic, effort=effort.meaning),
         bag=bag,

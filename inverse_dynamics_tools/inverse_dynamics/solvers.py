@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from inverse_dynamics import _core
@@ -31,3 +32,12 @@ def open_solver(robot: Robot, description: str = "") -> _core.Solver:
         at_fault = isinstance(error, InvalidRobotDescriptionError)
         where = f"robot {robot.name}" + (f" ({robot.urdf})" if at_fault else "")
         raise type(error)(f"{where}: {error}") from error
+
+
+def brings_own_model(robot: Robot) -> bool:
+    """Whether the solver has no need of a description or model file: then it reads none."""
+    try:
+        open_solver(replace(robot, model=None))
+    except SolverError:
+        return False
+    return True

@@ -182,6 +182,13 @@ def test_another_description_root_and_tip(tmp_path, robot, bag):
         evaluate(bag, robot, root="cellar")
 
 
+def test_a_description_that_a_solver_has_no_use_for_is_said_to_be_drawn_only(bag, robot):
+    said = f"{URDF} is drawn, not computed from: {UR10} brings its own model"
+    assert said in " ".join(evaluate(bag, robot, plugin=UR10, urdf=URDF).notes)
+    assert said not in " ".join(evaluate(bag, robot, plugin=UR10).notes)
+    assert evaluate(bag, robot, urdf=URDF).notes == ()
+
+
 def test_a_given_cutoff_is_used_and_said(bag, robot):
     result = evaluate(bag, robot, accelerations="low-pass", cutoff=10.0)
     assert (result.accelerations.cutoff, result.accelerations.chosen) == (10.0, False)
