@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What all laws share: their options, the safe torque, the limits of the output.
+///
+///     LawOptions options;
+///     options.limits.effort = effort_limits;    // of the data sheet
+///     options.damping = damping;                // for the safe torque
+///     ComputedTorque law(solver, gains, options);
+///
+/// Whatever goes in, what comes out is finite and within the limits. Where the law's own torque
+/// can't be had, the output is the safe torque
+///
+///     tau = g(q) - damping qd
+///
+/// which carries the arm and brakes it, but holds no position. Gravity is that of the measured
+/// position; without one (a NaN, a solver that fails) that of the last cycle which had one, zero
+/// before the first. Damping needs a finite velocity. So a reference that is lost for good ends in
+/// an arm that stands and can be pushed, and a position that is lost for good needs brakes: see the
+/// status.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "inverse_dynamics_control/compensated.hpp"
+#include "inverse_dynamics_control/friction_compensation.hpp"
+#include "inverse_dynamics_control/model_terms.hpp"
+#include "inverse_dynamics_control/output_stage.hpp"
+#include "inverse_dynamics_control/signals.hpp"
+#include "inverse_dynamics_control/status.hpp"
+
+namespace inverse_dynamics_control {
+
+/// Options of every law.
+struct LawOptions {
+  /// What the robot adds by itself; the law leaves it out.
+  Compensated compensated;
+
+  /// Limits of the output.
+  OutputLimits limits;
+
+  /// Damping of the safe torque and of hand guiding, n, finite, >= 0; N m s/rad (prismatic N s/m).
+  /// Required. Sampled damping is stable while damping * period is below the inertia of the joint.
+  Eigen::VectorXd damping;
+
+  /// How the solver's friction is compensated, if it has any.
+  FrictionOptions friction;
+};
+
+/// Base class of the laws: not a type to hold a law by, but what they have in common.
+///
+/// A law keeps its solver, and all its memory from construction on. One thread at a time.
+/// Real time: all methods but constructors: no allocation, lock, exception or system call, with a
+/// solver that keeps the same promise.
+class ControlLaw {
+ public:
+  /// Number n of joints.
+  Eigen::Index jointCount() const noexcept { return model_.jointCount(); }
+
+  /// To be called when the loop begins or goes on after a pause: the first output isn't limited in
+  /// its rate, or starts from the effort (n, N m) that acts now.
+  void start() noexcept { output_.start(); }
+  /// @copydoc start()
+  void start(const Eigen::Ref<const Eigen::VectorXd>& effort) noexcept { output_.start(effort); }
+
+  /// The safe torque instead of the law's: `tau = g(q) - damping qd`, within the limits.
+  ///
+  /// @param period    s since the last call of hold() or update(), for the rate limit.
+  /// @param[out] tau  n; N m (prismatic N).
+  /// @return kOk, kSaturated, kRateLimited, kStateNotFinite or kWrongSize.
+  Status hold(const JointState& state, double period, VectorRef tau) noexcept;
+
+  /// Whether the last output of each joint was cut to its effort limit; after refusals too.
+  const OutputStage::Joints& saturated() const noexcept { return output_.saturated(); }
+
+  /// Whether the last output of each joint was held back by its rate limit; after refusals too.
+  const OutputStage::Joints& rateLimited() const noexcept { return output_.rateLimited(); }
+
+ protected:
+  /// @param law  its name, for the text of errors.
+  /// Throws inverse_dynamics_solver::Exception: no solver or one that isn't initialized, options of
+  /// the wrong size or value.
+  ControlLaw(std::shared_ptr<const InverseDynamicsSolver> solver, const LawOptions& options,
+             const std::string& law);
+
+  /// kWrongSize, kStateNotFinite or kOk.
+  Status check(const JointState& state, const VectorRef& tau) const noexcept;
+
+  /// kWrongSize, kReferenceNotFinite or kOk, of a vector of a reference.
+  Status check(const ConstVectorRef& reference) const noexcept;
+
+  /// Adds the blended friction at the velocity that the options choose.
+  void addFriction(const Eigen::VectorXd& qd, const Eigen::VectorXd& qd_reference,
+                   Eigen::VectorXd& tau);
+
+  /// Safe torque, and why.
+  Status refuse(Status why, const JointState& state, double period, VectorRef tau) noexcept;
+
+  /// Output of what `compute` writes into the vector it is given, or the safe torque if it throws
+  /// or the result isn't finite.
+  template <class Compute>
+  Status output(const JointState& state, double period, VectorRef tau,
+                const Compute& compute) noexcept {
+    try {
+      compute(wished_);
+    } catch (...) {
+      return refuse(Status::kSolverFailed, state, period, tau);
+    }
+    if (!wished_.allFinite()) return refuse(Status::kTorqueNotFinite, state, period, tau);
+    updateGravity(state.q);  // for cycles to come that don't know it
+    return output_.apply(wished_, period, tau);
+  }
+
+  ModelTerms& model() noexcept { return model_; }
+  const Eigen::VectorXd& damping() const noexcept { return damping_; }
+
+ private:
+  void updateGravity(const Eigen::VectorXd& q) noexcept;
+
+  ModelTerms model_;
+  FrictionCompensation friction_;
+  OutputStage output_;
+  Eigen::VectorXd damping_;
+  Eigen::VectorXd wished_, f_;                   // scratch
+  Eigen::VectorXd gravity_, gravity_candidate_;  // last known; scratch
+};
+
+}  // namespace inverse_dynamics_control

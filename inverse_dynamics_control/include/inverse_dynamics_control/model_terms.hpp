@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// A solver's terms without those that the robot compensates by itself.
+///
+///     ModelTerms model(solver, compensated, "computed torque");
+///     model.torques(q, qd, a, tau);   // H(q) a + C(q, qd) qd + g(q), or what is left of it
+#pragma once
+
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "inverse_dynamics_control/compensated.hpp"
+
+namespace inverse_dynamics_control {
+
+using inverse_dynamics_solver::ConstVectorRef;
+using inverse_dynamics_solver::InverseDynamicsSolver;
+using inverse_dynamics_solver::VectorRef;
+
+/// The model that the laws share, with scratch memory of its own. Not thread-safe.
+///
+/// Real time: methods don't allocate, lock or call the system, and throw only what a faulty solver
+/// throws.
+class ModelTerms {
+ public:
+  /// @param solver  initialized; it is kept.
+  /// @param law     who asks, for the text of errors.
+  /// Throws inverse_dynamics_solver::InvalidParameterValueException: no solver.
+  /// UninitializedException: the solver isn't initialized.
+  ModelTerms(std::shared_ptr<const InverseDynamicsSolver> solver, const Compensated& compensated,
+             const std::string& law);
+
+  Eigen::Index jointCount() const noexcept { return H_.rows(); }
+  const std::vector<std::string>& jointNames() const { return solver_->jointNames(); }
+  bool inertiaIsPhysical() const { return solver_->inertiaIsPhysical(); }
+
+  /// `H(q) a + C(q, qd) qd + g(q)`, without the terms that are compensated.
+  ///
+  /// @param q,qd,a    n each; rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2).
+  /// @param[out] tau  n; N m (prismatic N).
+  void torques(const Eigen::VectorXd& q, const Eigen::VectorXd& qd, const Eigen::VectorXd& a,
+               Eigen::VectorXd& tau);
+
+  /// `g(q)`, n; zero if compensated.
+  void gravity(const Eigen::VectorXd& q, Eigen::VectorXd& g) const;
+
+  /// `f(v)`, n; zero if compensated.
+  void friction(const Eigen::VectorXd& v, Eigen::VectorXd& f) const;
+
+ private:
+  std::shared_ptr<const InverseDynamicsSolver> solver_;
+  Compensated compensated_;
+  Eigen::MatrixXd H_;
+  Eigen::VectorXd c_, g_;
+};
+
+}  // namespace inverse_dynamics_control

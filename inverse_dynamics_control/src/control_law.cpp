@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_control/control_law.hpp"
+
+#include <utility>
+
+#include "option_checks.hpp"
+
+namespace inverse_dynamics_control {
+
+ControlLaw::ControlLaw(std::shared_ptr<const InverseDynamicsSolver> solver,
+                       const LawOptions& options, const std::string& law)
+    : model_(std::move(solver), options.compensated, law),
+      friction_(options.friction, law),
+      output_(options.limits, model_.jointNames(), law),
+      damping_(options.damping) {
+  requireJointNumbers(law + ": damping", damping_, Range::kNotNegative, "N m s/rad",
+                      model_.jointNames());
+  for (Eigen::VectorXd* vector : {&wished_, &f_, &gravity_, &gravity_candidate_}) {
+    vector->setZero(model_.jointCount());
+  }
+}
+
+Status ControlLaw::hold(const JointState& state, double period, VectorRef tau) noexcept {
+  const Status status = check(state, tau);
+  const Status limited = refuse(status, state, period, tau);
+  return status == Status::kOk ? limited : status;
+}
+
+Status ControlLaw::check(const JointState& state, const VectorRef& tau) const noexcept {
+  const Eigen::Index n = jointCount();
+  if (state.q.size() != n || state.qd.size() != n || tau.size() != n) return Status::kWrongSize;
+  return state.q.allFinite() && state.qd.allFinite() ? Status::kOk : Status::kStateNotFinite;
+}
+
+Status ControlLaw::check(const ConstVectorRef& reference) const noexcept {
+  if (reference.size() != jointCount()) return Status::kWrongSize;
+  return reference.allFinite() ? Status::kOk : Status::kReferenceNotFinite;
+}
+
+void ControlLaw::addFriction(const Eigen::VectorXd& qd, const Eigen::VectorXd& qd_reference,
+                             Eigen::VectorXd& tau) {
+  if (friction_.source() == FrictionSource::kNone) return;
+  const bool measured = friction_.source() == FrictionSource::kMeasuredVelocity;
+  const Eigen::VectorXd& v = measured ? qd : qd_reference;
+  model_.friction(v, f_);
+  friction_.weigh(v, f_);
+  tau += f_;
+}
+
+Status ControlLaw::refuse(Status why, const JointState& state, double period,
+                          VectorRef tau) noexcept {
+  const Eigen::Index n = jointCount();
+  if (tau.size() != n) {
+    tau.setZero();
+    return why;
+  }
+  // g(q) - damping qd, of what is known
+  if (state.q.size() == n && state.q.allFinite()) updateGravity(state.q);
+  wished_ = gravity_;
+  if (state.qd.size() == n && state.qd.allFinite()) wished_ -= damping_.cwiseProduct(state.qd);
+  const Status limited = output_.apply(wished_, period, tau);
+  return why == Status::kOk ? limited : why;
+}
+
+void ControlLaw::updateGravity(const Eigen::VectorXd& q) noexcept {
+  try {
+    model_.gravity(q, gravity_candidate_);
+    if (gravity_candidate_.allFinite()) gravity_ = gravity_candidate_;
+  } catch (...) {  // a solver that fails: gravity stays what it was
+  }
+}
+
+}  // namespace inverse_dynamics_control

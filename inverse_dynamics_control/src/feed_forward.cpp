@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_control/feed_forward.hpp"
+
+#include <utility>
+
+namespace inverse_dynamics_control {
+
+FeedForward::FeedForward(std::shared_ptr<const InverseDynamicsSolver> solver, ModelState at,
+                         const LawOptions& options)
+    : ControlLaw(std::move(solver), options, "feed-forward"), at_(at) {}
+
+Status FeedForward::update(const JointState& state, const Reference& reference,
+                           const Eigen::VectorXd& effort, double period, VectorRef tau) noexcept {
+  for (const Status status : {check(state, tau), check(reference.q), check(reference.qd),
+                              check(reference.qdd), check(effort)}) {
+    if (status != Status::kOk) return refuse(status, state, period, tau);
+  }
+  return output(state, period, tau, [&](Eigen::VectorXd& wished) {
+    // tau = effort + H qdd_ref + C qd + g + f
+    const bool measured = at_ == ModelState::kMeasured;
+    model().torques(measured ? state.q : reference.q, measured ? state.qd : reference.qd,
+                    reference.qdd, wished);
+    addFriction(state.qd, reference.qd, wished);
+    wished += effort;
+  });
+}
+
+}  // namespace inverse_dynamics_control

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_control/gravity_compensation.hpp"
+
+#include <utility>
+
+namespace inverse_dynamics_control {
+
+GravityCompensation::GravityCompensation(std::shared_ptr<const InverseDynamicsSolver> solver,
+                                         const LawOptions& options)
+    : ControlLaw(std::move(solver), options, "gravity compensation"),
+      rest_(Eigen::VectorXd::Zero(jointCount())) {}
+
+Status GravityCompensation::update(const JointState& state, double period, VectorRef tau) noexcept {
+  return update(state, rest_, period, tau);
+}
+
+Status GravityCompensation::update(const JointState& state, const Eigen::VectorXd& qd_reference,
+                                   double period, VectorRef tau) noexcept {
+  for (const Status status : {check(state, tau), check(qd_reference)}) {
+    if (status != Status::kOk) return refuse(status, state, period, tau);
+  }
+  return output(state, period, tau, [&](Eigen::VectorXd& wished) {
+    model().gravity(state.q, wished);
+    wished -= damping().cwiseProduct(state.qd);
+    addFriction(state.qd, qd_reference, wished);
+  });
+}
+
+}  // namespace inverse_dynamics_control

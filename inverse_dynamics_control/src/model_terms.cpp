@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_control/model_terms.hpp"
+
+#include <utility>
+
+namespace inverse_dynamics_control {
+
+ModelTerms::ModelTerms(std::shared_ptr<const InverseDynamicsSolver> solver,
+                       const Compensated& compensated, const std::string& law)
+    : solver_(std::move(solver)), compensated_(compensated) {
+  if (solver_ == nullptr) {
+    throw inverse_dynamics_solver::InvalidParameterValueException(
+        inverse_dynamics_solver::errorText(law + ": solver", "missing", "an initialized solver",
+                                           "none", "load one with SolverLoader"));
+  }
+  const Eigen::Index n = solver_->jointCount();
+  H_.setZero(n, n);
+  c_.setZero(n);
+  g_.setZero(n);
+}
+
+void ModelTerms::torques(const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
+                         const Eigen::VectorXd& a, Eigen::VectorXd& tau) {
+  solver_->getDynamicComponents(q, qd, H_, c_, g_);
+  tau.noalias() = H_.lazyProduct(a);
+  if (!compensated_.coriolis) tau += c_;
+  if (!compensated_.gravity) tau += g_;
+}
+
+void ModelTerms::gravity(const Eigen::VectorXd& q, Eigen::VectorXd& g) const {
+  if (compensated_.gravity) {
+    g.setZero();
+  } else {
+    solver_->getGravityVector(q, g);
+  }
+}
+
+void ModelTerms::friction(const Eigen::VectorXd& v, Eigen::VectorXd& f) const {
+  if (compensated_.friction) {
+    f.setZero();
+  } else {
+    solver_->getFrictionVector(v, f);
+  }
+}
+
+}  // namespace inverse_dynamics_control

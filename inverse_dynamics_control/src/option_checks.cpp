@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "option_checks.hpp"
+
+#include <cmath>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <sstream>
+
+namespace inverse_dynamics_control {
+namespace {
+
+bool isWithin(double value, Range range) {
+  switch (range) {
+    case Range::kNotNegative:
+      return std::isfinite(value) && value >= 0;
+    case Range::kPositive:
+      return std::isfinite(value) && value > 0;
+    case Range::kPositiveOrAbsent:
+      return value > 0;
+  }
+  return false;
+}
+
+const char* inWords(Range range) {
+  switch (range) {
+    case Range::kNotNegative:
+      return "a finite number that isn't negative";
+    case Range::kPositive:
+      return "a finite number above zero";
+    case Range::kPositiveOrAbsent:
+      return "a number above zero, or infinity for no limit";
+  }
+  return "";
+}
+
+std::string number(double value) {
+  std::ostringstream stream;
+  stream << value;
+  return stream.str();
+}
+
+}  // namespace
+
+void requireJointNumbers(const std::string& where, const Eigen::VectorXd& values, Range range,
+                         const std::string& unit, const std::vector<std::string>& joint_names) {
+  using inverse_dynamics_solver::errorText;
+  using inverse_dynamics_solver::InvalidParameterValueException;
+
+  const auto n = static_cast<Eigen::Index>(joint_names.size());
+  if (values.size() != n) {
+    std::string joints;
+    for (const std::string& name : joint_names) joints += (joints.empty() ? "" : ", ") + name;
+    throw InvalidParameterValueException(
+        errorText(where, "wrong size", std::to_string(n) + " numbers [" + unit + "]",
+                  std::to_string(values.size()), "give one for each of the joints " + joints));
+  }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    if (isWithin(values[j], range)) continue;
+    throw InvalidParameterValueException(errorText(
+        where + ": joint " + joint_names[static_cast<std::size_t>(j)], "wrong value",
+        std::string(inWords(range)) + " [" + unit + "]", number(values[j]), "correct this number"));
+  }
+}
+
+}  // namespace inverse_dynamics_control

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Checks of options, with errors that name law, option and joint.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace inverse_dynamics_control {
+
+/// What the numbers of an option must be.
+enum class Range {
+  kNotNegative,       ///< finite and >= 0
+  kPositive,          ///< finite and > 0
+  kPositiveOrAbsent,  ///< > 0, infinity for none
+};
+
+/// Throws inverse_dynamics_solver::InvalidParameterValueException unless `values` has a number per
+/// joint, each in its range.
+///
+/// @param where  law and option: "computed torque: damping".
+/// @param unit   of the numbers, for the text.
+void requireJointNumbers(const std::string& where, const Eigen::VectorXd& values, Range range,
+                         const std::string& unit, const std::vector<std::string>& joint_names);
+
+}  // namespace inverse_dynamics_control

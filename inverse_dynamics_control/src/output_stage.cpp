@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_control/output_stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "option_checks.hpp"
+
+namespace inverse_dynamics_control {
+
+OutputStage::OutputStage(const OutputLimits& limits, const std::vector<std::string>& joint_names,
+                         const std::string& law)
+    : limits_(limits) {
+  requireJointNumbers(law + ": limits: effort", limits.effort, Range::kPositiveOrAbsent, "N m",
+                      joint_names);
+  const Eigen::Index n = limits.effort.size();
+  if (limits.rate.size() == 0) {
+    limits_.rate.setConstant(n, std::numeric_limits<double>::infinity());
+  } else {
+    requireJointNumbers(law + ": limits: rate", limits.rate, Range::kPositiveOrAbsent, "N m/s",
+                        joint_names);
+  }
+  last_.setZero(n);
+  saturated_.setConstant(n, false);
+  rate_limited_.setConstant(n, false);
+}
+
+void OutputStage::start(const Eigen::Ref<const Eigen::VectorXd>& effort) noexcept {
+  started_ = effort.size() == last_.size() && effort.allFinite();
+  if (started_) last_ = effort;
+}
+
+Status OutputStage::apply(const Eigen::VectorXd& wished, double period,
+                          Eigen::Ref<Eigen::VectorXd> tau) noexcept {
+  for (Eigen::Index j = 0; j < last_.size(); ++j) {
+    // Infinity times zero is NaN, so joints without a rate limit are left out.
+    double reachable = wished[j];
+    if (started_ && std::isfinite(limits_.rate[j])) {
+      const double change = period > 0 ? limits_.rate[j] * period : 0.0;
+      reachable = std::clamp(wished[j], last_[j] - change, last_[j] + change);
+    }
+    saturated_[j] = std::abs(wished[j]) > limits_.effort[j];
+    last_[j] = std::clamp(reachable, -limits_.effort[j], limits_.effort[j]);
+    rate_limited_[j] = reachable != wished[j];
+  }
+  tau = last_;
+  started_ = true;
+  if (saturated_.any()) return Status::kSaturated;
+  return rate_limited_.any() ? Status::kRateLimited : Status::kOk;
+}
+
+}  // namespace inverse_dynamics_control

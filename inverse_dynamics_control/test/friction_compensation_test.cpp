@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_control/friction_compensation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "arms.hpp"
+
+namespace inverse_dynamics_control {
+namespace {
+
+const FrictionOptions kOptions{FrictionSource::kMeasuredVelocity, 0.1, 0.2, 0.8};
+
+TEST(FrictionCompensation, WeightIsZeroAtRestAndItsScaleAtSpeed) {
+  const FrictionCompensation friction(kOptions, "law");
+  EXPECT_EQ(friction.weight(0.0), 0.0);
+  EXPECT_EQ(friction.weight(0.1), 0.0);
+  EXPECT_EQ(friction.weight(-0.05), 0.0);
+  EXPECT_NEAR(friction.weight(0.2), 0.4, kRounding);  // half way: half
+  EXPECT_NEAR(friction.weight(-0.2), 0.4, kRounding);
+  EXPECT_EQ(friction.weight(0.3), 0.8);
+  EXPECT_EQ(friction.weight(-50.0), 0.8);
+}
+
+TEST(FrictionCompensation, FrictionThatJumpsAtRestIsCompensatedContinuously) {
+  for (const double dead_band : {0.0, 0.1}) {
+    const FrictionOptions options{FrictionSource::kReferenceVelocity, dead_band, 0.2, 1.0};
+    const FrictionCompensation friction(options, "law");
+    const auto compensated = [&](double v) {
+      Eigen::VectorXd f = vec({Pendulum::friction(v)});
+      friction.weigh(vec({v}), f);
+      return f[0];
+    };
+    // The model jumps by 6 N m at rest. Weighted: its greatest slope is that of the weight,
+    // 1.5 / 0.2 s/rad, times its greatest value there, plus its own slope of 2.
+    const double step = 1e-4, steepest = 1.5 / 0.2 * 4.5 + 2.0;
+    for (double v = -0.5; v < 0.5; v += step) {
+      ASSERT_LE(std::abs(compensated(v + step) - compensated(v)), steepest * step) << "at " << v;
+    }
+    EXPECT_EQ(compensated(0.0), 0.0);
+    EXPECT_NEAR(compensated(0.4), Pendulum::friction(0.4), kRounding);
+  }
+}
+
+TEST(FrictionCompensation, BadOptionsAreRefused) {
+  const auto text = [](FrictionSource source, double dead_band, double blend, double scale) {
+    return thrownBy([&] { FrictionCompensation({source, dead_band, blend, scale}, "law"); });
+  };
+  const auto measured = FrictionSource::kMeasuredVelocity;
+  const auto wished = FrictionSource::kReferenceVelocity;
+  EXPECT_EQ(text(wished, 0.0, 0.1, 1.0), "");
+  EXPECT_EQ(text(wished, -0.1, 0.1, 1.0),
+            "law: friction: dead_band: wrong value: expected a speed that isn't negative [rad/s], "
+            "got -0.1; correct this number");
+  EXPECT_EQ(text(measured, 0.0, 0.1, 1.0),
+            "law: friction: dead_band: wrong value: expected a speed above zero [rad/s] with the "
+            "measured velocity, got 0; take what the noise of a resting joint's velocity stays "
+            "below");
+  EXPECT_EQ(text(wished, 0.0, 0.0, 1.0),
+            "law: friction: blend: wrong value: expected a speed above zero [rad/s], got 0; "
+            "friction jumps at rest, so it must be blended in");
+  EXPECT_EQ(text(wished, 0.0, 0.1, 1.5),
+            "law: friction: scale: wrong value: expected a part from 0 to 1, got 1.5; more "
+            "friction than there is would push the arm on");
+  EXPECT_NE(text(wished, 0.0, kNan, 1.0), "");
+  EXPECT_NE(text(wished, 0.0, 0.1, kNan), "");
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_control

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
+
+#include "arms.hpp"
+
+namespace inverse_dynamics_control {
+namespace {
+
+using inverse_dynamics_solver::conformance::AllocationGuard;
+using inverse_dynamics_solver::conformance::kAllocationGuardWorks;
+
+constexpr double kPeriod = 1e-3;  // s
+
+TEST(RealTime, NoCycleAllocates) {
+  if (!kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted in this build";
+  const auto solver = ChainSolver::make(twoBars());
+  LawOptions options = unlimited(2);
+  options.friction = {FrictionSource::kMeasuredVelocity, 0.1, 0.2, 0.5};
+  options.limits.rate = vec({1.0, 1.0});
+  ComputedTorque computed_torque(solver, Gains::uniform(2, 20.0, 1.0), options);
+  GravityCompensation gravity_compensation(solver, options);
+  FeedForward feed_forward(solver, ModelState::kMeasured, options);
+  SafeStop stop(vec({1.0, 1.0}), solver->jointNames());
+
+  JointState good = stateOf(vec({0.3, -1.0}), vec({0.7, 1.1})), bad = good;
+  bad.q[0] = kNan;
+  Reference reference = referenceOf(good.q, good.qd, good.qd);
+  Eigen::VectorXd tau(2), effort = vec({1.0, 2.0});
+
+  // The counter counts.
+  AllocationGuard proof;
+  Eigen::VectorXd().resize(2);
+  ASSERT_GT(proof.count(), 0) << "the allocation guard doesn't see allocations";
+
+  const auto allocations = [](const std::function<void()>& call) {
+    AllocationGuard guard;
+    call();
+    return guard.count();
+  };
+  for (const JointState* state : {&good, &bad}) {
+    EXPECT_EQ(allocations([&] { computed_torque.update(*state, reference, kPeriod, tau); }), 0);
+    EXPECT_EQ(allocations([&] { computed_torque.hold(*state, kPeriod, tau); }), 0);
+    EXPECT_EQ(allocations([&] { computed_torque.start(effort); }), 0);
+    EXPECT_EQ(allocations([&] { gravity_compensation.update(*state, kPeriod, tau); }), 0);
+    EXPECT_EQ(allocations([&] { gravity_compensation.update(*state, effort, kPeriod, tau); }), 0);
+    EXPECT_EQ(allocations([&] { feed_forward.update(*state, reference, effort, kPeriod, tau); }),
+              0);
+    EXPECT_EQ(allocations([&] { stop.begin(state->q, state->qd); }), 0);
+    EXPECT_EQ(allocations([&] { stop.advance(kPeriod, reference); }), 0);
+  }
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_control
