@@ -21,17 +21,17 @@ int main() {
   const Eigen::Index n = solver->jointCount();
 
   // Before the loop: everything that can fail or allocates.
+  const double period = 1e-3;  // s
   LawOptions options;
-  options.limits.effort = Eigen::VectorXd::Constant(n, 20.0);  // N m
-  options.damping = Eigen::VectorXd::Constant(n, 2.0);         // N m s/rad
+  options.limits.effort = Eigen::VectorXd::Constant(n, 20.0);                    // N m
+  options.damping = dampingFor(*solver, Eigen::VectorXd::Zero(n), 5.0, period);  // 5 1/s
   ComputedTorque law(solver, Gains::uniform(n, 20.0, 1.0), options);
   SafeStop stop(Eigen::VectorXd::Constant(n, 4.0), solver->jointNames());  // rad/s^2
   JointState state(n);
   Reference reference(n);
   Eigen::VectorXd tau(n);
 
-  // The loop, at 1 kHz; the pendulum itself stands in for the hardware.
-  const double period = 1e-3;
+  // The loop; the pendulum itself stands in for the hardware.
   for (int k = 0; k < 2000; ++k) {
     const double t = k * period;
     if (t < 0.5) {  // track q = 1 - cos 2t

@@ -40,7 +40,7 @@ struct LawOptions {
   OutputLimits limits;
 
   /// Damping of the safe torque and of hand guiding, n, finite, >= 0; N m s/rad (prismatic N s/m).
-  /// Required. Sampled damping is stable while damping * period is below the inertia of the joint.
+  /// Required; dampingFor() [damping.hpp] makes it from one number.
   Eigen::VectorXd damping;
 
   /// How the solver's friction is compensated, if it has any.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "inverse_dynamics_control/computed_torque.hpp"       // IWYU pragma: export
+#include "inverse_dynamics_control/damping.hpp"               // IWYU pragma: export
 #include "inverse_dynamics_control/feed_forward.hpp"          // IWYU pragma: export
 #include "inverse_dynamics_control/gravity_compensation.hpp"  // IWYU pragma: export
 #include "inverse_dynamics_control/safe_stop.hpp"             // IWYU pragma: export

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_control/damping.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <sstream>
+
+#include "inverse_dynamics_control/model_terms.hpp"
+
+namespace inverse_dynamics_control {
+namespace {
+
+using inverse_dynamics_solver::errorText;
+using inverse_dynamics_solver::InvalidParameterValueException;
+
+void require(bool fulfilled, const std::string& argument, const std::string& expected,
+             const std::string& got, const std::string& remedy) {
+  if (fulfilled) return;
+  throw InvalidParameterValueException(
+      errorText("dampingFor: " + argument, "wrong value", expected, got, remedy));
+}
+
+std::string number(double value) {
+  std::ostringstream stream;
+  stream << value;
+  return stream.str();
+}
+
+}  // namespace
+
+Eigen::VectorXd dampingFor(const InverseDynamicsSolver& solver, const Eigen::VectorXd& q,
+                           double rate, double period) {
+  require(solver.inertiaIsPhysical(), "solver", "a symmetric, positive definite H(q)",
+          "inertiaIsPhysical() is false",
+          "take a solver made from the robot's URDF, or choose the damping of each joint");
+  require(std::isfinite(rate) && rate > 0, "rate", "a finite number above zero [1/s]", number(rate),
+          "5 1/s brakes an arm within a second");
+  require(std::isfinite(period) && period > 0, "period", "a finite number above zero [s]",
+          number(period), "take the period of the control loop");
+  require(q.allFinite(), "q", "finite positions", "NaN or infinity", "take a common posture");
+
+  const Eigen::MatrixXd H = solver.getInertiaMatrix(q);
+  const Eigen::VectorXd damping = rate * H.diagonal();
+  // D v = s H v
+  const Eigen::MatrixXd D = damping.asDiagonal();
+  const double fastest =
+      Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(D, H, Eigen::EigenvaluesOnly)
+          .eigenvalues()
+          .maxCoeff();
+  require(fastest * period < 1.0, "rate",
+          "no decay faster than 1 / period, " + number(1.0 / period) + " 1/s", number(fastest),
+          "lower the rate " + number(rate) + " 1/s");
+  return damping;
+}
+
+}  // namespace inverse_dynamics_control

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_control/damping.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "arms.hpp"
+
+namespace inverse_dynamics_control {
+namespace {
+
+constexpr double kPeriod = 1e-3;  // s
+
+TEST(Damping, PendulumByHand) {
+  EXPECT_NEAR(dampingFor(*Pendulum::make(), vec({1.0}), 4.0, kPeriod)[0], 4.0 * 0.5, kRounding);
+}
+
+TEST(Damping, SlowestMotionDecaysWithItsPartOfTheRate) {
+  const auto solver = ChainSolver::make(twoBars());
+  for (const double elbow : {-2.0, -1.0, 0.0, 1.0, 3.0}) {
+    const Eigen::VectorXd q = vec({0.3, elbow});
+    const Eigen::MatrixXd D = dampingFor(*solver, q, 5.0, kPeriod).asDiagonal();
+    const Eigen::VectorXd rates =
+        Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(D, solver->getInertiaMatrix(q))
+            .eigenvalues();
+    EXPECT_GT(rates.minCoeff(), 5.0 / 2) << "elbow at " << elbow;
+  }
+}
+
+TEST(Damping, BadArgumentsAreRefused) {
+  auto solver = Pendulum::make();
+  const auto text = [&](double q, double rate, double period) {
+    return thrownBy([&] { dampingFor(*solver, vec({q}), rate, period); });
+  };
+  EXPECT_EQ(text(1.0, 0.0, kPeriod),
+            "dampingFor: rate: wrong value: expected a finite number above zero [1/s], got 0; "
+            "5 1/s brakes an arm within a second");
+  EXPECT_EQ(text(1.0, 5.0, -kPeriod),
+            "dampingFor: period: wrong value: expected a finite number above zero [s], got -0.001; "
+            "take the period of the control loop");
+  EXPECT_EQ(text(kNan, 5.0, kPeriod),
+            "dampingFor: q: wrong value: expected finite positions, got NaN or infinity; take a "
+            "common posture");
+  EXPECT_EQ(text(1.0, 2000.0, kPeriod),
+            "dampingFor: rate: wrong value: expected no decay faster than 1 / period, 1000 1/s, "
+            "got 2000; lower the rate 2000 1/s");
+  EXPECT_THROW(dampingFor(*solver, vec({1.0, 2.0}), 1.0, kPeriod),
+               inverse_dynamics_solver::SizeMismatchException);
+  solver->physical = false;
+  EXPECT_EQ(text(1.0, 1.0, kPeriod),
+            "dampingFor: solver: wrong value: expected a symmetric, positive definite H(q), got "
+            "inertiaIsPhysical() is false; take a solver made from the robot's URDF, or choose "
+            "the damping of each joint");
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_control
