@@ -15,6 +15,7 @@ of that very acceleration. (At the ticks the acceleration jumps, and they would 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -41,17 +42,27 @@ _PROGRESS_EVERY = 500  # ticks
 
 
 @dataclass(frozen=True)
-class Motion:
-    """A simulated motion: N samples of n joints, as they are, without any sensor's error."""
+class Response:
+    """A robot under held commands: N samples of n joints, as they are, without any sensor's error."""
 
-    time: Floats  # (N,) s since the start of the trajectory; likewise (N, n):
+    time: Floats  # (N,) s since the start; likewise (N, n):
     q: Floats  # rad
     qd: Floats  # rad/s
     qdd: Floats  # rad/s^2, MuJoCo's
     effort: Floats  # N m, what the actuators applied
     friction: Floats  # N m, the part of effort that friction takes
+
+
+@dataclass(frozen=True)
+class Motion(Response):
+    """The response of a robot that follows a trajectory."""
+
     q_desired: Floats  # rad
     gains: Gains
+
+
+Command = Callable[[int, "Floats", "Floats"], "Floats"]
+"""Torques (n,) [N m] for the period that begins at tick k, from k, q and qd (n,)."""
 
 
 def check_rate(rate: int) -> None:
@@ -77,33 +88,53 @@ def follow(
             f"duration: expected at least two periods of the controller ({2 / rate:g} s), got {duration:g} s"
         )
     time = np.arange(ticks) / rate
-    desired = _desired_motion(robot, trajectory, time, time + 0.5 / rate)
+    middle = time + 0.5 / rate
+    desired = _desired_motion(robot, trajectory, time, middle)
     gains = gains or default_gains(robot, trajectory, rate)
     controller = JointTrajectoryController(gains, desired, robot.chain.effort, 1.0 / rate)
+    response = drive(
+        robot,
+        controller.update,
+        desired.q[0],
+        desired.qd[0],
+        rate=rate,
+        ticks=ticks,
+        progress=progress,
+    )
+    return Motion(**vars(response), q_desired=trajectory.at(middle)[0], gains=gains)
 
+
+def drive(
+    robot: SimulatedRobot,
+    command: Command,
+    q_start: Floats,
+    qd_start: Floats,
+    *,
+    rate: int,
+    ticks: int,
+    progress: Progress = no_progress,
+) -> Response:
+    """Response of a robot from a state to any controller, called `ticks` times."""
     model, data, dofs = robot.model, robot.new_data(), robot.dofs
     half = int(np.ceil(0.5 / rate / LONGEST_STEP))
     model.opt.timestep = 0.5 / rate / half
-    data.qpos[dofs], data.qvel[dofs] = desired.q[0], desired.qd[0]
-    samples = [np.empty_like(desired.q) for _ in range(5)]
-    q, qd, qdd, effort, friction = samples
+    data.qpos[dofs], data.qvel[dofs] = q_start, qd_start
+    q, qd, qdd, effort, friction = (np.empty((ticks, len(dofs))) for _ in range(5))
     for k in range(ticks):
-        command = controller.update(k, data.qpos[dofs], data.qvel[dofs])
-        data.qfrc_applied[dofs] = command
+        effort[k] = command(k, data.qpos[dofs], data.qvel[dofs])
+        data.qfrc_applied[dofs] = effort[k]
         _advance(robot, data, half)
         # the acceleration that belongs to this state and this torque
         _hold_friction(robot, data)
         mujoco.mj_forward(model, data)
         q[k], qd[k], qdd[k] = data.qpos[dofs], data.qvel[dofs], data.qacc[dofs]
-        effort[k] = command
         friction[k] = -data.qfrc_passive[dofs]
         _advance(robot, data, half)
         if k % _PROGRESS_EVERY == 0 or k == ticks - 1:
             progress("simulating", k + 1, ticks)
     if not np.isfinite(qdd).all():
         raise SimulationError("the simulation became unstable: lower the controller's gains")
-    middle = time + 0.5 / rate
-    return Motion(middle, q, qd, qdd, effort, friction, trajectory.at(middle)[0], gains)
+    return Response((np.arange(ticks) + 0.5) / rate, q, qd, qdd, effort, friction)
 
 
 def default_gains(robot: SimulatedRobot, trajectory: Trajectory, rate: int) -> Gains:
