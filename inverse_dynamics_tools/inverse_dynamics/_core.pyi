@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Types of the extension module: solvers, accelerations and metrics in C++.
+"""Types of the extension module: solvers, accelerations, metrics and control laws in C++.
 
 Arrays are (n,), one state, or (N, n), one state a row; results have the same shape.
 """
 
 from collections.abc import Sequence
+from enum import Enum
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -174,3 +175,132 @@ def low_pass_gain(
 def metrics(
     computed: ArrayLike, measured: ArrayLike, mask: Mask | None = None
 ) -> list[JointMetrics]: ...
+
+class Status(Enum):
+    """How an update ended: inverse_dynamics_control/status.hpp."""
+
+    OK = ...
+    SATURATED = ...
+    RATE_LIMITED = ...
+    REFERENCE_NOT_FINITE = ...
+    STATE_NOT_FINITE = ...
+    TORQUE_NOT_FINITE = ...
+    SOLVER_FAILED = ...
+    WRONG_SIZE = ...
+
+    @property
+    def text(self) -> str: ...
+    @property
+    def is_refusal(self) -> bool: ...
+
+class FrictionSource(Enum):
+    """Whose velocity decides about friction: friction_compensation.hpp."""
+
+    NONE = ...
+    REFERENCE_VELOCITY = ...
+    MEASURED_VELOCITY = ...
+
+class ModelState(Enum):
+    """Where a feed-forward takes H, C and g: feed_forward.hpp."""
+
+    REFERENCE = ...
+    MEASURED = ...
+
+class Compensated:
+    """What the robot adds by itself."""
+
+    def __init__(
+        self, *, gravity: bool = False, coriolis: bool = False, friction: bool = False
+    ) -> None: ...
+
+class FrictionOptions:
+    """How friction is compensated: friction_compensation.hpp."""
+
+    def __init__(
+        self,
+        source: FrictionSource = ...,
+        *,
+        dead_band: float = 0.0,
+        blend: float = 0.05,
+        scale: float = 1.0,
+    ) -> None: ...
+
+class LawOptions:
+    """Options of every law: control_law.hpp. effort_limit, damping, rate_limit: (n,)."""
+
+    def __init__(
+        self,
+        *,
+        effort_limit: ArrayLike,
+        damping: ArrayLike,
+        rate_limit: ArrayLike = ...,
+        compensated: Compensated = ...,
+        friction: FrictionOptions = ...,
+    ) -> None: ...
+
+class Gains:
+    """Gains of computed torque, (n,) each: 1/s^2, 1/s."""
+
+    def __init__(self, Kp: ArrayLike, Kd: ArrayLike) -> None: ...
+    @staticmethod
+    def of(natural_frequency: ArrayLike, damping_ratio: ArrayLike) -> Gains: ...
+    Kp: Floats  # read only
+    Kd: Floats  # read only
+
+def damping_for(solver: Solver, q: ArrayLike, rate: float, period: float) -> Floats: ...
+
+class ControlLaw:
+    """What all laws share: control_law.hpp."""
+
+    def start(self, effort: ArrayLike | None = None) -> None: ...
+    def hold(self, q: ArrayLike, qd: ArrayLike, period: float) -> tuple[Floats, Status]: ...
+    saturated: Mask  # read only
+    rate_limited: Mask  # read only
+
+class ComputedTorque(ControlLaw):
+    """tau = H(q) (qdd_ref + Kp e + Kd ed) + C(q, qd) qd + g(q) + f."""
+
+    def __init__(self, solver: Solver, gains: Gains, options: LawOptions) -> None: ...
+    def update(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        q_reference: ArrayLike,
+        qd_reference: ArrayLike,
+        qdd_reference: ArrayLike,
+        period: float,
+    ) -> tuple[Floats, Status]: ...
+
+class GravityCompensation(ControlLaw):
+    """tau = g(q) - damping qd + f."""
+
+    def __init__(self, solver: Solver, options: LawOptions) -> None: ...
+    def update(
+        self, q: ArrayLike, qd: ArrayLike, period: float, qd_reference: ArrayLike | None = None
+    ) -> tuple[Floats, Status]: ...
+
+class FeedForward(ControlLaw):
+    """tau = effort + H qdd_ref + C qd + g + f."""
+
+    def __init__(
+        self, solver: Solver, options: LawOptions, at: ModelState = ModelState.REFERENCE
+    ) -> None: ...
+    def update(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        q_reference: ArrayLike,
+        qd_reference: ArrayLike,
+        qdd_reference: ArrayLike,
+        effort: ArrayLike,
+        period: float,
+    ) -> tuple[Floats, Status]: ...
+
+class SafeStop:
+    """Ramps references to a standstill: safe_stop.hpp."""
+
+    def __init__(self, deceleration: ArrayLike, joint_names: Sequence[str]) -> None: ...
+    def begin(self, q: ArrayLike, qd: ArrayLike) -> Status: ...
+    def advance(self, period: float) -> tuple[Floats, Floats, Floats]: ...
+    finished: bool  # read only
+    duration: float  # read only

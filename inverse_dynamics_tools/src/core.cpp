@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The extension module `inverse_dynamics._core`: solvers by name, accelerations and metrics, on
-/// numpy arrays.
+/// The extension module `inverse_dynamics._core`: solvers by name, accelerations, metrics and
+/// control laws, on numpy arrays.
 ///
 /// A batch is an (N, n) array, one state a row. Row after row in memory it is, byte for byte, the
 /// n x N matrix of Eigen with one state a column: nothing is copied. Another layout (a transposed
@@ -10,14 +10,16 @@
 #include <pybind11/pybind11.h>
 
 #include "accelerations.hpp"
+#include "control.hpp"
 #include "errors.hpp"
 #include "metrics.hpp"
 #include "solver.hpp"
 
 PYBIND11_MODULE(_core, module) {
-  module.doc() = "Solvers, accelerations and metrics in C++.";
+  module.doc() = "Solvers, accelerations, metrics and control laws in C++.";
   inverse_dynamics_tools::bindErrors();
   inverse_dynamics_tools::bindSolver(module);
   inverse_dynamics_tools::bindAccelerations(module);
   inverse_dynamics_tools::bindMetrics(module);
+  inverse_dynamics_tools::bindControl(module);
 }

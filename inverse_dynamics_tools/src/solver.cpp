@@ -57,6 +57,7 @@ class Solver {
 
   const Origin& origin() const { return origin_; }
   const ids::InverseDynamicsSolver& get() const { return *solver_; }
+  std::shared_ptr<const ids::InverseDynamicsSolver> shared() const { return solver_; }
 
   Array torques(const Array& q, const Array& qd, const Array& qdd) const {
     const ConstMap q_in = states(q, "q"), qd_in = states(qd, "qd"), qdd_in = states(qdd, "qdd");
@@ -188,6 +189,10 @@ py::tuple reduced(const py::object& self) {
 }
 
 }  // namespace
+
+std::shared_ptr<const ids::InverseDynamicsSolver> solverOf(const py::handle& object) {
+  return object.cast<const Solver&>().shared();
+}
 
 void bindSolver(py::module_& module) {
   module.def(

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "control.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <inverse_dynamics_control/inverse_dynamics_control.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "solver.hpp"
+
+namespace inverse_dynamics_tools {
+namespace {
+
+namespace py = pybind11;
+using namespace inverse_dynamics_control;
+using Vector = Eigen::VectorXd;
+using Result = std::pair<Vector, Status>;
+
+JointState stateOf(const Vector& q, const Vector& qd) {
+  JointState state(0);
+  state.q = q;
+  state.qd = qd;
+  return state;
+}
+
+Reference referenceOf(const Vector& q, const Vector& qd, const Vector& qdd) {
+  Reference reference(0);
+  reference.q = q;
+  reference.qd = qd;
+  reference.qdd = qdd;
+  return reference;
+}
+
+Result hold(ControlLaw& law, const Vector& q, const Vector& qd, double period) {
+  Vector tau(law.jointCount());
+  const Status status = law.hold(stateOf(q, qd), period, tau);
+  return {tau, status};
+}
+
+Result computedTorque(ComputedTorque& law, const Vector& q, const Vector& qd,
+                      const Vector& q_reference, const Vector& qd_reference,
+                      const Vector& qdd_reference, double period) {
+  Vector tau(law.jointCount());
+  const Status status = law.update(
+      stateOf(q, qd), referenceOf(q_reference, qd_reference, qdd_reference), period, tau);
+  return {tau, status};
+}
+
+Result gravityCompensation(GravityCompensation& law, const Vector& q, const Vector& qd,
+                           double period, const std::optional<Vector>& qd_reference) {
+  Vector tau(law.jointCount());
+  const JointState state = stateOf(q, qd);
+  const Status status =
+      qd_reference ? law.update(state, *qd_reference, period, tau) : law.update(state, period, tau);
+  return {tau, status};
+}
+
+Result feedForward(FeedForward& law, const Vector& q, const Vector& qd, const Vector& q_reference,
+                   const Vector& qd_reference, const Vector& qdd_reference, const Vector& effort,
+                   double period) {
+  Vector tau(law.jointCount());
+  const Status status = law.update(
+      stateOf(q, qd), referenceOf(q_reference, qd_reference, qdd_reference), effort, period, tau);
+  return {tau, status};
+}
+
+void bindEnums(py::module_& module) {
+  py::enum_<Status>(module, "Status", "How an update ended: see inverse_dynamics_control.")
+      .value("OK", Status::kOk)
+      .value("SATURATED", Status::kSaturated)
+      .value("RATE_LIMITED", Status::kRateLimited)
+      .value("REFERENCE_NOT_FINITE", Status::kReferenceNotFinite)
+      .value("STATE_NOT_FINITE", Status::kStateNotFinite)
+      .value("TORQUE_NOT_FINITE", Status::kTorqueNotFinite)
+      .value("SOLVER_FAILED", Status::kSolverFailed)
+      .value("WRONG_SIZE", Status::kWrongSize)
+      .def_property_readonly("text", &text, "What happened, in words.")
+      .def_property_readonly("is_refusal", &isRefusal, "Whether the torque is the safe torque.");
+  py::enum_<FrictionSource>(module, "FrictionSource", "Whose velocity decides about friction.")
+      .value("NONE", FrictionSource::kNone)
+      .value("REFERENCE_VELOCITY", FrictionSource::kReferenceVelocity)
+      .value("MEASURED_VELOCITY", FrictionSource::kMeasuredVelocity);
+  py::enum_<ModelState>(module, "ModelState", "Where a feed-forward takes H, C and g.")
+      .value("REFERENCE", ModelState::kReference)
+      .value("MEASURED", ModelState::kMeasured);
+}
+
+void bindOptions(py::module_& module) {
+  py::class_<Compensated>(module, "Compensated", "What the robot adds by itself.")
+      .def(py::init([](bool gravity, bool coriolis, bool friction) {
+             return Compensated{gravity, coriolis, friction};
+           }),
+           py::kw_only(), py::arg("gravity") = false, py::arg("coriolis") = false,
+           py::arg("friction") = false);
+  py::class_<FrictionOptions>(module, "FrictionOptions",
+                              "How friction is compensated; speeds in rad/s.")
+      .def(py::init([](FrictionSource source, double dead_band, double blend, double scale) {
+             return FrictionOptions{source, dead_band, blend, scale};
+           }),
+           py::arg("source") = FrictionSource::kReferenceVelocity, py::kw_only(),
+           py::arg("dead_band") = 0.0, py::arg("blend") = 0.05, py::arg("scale") = 1.0);
+  py::class_<LawOptions>(module, "LawOptions", "Options of every law; arrays (n,).")
+      .def(py::init([](Vector effort_limit, Vector damping, Vector rate_limit,
+                       const Compensated& compensated, const FrictionOptions& friction) {
+             LawOptions options;
+             options.compensated = compensated;
+             options.limits = {std::move(effort_limit), std::move(rate_limit)};
+             options.damping = std::move(damping);
+             options.friction = friction;
+             return options;
+           }),
+           py::kw_only(), py::arg("effort_limit"), py::arg("damping"),
+           py::arg("rate_limit") = Vector(), py::arg("compensated") = Compensated(),
+           py::arg("friction") = FrictionOptions());
+  py::class_<Gains>(module, "Gains", "Gains of computed torque, (n,) each.")
+      .def(py::init([](Vector Kp, Vector Kd) {
+             return Gains{std::move(Kp), std::move(Kd)};
+           }),
+           py::arg("Kp"), py::arg("Kd"))
+      .def_static("of", &Gains::of, py::arg("natural_frequency"), py::arg("damping_ratio"),
+                  "Kp = w^2, Kd = 2 z w; w in rad/s.")
+      .def_readonly("Kp", &Gains::Kp)
+      .def_readonly("Kd", &Gains::Kd);
+}
+
+void bindLaws(py::module_& module) {
+  py::class_<ControlLaw>(module, "ControlLaw", "What all laws share.")
+      .def(
+          "start",
+          [](ControlLaw& law, const std::optional<Vector>& effort) {
+            effort ? law.start(*effort) : law.start();
+          },
+          py::arg("effort") = py::none(), "The loop begins; with the effort that acts now.")
+      .def("hold", &hold, py::arg("q"), py::arg("qd"), py::arg("period"),
+           "(tau, Status) of the safe torque g(q) - damping qd.")
+      .def_property_readonly(
+          "saturated", [](const ControlLaw& law) { return law.saturated(); },
+          "(n,) Whether the last torque was cut to its effort limit.")
+      .def_property_readonly(
+          "rate_limited", [](const ControlLaw& law) { return law.rateLimited(); },
+          "(n,) Whether the last torque was held back by its rate limit.");
+  py::class_<ComputedTorque, ControlLaw>(
+      module, "ComputedTorque", "tau = H(q) (qdd_ref + Kp e + Kd ed) + C(q, qd) qd + g(q) + f.")
+      .def(py::init([](const py::object& solver, const Gains& gains, const LawOptions& options) {
+             return ComputedTorque(solverOf(solver), gains, options);
+           }),
+           py::arg("solver"), py::arg("gains"), py::arg("options"))
+      .def("update", &computedTorque, py::arg("q"), py::arg("qd"), py::arg("q_reference"),
+           py::arg("qd_reference"), py::arg("qdd_reference"), py::arg("period"), "(tau, Status).");
+  py::class_<GravityCompensation, ControlLaw>(module, "GravityCompensation",
+                                              "tau = g(q) - damping qd + f.")
+      .def(py::init([](const py::object& solver, const LawOptions& options) {
+             return GravityCompensation(solverOf(solver), options);
+           }),
+           py::arg("solver"), py::arg("options"))
+      .def("update", &gravityCompensation, py::arg("q"), py::arg("qd"), py::arg("period"),
+           py::arg("qd_reference") = py::none(), "(tau, Status).");
+  py::class_<FeedForward, ControlLaw>(module, "FeedForward",
+                                      "tau = effort + H qdd_ref + C qd + g + f.")
+      .def(py::init([](const py::object& solver, const LawOptions& options, ModelState at) {
+             return FeedForward(solverOf(solver), at, options);
+           }),
+           py::arg("solver"), py::arg("options"), py::arg("at") = ModelState::kReference)
+      .def("update", &feedForward, py::arg("q"), py::arg("qd"), py::arg("q_reference"),
+           py::arg("qd_reference"), py::arg("qdd_reference"), py::arg("effort"), py::arg("period"),
+           "(tau, Status).");
+}
+
+void bindDamping(py::module_& module) {
+  module.def(
+      "damping_for",
+      [](const py::object& solver, const Vector& q, double rate, double period) {
+        return dampingFor(*solverOf(solver), q, rate, period);
+      },
+      py::arg("solver"), py::arg("q"), py::arg("rate"), py::arg("period"),
+      "(n,) Damping rate H_jj(q), N m s/rad; rate: 1/s; period of the loop: s.");
+}
+
+void bindSafeStop(py::module_& module) {
+  py::class_<SafeStop>(module, "SafeStop", "Ramps references to a standstill.")
+      .def(py::init<const Vector&, const std::vector<std::string>&>(), py::arg("deceleration"),
+           py::arg("joint_names"))
+      .def("begin", &SafeStop::begin, py::arg("q"), py::arg("qd"))
+      .def(
+          "advance",
+          [](SafeStop& stop, double period) {
+            Reference reference(stop.jointCount());
+            if (isRefusal(stop.advance(period, reference))) {
+              throw py::value_error("SafeStop.advance: call begin() first, with a finite motion");
+            }
+            return py::make_tuple(reference.q, reference.qd, reference.qdd);
+          },
+          py::arg("period"), "(q, qd, qdd) of the reference, one period later.")
+      .def_property_readonly("finished", &SafeStop::finished)
+      .def_property_readonly("duration", &SafeStop::duration, "s.");
+}
+
+}  // namespace
+
+void bindControl(py::module_& module) {
+  bindEnums(module);
+  bindOptions(module);
+  bindDamping(module);
+  bindLaws(module);
+  bindSafeStop(module);
+}
+
+}  // namespace inverse_dynamics_tools
