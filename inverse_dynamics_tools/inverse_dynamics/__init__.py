@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation import Evaluation, JointError, evaluate
     from inverse_dynamics.joint_log import JointLog
     from inverse_dynamics.plots import save_torque_figure, torque_figure
+    from inverse_dynamics.recordings import read_recording
     from inverse_dynamics.results import read_evaluation, write_evaluation
     from inverse_dynamics.robots import Robot, load_robot, robot_names
 
@@ -39,6 +40,7 @@ _HOME = {
     "load_robot": "robots",
     "read_evaluation": "results",
     "read_joint_log": "bags",
+    "read_recording": "recordings",
     "read_topics": "bags",
     "robot_names": "robots",
     "save_torque_figure": "plots",
@@ -59,6 +61,7 @@ __all__ = [
     "load_robot",
     "read_evaluation",
     "read_joint_log",
+    "read_recording",
     "read_topics",
     "robot_names",
     "save_torque_figure",

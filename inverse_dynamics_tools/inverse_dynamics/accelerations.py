@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 METHODS = {
     "auto": "low-pass with a cut-off chosen from the data",
     "low-pass": "zero-phase low-pass of the velocities, then their derivative",
+    "given": "those of the recording; the default where it has any",
     "backward-difference": "(qd[k] - qd[k-1]) / (t[k] - t[k-1]), the first one zero; no filter",
 }
 
@@ -36,7 +37,7 @@ RULES = {
 class Accelerations:
     """How accelerations were estimated."""
 
-    method: str  # low-pass or backward-difference
+    method: str  # low-pass, given or backward-difference
     cutoff: float | None = None  # Hz; gain one half there
     chosen: bool = False  # whether the cut-off was chosen from the data
     order: int | None = None  # of the Butterworth filter that runs forwards and backwards
@@ -45,6 +46,8 @@ class Accelerations:
     @property
     def summary(self) -> str:
         """In words, as titles and tables show it."""
+        if self.method == "given":
+            return "given by the recording"
         if self.cutoff is None:
             return f"{self.method}, no filter"
         how = "chosen from the data" if self.chosen else "given"
@@ -96,13 +99,17 @@ def estimate_accelerations(
         **{rule.replace("-", "_"): rule not in without_rules for rule in RULES}
     )
     time = log.time
-    if method == "backward-difference":
+    if method in ("given", "backward-difference"):
         if cutoff is not None:
             raise EvaluationError(
                 f"accelerations: {method} has no cut-off, got {cutoff:g} Hz; use low-pass"
             )
         report = _core.examine_samples(time, log.q, log.qd, log.effort, rules)
-        qdd = _core.backward_difference(time, log.qd)
+        qdd = _core.backward_difference(time, log.qd) if method != "given" else log.qdd
+        if qdd is None:
+            raise EvaluationError(
+                "accelerations: the recording gives none; expected another method, such as auto"
+            )
         return qdd, Accelerations(method), _samples(report)
     qdd, choice, report = _core.low_pass_accelerations(
         time, log.q, log.qd, log.effort, cutoff or 0.0, rules
@@ -114,7 +121,7 @@ def estimate_accelerations(
 def findings(log: JointLog, how: Accelerations, samples: Samples) -> list[str]:
     """What is odd about the samples and what follows, a sentence each."""
     n = len(log)
-    left_out = "" if how.method == "backward-difference" else " (left out of the differentiation)"
+    left_out = " (left out of the differentiation)" if how.method == "low-pass" else ""
     said = []
     if count := int(samples.repeated.sum()):
         said.append(f"{count} of {n} samples repeat the one before{left_out}")

@@ -19,7 +19,6 @@ from inverse_dynamics.accelerations import (
     estimate_accelerations,
     findings,
 )
-from inverse_dynamics.bags import read_joint_log
 from inverse_dynamics.descriptions import joint_units, read_description
 from inverse_dynamics.effort import (
     Effort,
@@ -31,6 +30,7 @@ from inverse_dynamics.effort import (
 )
 from inverse_dynamics.errors import EvaluationError, RobotError
 from inverse_dynamics.joint_log import no_progress
+from inverse_dynamics.recordings import read_recording
 from inverse_dynamics.robots import Robot, load_robot
 from inverse_dynamics.solvers import brings_own_model, open_solver
 
@@ -116,7 +116,7 @@ def evaluate(
 ) -> Evaluation:
     """Compute the torques of a recorded motion and compare them with the measured ones.
 
-    bag: rosbag2 recording of sensor_msgs/JointState. robot: a name of robot_names(), the file of a
+    bag: rosbag2 recording or text file, see recordings.py. robot: a name of robot_names(), the file of a
     run configuration, or one that is loaded. What else is given replaces what the configuration
     says: see Robot. effort_is: what recorded efforts mean, one of effort.EFFORT_CHOICES.
     accelerations: one of accelerations.METHODS; cutoff: Hz, of a low-pass. clock: which stamps are
@@ -153,7 +153,16 @@ def evaluate(
     recorded_names = _recorded_names(robot, joint_names)
     units = joint_units(robot.urdf, description, joint_names)
     solver_ready = time.perf_counter()
-    log = read_joint_log(bag, recorded_names, topic=robot.topic, clock=clock, progress=progress)
+    log = read_recording(
+        bag,
+        recorded_names,
+        topic=topic or "",
+        usual_topic=robot.topic,
+        clock=clock,
+        progress=progress,
+    )
+    if log.qdd is not None and accelerations is None and cutoff is None:
+        robot = replace(robot, accelerations="given", cutoff=None)
     effort = stated_effort(effort_is, log, robot, gains)
     read = time.perf_counter()
     progress("computing", 0, len(log))
@@ -162,7 +171,8 @@ def evaluate(
             log, robot.accelerations, robot.cutoff, without_rules
         )
     except EvaluationError as error:
-        raise EvaluationError(f"{bag}: {log.topic}: {error}") from error
+        where = f"{bag}: {log.topic}" if log.topic else f"{bag}"
+        raise EvaluationError(f"{where}: {error}") from error
     filtered = time.perf_counter()
     computed = solver.torques(log.q, log.qd, qdd)
     if effort.meaning == "auto":

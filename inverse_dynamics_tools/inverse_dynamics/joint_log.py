@@ -45,6 +45,7 @@ class JointLog:
     q: Floats  # (N, n)
     qd: Floats  # (N, n)
     effort: Floats  # (N, n)
+    qdd: Floats | None = None  # (N, n) rad/s^2 (prismatic m/s^2), where the recording gives them
     frame_id: str = ""
     clock: Clock = "header"  # which of the two stamps is the time
     topic: str = "/joint_states"

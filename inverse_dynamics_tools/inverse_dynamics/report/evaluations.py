@@ -92,7 +92,9 @@ def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:
         ("accelerations", evaluation.accelerations.summary),
         (
             "recording",
-            f"{evaluation.bag.name}, {log.topic}, {len(log)} samples, {evaluation.time[-1]:.1f} s",
+            evaluation.bag.name
+            + (f", {log.topic}" if log.topic else "")
+            + f", {len(log)} samples, {evaluation.time[-1]:.1f} s",
         ),
         ("source", robot.source),
     ]

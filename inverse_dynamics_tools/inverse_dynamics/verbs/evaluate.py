@@ -33,6 +33,13 @@ examples:
   ids evaluate recording --robot ur10_real --effort-is auto
       torques, motor currents, or torques without gravity? the data tell
 
+  ids evaluate motion.csv --robot my_robot.yaml
+      a table: columns time [s] and, for each joint, position.JOINT, velocity.JOINT, effort.JOINT,
+      optionally acceleration.JOINT; comma, semicolon, tab or spaces between them
+
+  ids evaluate robot_data.csv --robot ur10_real
+      what the record tool of UR's RTDE client library writes: efforts are motor currents
+
 results, written whole or not at all:
   metrics.json            errors of each joint
   torques.png .svg .pdf   measured and computed torques and the error, over time
@@ -63,7 +70,8 @@ def add_parser(
         "bag",
         metavar="BAG",
         type=Path,
-        help="rosbag2 recording of sensor_msgs/JointState: a directory, or a .db3 or .mcap file",
+        help="rosbag2 recording of sensor_msgs/JointState or trajectory_msgs/JointTrajectory (a "
+        "directory, or a .db3 or .mcap file), or a table of numbers (.csv or .txt)",
     )
     parser.add_argument(
         "--robot",
@@ -109,7 +117,9 @@ def add_parser(
         type=three_numbers,
         help="where things fall [m/s^2], in the frame of the root link (usually 0,0,-9.81)",
     )
-    robot.add_argument("--topic", metavar="NAME", help="topic of the joint states")
+    robot.add_argument(
+        "--topic", metavar="NAME", help="topic of the joint states, or of the trajectory"
+    )
     robot.add_argument(
         "--joints",
         metavar="A,B,...",
@@ -207,7 +217,7 @@ def _print(evaluation: Evaluation, out: Path) -> None:
     friction = "" if robot.friction else ", friction left out"
     console.print(f"solver         {robot.plugin}{friction}")
     console.print(
-        f"recording      {evaluation.bag}, {log.topic}: {len(log)} samples, "
+        f"recording      {', '.join(filter(None, (str(evaluation.bag), log.topic)))}: {len(log)} samples, "
         f"{evaluation.time[-1]:.1f} s"
     )
     console.print(f"accelerations  {evaluation.accelerations.summary}")

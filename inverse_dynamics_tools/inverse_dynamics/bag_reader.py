@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Raw messages of rosbag2 recordings (sqlite3 and MCAP), and what is said of a file that is none."""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from inverse_dynamics.errors import BagError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from rosbags.interfaces import Connection
+    from rosbags.rosbag2 import Reader
+
+    from inverse_dynamics.joint_log import Integers, Storage
+
+_BLOCK = 4096  # messages read together
+
+
+class TopicSummary(NamedTuple):
+    """What a recording says of one topic."""
+
+    name: str
+    message_type: str
+    message_count: int
+
+
+class BagReader:
+    """A recording being read: finds it, opens it, and turns what can go wrong into BagError."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._reader: Reader
+
+    def __enter__(self) -> BagReader:
+        _check_there(self._path)
+        from rosbags.rosbag2 import Reader
+
+        try:
+            self._reader = Reader(self._path)
+            self._reader.open()
+        except Exception as error:  # readers of damaged files raise more than they document
+            raise self._unreadable(error) from error
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._reader.close()
+
+    @property
+    def storage(self) -> Storage:
+        """What the recording is kept in."""
+        files = [self._path] if self._path.is_file() else list(self._path.iterdir())
+        return "mcap" if any(".mcap" in f.suffixes for f in files) else "sqlite3"
+
+    def topics(self) -> list[TopicSummary]:
+        """What there is, by name."""
+        return [
+            TopicSummary(name, info.msgtype or "several types", info.msgcount)
+            for name, info in sorted(self._reader.topics.items())
+        ]
+
+    def connections_of_type(self, message_type: str, topic: str = "") -> list[Connection]:
+        """Connections of the topic; none given: of the only one with messages of the type."""
+        topics = self.topics()
+        there = "\n".join(
+            f"  {t.name}  {t.message_type}  {t.message_count} messages" for t in topics
+        )
+        if not topics:
+            raise BagError(f"{self._path}: is an empty recording: it has no topic; record it again")
+        if not topic:
+            candidates = [t.name for t in topics if t.message_type == message_type]
+            if len(candidates) != 1:
+                raise BagError(
+                    f"{self._path}: expected one topic of type {message_type}, got "
+                    f"{len(candidates)}; name it with --topic. The recording has\n{there}"
+                )
+            topic = candidates[0]
+        found = [t for t in topics if t.name == topic]
+        if not found:
+            raise BagError(
+                f"{self._path}: has no topic {topic}; name one it has with --topic:\n{there}"
+            )
+        if found[0].message_type != message_type:
+            raise BagError(
+                f"{self._path}: topic {topic}: expected type {message_type}, got "
+                f"{found[0].message_type}; name another topic with --topic:\n{there}"
+            )
+        return [c for c in self._reader.connections if c.topic == topic]
+
+    def blocks(self, connections: list[Connection]) -> Iterator[tuple[list[bytes], Integers]]:
+        """Serialised messages and their times of reception [ns], thousands at a time."""
+        messages = self._reader.messages(connections=connections)
+        while True:
+            try:
+                block = list(islice(messages, _BLOCK))
+            except Exception as error:  # see __enter__
+                raise self._unreadable(error) from error
+            if not block:
+                return
+            received = np.fromiter((m[1] for m in block), dtype=np.int64, count=len(block))
+            yield [m[2] for m in block], received
+
+    def _unreadable(self, error: Exception) -> BagError:
+        return BagError(
+            f"{self._path}: can't be read as a rosbag2 recording ({error_text(error)}): expected "
+            "sqlite3 or MCAP storage; it is damaged, cut off or of another kind; copy or record it "
+            "again"
+        )
+
+
+def _check_there(path: Path) -> None:
+    """What can be said of a path before it is opened."""
+    if not path.exists():
+        raise BagError(
+            f"{path}: no such file or directory; expected a rosbag2 recording: a directory with "
+            "metadata.yaml, or a .db3 or .mcap file"
+        )
+    if path.is_dir():
+        if (path / "metadata.yaml").exists():
+            for log in sorted(path.glob("*.db3-wal")):
+                _check_complete(path / log.name.removesuffix("-wal"))
+            return
+        files = sorted(f.name for f in path.iterdir() if f.suffix in {".db3", ".mcap"})
+        remedy = (
+            f"give {path / files[0]} itself, or run `ros2 bag reindex {path}`"
+            if files
+            else "is it another directory?"
+        )
+        raise BagError(f"{path}: is not a rosbag2 recording: it has no metadata.yaml; {remedy}")
+    if path.suffix == ".bag":
+        raise BagError(
+            f"{path}: is a ROS 1 recording; expected rosbag2; convert it with "
+            f"`rosbags-convert --src {path} --dst {path.stem}`"
+        )
+    if path.suffix not in {".db3", ".mcap"}:
+        raise BagError(
+            f"{path}: is not a rosbag2 recording: expected a directory with metadata.yaml, or a "
+            f".db3 or .mcap file, got '{path.name}'"
+        )
+    if path.stat().st_size == 0:
+        raise BagError(
+            f"{path}: is empty (0 bytes); expected a rosbag2 recording; copy or record it again"
+        )
+    _check_complete(path)
+
+
+def _check_complete(file: Path) -> None:
+    """A recorder that was killed leaves messages in a log beside the database."""
+    log = file.with_name(f"{file.name}-wal")
+    if log.exists() and log.stat().st_size > 0:
+        raise BagError(
+            f"{file}: is incomplete: some of its messages are in {log.name} still; put them in with "
+            f"`sqlite3 {file} 'PRAGMA wal_checkpoint(TRUNCATE)'`"
+        )
+
+
+def error_text(error: Exception) -> str:
+    """First line of what an error says, or its name."""
+    return str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
