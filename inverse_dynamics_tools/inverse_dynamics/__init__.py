@@ -22,8 +22,10 @@ if TYPE_CHECKING:
     from inverse_dynamics.bags import read_joint_log, read_topics, write_joint_logs
     from inverse_dynamics.errors import UserError
     from inverse_dynamics.evaluation import Evaluation, JointError, evaluate
+    from inverse_dynamics.exports import export_series
     from inverse_dynamics.joint_log import JointLog
     from inverse_dynamics.plots import save_torque_figure, torque_figure
+    from inverse_dynamics.public_recordings import fetch_recordings
     from inverse_dynamics.recordings import read_recording
     from inverse_dynamics.results import read_evaluation, write_evaluation
     from inverse_dynamics.robots import Robot, load_robot, robot_names
@@ -37,6 +39,8 @@ _HOME = {
     "UserError": "errors",
     "available_solvers": "_core",
     "evaluate": "evaluation",
+    "export_series": "exports",
+    "fetch_recordings": "public_recordings",
     "load_robot": "robots",
     "read_evaluation": "results",
     "read_joint_log": "bags",
@@ -58,6 +62,8 @@ __all__ = [
     "UserError",
     "available_solvers",
     "evaluate",
+    "export_series",
+    "fetch_recordings",
     "load_robot",
     "read_evaluation",
     "read_joint_log",

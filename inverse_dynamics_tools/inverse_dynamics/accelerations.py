@@ -54,6 +54,10 @@ class Accelerations:
         return f"zero-phase low-pass, cut-off {self.cutoff:.3g} Hz ({how}), then derivative"
 
 
+# Names of the masks of Samples, as files have them.
+MASKS = ("repeated", "non_increasing", "start_transient", "isolated", "kept")
+
+
 @dataclass(frozen=True)
 class Samples:
     """What was found in N samples."""

@@ -19,11 +19,12 @@ from inverse_dynamics.errors import UserError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-VERBS = ("demo", "robots", "simulate", "evaluate", "compare", "report", "video")
+VERBS = ("demo", "robots", "data", "simulate", "evaluate", "compare", "report", "video", "export")
 
 _EPILOG = """\
 start here:
   ids demo                                       four robots on one page
+  ids data                                       fetch the recordings of the two real ones
   ids robots                                     which robots there are
   ids simulate --robot ur10_simulated --out BAG  record a simulated one
   ids evaluate RECORDING --robot ur10_real       computed against measured torques: table and plots

@@ -26,6 +26,7 @@ from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation import evaluate
 from inverse_dynamics.files import written_whole
 from inverse_dynamics.joint_log import no_progress
+from inverse_dynamics.public_recordings import data_directory
 from inverse_dynamics.robots import load_robot
 
 if TYPE_CHECKING:
@@ -47,10 +48,11 @@ TITLES = {
     "panda_real": "Panda, real",
 }
 HOW_TO_GET_RECORDINGS = (
-    "recordings of the real robots are the directories ur10_exciting_trajectory and "
-    "panda_exciting_trajectory among the bags of github.com/unisa-acg/inverse-dynamics-solver; name "
-    "the directory that holds them with --recordings, or in IDS_DATA_DIR the one above it, where "
-    "they lie in bags/"
+    "`ids data` fetches the recordings of the real robots, a few MB, from "
+    "github.com/unisa-acg/inverse-dynamics-solver (`ids data --help`: also without network), and "
+    "`ids demo` then finds them; where they are elsewhere, name the directory that holds "
+    "ur10_exciting_trajectory and panda_exciting_trajectory with --recordings, or in IDS_DATA_DIR the "
+    "one above it, where they lie in bags/"
 )
 
 _QUICK_SECONDS = 4.0  # of simulated motion
@@ -73,17 +75,19 @@ class Demo:
 
 
 def find_recordings() -> Path | None:
-    """Directory of recordings that IDS_DATA_DIR announces, if any. Raises UserError: it isn't there."""
-    data = os.environ.get("IDS_DATA_DIR")
-    if not data:
+    """Directory of recordings: in IDS_DATA_DIR, else where `ids data` puts them, if it has.
+
+    Raises UserError: IDS_DATA_DIR is set, but they aren't there.
+    """
+    directory = data_directory() / "bags"
+    if directory.is_dir():
+        return directory
+    if not os.environ.get("IDS_DATA_DIR"):
         return None
-    directory = Path(data) / "bags"
-    if not directory.is_dir():
-        raise UserError(
-            f"IDS_DATA_DIR: expected a directory with recordings at {directory}, which isn't there; "
-            "correct or unset it"
-        )
-    return directory
+    raise UserError(
+        f"IDS_DATA_DIR: expected a directory with recordings at {directory}, which isn't there; "
+        "correct or unset it, or let `ids data` put them there"
+    )
 
 
 def run_demo(

@@ -17,6 +17,10 @@ class RobotError(UserError):
     """A run configuration that isn't there or isn't right."""
 
 
+class RecordingsError(UserError):
+    """Public recordings that can't be fetched, or aren't the published ones."""
+
+
 class OutputError(UserError):
     """A result that can't be written where it should go, or one that can't be read back."""
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -52,14 +52,23 @@ def check_output_file(target: Path, *, overwrite: bool = False) -> None:
 
 def write_text_whole(target: Path, text: str) -> None:
     """Write a file, or leave what was there. Raises OutputError."""
+    with file_written_whole(target) as work:
+        work.write_text(text, encoding="utf-8")
+
+
+@contextmanager
+def file_written_whole(target: Path) -> Iterator[Path]:
+    """File to write; it becomes `target` at the end, and vanishes on an error. Raises OutputError."""
     work = target.with_name(f".{target.name}.part")
     try:
         target.absolute().parent.mkdir(parents=True, exist_ok=True)
-        work.write_text(text, encoding="utf-8")
+        yield work
         os.replace(work, target)
     except OSError as error:
-        work.unlink(missing_ok=True)
         raise OutputError(_cannot_write(target, error)) from error
+    finally:
+        with suppress(OSError):
+            work.unlink()
 
 
 @contextmanager

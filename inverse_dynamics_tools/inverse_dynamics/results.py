@@ -6,6 +6,7 @@ metrics.json      errors of each joint
 series.npz        time, q, qd, qdd, effort as recorded, measured and computed torques, stamps; one row
                   per sample
 bag/              recording with /torques (computed) and /torques_gt (measured)
+plotjuggler.xml   layout for PlotJuggler that opens it
 torques.png, .svg, .pdf
 """
 
@@ -20,7 +21,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from inverse_dynamics.accelerations import Accelerations, Samples
+from inverse_dynamics.accelerations import MASKS, Accelerations, Samples
 from inverse_dynamics.bags import write_joint_logs
 from inverse_dynamics.effort import Effort
 from inverse_dynamics.effort_verdict import Candidate, Verdict
@@ -36,8 +37,6 @@ if TYPE_CHECKING:
 SCHEMA = 2
 MARK = "evaluation.json"
 PLOT_FORMATS = ("png", "svg", "pdf")
-
-_MASKS = ("repeated", "non_increasing", "start_transient", "isolated", "kept")
 
 COMPUTED_TOPIC = "/torques"
 MEASURED_TOPIC = "/torques_gt"
@@ -65,6 +64,9 @@ def write_evaluation(
             MEASURED_TOPIC: replace(log, effort=evaluation.measured),
         }
         write_joint_logs(target / "bag", topics, storage=storage or log.storage, progress=progress)
+        (target / "plotjuggler.xml").write_text(
+            _layout(evaluation, target / "bag", storage or log.storage), encoding="utf-8"
+        )
         _write_json(target / "metrics.json", _metrics(evaluation))
         _write_json(target / MARK, _summary(evaluation))
         np.savez(target / "series.npz", allow_pickle=False, **_series(evaluation))
@@ -99,6 +101,16 @@ def read_evaluation(directory: Path | str) -> Evaluation:
         ) from error
 
 
+def _layout(evaluation: Evaluation, bag: Path, storage: Storage) -> str:
+    """For PlotJuggler, beside the bag."""
+    from inverse_dynamics.plotjuggler import torque_layout
+
+    opened = next(bag.glob("*.mcap")) if storage == "mcap" else bag / "metadata.yaml"
+    recording = f"{bag.name}/{opened.name}"
+    topics = (MEASURED_TOPIC, COMPUTED_TOPIC)
+    return torque_layout(evaluation.log, evaluation.units, topics, recording, storage)
+
+
 def _series(evaluation: Evaluation) -> dict[str, Any]:
     log = evaluation.log
     return {
@@ -111,7 +123,7 @@ def _series(evaluation: Evaluation) -> dict[str, Any]:
         "effort": log.effort,
         "measured": evaluation.measured,
         "computed": evaluation.computed,
-        **{name: getattr(evaluation.samples, name) for name in _MASKS},
+        **{name: getattr(evaluation.samples, name) for name in MASKS},
     }
 
 
@@ -187,7 +199,7 @@ def _from_files(
         effort_is=recording["effort_is"],
         notes=tuple(recording["notes"]),
     )
-    samples = Samples(**{name: arrays[name] for name in _MASKS}, **data["sampling"])
+    samples = Samples(**{name: arrays[name] for name in MASKS}, **data["sampling"])
     return Evaluation(
         robot=Robot(**robot),
         bag=Path(data["bag"]),

@@ -407,11 +407,12 @@ def test_video_refuses_other_formats(evaluation, tmp_path):
 
 def test_demo_shows_the_simulated_robots_and_how_to_get_the_others(tmp_path, capsys, monkeypatch):
     monkeypatch.delenv("IDS_DATA_DIR", raising=False)
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))  # where `ids data` has put nothing
     out = tmp_path / "demo"
     assert cli.main(["demo", "--quick", "--out", str(out)]) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "Panda, simulated" in printed
-    assert "unisa-acg/inverse-dynamics-solver" in printed
+    assert "`ids data` fetches the recordings" in printed
     assert str(out / "report.html") in printed
     html = (out / "report.html").read_text()
     assert "Two robots" in html

@@ -20,6 +20,7 @@ FILES = {
     "bag",
     "evaluation.json",
     "metrics.json",
+    "plotjuggler.xml",
     "series.npz",
     "torques.pdf",
     "torques.png",

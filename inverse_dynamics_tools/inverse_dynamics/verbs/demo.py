@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 _EPILOG = """\
 examples:
-  ids demo                                  simulated robots; real ones where IDS_DATA_DIR is set
+  ids demo                                  simulated robots; real ones if `ids data` has fetched them
   ids demo --recordings bags --out robots   real ones too, from recordings in the directory bags
   ids demo --quick                          a few seconds of motion, no videos: does it work here?
 
@@ -48,7 +48,7 @@ def add_parser(
         metavar="DIR",
         type=Path,
         help="directory with ur10_exciting_trajectory and panda_exciting_trajectory "
-        "(default: $IDS_DATA_DIR/bags, if IDS_DATA_DIR is set)",
+        "(default: $IDS_DATA_DIR/bags, else where `ids data` puts them)",
     )
     parser.add_argument("--overwrite", action="store_true", help="replace an older demonstration")
     parser.add_argument(

@@ -44,6 +44,7 @@ results, written whole or not at all:
   metrics.json            errors of each joint
   torques.png .svg .pdf   measured and computed torques and the error, over time
   bag/                    recording with /torques (computed) and /torques_gt (measured)
+  plotjuggler.xml         layout for PlotJuggler: `plotjuggler --layout plotjuggler.xml`
   series.npz              time, q, qd, qdd, effort (as recorded), measured, computed, for numpy.load()
   evaluation.json         what was assumed: filter, messages left out, model, what effort means
 """

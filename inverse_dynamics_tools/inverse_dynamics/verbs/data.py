@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids data`: fetch public recordings of real robots."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from inverse_dynamics.verbs.common import progress_bar
+
+_EPILOG = """\
+examples:
+  ids data --dry-run          what would be fetched, from where, how large
+  ids data                    fetch it; `ids demo` then finds it
+  ids data --out recordings   elsewhere: IDS_DATA_DIR=recordings ids demo
+  ids data --from CLONE       from a clone of the public repository, without network
+
+A real UR10 and a real Panda, each on an exciting trajectory: DIR/bags/ur10_exciting_trajectory and
+DIR/bags/panda_exciting_trajectory. Every file is checked by its SHA-256. What is there already and
+intact is left alone; each recording is written whole or not at all.
+"""
+
+
+def add_parser(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+) -> argparse.ArgumentParser:
+    """Declare the verb."""
+    parser = subparsers.add_parser(
+        "data",
+        help="fetch the public recordings of a real UR10 and a real Panda",
+        description="Fetch the public recordings of a real UR10 and a real Panda, and check them.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        help="where they go (default: $IDS_DATA_DIR, else $XDG_DATA_HOME/inverse_dynamics, else "
+        "~/.local/share/inverse_dynamics)",
+    )
+    parser.add_argument(
+        "--from",
+        dest="source",
+        metavar="URL|CLONE",
+        default="",
+        help="where the files of the public repository lie, instead of GitHub: another server, or the "
+        "directory of a clone",
+    )
+    parser.add_argument("--dry-run", action="store_true", help="only say what would be fetched")
+    parser.add_argument(
+        "--overwrite", action="store_true", help="replace recordings that aren't as published"
+    )
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.public_recordings import data_directory, fetch_recordings
+
+    directory = arguments.out or data_directory()
+    if arguments.dry_run:
+        _print_plan(directory)
+        return
+    with progress_bar() as progress:
+        fetch_recordings(
+            directory,
+            source=arguments.source,
+            overwrite=arguments.overwrite,
+            say=lambda text: print(text, flush=True),
+            progress=progress,
+        )
+
+
+def _print_plan(directory: Path) -> None:
+    from inverse_dynamics.public_recordings import is_intact, public_recordings
+
+    table = public_recordings()
+    print(f"{table.repository}, commit {table.commit}, license {table.license}")
+    missing = 0
+    for recording in table.recordings:
+        place = directory / "bags" / recording.name
+        there = is_intact(recording, place)
+        missing += 0 if there else recording.size
+        print(f"{place}: {'already there and intact' if there else 'to be fetched'}")
+        for file in recording.files:
+            print(f"  {file.size:>9} bytes  {file.source}\n             SHA-256 {file.sha256}")
+    print(f"to fetch: {missing / 1e6:.2f} MB; nothing was fetched")

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids export`: all series of evaluations as tables."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from inverse_dynamics.verbs.common import progress_bar
+
+_EPILOG = """\
+examples:
+  ids export result                            result/series.csv
+  ids export ur10 panda --format parquet       ur10/series.parquet, panda/series.parquet
+  ids export result --out torques.csv          one table, where it is wanted
+
+columns, J being a joint as the recording names it; a row per sample:
+  time                                    s since the first sample
+  position.J velocity.J acceleration.J    the motion; accelerations as estimated
+  effort.J                                as recorded
+  measured.J computed.J error.J           torques; error = computed - measured
+  repeated non_increasing start_transient isolated kept
+                                          what was found in a sample (true, false)
+
+Every digit is kept. A Parquet file says the unit of each column; a CSV file has rad, rad/s, rad/s^2, N m
+(prismatic: m, m/s, m/s^2, N). `ids evaluate` reads such a CSV file as a recording.
+"""
+
+
+def add_parser(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+) -> argparse.ArgumentParser:
+    """Declare the verb."""
+    from inverse_dynamics.exports import FORMATS
+
+    parser = subparsers.add_parser(
+        "export",
+        help="write all series of evaluations as tables: CSV, Parquet",
+        description="Write all series of evaluations as tables: CSV or Parquet, one file each.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "runs", metavar="RUN", type=Path, nargs="+", help="results of `ids evaluate`"
+    )
+    parser.add_argument(
+        "--format", choices=FORMATS, help="(default: that of --out by its ending, else csv)"
+    )
+    parser.add_argument(
+        "--out",
+        metavar="FILE",
+        type=Path,
+        help="the table of one RUN (default: RUN/series.csv or RUN/series.parquet)",
+    )
+    parser.add_argument("--overwrite", action="store_true", help="replace older tables")
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.exports import check_pyarrow, export_series
+    from inverse_dynamics.files import check_output_file
+    from inverse_dynamics.results import read_evaluation
+
+    check_pyarrow()
+    files = _files(arguments)
+    for file in files:  # before the work
+        check_output_file(file, overwrite=arguments.overwrite)
+    with progress_bar() as progress:
+        for directory, file in zip(arguments.runs, files, strict=True):
+            evaluation = read_evaluation(directory)
+            export_series(evaluation, file, overwrite=arguments.overwrite, progress=progress)
+    for file in files:
+        print(file)
+
+
+def _files(arguments: argparse.Namespace) -> list[Path]:
+    """Where the tables go."""
+    from inverse_dynamics.errors import UserError
+
+    out: Path | None = arguments.out
+    if out is None:
+        suffix = arguments.format or "csv"
+        return [directory / f"series.{suffix}" for directory in arguments.runs]
+    if len(arguments.runs) != 1:
+        raise UserError(
+            f"--out: names the table of one RUN, got {len(arguments.runs)} RUNs; leave it out, and each "
+            "table goes into its RUN"
+        )
+    if arguments.format and out.suffix.lower() != f".{arguments.format}":
+        raise UserError(
+            f"--out: expected a name ending in .{arguments.format}, as --format says, got '{out}'"
+        )
+    return [out]
