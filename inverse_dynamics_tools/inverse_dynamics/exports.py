@@ -58,7 +58,7 @@ def series_columns(evaluation: Evaluation) -> list[Column]:
             ("position", angle, log.q),
             ("velocity", f"{angle}/s", log.qd),
             ("acceleration", f"{angle}/s^2", evaluation.qdd),
-            ("effort", _effort_unit(evaluation, torque), log.effort),
+            ("effort", "A" if evaluation.effort.meaning == "current" else torque, log.effort),
             ("measured", torque, evaluation.measured),
             ("computed", torque, evaluation.computed),
             ("error", torque, error),
@@ -116,10 +116,6 @@ def check_pyarrow() -> None:
             f"tables are written by pyarrow, which can't be imported ({error}); install it with "
             "`pip install pyarrow` (series.npz has the same series, for numpy.load())"
         ) from error
-
-
-def _effort_unit(evaluation: Evaluation, torque: str) -> str:
-    return torque if evaluation.robot.effort.startswith("torque") else "A"
 
 
 def _metadata(**texts: str) -> dict[str, str]:

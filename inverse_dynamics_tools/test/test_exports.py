@@ -9,6 +9,7 @@ import pytest
 from test_results import make_evaluation
 
 from inverse_dynamics import cli, write_evaluation
+from inverse_dynamics.effort import Effort
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.exports import export_series, series_columns
 
@@ -85,6 +86,16 @@ def test_units_of_a_prismatic_joint_are_metres_and_newtons(evaluation):
     assert units["velocity.joint_2"] == "m/s"
     assert units["computed.joint_2"] == "N"
     assert units["position.joint_1"] == "rad"
+
+
+def test_efforts_that_are_currents_stay_as_recorded_beside_the_torques_they_mean(evaluation):
+    currents = replace(evaluation, effort=Effort("current", drive_gains=(2.0, 3.0, 4.0)))
+    columns = {c.name: c for c in series_columns(currents)}
+    assert columns["effort.joint_2"].unit == "A"
+    assert columns["measured.joint_2"].unit == "N m"
+    recorded = evaluation.log.effort[:, 1]
+    np.testing.assert_array_equal(columns["effort.joint_2"].values, recorded)
+    np.testing.assert_array_equal(columns["measured.joint_2"].values, 3.0 * recorded)
 
 
 def test_more_rows_than_a_block_stay_in_order(tmp_path):
