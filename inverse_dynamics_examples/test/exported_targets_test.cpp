@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "chain_dynamics/torques.hpp"
 #include "franka_inria_inverse_dynamics_solver/franka_inria_inverse_dynamics_solver.hpp"
+#include "inverse_dynamics_control/inverse_dynamics_control.hpp"
 #include "inverse_dynamics_evaluation/metrics.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "kdl_inverse_dynamics_solver/kdl_inverse_dynamics_solver.hpp"
@@ -59,6 +61,19 @@ TEST(ExportedTargets, IdentifiedSolversBringTheirOwnRobot) {
   panda.initialize();
   EXPECT_EQ(ur10.jointCount(), 6);
   EXPECT_EQ(panda.jointCount(), 7);
+}
+
+TEST(ExportedTargets, ControlHoldsAPendulum) {
+  auto solver = std::make_shared<kdl_inverse_dynamics_solver::InverseDynamicsSolverKDL>();
+  solver->initialize({}, "", kPendulum);
+  inverse_dynamics_control::LawOptions options;
+  options.limits.effort = Eigen::VectorXd::Constant(1, 20);
+  options.damping = Eigen::VectorXd::Zero(1);
+  inverse_dynamics_control::GravityCompensation law(solver, options);
+  Eigen::VectorXd tau(1);
+  EXPECT_EQ(law.update(inverse_dynamics_control::JointState(1), 1e-3, tau),
+            inverse_dynamics_control::Status::kOk);
+  EXPECT_NEAR(tau[0], kHoldingTorque, kRounding);
 }
 
 TEST(ExportedTargets, EvaluationMeasuresAnError) {
