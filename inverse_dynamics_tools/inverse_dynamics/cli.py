@@ -18,6 +18,7 @@ from inverse_dynamics.errors import UserError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from typing import NoReturn
 
 VERBS = ("demo", "robots", "data", "simulate", "evaluate", "compare", "report", "video", "export")
 
@@ -35,9 +36,16 @@ start here:
 _NUMBERS = re.compile(r"-[\d.]+(e[-+]?\d+)?,[-+\d.,e]+", re.IGNORECASE)
 
 
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, and where help is: pages of usage would hide it."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: error: {message}; see `{self.prog} --help`\n")
+
+
 def make_parser() -> argparse.ArgumentParser:
     """Parser of the whole command line."""
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="ids",
         description="Inverse dynamics of robot arms: which joint torques belong to this motion?",
         epilog=_EPILOG,

@@ -152,6 +152,15 @@ def test_options_that_make_no_sense_are_told(ids, arguments, expected):
     fails(ids(*arguments), expected)
 
 
+def test_a_wrong_command_line_takes_one_line_that_names_the_help(ids):
+    _, _, err = ids("evaluate", "bag")
+    assert err == (
+        "ids evaluate: error: the following arguments are required: --robot; see "
+        "`ids evaluate --help`\n"
+    )
+    assert ids()[2].endswith("; see `ids --help`\n")
+
+
 def test_a_short_recording_says_so(ids, tmp_path):
     log = joint_log(1, 6, joint_names=("a", "b", "c", "d", "e", "f"))
     write_joint_logs(tmp_path / "bag", {log.topic: log})
