@@ -4,19 +4,15 @@
 from __future__ import annotations
 
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from pages import blocks_of, page
 
 PACKAGE = Path(__file__).resolve().parent.parent
-README = PACKAGE.parent / "README.md"
-
-
-def blocks(language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+README = page("README.md")
 
 
 def code(file: Path) -> str:
@@ -26,7 +22,7 @@ def code(file: Path) -> str:
 
 @pytest.mark.parametrize(("name", "language"), [("torques.cpp", "cpp"), ("torques.py", "python")])
 def test_readme_shows_the_example_as_it_stands(name: str, language: str) -> None:
-    assert code(PACKAGE / name) in blocks(language)
+    assert code(PACKAGE / name) in [block.code for block in blocks_of(README, language)]
 
 
 @pytest.mark.parametrize(
@@ -38,4 +34,4 @@ def test_readme_shows_the_example_as_it_stands(name: str, language: str) -> None
 )
 def test_readme_shows_the_output_of_the_example(command: list[str], output: int) -> None:
     run = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert run.stdout == blocks("text")[output]
+    assert run.stdout == blocks_of(README, "text")[output].code

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The code on the page `docs/add_a_solver.md` is code of the example package, letter by letter."""
+
+from __future__ import annotations
+
+from pages import REPOSITORY, blocks_of, page
+
+EXAMPLE = REPOSITORY / "inverse_dynamics_solver/examples/pendulum_inverse_dynamics_solver"
+BLOCKS = blocks_of(page("docs/add_a_solver.md"))
+
+
+def test_blocks_are_recognized() -> None:
+    text = "1. x\n\n   <!-- file: a.cpp -->\n   ```cpp\n   int a;\n     int b;\n   ```\n\n```console\nls\n```\n"
+    assert blocks_of(text) == [("cpp", "a.cpp", "int a;\n  int b;\n"), ("console", "", "ls\n")]
+    assert blocks_of(text, "console") == [("console", "", "ls\n")]
+
+
+def test_every_block_of_code_names_its_file() -> None:
+    assert {block.language for block in BLOCKS} == {"console", "cpp", "cmake", "xml"}
+    for block in BLOCKS:
+        assert (block.language == "console") == (block.file == ""), block.code
+
+
+def test_blocks_equal_the_files() -> None:
+    for _, file, code in BLOCKS:
+        if file:
+            assert code in (EXAMPLE / file).read_text(encoding="utf-8"), (
+                f"{file} has no such lines:\n{code}"
+            )
