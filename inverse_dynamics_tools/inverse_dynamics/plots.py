@@ -33,7 +33,7 @@ _MUTED = "#555555"
 
 _MOST_POINTS = 6000  # of a line
 
-_STYLE: Any = {
+STYLE: Any = {
     "font.size": 8.5,
     "font.family": "sans-serif",
     "axes.spines.top": False,
@@ -65,7 +65,7 @@ def save_comparison_figure(comparison: Comparison, file: Path) -> None:
 def _save(make: Callable[[], Figure], file: Path) -> None:
     import matplotlib as mpl
 
-    with mpl.rc_context({**_STYLE, "svg.hashsalt": "inverse_dynamics"}):
+    with mpl.rc_context({**STYLE, "svg.hashsalt": "inverse_dynamics"}):
         metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(file.suffix)
         make().savefig(file, dpi=160, metadata=metadata)
 
