@@ -81,9 +81,8 @@ def read_evaluation(directory: Path | str) -> Evaluation:
     directory = Path(directory)
     file = directory / MARK
     if not file.is_file():
-        raise OutputError(
-            f"{directory}: holds no {MARK}; expected a directory written by `ids evaluate`"
-        )
+        found = f"holds no {MARK}" if directory.is_dir() else "no such directory"
+        raise OutputError(f"{directory}: {found}; expected one written by `ids evaluate`")
     try:
         data = json.loads(file.read_text())
         if data["schema"] != SCHEMA:

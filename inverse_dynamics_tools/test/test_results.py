@@ -190,8 +190,11 @@ def test_unknown_storage_is_an_error_and_nothing_is_written(tmp_path, evaluation
 
 
 def test_a_directory_of_something_else_is_no_result(tmp_path):
-    with pytest.raises(OutputError, match="expected a directory written by `ids evaluate`"):
+    expected = "expected one written by `ids evaluate`"
+    with pytest.raises(OutputError, match=f": holds no evaluation.json; {expected}"):
         read_evaluation(tmp_path)
+    with pytest.raises(OutputError, match=f"elsewhere: no such directory; {expected}"):
+        read_evaluation(tmp_path / "elsewhere")
 
 
 @pytest.mark.parametrize("file", ["metrics.json", "series.npz"])
