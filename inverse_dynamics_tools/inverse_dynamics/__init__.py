@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.errors import UserError
     from inverse_dynamics.evaluation import Evaluation, JointError, evaluate
     from inverse_dynamics.exports import export_series
+    from inverse_dynamics.feed_forward import TrajectoryTorques, trajectory_torques
+    from inverse_dynamics.feed_forward_files import write_trajectory_torques
     from inverse_dynamics.joint_log import JointLog
     from inverse_dynamics.plots import save_torque_figure, torque_figure
     from inverse_dynamics.public_recordings import fetch_recordings
@@ -36,6 +38,7 @@ _HOME = {
     "JointLog": "joint_log",
     "Robot": "robots",
     "Solver": "_core",
+    "TrajectoryTorques": "feed_forward",
     "UserError": "errors",
     "available_solvers": "_core",
     "evaluate": "evaluation",
@@ -49,8 +52,10 @@ _HOME = {
     "robot_names": "robots",
     "save_torque_figure": "plots",
     "torque_figure": "plots",
+    "trajectory_torques": "feed_forward",
     "write_evaluation": "results",
     "write_joint_logs": "bags",
+    "write_trajectory_torques": "feed_forward_files",
 }
 
 __all__ = [
@@ -59,6 +64,7 @@ __all__ = [
     "JointLog",
     "Robot",
     "Solver",
+    "TrajectoryTorques",
     "UserError",
     "available_solvers",
     "evaluate",
@@ -72,8 +78,10 @@ __all__ = [
     "robot_names",
     "save_torque_figure",
     "torque_figure",
+    "trajectory_torques",
     "write_evaluation",
     "write_joint_logs",
+    "write_trajectory_torques",
 ]
 
 

@@ -92,6 +92,15 @@ class BagReader:
             )
         return [c for c in self._reader.connections if c.topic == topic]
 
+    @property
+    def connections(self) -> list[Connection]:
+        """What the recording knows of its topics."""
+        return list(self._reader.connections)
+
+    def messages(self) -> Iterator[tuple[Connection, int, bytes]]:
+        """All messages as they are: connection, time of reception [ns], serialised message."""
+        yield from self._reader.messages()
+
     def blocks(self, connections: list[Connection]) -> Iterator[tuple[list[bytes], Integers]]:
         """Serialised messages and their times of reception [ns], thousands at a time."""
         messages = self._reader.messages(connections=connections)

@@ -20,7 +20,18 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import NoReturn
 
-VERBS = ("demo", "robots", "data", "simulate", "evaluate", "compare", "report", "video", "export")
+VERBS = (
+    "demo",
+    "robots",
+    "data",
+    "simulate",
+    "evaluate",
+    "compare",
+    "torques",
+    "report",
+    "video",
+    "export",
+)
 
 _EPILOG = """\
 start here:

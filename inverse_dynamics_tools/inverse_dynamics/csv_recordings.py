@@ -104,8 +104,12 @@ def generic_columns(
             "the chain"
         )
     columns = {kind: [f"{kind}.{joint}" for joint in joints] for kind in _QUANTITIES}
-    given = [kind for kind in _QUANTITIES if any(name in table.names for name in columns[kind])]
-    chosen = {kind: columns[kind] for kind in _QUANTITIES if kind in {*given, *needed}}
+    given = any(name in table.names for name in columns["acceleration"])
+    chosen = {
+        kind: names
+        for kind, names in columns.items()
+        if kind in needed or (kind == "acceleration" and given)
+    }
     for kind, names in chosen.items():
         for joint, name in zip(joints, names, strict=True):
             if name not in table.names:

@@ -7,7 +7,7 @@ asked for may hold anything.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from operator import itemgetter
 from typing import TYPE_CHECKING, TextIO
 
@@ -72,6 +72,19 @@ class CsvTable:
             raise self._unreadable(error) from error
         progress("reading", size, size)
         return np.concatenate(blocks) if blocks else np.empty((0, len(columns)))
+
+    def rows(self) -> Iterator[list[str]]:
+        """Fields of each row, as they are."""
+        with self._open() as file:
+            for _ in range(self._lines_before):
+                file.readline()
+            for line in file:
+                if not line.isspace():
+                    yield line.rstrip("\n").split(self._delimiter)
+
+    def line(self, fields: Iterable[str]) -> str:
+        """A line of such a table."""
+        return (self._delimiter or " ").join(fields) + "\n"
 
     def _open(self) -> TextIO:
         return self.path.open(encoding="utf-8-sig")

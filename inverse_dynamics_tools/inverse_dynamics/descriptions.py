@@ -7,8 +7,17 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from inverse_dynamics.errors import RobotError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from xml.etree.ElementTree import Element
+
+    from inverse_dynamics.joint_log import Floats
 
 
 def read_description(file: Path) -> str:
@@ -32,16 +41,44 @@ def joint_units(
 
     file: where the description is from, for errors. Raises RobotError if it isn't XML.
     """
+    joints = _joints(file, description)
+    prismatic = {j.get("name") for j in joints if j.get("type") == "prismatic"}
+    return tuple("N" if name in prismatic else "N m" for name in joint_names)
+
+
+def effort_limits(file: Path | None, description: str, joint_names: Sequence[str]) -> Floats:
+    """(n,) N m (prismatic N) of the URDF; infinite for a joint without one.
+
+    file: where the description is from, for errors. Raises RobotError if it isn't XML, or if a
+    limit isn't a number.
+    """
+    limits = np.full(len(joint_names), np.inf)
+    for joint in _joints(file, description):
+        limit = joint.find("limit")
+        text = None if limit is None else limit.get("effort")
+        if joint.get("name") not in joint_names or text is None:
+            continue
+        try:
+            number = float(text)
+        except ValueError:
+            raise RobotError(
+                f"{file}: joint {joint.get('name')}: limit: expected a number as effort, got "
+                f"'{text}'"
+            ) from None
+        if number > 0:  # zero states none
+            limits[list(joint_names).index(joint.get("name", ""))] = number
+    return limits
+
+
+def _joints(file: Path | None, description: str) -> list[Element]:
     import xml.etree.ElementTree as ElementTree
 
-    prismatic = set()
-    if description:
-        try:
-            joints = ElementTree.fromstring(description).iter("joint")
-        except ElementTree.ParseError as error:
-            raise RobotError(f"{file}: isn't a robot description: no XML ({error})") from error
-        prismatic = {j.get("name") for j in joints if j.get("type") == "prismatic"}
-    return tuple("N" if name in prismatic else "N m" for name in joint_names)
+    if not description:
+        return []
+    try:
+        return list(ElementTree.fromstring(description).iter("joint"))
+    except ElementTree.ParseError as error:
+        raise RobotError(f"{file}: isn't a robot description: no XML ({error})") from error
 
 
 def _expanded(file: Path) -> str:

@@ -150,7 +150,7 @@ def evaluate(
     solver = open_solver(robot, description)
     gains = drive_gains(robot, solver)
     joint_names = tuple(solver.joint_names)
-    recorded_names = _recorded_names(robot, joint_names)
+    recorded_names = names_in_recording(robot, joint_names)
     units = joint_units(robot.urdf, description, joint_names)
     solver_ready = time.perf_counter()
     log = read_recording(
@@ -230,7 +230,7 @@ def joint_errors(
     )
 
 
-def _recorded_names(robot: Robot, joint_names: tuple[str, ...]) -> tuple[str, ...]:
+def names_in_recording(robot: Robot, joint_names: tuple[str, ...]) -> tuple[str, ...]:
     """Names in the recording of the solver's joints, in the order of the chain."""
     if not robot.joints:
         return joint_names

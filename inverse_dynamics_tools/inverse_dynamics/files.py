@@ -103,6 +103,15 @@ def written_whole(target: Path, *, overwrite: bool = False, mark: str = "") -> I
         shutil.rmtree(work, ignore_errors=True)
 
 
+def move_up(directory: Path) -> None:
+    """Move the files of a directory into the one above, which may share their names, and remove it."""
+    for file in list(directory.iterdir()):
+        file.rename(directory.parent / f"{file.name}.moved")
+    directory.rmdir()
+    for file in directory.parent.glob("*.moved"):
+        file.rename(file.with_suffix(""))
+
+
 def _cannot_write(target: Path, error: OSError) -> str:
     return (
         f"{target}: can't be written ({error.strerror or error}); name another directory with --out"

@@ -35,6 +35,7 @@ class JointTrajectory:
     """A message: N points, n joints in its own order; rad, rad/s, rad/s^2, N m (prismatic m, N)."""
 
     where: str  # file, topic and number of the message, for error texts
+    topic: str
     joint_names: tuple[str, ...]
     frame_id: str
     stamp: int  # ns, of the header
@@ -91,17 +92,18 @@ def read_joint_trajectories(path: Path, topic: str = "") -> list[JointTrajectory
     """Messages of one topic; none given: of the only one with trajectories. Raises BagError."""
     with BagReader(path) as bag:
         connections = bag.connections_of_type(MESSAGE_TYPE, topic)
-        where = f"{path}: {connections[0].topic}"
+        topic = connections[0].topic
+        where = f"{path}: {topic}"
         found: list[JointTrajectory] = []
         for messages, received in bag.blocks(connections):
             for raw, stamp in zip(messages, received.tolist(), strict=True):
-                found.append(decode(raw, f"{where}, message {len(found) + 1}", stamp))
+                found.append(decode(raw, f"{where}, message {len(found) + 1}", topic, stamp))
     if not found:
         raise BagError(f"{where}: expected trajectories, got no message; record it again")
     return found
 
 
-def decode(raw: bytes, where: str, received: int) -> JointTrajectory:
+def decode(raw: bytes, where: str, topic: str, received: int) -> JointTrajectory:
     """A serialised message; one that can't be decoded is a BagError."""
     try:
         message: Any = typestore().deserialize_cdr(raw, MESSAGE_TYPE)
@@ -113,6 +115,7 @@ def decode(raw: bytes, where: str, received: int) -> JointTrajectory:
     times = [_nanoseconds(point.time_from_start) for point in message.points]
     return JointTrajectory(
         where=where,
+        topic=topic,
         joint_names=tuple(message.joint_names),
         frame_id=message.header.frame_id,
         stamp=_nanoseconds(message.header.stamp),

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.comparison import Comparison
     from inverse_dynamics.evaluation import Evaluation
+    from inverse_dynamics.feed_forward import TrajectoryTorques
 
 
 def error_table(evaluation: Evaluation) -> Table:
@@ -93,6 +94,32 @@ def comparison_table(comparison: Comparison) -> Table:
         means = comparison.rmse.mean(axis=1)
         table.add_row("mean", units[0], *(figure(value) for value in means))
     return table
+
+
+def load_table(result: TrajectoryTorques) -> Table:
+    """Greatest torque of each joint and, where it is too much, when it is first."""
+    several = len(result.times) > 1
+    table = Table(box=box.SIMPLE_HEAD)
+    table.add_column("joint")
+    for heading in ("peak", "at", "limit"):
+        table.add_column(heading, justify="right")
+    table.add_column("passes its limit")
+    for load in result.loads:
+        passed = "-" if math.isfinite(load.limit) else "not known"
+        if load.passed_time is not None:
+            passed = "first at " + _moment(load.passed_time, load.passed_trajectory, several)
+        table.add_row(
+            load.joint,
+            f"{load.peak:.3f} {load.unit}",
+            _moment(load.peak_time, load.peak_trajectory, several),
+            f"{load.limit:g} {load.unit}" if math.isfinite(load.limit) else "-",
+            passed,
+        )
+    return table
+
+
+def _moment(time: float, trajectory: int | None, several: bool) -> str:
+    return f"{time:.3f} s" + (f" of trajectory {trajectory}" if several else "")
 
 
 def figure(value: float) -> str:

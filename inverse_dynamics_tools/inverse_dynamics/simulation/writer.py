@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.bags import write_joint_logs
-from inverse_dynamics.files import written_whole
+from inverse_dynamics.files import move_up, written_whole
 from inverse_dynamics.joint_log import no_progress
 from inverse_dynamics.simulation.trajectory_file import trajectory_text
 
@@ -72,8 +72,4 @@ def _write_bag(
     """Files of the bag, named after the directory they will be in."""
     bag = directory / name
     write_joint_logs(bag, {run.log.topic: run.log}, storage=storage, progress=progress)
-    for file in bag.iterdir():
-        file.rename(directory / f"{file.name}.moved")
-    bag.rmdir()
-    for file in directory.glob("*.moved"):
-        file.rename(file.with_suffix(""))
+    move_up(bag)

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trajectories with their efforts filled in: what the file had, and nothing else changed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics.bag_reader import BagReader, error_text
+from inverse_dynamics.csv_table import CsvTable, is_csv
+from inverse_dynamics.errors import BagError
+from inverse_dynamics.files import check_output_file, move_up, write_text_whole, written_whole
+from inverse_dynamics.joint_trajectories import MESSAGE_TYPE, typestore
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosbags.interfaces import Connection
+    from rosbags.rosbag2 import Writer
+
+    from inverse_dynamics.feed_forward import TrajectoryTorques
+    from inverse_dynamics.joint_log import Floats
+
+
+def write_trajectory_torques(result: TrajectoryTorques, out: Path | str) -> tuple[str, ...]:
+    """Write a copy of the file with the efforts filled in, whole or not at all; gives notes.
+
+    out: of the same kind as the file: a directory for a recording, a file for a table. Other
+    topics of a recording are copied, further columns of a table too.
+
+    Raises OutputError, BagError.
+    """
+    out = Path(out)
+    if is_csv(result.path):
+        check_output_file(out)
+        write_text_whole(out, "".join(_filled_lines(CsvTable(result.path), result)))
+        return ()
+    with written_whole(out) as directory:
+        bag = directory / out.name
+        try:
+            notes = _write_bag(result, bag)
+        except BagError:
+            raise
+        except Exception as error:  # writers raise more than they document
+            raise BagError(f"{out}: can't be written ({error_text(error)})") from error
+        move_up(bag)
+    return notes
+
+
+def _write_bag(result: TrajectoryTorques, path: Path) -> tuple[str, ...]:
+    from rosbags.rosbag2 import StoragePlugin, Writer
+
+    filled = iter(zip(result.trajectories, result.torques, strict=True))
+    notes = []
+    with BagReader(result.path) as bag:
+        plugin = StoragePlugin.MCAP if bag.storage == "mcap" else StoragePlugin.SQLITE3
+        with Writer(path, version=Writer.VERSION_LATEST, storage_plugin=plugin) as writer:
+            copies = {c.id: _copied(writer, c) for c in bag.connections}
+            for connection, received, raw in bag.messages():
+                copy = copies[connection.id]
+                if copy is None:
+                    continue
+                if connection.topic == result.topic:
+                    trajectory, torques = next(filled)
+                    columns = [result.joint_names.index(n) for n in trajectory.joint_names]
+                    raw = _with_effort(trajectory.message, torques[:, columns])
+                writer.write(copy, received, raw)
+            notes += [
+                f"topic {c.topic} left out: the recording doesn't define its type, {c.msgtype}"
+                for c in bag.connections
+                if copies[c.id] is None
+            ]
+    return tuple(notes)
+
+
+def _copied(writer: Writer, connection: Connection) -> Connection | None:
+    """The same topic in the new recording; None if its type isn't known."""
+    ext: Any = connection.ext
+    known = connection.msgtype in typestore().types
+    defined = bool(connection.msgdef.data and connection.digest)
+    if not known and not defined:
+        return None
+    return writer.add_connection(
+        connection.topic,
+        connection.msgtype,
+        typestore=None if defined else typestore(),
+        msgdef=connection.msgdef.data if defined else None,
+        rihs01=connection.digest if defined else None,
+        serialization_format=ext.serialization_format,
+        offered_qos_profiles=ext.offered_qos_profiles,
+    )
+
+
+def _with_effort(message: Any, efforts: Floats) -> bytes:
+    for point, effort in zip(message.points, efforts, strict=True):
+        point.effort = np.ascontiguousarray(effort)
+    return bytes(typestore().serialize_cdr(message, MESSAGE_TYPE))
+
+
+def _filled_lines(table: CsvTable, result: TrajectoryTorques) -> Iterable[str]:
+    """Lines of the table; columns of efforts replaced where there are any, else put last."""
+    names = [f"effort.{joint}" for joint in result.joint_names]
+    added = [name for name in names if name not in table.names]
+    header = [*table.names, *added]
+    columns = [header.index(name) for name in names]
+    yield table.line(header)
+    for fields, torques in zip(table.rows(), result.torques[0].tolist(), strict=True):
+        row = [*fields, *("" for _ in added)]
+        for column, torque in zip(columns, torques, strict=True):
+            row[column] = repr(torque)
+        yield table.line(row)
