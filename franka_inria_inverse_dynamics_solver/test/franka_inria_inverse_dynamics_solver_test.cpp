@@ -3,15 +3,15 @@
 
 #include <cstdlib>
 
+#include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/motor_currents.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
-#include "rigid_body_inverse_dynamics_solver/testing/reference.hpp"
 
 namespace franka_inria_inverse_dynamics_solver {
 namespace {
 
 using inverse_dynamics_solver::Exception;
-using rigid_body_inverse_dynamics_solver::testing::expectReferenceValues;
+using inverse_dynamics_solver::conformance::expectReferenceValues;
 
 const char* const kPlugin = "franka_inria_inverse_dynamics_solver/InverseDynamicsSolverFrankaInria";
 

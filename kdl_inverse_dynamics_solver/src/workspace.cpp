@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workspace.hpp"
 
-#include <cstdint>
-#include <functional>
-#include <thread>
+#include <string>
 
 #include "inverse_dynamics_solver/exceptions.hpp"
 
@@ -18,12 +16,6 @@ void check(int code, const KDL::SolverI& solver, const char* what) {
       what, "KDL failed", "",
       std::string(solver.strError(code)) + " (" + std::to_string(code) + ")",
       "report this with the robot description and the joint state"));
-}
-
-/// A number that differs between threads. (Not a thread_local index: its first use could allocate.)
-std::size_t threadNumber() {
-  const std::uint64_t id = std::hash<std::thread::id>()(std::this_thread::get_id());
-  return static_cast<std::size_t>((id * 0x9E3779B97F4A7C15U) >> 32U);
 }
 
 }  // namespace
@@ -65,23 +57,6 @@ void Workspace::torques(const Vector& q, const Vector& qd, const Vector& qdd,
   qdd_.data = qdd;
   check(newton_euler_.CartToJnt(q_, qd_, qdd_, no_forces_, result_), newton_euler_, "torques");
   tau = result_.data;
-}
-
-WorkspacePool::WorkspacePool(const KDL::Chain& chain, const KDL::Vector& gravity, std::size_t count)
-    : chain_(chain), gravity_(gravity), slots_(count) {
-  for (Slot& slot : slots_) slot.workspace = std::make_unique<Workspace>(chain_, gravity_);
-}
-
-WorkspacePool::Lease WorkspacePool::acquire() {
-  // Threads begin at different places, and so seldom meet.
-  const std::size_t start = threadNumber();
-  for (std::size_t i = 0; i < slots_.size(); ++i) {
-    Slot& slot = slots_[(start + i) % slots_.size()];
-    if (!slot.busy.test_and_set(std::memory_order_acquire)) {
-      return Lease(slot.workspace.get(), &slot.busy);
-    }
-  }
-  return Lease(std::make_unique<Workspace>(chain_, gravity_));
 }
 
 }  // namespace kdl_inverse_dynamics_solver

@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// KDL's solvers with the memory they write to, and a pool of them, so that many threads may
-/// compute at once.
-///
-///     const WorkspacePool::Lease workspace = pool.acquire();   // this thread's own until it goes
-///     out of scope workspace->gravityVector(q, g);
+/// KDL's solvers of a chain with the memory they write to.
 #pragma once
 
 #include <Eigen/Core>
-#include <atomic>
-#include <cstddef>
 #include <kdl/chain.hpp>
 #include <kdl/chaindynparam.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl/jntarray.hpp>
 #include <kdl/jntspaceinertiamatrix.hpp>
-#include <memory>
-#include <vector>
 
 namespace kdl_inverse_dynamics_solver {
 
@@ -43,46 +35,6 @@ class Workspace {
   KDL::JntArray q_, qd_, qdd_, result_;
   KDL::JntSpaceInertiaMatrix H_;
   KDL::Wrenches no_forces_;
-};
-
-/// Workspaces that threads borrow. Without lock: a flag per workspace.
-class WorkspacePool {
- public:
-  /// A borrowed workspace; goes back at the end of the scope.
-  class Lease {
-   public:
-    Lease(Workspace* workspace, std::atomic_flag* busy) : workspace_(workspace), busy_(busy) {}
-    explicit Lease(std::unique_ptr<Workspace> own)
-        : workspace_(own.get()), busy_(nullptr), own_(std::move(own)) {}
-    Lease(const Lease&) = delete;
-    Lease& operator=(const Lease&) = delete;
-    ~Lease() {
-      if (busy_ != nullptr) busy_->clear(std::memory_order_release);
-    }
-    Workspace* operator->() const { return workspace_; }
-
-   private:
-    Workspace* workspace_;
-    std::atomic_flag* busy_;
-    std::unique_ptr<Workspace> own_;
-  };
-
-  /// @param count  number of workspaces that are ready, at least one.
-  WorkspacePool(const KDL::Chain& chain, const KDL::Vector& gravity, std::size_t count);
-
-  /// A free workspace; if all are in use, a new one on the heap. Threads: safe.
-  Lease acquire();
-
- private:
-  // A cache line each, so that threads don't slow each other down.
-  struct alignas(64) Slot {
-    std::atomic_flag busy = ATOMIC_FLAG_INIT;
-    std::unique_ptr<Workspace> workspace;
-  };
-
-  const KDL::Chain chain_;
-  const KDL::Vector gravity_;
-  std::vector<Slot> slots_;
 };
 
 }  // namespace kdl_inverse_dynamics_solver

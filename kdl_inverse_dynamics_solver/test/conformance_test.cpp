@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "files.hpp"
+#include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
 
 namespace {
 
 using namespace inverse_dynamics_solver::conformance;
-using namespace kdl_inverse_dynamics_solver::test;
+
+std::string obliqueArm() { return textOf(robotsFile("urdf/oblique_arm.urdf")); }
 
 struct Kdl : SolverTraits {
   static constexpr const char* kPlugin = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL";

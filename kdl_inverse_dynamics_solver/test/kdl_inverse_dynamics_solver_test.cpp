@@ -12,15 +12,18 @@
 #include <random>
 #include <thread>
 
-#include "files.hpp"
+#include "inverse_dynamics_solver/conformance/reference_values.hpp"
 
 namespace kdl_inverse_dynamics_solver {
 namespace {
 
-using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::InvalidRobotDescriptionException;
 using inverse_dynamics_solver::Parameters;
-using test::obliqueArm;
+
+std::string obliqueArm() {
+  using namespace inverse_dynamics_solver::conformance;
+  return textOf(robotsFile("urdf/oblique_arm.urdf"));
+}
 
 /// [N m, N, kg m^2] KDL and the engine do the same operations in another order, on terms of up to
 /// 1e3; 1e-16 each, some hundred of them.
@@ -136,20 +139,6 @@ TEST(InverseDynamicsSolverKDL, CalculatesRightWithMoreThreadsThanWorkspaces) {
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(different, 0);
-}
-
-TEST(InverseDynamicsSolverKDL, MistakesInParametersAreNamed) {
-  const auto error = [](const inverse_dynamics_solver::ParameterValue& threads) {
-    return errorOf<InvalidParameterValueException>(
-        {{"ids.max_threads", threads}, {"ids.tip", "tool"}}, obliqueArm());
-  };
-  EXPECT_EQ(error(0),
-            "parameter 'ids.max_threads': wrong value: expected 1 to 4096, got 0; give the number "
-            "of threads that compute at the same time");
-  EXPECT_TRUE(contains(error(5000), "got 5000"));
-  EXPECT_EQ(error("many"),
-            "parameter 'ids.max_threads': wrong type: expected integer, got string; correct it "
-            "where it is set");
 }
 
 TEST(InverseDynamicsSolverKDL, MistakesInTheRobotDescriptionAreNamed) {

@@ -4,16 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <set>
 
-#include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
 #include "kdl_chain.hpp"
 
 namespace kdl_inverse_dynamics_solver {
 namespace {
-
-using inverse_dynamics_solver::conformance::AllocationGuard;
-using inverse_dynamics_solver::conformance::kAllocationGuardWorks;
 
 /// A rod that turns about y, 2 kg at 0.5 m, with a rotor of 0.3 kg m^2; then a slide along its x.
 chain_dynamics::Chain arm() {
@@ -57,32 +52,6 @@ TEST(Workspace, IsNotSpoiltByNan) {
   EXPECT_TRUE(after.array().isNaN().all());
   workspace.torques(q, q, q, after);
   EXPECT_EQ(before, after);
-}
-
-TEST(WorkspacePool, LendsEachWorkspaceOnceAndTakesItBack) {
-  WorkspacePool pool(toKdl(arm()), toKdl(arm().gravity()), 2);
-  std::set<Workspace*> pooled;
-  {
-    const WorkspacePool::Lease a = pool.acquire(), b = pool.acquire();
-    pooled = {a.operator->(), b.operator->()};
-    EXPECT_EQ(pooled.size(), 2U);
-  }
-  {
-    const WorkspacePool::Lease a = pool.acquire(), b = pool.acquire();
-    EXPECT_EQ(pooled, (std::set<Workspace*>{a.operator->(), b.operator->()}));
-
-    // A third is made, and computes.
-    AllocationGuard guard;
-    const WorkspacePool::Lease third = pool.acquire();
-    EXPECT_EQ(guard.count() > 0, kAllocationGuardWorks);
-    EXPECT_EQ(pooled.count(third.operator->()), 0U);
-    Eigen::VectorXd g(2);
-    third->gravityVector(Eigen::Vector2d(0, 0), g);
-    EXPECT_NEAR(g[0], -10, 1e-14);
-  }
-  AllocationGuard guard;
-  EXPECT_EQ(pooled.count(pool.acquire().operator->()), 1U);
-  EXPECT_EQ(guard.count(), 0);
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
-#include "rigid_body_inverse_dynamics_solver/testing/reference.hpp"
 
 namespace {
 
 using namespace inverse_dynamics_solver::conformance;
-using rigid_body_inverse_dynamics_solver::testing::robotsFile;
-using rigid_body_inverse_dynamics_solver::testing::textOf;
+using inverse_dynamics_solver::conformance::robotsFile;
+using inverse_dynamics_solver::conformance::textOf;
 
 struct RigidBody : SolverTraits {
   static constexpr const char* kPlugin =

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rigid_body_inverse_dynamics_solver/testing/reference.hpp"
-
+#include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
 namespace {
 
-using testing::expectReferenceValues;
-using testing::robotsFile;
-using testing::textOf;
+using inverse_dynamics_solver::conformance::expectReferenceValues;
+using inverse_dynamics_solver::conformance::robotsFile;
+using inverse_dynamics_solver::conformance::textOf;
 
 // N m, kg m^2. Other programs do the same operations in another order: rounding leaves less than
 // 1e-12 of terms up to 100 N m.

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
-#include "rigid_body_inverse_dynamics_solver/testing/reference.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
 namespace {
@@ -15,8 +15,8 @@ namespace {
 using inverse_dynamics_solver::Exception;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::ParameterUninitializedException;
-using testing::robotsFile;
-using testing::textOf;
+using inverse_dynamics_solver::conformance::robotsFile;
+using inverse_dynamics_solver::conformance::textOf;
 
 const std::string kFeasible = "franka_gaz2019_feasible";
 const std::string kUr10 = "ur10_identified";

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
-#include "rigid_body_inverse_dynamics_solver/testing/reference.hpp"
 
 namespace ur10_inverse_dynamics_solver {
 namespace {
@@ -14,10 +14,10 @@ namespace {
 using inverse_dynamics_solver::Exception;
 using inverse_dynamics_solver::MotorCurrents;
 using inverse_dynamics_solver::UninitializedException;
-using rigid_body_inverse_dynamics_solver::testing::expectEntry;
-using rigid_body_inverse_dynamics_solver::testing::expectReferenceValues;
-using rigid_body_inverse_dynamics_solver::testing::numbersOf;
-using rigid_body_inverse_dynamics_solver::testing::referenceStates;
+using inverse_dynamics_solver::conformance::expectEntry;
+using inverse_dynamics_solver::conformance::expectReferenceValues;
+using inverse_dynamics_solver::conformance::numbersOf;
+using inverse_dynamics_solver::conformance::referenceStates;
 
 const char* const kPlugin = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10";
 
@@ -182,8 +182,8 @@ TEST(UR10, MissingModelFileIsNamed) {
 }
 
 TEST(UR10, ModelOfAnotherRobotIsRefused) {
-  using rigid_body_inverse_dynamics_solver::testing::robotsFile;
-  using rigid_body_inverse_dynamics_solver::testing::textOf;
+  using inverse_dynamics_solver::conformance::robotsFile;
+  using inverse_dynamics_solver::conformance::textOf;
   const Overlay panda(textOf(robotsFile("models/franka_gaz2019_feasible.yaml")));
   const std::string error = initializationError();
   EXPECT_NE(error.find("not a UR10's: expected 6 joints with a drive gain each, got 7 joints, 0"),

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
+#include "inverse_dynamics_solver/workspace_pool.hpp"
 
 namespace kdl_inverse_dynamics_solver {
 
@@ -18,7 +19,7 @@ using inverse_dynamics_solver::ConstVectorRef;
 using inverse_dynamics_solver::MatrixRef;
 using inverse_dynamics_solver::VectorRef;
 
-class WorkspacePool;
+class Workspace;
 
 /// Solver of the rigid-body dynamics of the chain between `root` and `tip` of a robot description.
 ///
@@ -26,11 +27,8 @@ class WorkspacePool;
 /// 2008, ch. 5 and 6]. No friction: getFrictionVector() is zero.
 ///
 /// Parameters: those of Configuration, and below the same namespace
-///
-/// | parameter   | type    | default | meaning                                              |
-/// |-------------|---------|---------|------------------------------------------------------|
-/// | max_threads | integer | the number of processors, at least 16 | threads that may compute at
-/// the same time without allocating |
+/// `max_threads`: how many threads may compute at the same time without allocating (see
+/// readMaxThreads()).
 ///
 /// KDL's solvers keep state, so each call borrows a workspace of its own. Calls beyond
 /// `max_threads` at the same time are right too, but make a workspace on the heap.
@@ -54,7 +52,8 @@ class InverseDynamicsSolverKDL : public inverse_dynamics_solver::InverseDynamics
   bool inertiaIsPhysicalImpl() const override { return inertia_is_physical_; }
 
  private:
-  std::unique_ptr<WorkspacePool> pool_;
+  using Pool = inverse_dynamics_solver::WorkspacePool<Workspace>;
+  std::unique_ptr<Pool> pool_;
   bool inertia_is_physical_ = false;
 };
 

@@ -21,7 +21,7 @@
 
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
-namespace rigid_body_inverse_dynamics_solver::testing {
+namespace inverse_dynamics_solver::conformance {
 
 /// Path of a file of the installed package inverse_dynamics_robots.
 inline std::string robotsFile(const std::string& path) {
@@ -76,8 +76,8 @@ inline void expectEntry(const YAML::Node& state, const std::string& name,
 
 /// Expects inertia, Coriolis, gravity and total torques of the reference file, and friction where
 /// it has friction; by the single methods and by the one that gives all components.
-inline void expectReferenceValues(const inverse_dynamics_solver::InverseDynamicsSolver& solver,
-                                  const std::string& file, double tolerance) {
+inline void expectReferenceValues(const InverseDynamicsSolver& solver, const std::string& file,
+                                  double tolerance) {
   const std::vector<YAML::Node> states = referenceStates(file);
   ASSERT_FALSE(states.empty()) << file;
   for (std::size_t k = 0; k < states.size(); ++k) {
@@ -99,4 +99,4 @@ inline void expectReferenceValues(const inverse_dynamics_solver::InverseDynamics
   }
 }
 
-}  // namespace rigid_body_inverse_dynamics_solver::testing
+}  // namespace inverse_dynamics_solver::conformance

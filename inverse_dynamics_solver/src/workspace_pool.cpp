@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/workspace_pool.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "inverse_dynamics_solver/exceptions.hpp"
+
+namespace inverse_dynamics_solver {
+
+std::size_t readMaxThreads(const Configuration& configuration) {
+  constexpr std::int64_t kMost = 4096;
+  // A thread that is interrupted within a call keeps its workspace: more than one per processor is
+  // needed.
+  const std::int64_t standard = std::max<std::int64_t>(16, std::thread::hardware_concurrency());
+  const auto threads = configuration.get<std::int64_t>("max_threads").value_or(standard);
+  if (threads < 1 || threads > kMost) {
+    throw InvalidParameterValueException(
+        errorText("parameter '" + configuration.fullName("max_threads") + "'", "wrong value",
+                  "1 to " + std::to_string(kMost), std::to_string(threads),
+                  "give the number of threads that compute at the same time"));
+  }
+  return static_cast<std::size_t>(threads);
+}
+
+}  // namespace inverse_dynamics_solver
