@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// A chain as Pinocchio's model.
+#pragma once
+
+#include "chain_dynamics/chain.hpp"
+#include "pinocchio_headers.hpp"
+
+namespace pinocchio_inverse_dynamics_solver {
+
+/// The model of a chain: joint i is Pinocchio's joint i + 1, with its axis along z. A continuous
+/// joint is a revolute one, so that positions stay angles (nq = nv).
+pinocchio::Model toPinocchio(const chain_dynamics::Chain& chain);
+
+}  // namespace pinocchio_inverse_dynamics_solver

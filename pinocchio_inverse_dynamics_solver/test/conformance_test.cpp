@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/conformance/reference_values.hpp"
+#include "inverse_dynamics_solver/conformance_tests.hpp"
+
+namespace {
+
+using namespace inverse_dynamics_solver::conformance;
+
+std::string description(const std::string& robot) {
+  return textOf(robotsFile("urdf/" + robot + ".urdf"));
+}
+
+struct Pinocchio : SolverTraits {
+  static constexpr const char* kPlugin =
+      "pinocchio_inverse_dynamics_solver/InverseDynamicsSolverPinocchio";
+};
+
+struct PinocchioOblique : Pinocchio {
+  static std::string robotDescription() { return description("oblique_arm"); }
+  static ParameterMap parameters() { return {{"tip", "tool"}}; }
+  static std::vector<std::pair<ParameterMap, std::string>> badInitializations() {
+    return {{{{"max_threads", 0}}, description("oblique_arm")}};
+  }
+};
+
+struct PinocchioPanda : Pinocchio {
+  static std::string robotDescription() { return description("panda"); }
+};
+
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Oblique, PinocchioOblique);
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Panda, PinocchioPanda);
+
+}  // namespace

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Pinocchio as the judge of the engine: what no solver offers, and chains that no file describes.
+#include <gtest/gtest.h>
+
+#include <chain_dynamics/forward_dynamics.hpp>
+#include <chain_dynamics/inertia_matrix.hpp>
+#include <chain_dynamics/regressor.hpp>
+#include <chain_dynamics/torques.hpp>
+#include <pinocchio/algorithm/aba.hpp>
+#include <pinocchio/algorithm/crba.hpp>
+#include <pinocchio/algorithm/regressor.hpp>
+#include <pinocchio/algorithm/rnea.hpp>
+#include <random>
+
+#include "pinocchio_model.hpp"
+
+namespace {
+
+using chain_dynamics::Chain;
+using Eigen::Matrix3d, Eigen::MatrixXd, Eigen::Vector3d, Eigen::VectorXd;
+
+/// Relative to the greatest entry: two programs do the same operations in another order, and
+/// forward dynamics divides by inertia that a random chain makes small.
+constexpr double kRounding = 1e-11;
+constexpr double kForwardRounding = 1e-8;
+
+/// A chain of n links with any placement, any second or third joint prismatic, and rotors.
+Chain randomChain(int n) {
+  std::vector<chain_dynamics::Joint> joints;
+  std::vector<chain_dynamics::LinkParameters> links;
+  for (int i = 0; i < n; ++i) {
+    chain_dynamics::Joint joint;
+    joint.name = "joint_" + std::to_string(i);
+    const bool slides = i % 3 == 1;
+    joint.type =
+        slides ? chain_dynamics::JointType::kPrismatic : chain_dynamics::JointType::kContinuous;
+    joint.placement = {Eigen::Quaterniond::UnitRandom().toRotationMatrix(), Vector3d::Random()};
+    joint.rotor_inertia = 0.1 * i;
+    joints.push_back(joint);
+    const Matrix3d root = Matrix3d::Random();
+    links.push_back(chain_dynamics::LinkParameters::fromCenterOfMass(
+        1.0 + i, 0.3 * Vector3d::Random(), root * root.transpose() + 0.1 * Matrix3d::Identity()));
+  }
+  return Chain("random", joints, links, Vector3d::Random() * 10);
+}
+
+void expectEqual(const MatrixXd& ours, const MatrixXd& theirs, double tolerance, const char* what) {
+  const double scale = 1.0 + theirs.cwiseAbs().maxCoeff();
+  EXPECT_LE((ours - theirs).cwiseAbs().maxCoeff(), tolerance * scale) << what;
+}
+
+/// Pinocchio orders the six moments of inertia Ixx Ixy Iyy Ixz Iyz Izz, the engine Ixx Ixy Ixz Iyy
+/// Iyz Izz.
+MatrixXd inTheEnginesOrder(const MatrixXd& regressor) {
+  MatrixXd result = regressor;
+  for (Eigen::Index i = 0; i < regressor.cols(); i += 10) {
+    result.col(i + 6) = regressor.col(i + 7);
+    result.col(i + 7) = regressor.col(i + 6);
+  }
+  return result;
+}
+
+class Engine : public ::testing::TestWithParam<int> {};
+
+TEST_P(Engine, AgreesWithPinocchio) {
+  std::srand(1);  // Eigen's random numbers
+  const int n = GetParam();
+  for (int k = 0; k < 5; ++k) {
+    const Chain chain = randomChain(n);
+    const pinocchio::Model model = pinocchio_inverse_dynamics_solver::toPinocchio(chain);
+    pinocchio::Data data(model);
+    ASSERT_EQ(model.nq, n);
+    const VectorXd q = 3 * VectorXd::Random(n), qd = 2 * VectorXd::Random(n);
+    const VectorXd qdd = 5 * VectorXd::Random(n);
+
+    VectorXd tau(n), forward(n);
+    MatrixXd H(n, n), Y(n, 10 * n);
+    chain_dynamics::torques(chain, q, qd, qdd, tau);
+    chain_dynamics::inertiaMatrix(chain, q, H);
+    chain_dynamics::regressor(chain, q, qd, qdd, Y);
+    chain_dynamics::forwardDynamics(chain, q, qd, tau, forward);
+
+    expectEqual(tau, pinocchio::rnea(model, data, q, qd, qdd), kRounding, "torques");
+    pinocchio::crba(model, data, q);
+    expectEqual(H.triangularView<Eigen::Upper>(), MatrixXd(data.M.triangularView<Eigen::Upper>()),
+                kRounding, "inertia matrix");
+    expectEqual(Y,
+                inTheEnginesOrder(pinocchio::computeJointTorqueRegressor(model, data, q, qd, qdd)),
+                kRounding, "regressor");
+    expectEqual(forward, pinocchio::aba(model, data, q, qd, tau, pinocchio::Convention::LOCAL),
+                kForwardRounding, "forward dynamics");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Joints, Engine, ::testing::Values(1, 2, 6, 7, 12, 30));
+
+}  // namespace
