@@ -24,8 +24,8 @@ def error_table(evaluation: Evaluation) -> Table:
     """
     left_out = evaluation.samples.left_out
     count = len(evaluation.log)
-    table = Table(box=box.SIMPLE_HEAD, caption_justify="left")
-    table.add_column("joint")
+    table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
+    table.add_column("joint", overflow="fold")  # names whole
     table.add_column("unit")
     for heading in ("MAE", "RMSE", "NRMSE", "bias", "R²"):
         table.add_column(heading, justify="right")
@@ -136,4 +136,6 @@ def _percent(share: float) -> str:
 
 
 def _number(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:.4f}"
+    if math.isnan(value):
+        return "-"
+    return f"{value:.4f}" if abs(value) < 1000 else f"{value:.3g}"

@@ -152,6 +152,12 @@ def test_options_that_make_no_sense_are_told(ids, arguments, expected):
     fails(ids(*arguments), expected)
 
 
+def test_names_of_joints_are_whole_on_a_narrow_screen(ids, bag, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    _, out, _ = ids("evaluate", bag, "--robot", "ur10_simulated", "--out", "result")
+    assert re.search(r"^ +shoulder_lift_joint +N m ", out, re.MULTILINE)
+
+
 def test_a_wrong_command_line_takes_one_line_that_names_the_help(ids):
     _, _, err = ids("evaluate", "bag")
     assert err == (
