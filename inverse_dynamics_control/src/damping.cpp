@@ -41,7 +41,7 @@ Eigen::VectorXd dampingFor(const InverseDynamicsSolver& solver, const Eigen::Vec
   require(q.allFinite(), "q", "finite positions", "NaN or infinity", "take a common posture");
 
   const Eigen::MatrixXd H = solver.getInertiaMatrix(q);
-  const Eigen::VectorXd damping = rate * H.diagonal();
+  Eigen::VectorXd damping = rate * H.diagonal();
   // D v = s H v
   const Eigen::MatrixXd D = damping.asDiagonal();
   const double fastest =
