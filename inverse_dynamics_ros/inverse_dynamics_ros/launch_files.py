@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arguments and nodes of the launch files.
+
+Names of arguments that the reference implementation has are kept: input_bag, output_bag, topic,
+plugin_name, robot_description, root, tip, gravity.
+"""
+
+from __future__ import annotations
+
+from ast import literal_eval
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import yaml
+from launch import LaunchDescription
+from launch.actions import (
+    DeclareLaunchArgument,
+    IncludeLaunchDescription,
+    LogInfo,
+    OpaqueFunction,
+    RegisterEventHandler,
+)
+from launch.event_handlers import OnProcessExit
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch.substitutions import LaunchConfiguration
+from launch_ros.parameter_descriptions import ParameterValue
+
+from inverse_dynamics_ros.robots import SOURCES, load_robot, robot_description
+
+if TYPE_CHECKING:
+    from launch import Action, LaunchContext
+    from launch.event_handlers import ProcessExited
+
+_ACCELERATIONS = {
+    "auto": "zero-phase low-pass with a cut-off chosen from the data",
+    "low-pass": "the same with the cut-off given",
+    "backward-difference": "no filter: the method of the reference implementation",
+}
+_EFFORTS = {
+    "torque": "N m",
+    "current": "A, times the drive gains of the solver",
+    "torque_without_gravity": "N m, as newer UR drivers send",
+}
+
+
+def choice(name: str, what: str, choices: dict[str, str], default: str) -> DeclareLaunchArgument:
+    """An argument with a few values, each explained."""
+    lines = [f"{what}:", *(f"  {value}: {text}" for value, text in choices.items())]
+    return DeclareLaunchArgument(
+        name, default_value=default, choices=list(choices), description="\n        ".join(lines)
+    )
+
+
+def bag_arguments(default_topic: str = "/torques") -> list[DeclareLaunchArgument]:
+    """Arguments of every launch file that evaluates a recording."""
+    return [
+        DeclareLaunchArgument(
+            "input_bag",
+            description="Recording to evaluate: a directory with metadata.yaml, or a .db3 or .mcap "
+            "file, with sensor_msgs/JointState or trajectory_msgs/JointTrajectory",
+        ),
+        DeclareLaunchArgument(
+            "output_bag", description="Recording to write; it must not exist yet"
+        ),
+        DeclareLaunchArgument(
+            "topic",
+            default_value=default_topic,
+            description="Topic of the computed torques in output_bag; the measured ones are on this "
+            "name with _gt behind it",
+        ),
+        DeclareLaunchArgument(
+            "storage",
+            default_value="",
+            choices=["", "sqlite3", "mcap"],
+            description="Storage of output_bag; empty: that of input_bag",
+        ),
+    ]
+
+
+def sample_arguments(
+    accelerations: str = "auto", cutoff: float = 0.0, effort: str = "torque", topic: str = ""
+) -> list[DeclareLaunchArgument]:
+    """Arguments about what the samples mean."""
+    return [
+        DeclareLaunchArgument(
+            "input_topic",
+            default_value=topic,
+            description="Topic of the motion in input_bag; empty: the only one of a type that can "
+            "be read",
+        ),
+        choice("accelerations", "How they come from the velocities", _ACCELERATIONS, accelerations),
+        DeclareLaunchArgument(
+            "cutoff",
+            default_value=str(cutoff),
+            description="Cut-off of the low-pass [Hz]; 0.0: chosen from the data",
+        ),
+        choice("effort", "What recorded efforts mean", _EFFORTS, effort),
+    ]
+
+
+def solver_arguments() -> list[DeclareLaunchArgument]:
+    """Arguments of a solver and its robot."""
+    return [
+        DeclareLaunchArgument(
+            "plugin_name",
+            description="Solver, package/Class of a plugin: "
+            "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL for one",
+        ),
+        DeclareLaunchArgument(
+            "robot_description",
+            default_value="",
+            description="Text of a URDF, for a solver that doesn't bring its own model: "
+            'robot_description:="$(xacro robot.urdf.xacro)"',
+        ),
+        DeclareLaunchArgument(
+            "root", default_value="", description="First link of the chain; empty: the URDF's root"
+        ),
+        DeclareLaunchArgument(
+            "tip", default_value="", description="Last link of the chain; empty: the URDF's leaf"
+        ),
+        DeclareLaunchArgument(
+            "gravity",
+            default_value="[0, 0, -9.81]",
+            description="Where things fall, in the frame of the root link [m/s^2]",
+        ),
+        DeclareLaunchArgument(
+            "friction",
+            default_value="true",
+            choices=["true", "false"],
+            description="Whether the solver's friction model counts; false where the robot's "
+            "controller compensates friction",
+        ),
+        DeclareLaunchArgument(
+            "joints",
+            default_value="",
+            description="Names of the joints in the messages, comma-separated, in the order of the "
+            "chain; empty: the solver's names",
+        ),
+    ]
+
+
+def solver_parameters(context: LaunchContext) -> dict[str, Any]:
+    """Node parameters of the arguments of solver_arguments(). Raises ValueError."""
+    parameters: dict[str, Any] = {
+        "plugin_name": string(text(context, "plugin_name")),
+        "robot_description": string(_plain(text(context, "robot_description"))),
+        "ids.root": string(text(context, "root")),
+        "ids.tip": string(text(context, "tip")),
+        "ids.gravity": _three_numbers(text(context, "gravity")),
+        "ids.friction": text(context, "friction") == "true",
+    }
+    if joints := text(context, "joints"):
+        parameters["joints"] = [name.strip() for name in joints.split(",")]
+    return parameters
+
+
+def string(value: str) -> ParameterValue:
+    """A parameter that stays a string, whatever it looks like."""
+    return ParameterValue(value, value_type=str)
+
+
+def text(context: LaunchContext, argument: str) -> str:
+    """The value of a launch argument."""
+    return str(LaunchConfiguration(argument).perform(context))
+
+
+def number(context: LaunchContext, argument: str) -> float:
+    """The value of a launch argument as a number. Raises ValueError."""
+    value = text(context, argument)
+    try:
+        return float(value)
+    except ValueError:
+        raise ValueError(f"argument {argument}: expected a number, got '{value}'") from None
+
+
+def failing_with_its_node() -> RegisterEventHandler:
+    """Have `ros2 launch` end with an error where a process of it did."""
+
+    def check(event: ProcessExited, _context: LaunchContext) -> None:
+        if event.returncode > 0:
+            raise RuntimeError(f"{event.process_name} ended with exit code {event.returncode}")
+
+    return RegisterEventHandler(OnProcessExit(on_exit=check))
+
+
+def evaluate_robot(name: str) -> LaunchDescription:
+    """Launch description that evaluates a recording of a robot with a run configuration."""
+    robot = load_robot(name)
+    accelerations = robot.get("accelerations", {})
+    return LaunchDescription(
+        [
+            *bag_arguments(),
+            *sample_arguments(
+                accelerations.get("method", "auto"),
+                float(accelerations.get("cutoff", 0.0)),
+                robot.get("effort", "torque"),
+                robot.get("topic", ""),
+            ),
+            choice("description", "Where the robot description comes from", SOURCES, "auto"),
+            OpaqueFunction(function=_include_evaluation, args=[robot]),
+        ]
+    )
+
+
+def _include_evaluation(context: LaunchContext, robot: dict[str, Any]) -> list[Action]:
+    description, origin = robot_description(robot, text(context, "description"))
+    arguments = {
+        "plugin_name": robot["plugin"],
+        "robot_description": description,
+        "root": robot.get("root", ""),
+        "tip": robot.get("tip", ""),
+        "gravity": str(robot.get("gravity", [0, 0, -9.81])),
+        "friction": str(robot.get("friction", True)).lower(),
+        "joints": ",".join(robot.get("joints", [])),
+    }
+    return [
+        LogInfo(msg=f"{robot['description']}; robot description: {origin}"),
+        IncludeLaunchDescription(
+            PythonLaunchDescriptionSource(launch_file("evaluate_solver.launch.py")),
+            launch_arguments=arguments.items(),
+        ),
+    ]
+
+
+def launch_file(name: str) -> str:
+    """Path of a launch file of this package."""
+    from ament_index_python.packages import get_package_share_directory
+
+    return str(Path(get_package_share_directory("inverse_dynamics_ros")) / "launch" / name)
+
+
+def _plain(description: str) -> str:
+    """A robot description that may have been quoted as YAML, as the reference implementation does."""
+    if description.lstrip().startswith("<") or not description:
+        return description
+    plain = yaml.safe_load(description)
+    return plain if isinstance(plain, str) else description
+
+
+def _three_numbers(value: str) -> list[float]:
+    try:
+        x, y, z = (float(part) for part in literal_eval(value))
+    except (ValueError, TypeError, SyntaxError):
+        raise ValueError(
+            f"argument gravity: expected three numbers, [0, 0, -9.81] for one, got '{value}'"
+        ) from None
+    return [x, y, z]

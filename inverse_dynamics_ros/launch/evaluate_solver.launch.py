@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Torques of a recorded motion by any solver, as a recording and as a table of errors.
+
+ros2 launch inverse_dynamics_ros evaluate_solver.launch.py --show-args
+"""
+
+from inverse_dynamics_ros.launch_files import (
+    bag_arguments,
+    choice,
+    failing_with_its_node,
+    number,
+    sample_arguments,
+    solver_arguments,
+    solver_parameters,
+    string,
+    text,
+)
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch_ros.actions import Node
+
+CLOCKS = {
+    "auto": "the header's, if there are any",
+    "header": "as the publisher wrote them",
+    "receive": "as the recorder wrote them",
+}
+
+
+def nodes(context):
+    """The program, with the parameters of the arguments."""
+    parameters = solver_parameters(context) | {
+        name: string(text(context, name))
+        for name in (
+            "input_bag",
+            "output_bag",
+            "topic",
+            "storage",
+            "input_topic",
+            "clock",
+            "accelerations",
+            "effort",
+        )
+    }
+    parameters["cutoff"] = number(context, "cutoff")
+    if rules := text(context, "without_rules"):
+        parameters["without_rules"] = [rule.strip() for rule in rules.split(",")]
+    return [
+        Node(
+            package="inverse_dynamics_ros",
+            executable="evaluate_solver",
+            output="screen",
+            parameters=[parameters],
+        )
+    ]
+
+
+def generate_launch_description():
+    """What `ros2 launch` asks for."""
+    return LaunchDescription(
+        [
+            *bag_arguments(),
+            *solver_arguments(),
+            *sample_arguments(),
+            choice("clock", "Stamps that are the time", CLOCKS, "auto"),
+            DeclareLaunchArgument(
+                "without_rules",
+                default_value="",
+                description="What is found in the samples but not acted upon, comma-separated: "
+                "repeated, non-increasing, time-base, start-transient",
+            ),
+            OpaqueFunction(function=nodes),
+            failing_with_its_node(),
+        ]
+    )

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Computed torques of a robot that is running, and how far the measured ones are from them.
+
+ros2 launch inverse_dynamics_ros live.launch.py plugin_name:=package/Class tip:=tool0
+ros2 launch inverse_dynamics_ros live.launch.py --show-args
+"""
+
+from inverse_dynamics_ros.launch_files import (
+    choice,
+    failing_with_its_node,
+    number,
+    sample_arguments,
+    solver_arguments,
+    solver_parameters,
+    string,
+    text,
+)
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch_ros.actions import LoadComposableNodes, Node
+from launch_ros.descriptions import ComposableNode
+
+RELIABILITIES = {
+    "best_effort": "takes from every publisher; what is lost is lost",
+    "reliable": "nothing is lost; only from publishers that are reliable, too",
+}
+
+
+def nodes(context):
+    """The node by itself, or as a component of a container."""
+    topic = text(context, "joint_states")
+    parameters = solver_parameters(context) | {
+        "effort": string(text(context, "effort")),
+        "cutoff": number(context, "cutoff"),
+        "use_sim_time": text(context, "use_sim_time") == "true",
+        f"qos_overrides.{topic}.subscription.reliability": string(text(context, "reliability")),
+    }
+    common = {
+        "package": "inverse_dynamics_ros",
+        "name": "live",
+        "parameters": [parameters],
+        "remappings": [("joint_states", topic)],
+    }
+    container = text(context, "container")
+    if not container:
+        return [Node(executable="live", output="screen", **common)]
+    component = ComposableNode(plugin="inverse_dynamics_ros::LiveNode", **common)
+    return [
+        LoadComposableNodes(target_container=container, composable_node_descriptions=[component])
+    ]
+
+
+def generate_launch_description():
+    """What `ros2 launch` asks for."""
+    effort = next(argument for argument in sample_arguments() if argument.name == "effort")
+    return LaunchDescription(
+        [
+            *solver_arguments(),
+            effort,
+            DeclareLaunchArgument(
+                "cutoff",
+                default_value="5.0",
+                description="Cut-off of the causal filter that accelerations come from [Hz]; they "
+                "come late by 1 / (pi cutoff) s",
+            ),
+            DeclareLaunchArgument(
+                "joint_states",
+                default_value="/joint_states",
+                description="Topic of the joint states, in full",
+            ),
+            choice(
+                "reliability", "Quality of service of joint_states", RELIABILITIES, "best_effort"
+            ),
+            DeclareLaunchArgument(
+                "use_sim_time",
+                default_value="false",
+                choices=["true", "false"],
+                description="Whether time is that of the topic /clock",
+            ),
+            DeclareLaunchArgument(
+                "container",
+                default_value="",
+                description="Name of a running component container to load the node into; empty: a "
+                "process of its own",
+            ),
+            OpaqueFunction(function=nodes),
+            failing_with_its_node(),
+        ]
+    )

@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Torques of a recording of a simulated UR10, rigid bodies of its description.
+
+ros2 launch inverse_dynamics_ros ur10_simulated.launch.py input_bag:=recording output_bag:=result
+ros2 launch inverse_dynamics_ros ur10_simulated.launch.py --show-args
+"""
+
+from inverse_dynamics_ros.launch_files import evaluate_robot
+
+
+def generate_launch_description():
+    """What `ros2 launch` asks for."""
+    return evaluate_robot("ur10_simulated")

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Program: torques of a recorded motion by a solver, as a recording and as a table of errors.
+///
+///     ros2 run inverse_dynamics_ros evaluate_solver --ros-args -p input_bag:=recording
+///         -p output_bag:=result -p plugin_name:=ur10_.../InverseDynamicsSolverUR10
+///
+/// Exit code 0: done; 2: something the user can repair (the last line says what); 130: interrupted.
+
+#include <cstdio>
+#include <inverse_dynamics_ros/evaluate_solver_parameters.hpp>
+#include <rclcpp/rclcpp.hpp>
+
+#include "interrupted.hpp"
+#include "node_solver.hpp"
+#include "output_bag.hpp"
+#include "torque_bag.hpp"
+#include "user_error.hpp"
+
+namespace inverse_dynamics_ros {
+namespace {
+
+using inverse_dynamics_evaluation::Clock;
+
+Clock clockOf(const std::string& name) {
+  return name == "header" ? Clock::kHeader : name == "receive" ? Clock::kReceive : Clock::kAuto;
+}
+
+// Mistakes that can be told before any work.
+void check(const evaluate_solver::Params& params) {
+  if (params.input_bag.empty()) {
+    throw UserError("parameter 'input_bag'", "the recording to evaluate", "nothing", "set it");
+  }
+  OutputBag::requireFree(params.output_bag);
+  if (params.topic.empty()) {
+    throw UserError("parameter 'topic'", "a name for the computed torques", "nothing",
+                    "leave it out to take /torques");
+  }
+}
+
+EvaluationOptions optionsOf(const evaluate_solver::Params& params,
+                            const inverse_dynamics_solver::InverseDynamicsSolver& solver) {
+  EvaluationOptions options;
+  options.method = inverse_dynamics_evaluation::accelerationMethod(params.accelerations);
+  options.cutoff = params.cutoff;
+  options.rules = rulesWithout(params.without_rules);
+  options.effort = effortMeaning(params.effort, params.drive_gains, solver);
+  return options;
+}
+
+void say(const rclcpp::Logger& logger, const std::string& line) {
+  RCLCPP_INFO(logger, "%s", line.c_str());
+}
+
+void sayAll(const rclcpp::Logger& logger, const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) {
+    RCLCPP_WARN(logger, "%s", note.c_str());
+  }
+}
+
+void run(rclcpp::Node& node) {
+  declareSolverParameters(node);
+  const evaluate_solver::ParamListener listener(node.get_node_parameters_interface(),
+                                                node.get_logger());
+  const evaluate_solver::Params params = listener.get_params();
+  check(params);
+  const rclcpp::Logger logger = node.get_logger();
+
+  const auto solver = makeSolver(node, params.plugin_name, params.robot_description);
+  const EvaluationOptions options = optionsOf(params, *solver);
+  say(logger, "solver: " + params.plugin_name);
+  sayAll(logger, solver->warnings());
+
+  const RecordedMotion motion = readMotion(
+      params.input_bag, {params.input_topic, messageNames(params.joints, solver->jointNames()),
+                         clockOf(params.clock)});
+  say(logger, "recording: " + params.input_bag + ", " + motion.topic + ": " +
+                  std::to_string(motion.log.q.cols()) + " samples");
+  sayAll(logger, motion.log.notes);
+
+  const Evaluation evaluation = evaluate(motion.log, *solver, options);
+  say(logger, "accelerations: " + evaluation.accelerations.summary);
+  say(logger, "effort means: " + options.effort.summary);
+  sayAll(logger, evaluation.accelerations.findings);
+
+  writeTorques(params.output_bag, params.storage.empty() ? motion.storage : params.storage,
+               params.topic, motion, evaluation);
+  say(logger, "written: " + params.output_bag + ": " + params.topic + " (computed)" +
+                  (evaluation.measured.size() > 0 ? ", " + params.topic + "_gt (measured)" : ""));
+  const auto units = torqueUnits(node, solver->jointNames(), params.robot_description);
+  std::fputs(errorTable(evaluation, units).c_str(), stdout);
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_ros
+
+int main(int argc, char** argv) {
+  using inverse_dynamics_ros::Failure;
+  rclcpp::init(argc, argv);
+  Failure failure{inverse_dynamics_ros::kExitFine, ""};
+  const rclcpp::Logger logger = rclcpp::get_logger("evaluate_solver");
+  try {
+    auto node = std::make_shared<rclcpp::Node>("evaluate_solver");
+    inverse_dynamics_ros::run(*node);
+  } catch (const inverse_dynamics_ros::Interrupted& interrupted) {
+    failure = {inverse_dynamics_ros::kExitInterrupted, interrupted.what()};
+  } catch (const std::exception& error) {
+    failure = inverse_dynamics_ros::failureOf(error);
+  }
+  if (failure.code != inverse_dynamics_ros::kExitFine) {
+    RCLCPP_FATAL(logger, "%s", failure.text.c_str());
+  }
+  rclcpp::shutdown();
+  return failure.code;
+}

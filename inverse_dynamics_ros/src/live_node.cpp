@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "inverse_dynamics_ros/live_node.hpp"
+
+#include <inverse_dynamics_ros/live_node_parameters.hpp>
+#include <rclcpp/rclcpp.hpp>
+#include <rclcpp_components/register_node_macro.hpp>
+#include <sensor_msgs/msg/joint_state.hpp>
+#include <std_msgs/msg/string.hpp>
+
+#include "live_diagnostics.hpp"
+#include "live_torques.hpp"
+#include "node_solver.hpp"
+
+namespace inverse_dynamics_ros {
+namespace {
+
+using inverse_dynamics_evaluation::OnlineDerivative;
+using sensor_msgs::msg::JointState;
+using std_msgs::msg::String;
+
+constexpr int kReminder = 10'000;  // ms between two log lines that say the same
+
+std::vector<double>& assign(std::vector<double>& numbers, const Eigen::VectorXd& vector) {
+  numbers.assign(vector.data(), vector.data() + vector.size());
+  return numbers;
+}
+
+}  // namespace
+
+class LiveNode::Implementation {
+ public:
+  explicit Implementation(LiveNode& node)
+      : node_(node),
+        params_((declareSolverParameters(node),
+                 live_node::ParamListener(node.get_node_parameters_interface(), node.get_logger())
+                     .get_params())),
+        diagnostics_(node, node.get_node_topics_interface()->resolve_topic_name("joint_states"),
+                     {params_.max_age, params_.min_rate}) {
+    torques_publisher_ = node.create_publisher<JointState>("~/torques", rclcpp::QoS(10),
+                                                           overridable<rclcpp::PublisherOptions>());
+    residual_publisher_ = node.create_publisher<JointState>(
+        "~/residual", rclcpp::QoS(10), overridable<rclcpp::PublisherOptions>());
+    openSolver();
+    joint_states_ = node.create_subscription<JointState>(
+        "joint_states", rclcpp::SensorDataQoS().keep_last(10),
+        [this](const JointState& message) { take(message); },
+        overridable<rclcpp::SubscriptionOptions>());
+    reminder_ = node.create_wall_timer(std::chrono::milliseconds(kReminder), [this] { remind(); });
+  }
+
+ private:
+  // History, depth and reliability may be set by parameters qos_overrides.TOPIC....
+  template <class Options>
+  static Options overridable() {
+    Options options;
+    options.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
+    return options;
+  }
+
+  rclcpp::Logger logger() const { return node_.get_logger(); }
+
+  // With the description of the parameter, or the solver's own model, or when one comes.
+  void openSolver() {
+    try {
+      useSolver(params_.robot_description);
+    } catch (const inverse_dynamics_solver::ParameterUninitializedException& error) {
+      if (!params_.robot_description.empty()) {
+        throw;
+      }
+      description_ = node_.create_subscription<String>(
+          "robot_description", rclcpp::QoS(1).transient_local(),
+          [this](const String& message) { takeDescription(message.data); });
+      waiting_for_ = description_->get_topic_name();
+      diagnostics_.setSolver(false, "waiting for a robot description on " + waiting_for_);
+      RCLCPP_INFO(logger(), "waiting for a robot description on %s (%s)", waiting_for_.c_str(),
+                  error.what());
+    }
+  }
+
+  void takeDescription(const std::string& text) {
+    try {
+      useSolver(text);
+      waiting_for_.clear();
+    } catch (const std::exception& error) {
+      RCLCPP_ERROR(logger(), "the robot description on %s can't be used: %s",
+                   description_->get_topic_name(), error.what());
+      if (live_ == nullptr) {
+        diagnostics_.setSolver(false, std::string("unusable robot description: ") + error.what());
+      }
+    }
+  }
+
+  // Replaces the solver, or throws and leaves it as it was.
+  void useSolver(const std::string& robot_description) {
+    const auto solver = makeSolver(node_, params_.plugin_name, robot_description);
+    LiveOptions options;
+    options.joints = messageNames(params_.joints, solver->jointNames());
+    options.effort = effortMeaning(params_.effort, params_.drive_gains, *solver);
+    options.cutoff = params_.cutoff;
+    options.longest_gap = params_.longest_gap;
+    live_ = std::make_unique<LiveTorques>(solver, options);
+    torques_.name = residual_.name = options.joints;
+    for (const std::string& warning : solver->warnings()) {
+      RCLCPP_WARN(logger(), "%s", warning.c_str());
+    }
+    const std::string text = params_.plugin_name + ", " + std::to_string(solver->jointCount()) +
+                             " joints: " + inverse_dynamics_evaluation::listed(options.joints);
+    diagnostics_.setSolver(true, text);
+    RCLCPP_INFO(logger(), "solver: %s; accelerations late by %.0f ms", text.c_str(),
+                1e3 * live_->delay());
+  }
+
+  void take(const JointState& message) {
+    if (live_ == nullptr) {
+      return;
+    }
+    const rclcpp::Time now = node_.now();
+    std::int64_t stamp = rclcpp::Time(message.header.stamp).nanoseconds();
+    if (stamp == 0) {
+      stamp = now.nanoseconds();
+      RCLCPP_WARN_ONCE(logger(), "joint states have no stamp: the time of reception is used");
+    }
+    const LiveTorques::Outcome outcome = live_->process(message, stamp);
+    if (outcome == LiveTorques::Outcome::kOtherJoints) {
+      ++diagnostics_.counts().other_joints;
+      return;
+    }
+    diagnostics_.arrived(1e-9 * static_cast<double>(now.nanoseconds() - stamp));
+    if (outcome != LiveTorques::Outcome::kMissing) {
+      diagnostics_.setMissing("");
+    }
+    if (outcome == LiveTorques::Outcome::kComputed) {
+      publish(message);
+    }
+    report(outcome);
+    previous_stamp_ = stamp;
+  }
+
+  void publish(const JointState& message) {
+    torques_.header = residual_.header = message.header;
+    assign(torques_.position, live_->position());
+    assign(torques_.velocity, live_->velocity());
+    assign(torques_.effort, live_->computed());
+    torques_publisher_->publish(torques_);
+    ++diagnostics_.counts().computed;
+    if (live_->hasResidual()) {
+      assign(residual_.effort, live_->residual());
+      residual_publisher_->publish(residual_);
+    } else {
+      ++diagnostics_.counts().no_efforts;
+    }
+  }
+
+  // Counts and logs what isn't as it should be.
+  void report(LiveTorques::Outcome outcome) {
+    LiveCounts& counts = diagnostics_.counts();
+    switch (outcome) {
+      case LiveTorques::Outcome::kMissing: {
+        ++counts.missing;
+        const std::string joints = inverse_dynamics_evaluation::listed(live_->culprits());
+        diagnostics_.setMissing(joints);
+        RCLCPP_ERROR_THROTTLE(logger(), steady_, kReminder,
+                              "joint states lack (or repeat) joints: %s; the parameter 'joints' "
+                              "gives the robot's names",
+                              joints.c_str());
+        return;
+      }
+      case LiveTorques::Outcome::kNoVelocities:
+        ++counts.no_velocities;
+        RCLCPP_ERROR_THROTTLE(logger(), steady_, kReminder,
+                              "joint states lack positions or velocities: one per name is needed");
+        return;
+      case LiveTorques::Outcome::kNotFinite:
+        ++counts.not_finite;
+        RCLCPP_WARN_THROTTLE(
+            logger(), steady_, kReminder,
+            "a joint state has a position or velocity that isn't finite: left out");
+        return;
+      case LiveTorques::Outcome::kRepeated:
+        ++counts.repeated;
+        return;
+      default:
+        reportStep();
+    }
+  }
+
+  void reportStep() {
+    if (live_->step() == OnlineDerivative::Step::kWentBack) {
+      ++diagnostics_.counts().clock_jumps;
+      RCLCPP_WARN(
+          logger(),
+          "the clock jumped back behind %.9f s: the filter of the accelerations starts anew",
+          1e-9 * static_cast<double>(previous_stamp_));
+    } else if (live_->step() == OnlineDerivative::Step::kGap) {
+      ++diagnostics_.counts().gaps;
+      RCLCPP_WARN_THROTTLE(logger(), steady_, kReminder,
+                           "no joint states for more than %g s: the filter of the accelerations "
+                           "starts anew",
+                           params_.longest_gap);
+    }
+  }
+
+  // Says now and then what is being waited for.
+  void remind() {
+    if (!waiting_for_.empty()) {
+      RCLCPP_WARN(logger(), "still waiting for a robot description on %s: %zu publisher(s)",
+                  waiting_for_.c_str(), description_->get_publisher_count());
+    } else if (live_ != nullptr && diagnostics_.counts().received == received_) {
+      RCLCPP_WARN(
+          logger(),
+          "no joint states on %s: %zu publisher(s); with publishers, compare the quality of "
+          "service (`ros2 topic info -v`) and the joint names",
+          joint_states_->get_topic_name(), joint_states_->get_publisher_count());
+    }
+    received_ = diagnostics_.counts().received;
+  }
+
+  LiveNode& node_;
+  live_node::Params params_;
+  LiveDiagnostics diagnostics_;
+  std::unique_ptr<LiveTorques> live_;      // null until there is a description
+  JointState torques_, residual_;          // reused, so that nothing is allocated per message
+  std::int64_t previous_stamp_ = 0;        // ns
+  std::int64_t received_ = 0;              // at the last reminder
+  std::string waiting_for_;                // topic of the description
+  rclcpp::Clock steady_{RCL_STEADY_TIME};  // of throttled log lines: never jumps
+  rclcpp::Publisher<JointState>::SharedPtr torques_publisher_, residual_publisher_;
+  rclcpp::Subscription<JointState>::SharedPtr joint_states_;
+  rclcpp::Subscription<String>::SharedPtr description_;
+  rclcpp::TimerBase::SharedPtr reminder_;
+};
+
+LiveNode::LiveNode(const rclcpp::NodeOptions& options)
+    : rclcpp::Node("live", options), implementation_(std::make_unique<Implementation>(*this)) {}
+
+LiveNode::~LiveNode() = default;
+
+}  // namespace inverse_dynamics_ros
+
+RCLCPP_COMPONENTS_REGISTER_NODE(inverse_dynamics_ros::LiveNode)

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "live_torques.hpp"
+
+#include <utility>
+
+namespace inverse_dynamics_ros {
+
+using inverse_dynamics_evaluation::JointMatching;
+using inverse_dynamics_evaluation::OnlineDerivative;
+
+LiveTorques::LiveTorques(
+    std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
+    LiveOptions options)
+    : solver_(std::move(solver)),
+      effort_(std::move(options.effort)),
+      matching_(std::move(options.joints)),
+      accelerations_(solver_->jointCount(), options.cutoff, options.longest_gap) {
+  for (Eigen::VectorXd* vector : {&q_, &qd_, &measured_, &gravity_, &computed_, &residual_}) {
+    vector->setZero(solver_->jointCount());
+  }
+}
+
+LiveTorques::Outcome LiveTorques::process(const sensor_msgs::msg::JointState& message,
+                                          std::int64_t stamp) {
+  has_residual_ = false;
+  const JointMatching::Found found = matching_.match(message.name);
+  if (found == JointMatching::Found::kNone) {
+    return Outcome::kOtherJoints;
+  }
+  if (found != JointMatching::Found::kAll) {
+    return Outcome::kMissing;
+  }
+  if (!pick(message.position, message.name.size(), q_) ||
+      !pick(message.velocity, message.name.size(), qd_)) {
+    return Outcome::kNoVelocities;
+  }
+  if (!q_.allFinite() || !qd_.allFinite()) {
+    return Outcome::kNotFinite;
+  }
+  step_ = accelerations_.update(stamp, qd_);
+  if (step_ == OnlineDerivative::Step::kRepeated) {
+    return Outcome::kRepeated;
+  }
+  if (!accelerations_.settled()) {
+    return Outcome::kSettling;
+  }
+  solver_->getTorques(q_, qd_, accelerations_.derivative(), computed_);
+  if (effort_.without_gravity) {
+    solver_->getGravityVector(q_, gravity_);
+    computed_ -= gravity_;
+  }
+  if (pick(message.effort, message.name.size(), measured_) && measured_.allFinite()) {
+    residual_ = effort_.drive_gains.cwiseProduct(measured_) - computed_;
+    has_residual_ = true;
+  }
+  return Outcome::kComputed;
+}
+
+// The numbers of the joints; false if there isn't one per name.
+bool LiveTorques::pick(const std::vector<double>& numbers, std::size_t names,
+                       Eigen::VectorXd& picked) const {
+  if (numbers.size() != names) {
+    return false;
+  }
+  for (std::size_t j = 0; j < matching_.columns().size(); ++j) {
+    picked[static_cast<Eigen::Index>(j)] = numbers[matching_.columns()[j]];
+  }
+  return true;
+}
+
+}  // namespace inverse_dynamics_ros

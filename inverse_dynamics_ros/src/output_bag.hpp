@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// A recording that is written whole or not at all, and never over something else.
+///
+///     OutputBag bag("result", "sqlite3");
+///     bag.write(message, "/torques", stamp);
+///     bag.finish();   // only now there is a directory `result`
+
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <rosbag2_cpp/writer.hpp>
+#include <string>
+
+namespace inverse_dynamics_ros {
+
+/// Writes into a hidden directory beside the target, which takes the target's name at the end.
+class OutputBag {
+ public:
+  /// @param storage  sqlite3 or mcap.
+  /// @throws UserError: the target exists, or can't be written.
+  OutputBag(const std::filesystem::path& target, const std::string& storage);
+
+  /// Removes what was written, unless finish() was called.
+  ~OutputBag();
+  OutputBag(const OutputBag&) = delete;
+  OutputBag& operator=(const OutputBag&) = delete;
+
+  /// @param stamp  ns; when the message was received.
+  template <class Message>
+  void write(const Message& message, const std::string& topic, std::int64_t stamp) {
+    writer_->write(message, topic, rclcpp::Time(stamp));
+  }
+
+  /// Closes the recording and gives it its name. @throws UserError: it can't be.
+  void finish();
+
+  /// @throws UserError: there is something of that name, or no name.
+  static void requireFree(const std::filesystem::path& target);
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path work_;  // holds the recording, under its own name, until it is finished
+  std::unique_ptr<rosbag2_cpp::Writer> writer_;
+};
+
+}  // namespace inverse_dynamics_ros

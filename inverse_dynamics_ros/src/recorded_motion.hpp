@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// A motion from a rosbag2 recording: joint states or joint trajectories.
+///
+///     RecordedMotion motion = readMotion("recording", {"", {"joint_1", "joint_2"}});
+///     motion.log.q;   // 2 x N
+///
+/// The rules of joint_log.hpp. Each point of a joint trajectory is a sample; its time is the
+/// header's stamp, or that of reception where the header has none ("start now"), plus its
+/// time_from_start. Efforts of trajectories may be absent.
+
+#pragma once
+
+#include <inverse_dynamics_evaluation/joint_log.hpp>
+#include <std_msgs/msg/header.hpp>
+#include <string>
+#include <trajectory_msgs/msg/joint_trajectory.hpp>
+#include <vector>
+
+namespace inverse_dynamics_ros {
+
+inline const std::string kJointState = "sensor_msgs/msg/JointState";
+inline const std::string kJointTrajectory = "trajectory_msgs/msg/JointTrajectory";
+
+/// Which messages are read, and of which joints.
+struct MotionQuery {
+  std::string topic;                ///< empty: the only one of a type that can be read
+  std::vector<std::string> joints;  ///< in the order wanted
+  inverse_dynamics_evaluation::Clock clock = inverse_dynamics_evaluation::Clock::kAuto;
+};
+
+/// Samples, and what is needed to write messages like theirs.
+struct RecordedMotion {
+  inverse_dynamics_evaluation::JointLog log;
+  std::string topic;
+  std::string type;      ///< kJointState or kJointTrajectory
+  std::string storage;   ///< sqlite3 or mcap
+  std::string frame_id;  ///< the first that isn't empty
+
+  // Of trajectories, by message; empty for joint states.
+  std::vector<std_msgs::msg::Header> headers;
+  std::vector<std::int64_t> receive_stamps;  ///< ns; those of log are later by time_from_start
+};
+
+/// Reads a recording: a directory with metadata.yaml, or a .db3 or .mcap file.
+///
+/// @throws UserError, inverse_dynamics_evaluation::RecordingError: no such recording, one that
+///         can't be read, no such topic, another type, what JointLogBuilder says; interrupted.
+RecordedMotion readMotion(const std::string& path, const MotionQuery& query);
+
+}  // namespace inverse_dynamics_ros

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "evaluation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "two_joint_solver.hpp"
+#include "user_error.hpp"
+
+namespace inverse_dynamics_ros {
+namespace {
+
+using inverse_dynamics_evaluation::JointLog;
+using inverse_dynamics_evaluation::Stamps;
+
+// Efforts as the motion needs them with recorded accelerations, and 0.25 and -0.5 N m more.
+JointLog log(Eigen::Index count = 50) {
+  JointLog log;
+  log.joint_names = {"a", "b"};
+  log.header_stamps = Stamps::LinSpaced(count, 0, 10'000'000 * (count - 1));
+  log.receive_stamps = log.header_stamps;
+  const Eigen::RowVectorXd t = log.time().transpose();
+  log.q.resize(2, count);
+  log.q << t.array().sin().matrix(), t.array().cos().matrix();
+  log.qd.resize(2, count);
+  log.qd << t.array().cos().matrix(), -t.array().sin().matrix();
+  log.qdd = -log.q;
+  log.effort.resize(2, count);
+  log.effort.row(0) = (2 * log.qdd.row(0)).array() + 10 + 0.25;
+  log.effort.row(1) = (3 * log.qdd.row(1)).array() + 20 - 0.5;
+  return log;
+}
+
+EvaluationOptions options(const std::string& effort = "torque") {
+  EvaluationOptions options;
+  options.effort = effortMeaning(effort, {}, *TwoJointSolver::make());
+  return options;
+}
+
+TEST(Evaluation, ComparesComputedWithMeasuredTorques) {
+  const Evaluation evaluation = evaluate(log(), *TwoJointSolver::make(), options());
+  EXPECT_NEAR(evaluation.errors[0].bias, -0.25, 1e-12);
+  EXPECT_NEAR(evaluation.errors[1].rmse, 0.5, 1e-12);
+  EXPECT_EQ(evaluation.accelerations.summary, "as recorded");
+}
+
+TEST(Evaluation, LeavesGravityOutOfBothWhereEffortsAreWithoutIt) {
+  JointLog without = log();
+  without.effort.row(0).array() -= 10;
+  without.effort.row(1).array() -= 20;
+  const Evaluation evaluation =
+      evaluate(without, *TwoJointSolver::make(), options("torque_without_gravity"));
+  EXPECT_NEAR(evaluation.errors[0].bias, -0.25, 1e-12);
+  EXPECT_NEAR(evaluation.computed(1, 0), -3, 1e-12);
+}
+
+TEST(Evaluation, HasNoErrorsWhereNoEffortsAreRecorded) {
+  JointLog without = log();
+  without.effort.resize(0, 0);
+  const Evaluation evaluation = evaluate(without, *TwoJointSolver::make(), options());
+  EXPECT_TRUE(evaluation.errors.empty());
+  EXPECT_EQ(evaluation.computed.cols(), 50);
+  EXPECT_EQ(errorTable(evaluation, {"N m", "N m"}),
+            "  no efforts are recorded: there is nothing to compare with\n");
+}
+
+TEST(Evaluation, IsPrintedAsATable) {
+  const Evaluation evaluation = evaluate(log(), *TwoJointSolver::make(), options());
+  const std::string table = errorTable(evaluation, {"N m", "N"});
+  EXPECT_NE(table.find("  joint   unit     MAE    RMSE"), std::string::npos) << table;
+  EXPECT_NE(table.find("  a       N m    0.250   0.250"), std::string::npos) << table;
+  EXPECT_NE(table.find("  b       N      0.500   0.500"), std::string::npos) << table;
+  EXPECT_EQ(table.find("mean"), std::string::npos) << "units differ";
+  EXPECT_NE(errorTable(evaluation, {"N m", "N m"}).find("  mean    N m    0.375   0.375\n"),
+            std::string::npos);
+}
+
+TEST(Evaluation, ActsUponTheRulesThatAreNotSwitchedOff) {
+  EXPECT_FALSE(rulesWithout({"repeated"}).repeated);
+  EXPECT_TRUE(rulesWithout({"repeated"}).time_base);
+  EXPECT_FALSE(rulesWithout({"non-increasing"}).non_increasing);
+  EXPECT_FALSE(rulesWithout({"time-base"}).time_base);
+  EXPECT_FALSE(rulesWithout({"start-transient"}).start_transient);
+  EXPECT_THROW(rulesWithout({"all"}), UserError);
+}
+
+TEST(EffortMeaning, AsksForDriveGainsOfCurrents) {
+  const auto solver = TwoJointSolver::make();
+  const auto error = [&](const std::string& effort, const std::vector<double>& gains) {
+    try {
+      effortMeaning(effort, gains, *solver);
+    } catch (const UserError& refused) {
+      return std::string(refused.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(error("current", {2, 3}), "no error");
+  EXPECT_EQ(error("current", {}),
+            "parameter 'drive_gains': expected 2 figures above 0 [N m/A], one per joint of the "
+            "chain (a, b), as effort means current, got none, and the solver has none of its own; "
+            "set it");
+  EXPECT_NE(error("current", {2}).find("got 1 (2)"), std::string::npos);
+  EXPECT_NE(error("current", {2, -3}).find("got 2 (2 -3)"), std::string::npos);
+  EXPECT_NE(error("volts", {}).find("got 'volts'"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_ros
