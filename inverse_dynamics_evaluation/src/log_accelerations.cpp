@@ -77,14 +77,17 @@ std::string name(AccelerationMethod method) {
       return "low-pass";
     case AccelerationMethod::kBackwardDifference:
       return "backward-difference";
+    case AccelerationMethod::kGiven:
+      return "given";
   }
   return "unknown";
 }
 
 AccelerationMethod accelerationMethod(const std::string& text) {
   std::vector<std::string> names;
-  for (const AccelerationMethod method : {AccelerationMethod::kAuto, AccelerationMethod::kLowPass,
-                                          AccelerationMethod::kBackwardDifference}) {
+  for (const AccelerationMethod method :
+       {AccelerationMethod::kAuto, AccelerationMethod::kLowPass,
+        AccelerationMethod::kBackwardDifference, AccelerationMethod::kGiven}) {
     if (name(method) == text) {
       return method;
     }
@@ -96,26 +99,35 @@ AccelerationMethod accelerationMethod(const std::string& text) {
 
 LogAccelerations logAccelerations(const JointLog& log, AccelerationMethod method, double cutoff,
                                   const SampleRules& rules) {
+  if (method == AccelerationMethod::kAuto) {
+    method = log.qdd.size() > 0 && cutoff == 0 ? AccelerationMethod::kGiven
+                                               : AccelerationMethod::kLowPass;
+  }
+  const bool filtered = method == AccelerationMethod::kLowPass;
+  if (!filtered && cutoff != 0) {
+    throw EvaluationError("accelerations", "cut-off", "none, as " + name(method) + " has none",
+                          formatted("%g", cutoff) + " Hz", "use low-pass");
+  }
   const Eigen::VectorXd time = log.time();
   LogAccelerations result;
-  const bool recorded = log.qdd.size() > 0;
-  const bool filtered = !recorded && method != AccelerationMethod::kBackwardDifference;
-  if (!filtered && cutoff != 0) {
-    throw EvaluationError(
-        "accelerations", "cut-off",
-        "none, as " + (recorded ? "accelerations are recorded" : name(method) + " has none"),
-        formatted("%g", cutoff) + " Hz", recorded ? "leave it out" : "use low-pass");
-  }
   if (filtered) {
     AccelerationEstimate estimate = lowPassAccelerations(time, log.q, log.qd, log.effort,
                                                          {cutoff, LowPassOptions().order, rules});
     result.qdd = std::move(estimate.qdd);
     result.samples = std::move(estimate.samples);
     result.summary = summaryOf(estimate.filter);
+  } else if (method == AccelerationMethod::kGiven) {
+    if (log.qdd.size() == 0) {
+      throw EvaluationError("accelerations", "recorded ones", "some", "none",
+                            "use another method, such as auto");
+    }
+    result.samples = examineSamples(time, log.q, log.qd, log.effort, rules);
+    result.qdd = log.qdd;
+    result.summary = "given by the recording";
   } else {
     result.samples = examineSamples(time, log.q, log.qd, log.effort, rules);
-    result.qdd = recorded ? log.qdd : backwardDifference(time, log.qd);
-    result.summary = recorded ? "as recorded" : name(method) + ", no filter";
+    result.qdd = backwardDifference(time, log.qd);
+    result.summary = name(method) + ", no filter";
   }
   result.findings = findingsOf(log, result.samples, filtered);
   return result;

@@ -57,9 +57,17 @@ TEST(LogAccelerations, AreThoseRecordedIfThereAreAny) {
   log.qdd = 7 * log.q;
   const LogAccelerations found = logAccelerations(log);
   EXPECT_EQ(found.qdd, log.qdd);
-  EXPECT_EQ(found.summary, "as recorded");
-  EXPECT_THAT([&] { logAccelerations(log, AccelerationMethod::kAuto, 5.0); },
-              ThrowsMessage<EvaluationError>(HasSubstr("as accelerations are recorded, got 5 Hz")));
+  EXPECT_EQ(found.summary, "given by the recording");
+  EXPECT_EQ(logAccelerations(log, AccelerationMethod::kGiven).qdd, log.qdd);
+
+  // unless something else is asked for
+  EXPECT_EQ(logAccelerations(log, AccelerationMethod::kAuto, 5.0).summary,
+            "zero-phase low-pass, cut-off 5 Hz (given), then derivative");
+  EXPECT_NE(logAccelerations(log, AccelerationMethod::kLowPass).qdd, log.qdd);
+  EXPECT_THAT([&] { logAccelerations(log, AccelerationMethod::kGiven, 5.0); },
+              ThrowsMessage<EvaluationError>(HasSubstr("given has none, got 5 Hz")));
+  EXPECT_THAT([&] { logAccelerations(sine(), AccelerationMethod::kGiven); },
+              ThrowsMessage<EvaluationError>(HasSubstr("recorded ones: expected some, got none")));
 }
 
 TEST(LogAccelerations, SayWhatIsOddAboutTheSamples) {
@@ -82,8 +90,8 @@ TEST(LogAccelerations, SayWhatIsOddAboutTheSamples) {
 
 TEST(LogAccelerations, RefuseAnUnknownMethodAndACutOffWithoutAFilter) {
   EXPECT_THAT([] { accelerationMethod("savgol"); },
-              ThrowsMessage<EvaluationError>(
-                  HasSubstr("expected one of auto, low-pass, backward-difference, got 'savgol'")));
+              ThrowsMessage<EvaluationError>(HasSubstr(
+                  "expected one of auto, low-pass, backward-difference, given, got 'savgol'")));
   EXPECT_THAT([] { logAccelerations(sine(), AccelerationMethod::kBackwardDifference, 5.0); },
               ThrowsMessage<EvaluationError>(HasSubstr("backward-difference has none, got 5 Hz")));
 }

@@ -32,8 +32,9 @@ if TYPE_CHECKING:
     from launch.event_handlers import ProcessExited
 
 _ACCELERATIONS = {
-    "auto": "zero-phase low-pass with a cut-off chosen from the data",
-    "low-pass": "the same with the cut-off given",
+    "auto": "those of the recording if it has any, else low-pass",
+    "low-pass": "zero-phase, of the velocities, then their derivative",
+    "given": "those of the recording",
     "backward-difference": "no filter: the method of the reference implementation",
 }
 _EFFORTS = {
@@ -78,15 +79,15 @@ def bag_arguments(default_topic: str = "/torques") -> list[DeclareLaunchArgument
 
 
 def sample_arguments(
-    accelerations: str = "auto", cutoff: float = 0.0, effort: str = "torque", topic: str = ""
+    accelerations: str = "auto", cutoff: float = 0.0, effort: str = "torque"
 ) -> list[DeclareLaunchArgument]:
     """Arguments about what the samples mean."""
     return [
         DeclareLaunchArgument(
             "input_topic",
-            default_value=topic,
-            description="Topic of the motion in input_bag; empty: the only one of a type that can "
-            "be read",
+            default_value="",
+            description="Topic of the motion in input_bag; empty: the only one of joint states, "
+            "else that of trajectories",
         ),
         choice("accelerations", "How they come from the velocities", _ACCELERATIONS, accelerations),
         DeclareLaunchArgument(
@@ -194,7 +195,6 @@ def evaluate_robot(name: str) -> LaunchDescription:
                 accelerations.get("method", "auto"),
                 float(accelerations.get("cutoff", 0.0)),
                 robot.get("effort", "torque"),
-                robot.get("topic", ""),
             ),
             choice("description", "Where the robot description comes from", SOURCES, "auto"),
             OpaqueFunction(function=_include_evaluation, args=[robot]),

@@ -2,6 +2,7 @@
 
 #include "recorded_motion.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <rclcpp/serialization.hpp>
 #include <rclcpp/time.hpp>
@@ -10,6 +11,7 @@
 #include <rosbag2_storage/storage_filter.hpp>
 #include <rosbag2_storage/storage_options.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
+#include <set>
 
 #include "interrupted.hpp"
 #include "rosbag2_compatibility.hpp"
@@ -18,6 +20,7 @@
 namespace inverse_dynamics_ros {
 namespace {
 
+using inverse_dynamics_evaluation::Clock;
 using inverse_dynamics_evaluation::JointLogBuilder;
 using inverse_dynamics_evaluation::JointSample;
 using sensor_msgs::msg::JointState;
@@ -81,29 +84,32 @@ class OpenRecording {
 
   const std::string& storage() const { return storage_; }
 
-  /// The topic of that name, or the only one that can be read.
+  /// The topic of that name, or the only one of joint states, else the only one of trajectories.
   rosbag2_storage::TopicInformation topic(const std::string& name) const {
     std::vector<rosbag2_storage::TopicInformation> found;
-    std::string there;
-    for (const auto& topic : topics_) {
-      const bool readable = isReadable(topic.topic_metadata.type);
-      if (name.empty() ? readable : topic.topic_metadata.name == name) {
-        found.push_back(topic);
+    for (const std::string& type : {kJointState, kJointTrajectory}) {
+      for (const auto& topic : topics_) {
+        const auto& metadata = topic.topic_metadata;
+        if (name.empty() ? metadata.type == type && topic.message_count > 0
+                         : metadata.name == name && found.empty()) {
+          found.push_back(topic);
+        }
       }
-      there += "\n  " + topic.topic_metadata.name + "  " + topic.topic_metadata.type + "  " +
-               std::to_string(topic.message_count) + " messages";
+      if (!found.empty()) {
+        break;
+      }
     }
     const std::string types = kJointState + " or " + kJointTrajectory;
-    const std::string remedy =
-        "name it with 'input_topic'; the recording has" + (there.empty() ? " no topic" : there);
-    if (found.size() != 1) {
-      throw name.empty()
-          ? UserError(path_, "one topic of type " + types, std::to_string(found.size()), remedy)
-          : UserError(path_ + ": topic " + name, "to be in the recording", "no such topic", remedy);
+    const std::string remedy = "name it with 'input_topic'; the recording has" + listedTopics();
+    if (!name.empty() && found.empty()) {
+      throw UserError(path_, "a topic " + name, "none of that name", remedy);
     }
-    if (!isReadable(found[0].topic_metadata.type)) {
-      throw UserError(path_ + ": topic " + name, "type " + types, found[0].topic_metadata.type,
-                      remedy);
+    if (found.size() != 1) {
+      throw UserError(path_, "one topic of type " + types, std::to_string(found.size()), remedy);
+    }
+    const std::string& type = found[0].topic_metadata.type;
+    if (type != kJointState && type != kJointTrajectory) {
+      throw UserError(path_ + ": topic " + name, "type " + types, type, remedy);
     }
     return found[0];
   }
@@ -140,8 +146,13 @@ class OpenRecording {
   }
 
  private:
-  static bool isReadable(const std::string& type) {
-    return type == kJointState || type == kJointTrajectory;
+  std::string listedTopics() const {
+    std::string text;
+    for (const auto& topic : topics_) {
+      text += "\n  " + topic.topic_metadata.name + "  " + topic.topic_metadata.type + "  " +
+              std::to_string(topic.message_count) + " messages";
+    }
+    return text.empty() ? " no topic" : text;
   }
 
   UserError unreadable(const std::exception& error) const {
@@ -172,20 +183,51 @@ void readJointStates(OpenRecording& recording, const rosbag2_storage::TopicInfor
 
 void readTrajectories(OpenRecording& recording, const rosbag2_storage::TopicInformation& topic,
                       JointLogBuilder& builder, RecordedMotion& motion) {
+  std::size_t most = 0;  // points in a message
   recording.forEach<JointTrajectory>(
       topic, [&](const JointTrajectory& trajectory, std::int64_t received, Eigen::Index number) {
-        const std::int64_t stamp = nanoseconds(trajectory.header.stamp);
         Eigen::Index k = 0;
         for (const JointTrajectoryPoint& point : trajectory.points) {
           const std::int64_t from_start = nanoseconds(point.time_from_start);
           builder.add({trajectory.joint_names, numbers(point.positions), numbers(point.velocities),
                        numbers(point.effort), numbers(point.accelerations),
-                       (stamp == 0 ? received : stamp) + from_start, received + from_start, number,
-                       k++});
+                       nanoseconds(trajectory.header.stamp) + from_start, received + from_start,
+                       number, k++});
         }
+        most = std::max(most, trajectory.points.size());
         motion.headers.push_back(trajectory.header);
         motion.receive_stamps.push_back(received);
       });
+  if (most > 1 && motion.headers.size() > 1) {
+    throw UserError(topic.topic_metadata.name, "one trajectory, or messages of one point each",
+                    std::to_string(motion.headers.size()) + " messages with up to " +
+                        std::to_string(most) + " points",
+                    "which of them belong together isn't known; `ids torques` takes any number");
+  }
+}
+
+// Stamps of trajectories: the headers', unless several trajectories have none.
+Clock clockOf(const RecordedMotion& motion, Clock asked, std::vector<std::string>& notes) {
+  const bool stamped =
+      motion.headers.size() < 2 ||
+      std::any_of(motion.headers.begin(), motion.headers.end(),
+                  [](const auto& header) { return nanoseconds(header.stamp) > 0; });
+  if (asked != Clock::kAuto || stamped) {
+    return asked;
+  }
+  notes.emplace_back("no header has a stamp: the time of reception is used");
+  return Clock::kReceive;
+}
+
+// How many trajectories have no points.
+void countEmpty(const RecordedMotion& motion, std::vector<std::string>& notes) {
+  const std::size_t all = motion.headers.size();
+  const std::size_t filled =
+      std::set<Eigen::Index>(motion.log.message.begin(), motion.log.message.end()).size();
+  if (filled < all) {
+    notes.push_back(std::to_string(all - filled) + " of " + std::to_string(all) +
+                    " messages left out: no points of the joints");
+  }
 }
 
 }  // namespace
@@ -201,10 +243,14 @@ RecordedMotion readMotion(const std::string& path, const MotionQuery& query) {
                           {motion.type == kJointState, "the parameter 'joints'"});
   if (motion.type == kJointState) {
     readJointStates(recording, topic, builder, motion);
+    motion.log = builder.finish(query.clock);
   } else {
     readTrajectories(recording, topic, builder, motion);
+    std::vector<std::string> notes;
+    motion.log = builder.finish(clockOf(motion, query.clock, notes));
+    countEmpty(motion, notes);
+    motion.log.notes.insert(motion.log.notes.end(), notes.begin(), notes.end());
   }
-  motion.log = builder.finish(query.clock);
   return motion;
 }
 

@@ -6,9 +6,9 @@
 ///     RecordedMotion motion = readMotion("recording", {"", {"joint_1", "joint_2"}});
 ///     motion.log.q;   // 2 x N
 ///
-/// The rules of joint_log.hpp. Each point of a joint trajectory is a sample; its time is the
-/// header's stamp, or that of reception where the header has none ("start now"), plus its
-/// time_from_start. Efforts of trajectories may be absent.
+/// The rules of joint_log.hpp. Each point of a joint trajectory is a sample; its stamp is that of
+/// its message plus its time_from_start. Several messages are points of one motion, so each must
+/// have one point; those without are left out. Efforts of trajectories may be absent.
 
 #pragma once
 
@@ -25,7 +25,7 @@ inline const std::string kJointTrajectory = "trajectory_msgs/msg/JointTrajectory
 
 /// Which messages are read, and of which joints.
 struct MotionQuery {
-  std::string topic;                ///< empty: the only one of a type that can be read
+  std::string topic;                ///< empty: the only one of joint states, else of trajectories
   std::vector<std::string> joints;  ///< in the order wanted
   inverse_dynamics_evaluation::Clock clock = inverse_dynamics_evaluation::Clock::kAuto;
 };
@@ -40,7 +40,7 @@ struct RecordedMotion {
 
   // Of trajectories, by message; empty for joint states.
   std::vector<std_msgs::msg::Header> headers;
-  std::vector<std::int64_t> receive_stamps;  ///< ns; those of log are later by time_from_start
+  std::vector<std::int64_t> receive_stamps;  ///< ns; those in log are later by time_from_start
 };
 
 /// Reads a recording: a directory with metadata.yaml, or a .db3 or .mcap file.

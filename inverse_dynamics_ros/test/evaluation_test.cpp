@@ -43,7 +43,7 @@ TEST(Evaluation, ComparesComputedWithMeasuredTorques) {
   const Evaluation evaluation = evaluate(log(), *TwoJointSolver::make(), options());
   EXPECT_NEAR(evaluation.errors[0].bias, -0.25, 1e-12);
   EXPECT_NEAR(evaluation.errors[1].rmse, 0.5, 1e-12);
-  EXPECT_EQ(evaluation.accelerations.summary, "as recorded");
+  EXPECT_EQ(evaluation.accelerations.summary, "given by the recording");
 }
 
 TEST(Evaluation, LeavesGravityOutOfBothWhereEffortsAreWithoutIt) {

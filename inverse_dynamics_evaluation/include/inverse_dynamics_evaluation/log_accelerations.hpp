@@ -18,14 +18,15 @@
 
 namespace inverse_dynamics_evaluation {
 
-/// How accelerations are estimated where none are recorded.
+/// Where accelerations come from.
 enum class AccelerationMethod {
-  kAuto,                ///< low-pass with a cut-off chosen from the data
+  kAuto,                ///< those recorded, if there are any; else kLowPass
   kLowPass,             ///< zero-phase low-pass of the velocities, then their derivative
   kBackwardDifference,  ///< backward differences; no filter
+  kGiven,               ///< those recorded
 };
 
-/// `auto`, `low-pass` or `backward-difference`.
+/// `auto`, `low-pass`, `backward-difference` or `given`.
 std::string name(AccelerationMethod method);
 
 /// The method of that name. @throws EvaluationError: another text.
@@ -39,12 +40,12 @@ struct LogAccelerations {
   std::vector<std::string> findings;  ///< what is odd about the samples, a sentence each
 };
 
-/// Accelerations of a log: those recorded, else those estimated.
+/// Accelerations of a log, as recorded or estimated from its velocities.
 ///
-/// @param cutoff  Hz, of the low-pass; 0: chosen from the data.
+/// @param cutoff  Hz, of the low-pass; 0: chosen from the data. With kAuto it asks for a low-pass.
 /// @param rules   which faults of the samples are acted upon.
 /// @throws EvaluationError as lowPassAccelerations() and backwardDifference() do; a cut-off for a
-///         method that has none.
+///         method that has none; kGiven where none are recorded.
 LogAccelerations logAccelerations(const JointLog& log,
                                   AccelerationMethod method = AccelerationMethod::kAuto,
                                   double cutoff = 0, const SampleRules& rules = {});
