@@ -6,7 +6,6 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
-import textwrap
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,7 +13,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 
 # A fenced block, its indentation, and the comment above it that names a file.
 _BLOCK = re.compile(
-    r"(?:^ *<!-- file: (?P<file>\S+) -->\n)?^ *```(?P<language>\w+)\n(?P<code>.*?)^ *```$",
+    r"(?:^ *<!-- file: (?P<file>\S+) -->\n)?^(?P<indentation> *)```(?P<language>\w+)\n(?P<code>.*?)^ *```$",
     re.MULTILINE | re.DOTALL,
 )
 
@@ -30,10 +29,15 @@ class Block(NamedTuple):
 def blocks_of(text: str, *languages: str) -> list[Block]:
     """Blocks in order of the page; of these languages only, if any are given."""
     blocks = [
-        Block(match["language"], match["file"] or "", textwrap.dedent(match["code"]))
+        Block(match["language"], match["file"] or "", _without(match["indentation"], match["code"]))
         for match in _BLOCK.finditer(text)
     ]
     return [block for block in blocks if not languages or block.language in languages]
+
+
+def _without(indentation: str, code: str) -> str:
+    """Code without the indentation of its fences."""
+    return re.sub(f"^{indentation}", "", code, flags=re.MULTILINE)
 
 
 def page(name: str) -> str:
