@@ -53,8 +53,8 @@ std::vector<std::string> findingsOf(const JointLog& log, const SampleReport& sam
   }
   if (filtered && samples.time_base != TimeBase::kStamps) {
     said.push_back(
-        "positions and velocities contradict the stamps: samples taken at equal distances of " +
-        formatted("%.4g", 1e3 * samples.period) + " ms fit them better");
+        "positions and velocities contradict the stamps: samples taken at equal distances "
+        "fit them better");
   }
   if (const Index count = samples.isolated.count(); count > 0) {
     said.push_back(std::to_string(count) + of_all +

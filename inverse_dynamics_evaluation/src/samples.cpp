@@ -174,17 +174,29 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(rank)];
 }
 
+// Second difference of three samples, as if they lay `period` apart: a sample that was missed
+// beside them makes none of it. (Distances far below the period are those of stamps that jitter.)
+double secondDifference(const Eigen::Vector3d& value, double before, double after, double period) {
+  const double h1 = std::max(before / period, 0.5);
+  const double h2 = std::max(after / period, 0.5);
+  return 2.0 * ((value[2] - value[1]) / h2 - (value[1] - value[0]) / h1) / (h1 + h2);
+}
+
 // Roughness of the efforts about each inner one of the samples: second differences in units of each
 // joint's median, root mean square over the joints that change.
-std::vector<double> roughness(const ConstMatrix& effort, const std::vector<Index>& sample) {
+std::vector<double> roughness(const ConstMatrix& effort, const std::vector<Index>& sample,
+                              const Eigen::VectorXd& time, double period) {
   const std::size_t inner = sample.size() - 2;
   std::vector<double> sum(inner, 0.0);
   double joints = 0.0;
   std::vector<double> second(inner);
   for (Index j = 0; j < effort.rows(); ++j) {
     for (std::size_t i = 0; i < inner; ++i) {
-      second[i] = std::abs(effort(j, sample[i]) - 2.0 * effort(j, sample[i + 1]) +
-                           effort(j, sample[i + 2]));
+      const Index a = sample[i];
+      const Index b = sample[i + 1];
+      const Index c = sample[i + 2];
+      second[i] = std::abs(secondDifference({effort(j, a), effort(j, b), effort(j, c)},
+                                            time[b] - time[a], time[c] - time[b], period));
     }
     const double scale = quantile(second, 0.5);
     if (scale > 0) {
@@ -202,12 +214,12 @@ std::vector<double> roughness(const ConstMatrix& effort, const std::vector<Index
 
 // Rule 4. `sample`: the fresh ones.
 Mask startTransient(const ConstMatrix& effort, const std::vector<Index>& sample,
-                    const Eigen::VectorXd& time, double window) {
+                    const Eigen::VectorXd& time, double period, double window) {
   Mask transient = Mask::Constant(time.size(), false);
   if (effort.size() == 0 || static_cast<Index>(sample.size()) < kLeastForTransient) {
     return transient;
   }
-  const std::vector<double> rough = roughness(effort, sample);
+  const std::vector<double> rough = roughness(effort, sample, time, period);
   const double limit = kTransientFactor * quantile(rough, kTransientQuantile);
   Index end = 0;
   for (std::size_t i = 0; i < rough.size() && time[sample[i + 1]] - time[0] <= window; ++i) {
@@ -348,7 +360,7 @@ SampleReport examineSamples(const Eigen::Ref<const Eigen::VectorXd>& time,
   // rules 4 and 5: what can't be judged
   report.start_transient =
       startTransient(effort, bases[static_cast<std::size_t>(TimeBase::kRegular)].sample,
-                     report.time, rules.start_window);
+                     report.time, report.period, rules.start_window);
   report.isolated = none;
   cutAtGaps(used, rules, report);
 

@@ -214,6 +214,17 @@ TEST(ExamineSamples, TakesOnlyTheStartForAStartTransient) {
   EXPECT_FALSE(examine(motion).start_transient.any());
 }
 
+TEST(ExamineSamples, TakesNoMissedSampleForAStartTransient) {
+  Motion motion = sines(125.0, 6.0, {0.5, 1.0});
+  motion.effort = 3.0 * motion.qdd;  // smooth, so that a step stands out
+  motion.q.col(20) = motion.q.col(19);
+  motion.qd.col(20) = motion.qd.col(19);
+  motion.effort.col(20) = motion.effort.col(19);
+  const SampleReport report = examine(motion);
+  EXPECT_TRUE(report.repeated[20]);
+  EXPECT_FALSE(report.start_transient.any());
+}
+
 TEST(ExamineSamples, CutsAtGapsAndDropsShortPieces) {
   Motion motion = sines(100.0, 10.0, {0.5, 1.0});
   motion.time.tail(motion.count() - 400).array() += 3.0;  // a gap before sample 400,

@@ -139,8 +139,8 @@ def findings(log: JointLog, how: Accelerations, samples: Samples) -> list[str]:
         )
     if how.time_base != "stamps":
         said.append(
-            "positions and velocities contradict the stamps: samples taken at equal distances of "
-            f"{1e3 * samples.period:.4g} ms fit them better"
+            "positions and velocities contradict the stamps: samples taken at equal distances "
+            "fit them better"
         )
     if count := int(samples.isolated.sum()):
         said.append(f"{count} of {n} samples lie between gaps, in pieces too short to be filtered")

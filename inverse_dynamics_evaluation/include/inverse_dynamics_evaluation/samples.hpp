@@ -26,10 +26,11 @@
 ///    stamps if its disagreement is below 0.8 of theirs over one interval, and over 50 not more
 ///    than a tenth above theirs.
 /// 4. **Start transient.** When a controller takes over, efforts may jump from sample to sample in
-///    a way that no acceleration estimate resolves. With the second differences of the efforts, in
-///    units of their median, as a measure, everything up to the last sample in the first half
-///    second that exceeds 5 times the 90 % quantile of the whole recording doesn't count in the
-///    metrics over kept samples. Such samples are used in the differentiation.
+///    a way that no acceleration estimate resolves. With the second differences of the efforts
+///    (divided ones, as samples may be missing), in units of their median, as a measure, everything
+///    up to the last sample in the first half second that exceeds 5 times the 90 % quantile of the
+///    whole recording doesn't count in the metrics over kept samples. Such samples are used in the
+///    differentiation.
 /// 5. **Gaps.** Where nothing was recorded for more than half a second and 20 sampling periods, the
 ///    recording is cut, and each piece filtered by itself. Pieces too short to be filtered don't
 ///    count.
