@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The launch files: as a user calls them, from arguments to recording."""
+
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch_testing.actions import ReadyToTest
+
+sys.path.insert(0, str(Path(__file__).parent))
+import recordings
+from recordings import PENDULUM, SOLVER, JointState, read_bag, stamp, write_bag
+
+FOLDER = Path(tempfile.mkdtemp())
+ROBOTS = {
+    "ur10_simulated": "ur10",
+    "ur10_real": "ur10",
+    "panda_simulated": "panda",
+    "panda_real": "panda",
+}
+JOINTS = {
+    "ur10": [
+        "shoulder_pan_joint",
+        "shoulder_lift_joint",
+        "elbow_joint",
+        "wrist_1_joint",
+        "wrist_2_joint",
+        "wrist_3_joint",
+    ],
+    "panda": [f"fer_joint{i}" for i in range(1, 8)],
+}
+
+
+def generate_test_description():
+    return LaunchDescription([ReadyToTest()])
+
+
+def arm_states(joints):
+    """All joints of an arm in motion, in another order than the chain's; efforts are anything."""
+    messages = []
+    for k in range(400):
+        t = 1.0 + 0.01 * k
+        q, qd, _ = recordings.motion(t)
+        message = JointState(name=joints[::-1])
+        message.header.stamp = stamp(t)
+        message.position = [q * (j + 1) / 10 for j in range(len(joints))]
+        message.velocity = [qd * (j + 1) / 10 for j in range(len(joints))]
+        message.effort = [10.0 * q] * len(joints)
+        messages.append((message, round(1e9 * t)))
+    return messages
+
+
+def launch(*arguments):
+    """`ros2 launch inverse_dynamics_ros ...`, with what it says."""
+    return subprocess.run(
+        ["ros2", "launch", "inverse_dynamics_ros", *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+class TestLaunchFiles(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        write_bag(FOLDER / "pendulum", {"/joint_states": recordings.joint_states(200)})
+        for robot, joints in JOINTS.items():
+            write_bag(FOLDER / robot, {"/joint_states": arm_states(joints)})
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(FOLDER)
+
+    def evaluate(self, *arguments, name="out"):
+        return launch(
+            "evaluate_solver.launch.py",
+            f"input_bag:={FOLDER / 'pendulum'}",
+            f"output_bag:={FOLDER / name}",
+            f"plugin_name:={SOLVER}",
+            *arguments,
+        )
+
+    def test_evaluate_any_robot(self):
+        run = self.evaluate(f"robot_description:={PENDULUM}", "gravity:=[0, 0, -1]", "tip:=rod")
+        self.assertEqual(run.returncode, 0, run.stdout)
+        self.assertIn("swing", run.stdout)
+        first, _ = read_bag(FOLDER / "out")["/torques"][50]
+        q, _, qdd = recordings.motion(1.5)
+        weight = recordings.MASS * recordings.LENGTH
+        expected = weight * (recordings.LENGTH * qdd + 1.0 * recordings.math.sin(q))
+        self.assertAlmostEqual(first.effort[0], expected, delta=0.02)
+
+    def test_end_with_an_error_where_the_program_does(self):
+        run = self.evaluate(name="not_written")
+        self.assertEqual(run.returncode, 1, run.stdout)
+        self.assertIn("robot description: missing", run.stdout)
+        self.assertIn("ended with exit code 2", run.stdout)
+        run = self.evaluate(f"robot_description:={PENDULUM}", "gravity:=down", name="not_written")
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("argument gravity: expected three numbers, [0, 0, -9.81]", run.stdout)
+        run = self.evaluate("effort:=volts", name="not_written")
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("effort", run.stdout)
+        self.assertFalse((FOLDER / "not_written").exists())
+
+    def test_evaluate_each_of_the_four_robots(self):
+        for name, arm in ROBOTS.items():
+            with self.subTest(name):
+                out = FOLDER / f"out_{name}"
+                run = launch(
+                    f"{name}.launch.py",
+                    f"input_bag:={FOLDER / arm}",
+                    f"output_bag:={out}",
+                    "topic:=/tau",
+                    "description:=urdf",
+                )
+                self.assertEqual(run.returncode, 0, run.stdout)
+                self.assertIn(f"inverse_dynamics_robots/urdf/{arm}.urdf", run.stdout)
+                topics = read_bag(out)
+                self.assertEqual(len(topics["/tau"]), 400)
+                self.assertEqual(topics["/tau"][0][0].name, JOINTS[arm])
+                self.assertEqual(set(topics), {"/tau", "/tau_gt"})
+
+    def test_take_the_manufacturers_description_by_xacro(self):
+        try:
+            get_package_share_directory("ur_description")
+        except LookupError:
+            self.skipTest("ur_description is not installed")
+        out = FOLDER / "out_xacro"
+        run = launch(
+            "ur10_simulated.launch.py", f"input_bag:={FOLDER / 'ur10'}", f"output_bag:={out}"
+        )
+        self.assertEqual(run.returncode, 0, run.stdout)
+        self.assertIn("ur_description/urdf/ur.urdf.xacro, by xacro", run.stdout)
+        self.assertEqual(len(read_bag(out)["/torques"]), 400)
+
+    def test_explain_their_arguments(self):
+        arguments = {
+            "evaluate_solver": ["plugin_name", "robot_description", "root", "tip", "gravity"],
+            "live": ["plugin_name", "cutoff", "reliability", "container"],
+            **{name: ["input_bag", "output_bag", "topic", "description"] for name in ROBOTS},
+        }
+        for name, expected in arguments.items():
+            with self.subTest(name):
+                run = launch(f"{name}.launch.py", "--show-args")
+                self.assertEqual(run.returncode, 0, run.stdout)
+                self.assertNotIn("no description given", run.stdout)
+                for argument in expected:
+                    self.assertIn(f"'{argument}':", run.stdout)
+
+    def test_run_the_live_node(self):
+        command = ["ros2", "launch", "inverse_dynamics_ros", "live.launch.py"]
+        command += [
+            f"plugin_name:={SOLVER}",
+            f"robot_description:={PENDULUM}",
+            "reliability:=reliable",
+        ]
+        process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
+        try:
+            lines = []
+            for line in process.stdout:
+                lines.append(line)
+                if "1 joints: swing" in line:
+                    break
+            self.assertIn("1 joints: swing", "".join(lines))
+        finally:
+            process.send_signal(2)
+            process.communicate(timeout=60)
