@@ -9,6 +9,7 @@
 namespace rigid_body_inverse_dynamics_solver {
 namespace {
 
+using chain_dynamics::FastModel;
 using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::Exception;
 using inverse_dynamics_solver::InvalidParameterValueException;
@@ -55,6 +56,19 @@ std::vector<std::string> warningsOf(const chain_dynamics::Model& model, bool ine
           "dynamics"};
 }
 
+/// The states of a batch, one a column.
+chain_dynamics::ConstStates columns(const ConstMatrixRef& states) {
+  return {states.data(), 1, states.outerStride()};
+}
+chain_dynamics::States columns(MatrixRef& states) {
+  return {states.data(), 1, states.outerStride()};
+}
+
+/// The inertia matrices of a batch, side by side.
+chain_dynamics::StridedMatrices matrices(MatrixRef& H) {
+  return {H.data(), 1, H.outerStride(), H.rows() * H.outerStride()};
+}
+
 }  // namespace
 
 auto InverseDynamicsSolverRigidBody::configure(const Configuration& configuration) -> JointInfo {
@@ -74,45 +88,59 @@ auto InverseDynamicsSolverRigidBody::use(chain_dynamics::Model model,
   if (!configuration.friction) model.friction.clear();
   const bool inertia_is_physical = model.inertiaIsPhysical();
   JointInfo info{model.chain.jointNames(), warningsOf(model, inertia_is_physical)};
+  std::unique_ptr<const FastModel> fast;
+  if (model.chain.jointCount() <= FastModel::kMaxJoints) {
+    fast = std::make_unique<const FastModel>(model);
+  }
   auto complete = std::make_unique<const chain_dynamics::Model>(std::move(model));
 
   // Keep; nothing below can throw.
   model_ = std::move(complete);
+  fast_ = std::move(fast);
   inertia_is_physical_ = inertia_is_physical;
   return info;
 }
 
+// ---------------------------------------------------------------- one state
+
 void InverseDynamicsSolverRigidBody::computeInertiaMatrix(const ConstVectorRef& q,
                                                           MatrixRef H) const {
-  chain_dynamics::inertiaMatrix(model(), q, H);
+  if (fast_ == nullptr) return chain_dynamics::inertiaMatrix(model(), q, H);
+  fast_->inertiaMatrix(q.data(), H.data(), H.outerStride());
 }
 
 void InverseDynamicsSolverRigidBody::computeCoriolisVector(const ConstVectorRef& q,
                                                            const ConstVectorRef& qd,
                                                            VectorRef c) const {
-  chain_dynamics::coriolisVector(model(), q, qd, c);
+  if (fast_ == nullptr) return chain_dynamics::coriolisVector(model(), q, qd, c);
+  fast_->coriolisVector(q.data(), qd.data(), c.data());
 }
 
 void InverseDynamicsSolverRigidBody::computeGravityVector(const ConstVectorRef& q,
                                                           VectorRef g) const {
-  chain_dynamics::gravityVector(model(), q, g);
+  if (fast_ == nullptr) return chain_dynamics::gravityVector(model(), q, g);
+  fast_->gravityVector(q.data(), g.data());
 }
 
 void InverseDynamicsSolverRigidBody::computeFriction(const ConstVectorRef&,
                                                      const ConstVectorRef& qd, VectorRef f) const {
-  chain_dynamics::frictionVector(model(), qd, f);
+  if (fast_ == nullptr) return chain_dynamics::frictionVector(model(), qd, f);
+  fast_->frictionVector(qd.data(), f.data());
 }
 
 void InverseDynamicsSolverRigidBody::computeDynamicComponents(const ConstVectorRef& q,
                                                               const ConstVectorRef& qd, MatrixRef H,
                                                               VectorRef c, VectorRef g) const {
-  chain_dynamics::dynamicComponents(model(), q, qd, H, c, g);
+  if (fast_ == nullptr) return chain_dynamics::dynamicComponents(model(), q, qd, H, c, g);
+  fast_->dynamicComponents(q.data(), qd.data(), H.data(), H.outerStride(), c.data(), g.data());
 }
 
 void InverseDynamicsSolverRigidBody::computeTorques(const ConstVectorRef& q,
                                                     const ConstVectorRef& qd,
                                                     const ConstVectorRef& qdd,
                                                     VectorRef tau) const {
+  if (fast_ != nullptr) return fast_->torques(q.data(), qd.data(), qdd.data(), tau.data());
+
   // tau = H qdd + C qd + g, and f on top
   chain_dynamics::torques(model(), q, qd, qdd, tau);
   const auto& laws = model().friction;
@@ -120,6 +148,50 @@ void InverseDynamicsSolverRigidBody::computeTorques(const ConstVectorRef& q,
     const auto i = static_cast<Eigen::Index>(j);
     tau[i] += chain_dynamics::friction(laws[j], qd[i]);
   }
+}
+
+// ---------------------------------------------------------------- many states
+
+void InverseDynamicsSolverRigidBody::computeInertiaMatrixBatch(const ConstMatrixRef& q,
+                                                               MatrixRef H) const {
+  if (fast_ == nullptr) return InverseDynamicsSolver::computeInertiaMatrixBatch(q, H);
+  fast_->inertiaMatrixBatch(q.cols(), columns(q), matrices(H));
+}
+
+void InverseDynamicsSolverRigidBody::computeCoriolisVectorBatch(const ConstMatrixRef& q,
+                                                                const ConstMatrixRef& qd,
+                                                                MatrixRef c) const {
+  if (fast_ == nullptr) return InverseDynamicsSolver::computeCoriolisVectorBatch(q, qd, c);
+  fast_->coriolisVectorBatch(q.cols(), columns(q), columns(qd), columns(c));
+}
+
+void InverseDynamicsSolverRigidBody::computeFrictionBatch(const ConstMatrixRef& qd,
+                                                          MatrixRef f) const {
+  if (fast_ == nullptr) return InverseDynamicsSolver::computeFrictionBatch(qd, f);
+  fast_->frictionVectorBatch(qd.cols(), columns(qd), columns(f));
+}
+
+void InverseDynamicsSolverRigidBody::computeGravityVectorBatch(const ConstMatrixRef& q,
+                                                               MatrixRef g) const {
+  if (fast_ == nullptr) return InverseDynamicsSolver::computeGravityVectorBatch(q, g);
+  fast_->gravityVectorBatch(q.cols(), columns(q), columns(g));
+}
+
+void InverseDynamicsSolverRigidBody::computeDynamicComponentsBatch(const ConstMatrixRef& q,
+                                                                   const ConstMatrixRef& qd,
+                                                                   MatrixRef H, MatrixRef c,
+                                                                   MatrixRef g) const {
+  if (fast_ == nullptr) return InverseDynamicsSolver::computeDynamicComponentsBatch(q, qd, H, c, g);
+  fast_->dynamicComponentsBatch(q.cols(), columns(q), columns(qd), matrices(H), columns(c),
+                                columns(g));
+}
+
+void InverseDynamicsSolverRigidBody::computeTorquesBatch(const ConstMatrixRef& q,
+                                                         const ConstMatrixRef& qd,
+                                                         const ConstMatrixRef& qdd,
+                                                         MatrixRef tau) const {
+  if (fast_ == nullptr) return InverseDynamicsSolver::computeTorquesBatch(q, qd, qdd, tau);
+  fast_->torquesBatch(q.cols(), columns(q), columns(qd), columns(qdd), columns(tau));
 }
 
 }  // namespace rigid_body_inverse_dynamics_solver

@@ -11,12 +11,14 @@
 
 #include <memory>
 
+#include "chain_dynamics/fast_model.hpp"
 #include "chain_dynamics/model.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
 
 using inverse_dynamics_solver::Configuration;
+using inverse_dynamics_solver::ConstMatrixRef;
 using inverse_dynamics_solver::ConstVectorRef;
 using inverse_dynamics_solver::MatrixRef;
 using inverse_dynamics_solver::VectorRef;
@@ -60,10 +62,20 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
                                 VectorRef c, VectorRef g) const override;
   void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
                       VectorRef tau) const override;
+  void computeInertiaMatrixBatch(const ConstMatrixRef& q, MatrixRef H) const override;
+  void computeCoriolisVectorBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
+                                  MatrixRef c) const override;
+  void computeFrictionBatch(const ConstMatrixRef& qd, MatrixRef f) const override;
+  void computeGravityVectorBatch(const ConstMatrixRef& q, MatrixRef g) const override;
+  void computeDynamicComponentsBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd, MatrixRef H,
+                                     MatrixRef c, MatrixRef g) const override;
+  void computeTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
+                           const ConstMatrixRef& qdd, MatrixRef tau) const override;
   bool inertiaIsPhysicalImpl() const override { return inertia_is_physical_; }
 
  private:
   std::unique_ptr<const chain_dynamics::Model> model_;
+  std::unique_ptr<const chain_dynamics::FastModel> fast_;  // null: a chain too long for it
   bool inertia_is_physical_ = false;  // known once for all: model_ doesn't change
 };
 

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// The dynamics of a Model, about ten times as fast as the functions of model.hpp, for double.
+///
+///     const FastModel fast(model);              // once: allocates
+///     fast.torques(q, qd, qdd, tau);            // pointers to n numbers each, friction included
+///     fast.torquesBatch(N, {q, 1, n}, {qd, 1, n}, {qdd, 1, n}, {tau, 1, n});
+///
+/// The same recursions as in torques.hpp, inertia_matrix.hpp and gravity_vector.hpp, with what can
+/// be done once done once [docs/speed.md]: frames whose placements have few numbers, inertial
+/// parameters without those that torques don't depend on, and kernels compiled for the processor
+/// and, for the usual arms, for their right angles. Results differ from the functions of model.hpp
+/// by rounding only.
+
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "chain_dynamics/model.hpp"
+
+namespace chain_dynamics {
+
+namespace fast {
+struct Kernels;
+struct Robot;
+}  // namespace fast
+
+/// One number per joint of many states: that of joint j and state k stands at
+/// `data[j * joint_step + k * state_step]`, so states may be rows or columns.
+template <typename Number>
+struct StridedStates {
+  Number* data;
+  std::ptrdiff_t joint_step;
+  std::ptrdiff_t state_step;
+};
+using ConstStates = StridedStates<const double>;
+using States = StridedStates<double>;
+
+/// A matrix of many states: entry (i, j) of state k stands at
+/// `data[i * row_step + j * column_step + k * state_step]`.
+struct StridedMatrices {
+  double* data;
+  std::ptrdiff_t row_step;
+  std::ptrdiff_t column_step;
+  std::ptrdiff_t state_step;
+};
+
+/// A model made ready for the fast kernels.
+///
+/// Up to kMaxJoints joints. Real time: no method but the constructor allocates, locks or throws.
+/// Threads: safe. NaN gives NaN in every entry that depends on it. Outputs overlap no input.
+class FastModel {
+ public:
+  /// Longest chain.
+  static constexpr Eigen::Index kMaxJoints = 64;
+
+  /// Instruction sets that this processor and this build both have, the best last: "portable", and
+  /// on x86-64 "v3" (AVX2, FMA) and "v4" (AVX-512).
+  static std::vector<std::string> instructionSets();
+
+  /// @param model            at most kMaxJoints joints.
+  /// @param instruction_set  one of instructionSets(); empty: the best.
+  /// @throws ModelError  longer chain, or unknown instruction set.
+  explicit FastModel(const Model& model, const std::string& instruction_set = "");
+  ~FastModel();
+  FastModel(const FastModel&) = delete;
+  FastModel& operator=(const FastModel&) = delete;
+
+  /// @name One state
+  /// n numbers each; H: entry (i, j) at H[i + j * outer_step].
+  /// @{
+
+  /// `tau = H(q) qdd + C(q, qd) qd + g(q) + f(qd)`.
+  void torques(const double* q, const double* qd, const double* qdd, double* tau) const;
+  /// `H(q)`.
+  void inertiaMatrix(const double* q, double* H, std::ptrdiff_t outer_step) const;
+  /// `C(q, qd) qd`.
+  void coriolisVector(const double* q, const double* qd, double* c) const;
+  /// `g(q)`.
+  void gravityVector(const double* q, double* g) const;
+  /// `f(qd)`.
+  void frictionVector(const double* qd, double* f) const;
+  /// `H(q)`, `C(q, qd) qd`, `g(q)`.
+  void dynamicComponents(const double* q, const double* qd, double* H, std::ptrdiff_t outer_step,
+                         double* c, double* g) const;
+  /// @}
+
+  /// @name Many states
+  /// The numbers of a state don't depend on its place among the others.
+  /// @{
+  void torquesBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd, ConstStates qdd,
+                    States tau) const;
+  void inertiaMatrixBatch(std::ptrdiff_t states, ConstStates q, StridedMatrices H) const;
+  void coriolisVectorBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd, States c) const;
+  void gravityVectorBatch(std::ptrdiff_t states, ConstStates q, States g) const;
+  void frictionVectorBatch(std::ptrdiff_t states, ConstStates qd, States f) const;
+  void dynamicComponentsBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd,
+                              StridedMatrices H, States c, States g) const;
+  /// @}
+
+ private:
+  struct Data;
+  std::unique_ptr<const Data> data_;
+  const fast::Robot& robot() const;
+  const fast::Kernels* kernels_;
+  int structure_;
+};
+
+}  // namespace chain_dynamics

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// A few numbers side by side, by the vector types of GCC and Clang: the same source for SSE, AVX,
+/// AVX-512, NEON.
+///
+/// Included by kernels.cpp only, which is compiled once per instruction set: everything here has
+/// internal linkage, so that no function compiled for one set is linked in place of another.
+
+#pragma once
+
+#include <cstddef>
+
+namespace chain_dynamics::fast {
+namespace {
+
+#define FAST_INLINE inline __attribute__((always_inline))
+#define FAST_LAMBDA __attribute__((always_inline))
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+constexpr int kWidth = 8;
+#elif defined(__AVX__)
+constexpr int kWidth = 4;
+#else
+constexpr int kWidth = 2;
+#endif
+constexpr int kShortWidth = kWidth < 4 ? kWidth : 4;
+
+typedef double Pack __attribute__((vector_size(kWidth * sizeof(double))));
+typedef long long PackBits __attribute__((vector_size(kWidth * sizeof(double))));
+
+// For the joints of one robot: few, so that wider packs would be empty.
+typedef double Short __attribute__((vector_size(kShortWidth * sizeof(double))));
+typedef long long ShortBits __attribute__((vector_size(kShortWidth * sizeof(double))));
+
+template <typename V>
+struct Traits;
+template <>
+struct Traits<Short> {
+  using Bits = ShortBits;
+};
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+template <>
+struct Traits<Pack> {
+  using Bits = PackBits;
+};
+#endif
+template <typename V>
+using BitsOf = typename Traits<V>::Bits;
+template <typename V>
+constexpr int kLanes = static_cast<int>(sizeof(V) / sizeof(double));
+
+template <typename V>
+FAST_INLINE V load(const double* from) {
+  V v;
+  __builtin_memcpy(&v, from, sizeof(V));
+  return v;
+}
+
+template <typename V>
+FAST_INLINE void store(const V& v, double* to) {
+  __builtin_memcpy(to, &v, sizeof(V));
+}
+
+// All lanes the same number.
+template <typename V>
+FAST_INLINE V all(double number) {
+  return number - V{};
+}
+
+template <typename V>
+FAST_INLINE bool any(const BitsOf<V>& mask) {
+  long long bits = 0;
+  for (int lane = 0; lane < kLanes<V>; ++lane) bits |= mask[lane];
+  return bits != 0;
+}
+
+}  // namespace
+}  // namespace chain_dynamics::fast

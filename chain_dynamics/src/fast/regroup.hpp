@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// A chain in the frames and with the few parameters that robot.hpp describes.
+///
+///     const Frames frames = framesOf(chain);
+///     std::vector<Body> bodies = regrouped(frames, chain.links());
+
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "chain_dynamics/chain.hpp"
+#include "robot.hpp"
+
+namespace chain_dynamics::fast {
+
+/// The frames of a chain, turned about and moved along the axes that its own frames have.
+struct Frames {
+  std::vector<Placement> placements;
+  std::vector<double> quarter_turns;     ///< of each joint's offset
+  bool general_offsets = false;          ///< an offset has more than quarter turns
+  Eigen::Vector3d root;                  ///< minus gravity in the frame of the first joint at q = 0
+  std::vector<Transform<double>> moved;  ///< pose of the chain's own frame i in frame i
+};
+
+/// Frames with x along the common normals. Angles within 1e-13 of a quarter turn and lengths below
+/// 1e-14 of the robot's are rounded: more would be seen in the tenth digit of a torque.
+Frames framesOf(const Chain& chain);
+
+/// The parameters that torques depend on, from those of the links in the chain's own frames.
+///
+/// What turns about z without changing (mass, its moment and second moment along the axis), or
+/// slides along z without changing (the second moment), is moved to the link before.
+std::vector<Body> regrouped(const Frames& frames, const std::vector<LinkParameters>& links);
+
+}  // namespace chain_dynamics::fast

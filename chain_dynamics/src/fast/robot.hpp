@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// A robot as the fast kernels read it: plain numbers, nothing whose layout depends on compiler
+/// flags.
+///
+/// Frames [Khalil and Kleinfinger 1986]: z of frame i is the axis of joint i, and x of frame i lies
+/// along the common normal of this axis and the next one, so that
+///
+///     X_(i-1)i = RotX(twist_i) p_i RotZ(angle_i),   angle_i = q_i + offset_i
+///
+/// where z of p_i is zero (each frame may be moved along its axis), and so is x or y for most
+/// robots; most twists are 0 or a right angle, and none is negative (x may point either way).
+
+#pragma once
+
+#include <cstddef>
+
+namespace chain_dynamics::fast {
+
+constexpr int kMaxJoints = 64;
+
+/// One joint's place on the link before it. The first joint's is the root itself.
+struct Placement {
+  double sin_twist, cos_twist;
+  double px, py;         ///< origin of frame i in frame i - 1 at q = 0, whose z is zero; m
+  double rotor_inertia;  ///< adds to the diagonal of H
+  double offset_cos;     ///< cosine of what the offset is beyond quarter turns
+  double offset_sin;     ///< and sine; of all of it where the joint slides
+  bool prismatic;
+};
+
+/// What is left of a link's ten parameters when those that torques don't depend on have been moved
+/// to the link before: seven for a joint that turns, four for one that slides; the others are zero.
+///
+/// S is the second moment of mass, `S = integral of r r' dm`, so that I = trace(S) 1 - S; Szz is
+/// always zero.
+struct Body {
+  double mcx, mcy;                 ///< first moment
+  double Sxx, Sxy, Sxz, Syy, Syz;  ///< joints that turn only
+  double mcz, m;                   ///< joints that slide only
+  double mass_beyond;              ///< m of this link and all after it
+};
+constexpr int kBodyNumbers = 10;
+
+/// Friction of one joint has this many numbers, every law in one form, in this order:
+/// `f = fv qd + fc sign(qd) + fo + A (sigmoid(alpha (qd + shift)) - centre)`.
+constexpr int kFrictionNumbers = 7;
+
+/// All of a robot. Pointers to arrays with one entry per joint, or null.
+struct Robot {
+  int joints;
+  bool general_offsets;  ///< an offset isn't a number of quarter turns
+  bool mixed;            ///< a joint slides
+  double root[3];        ///< minus gravity, in the frame of the first joint at q = 0
+  const Placement* placements;
+  const double* quarter_turns;  ///< 0, 1, 2 or 3 per joint: part of the offset
+  const Body* bodies;           ///< one set for all rows
+  const Body* gravity_bodies;   ///< null: gravity has the same set
+  const Body* const* rows;      ///< null: none; else joints sets of bodies: row j has set j
+  const double* row_lanes;      ///< the same: [joint][number of Body][row]
+  const double* friction;       ///< null: none; else [number][joint]
+  int stride;                   ///< joints, and zeros to the end of a pack: rows of the last two
+};
+
+/// Numbers of many states: joint j of state k stands at data[j joint_step + k state_step].
+struct Samples {
+  double* data;
+  std::ptrdiff_t joint_step, state_step;
+};
+
+/// Matrices of many states: entry (i, j) of state k stands at
+/// data[i row_step + j column_step + k state_step].
+struct Matrices {
+  double* data;
+  std::ptrdiff_t row_step, column_step, state_step;
+};
+
+/// The functions of one instruction set. Outputs overlap no input; inputs of Samples aren't
+/// written.
+struct Kernels {
+  const char* name;
+
+  /// Index of the structure compiled ahead of time that this robot has; 0: none, any robot's.
+  int (*structureOf)(const Robot&);
+
+  void (*torques)(const Robot&, int structure, const double* q, const double* qd, const double* qdd,
+                  double* tau);
+  void (*coriolis)(const Robot&, int structure, const double* q, const double* qd, double* c);
+  void (*gravity)(const Robot&, int structure, const double* q, double* g);
+  void (*inertia)(const Robot&, int structure, const double* q, Matrices H);
+  void (*components)(const Robot&, int structure, const double* q, const double* qd, Matrices H,
+                     double* c, double* g);
+  void (*friction)(const Robot&, const double* qd, double* f);
+
+  void (*torquesBatch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                       Samples qdd, Samples tau);
+  void (*coriolisBatch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                        Samples c);
+  void (*gravityBatch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples g);
+  void (*inertiaBatch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Matrices H);
+  void (*componentsBatch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                          Matrices H, Samples c, Samples g);
+  void (*frictionBatch)(const Robot&, std::ptrdiff_t states, Samples qd, Samples f);
+
+  /// For tests: sine and cosine of count angles plus quarter turns.
+  void (*sineCosine)(int count, const double* angle, const double* quarter_turns, double* sine,
+                     double* cosine);
+};
+
+/// The tables of the instruction sets that this build has.
+const Kernels& kernelsPortable();
+#ifdef CHAIN_DYNAMICS_X86_KERNELS
+const Kernels& kernelsV3();
+const Kernels& kernelsV4();
+#endif
+
+}  // namespace chain_dynamics::fast

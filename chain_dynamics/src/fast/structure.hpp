@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// What is known of a robot when the kernels are compiled: number of joints, right angles, zeros.
+///
+/// Included by kernels.cpp only [pack.hpp]. Lengths and inertias are always read at run time; a
+/// structure saves the multiplications by zero and one, loops and branches.
+
+#pragma once
+
+#include "pack.hpp"
+#include "robot.hpp"
+
+namespace chain_dynamics::fast {
+namespace {
+
+enum class Twist { kNone, kRight, kAlmostRight, kAny };
+
+/// An index that is a constant for the compiler.
+template <int I>
+struct Constant {
+  constexpr operator int() const { return I; }  // NOLINT(google-explicit-constructor)
+};
+
+template <int I, int End, typename Step>
+FAST_INLINE void countUp(const Step& step) {
+  if constexpr (I < End) {
+    step(Constant<I>());
+    countUp<I + 1, End>(step);
+  }
+}
+template <int I, typename Step>
+FAST_INLINE void countDown(const Step& step) {
+  if constexpr (I >= 0) {
+    step(Constant<I>());
+    countDown<I - 1>(step);
+  }
+}
+
+/// Nothing is known.
+struct AnyStructure {
+  static constexpr bool kMixed = true;
+  static constexpr int kJoints = kMaxJoints;
+  template <int I>
+  static constexpr Twist twist(Constant<I>) {
+    return Twist::kAny;
+  }
+  static constexpr Twist twist(int) { return Twist::kAny; }
+  static constexpr bool px(int) { return true; }
+  static constexpr bool py(int) { return true; }
+
+  /// step(i) for i = first .. joints - 1, and back for i = joints - 1 .. first.
+  template <typename Step>
+  static FAST_INLINE void forwards(const Robot& robot, const Step& step) {
+    for (int i = 0; i < robot.joints; ++i) step(i);
+  }
+  template <typename Step>
+  static FAST_INLINE void backwards(const Robot& robot, int first, const Step& step) {
+    for (int i = robot.joints - 1; i >= first; --i) step(i);
+  }
+  /// step(j) for j = from .. 1.
+  template <typename Step>
+  static FAST_INLINE void backwardsFrom(int from, const Step& step) {
+    for (int j = from; j > 0; --j) step(j);
+  }
+  static bool covers(const Robot&) { return true; }
+};
+
+/// Revolute joints; hexadecimal digits stand for joints, the first joint in front. kTwists: 0 none,
+/// 1 a right angle, 2 a right angle within 1e-8, 3 any. kX, kY: whether px, py may differ from
+/// zero.
+template <int N, unsigned long long kTwists, unsigned long long kX, unsigned long long kY>
+struct Known {
+  static constexpr bool kMixed = false;
+  static constexpr int kJoints = N;
+  static constexpr int digit(unsigned long long digits, int i) {
+    return static_cast<int>((digits >> (4 * (N - 1 - i))) & 15);
+  }
+  static constexpr Twist twist(int i) { return static_cast<Twist>(digit(kTwists, i)); }
+  static constexpr bool px(int i) { return digit(kX, i) != 0; }
+  static constexpr bool py(int i) { return digit(kY, i) != 0; }
+
+  template <typename Step>
+  static FAST_INLINE void forwards(const Robot&, const Step& step) {
+    countUp<0, N>(step);
+  }
+  template <typename Step>
+  static FAST_INLINE void backwards(const Robot&, int first, const Step& step) {
+    countDown<N - 1>([&](auto i) FAST_LAMBDA {
+      if (i >= first) step(i);
+    });
+  }
+  template <int I, typename Step>
+  static FAST_INLINE void backwardsFrom(Constant<I> from, const Step& step) {
+    if constexpr (I > 0) {
+      step(from);
+      backwardsFrom(Constant<I - 1>(), step);
+    }
+  }
+
+  /// Whether the robot has this structure, or one with more zeros.
+  static bool covers(const Robot& robot) {
+    if (robot.joints != N || robot.mixed) return false;
+    for (int i = 1; i < N; ++i) {
+      const Placement& X = robot.placements[i];
+      const bool fits = twist(i) == Twist::kNone          ? X.sin_twist == 0 && X.cos_twist == 1
+                        : twist(i) == Twist::kRight       ? X.sin_twist == 1 && X.cos_twist == 0
+                        : twist(i) == Twist::kAlmostRight ? X.sin_twist == 1
+                                                          : true;
+      if (!fits || (!px(i) && X.px != 0) || (!py(i) && X.py != 0)) {
+        return false;
+      }
+    }
+    return true;
+  }
+};
+
+}  // namespace
+}  // namespace chain_dynamics::fast

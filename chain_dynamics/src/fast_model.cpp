@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/fast_model.hpp"
+
+#include <algorithm>
+
+#include "chain_dynamics/error.hpp"
+#include "fast/regroup.hpp"
+#include "fast/robot.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+using fast::Body;
+using fast::Kernels;
+using fast::Robot;
+
+static_assert(FastModel::kMaxJoints == fast::kMaxJoints);
+static_assert(sizeof(Body) == fast::kBodyNumbers * sizeof(double));
+
+/// Rows and joints of arrays that are read a pack at a time.
+constexpr std::size_t kPack = 8;
+std::size_t padded(std::size_t joints) { return (joints + kPack - 1) / kPack * kPack; }
+
+/// The tables of kernels that run on this processor, the best last.
+std::vector<const Kernels*> usableKernels() {
+  std::vector<const Kernels*> usable = {&fast::kernelsPortable()};
+#ifdef CHAIN_DYNAMICS_X86_KERNELS
+  __builtin_cpu_init();
+  const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                  __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+  if (v3) usable.push_back(&fast::kernelsV3());
+  const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                  __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
+                  __builtin_cpu_supports("avx512cd");
+  if (v4) usable.push_back(&fast::kernelsV4());
+#endif
+  return usable;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+const Kernels* kernelsNamed(const std::string& name) {
+  const std::vector<const Kernels*> usable = usableKernels();
+  if (name.empty()) return usable.back();
+  for (const Kernels* kernels : usable) {
+    if (name == kernels->name) return kernels;
+  }
+  throw ModelError("fast model", "instruction set", joined(FastModel::instructionSets()), name,
+                   "leave it empty for the best");
+}
+
+/// The numbers of a law in the order of fast::kFrictionNumbers.
+using FrictionNumbers = Eigen::Matrix<double, fast::kFrictionNumbers, 1>;
+FrictionNumbers numbersOf(const ViscousCoulombOffset& law) {
+  FrictionNumbers numbers;
+  numbers << law.fv, law.fc, law.fo, 0, 0, 0, 0;
+  return numbers;
+}
+FrictionNumbers numbersOf(const ViscousOffsetSigmoid& law) {
+  FrictionNumbers numbers;
+  numbers << law.fv, 0, law.fo, law.fc, law.alpha, law.nu, 0;
+  return numbers;
+}
+FrictionNumbers numbersOf(const CenteredSigmoid& law) {
+  FrictionNumbers numbers;
+  numbers << 0, 0, 0, law.A, law.alpha, law.delta, sigmoid(law.alpha * law.delta);
+  return numbers;
+}
+
+fast::Samples samples(const ConstStates& states) {
+  // never written: see fast::Kernels
+  return {const_cast<double*>(states.data), states.joint_step, states.state_step};
+}
+fast::Samples samples(const States& states) {
+  return {states.data, states.joint_step, states.state_step};
+}
+fast::Matrices matrices(const StridedMatrices& H) {
+  return {H.data, H.row_step, H.column_step, H.state_step};
+}
+
+}  // namespace
+
+/// What the arrays of the robot are in.
+struct FastModel::Data {
+  explicit Data(const Model& model)
+      : frames(fast::framesOf(model.chain)), bodies(fast::regrouped(frames, model.chain.links())) {
+    stride = padded(bodies.size());
+    frames.quarter_turns.resize(stride, 0.0);
+    if (!model.gravity_parameters.empty()) {
+      gravity_bodies = fast::regrouped(frames, model.gravity_parameters);
+    }
+    for (const auto& links : model.row_parameters) rows.push_back(fast::regrouped(frames, links));
+    fillRowLanes();
+    fillFriction(model.friction);
+    fillRobot();
+  }
+
+  void fillRowLanes() {
+    if (rows.empty()) return;
+    row_lanes.resize(rows.size() * fast::kBodyNumbers * stride, 0.0);
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      const double* numbers = &rows[row].front().mcx;
+      for (std::size_t k = 0; k < rows.size() * fast::kBodyNumbers; ++k) {
+        row_lanes[k * stride + row] = numbers[k];
+      }
+      row_pointers.push_back(rows[row].data());
+    }
+  }
+
+  void fillFriction(const std::vector<FrictionLaw>& laws) {
+    if (laws.empty()) return;
+    friction.resize(fast::kFrictionNumbers * stride, 0.0);
+    for (std::size_t j = 0; j < laws.size(); ++j) {
+      const FrictionNumbers numbers =
+          std::visit([](const auto& law) { return numbersOf(law); }, laws[j]);
+      for (std::size_t k = 0; k < fast::kFrictionNumbers; ++k) {
+        friction[k * stride + j] = numbers[static_cast<Eigen::Index>(k)];
+      }
+    }
+  }
+
+  void fillRobot() {
+    robot.joints = static_cast<int>(bodies.size());
+    robot.general_offsets = frames.general_offsets;
+    robot.mixed = std::any_of(frames.placements.begin(), frames.placements.end(),
+                              [](const fast::Placement& X) { return X.prismatic; });
+    std::copy_n(frames.root.data(), 3, robot.root);
+    robot.placements = frames.placements.data();
+    robot.quarter_turns = frames.quarter_turns.data();
+    robot.bodies = bodies.data();
+    robot.gravity_bodies = gravity_bodies.empty() ? nullptr : gravity_bodies.data();
+    robot.rows = rows.empty() ? nullptr : row_pointers.data();
+    robot.row_lanes = rows.empty() ? nullptr : row_lanes.data();
+    robot.friction = friction.empty() ? nullptr : friction.data();
+    robot.stride = static_cast<int>(stride);
+  }
+
+  fast::Frames frames;
+  std::vector<Body> bodies;
+  std::size_t stride = 0;
+  std::vector<Body> gravity_bodies;
+  std::vector<std::vector<Body>> rows;
+  std::vector<const Body*> row_pointers;
+  std::vector<double> row_lanes;
+  std::vector<double> friction;
+  Robot robot{};
+};
+
+std::vector<std::string> FastModel::instructionSets() {
+  std::vector<std::string> names;
+  for (const Kernels* kernels : usableKernels()) names.emplace_back(kernels->name);
+  return names;
+}
+
+FastModel::FastModel(const Model& model, const std::string& instruction_set)
+    : kernels_(kernelsNamed(instruction_set)) {
+  const Eigen::Index n = model.chain.jointCount();
+  if (n > kMaxJoints) {
+    throw ModelError("fast model of " + model.name, "joints",
+                     "at most " + std::to_string(kMaxJoints), std::to_string(n),
+                     "use the functions of model.hpp");
+  }
+  data_ = std::make_unique<const Data>(model);
+  structure_ = kernels_->structureOf(robot());
+}
+
+FastModel::~FastModel() = default;
+
+const fast::Robot& FastModel::robot() const { return data_->robot; }
+
+void FastModel::torques(const double* q, const double* qd, const double* qdd, double* tau) const {
+  kernels_->torques(robot(), structure_, q, qd, qdd, tau);
+}
+
+void FastModel::inertiaMatrix(const double* q, double* H, std::ptrdiff_t outer_step) const {
+  kernels_->inertia(robot(), structure_, q, {H, 1, outer_step, 0});
+}
+
+void FastModel::coriolisVector(const double* q, const double* qd, double* c) const {
+  kernels_->coriolis(robot(), structure_, q, qd, c);
+}
+
+void FastModel::gravityVector(const double* q, double* g) const {
+  kernels_->gravity(robot(), structure_, q, g);
+}
+
+void FastModel::frictionVector(const double* qd, double* f) const {
+  kernels_->friction(robot(), qd, f);
+}
+
+void FastModel::dynamicComponents(const double* q, const double* qd, double* H,
+                                  std::ptrdiff_t outer_step, double* c, double* g) const {
+  kernels_->components(robot(), structure_, q, qd, {H, 1, outer_step, 0}, c, g);
+}
+
+void FastModel::torquesBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd, ConstStates qdd,
+                             States tau) const {
+  kernels_->torquesBatch(robot(), structure_, states, samples(q), samples(qd), samples(qdd),
+                         samples(tau));
+}
+
+void FastModel::inertiaMatrixBatch(std::ptrdiff_t states, ConstStates q, StridedMatrices H) const {
+  kernels_->inertiaBatch(robot(), structure_, states, samples(q), matrices(H));
+}
+
+void FastModel::coriolisVectorBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd,
+                                    States c) const {
+  kernels_->coriolisBatch(robot(), structure_, states, samples(q), samples(qd), samples(c));
+}
+
+void FastModel::gravityVectorBatch(std::ptrdiff_t states, ConstStates q, States g) const {
+  kernels_->gravityBatch(robot(), structure_, states, samples(q), samples(g));
+}
+
+void FastModel::frictionVectorBatch(std::ptrdiff_t states, ConstStates qd, States f) const {
+  kernels_->frictionBatch(robot(), states, samples(qd), samples(f));
+}
+
+void FastModel::dynamicComponentsBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd,
+                                       StridedMatrices H, States c, States g) const {
+  kernels_->componentsBatch(robot(), structure_, states, samples(q), samples(qd), matrices(H),
+                            samples(c), samples(g));
+}
+
+}  // namespace chain_dynamics

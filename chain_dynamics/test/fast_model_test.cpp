@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/fast_model.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <thread>
+
+#include "allocation_guard.hpp"
+#include "chain_dynamics/error.hpp"
+#include "chain_dynamics/model_file.hpp"
+#include "chain_dynamics/urdf.hpp"
+#include "random_chains.hpp"
+#include "reference.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Every quantity of one state, as one column of numbers: H, c, g, f, tau.
+struct Terms {
+  explicit Terms(Index n) : H(n, n), c(n), g(n), f(n), tau(n) {}
+  MatrixXd H;
+  VectorXd c, g, f, tau;
+};
+
+Terms termsOf(const Model& model, const State<double>& x) {
+  Terms t(model.chain.jointCount());
+  dynamicComponents(model, x.q, x.qd, t.H, t.c, t.g);
+  frictionVector(model, x.qd, t.f);
+  torques(model, x.q, x.qd, x.qdd, t.tau);
+  t.tau += t.f;
+  return t;
+}
+
+Terms termsOf(const FastModel& fast, const State<double>& x) {
+  Terms t(x.q.size());
+  fast.inertiaMatrix(x.q.data(), t.H.data(), t.H.outerStride());
+  fast.coriolisVector(x.q.data(), x.qd.data(), t.c.data());
+  fast.gravityVector(x.q.data(), t.g.data());
+  fast.frictionVector(x.qd.data(), t.f.data());
+  fast.torques(x.q.data(), x.qd.data(), x.qdd.data(), t.tau.data());
+  return t;
+}
+
+Terms componentsOf(const FastModel& fast, const State<double>& x) {
+  Terms t = termsOf(fast, x);
+  fast.dynamicComponents(x.q.data(), x.qd.data(), t.H.data(), t.H.outerStride(), t.c.data(),
+                         t.g.data());
+  return t;
+}
+
+void expectEqual(const Terms& a, const Terms& b, const State<double>& x, double tolerance) {
+  const double inertial = largest(b.H.cwiseAbs() * x.qdd.cwiseAbs());
+  const double size = inertial + largest(b.c) + largest(b.g) + largest(b.f);
+  const double speed = std::max(1.0, x.qd.squaredNorm());
+  EXPECT_TRUE(agree(a.H, b.H, largest(b.H), tolerance)) << "H";
+  EXPECT_TRUE(agree(a.c, b.c, largest(b.c) + largest(b.H) * speed, tolerance)) << "c";
+  EXPECT_TRUE(agree(a.g, b.g, std::max(1.0, largest(b.g)), tolerance)) << "g";
+  EXPECT_TRUE(agree(a.f, b.f, std::max(1.0, largest(b.f)), tolerance)) << "f";
+  EXPECT_TRUE(agree(a.tau, b.tau, size + largest(b.H) * speed, tolerance)) << "tau";
+}
+
+std::string robotFile(const std::string& name) {
+  return std::string(CHAIN_DYNAMICS_ROBOTS_DIR "/") + name;
+}
+
+/// The same joints and links, all turning.
+Chain revolute(const Chain& chain) {
+  std::vector<Joint> joints = chain.joints();
+  for (Joint& joint : joints) joint.type = JointType::kRevolute;
+  return Chain(chain.name(), joints, chain.links(), chain.gravity());
+}
+
+/// Placements with right angles, parallel and intersecting axes: robots as they are built.
+Chain rightAngled(Index n, std::uint32_t seed, bool sliding) {
+  Random random(seed);
+  std::vector<Joint> joints = randomChain(n).joints();
+  const auto pick = [&](int count) { return static_cast<int>((random() + 1) * 0.4999 * count); };
+  for (Joint& joint : joints) {
+    joint.type = sliding && pick(4) == 0 ? JointType::kPrismatic : JointType::kRevolute;
+    Matrix3<double> R = Matrix3<double>::Identity();
+    for (int turn = pick(4); turn > 0; --turn) {
+      Matrix3<double> quarter;
+      quarter << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+      Matrix3<double> about_z;
+      about_z << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+      R = (R * (pick(2) == 0 ? quarter : about_z)).eval();
+    }
+    joint.placement.R = R;
+    for (int k = 0; k < 3; ++k) joint.placement.p[k] = pick(2) == 0 ? 0.0 : 0.4 * random();
+  }
+  const Chain like = randomChain(n);
+  return Chain("right_angled", joints, like.links(), {0.3, 0.2, -9.8});
+}
+
+/// Identified models with parameters of any sign: for each row, for gravity.
+Model identified(const Chain& chain, bool rows, bool gravity, std::uint32_t seed) {
+  Random random(seed);
+  Model model(chain);
+  const auto links = [&] {
+    std::vector<LinkParameters> set;
+    for (Index i = 0; i < chain.jointCount(); ++i) set.push_back(randomIdentifiedLink(random));
+    return set;
+  };
+  for (Index j = 0; rows && j < chain.jointCount(); ++j) model.row_parameters.push_back(links());
+  if (gravity) model.gravity_parameters = links();
+  for (Index j = 0; j < chain.jointCount(); ++j) {
+    const double big = 1 + random();
+    const FrictionLaw laws[] = {ViscousCoulombOffset{big, random(), random()},
+                                ViscousOffsetSigmoid{big, random(), random(), 300 * random(), 0.1},
+                                CenteredSigmoid{random(), 20 * big, 0.02 * random()}};
+    model.friction.push_back(laws[j % 3]);
+  }
+  return model;
+}
+
+struct NamedModel {
+  std::string name;
+  Model model;
+};
+
+std::vector<NamedModel> models() {
+  std::vector<NamedModel> all;
+  for (const Index n : {1, 2, 3, 4, 5, 6, 7, 8, 9, 13, 30, 64}) {
+    const std::string joints = std::to_string(n) + " joints";
+    all.push_back({"any axes, " + joints, Model(randomChain(n))});
+    all.push_back({"any axes, turning, " + joints, Model(revolute(randomChain(n)))});
+    for (std::uint32_t seed = 0; seed < 4; ++seed) {
+      all.push_back({"right angles, " + joints, Model(rightAngled(n, seed, seed % 2 == 0))});
+    }
+  }
+  for (const Index n : {1, 3, 6, 7, 11}) {
+    const std::string joints = std::to_string(n) + " joints";
+    all.push_back({"rows, " + joints, identified(randomChain(n), true, false, 1)});
+    all.push_back({"gravity, " + joints, identified(randomChain(n), false, true, 2)});
+    all.push_back({"rows and gravity, " + joints, identified(randomChain(n), true, true, 3)});
+  }
+  for (const std::string robot : {"ur10", "panda"}) {
+    const std::string urdf = textOf(robotFile("urdf/" + robot + ".urdf"));
+    all.push_back({robot, Model(chainFromUrdf(urdf))});
+  }
+  for (const std::string name :
+       {"ur10_identified", "franka_inria_identified", "franka_gaz2019_feasible"}) {
+    all.push_back({name, modelFromFile(robotFile("models/" + name + ".yaml"))});
+  }
+  return all;
+}
+
+/// Memory of one number per joint and state, in some layout.
+class Layout {
+ public:
+  Layout(Index n, Index count, Index joint_step, Index state_step)
+      : joint_step_(joint_step), state_step_(state_step) {
+    const Index size = n * std::abs(joint_step) + count * std::abs(state_step) + 1;
+    numbers_ = VectorXd::Constant(2 * size, std::numeric_limits<double>::quiet_NaN());
+    first_ = size;
+  }
+  double& operator()(Index j, Index k) {
+    return numbers_[first_ + j * joint_step_ + k * state_step_];
+  }
+  ConstStates in() const { return {numbers_.data() + first_, joint_step_, state_step_}; }
+  States out() { return {numbers_.data() + first_, joint_step_, state_step_}; }
+
+ private:
+  Index joint_step_, state_step_;
+  VectorXd numbers_;
+  Index first_ = 0;
+};
+
+/// H of state k has its entry (i, j) at (i, j + k n) of a matrix with a row too many.
+struct Batch {
+  Batch(Index n, Index count, Index joint_step, Index state_step)
+      : q(n, count, joint_step, state_step), qd(q), qdd(q), tau(q), c(q), g(q), f(q) {
+    H = MatrixXd::Constant(n + 1, n * count, std::numeric_limits<double>::quiet_NaN());
+  }
+  StridedMatrices matrices() { return {H.data(), 1, H.rows(), H.rows() * (H.rows() - 1)}; }
+  Layout q, qd, qdd, tau, c, g, f;
+  MatrixXd H;
+};
+
+void compute(const FastModel& fast, Index count, Batch& b) {
+  fast.inertiaMatrixBatch(count, b.q.in(), b.matrices());
+  const MatrixXd H = b.H;
+  b.H.setConstant(std::numeric_limits<double>::quiet_NaN());
+  fast.dynamicComponentsBatch(count, b.q.in(), b.qd.in(), b.matrices(), b.tau.out(), b.f.out());
+  EXPECT_TRUE((H.topRows(H.rows() - 1).array() == b.H.topRows(H.rows() - 1).array()).all());
+  fast.coriolisVectorBatch(count, b.q.in(), b.qd.in(), b.c.out());
+  fast.gravityVectorBatch(count, b.q.in(), b.g.out());
+  fast.torquesBatch(count, b.q.in(), b.qd.in(), b.qdd.in(), b.tau.out());
+  fast.frictionVectorBatch(count, b.qd.in(), b.f.out());
+}
+
+void expectBatchEqual(const FastModel& fast, Index n, Index count, Index joint_step,
+                      Index state_step) {
+  Random random(7);
+  Batch batch(n, count, joint_step, state_step);
+  std::vector<State<double>> states;
+  for (Index k = 0; k < count; ++k) {
+    states.push_back({3 * random.vector(n), 2 * random.vector(n), 5 * random.vector(n)});
+    for (Index j = 0; j < n; ++j) {
+      batch.q(j, k) = states.back().q[j];
+      batch.qd(j, k) = states.back().qd[j];
+      batch.qdd(j, k) = states.back().qdd[j];
+    }
+  }
+  compute(fast, count, batch);
+  for (Index k = 0; k < count; ++k) {
+    Terms terms(n);
+    terms.H = batch.H.block(0, k * n, n, n);
+    for (Index j = 0; j < n; ++j) {
+      terms.c[j] = batch.c(j, k);
+      terms.g[j] = batch.g(j, k);
+      terms.f[j] = batch.f(j, k);
+      terms.tau[j] = batch.tau(j, k);
+    }
+    expectEqual(terms, termsOf(fast, states[static_cast<std::size_t>(k)]),
+                states[static_cast<std::size_t>(k)], 1e-12);
+  }
+}
+
+class FastModelOn : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(FastModelOn, EqualsThePlainFunctions) {
+  for (const auto& [name, model] : models()) {
+    const FastModel fast(model, GetParam());
+    for (std::uint32_t seed = 0; seed < 5; ++seed) {
+      const State<double> x = randomState<double>(model.chain, seed);
+      SCOPED_TRACE(name + "\n" + paste(model.chain, x));
+      const Terms plain = termsOf(model, x);
+      const double tolerance = 4 * rounding<double>(model.chain);
+      expectEqual(termsOf(fast, x), plain, x, tolerance);
+      expectEqual(componentsOf(fast, x), plain, x, tolerance);
+      if (HasFailure()) return;
+    }
+  }
+}
+
+// Batches of every size, so that the last pack is full, nearly empty and alone; states as columns,
+// as rows, and with gaps.
+TEST_P(FastModelOn, BatchesEqualSingleCallsInAnyLayout) {
+  for (const auto& [name, model] : models()) {
+    const Index n = model.chain.jointCount();
+    if (n > 13) continue;
+    SCOPED_TRACE(name);
+    const FastModel fast(model, GetParam());
+    for (const Index count : {0, 1, 3, 8, 21}) {
+      for (const auto& [joint_step, state_step] : {std::pair<Index, Index>{1, n},
+                                                   {std::max<Index>(count, 1), 1},
+                                                   {2, 2 * n + 3},
+                                                   {-1, -n}}) {
+        expectBatchEqual(fast, n, count, joint_step, state_step);
+        if (HasFailure()) return;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, FastModelOn, ::testing::ValuesIn(FastModel::instructionSets()),
+                         [](const auto& test) { return test.param; });
+
+}  // namespace
+}  // namespace chain_dynamics
