@@ -6,6 +6,7 @@ A table as any tool can write it, columns in any order:
     time,position.joint_1,velocity.joint_1,effort.joint_1,acceleration.joint_1
 
 time in s; rad, rad/s, N m, rad/s^2 (prismatic m, m/s, N, m/s^2); accelerations may be left out.
+Motor currents in A are named current.joint_1, and stand in place of the efforts.
 
 Or what the record tool of UR's RTDE client library writes: `timestamp` in s, `actual_q_0`,
 `actual_qd_0`, `actual_current_0` and so on; joints by number, from the base on; efforts are motor
@@ -29,14 +30,17 @@ if TYPE_CHECKING:
     from inverse_dynamics.joint_log import Floats, Integers, Progress
 
 TIME = "time"
-_QUANTITIES = ("position", "velocity", "effort", "acceleration")
+EFFORT = "effort"
+CURRENT = "current"
+_QUANTITIES = ("position", "velocity", EFFORT, CURRENT, "acceleration")
 _REASONS = {
-    "effort": "; measured efforts are what computed torques are compared with; where there are none,"
-    " `ids torques` computes them"
+    EFFORT: "; measured efforts are what computed torques are compared with; where there are none,"
+    " `ids torques` computes them",
+    CURRENT: "; other joints have currents: give those of all joints, or efforts of all joints",
 }
 
 _RTDE_TIME = "timestamp"
-_RTDE = {"position": "actual_q", "velocity": "actual_qd", "effort": "actual_current"}
+_RTDE = {"position": "actual_q", "velocity": "actual_qd", CURRENT: "actual_current"}
 
 _LONGEST_PERIOD = 0.5  # s: no recording of a motion is as slow
 _UNITS = ((5e5, "nanoseconds", 1e9), (5e2, "microseconds", 1e6), (0.0, "milliseconds", 1e3))
@@ -51,10 +55,11 @@ def read_csv_log(
     """
     table = CsvTable(path)
     rtde = _is_rtde(table.names)
+    measured = CURRENT if rtde else _measured(table, joints)
     if rtde:
         joints, columns = _rtde_columns(table, joints)
     else:
-        joints, columns = generic_columns(table, joints, ("position", "velocity", "effort"))
+        joints, columns = generic_columns(table, joints, ("position", "velocity", measured))
     time_name = _RTDE_TIME if rtde else TIME
     values = read_columns(table, time_name, columns, progress)
     time = values.pop(TIME)[:, 0]
@@ -67,9 +72,9 @@ def read_csv_log(
         receive_stamps=stamps,
         q=values["position"],
         qd=values["velocity"],
-        effort=values["effort"],
+        effort=values[measured],
         qdd=values.get("acceleration"),
-        effort_is="current" if rtde else "",
+        effort_is=CURRENT if measured == CURRENT else "",
         topic="",
         notes=_left_out(
             table, [time_name, *(name for names in columns.values() for name in names)]
@@ -93,8 +98,8 @@ def generic_columns(
     )
     if not there:
         raise BagError(
-            f"{table.path}: expected columns {TIME}, position.JOINT, velocity.JOINT, effort.JOINT, "
-            f"or those of UR's RTDE record tool, got {_some(table.names)}"
+            f"{table.path}: expected columns {TIME}, position.JOINT, velocity.JOINT, effort.JOINT "
+            f"(or current.JOINT), or those of UR's RTDE record tool, got {_some(table.names)}"
         )
     joints = tuple(joints) or tuple(there)
     if unknown := [joint for joint in joints if joint not in there]:
@@ -136,6 +141,20 @@ def read_columns(
     ends = np.cumsum([len(group) for group in groups.values()])[:-1]
     numbers = table.read(names, progress)
     return dict(zip(groups, np.split(numbers, ends, axis=1), strict=True))
+
+
+def _measured(table: CsvTable, joints: Sequence[str]) -> str:
+    """Currents if any of the joints has them, else efforts. Raises BagError where one has both."""
+    for joint in joints or [name.partition(".")[2] for name in table.names]:
+        effort, current = f"{EFFORT}.{joint}", f"{CURRENT}.{joint}"
+        if effort in table.names and current in table.names:
+            raise BagError(
+                f"{table.path}: joint {joint}: expected a column {effort} or {current}, got both; "
+                "rename or remove the one that isn't to be compared"
+            )
+        if current in table.names:
+            return CURRENT
+    return EFFORT
 
 
 def _is_rtde(names: Sequence[str]) -> bool:

@@ -7,7 +7,7 @@ A row per sample. Columns, J being a joint as the recording names it:
 
 time                                  s since the first sample
 position.J velocity.J acceleration.J  of the motion; the acceleration is the estimated one
-effort.J                              as recorded
+effort.J                              as recorded; current.J in its place where it is a current
 measured.J computed.J error.J         torques; error = computed - measured
 repeated ... kept                     what was found in a sample, true or false: see Samples
 
@@ -51,6 +51,7 @@ def series_columns(evaluation: Evaluation) -> list[Column]:
     columns = [Column("time", "s", evaluation.time)]
     log = evaluation.log
     error = evaluation.computed - evaluation.measured
+    currents = evaluation.effort.meaning == "current"
     for j, joint in enumerate(log.joint_names):
         torque = evaluation.units[j]
         angle = "m" if torque == "N" else "rad"
@@ -58,7 +59,7 @@ def series_columns(evaluation: Evaluation) -> list[Column]:
             ("position", angle, log.q),
             ("velocity", f"{angle}/s", log.qd),
             ("acceleration", f"{angle}/s^2", evaluation.qdd),
-            ("effort", "A" if evaluation.effort.meaning == "current" else torque, log.effort),
+            ("current", "A", log.effort) if currents else ("effort", torque, log.effort),
             ("measured", torque, evaluation.measured),
             ("computed", torque, evaluation.computed),
             ("error", torque, error),

@@ -119,6 +119,26 @@ def test_a_table_of_urs_record_tool_holds_currents(tmp_path):
     assert read_recording(file).joint_names == ("0", "1", "2", "3", "4", "5")
 
 
+def test_currents_have_a_name_of_their_own(file):
+    header = "time,position.a,velocity.a,current.a,position.b,velocity.b,current.b\n"
+    rows = "0,1,2,3,4,5,6\n0.01,1,2,3.5,4,5,6.5\n"
+    file.write_text(header + rows)
+    log = read_recording(file, ("b", "a"))
+    np.testing.assert_array_equal(log.effort, [[6, 3], [6.5, 3.5]])
+    assert log.effort_is == read_recording(file).effort_is == "current"
+    assert log.notes == ()
+    both = "joint a: expected a column effort.a or current.a, got both; rename or remove the one"
+    fails(file, header.replace("position.b", "effort.a") + rows, both)
+    fails(file, header.replace("position.b", "effort.a") + rows, both, joints=())
+    fails(
+        file,
+        header.replace("current.a", "effort.a") + rows,
+        "joint a: expected a column current.a, got none; other joints have currents",
+        joints=("a", "b"),
+    )
+    fails(file, HEADER.replace("velocity.a", "current.b") + ROWS, "column velocity.a")
+
+
 def test_what_urs_record_tool_should_have_recorded_is_said(file):
     fails(
         file,

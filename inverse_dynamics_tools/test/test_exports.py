@@ -6,12 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from test_evaluation import JOINTS, UR10, motion
 from test_results import make_evaluation
 
-from inverse_dynamics import cli, write_evaluation
+from inverse_dynamics import Solver, cli, evaluate, write_evaluation
+from inverse_dynamics.bags import write_joint_logs
 from inverse_dynamics.effort import Effort
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.exports import export_series, series_columns
+from inverse_dynamics.joint_log import JointLog
 
 
 @pytest.fixture(scope="module")
@@ -91,11 +94,30 @@ def test_units_of_a_prismatic_joint_are_metres_and_newtons(evaluation):
 def test_efforts_that_are_currents_stay_as_recorded_beside_the_torques_they_mean(evaluation):
     currents = replace(evaluation, effort=Effort("current", drive_gains=(2.0, 3.0, 4.0)))
     columns = {c.name: c for c in series_columns(currents)}
-    assert columns["effort.joint_2"].unit == "A"
+    assert columns["current.joint_2"].unit == "A"
+    assert "effort.joint_2" not in columns
     assert columns["measured.joint_2"].unit == "N m"
     recorded = evaluation.log.effort[:, 1]
-    np.testing.assert_array_equal(columns["effort.joint_2"].values, recorded)
+    np.testing.assert_array_equal(columns["current.joint_2"].values, recorded)
     np.testing.assert_array_equal(columns["measured.joint_2"].values, 3.0 * recorded)
+
+
+@pytest.mark.parametrize("currents", [False, True])
+def test_an_exported_table_evaluates_to_the_same_figures(tmp_path, currents):
+    ur10 = Solver(UR10)
+    q, qd, qdd, stamps = motion()
+    efforts = 1.1 * ur10.torques(q, qd, qdd) / (ur10.drive_gains if currents else 1.0)
+    log = JointLog(JOINTS, stamps, stamps, q, qd, efforts)
+    write_joint_logs(tmp_path / "bag", {log.topic: log})
+    first = evaluate(
+        tmp_path / "bag", "ur10_real", effort_is="current" if currents else "torque"
+    )
+    export_series(first, tmp_path / "series.csv")
+    again = evaluate(tmp_path / "series.csv", "ur10_real")
+    assert again.errors == first.errors
+    assert again.effort.meaning == first.effort.meaning
+    assert again.log.effort_is == ("current" if currents else "")
+    assert first.errors[1].rmse > 1
 
 
 def test_more_rows_than_a_block_stay_in_order(tmp_path):

@@ -34,8 +34,8 @@ examples:
       torques, motor currents, or torques without gravity? the data tell
 
   ids evaluate motion.csv --robot my_robot.yaml
-      a table: columns time [s] and, for each joint, position.JOINT, velocity.JOINT, effort.JOINT,
-      optionally acceleration.JOINT; comma, semicolon, tab or spaces between them
+      a table: columns time [s] and, for each joint, position.JOINT, velocity.JOINT, effort.JOINT
+      (or current.JOINT [A]), optionally acceleration.JOINT; comma, semicolon, tab or spaces between them
 
   ids evaluate robot_data.csv --robot ur10_real
       what the record tool of UR's RTDE client library writes: efforts are motor currents

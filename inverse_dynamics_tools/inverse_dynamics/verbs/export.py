@@ -17,7 +17,7 @@ examples:
 columns, J being a joint as the recording names it; a row per sample:
   time                                    s since the first sample
   position.J velocity.J acceleration.J    the motion; accelerations as estimated
-  effort.J                                as recorded: torques, or currents [A]
+  effort.J                                as recorded; current.J [A] where these are motor currents
   measured.J computed.J error.J           torques; error = computed - measured
   repeated non_increasing start_transient isolated kept
                                           what was found in a sample (true, false)
