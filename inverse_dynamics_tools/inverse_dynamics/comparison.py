@@ -43,21 +43,34 @@ def compare(evaluations: Sequence[Evaluation], labels: Sequence[str] = ()) -> Co
     """Put evaluations of the same recording side by side.
 
     labels: what to call them; empty: by what differs (solver, robot, friction, accelerations).
-    Raises UserError: fewer than two, other recordings, other numbers of labels.
+    Raises UserError: fewer than two, other recordings, other meanings of their efforts, other
+    numbers of labels.
     """
     if len(evaluations) < 2:
         raise UserError(f"compare: expected two evaluations or more, got {len(evaluations)}")
     first = evaluations[0]
     for other in evaluations[1:]:
-        if len(other.log) != len(first.log) or not np.array_equal(other.measured, first.measured):
-            raise UserError(
-                f"compare: expected evaluations of one recording, got {first.bag} "
-                f"({len(first.log)} samples) and {other.bag} ({len(other.log)} samples, other "
-                "measured torques); evaluate the same recording with each solver"
-            )
+        _check_same_recording(first, other)
     if labels and len(labels) != len(evaluations):
         raise UserError(f"compare: expected {len(evaluations)} labels, got {len(labels)}")
     return Comparison(tuple(evaluations), tuple(labels) or _labels(evaluations))
+
+
+def _check_same_recording(first: Evaluation, other: Evaluation) -> None:
+    if len(other.log) == len(first.log) and np.array_equal(other.measured, first.measured):
+        return
+    if np.array_equal(other.log.effort, first.log.effort):
+        raise UserError(
+            f"compare: {first.bag}: expected evaluations that take its efforts for the same, got "
+            f"'{first.effort.summary}' and '{other.effort.summary}': measured torques aren't the "
+            "same then; evaluate again with the same --effort-is and drive gains (which meaning "
+            "fits, `ids evaluate --effort-is auto` says)"
+        )
+    raise UserError(
+        f"compare: expected evaluations of one recording, got {first.bag} ({len(first.log)} samples) "
+        f"and {other.bag} ({len(other.log)} samples, other measured torques); evaluate the same "
+        "recording with each solver"
+    )
 
 
 def _labels(evaluations: Sequence[Evaluation]) -> tuple[str, ...]:

@@ -11,9 +11,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from test_evaluation import RIGID_BODY, URDF, recording
+from test_csv_recordings import table_of, write_table
+from test_evaluation import JOINTS, RIGID_BODY, URDF, motion, recording
+from test_joint_trajectories import points_of_motion, trajectory, write_trajectories
 
-from inverse_dynamics import Solver, cli, evaluate, write_evaluation
+from inverse_dynamics import Solver, cli, evaluate, read_evaluation, write_evaluation
 from inverse_dynamics.comparison import compare
 from inverse_dynamics.effort import DATA, Effort
 from inverse_dynamics.effort_verdict import Candidate, Verdict
@@ -143,6 +145,29 @@ def test_what_efforts_mean_and_how_sure_that_is_stands_among_the_assumptions(eva
     page = render_page("A page", [report_run(replace(evaluation, effort=found))])
     assert "current, found from the data, with drive gains 2 2 2 2 2 2 N m/A; sure: " in page
     assert "torque 90 % (worse in 19 of 20 stretches, 30 times)" in page
+
+
+def test_tables_and_trajectories_are_shown_as_recordings_are(tmp_path):
+    q, qd, qdd, _ = motion()
+    torques = Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0").torques(
+        q, qd, qdd
+    )
+    write_table(tmp_path / "motion.csv", table_of(torques, qdd))
+    plan = trajectory(JOINTS, points_of_motion(effort=torques))
+    write_trajectories(tmp_path / "plan", [plan])
+    for name, topic in (("motion.csv", ""), ("plan", ", /planned")):
+        write_evaluation(evaluate(tmp_path / name, "ur10_simulated"), tmp_path / f"{name}_run")
+        run = report_run(read_evaluation(tmp_path / f"{name}_run"))
+        stated = dict(run.assumptions)
+        assert stated["recording"] == f"{name}{topic}, 1500 samples, 6.0 s"
+        assert stated["accelerations"] == "given by the recording"
+        assert "cut-off" not in run.figures[0].caption + run.figures[0].svg
+        assert len(run.links) > 6
+        page = render_page("A page", [run])
+        joint = data_of(page)[0]["joints"][1]
+        expected = pytest.approx(torques[:, 1], rel=1e-6)
+        assert floats(joint["measured"]["values"]) == expected
+        assert floats(joint["computed"]["values"]) == expected
 
 
 def test_comparison_is_a_table_and_a_figure(page, comparison):

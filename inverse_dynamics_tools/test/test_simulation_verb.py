@@ -51,6 +51,22 @@ def test_says_what_was_made(
     assert len(read_joint_log(bag)) == 125
 
 
+def test_says_that_efforts_are_torques_where_the_configuration_says_otherwise(
+    arm: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    said = (
+        "note        efforts are recorded as torques, though the run configuration says {}: evaluate "
+        "them with --effort-is torque"
+    )
+    configuration = Path(arm[2])
+    text = configuration.read_text()
+    for effort in ("torque", "auto", "current", "torque_without_gravity"):
+        configuration.write_text(f"{text}effort: {effort}\n")
+        assert main([*arm, "--out", str(tmp_path / effort), "--rate", "125"]) == 0
+        noted = said.format(effort) in capsys.readouterr().out
+        assert noted == (effort in {"current", "torque_without_gravity"})
+
+
 def test_all_options_arrive(arm: list[str], tmp_path: Path) -> None:
     bag = tmp_path / "bag"
     options = (

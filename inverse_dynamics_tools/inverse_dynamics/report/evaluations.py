@@ -39,15 +39,19 @@ def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
         assumptions=_assumptions(evaluation),
         notes=evaluation.notes,
         links=links,
-        figures=[
-            Figure(
-                _inline(error_figure(evaluation)),
-                "Left: errors as a share of each joint's measured range; a box holds the middle half of the samples, "
-                "whiskers 90 %. Right: spectra of measured torque and error, mean over the joints, in the same unit; "
-                "what lies above the cut-off can't be explained by filtered accelerations.",
-            )
-        ],
+        figures=[Figure(_inline(error_figure(evaluation)), _caption(evaluation))],
     )
+
+
+def _caption(evaluation: Evaluation) -> str:
+    text = (
+        "Left: errors as a share of each joint's measured range; a box holds the middle half of the "
+        "samples, whiskers 90 %. Right: spectra of measured torque and error, mean over the joints, "
+        "in the same unit"
+    )
+    if evaluation.accelerations.cutoff is not None:
+        text += "; what lies above the cut-off can't be explained by filtered accelerations"
+    return f"{text}."
 
 
 def report_comparison(
