@@ -65,7 +65,8 @@ def read_csv_log(
     time = values.pop(TIME)[:, 0]
     if len(time) < 2:
         raise BagError(f"{path}: expected at least 2 rows after the header, got {len(time)}")
-    stamps = _stamps(table, time_name, time)
+    check_seconds(table, time_name, time)
+    stamps: Integers = np.asarray(np.round(time * 1e9), dtype=np.int64)
     return JointLog(
         joint_names=tuple(joints),
         header_stamps=stamps,
@@ -186,8 +187,8 @@ def _rtde_columns(
     return joints, columns
 
 
-def _stamps(table: CsvTable, name: str, time: Floats) -> Integers:
-    """(N,) ns. Raises BagError if the time can't be in seconds."""
+def check_seconds(table: CsvTable, name: str, time: Floats) -> None:
+    """Raise BagError if (N,) the time of a motion can't be in seconds."""
     period = float(np.median(np.abs(np.diff(time))))
     if period >= _LONGEST_PERIOD:
         unit, factor = next((unit, by) for least, unit, by in _UNITS if period >= least)
@@ -200,7 +201,6 @@ def _stamps(table: CsvTable, name: str, time: Floats) -> Integers:
             f"{table.path}: column {name}: expected seconds, got {np.abs(time).max():g}; count "
             "from the start of the recording"
         )
-    return np.asarray(np.round(time * 1e9), dtype=np.int64)
 
 
 def _left_out(table: CsvTable, used: Sequence[str]) -> tuple[str, ...]:

@@ -31,8 +31,8 @@ from inverse_dynamics.effort import (
 from inverse_dynamics.errors import EvaluationError, RobotError
 from inverse_dynamics.joint_log import no_progress
 from inverse_dynamics.recordings import read_recording
-from inverse_dynamics.robots import Robot, load_robot
-from inverse_dynamics.solvers import brings_own_model, open_solver
+from inverse_dynamics.robots import Robot, load_robot, with_changes
+from inverse_dynamics.solvers import description_notes, open_solver
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -126,23 +126,21 @@ def evaluate(
     """
     if not isinstance(robot, Robot):
         robot = load_robot(robot)
-    given = {
-        "plugin": plugin,
-        "friction": friction,
-        "urdf": None if urdf is None else Path(urdf),
-        "root": root,
-        "tip": tip,
-        "gravity": gravity,
-        "topic": topic,
-        "joints": None if joints is None else tuple(joints),
-        "accelerations": accelerations,
-        "cutoff": cutoff,
-    }
-    robot = replace(robot, **{k: v for k, v in given.items() if v is not None})  # type: ignore[arg-type]
+    robot = with_changes(
+        robot,
+        plugin=plugin,
+        friction=friction,
+        urdf=None if urdf is None else Path(urdf),
+        root=root,
+        tip=tip,
+        gravity=gravity,
+        topic=topic,
+        joints=None if joints is None else tuple(joints),
+        accelerations=accelerations,
+        cutoff=cutoff,
+    )
     if accelerations is not None and cutoff is None:
         robot = replace(robot, cutoff=None)  # the configuration's belongs to its own method
-    if urdf is not None:
-        robot = replace(robot, model=None)
     bag = Path(bag)
 
     clock_start = time.perf_counter()
@@ -185,11 +183,8 @@ def evaluate(
     done = time.perf_counter()
     progress("computing", len(log), len(log))
     notes = [*solver.warnings, *log.notes, *effort_notes(effort, solver, robot, log)]
-    if urdf is not None and brings_own_model(robot):
-        notes.append(
-            f"{urdf} is drawn, not computed from: {robot.plugin} brings its own model; another "
-            "--plugin computes from a description"
-        )
+    if urdf is not None:
+        notes += description_notes(robot, "drawn")
     return Evaluation(
         robot=replace(robot, joints=recorded_names, topic=log.topic, effort=effort.meaning),
         bag=bag,

@@ -17,11 +17,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.csv_recordings import TIME, generic_columns, read_columns
+from inverse_dynamics.csv_recordings import TIME, check_seconds, generic_columns, read_columns
 from inverse_dynamics.csv_table import CsvTable, is_csv
 from inverse_dynamics.descriptions import effort_limits, joint_units, read_description
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.evaluation import names_in_recording
+from inverse_dynamics.joint_log import no_progress
 from inverse_dynamics.joint_trajectories import JointTrajectory, read_joint_trajectories
 from inverse_dynamics.robots import Robot, load_robot
 from inverse_dynamics.solvers import open_solver
@@ -29,8 +30,9 @@ from inverse_dynamics.solvers import open_solver
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from inverse_dynamics.joint_log import Floats, Integers
+    from inverse_dynamics.joint_log import Floats, Integers, Progress
 
+_FAR_LONGER = 100.0  # times; milliseconds make it 1000 times
 _WHY = "torques can't be computed without them"
 
 
@@ -91,7 +93,11 @@ class TrajectoryTorques:
 
 
 def trajectory_torques(
-    path: Path | str, robot: Robot | Path | str, *, topic: str = ""
+    path: Path | str,
+    robot: Robot | Path | str,
+    *,
+    topic: str = "",
+    progress: Progress = no_progress,
 ) -> TrajectoryTorques:
     """Compute the torques of each point of each trajectory.
 
@@ -109,13 +115,15 @@ def trajectory_torques(
     joints = names_in_recording(robot, tuple(solver.joint_names))
     trajectories: list[JointTrajectory] = []
     if is_csv(path):
-        states = [_states_of_table(CsvTable(path), joints)]
+        states = [_states_of_table(CsvTable(path), joints, progress)]
     else:
-        trajectories = read_joint_trajectories(path, topic)
+        trajectories = read_joint_trajectories(path, topic, progress)
         states = [_states_of_message(trajectory, joints) for trajectory in trajectories]
     if not any(len(time) for time, _ in states):
         raise BagError(f"{path}: expected points of a trajectory, got none")
+    progress("computing", 0, len(states))
     torques = [solver.torques(*state) if len(time) else state[0] for time, state in states]
+    progress("computing", len(states), len(states))
     return TrajectoryTorques(
         path=path,
         robot=robot,
@@ -130,11 +138,27 @@ def trajectory_torques(
     )
 
 
-def _states_of_table(table: CsvTable, joints: Sequence[str]) -> tuple[Floats, list[Floats]]:
+def _states_of_table(
+    table: CsvTable, joints: Sequence[str], progress: Progress
+) -> tuple[Floats, list[Floats]]:
     kinds = ("position", "velocity", "acceleration")
     _, columns = generic_columns(table, joints, kinds)
-    values = read_columns(table, TIME, {kind: columns[kind] for kind in kinds})
-    return values[TIME][:, 0], [values[kind] for kind in kinds]
+    values = read_columns(table, TIME, {kind: columns[kind] for kind in kinds}, progress)
+    time = values[TIME][:, 0]
+    if _much_faster_than_it_moves(time, values["position"], values["velocity"]):
+        check_seconds(table, TIME, time)
+    return time, [values[kind] for kind in kinds]
+
+
+def _much_faster_than_it_moves(time: Floats, q: Floats, qd: Floats) -> bool:
+    """Whether velocities and time make a far longer way than positions go.
+
+    Points of a plan may be seconds apart, so the time alone doesn't tell its unit.
+    """
+    way = np.abs(np.diff(q, axis=0)).sum()
+    mean_velocity = np.abs(qd[1:] + qd[:-1]) / 2
+    driven = (mean_velocity * np.abs(np.diff(time))[:, None]).sum()
+    return bool(driven > _FAR_LONGER * way)
 
 
 def _states_of_message(

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import json
+import math
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +14,14 @@ import numpy as np
 from inverse_dynamics.bag_reader import BagReader, error_text
 from inverse_dynamics.csv_table import CsvTable, is_csv
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.files import check_output_file, move_up, write_text_whole, written_whole
+from inverse_dynamics.files import (
+    check_output_directory,
+    check_output_file,
+    move_up,
+    write_text_whole,
+    written_whole,
+)
+from inverse_dynamics.joint_log import no_progress
 from inverse_dynamics.joint_trajectories import MESSAGE_TYPE, typestore
 
 if TYPE_CHECKING:
@@ -21,35 +31,75 @@ if TYPE_CHECKING:
     from rosbags.rosbag2 import Writer
 
     from inverse_dynamics.feed_forward import TrajectoryTorques
-    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.joint_log import Floats, Progress
 
 
-def write_trajectory_torques(result: TrajectoryTorques, out: Path | str) -> tuple[str, ...]:
+MARK = "torques.json"
+
+_SELDOM = 1000  # messages between two words on the progress
+
+
+def check_output(path: Path, out: Path, *, overwrite: bool = False) -> None:
+    """Raise OutputError unless the copy of a file `path` may be made at `out`."""
+    if is_csv(path):
+        check_output_file(out, overwrite=overwrite)
+    else:
+        check_output_directory(out, overwrite=overwrite, mark=MARK)
+
+
+def write_trajectory_torques(
+    result: TrajectoryTorques,
+    out: Path | str,
+    *,
+    overwrite: bool = False,
+    progress: Progress = no_progress,
+) -> tuple[str, ...]:
     """Write a copy of the file with the efforts filled in, whole or not at all; gives notes.
 
     out: of the same kind as the file: a directory for a recording, a file for a table. Other
-    topics of a recording are copied, further columns of a table too.
+    topics of a recording are copied, further columns of a table too; torques.json beside a
+    recording says how efforts were computed, and each joint's load. overwrite: replace an older
+    result.
 
     Raises OutputError, BagError.
     """
     out = Path(out)
+    check_output(result.path, out, overwrite=overwrite)
     if is_csv(result.path):
-        check_output_file(out)
         write_text_whole(out, "".join(_filled_lines(CsvTable(result.path), result)))
         return ()
-    with written_whole(out) as directory:
+    with written_whole(out, overwrite=overwrite, mark=MARK) as directory:
         bag = directory / out.name
         try:
-            notes = _write_bag(result, bag)
+            notes = _write_bag(result, bag, progress)
         except BagError:
             raise
         except Exception as error:  # writers raise more than they document
             raise BagError(f"{out}: can't be written ({error_text(error)})") from error
         move_up(bag)
+        text = json.dumps(_summary(result), indent=2, allow_nan=False, ensure_ascii=False)
+        (directory / MARK).write_text(text + "\n", encoding="utf-8")
     return notes
 
 
-def _write_bag(result: TrajectoryTorques, path: Path) -> tuple[str, ...]:
+def _summary(result: TrajectoryTorques) -> dict[str, Any]:
+    robot = result.robot
+    return {
+        "schema": 1,
+        "bag": str(result.path),
+        "topic": result.topic,
+        "robot": robot.name,
+        "plugin": robot.plugin,
+        "friction": robot.friction,
+        "gravity": robot.gravity,
+        "joints": [
+            {**asdict(load), "limit": load.limit if math.isfinite(load.limit) else None}
+            for load in result.loads
+        ],
+    }
+
+
+def _write_bag(result: TrajectoryTorques, path: Path, progress: Progress) -> tuple[str, ...]:
     from rosbags.rosbag2 import StoragePlugin, Writer
 
     filled = iter(zip(result.trajectories, result.torques, strict=True))
@@ -58,7 +108,10 @@ def _write_bag(result: TrajectoryTorques, path: Path) -> tuple[str, ...]:
         plugin = StoragePlugin.MCAP if bag.storage == "mcap" else StoragePlugin.SQLITE3
         with Writer(path, version=Writer.VERSION_LATEST, storage_plugin=plugin) as writer:
             copies = {c.id: _copied(writer, c) for c in bag.connections}
-            for connection, received, raw in bag.messages():
+            total = sum(c.msgcount for c in bag.connections)
+            for done, (connection, received, raw) in enumerate(bag.messages(), 1):
+                if done % _SELDOM == 0 or done == total:
+                    progress("writing", done, total)
                 copy = copies[connection.id]
                 if copy is None:
                     continue

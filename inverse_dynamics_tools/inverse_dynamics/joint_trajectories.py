@@ -16,7 +16,7 @@ import numpy as np
 
 from inverse_dynamics.bag_reader import BagReader, error_text
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.joint_log import JointLog
+from inverse_dynamics.joint_log import JointLog, no_progress
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from rosbags.typesys.store import Typestore
 
-    from inverse_dynamics.joint_log import Clock, Floats, Integers, Storage
+    from inverse_dynamics.joint_log import Clock, Floats, Integers, Progress, Storage
 
 MESSAGE_TYPE = "trajectory_msgs/msg/JointTrajectory"
 FIELDS = ("positions", "velocities", "accelerations", "effort")
@@ -88,16 +88,20 @@ class JointTrajectory:
         return [names.index(joint) for joint in joints]
 
 
-def read_joint_trajectories(path: Path, topic: str = "") -> list[JointTrajectory]:
+def read_joint_trajectories(
+    path: Path, topic: str = "", progress: Progress = no_progress
+) -> list[JointTrajectory]:
     """Messages of one topic; none given: of the only one with trajectories. Raises BagError."""
     with BagReader(path) as bag:
         connections = bag.connections_of_type(MESSAGE_TYPE, topic)
         topic = connections[0].topic
         where = f"{path}: {topic}"
+        expected = sum(connection.msgcount for connection in connections)
         found: list[JointTrajectory] = []
         for messages, received in bag.blocks(connections):
             for raw, stamp in zip(messages, received.tolist(), strict=True):
                 found.append(decode(raw, f"{where}, message {len(found) + 1}", topic, stamp))
+            progress("reading", len(found), expected)
     if not found:
         raise BagError(f"{where}: expected trajectories, got no message; record it again")
     return found

@@ -56,7 +56,7 @@ def read_recording(
         topic = _topic(types, usual_topic)
     if types.get(topic) != joint_trajectories.MESSAGE_TYPE:
         return read_joint_log(path, joints, topic=topic, clock=clock, progress=progress)
-    trajectories = joint_trajectories.read_joint_trajectories(path, topic)
+    trajectories = joint_trajectories.read_joint_trajectories(path, topic, progress)
     return joint_trajectories.joint_log_of(trajectories, joints, clock, topic, storage)
 
 

@@ -10,9 +10,9 @@ like. Strict: unknown or missing keys and wrong types are errors with file, line
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.ament import package_share, resolve
 from inverse_dynamics.effort import EFFORT_CHOICES
@@ -81,6 +81,17 @@ def load_robot(name_or_file: str | Path) -> Robot:
             f"robot '{text}': expected one of {', '.join(robot_names())}, or a file ending in .yaml"
         )
     return _read(file)
+
+
+def with_changes(robot: Robot, **changes: Any) -> Robot:
+    """The run configuration with all fields replaced for which something is given, not None.
+
+    A description that is given stands instead of a model file too.
+    """
+    given = {name: value for name, value in changes.items() if value is not None}
+    if "urdf" in given:
+        given["model"] = None
+    return replace(robot, **given)
 
 
 def _directory() -> Path:

@@ -34,6 +34,16 @@ def open_solver(robot: Robot, description: str = "") -> _core.Solver:
         raise type(error)(f"{where}: {error}") from error
 
 
+def description_notes(robot: Robot, use: str) -> list[str]:
+    """What a reader should know of a description that was given: what it is of use for, if no more."""
+    if not brings_own_model(robot):
+        return []
+    return [
+        f"{robot.urdf} is {use}, not computed from: {robot.plugin} brings its own model; another "
+        "--plugin computes from a description"
+    ]
+
+
 def brings_own_model(robot: Robot) -> bool:
     """Whether the solver has no need of a description or model file: then it reads none."""
     try:

@@ -27,7 +27,9 @@ def test_runs_are_called_by_what_differs(evaluation):
 
 
 def test_other_recordings_are_refused(evaluation):
-    text = r"expected evaluations of one recording, got recording \(400 samples\) and recording \(300"
+    text = (
+        r"expected evaluations of one recording, got recording \(400 samples\) and recording \(300"
+    )
     with pytest.raises(UserError, match=text):
         compare([evaluation, make_evaluation(300)])
     log = replace(evaluation.log, effort=evaluation.log.effort + 1)

@@ -109,9 +109,7 @@ def test_an_exported_table_evaluates_to_the_same_figures(tmp_path, currents):
     efforts = 1.1 * ur10.torques(q, qd, qdd) / (ur10.drive_gains if currents else 1.0)
     log = JointLog(JOINTS, stamps, stamps, q, qd, efforts)
     write_joint_logs(tmp_path / "bag", {log.topic: log})
-    first = evaluate(
-        tmp_path / "bag", "ur10_real", effort_is="current" if currents else "torque"
-    )
+    first = evaluate(tmp_path / "bag", "ur10_real", effort_is="current" if currents else "torque")
     export_series(first, tmp_path / "series.csv")
     again = evaluate(tmp_path / "series.csv", "ur10_real")
     assert again.errors == first.errors

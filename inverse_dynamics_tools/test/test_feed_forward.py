@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
+import json
 import re
+import sqlite3
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import STORE, joint_state, write_messages
 from rosbags.rosbag2 import Reader, StoragePlugin, Writer
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from test_csv_recordings import table_of, write_table
 from test_evaluation import JOINTS, RIGID_BODY, URDF, motion
 from test_joint_trajectories import (
@@ -190,8 +193,88 @@ def test_the_verb_says_which_limit_is_passed(tmp_path, capsys, monkeypatch):
     assert "trajectories  1, with 1500 points together" in out
     assert cli.main(arguments) == 2
     assert "out: exists already; name another directory" in capsys.readouterr().err
+    made = json.loads((tmp_path / "out" / "torques.json").read_text())
+    assert made["robot"] == "ur10_simulated"
+    assert made["joints"][1]["limit"] == 330
+    assert abs(made["joints"][1]["peak"]) > 330
+    assert cli.main([*arguments, "--overwrite", "--gravity", "0,0,0"]) == 0
+    capsys.readouterr()
+    again = json.loads((tmp_path / "out" / "torques.json").read_text())
+    assert again["gravity"] == [0, 0, 0]
+    assert again["joints"][1]["peak"] != made["joints"][1]["peak"]
+    assert cli.main([*arguments[:-1], str(bag), "--overwrite"]) == 2
+    assert "won't be overwritten: it holds no torques.json" in capsys.readouterr().err
     with pytest.raises(OutputError, match="exists already"):
         write_trajectory_torques(trajectory_torques(bag, "ur10_simulated"), tmp_path / "out")
     friction = ["--no-friction", "--robot", "ur10_real"]
     assert cli.main(["torques", str(bag), "--out", str(tmp_path / "less"), *friction]) == 0
     assert "friction left out" in capsys.readouterr().out
+
+
+def test_topics_of_unknown_type_are_left_out_and_said(tmp_path, torques, robot):
+    types = get_typestore(Stores.EMPTY)
+    types.register(get_types_from_msg("int32 level", "my_msgs/msg/Own"))
+    with Writer(tmp_path / "bag", version=9) as writer:
+        plans = writer.add_connection(TOPIC, TRAJECTORY, typestore=STORE)
+        own = writer.add_connection("/own", "my_msgs/msg/Own", typestore=types)
+        plan = trajectory(JOINTS, points_of_motion())
+        writer.write(plans, 1, STORE.serialize_cdr(plan, TRAJECTORY))
+        writer.write(own, 2, b"\0\1\0\0\5\0\0\0")
+    described = trajectory_torques(tmp_path / "bag", robot)
+    assert write_trajectory_torques(described, tmp_path / "all") == ()
+    assert ("/own", 2, b"\0\1\0\0\5\0\0\0") in read_messages(tmp_path / "all")
+
+    # Recorders of older releases stored no definitions.
+    with sqlite3.connect(next((tmp_path / "bag").glob("*.db3"))) as database:
+        database.execute("DELETE FROM message_definitions")
+        database.execute("UPDATE topics SET type_description_hash = ''")
+    heard = []
+    notes = write_trajectory_torques(
+        trajectory_torques(tmp_path / "bag", robot),
+        tmp_path / "some",
+        progress=lambda *call: heard.append(call),
+    )
+    assert notes == ("topic /own left out: the recording doesn't define its type, my_msgs/msg/Own",)
+    assert heard == [("writing", 2, 2)]
+    ((topic, _, raw),) = read_messages(tmp_path / "some")
+    assert topic == TOPIC
+    filled = STORE.deserialize_cdr(raw, TRAJECTORY)
+    np.testing.assert_allclose(filled.points[7].effort, torques[7], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(1e3, "milliseconds"), (1e9, "nanoseconds")])
+def test_a_table_whose_time_is_not_in_seconds_is_refused(tmp_path, robot, factor, unit):
+    q, _, qdd, _ = motion()
+    table = table_of(0 * q, qdd)
+    write_table(tmp_path / "plan.csv", {**table, "time": factor * table["time"]})
+    with pytest.raises(BagError, match=f"column time: expected seconds, .* are they {unit}"):
+        trajectory_torques(tmp_path / "plan.csv", robot)
+
+
+def test_points_of_a_plan_may_be_seconds_apart(tmp_path, robot):
+    q, _, qdd, _ = motion()
+    table = {name: column[::500] for name, column in table_of(0 * q, qdd).items()}
+    write_table(tmp_path / "plan.csv", table)
+    heard = []
+    result = trajectory_torques(
+        tmp_path / "plan.csv", robot, progress=lambda *call: heard.append(call)
+    )
+    np.testing.assert_allclose(np.diff(result.times[0]), 2.0)
+    assert {what for what, *_ in heard} == {"reading", "computing"}
+
+
+def test_another_description_and_chain_may_be_given(tmp_path, capsys):
+    bag = write_trajectories(tmp_path / "bag", [trajectory(JOINTS, points_of_motion()[:3])])
+    arguments = ["torques", str(bag), "--overwrite", "--out", str(tmp_path / "out")]
+    strong = tmp_path / "strong.urdf"
+    strong.write_text(URDF.read_text().replace('effort="330.0"', 'effort="999"'))
+    described = ["--urdf", str(strong), "--root", "base_link", "--tip", "tool0"]
+    assert cli.main([*arguments, "--robot", "ur10_simulated", *described]) == 0
+    printed = capsys.readouterr().out
+    assert "999 N m" in printed
+    assert "computed from" not in printed
+    assert cli.main([*arguments, "--robot", "ur10_real", "--urdf", str(strong)]) == 0
+    said = f"note          {strong} is where limits are from, not computed from: "
+    assert said in capsys.readouterr().out
+    assert cli.main([*arguments, "--robot", "ur10_simulated", "--tip", "nowhere"]) == 2
+    assert "nowhere" in capsys.readouterr().err

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.verbs.common import names
+from inverse_dynamics.verbs.options import add_runs, add_verb
 
 if TYPE_CHECKING:
     from inverse_dynamics.comparison import Comparison
@@ -31,16 +32,14 @@ def add_parser(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
 ) -> argparse.ArgumentParser:
     """Declare the verb."""
-    parser = subparsers.add_parser(
+    parser = add_verb(
+        subparsers,
         "compare",
-        help="put evaluations of one recording side by side",
+        summary="put evaluations of one recording side by side",
         description="Put evaluations of one recording side by side: solvers, models, filters.",
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "runs", metavar="RUN", type=Path, nargs="+", help="results of `ids evaluate`, two or more"
-    )
+    add_runs(parser, ", two or more")
     parser.add_argument(
         "--labels",
         metavar="A,B,...",

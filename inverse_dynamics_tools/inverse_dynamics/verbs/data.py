@@ -7,6 +7,7 @@ import argparse
 from pathlib import Path
 
 from inverse_dynamics.verbs.common import progress_bar
+from inverse_dynamics.verbs.options import add_verb
 
 _EPILOG = """\
 examples:
@@ -25,12 +26,12 @@ def add_parser(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
 ) -> argparse.ArgumentParser:
     """Declare the verb."""
-    parser = subparsers.add_parser(
+    parser = add_verb(
+        subparsers,
         "data",
-        help="fetch the public recordings of a real UR10 and a real Panda",
+        summary="fetch the public recordings of a real UR10 and a real Panda",
         description="Fetch the public recordings of a real UR10 and a real Panda, and check them.",
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         "--out",

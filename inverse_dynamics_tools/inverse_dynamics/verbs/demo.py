@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.verbs.common import progress_bar
+from inverse_dynamics.verbs.options import add_verb
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -32,13 +33,13 @@ def add_parser(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
 ) -> argparse.ArgumentParser:
     """Declare the verb."""
-    parser = subparsers.add_parser(
+    parser = add_verb(
+        subparsers,
         "demo",
-        help="simulate and evaluate four robots, show them on one page",
+        summary="simulate and evaluate four robots, show them on one page",
         description="Simulate a UR10 and a Panda, compute the torques of their motion and, with "
         "recordings, of the real ones; compare them with the measured torques; show it on one page.",
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         "--out", metavar="DIR", type=Path, default=Path("demo"), help="results (default: demo)"

@@ -7,7 +7,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.common import names, positive_number, progress_bar, three_numbers
+from inverse_dynamics.verbs.common import positive_number, progress_bar
+from inverse_dynamics.verbs.options import add_robot, add_robot_changes, add_verb, robot_changes
 
 if TYPE_CHECKING:
     from inverse_dynamics.evaluation import Evaluation
@@ -58,14 +59,11 @@ def add_parser(
     from inverse_dynamics.effort import EFFORT_CHOICES
     from inverse_dynamics.joint_log import CLOCKS
 
-    parser = subparsers.add_parser(
+    parser = add_verb(
+        subparsers,
         "evaluate",
-        help="compute the torques of a recorded motion and compare them with the measured ones",
-        description=(
-            "Compute the torques of a recorded motion and compare them with the measured ones."
-        ),
+        summary="compute the torques of a recorded motion and compare them with the measured ones",
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         "bag",
@@ -74,12 +72,7 @@ def add_parser(
         help="rosbag2 recording of sensor_msgs/JointState or trajectory_msgs/JointTrajectory (a "
         "directory, or a .db3 or .mcap file), or a table of numbers (.csv or .txt)",
     )
-    parser.add_argument(
-        "--robot",
-        metavar="NAME|FILE",
-        required=True,
-        help="run configuration: a name that `ids robots` lists, or a YAML file",
-    )
+    add_robot(parser)
     parser.add_argument(
         "--out",
         metavar="DIR",
@@ -95,39 +88,10 @@ def add_parser(
         help="storage of the output recording (default: that of BAG)",
     )
 
-    robot = parser.add_argument_group("instead of what the run configuration says")
-    robot.add_argument("--plugin", metavar="PACKAGE/CLASS", help="solver (`ids robots --plugins`)")
-    robot.add_argument(
-        "--no-friction",
-        dest="friction",
-        action="store_false",
-        default=None,
-        help="leave the solver's friction out: for a robot whose controller compensates it",
-    )
-    robot.add_argument(
-        "--urdf",
-        metavar="FILE",
-        type=Path,
-        help="robot description; a .xacro file needs the tool xacro",
-    )
-    robot.add_argument("--root", metavar="LINK", help="first link of the chain")
-    robot.add_argument("--tip", metavar="LINK", help="last link of the chain")
-    robot.add_argument(
-        "--gravity",
-        metavar="X,Y,Z",
-        type=three_numbers,
-        help="where things fall [m/s^2], in the frame of the root link (usually 0,0,-9.81)",
-    )
+    robot = add_robot_changes(parser, "recording")
     robot.add_argument(
         "--topic", metavar="NAME", help="topic of the joint states, or of the trajectory"
     )
-    robot.add_argument(
-        "--joints",
-        metavar="A,B,...",
-        type=names,
-        help="names of the joints in the recording, in the order of the chain",
-    )
-
     robot.add_argument(
         "--effort-is",
         metavar="MEANING",
@@ -182,14 +146,8 @@ def run(arguments: argparse.Namespace) -> None:
         evaluation = evaluate(
             arguments.bag,
             robot,
-            plugin=arguments.plugin,
-            friction=arguments.friction,
-            urdf=arguments.urdf,
-            root=arguments.root,
-            tip=arguments.tip,
-            gravity=arguments.gravity,
+            **robot_changes(arguments),
             topic=arguments.topic,
-            joints=arguments.joints,
             effort_is=arguments.effort_is,
             accelerations=arguments.accelerations,
             cutoff=arguments.cutoff,

@@ -7,6 +7,7 @@ import argparse
 from pathlib import Path
 
 from inverse_dynamics.verbs.common import progress_bar
+from inverse_dynamics.verbs.options import add_runs, add_verb
 
 _EPILOG = """\
 examples:
@@ -33,16 +34,14 @@ def add_parser(
     """Declare the verb."""
     from inverse_dynamics.exports import FORMATS
 
-    parser = subparsers.add_parser(
+    parser = add_verb(
+        subparsers,
         "export",
-        help="write all series of evaluations as tables: CSV, Parquet",
+        summary="write all series of evaluations as tables: CSV, Parquet",
         description="Write all series of evaluations as tables: CSV or Parquet, one file each.",
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "runs", metavar="RUN", type=Path, nargs="+", help="results of `ids evaluate`"
-    )
+    add_runs(parser)
     parser.add_argument(
         "--format", choices=FORMATS, help="(default: that of --out by its ending, else csv)"
     )

@@ -7,6 +7,7 @@ import argparse
 from pathlib import Path
 
 from inverse_dynamics.verbs.common import names
+from inverse_dynamics.verbs.options import add_runs, add_verb
 
 _EPILOG = """\
 examples:
@@ -21,16 +22,14 @@ def add_parser(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
 ) -> argparse.ArgumentParser:
     """Declare the verb."""
-    parser = subparsers.add_parser(
+    parser = add_verb(
+        subparsers,
         "report",
-        help="make one HTML page of evaluations: the robot in motion beside its torques",
+        summary="make one HTML page of evaluations: the robot in motion beside its torques",
         description="Make one HTML page of evaluations: the robot in motion beside its torques.",
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "runs", metavar="RUN", type=Path, nargs="+", help="results of `ids evaluate`"
-    )
+    add_runs(parser)
     parser.add_argument(
         "--out",
         metavar="FILE",

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.verbs.options import add_verb
+
 if TYPE_CHECKING:
     import argparse
 
@@ -23,14 +25,12 @@ def add_parser(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
 ) -> argparse.ArgumentParser:
     """Declare the verb."""
-    import argparse
-
-    parser = subparsers.add_parser(
+    parser = add_verb(
+        subparsers,
         "robots",
-        help="list robots, show one",
+        summary="list robots, show one",
         description="List the run configurations of the sourced workspaces, or show one.",
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("robot", nargs="?", metavar="NAME|FILE", help="show this one")
     parser.add_argument("--plugins", action="store_true", help="list installed solvers instead")

@@ -8,7 +8,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.common import positive_number, progress_bar, three_numbers
+from inverse_dynamics.verbs.common import positive_number, progress_bar
+from inverse_dynamics.verbs.options import add_gravity, add_robot, add_verb
 
 if TYPE_CHECKING:
     from inverse_dynamics.simulation import Payload, Resolution, SimulatedRun
@@ -45,22 +46,17 @@ def add_parser(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
 ) -> argparse.ArgumentParser:
     """Declare the verb."""
-    parser = subparsers.add_parser(
+    parser = add_verb(
+        subparsers,
         "simulate",
-        help="record a simulated robot (MuJoCo) following an exciting trajectory",
+        summary="record a simulated robot (MuJoCo) following an exciting trajectory",
         description=(
             "Simulate a robot (MuJoCo) under a joint trajectory controller that commands efforts, "
             "while it follows an exciting trajectory, and record its joint states to a bag."
         ),
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "--robot",
-        metavar="NAME|FILE",
-        required=True,
-        help="run configuration: a name that `ids robots` lists, or a YAML file",
-    )
+    add_robot(parser)
     parser.add_argument("--out", metavar="BAG", type=Path, required=True, help="the new recording")
     parser.add_argument(
         "--overwrite", action="store_true", help="replace an older simulated recording"
@@ -120,12 +116,7 @@ def add_parser(
         "velocity limit (without a value: 0.02); urdf: what the description's <dynamics> says",
     )
     gravity = robot.add_mutually_exclusive_group()
-    gravity.add_argument(
-        "--gravity",
-        metavar="X,Y,Z",
-        type=three_numbers,
-        help="where things fall [m/s^2], in the frame of the root link (usually 0,0,-9.81)",
-    )
+    add_gravity(gravity)
     gravity.add_argument(
         "--mount", choices=_MOUNTS, help="floor; wall: the x axis up; ceiling: upside down"
     )

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 
-from inverse_dynamics.verbs.common import names, three_numbers
+from inverse_dynamics.verbs.common import progress_bar
+from inverse_dynamics.verbs.options import add_robot, add_robot_changes, add_verb, robot_changes
 
 _EPILOG = """\
 examples:
@@ -22,7 +22,8 @@ examples:
   ids torques planned --robot panda_real --no-friction --out filled
       for a robot whose controller compensates friction itself
 
-positions, velocities and accelerations of each point are needed. The table on the screen says which
+positions, velocities and accelerations of each point are needed. A directory gets torques.json too:
+how it was computed, and each joint's peak. The table on the screen says which
 joint would pass the effort limit of the robot description, and when first.
 """
 
@@ -31,12 +32,11 @@ def add_parser(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
 ) -> argparse.ArgumentParser:
     """Declare the verb."""
-    parser = subparsers.add_parser(
+    parser = add_verb(
+        subparsers,
         "torques",
-        help="fill in the efforts of a planned trajectory, and check them against the limits",
-        description="Fill in the efforts of a planned trajectory, and check them against the limits.",
+        summary="fill in the efforts of a planned trajectory, and check them against the limits",
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         "trajectory",
@@ -44,18 +44,16 @@ def add_parser(
         type=Path,
         help="rosbag2 recording of trajectory_msgs/JointTrajectory, or a table (.csv or .txt)",
     )
-    parser.add_argument(
-        "--robot",
-        metavar="NAME|FILE",
-        required=True,
-        help="run configuration: a name that `ids robots` lists, or a YAML file",
-    )
+    add_robot(parser)
     parser.add_argument(
         "--out",
         metavar="OUT",
         type=Path,
         required=True,
-        help="the copy with efforts: a directory for a recording, a file for a table; a new one",
+        help="the copy with efforts: a directory for a recording, a file for a table",
+    )
+    parser.add_argument(
+        "--overwrite", action="store_true", help="replace an older result of that name"
     )
     parser.add_argument(
         "--topic",
@@ -63,54 +61,35 @@ def add_parser(
         default="",
         help="topic of the trajectories, if there are several",
     )
-    robot = parser.add_argument_group("instead of what the run configuration says")
-    robot.add_argument("--plugin", metavar="PACKAGE/CLASS", help="solver (`ids robots --plugins`)")
-    robot.add_argument(
-        "--no-friction",
-        dest="friction",
-        action="store_false",
-        default=None,
-        help="leave the solver's friction out: for a robot whose controller compensates it",
-    )
-    robot.add_argument(
-        "--gravity",
-        metavar="X,Y,Z",
-        type=three_numbers,
-        help="where things fall [m/s^2], in the frame of the root link (usually 0,0,-9.81)",
-    )
-    robot.add_argument(
-        "--joints",
-        metavar="A,B,...",
-        type=names,
-        help="names of the joints in the trajectory, in the order of the chain",
-    )
+    add_robot_changes(parser, "trajectory")
     return parser
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.csv_table import is_csv
-    from inverse_dynamics.files import check_output_directory, check_output_file
-    from inverse_dynamics.robots import load_robot
+    from inverse_dynamics.feed_forward_files import check_output
+    from inverse_dynamics.robots import load_robot, with_changes
 
-    check = check_output_file if is_csv(arguments.trajectory) else check_output_directory
-    check(arguments.out)  # before the work
+    robot = with_changes(load_robot(arguments.robot), **robot_changes(arguments))
+    check_output(arguments.trajectory, arguments.out, overwrite=arguments.overwrite)
 
     from rich.console import Console
 
     from inverse_dynamics.feed_forward import trajectory_torques
     from inverse_dynamics.feed_forward_files import write_trajectory_torques
+    from inverse_dynamics.solvers import description_notes
     from inverse_dynamics.tables import load_table
 
-    changes = {
-        key: value
-        for key in ("plugin", "friction", "gravity", "joints")
-        if (value := getattr(arguments, key)) is not None
-    }
-    robot = replace(load_robot(arguments.robot), **changes)
-    result = trajectory_torques(arguments.trajectory, robot, topic=arguments.topic)
-    notes = write_trajectory_torques(result, arguments.out)
+    with progress_bar() as progress:
+        result = trajectory_torques(
+            arguments.trajectory, robot, topic=arguments.topic, progress=progress
+        )
+        notes = write_trajectory_torques(
+            result, arguments.out, overwrite=arguments.overwrite, progress=progress
+        )
 
+    if arguments.urdf is not None:
+        notes = (*notes, *description_notes(robot, "where limits are from"))
     console = Console(highlight=False, markup=False, soft_wrap=True)
     console.print(robot.description or robot.name, style="bold")
     console.print(f"solver        {robot.plugin}{'' if robot.friction else ', friction left out'}")

@@ -7,6 +7,7 @@ import argparse
 from pathlib import Path
 
 from inverse_dynamics.verbs.common import positive_number, progress_bar
+from inverse_dynamics.verbs.options import add_verb
 
 _EPILOG = """\
 examples:
@@ -22,12 +23,12 @@ def add_parser(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
 ) -> argparse.ArgumentParser:
     """Declare the verb."""
-    parser = subparsers.add_parser(
+    parser = add_verb(
+        subparsers,
         "video",
-        help="make an animated GIF: the robot in motion beside its torques",
+        summary="make an animated GIF: the robot in motion beside its torques",
         description="Make an animated GIF of an evaluation: the robot in motion beside its torques.",
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("evaluation", metavar="RUN", type=Path, help="result of `ids evaluate`")
     parser.add_argument("--out", metavar="FILE", type=Path, help="the video (default: RUN.gif)")

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Verbs and options that several verbs have."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from inverse_dynamics.verbs.common import names, three_numbers
+
+# Options of add_robot_changes(), by the names that with_changes() has for them.
+_CHANGES = ("plugin", "friction", "urdf", "root", "tip", "gravity", "joints")
+
+
+def add_verb(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+    name: str,
+    *,
+    summary: str,
+    description: str = "",
+    epilog: str,
+) -> argparse.ArgumentParser:
+    """A verb. summary: in the list of verbs; description: of its own help, else the summary."""
+    return subparsers.add_parser(
+        name,
+        help=summary,
+        description=description or f"{summary[0].upper()}{summary[1:]}.",
+        epilog=epilog,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+
+
+def add_runs(parser: argparse.ArgumentParser, more: str = "") -> None:
+    """RUN..., read by read_evaluation()."""
+    parser.add_argument(
+        "runs", metavar="RUN", type=Path, nargs="+", help=f"results of `ids evaluate`{more}"
+    )
+
+
+def add_robot(parser: argparse.ArgumentParser) -> None:
+    """--robot, read by load_robot()."""
+    parser.add_argument(
+        "--robot",
+        metavar="NAME|FILE",
+        required=True,
+        help="run configuration: a name that `ids robots` lists, or a YAML file",
+    )
+
+
+def add_gravity(group: argparse._ActionsContainer) -> None:
+    """--gravity."""
+    group.add_argument(
+        "--gravity",
+        metavar="X,Y,Z",
+        type=three_numbers,
+        help="where things fall [m/s^2], in the frame of the root link (usually 0,0,-9.81)",
+    )
+
+
+def add_robot_changes(parser: argparse.ArgumentParser, what: str) -> argparse._ArgumentGroup:
+    """Options that stand instead of what the run configuration says. what: the joints are named in."""
+    group = parser.add_argument_group("instead of what the run configuration says")
+    group.add_argument("--plugin", metavar="PACKAGE/CLASS", help="solver (`ids robots --plugins`)")
+    group.add_argument(
+        "--no-friction",
+        dest="friction",
+        action="store_false",
+        default=None,
+        help="leave the solver's friction out: for a robot whose controller compensates it",
+    )
+    group.add_argument(
+        "--urdf",
+        metavar="FILE",
+        type=Path,
+        help="robot description; a .xacro file needs the tool xacro",
+    )
+    group.add_argument("--root", metavar="LINK", help="first link of the chain")
+    group.add_argument("--tip", metavar="LINK", help="last link of the chain")
+    add_gravity(group)
+    group.add_argument(
+        "--joints",
+        metavar="A,B,...",
+        type=names,
+        help=f"names of the joints in the {what}, in the order of the chain",
+    )
+    return group
+
+
+def robot_changes(arguments: argparse.Namespace) -> dict[str, Any]:
+    """What add_robot_changes() was told; None: nothing."""
+    return {name: getattr(arguments, name) for name in _CHANGES}
