@@ -126,8 +126,8 @@ def _check_there(path: Path) -> None:
     """What can be said of a path before it is opened."""
     if not path.exists():
         raise BagError(
-            f"{path}: no such file or directory; expected a rosbag2 recording: a directory with "
-            "metadata.yaml, or a .db3 or .mcap file"
+            f"{path}: no such file or directory; expected a rosbag2 recording (a directory with "
+            "metadata.yaml, or a .db3 or .mcap file), or a table (.csv or .txt)"
         )
     if path.is_dir():
         if (path / "metadata.yaml").exists():
@@ -149,7 +149,7 @@ def _check_there(path: Path) -> None:
     if path.suffix not in {".db3", ".mcap"}:
         raise BagError(
             f"{path}: is not a rosbag2 recording: expected a directory with metadata.yaml, or a "
-            f".db3 or .mcap file, got '{path.name}'"
+            f".db3 or .mcap file (or a table, .csv or .txt), got '{path.name}'"
         )
     if path.stat().st_size == 0:
         raise BagError(

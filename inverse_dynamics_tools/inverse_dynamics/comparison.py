@@ -44,7 +44,7 @@ def compare(evaluations: Sequence[Evaluation], labels: Sequence[str] = ()) -> Co
 
     labels: what to call them; empty: by what differs (solver, robot, friction, accelerations).
     Raises UserError: fewer than two, other recordings, other meanings of their efforts, other
-    numbers of labels.
+    numbers of labels, or labels that are the same.
     """
     if len(evaluations) < 2:
         raise UserError(f"compare: expected two evaluations or more, got {len(evaluations)}")
@@ -53,6 +53,8 @@ def compare(evaluations: Sequence[Evaluation], labels: Sequence[str] = ()) -> Co
         _check_same_recording(first, other)
     if labels and len(labels) != len(evaluations):
         raise UserError(f"compare: expected {len(evaluations)} labels, got {len(labels)}")
+    if twice := [label for label in labels if list(labels).count(label) > 1]:
+        raise UserError(f"compare: expected a label of its own for each run, got twice: {twice[0]}")
     return Comparison(tuple(evaluations), tuple(labels) or _labels(evaluations))
 
 

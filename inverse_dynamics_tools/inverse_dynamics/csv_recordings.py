@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from inverse_dynamics.joint_log import Floats, Integers, Progress
+    from inverse_dynamics.joint_log import Clock, Floats, Integers, Progress
 
 TIME = "time"
 EFFORT = "effort"
@@ -47,13 +47,12 @@ _UNITS = ((5e5, "nanoseconds", 1e9), (5e2, "microseconds", 1e6), (0.0, "millisec
 
 
 def read_csv_log(
-    path: Path, joints: Sequence[str] = (), *, progress: Progress = no_progress
+    table: CsvTable, joints: Sequence[str] = (), *, progress: Progress = no_progress
 ) -> JointLog:
-    """Samples of a text file. joints: none: those of the file, by number if it has no names.
+    """Samples of a table. joints: none: those of the file, by number if it has no names.
 
     Raises BagError.
     """
-    table = CsvTable(path)
     rtde = _is_rtde(table.names)
     measured = CURRENT if rtde else _measured(table, joints)
     if rtde:
@@ -64,7 +63,7 @@ def read_csv_log(
     values = read_columns(table, time_name, columns, progress)
     time = values.pop(TIME)[:, 0]
     if len(time) < 2:
-        raise BagError(f"{path}: expected at least 2 rows after the header, got {len(time)}")
+        raise BagError(f"{table.path}: expected at least 2 rows after the header, got {len(time)}")
     check_seconds(table, time_name, time)
     stamps: Integers = np.asarray(np.round(time * 1e9), dtype=np.int64)
     return JointLog(
@@ -81,6 +80,16 @@ def read_csv_log(
             table, [time_name, *(name for names in columns.values() for name in names)]
         ),
     )
+
+
+def open_table(path: Path, *, topic: str = "", clock: Clock = "auto") -> CsvTable:
+    """The table of a file. Raises BagError, also where a topic or a clock is asked for: it has none."""
+    for option, given in (("topic", topic), ("clock", "" if clock == "auto" else clock)):
+        if given:
+            raise BagError(
+                f"{path}: --{option} {given}: a table has no {option}s, recordings have; leave it out"
+            )
+    return CsvTable(path)
 
 
 def generic_columns(

@@ -134,6 +134,10 @@ def compared_torques(
 def effort_notes(effort: Effort, solver: Solver, robot: Robot, log: JointLog) -> list[str]:
     """What a reader of the results should know of it, a sentence each."""
     said = []
+    if len(log) and not log.effort.any():
+        said.append(
+            "all recorded efforts are zero: does the robot's driver measure them? Some publish zeros"
+        )
     if effort.verdict and not effort.verdict.sure:
         said.append(
             f"the data don't tell what effort means: {effort.verdict.reason}; taken as "

@@ -17,8 +17,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.csv_recordings import TIME, check_seconds, generic_columns, read_columns
-from inverse_dynamics.csv_table import CsvTable, is_csv
+from inverse_dynamics.csv_recordings import (
+    TIME,
+    check_seconds,
+    generic_columns,
+    open_table,
+    read_columns,
+)
+from inverse_dynamics.csv_table import is_csv
 from inverse_dynamics.descriptions import effort_limits, joint_units, read_description
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.evaluation import names_in_recording
@@ -30,6 +36,7 @@ from inverse_dynamics.solvers import open_solver
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from inverse_dynamics.csv_table import CsvTable
     from inverse_dynamics.joint_log import Floats, Integers, Progress
 
 _FAR_LONGER = 100.0  # times; milliseconds make it 1000 times
@@ -115,7 +122,7 @@ def trajectory_torques(
     joints = names_in_recording(robot, tuple(solver.joint_names))
     trajectories: list[JointTrajectory] = []
     if is_csv(path):
-        states = [_states_of_table(CsvTable(path), joints, progress)]
+        states = [_states_of_table(open_table(path, topic=topic), joints, progress)]
     else:
         trajectories = read_joint_trajectories(path, topic, progress)
         states = [_states_of_message(trajectory, joints) for trajectory in trajectories]

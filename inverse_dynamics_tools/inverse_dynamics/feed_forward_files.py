@@ -13,7 +13,7 @@ import numpy as np
 
 from inverse_dynamics.bag_reader import BagReader, error_text
 from inverse_dynamics.csv_table import CsvTable, is_csv
-from inverse_dynamics.errors import BagError
+from inverse_dynamics.errors import BagError, OutputError
 from inverse_dynamics.files import (
     check_output_directory,
     check_output_file,
@@ -42,6 +42,10 @@ _SELDOM = 1000  # messages between two words on the progress
 def check_output(path: Path, out: Path, *, overwrite: bool = False) -> None:
     """Raise OutputError unless the copy of a file `path` may be made at `out`."""
     if is_csv(path):
+        if not is_csv(out):
+            raise OutputError(
+                f"{out}: expected a name ending in .csv or .txt, as {path.name} is a table"
+            )
         check_output_file(out, overwrite=overwrite)
     else:
         check_output_directory(out, overwrite=overwrite, mark=MARK)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from inverse_dynamics import joint_state_cdr, joint_trajectories
 from inverse_dynamics.bag_reader import BagReader
 from inverse_dynamics.bags import read_joint_log
-from inverse_dynamics.csv_recordings import read_csv_log
+from inverse_dynamics.csv_recordings import open_table, read_csv_log
 from inverse_dynamics.csv_table import is_csv
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.joint_log import CLOCKS, no_progress
@@ -48,7 +48,7 @@ def read_recording(
     if clock not in CLOCKS:
         raise BagError(f"clock: expected one of {', '.join(CLOCKS)}, got '{clock}'")
     if is_csv(path):
-        return read_csv_log(path, joints, progress=progress)
+        return read_csv_log(open_table(path, topic=topic, clock=clock), joints, progress=progress)
     with BagReader(path) as bag:
         storage = bag.storage
         types = {summary.name: summary.message_type for summary in bag.topics()}

@@ -189,6 +189,12 @@ def test_robots_shows_one(ids):
     fails(ids("robots", "ur11"), "expected one of")
 
 
+def test_robots_shows_either_one_robot_or_solvers(ids):
+    fails(
+        ids("robots", "panda_real", "--plugins"), "--plugins: not allowed with argument NAME|FILE"
+    )
+
+
 def test_robots_lists_solvers(ids):
     assert UR10 in ids("robots", "--plugins")[1].splitlines()
 

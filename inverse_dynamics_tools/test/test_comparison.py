@@ -65,6 +65,7 @@ def test_the_verb_says_what_it_needs(tmp_path, evaluation, capsys):
     for arguments, said in (
         ([run], "compare: expected two evaluations or more, got 1"),
         ([run, run, "--labels", "one"], "compare: expected 2 labels, got 1"),
+        ([run, run, "--labels", "a,a"], "expected a label of its own for each run, got twice: a"),
         ([run, str(tmp_path)], "holds no evaluation.json; expected one written by `ids evaluate`"),
     ):
         assert cli.main(["compare", *arguments]) == 2

@@ -193,6 +193,20 @@ def test_what_is_wrong_with_a_table_is_said(file, text, expected):
     fails(file, text, expected)
 
 
+@pytest.mark.parametrize(
+    ("option", "said"),
+    [
+        ({"topic": "/states"}, "--topic /states: a table has no topics"),
+        ({"clock": "receive"}, "--clock receive: a table has no clocks"),
+    ],
+)
+def test_what_only_bags_have_cannot_be_chosen(file, option, said):
+    file.write_text(HEADER + ROWS)
+    with pytest.raises(BagError, match=f"{said}, recordings have; leave it out"):
+        read_recording(file, **option)
+    assert len(read_recording(file, usual_topic="/joint_states")) == 2
+
+
 def test_accelerations_of_some_joints_are_not_enough(file):
     header = "time,position.a,velocity.a,effort.a,position.b,velocity.b,effort.b,acceleration.a\n"
     fails(

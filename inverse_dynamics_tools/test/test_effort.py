@@ -119,6 +119,13 @@ def currents_by_format(monkeypatch):
     )
 
 
+def test_efforts_that_are_all_zero_are_said(tmp_path, bags, solver, robot):
+    recording(tmp_path / "nothing", solver, effort=np.zeros((1500, 6)))
+    said = "all recorded efforts are zero: does the robot's driver measure them? Some publish zeros"
+    assert said in evaluate(tmp_path / "nothing", robot).notes
+    assert said not in evaluate(bags / "torque", robot).notes
+
+
 @pytest.mark.usefixtures("currents_by_format")
 def test_the_format_goes_before_the_configuration_and_the_option_before_both(bags, robot):
     result = evaluate(bags / "current", robot)

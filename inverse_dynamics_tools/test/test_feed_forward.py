@@ -251,6 +251,18 @@ def test_a_table_whose_time_is_not_in_seconds_is_refused(tmp_path, robot, factor
         trajectory_torques(tmp_path / "plan.csv", robot)
 
 
+def test_a_table_has_no_topics_and_stays_a_table(tmp_path, robot):
+    q, _, qdd, _ = motion()
+    write_table(tmp_path / "plan.csv", table_of(0 * q, qdd))
+    with pytest.raises(BagError, match="--topic /planned: a table has no topics"):
+        trajectory_torques(tmp_path / "plan.csv", robot, topic="/planned")
+    result = trajectory_torques(tmp_path / "plan.csv", robot)
+    with pytest.raises(
+        OutputError, match=r"expected a name ending in \.csv or \.txt, as plan\.csv"
+    ):
+        write_trajectory_torques(result, tmp_path / "filled")
+
+
 def test_points_of_a_plan_may_be_seconds_apart(tmp_path, robot):
     q, _, qdd, _ = motion()
     table = {name: column[::500] for name, column in table_of(0 * q, qdd).items()}

@@ -191,9 +191,13 @@ def test_descriptions_that_cannot_be_simulated(urdf: str, chain: dict[str, str],
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize("payload", [Payload(-1.0), Payload(0.0), Payload(np.nan)])
-def test_payload_needs_a_mass(payload: Payload) -> None:
-    with pytest.raises(SimulationError, match="payload: expected a positive mass"):
+@pytest.mark.parametrize(
+    ("payload", "got"),
+    [(Payload(-1.0), "-1"), (Payload(0.0, (0.0, 0.0, 0.1)), "0"), (Payload(np.nan), "nan")],
+)
+def test_payload_needs_a_mass(payload: Payload, got: str) -> None:
+    text = rf"payload: expected a mass above zero \[kg\].*, got {got} kg at 0, 0, 0"
+    with pytest.raises(SimulationError, match=text):
         SimulatedRobot.from_urdf(pendulum(), payload=payload)
 
 

@@ -164,7 +164,8 @@ def _line(error: Exception) -> str:
 def _attach(spec: mujoco.MjSpec, tip: str, payload: Payload) -> None:
     if not (np.isfinite(payload.mass) and payload.mass > 0 and np.isfinite(payload.center).all()):
         raise SimulationError(
-            f"payload: expected a positive mass in kg and a finite centre of mass, got {payload}"
+            "payload: expected a mass above zero [kg] and a finite centre of mass [m], got "
+            f"{payload.mass:g} kg at {', '.join(f'{x:g}' for x in payload.center)}"
         )
     spec.body(tip).add_body(
         name="ids_payload",

@@ -85,7 +85,7 @@ def add_parser(
     parser.add_argument(
         "--storage",
         choices=("sqlite3", "mcap"),
-        help="storage of the output recording (default: that of BAG)",
+        help="storage of the output recording (default: that of BAG; of a table: sqlite3)",
     )
 
     robot = add_robot_changes(parser, "recording")

@@ -32,8 +32,9 @@ def add_parser(
         description="List the run configurations of the sourced workspaces, or show one.",
         epilog=_EPILOG,
     )
-    parser.add_argument("robot", nargs="?", metavar="NAME|FILE", help="show this one")
-    parser.add_argument("--plugins", action="store_true", help="list installed solvers instead")
+    shown = parser.add_mutually_exclusive_group()
+    shown.add_argument("robot", nargs="?", metavar="NAME|FILE", help="show this one")
+    shown.add_argument("--plugins", action="store_true", help="list installed solvers instead")
     return parser
 
 
