@@ -13,6 +13,7 @@ from inverse_dynamics.descriptions import read_description
 from inverse_dynamics.evaluation import evaluate
 from inverse_dynamics.robots import load_robot
 from inverse_dynamics.simulation import MOUNTS, simulate, write_run
+from inverse_dynamics.simulation.match import greatest_differences
 from inverse_dynamics.solvers import open_solver
 
 ROBOTS = ("ur10_simulated", "panda_simulated")
@@ -49,6 +50,19 @@ def test_default_evaluation_is_within_one_percent_of_each_torque_range(
     evaluation = evaluate(recording, recording.name, plugin=plugin)
     for error in evaluation.errors:
         assert error.nrmse < 0.01, error
+
+
+def test_what_is_left_where_nothing_is_estimated_is_said_by_joint() -> None:
+    robot = load_robot("ur10_simulated")
+    run = simulate(robot, joint_friction=0.02, duration=1.0)
+    solver = open_solver(robot, read_description(robot.urdf))
+    assert greatest_differences(run, solver).max() < 1e-6
+    off = run.motion.effort.copy()
+    off[7, 2] -= 3.0
+    spoiled = replace(run, motion=replace(run.motion, effort=off))
+    left = greatest_differences(spoiled, solver)
+    assert left[2] == pytest.approx(3.0, abs=1e-6)
+    assert np.delete(left, 2).max() < 1e-6
 
 
 def test_other_gravity_is_evaluated_with_the_same_gravity(tmp_path: Path) -> None:
