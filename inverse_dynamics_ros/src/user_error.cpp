@@ -21,9 +21,9 @@ bool isOneOf(const std::exception& error) {
 Failure failureOf(const std::exception& error) {
   if (isOneOf<rclcpp::exceptions::InvalidParameterTypeException, rclcpp::ParameterTypeException>(
           error)) {
-    return {kExitUserError,
-            std::string(error.what()) +
-                "; a number with a decimal point (5.0) is a double, one without an integer"};
+    return {kExitUserError, std::string(error.what()) +
+                                " A number with a decimal point (5.0) is a double, without one (5) "
+                                "an integer."};
   }
   const bool repairable = isOneOf<
       UserError, inverse_dynamics_solver::Exception, inverse_dynamics_evaluation::EvaluationError,

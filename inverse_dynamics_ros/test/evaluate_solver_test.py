@@ -141,7 +141,7 @@ CASES = {
     "unknown_tip": Case({"ids.tip": "tool9"}, 2, ["tool9"]),
     "mistyped": Case({"topic": 5}, 2, ["parameter 'topic' has invalid type"]),
     "mistyped_number": Case(
-        {"cutoff": 5}, 2, ["cutoff", "a number with a decimal point (5.0) is a double"]
+        {"cutoff": 5}, 2, ["cutoff", "A number with a decimal point (5.0) is a double"]
     ),
     "bad_choice": Case({"accelerations": "savgol"}, 2, ["accelerations", "savgol"]),
     "bad_gravity": Case(

@@ -115,15 +115,20 @@ class TestLiveNode(unittest.TestCase):
 
         self.until(is_so, f"{task}: expected {LEVELS[level]}, {text}")
 
+    def spin(self, seconds):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            rclpy.spin_once(self.node, timeout_sec=0.002)
+
     def play(self, begin, seconds, change=lambda message: message, more_effort=0.5):
         """Joint states at 100 Hz, in real time, from a stamp on."""
+        self.spin(0.3)  # what is still under way belongs to what was played before
         self.torques.clear()
         self.residuals.clear()
         for k in range(round(100 * seconds)):
             self.states.publish(change(joint_state(begin + 0.01 * k, more_effort)))
-            end = time.monotonic() + 0.01
-            while time.monotonic() < end:
-                rclpy.spin_once(self.node, timeout_sec=0.002)
+            self.spin(0.01)
+        self.spin(0.3)
 
     def test_1_waits_for_the_description(self, proc_output):
         proc_output.assertWaitFor(
