@@ -204,7 +204,9 @@ def evaluate_robot(name: str) -> LaunchDescription:
 
 def _include_evaluation(context: LaunchContext, robot: dict[str, Any]) -> list[Action]:
     description, origin = robot_description(robot, text(context, "description"))
+    own = [*bag_arguments(), *sample_arguments()]
     arguments = {
+        **{argument.name: text(context, argument.name) for argument in own},
         "plugin_name": robot["plugin"],
         "robot_description": description,
         "root": robot.get("root", ""),

@@ -11,6 +11,7 @@ from pathlib import Path
 from ament_index_python.packages import get_package_share_directory
 from launch import LaunchDescription
 from launch_testing.actions import ReadyToTest
+from launch_testing.util import KeepAliveProc
 
 sys.path.insert(0, str(Path(__file__).parent))
 import recordings
@@ -37,7 +38,7 @@ JOINTS = {
 
 
 def generate_test_description():
-    return LaunchDescription([ReadyToTest()])
+    return LaunchDescription([KeepAliveProc(), ReadyToTest()])  # tests start what they test
 
 
 def arm_states(joints):
