@@ -79,7 +79,7 @@ def bag_arguments(default_topic: str = "/torques") -> list[DeclareLaunchArgument
 
 
 def sample_arguments(
-    accelerations: str = "auto", cutoff: float = 0.0, effort: str = "torque"
+    accelerations: str = "auto", cutoff: float = 0.0, effort: str = "torque", drive_gains: str = ""
 ) -> list[DeclareLaunchArgument]:
     """Arguments about what the samples mean."""
     return [
@@ -95,8 +95,34 @@ def sample_arguments(
             default_value=str(cutoff),
             description="Cut-off of the low-pass [Hz]; 0.0: chosen from the data",
         ),
-        choice("effort", "What recorded efforts mean", _EFFORTS, effort),
+        *effort_arguments(effort, drive_gains),
     ]
+
+
+def effort_arguments(effort: str = "torque", drive_gains: str = "") -> list[DeclareLaunchArgument]:
+    """Arguments about what measured efforts mean."""
+    return [
+        choice("effort", "What measured efforts mean", _EFFORTS, effort),
+        DeclareLaunchArgument(
+            "drive_gains",
+            default_value=drive_gains,
+            description="Torque per current of each joint [N m/A], comma-separated, for "
+            "effort:=current; empty: the solver's, if it has any",
+        ),
+    ]
+
+
+def effort_parameters(context: LaunchContext) -> dict[str, Any]:
+    """Node parameters of the arguments of effort_arguments(). Raises ValueError."""
+    parameters: dict[str, Any] = {"effort": string(text(context, "effort"))}
+    if gains := text(context, "drive_gains"):
+        try:
+            parameters["drive_gains"] = [float(gain) for gain in gains.split(",")]
+        except ValueError:
+            raise ValueError(
+                f"argument drive_gains: expected numbers, 12.5,12.5 for one, got '{gains}'"
+            ) from None
+    return parameters
 
 
 def solver_arguments() -> list[DeclareLaunchArgument]:
@@ -195,6 +221,7 @@ def evaluate_robot(name: str) -> LaunchDescription:
                 accelerations.get("method", "auto"),
                 float(accelerations.get("cutoff", 0.0)),
                 robot.get("effort", "torque"),
+                ",".join(str(gain) for gain in robot.get("drive_gains", [])),
             ),
             choice("description", "Where the robot description comes from", SOURCES, "auto"),
             OpaqueFunction(function=_include_evaluation, args=[robot]),

@@ -7,6 +7,7 @@ ros2 launch inverse_dynamics_ros evaluate_solver.launch.py --show-args
 from inverse_dynamics_ros.launch_files import (
     bag_arguments,
     choice,
+    effort_parameters,
     failing_with_its_node,
     number,
     sample_arguments,
@@ -38,9 +39,9 @@ def nodes(context):
             "input_topic",
             "clock",
             "accelerations",
-            "effort",
         )
     }
+    parameters |= effort_parameters(context)
     parameters["cutoff"] = number(context, "cutoff")
     if rules := text(context, "without_rules"):
         parameters["without_rules"] = [rule.strip() for rule in rules.split(",")]

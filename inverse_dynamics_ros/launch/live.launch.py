@@ -7,9 +7,10 @@ ros2 launch inverse_dynamics_ros live.launch.py --show-args
 
 from inverse_dynamics_ros.launch_files import (
     choice,
+    effort_arguments,
+    effort_parameters,
     failing_with_its_node,
     number,
-    sample_arguments,
     solver_arguments,
     solver_parameters,
     string,
@@ -29,8 +30,8 @@ RELIABILITIES = {
 def nodes(context):
     """The node by itself, or as a component of a container."""
     topic = text(context, "joint_states")
-    parameters = solver_parameters(context) | {
-        "effort": string(text(context, "effort")),
+    parameters = solver_parameters(context) | effort_parameters(context)
+    parameters |= {
         "cutoff": number(context, "cutoff"),
         "use_sim_time": text(context, "use_sim_time") == "true",
         f"qos_overrides.{topic}.subscription.reliability": string(text(context, "reliability")),
@@ -52,11 +53,10 @@ def nodes(context):
 
 def generate_launch_description():
     """What `ros2 launch` asks for."""
-    effort = next(argument for argument in sample_arguments() if argument.name == "effort")
     return LaunchDescription(
         [
             *solver_arguments(),
-            effort,
+            *effort_arguments(),
             DeclareLaunchArgument(
                 "cutoff",
                 default_value="5.0",

@@ -98,6 +98,15 @@ class TestLaunchFiles(unittest.TestCase):
         expected = weight * (recordings.LENGTH * qdd + 1.0 * recordings.math.sin(q))
         self.assertAlmostEqual(first.effort[0], expected, delta=0.02)
 
+    def test_compare_currents_by_drive_gains(self):
+        run = self.evaluate(
+            f"robot_description:={PENDULUM}", "effort:=current", "drive_gains:=2", name="currents"
+        )
+        self.assertEqual(run.returncode, 0, run.stdout)
+        self.assertIn("current, with drive gains 2 N m/A", run.stdout)
+        measured, _ = read_bag(FOLDER / "currents")["/torques_gt"][0]
+        self.assertEqual(measured.effort[0], 2 * recordings.joint_state(1.0).effort[1])
+
     def test_end_with_an_error_where_the_program_does(self):
         run = self.evaluate(name="not_written")
         self.assertEqual(run.returncode, 1, run.stdout)
@@ -106,6 +115,8 @@ class TestLaunchFiles(unittest.TestCase):
         run = self.evaluate(f"robot_description:={PENDULUM}", "gravity:=down", name="not_written")
         self.assertEqual(run.returncode, 1)
         self.assertIn("argument gravity: expected three numbers, [0, 0, -9.81]", run.stdout)
+        run = self.evaluate("drive_gains:=2;3", name="not_written")
+        self.assertIn("argument drive_gains: expected numbers", run.stdout)
         run = self.evaluate("effort:=volts", name="not_written")
         self.assertEqual(run.returncode, 1)
         self.assertIn("effort", run.stdout)
