@@ -10,6 +10,8 @@ namespace {
 
 bool isWithin(double value, Range range) {
   switch (range) {
+    case Range::kAny:
+      return !std::isnan(value);
     case Range::kNotNegative:
       return std::isfinite(value) && value >= 0;
     case Range::kPositive:
@@ -22,6 +24,8 @@ bool isWithin(double value, Range range) {
 
 const char* inWords(Range range) {
   switch (range) {
+    case Range::kAny:
+      return "a number, or infinity for no limit";
     case Range::kNotNegative:
       return "a finite number that isn't negative";
     case Range::kPositive:

@@ -11,6 +11,7 @@ namespace inverse_dynamics_control {
 
 /// What the numbers of an option must be.
 enum class Range {
+  kAny,               ///< not NaN
   kNotNegative,       ///< finite and >= 0
   kPositive,          ///< finite and > 0
   kPositiveOrAbsent,  ///< > 0, infinity for none

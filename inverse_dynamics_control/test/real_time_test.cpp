@@ -24,6 +24,7 @@ TEST(RealTime, NoCycleAllocates) {
   GravityCompensation gravity_compensation(solver, options);
   FeedForward feed_forward(solver, ModelState::kMeasured, options);
   SafeStop stop(vec({1.0, 1.0}), solver->jointNames());
+  ReferenceGuard reference_guard(ReferenceLimits::none(2), vec({1.0, 1.0}), solver->jointNames());
 
   JointState good = stateOf(vec({0.3, -1.0}), vec({0.7, 1.1})), bad = good;
   bad.q[0] = kNan;
@@ -50,6 +51,8 @@ TEST(RealTime, NoCycleAllocates) {
               0);
     EXPECT_EQ(allocations([&] { stop.begin(state->q, state->qd); }), 0);
     EXPECT_EQ(allocations([&] { stop.advance(kPeriod, reference); }), 0);
+    EXPECT_EQ(allocations([&] { reference_guard.start(state->q); }), 0);
+    EXPECT_EQ(allocations([&] { reference_guard.next(reference, kPeriod); }), 0);
   }
 }
 

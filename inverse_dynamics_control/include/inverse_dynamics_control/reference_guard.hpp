@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Which reference a law follows: the wished one while it is sound, else a stop that lasts.
+///
+///     ReferenceGuard guard(limits, deceleration, solver->jointNames());
+///     guard.start(state.q);                                       // when the loop begins
+///     const Reference& reference = guard.next(wished, period);    // in each cycle
+///     if (guard.stopped()) report(text(guard.reason()));
+///
+/// A law answers to a NaN with its safe torque and then follows the next finite reference, from
+/// wherever the arm is by then. A guard goes before it: the first reference that isn't finite or
+/// lies beyond a limit begins a SafeStop from the last good one, and nothing is followed any more
+/// until start().
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "inverse_dynamics_control/safe_stop.hpp"
+#include "inverse_dynamics_control/signals.hpp"
+
+namespace inverse_dynamics_control {
+
+/// What a reference may ask for, n numbers each; infinity: no limit.
+struct ReferenceLimits {
+  Eigen::VectorXd lower;     ///< rad (prismatic m)
+  Eigen::VectorXd upper;     ///< rad (prismatic m), not below `lower`
+  Eigen::VectorXd velocity;  ///< > 0; rad/s (prismatic m/s)
+
+  /// No limit at all.
+  static ReferenceLimits none(Eigen::Index joints);
+};
+
+/// Why a reference is followed no longer.
+enum class StopReason {
+  kNone,       ///< it is followed
+  kNotFinite,  ///< a number of it is NaN or infinite
+  kPosition,   ///< a position lies beyond its limits
+  kVelocity,   ///< a velocity lies beyond its limit
+  kStale,      ///< no new one came while the last one still moves
+  kWrongSize,  ///< it hasn't one number per joint
+};
+
+/// What happened, as a sentence without a full stop. Real time: no allocation, lock, exception or
+/// system call. Threads: safe.
+const char* text(StopReason reason) noexcept;
+
+/// Lets sound references pass, and stops for good at the first one that isn't. Not thread-safe.
+///
+/// Real time: all methods but the constructor: no allocation, lock, exception or system call.
+class ReferenceGuard {
+ public:
+  /// @param deceleration  of the stop, n, finite, > 0; rad/s^2 (prismatic m/s^2).
+  /// @param joint_names   n of them, for the text of errors.
+  /// Throws inverse_dynamics_solver::InvalidParameterValueException: wrong size or value.
+  ReferenceGuard(ReferenceLimits limits, const Eigen::VectorXd& deceleration,
+                 const std::vector<std::string>& joint_names);
+
+  /// Rest at q, n finite numbers, until the first call of next(); forgets an earlier stop.
+  void start(const Eigen::VectorXd& q) noexcept;
+
+  /// The reference to follow now: `wished`, or the next one of the stop.
+  ///
+  /// @param period  s since the last call.
+  const Reference& next(const Reference& wished, double period) noexcept;
+
+  /// The last reference again, where no new one has come.
+  const Reference& again(double period) noexcept;
+
+  /// Begins a stop from the last reference, unless one has begun already.
+  ///
+  /// @param joint  whose fault it is, or -1.
+  void stop(StopReason reason, Eigen::Index joint = -1) noexcept;
+
+  /// Whether the last reference asks for a motion.
+  bool isMoving() const noexcept;
+
+  /// Whether a stop has begun, why, and the first joint that made it (-1: none in particular).
+  bool stopped() const noexcept { return reason_ != StopReason::kNone; }
+  StopReason reason() const noexcept { return reason_; }
+  Eigen::Index joint() const noexcept { return joint_; }
+
+ private:
+  ReferenceLimits limits_;
+  SafeStop safe_stop_;
+  Reference followed_;
+  StopReason reason_ = StopReason::kNone;
+  Eigen::Index joint_ = -1;
+};
+
+}  // namespace inverse_dynamics_control

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_control/reference_guard.hpp"
+
+#include <cmath>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <limits>
+#include <utility>
+
+#include "option_checks.hpp"
+
+namespace inverse_dynamics_control {
+namespace {
+
+// Rounding of whoever computes references up to the limit.
+constexpr double kRounding = 1e-9;
+
+struct Fault {
+  StopReason reason = StopReason::kNone;
+  Eigen::Index joint = -1;
+};
+
+Fault faultOf(const Reference& wished, const ReferenceLimits& limits) noexcept {
+  const Eigen::Index n = limits.velocity.size();
+  if (wished.q.size() != n || wished.qd.size() != n || wished.qdd.size() != n) {
+    return {StopReason::kWrongSize, -1};
+  }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double q = wished.q[j], qd = wished.qd[j];
+    if (!std::isfinite(q) || !std::isfinite(qd) || !std::isfinite(wished.qdd[j])) {
+      return {StopReason::kNotFinite, j};
+    }
+    if (q < limits.lower[j] - kRounding || q > limits.upper[j] + kRounding) {
+      return {StopReason::kPosition, j};
+    }
+    if (std::abs(qd) > limits.velocity[j] + kRounding) return {StopReason::kVelocity, j};
+  }
+  return {};
+}
+
+}  // namespace
+
+ReferenceLimits ReferenceLimits::none(Eigen::Index joints) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {Eigen::VectorXd::Constant(joints, -kInfinity),
+          Eigen::VectorXd::Constant(joints, kInfinity),
+          Eigen::VectorXd::Constant(joints, kInfinity)};
+}
+
+const char* text(StopReason reason) noexcept {
+  switch (reason) {
+    case StopReason::kNone:
+      return "the reference is followed";
+    case StopReason::kNotFinite:
+      return "the reference is NaN or infinite";
+    case StopReason::kPosition:
+      return "the reference's position lies beyond its limits";
+    case StopReason::kVelocity:
+      return "the reference's velocity lies beyond its limit";
+    case StopReason::kStale:
+      return "no new reference came while the last one still moves";
+    case StopReason::kWrongSize:
+      return "the reference hasn't one number per joint";
+  }
+  return "unknown reason";
+}
+
+ReferenceGuard::ReferenceGuard(ReferenceLimits limits, const Eigen::VectorXd& deceleration,
+                               const std::vector<std::string>& joint_names)
+    : limits_(std::move(limits)),
+      safe_stop_(deceleration, joint_names),
+      followed_(deceleration.size()) {
+  const std::string where = "reference guard: ";
+  requireJointNumbers(where + "velocity limit", limits_.velocity, Range::kPositiveOrAbsent, "rad/s",
+                      joint_names);
+  requireJointNumbers(where + "lower position limit", limits_.lower, Range::kAny, "rad",
+                      joint_names);
+  requireJointNumbers(where + "upper position limit", limits_.upper, Range::kAny, "rad",
+                      joint_names);
+  const Eigen::VectorXd width = limits_.upper - limits_.lower;
+  requireJointNumbers(where + "upper minus lower position limit", width, Range::kPositiveOrAbsent,
+                      "rad", joint_names);
+}
+
+void ReferenceGuard::start(const Eigen::VectorXd& q) noexcept {
+  if (q.size() != followed_.q.size()) return stop(StopReason::kWrongSize);
+  followed_.q = q;
+  followed_.qd.setZero();
+  followed_.qdd.setZero();
+  reason_ = StopReason::kNone;
+  joint_ = -1;
+}
+
+const Reference& ReferenceGuard::next(const Reference& wished, double period) noexcept {
+  if (!stopped()) {
+    const Fault fault = faultOf(wished, limits_);
+    if (fault.reason == StopReason::kNone) {
+      followed_.q = wished.q;
+      followed_.qd = wished.qd;
+      followed_.qdd = wished.qdd;
+      return followed_;
+    }
+    stop(fault.reason, fault.joint);
+  }
+  return again(period);
+}
+
+const Reference& ReferenceGuard::again(double period) noexcept {
+  if (stopped()) safe_stop_.advance(period, followed_);
+  return followed_;
+}
+
+void ReferenceGuard::stop(StopReason reason, Eigen::Index joint) noexcept {
+  if (stopped() || reason == StopReason::kNone) return;
+  reason_ = reason;
+  joint_ = joint;
+  safe_stop_.begin(followed_.q, followed_.qd);
+}
+
+bool ReferenceGuard::isMoving() const noexcept {
+  return (followed_.qd.array() != 0.0).any() || (followed_.qdd.array() != 0.0).any();
+}
+
+}  // namespace inverse_dynamics_control
