@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// A cycle of any controller: read the joints, ask the law, write efforts, note what happened.
+///
+///     ControlLoop loop(node, arm.joints, params.tolerated_fault_time);
+///     loop.start(law, state_interfaces_, command_interfaces_);             // when activated
+///     return loop.cycle(law, state_interfaces_, command_interfaces_, period,
+///                       [&](const JointState& state, double dt, Eigen::VectorXd& tau) {
+///                         return law.update(state, dt, tau);
+///                       });
+#pragma once
+
+#include <cmath>
+#include <inverse_dynamics_control/control_law.hpp>
+#include <inverse_dynamics_control/fault_latch.hpp>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <memory>
+#include <rclcpp/duration.hpp>
+#include <string>
+#include <vector>
+
+#include "arm_interfaces.hpp"
+#include "update_report.hpp"
+
+namespace inverse_dynamics_controllers {
+
+/// What the controllers' cycles have in common. One thread at a time.
+class ControlLoop {
+ public:
+  /// @param tolerated_fault_time  s; see FaultLatch.
+  ControlLoop(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
+              const std::vector<std::string>& joints, double tolerated_fault_time)
+      : interfaces_(joints),
+        state_(static_cast<Eigen::Index>(joints.size())),
+        tau_(Eigen::VectorXd::Zero(state_.q.size())),
+        fault_(tolerated_fault_time),
+        report_(std::make_shared<UpdateReport>(joints)),
+        timer_(logEverySecond(node, report_)) {}
+
+  const ArmInterfaces& interfaces() const noexcept { return interfaces_; }
+  UpdateReport& report() noexcept { return *report_; }
+
+  /// The measured state of the last cycle, or of start().
+  const inverse_dynamics_control::JointState& state() const noexcept { return state_; }
+
+  /// Finds the interfaces, and begins anew.
+  ///
+  /// Throws inverse_dynamics_solver::Exception: one is missing; the hardware doesn't know where its
+  /// joints are.
+  void start(inverse_dynamics_control::ControlLaw& law, const StateInterfaces& states,
+             const CommandInterfaces& commands) {
+    interfaces_.bind(states, commands);
+    interfaces_.read(states, state_);
+    for (Eigen::Index j = 0; j < state_.q.size(); ++j) {
+      if (std::isfinite(state_.q[j]) && std::isfinite(state_.qd[j])) continue;
+      throw inverse_dynamics_solver::Exception(inverse_dynamics_solver::errorText(
+          "joint " + interfaces_.joints()[static_cast<std::size_t>(j)], "no measured state",
+          "a finite position and velocity", "NaN or infinity",
+          "see that the hardware component is active, and activate the controller again"));
+    }
+    fault_.reset();
+    law.start();
+  }
+
+  /// One cycle. Real time: no allocation, lock, exception or system call.
+  ///
+  /// @param update  (state, period [s], tau) -> Status; not called once a fault has lasted.
+  /// @return ERROR once a fault has lasted; the efforts are the law's safe torque then.
+  template <class Law, class Update>
+  controller_interface::return_type cycle(Law& law, const StateInterfaces& states,
+                                          CommandInterfaces& commands,
+                                          const rclcpp::Duration& period,
+                                          const Update& update) noexcept {
+    using controller_interface::return_type;
+    const double dt = static_cast<double>(period.nanoseconds()) * 1e-9;
+    interfaces_.read(states, state_);
+    const auto status = fault_.latched() ? law.hold(state_, dt, tau_) : update(state_, dt, tau_);
+    if (!interfaces_.write(tau_, commands)) report_->noteNotWritten();
+
+    const bool was_latched = fault_.latched();
+    fault_.note(status, dt);
+    if (fault_.latched() && !was_latched) report_->noteGivenUp(fault_.why());
+    report_->note(status, law.saturated(), law.rateLimited());
+    return fault_.latched() ? return_type::ERROR : return_type::OK;
+  }
+
+  /// Zero effort: what a controller leaves behind when it is deactivated.
+  void stop(CommandInterfaces& commands) noexcept {
+    tau_.setZero();
+    interfaces_.write(tau_, commands);
+  }
+
+ private:
+  ArmInterfaces interfaces_;
+  inverse_dynamics_control::JointState state_;
+  Eigen::VectorXd tau_;
+  inverse_dynamics_control::FaultLatch fault_;
+  std::shared_ptr<UpdateReport> report_;
+  rclcpp::TimerBase::SharedPtr timer_;
+};
+
+/// No interface at all: what a controller claims before it is configured.
+inline controller_interface::InterfaceConfiguration nothing() {
+  return {controller_interface::interface_configuration_type::NONE, {}};
+}
+
+/// Throws inverse_dynamics_solver::Exception unless a controller is configured.
+inline void requireConfigured(bool configured) {
+  if (configured) return;
+  throw inverse_dynamics_solver::Exception(inverse_dynamics_solver::errorText(
+      "activation", "the controller has no solver", "a controller that is configured",
+      "one that isn't", "configure it first, and see that this succeeds"));
+}
+
+/// Runs what a transition has to do; what it throws is logged, and fails the transition.
+template <class Work>
+controller_interface::CallbackReturn transition(const rclcpp::Logger& logger, const Work& work) {
+  try {
+    work();
+    return controller_interface::CallbackReturn::SUCCESS;
+  } catch (const std::exception& error) {
+    RCLCPP_ERROR(logger, "%s", error.what());
+    return controller_interface::CallbackReturn::FAILURE;
+  }
+}
+
+}  // namespace inverse_dynamics_controllers

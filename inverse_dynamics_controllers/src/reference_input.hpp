@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What a chainable controller is asked to do: by the controller before it, or by a topic.
+///
+///     ReferenceInput input(node, layout, arm.joints, guard, timeout);
+///     input.start(state.q, reference_interfaces_);                    // when activated
+///     const Reference& reference = input.motion(reference_interfaces_, chained, period);
+#pragma once
+
+#include <algorithm>
+#include <inverse_dynamics_control/reference_guard.hpp>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "inverse_dynamics_controllers/ros2_control_compatibility.hpp"
+#include "reference_layout.hpp"
+#include "reference_topic.hpp"
+#include "update_report.hpp"
+
+namespace inverse_dynamics_controllers {
+
+/// Reads references, guards them, and stops for good where they are lost. Not thread-safe.
+///
+/// Real time: all methods but the constructor and exported(): no allocation, lock, exception or
+/// system call.
+class ReferenceInput {
+ public:
+  /// @param timeout  how long a motion from the topic is good [s].
+  ReferenceInput(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
+                 const ReferenceLayout& layout, const std::vector<std::string>& joints,
+                 inverse_dynamics_control::ReferenceGuard guard, double timeout)
+      : layout_(layout),
+        topic_(node, layout, joints),
+        guard_(std::move(guard)),
+        wished_(static_cast<Eigen::Index>(joints.size())),
+        timeout_(timeout) {}
+
+  const ReferenceLayout& layout() const noexcept { return layout_; }
+
+  /// The reference interfaces, on `values`, which is given its size.
+  std::vector<hardware_interface::CommandInterface> exported(const std::string& controller,
+                                                             std::vector<double>& values) const {
+    values.assign(layout_.size(), std::numeric_limits<double>::quiet_NaN());
+    std::vector<hardware_interface::CommandInterface> interfaces;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      interfaces.push_back(referenceInterface(controller, layout_.names()[k], &values[k]));
+    }
+    return interfaces;
+  }
+
+  /// Rest at q until somebody writes a reference; forgets an earlier stop.
+  void start(const Eigen::VectorXd& q, std::vector<double>& values) noexcept {
+    topic_.read(values);  // an old message isn't a wish for now
+    std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
+    guard_.start(q);
+    motion_written_ = effort_written_ = false;
+    age_ = 0.0;
+  }
+
+  /// The newest message of the topic, for a controller that nothing precedes.
+  void readTopic(std::vector<double>& values) noexcept {
+    if (topic_.read(values)) age_ = 0.0;
+  }
+
+  /// Counts the cycle's time, and stops where the topic has been silent for too long.
+  ///
+  /// @param period  s since the last cycle.
+  void advance(const std::vector<double>& values, bool chained, double period,
+               UpdateReport& report) noexcept {
+    using inverse_dynamics_control::StopReason;
+    const bool was_stopped = guard_.stopped();
+    motion_written_ = motion_written_ || !layout_.motionIsUntouched(values);
+    effort_written_ = effort_written_ || !layout_.effortIsUntouched(values);
+    if (chained) {
+      age_ = 0.0;
+    } else {
+      if (period > 0) age_ += period;
+      if (age_ > timeout_ && (guard_.isMoving() || effort_written_)) {
+        guard_.stop(StopReason::kStale);
+      }
+    }
+    if (motion_written_) layout_.readMotion(values, wished_);
+    motion_ = motion_written_ ? &guard_.next(wished_, period) : &guard_.again(period);
+    if (guard_.stopped() && !was_stopped) report.noteStop(guard_.reason(), guard_.joint());
+  }
+
+  /// The motion to follow in this cycle.
+  const inverse_dynamics_control::Reference& motion() const noexcept { return *motion_; }
+
+  /// The effort of the controller before; zero before it has written any.
+  void effort(const std::vector<double>& values, Eigen::VectorXd& effort) const noexcept {
+    effort.setZero();
+    if (effort_written_ && !stopped()) layout_.readEffort(values, effort);
+  }
+
+  /// Whether references are ignored until the next start().
+  bool stopped() const noexcept { return guard_.stopped(); }
+
+ private:
+  ReferenceLayout layout_;
+  ReferenceTopic topic_;
+  inverse_dynamics_control::ReferenceGuard guard_;
+  inverse_dynamics_control::Reference wished_;
+  const inverse_dynamics_control::Reference* motion_ = &wished_;
+  bool motion_written_ = false, effort_written_ = false;
+  double timeout_, age_ = 0.0;  // s
+};
+
+}  // namespace inverse_dynamics_controllers

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/mujoco_arm.hpp"
+
+#include <urdf/model.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <inverse_dynamics_solver/exceptions.hpp>
+
+namespace inverse_dynamics_controllers {
+namespace {
+
+using inverse_dynamics_solver::errorText;
+using inverse_dynamics_solver::InvalidRobotDescriptionException;
+
+constexpr double kLongestStep = 1e-3;  // s
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw InvalidRobotDescriptionException(
+      errorText("robot description", "MuJoCo refuses it", "", what,
+                "simple shapes instead of meshes are understood"));
+}
+
+mjModel* compiled(const std::string& urdf) {
+  std::array<char, 1000> error{};
+  const std::unique_ptr<mjSpec, void (*)(mjSpec*)> spec(
+      mj_parseXMLString(urdf.c_str(), nullptr, error.data(), static_cast<int>(error.size())),
+      mj_deleteSpec);
+  if (spec == nullptr) refuse(error.data());
+  spec->compiler.fusestatic = 0;  // each link stays a body, so that its inertia can be written
+  spec->compiler.balanceinertia = 1;
+  spec->compiler.inertiafromgeom = mjINERTIAFROMGEOM_FALSE;
+  mjModel* const model = mj_compile(spec.get(), nullptr);
+  if (model == nullptr) refuse(mjs_getError(spec.get()));
+  return model;
+}
+
+Eigen::Quaterniond rotationOf(const urdf::Pose& pose) {
+  return {pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z};
+}
+
+// Mass, centre of mass, moments about the principal axes, and these axes.
+void writeInertia(const urdf::Inertial& inertial, int body, mjModel& model) {
+  Eigen::Matrix3d tensor;
+  tensor << inertial.ixx, inertial.ixy, inertial.ixz, inertial.ixy, inertial.iyy, inertial.iyz,
+      inertial.ixz, inertial.iyz, inertial.izz;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(tensor);
+  Eigen::Matrix3d axes = principal.eigenvectors();
+  if (axes.determinant() < 0) axes.col(0) = -axes.col(0);
+  const Eigen::Quaterniond rotation = rotationOf(inertial.origin) * Eigen::Quaterniond(axes);
+
+  const urdf::Vector3& center = inertial.origin.position;
+  model.body_mass[body] = inertial.mass;
+  Eigen::Map<Eigen::Vector3d>(model.body_ipos + 3 * body) << center.x, center.y, center.z;
+  Eigen::Map<Eigen::Vector3d>(model.body_inertia + 3 * body) = principal.eigenvalues();
+  Eigen::Map<Eigen::Vector4d>(model.body_iquat + 4 * body) << rotation.w(), rotation.x(),
+      rotation.y(), rotation.z();
+}
+
+void writeTrueInertia(const std::string& urdf, mjModel& model) {
+  urdf::Model description;
+  if (!description.initString(urdf)) refuse("not a URDF");
+  for (const auto& [name, link] : description.links_) {
+    const int body = mj_name2id(&model, mjOBJ_BODY, name.c_str());
+    if (body > 0 && link->inertial != nullptr) writeInertia(*link->inertial, body, model);
+  }
+}
+
+}  // namespace
+
+MujocoArm::MujocoArm(const std::string& urdf, const std::vector<std::string>& joints)
+    : model_(compiled(urdf)) {
+  writeTrueInertia(urdf, *model_);
+  mju_zero(model_->dof_damping, static_cast<int>(model_->nv));
+  mju_zero(model_->dof_frictionloss, static_cast<int>(model_->nv));
+  model_->opt.integrator = mjINT_RK4;
+  model_->opt.disableflags |= mjDSBL_CONTACT | mjDSBL_LIMIT;
+  data_.reset(mj_makeData(model_.get()));
+  mj_setConst(model_.get(), data_.get());
+  for (const std::string& joint : joints) {
+    const int id = mj_name2id(model_.get(), mjOBJ_JOINT, joint.c_str());
+    if (id < 0) refuse("no movable joint '" + joint + "'");
+    positions_.push_back(model_->jnt_qposadr[id]);
+    velocities_.push_back(model_->jnt_dofadr[id]);
+  }
+}
+
+void MujocoArm::setPosition(const Eigen::VectorXd& q) {
+  mj_resetData(model_.get(), data_.get());
+  for (std::size_t j = 0; j < positions_.size(); ++j) {
+    data_->qpos[positions_[j]] = q[static_cast<Eigen::Index>(j)];
+  }
+  mj_forward(model_.get(), data_.get());
+}
+
+void MujocoArm::step(const Eigen::VectorXd& tau, double period) {
+  if (!(period > 0)) return;
+  for (std::size_t j = 0; j < velocities_.size(); ++j) {
+    data_->qfrc_applied[velocities_[j]] = tau[static_cast<Eigen::Index>(j)];
+  }
+  const int steps = static_cast<int>(std::ceil(period / kLongestStep - 1e-9));
+  model_->opt.timestep = period / steps;
+  for (int k = 0; k < steps; ++k) mj_step(model_.get(), data_.get());
+}
+
+Eigen::VectorXd MujocoArm::q() const {
+  Eigen::VectorXd q(static_cast<Eigen::Index>(positions_.size()));
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    q[j] = data_->qpos[positions_[static_cast<std::size_t>(j)]];
+  }
+  return q;
+}
+
+Eigen::VectorXd MujocoArm::qd() const {
+  Eigen::VectorXd qd(static_cast<Eigen::Index>(velocities_.size()));
+  for (Eigen::Index j = 0; j < qd.size(); ++j) {
+    qd[j] = data_->qvel[velocities_[static_cast<std::size_t>(j)]];
+  }
+  return qd;
+}
+
+Eigen::VectorXd MujocoArm::qdd() const {
+  Eigen::VectorXd qdd(static_cast<Eigen::Index>(velocities_.size()));
+  for (Eigen::Index j = 0; j < qdd.size(); ++j) {
+    qdd[j] = data_->qacc[velocities_[static_cast<std::size_t>(j)]];
+  }
+  return qdd;
+}
+
+}  // namespace inverse_dynamics_controllers

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulation/simulated_arm.hpp"
+
+#include <cmath>
+#include <hardware_interface/types/hardware_interface_type_values.hpp>
+#include <pluginlib/class_list_macros.hpp>
+#include <rclcpp/logging.hpp>
+#include <stdexcept>
+
+#include "inverse_dynamics_controllers/ros2_control_compatibility.hpp"
+
+namespace inverse_dynamics_controllers {
+
+using hardware_interface::CallbackReturn;
+using hardware_interface::HW_IF_ACCELERATION;
+using hardware_interface::HW_IF_EFFORT;
+using hardware_interface::HW_IF_POSITION;
+using hardware_interface::HW_IF_VELOCITY;
+using hardware_interface::return_type;
+
+namespace {
+
+rclcpp::Logger logger() { return rclcpp::get_logger("simulated_arm"); }
+
+// Where a joint is at first: `initial_value` of its position.
+double initialPosition(const hardware_interface::ComponentInfo& joint) {
+  for (const hardware_interface::InterfaceInfo& state : joint.state_interfaces) {
+    if (state.name != HW_IF_POSITION || state.initial_value.empty()) continue;
+    std::size_t used = 0;
+    double value = 0.0;
+    try {
+      value = std::stod(state.initial_value, &used);
+    } catch (const std::logic_error&) {  // no number at all
+    }
+    if (used == state.initial_value.size() && std::isfinite(value)) return value;
+    throw std::invalid_argument("joint " + joint.name + ": initial_value of position: expected a " +
+                                "number [rad], got '" + state.initial_value + "'");
+  }
+  return 0.0;
+}
+
+void requireEffort(const hardware_interface::ComponentInfo& joint) {
+  if (joint.command_interfaces.size() == 1 && joint.command_interfaces[0].name == HW_IF_EFFORT) {
+    return;
+  }
+  throw std::invalid_argument("joint " + joint.name +
+                              ": command_interface: expected effort, and nothing else");
+}
+
+}  // namespace
+
+#ifdef INVERSE_DYNAMICS_CONTROLLERS_HAS_COMPONENT_PARAMS
+CallbackReturn SimulatedArm::on_init(
+    const hardware_interface::HardwareComponentInterfaceParams& params) {
+  const CallbackReturn base = SystemInterface::on_init(params);
+  return base == CallbackReturn::SUCCESS ? initialize(params.hardware_info) : base;
+}
+#else
+CallbackReturn SimulatedArm::on_init(const hardware_interface::HardwareInfo& info) {
+  const CallbackReturn base = SystemInterface::on_init(info);
+  return base == CallbackReturn::SUCCESS ? initialize(info) : base;
+}
+#endif
+
+CallbackReturn SimulatedArm::initialize(const hardware_interface::HardwareInfo& info) {
+  try {
+    std::vector<std::string> names;
+    for (const hardware_interface::ComponentInfo& joint : info.joints) {
+      requireEffort(joint);
+      names.push_back(joint.name);
+      joints_.push_back({joint.name, initialPosition(joint)});
+    }
+    arm_ = std::make_unique<MujocoArm>(info.original_xml, names);
+  } catch (const std::exception& error) {
+    RCLCPP_FATAL(logger(), "%s: %s", info.name.c_str(), error.what());
+    return CallbackReturn::ERROR;
+  }
+  tau_.setZero(static_cast<Eigen::Index>(joints_.size()));
+  Eigen::VectorXd q(tau_.size());
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    q[j] = joints_[static_cast<std::size_t>(j)].position;
+  }
+  arm_->setPosition(q);
+  return CallbackReturn::SUCCESS;
+}
+
+std::vector<hardware_interface::StateInterface> SimulatedArm::export_state_interfaces() {
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"  // from jazzy on, but still there
+  std::vector<hardware_interface::StateInterface> interfaces;
+  for (Joint& joint : joints_) {
+    interfaces.emplace_back(joint.name, HW_IF_POSITION, &joint.position);
+    interfaces.emplace_back(joint.name, HW_IF_VELOCITY, &joint.velocity);
+    interfaces.emplace_back(joint.name, HW_IF_ACCELERATION, &joint.acceleration);
+    interfaces.emplace_back(joint.name, HW_IF_EFFORT, &joint.effort);
+  }
+  return interfaces;
+#pragma GCC diagnostic pop
+}
+
+std::vector<hardware_interface::CommandInterface> SimulatedArm::export_command_interfaces() {
+  std::vector<hardware_interface::CommandInterface> interfaces;
+  for (Joint& joint : joints_) {
+    interfaces.push_back(referenceInterface(joint.name, HW_IF_EFFORT, &joint.command));
+  }
+  return interfaces;
+}
+
+CallbackReturn SimulatedArm::on_activate(const rclcpp_lifecycle::State&) {
+  for (Joint& joint : joints_) joint.command = 0.0;
+  return CallbackReturn::SUCCESS;
+}
+
+return_type SimulatedArm::read(const rclcpp::Time&, const rclcpp::Duration&) {
+  const Eigen::VectorXd q = arm_->q(), qd = arm_->qd(), qdd = arm_->qdd();
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const auto row = static_cast<Eigen::Index>(j);
+    joints_[j].position = q[row];
+    joints_[j].velocity = qd[row];
+    joints_[j].acceleration = qdd[row];
+    joints_[j].effort = tau_[row];
+  }
+  return return_type::OK;
+}
+
+return_type SimulatedArm::write(const rclcpp::Time&, const rclcpp::Duration& period) {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    if (!std::isfinite(joints_[j].command)) {
+      RCLCPP_ERROR(logger(), "joint %s: an effort of NaN or infinity was commanded",
+                   joints_[j].name.c_str());
+      return return_type::ERROR;
+    }
+  }
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    tau_[static_cast<Eigen::Index>(j)] = joints_[j].command;
+  }
+  arm_->step(tau_, period.seconds());
+  return return_type::OK;
+}
+
+}  // namespace inverse_dynamics_controllers
+
+PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::SimulatedArm,
+                       hardware_interface::SystemInterface)

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
+
+#include "controller_fixture.hpp"
+
+namespace inverse_dynamics_controllers {
+namespace {
+
+// Rounding of some hundreds of operations on torques of some hundred N m.
+constexpr double kRounding = 1e-9;
+constexpr double kFrequency = 5.0;  // rad/s
+
+class InverseDynamicsControllerTest : public ChainedFixture<InverseDynamicsController> {
+ protected:
+  static Parameters good() {
+    Parameters parameters = ChainedFixture::good();
+    parameters["gains.natural_frequency"] = rclcpp::ParameterValue(std::vector<double>{kFrequency});
+    return parameters;
+  }
+
+  // tau = H (qdd_ref + w^2 e + 2 w ed) + C qd + g
+  Eigen::VectorXd expected(const Eigen::VectorXd& wished_q, const Eigen::VectorXd& wished_qd,
+                           const Eigen::VectorXd& wished_qdd) const {
+    const Eigen::VectorXd acceleration =
+        wished_qdd + kFrequency * kFrequency * (wished_q - q) + 2.0 * kFrequency * (wished_qd - qd);
+    return solver()->getTorques(q, qd, acceleration);
+  }
+
+  void SetUp() override { hardware.set(q, qd); }
+
+  const Eigen::VectorXd q = vec({0.3, -1.2, 0.9, -0.4, 0.7, 0.2});
+  const Eigen::VectorXd qd = vec({0.1, -0.2, 0.3, 0.2, -0.1, 0.4});
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(6);
+  const Eigen::VectorXd q_ref = q + vec({0.02, -0.01, 0.03, 0.01, 0.02, -0.03});
+  const Eigen::VectorXd qd_ref = vec({0.2, -0.1, 0.1, 0.3, 0.2, 0.1});
+  const Eigen::VectorXd qdd_ref = vec({0.5, -0.5, 1.0, 0.2, -0.4, 0.3});
+};
+
+TEST_F(InverseDynamicsControllerTest, CommandsComputedTorque) {
+  ASSERT_TRUE(start(good())) << log.text();
+  EXPECT_EQ(referenceCount(), 18U);
+  setMotion(q_ref, qd_ref, qdd_ref);
+  EXPECT_EQ(update(), return_type::OK);
+  EXPECT_LT((hardware.effort() - expected(q_ref, qd_ref, qdd_ref)).norm(), kRounding);
+}
+
+TEST_F(InverseDynamicsControllerTest, HoldsWhereItStartsUntilTheFirstReference) {
+  ASSERT_TRUE(start(good())) << log.text();
+  EXPECT_EQ(update(), return_type::OK);
+  EXPECT_LT((hardware.effort() - expected(q, zero, zero)).norm(), kRounding);
+  EXPECT_EQ(log.text(), "");
+}
+
+TEST_F(InverseDynamicsControllerTest, AccelerationsMayBeLeftOut) {
+  Parameters parameters = good();
+  parameters["reference_interfaces"] =
+      rclcpp::ParameterValue(std::vector<std::string>{"position", "velocity"});
+  ASSERT_TRUE(start(parameters)) << log.text();
+  setReferences(0, q_ref);
+  setReferences(1, qd_ref);
+  EXPECT_EQ(update(), return_type::OK);
+  EXPECT_LT((hardware.effort() - expected(q_ref, qd_ref, zero)).norm(), kRounding);
+}
+
+TEST_F(InverseDynamicsControllerTest, WhatTheRobotCompensatesIsLeftOut) {
+  Parameters parameters = good();
+  parameters["compensated_by_robot.gravity"] = rclcpp::ParameterValue(true);
+  ASSERT_TRUE(start(parameters)) << log.text();
+  setMotion(q_ref, qd_ref, qdd_ref);
+  EXPECT_EQ(update(), return_type::OK);
+  const Eigen::VectorXd without = expected(q_ref, qd_ref, qdd_ref) - solver()->getGravityVector(q);
+  EXPECT_LT((hardware.effort() - without).norm(), kRounding);
+}
+
+TEST_F(InverseDynamicsControllerTest, EffortsStayWithinTheLimitsOfTheRobotDescription) {
+  ASSERT_TRUE(start(good())) << log.text();
+  setMotion(q + Eigen::VectorXd::Constant(6, -2.0), zero, zero);
+  EXPECT_EQ(update(), return_type::OK);
+  const Eigen::VectorXd limits = vec({330.0, 330.0, 150.0, 56.0, 56.0, 56.0});
+  EXPECT_TRUE((hardware.effort().cwiseAbs().array() <= limits.array()).all())
+      << hardware.effort().transpose();
+  EXPECT_EQ(std::abs(hardware.effort()[1]), 330.0);
+}
+
+class UnsoundReference : public InverseDynamicsControllerTest,
+                         public ::testing::WithParamInterface<std::pair<std::size_t, double>> {};
+
+TEST_P(UnsoundReference, NeverReachesTheHardwareAndStopsTheArmForGood) {
+  ASSERT_TRUE(start(good())) << log.text();
+  setMotion(q_ref, qd_ref, qdd_ref);
+  EXPECT_EQ(update(), return_type::OK);
+  const auto [interface, value] = GetParam();
+  setReference(2, interface, value);
+  // the stop: all joints together, the fastest with the default 2 rad/s^2
+  const double T = qd_ref.cwiseAbs().maxCoeff() / 2.0;
+  for (int k = 1; k <= 3; ++k) {
+    EXPECT_EQ(update(), return_type::OK);
+    const double t = k * kPeriod;
+    const Eigen::VectorXd stopping =
+        expected(q_ref + qd_ref * (t * (1.0 - 0.5 * t / T)), qd_ref * (1.0 - t / T), -qd_ref / T);
+    EXPECT_LT((hardware.effort() - stopping).norm(), kRounding);
+    setMotion(q_ref, qd_ref, qdd_ref);  // too late
+  }
+  for (int k = 0; k < 200; ++k) update();
+  EXPECT_LT((hardware.effort() - expected(q_ref + qd_ref * 0.5 * T, zero, zero)).norm(), kRounding);
+
+  controller.get_node()->deactivate();
+  ASSERT_TRUE(activate());
+  setMotion(q_ref, qd_ref, qdd_ref);
+  EXPECT_EQ(update(), return_type::OK);
+  EXPECT_LT((hardware.effort() - expected(q_ref, qd_ref, qdd_ref)).norm(), kRounding);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEachKind, UnsoundReference,
+                         ::testing::Values(std::pair<std::size_t, double>{0, kNan},
+                                           std::pair<std::size_t, double>{1, kInfinity},
+                                           std::pair<std::size_t, double>{2, kNan},
+                                           std::pair<std::size_t, double>{0, 4.0},
+                                           std::pair<std::size_t, double>{1, -3.2}));
+
+TEST_F(InverseDynamicsControllerTest, LimitsOfReferencesCanBeGiven) {
+  Parameters parameters = good();
+  parameters["limits.velocity"] = rclcpp::ParameterValue(std::vector<double>{0.25});
+  ASSERT_TRUE(start(parameters)) << log.text();
+  setMotion(q_ref, qd_ref, qdd_ref);  // one joint with 0.3 rad/s
+  EXPECT_EQ(update(), return_type::OK);
+  EXPECT_LT((hardware.effort() - expected(q, zero, zero)).norm(), kRounding);
+}
+
+TEST_F(InverseDynamicsControllerTest, AMeasuredNanGivesTheSafeTorqueAndThenGivesUp) {
+  ASSERT_TRUE(start(good())) << log.text();
+  setMotion(q_ref, qd_ref, qdd_ref);
+  EXPECT_EQ(update(), return_type::OK);
+  hardware.q[3] = kNan;
+  const Eigen::VectorXd braked = solver()->getGravityVector(q) - 4.0 * qd;
+  int cycles = 0;
+  while (update() == return_type::OK && cycles < 100) ++cycles;
+  EXPECT_NEAR(cycles * kPeriod, 0.02, 1.5 * kPeriod);  // tolerated_fault_time
+  EXPECT_LT((hardware.effort() - braked).norm(), kRounding);
+
+  hardware.set(q, qd);
+  EXPECT_EQ(update(), return_type::ERROR);  // until it is activated again
+  EXPECT_LT((hardware.effort() - braked).norm(), kRounding);
+  controller.get_node()->deactivate();
+  ASSERT_TRUE(activate());
+  EXPECT_EQ(update(), return_type::OK);
+}
+
+TEST_F(InverseDynamicsControllerTest, AShortFaultIsTolerated) {
+  ASSERT_TRUE(start(good())) << log.text();
+  setMotion(q_ref, qd_ref, qdd_ref);
+  hardware.qd[0] = kNan;
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(update(), return_type::OK);
+  EXPECT_TRUE(hardware.effort().allFinite());
+  hardware.set(q, qd);
+  EXPECT_EQ(update(), return_type::OK);
+  EXPECT_LT((hardware.effort() - expected(q_ref, qd_ref, qdd_ref)).norm(), kRounding);
+}
+
+TEST_F(InverseDynamicsControllerTest, DeactivationLeavesNoEffortBehind) {
+  ASSERT_TRUE(start(good())) << log.text();
+  update();
+  ASSERT_GT(hardware.effort().norm(), 1.0);
+  controller.get_node()->deactivate();
+  EXPECT_EQ(hardware.effort(), zero);
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_controllers

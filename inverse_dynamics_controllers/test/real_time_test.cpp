@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
+
+#include "controller_fixture.hpp"
+#include "inverse_dynamics_controllers/feed_forward_controller.hpp"
+#include "inverse_dynamics_controllers/gravity_compensation_controller.hpp"
+#include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
+
+namespace inverse_dynamics_controllers {
+namespace {
+
+using inverse_dynamics_solver::conformance::AllocationGuard;
+using inverse_dynamics_solver::conformance::kAllocationGuardWorks;
+
+void proveTheGuard() {
+  AllocationGuard proof;
+  Eigen::VectorXd().resize(2);
+  ASSERT_GT(proof.count(), 0) << "the allocation guard doesn't see allocations";
+}
+
+// Allocations of cycles in all that may happen: following, saturated, stopping, failing.
+template <class Fixture, class SetReference>
+long allocationsOf(Fixture& fixture, FakeHardware& hardware, const SetReference& setReference) {
+  AllocationGuard guard;
+  const auto cycles = [&fixture] {
+    for (int k = 0; k < 30; ++k) fixture.update();
+  };
+  cycles();
+  setReference(0.1);
+  cycles();
+  setReference(2.0);
+  cycles();
+  setReference(kNan);
+  cycles();
+  hardware.q[0] = kNan;
+  cycles();
+  return guard.count();
+}
+
+class InverseDynamicsCycle : public ChainedFixture<InverseDynamicsController> {
+ public:
+  using ControllerFixture::update;
+};
+
+TEST_F(InverseDynamicsCycle, AllocatesNothing) {
+  if (!kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted in this build";
+  proveTheGuard();
+  Parameters parameters = good();
+  parameters["gains.natural_frequency"] = rclcpp::ParameterValue(std::vector<double>{50.0});
+  parameters["limits.effort_rate"] = rclcpp::ParameterValue(std::vector<double>{1e4});
+  ASSERT_TRUE(start(parameters)) << log.text();
+  EXPECT_EQ(allocationsOf(*this, hardware,
+                          [this](double q) {
+                            for (std::size_t j = 0; j < 6; ++j) {
+                              for (std::size_t k = 0; k < 3; ++k) setReference(j, k, k ? 0 : q);
+                            }
+                          }),
+            0);
+}
+
+class FeedForwardCycle : public ChainedFixture<FeedForwardController> {
+ public:
+  using ControllerFixture::update;
+};
+
+TEST_F(FeedForwardCycle, AllocatesNothing) {
+  if (!kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted in this build";
+  proveTheGuard();
+  Parameters parameters = good();
+  parameters["reference_interfaces"] = rclcpp::ParameterValue(
+      std::vector<std::string>{"position", "velocity", "acceleration", "effort"});
+  parameters["gains.p"] = rclcpp::ParameterValue(std::vector<double>{1000.0});
+  parameters["gains.d"] = rclcpp::ParameterValue(std::vector<double>{10.0});
+  ASSERT_TRUE(start(parameters)) << log.text();
+  EXPECT_EQ(allocationsOf(*this, hardware,
+                          [this](double q) {
+                            for (std::size_t j = 0; j < 6; ++j) {
+                              for (std::size_t k = 0; k < 4; ++k) setReference(j, k, k ? 0 : q);
+                            }
+                          }),
+            0);
+}
+
+class GravityCompensationCycle : public ControllerFixture<GravityCompensationController> {
+ public:
+  using ControllerFixture::update;
+};
+
+TEST_F(GravityCompensationCycle, AllocatesNothing) {
+  if (!kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted in this build";
+  proveTheGuard();
+  ASSERT_TRUE(configure(good()) && activate()) << log.text();
+  EXPECT_EQ(allocationsOf(*this, hardware, [](double) {}), 0);
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_controllers

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <std_msgs/msg/string.hpp>
+#include <thread>
+
+#include "controller_fixture.hpp"
+#include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
+
+namespace inverse_dynamics_controllers {
+namespace {
+
+using Numbers = std::vector<double>;
+
+class Refusals : public ControllerFixture<InverseDynamicsController> {
+ protected:
+  static Parameters good() {
+    Parameters parameters = ControllerFixture::good();
+    parameters["gains.natural_frequency"] = rclcpp::ParameterValue(Numbers{5.0});
+    return parameters;
+  }
+
+  // Good parameters but one.
+  static Parameters but(const std::string& name, const rclcpp::ParameterValue& value) {
+    Parameters parameters = good();
+    parameters[name] = value;
+    return parameters;
+  }
+
+  void expectRefused(const Parameters& parameters, const std::string& text) {
+    EXPECT_FALSE(configure(parameters));
+    EXPECT_TRUE(log.has("ERROR: " + text)) << log.text();
+  }
+};
+
+TEST_F(Refusals, ASolverWhoseInertiaIsNotPhysical) {
+  expectRefused(
+      but("plugin_name", rclcpp::ParameterValue(kUr10)),
+      "parameter 'plugin_name': not fit for computed torque: expected a solver whose inertia "
+      "matrix is symmetric and positive definite, got "
+      "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10, whose inertiaIsPhysical() is "
+      "false; use inverse_dynamics_controllers/FeedForwardController with it, or here a solver "
+      "made from the robot's URDF");
+}
+
+TEST_F(Refusals, NoSolver) {
+  expectRefused(but("plugin_name", rclcpp::ParameterValue("")),
+                "parameter 'plugin_name': not set: expected a solver, package/Class, got nothing; "
+                "set it to one of ");
+}
+
+TEST_F(Refusals, AnUnknownSolver) {
+  expectRefused(but("plugin_name", rclcpp::ParameterValue("kdl/Solver")), "");
+  EXPECT_TRUE(log.has("kdl/Solver")) << log.text();
+  EXPECT_TRUE(log.has(kKdl)) << log.text();
+}
+
+TEST_F(Refusals, AMistypedParameter) {
+  EXPECT_FALSE(init(but("tolerated_fault_time", rclcpp::ParameterValue("long"))));
+  EXPECT_TRUE(log.has("tolerated_fault_time")) << log.text();
+}
+
+TEST_F(Refusals, AMistypedParameterOfTheSolver) {
+  expectRefused(but("ids.gravity", rclcpp::ParameterValue("down")), "");
+  EXPECT_TRUE(log.has("ids.gravity")) << log.text();
+}
+
+TEST_F(Refusals, NoGains) {
+  expectRefused(but("gains.natural_frequency", rclcpp::ParameterValue(Numbers{})),
+                "parameter 'gains.natural_frequency': not set: expected numbers above zero "
+                "[rad/s], got nothing; start with 10 and double it while the arm is quiet");
+}
+
+TEST_F(Refusals, GainsForOtherJoints) {
+  expectRefused(but("gains.natural_frequency", rclcpp::ParameterValue(Numbers{5.0, 6.0})),
+                "parameter 'gains.natural_frequency': wrong size: expected 6 numbers, or one for "
+                "all, got 2; give one for each of the joints shoulder_pan_joint, ");
+}
+
+TEST_F(Refusals, OtherJoints) {
+  expectRefused(but("joints", rclcpp::ParameterValue(std::vector<std::string>{"a", "b"})),
+                "parameter 'joints': wrong number of names: expected 6, in the order of "
+                "shoulder_pan_joint, shoulder_lift_joint, elbow_joint, wrist_1_joint, "
+                "wrist_2_joint, wrist_3_joint, got 2 (a, b); correct them");
+}
+
+TEST_F(Refusals, DampingOfARateWithoutAPeriod) {
+  expectRefused(but("damping.values", rclcpp::ParameterValue(Numbers{})),
+                "parameter 'period': not set: expected the period of the control loop [s], for "
+                "damping.rate, got nothing; set it, or 'update_rate' [Hz], or 'damping.values'");
+}
+
+TEST_F(Refusals, LimitsOfEffortThatNobodyKnows) {
+  std::vector<std::string> others;
+  for (const std::string& joint : ur10Joints()) others.push_back("left_" + joint);
+  expectRefused(but("joints", rclcpp::ParameterValue(others)),
+                "parameter 'limits.effort': not set: expected limits of effort [N m], here or in "
+                "the robot description, got neither for all joints; set it; .inf where the robot "
+                "limits its effort by itself");
+}
+
+TEST_F(Refusals, ARobotDescriptionThatNeverComes) {
+  Parameters parameters = but("robot_description", rclcpp::ParameterValue(""));
+  parameters["robot_description_timeout"] = rclcpp::ParameterValue(0.2);
+  expectRefused(parameters, "");
+  EXPECT_TRUE(
+      log.has("WARN: no robot description: nothing came on /robot_description within 0.2 "
+              "s; go on without, with what the solver itself knows"))
+      << log.text();
+}
+
+TEST_F(Refusals, ARobotDescriptionThatComesLateIsWaitedFor) {
+  auto sender = std::make_shared<rclcpp::Node>("sender");
+  auto publisher = sender->create_publisher<std_msgs::msg::String>(
+      "robot_description", rclcpp::QoS(1).transient_local());
+  std::thread late([&publisher] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    std_msgs::msg::String description;
+    description.data = ur10Description();
+    publisher->publish(description);
+  });
+  Parameters parameters = but("robot_description", rclcpp::ParameterValue(""));
+  parameters["robot_description_timeout"] = rclcpp::ParameterValue(20.0);
+  EXPECT_TRUE(configure(parameters)) << log.text();
+  late.join();
+}
+
+TEST_F(Refusals, ActivationWithoutASolver) {
+  ASSERT_TRUE(init(good())) << log.text();
+  EXPECT_EQ(controller.on_activate(rclcpp_lifecycle::State()),
+            controller_interface::CallbackReturn::FAILURE);
+  EXPECT_TRUE(
+      log.has("ERROR: activation: the controller has no solver: expected a controller "
+              "that is configured, got one that isn't; configure it first, and see that "
+              "this succeeds"))
+      << log.text();
+}
+
+TEST_F(Refusals, ActivationWithoutAMeasuredState) {
+  ASSERT_TRUE(configure(good())) << log.text();
+  hardware.qd[2] = kNan;
+  EXPECT_FALSE(activate());
+  EXPECT_TRUE(
+      log.has("ERROR: joint elbow_joint: no measured state: expected a finite position "
+              "and velocity, got NaN or infinity; see that the hardware component is "
+              "active, and activate the controller again"))
+      << log.text();
+}
+
+TEST_F(Refusals, ActivationWithoutAnInterface) {
+  ASSERT_TRUE(configure(good())) << log.text();
+  auto states = hardware.states();
+  states.pop_back();
+  controller.assign_interfaces(hardware.commands(), std::move(states));
+  EXPECT_NE(controller.get_node()->activate().id(),
+            lifecycle_msgs::msg::State::PRIMARY_STATE_ACTIVE);
+  EXPECT_TRUE(
+      log.has("ERROR: state interface: missing: expected wrist_3_joint/velocity, got 11 "
+              "others; "))
+      << log.text();
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_controllers
