@@ -58,6 +58,11 @@ def test_evaluate_prints_errors_and_writes_results(ids, bag, tmp_path):
     assert re.search(r"elbow_joint +N m( +[-+.e\d]+){2} +[\d.]+ % +[-+.e\d]+ +[\d.]+", out)
     assert re.search(r"mean +N m", out)
     assert "cut-off" in out
+    assert re.search(
+        r"time +reading [\d.]+ µs, accelerations [\d.]+ µs, torques [\d.]+ µs, writing [\d.]+ µs per "
+        r"message, [\d.]+ s together; solver [\d.]+ s, plots [\d.]+ s",
+        out,
+    )
     assert "result/torques.png" in out
     result = read_evaluation(tmp_path / "result")
     assert f"{result.mean_rmse:.3f}" in out

@@ -155,17 +155,17 @@ def run(arguments: argparse.Namespace) -> None:
             without_rules=arguments.without_rule,
             progress=progress,
         )
-        write_evaluation(
+        seconds = write_evaluation(
             evaluation,
             out,
             overwrite=arguments.overwrite,
             storage=arguments.storage,
             progress=progress,
         )
-    _print(evaluation, out)
+    _print(evaluation, out, {**evaluation.seconds, **seconds})
 
 
-def _print(evaluation: Evaluation, out: Path) -> None:
+def _print(evaluation: Evaluation, out: Path, seconds: dict[str, float]) -> None:
     from rich.console import Console
 
     from inverse_dynamics.tables import error_table
@@ -187,3 +187,15 @@ def _print(evaluation: Evaluation, out: Path) -> None:
     console.print(f"figure         {out / 'torques.png'} (.svg, .pdf)")
     console.print(f"bag            {out / 'bag'}: /torques (computed), /torques_gt (measured)")
     console.print(f"errors         {out / 'metrics.json'}")
+    console.print(f"time           {_times(seconds, len(log))}")
+
+
+def _times(seconds: dict[str, float], messages: int) -> str:
+    """Where the time went: what grows with the recording, and the rest."""
+    growing = ("reading", "accelerations", "torques", "writing")
+    each = ", ".join(f"{what} {seconds[what] / messages * 1e6:.1f} µs" for what in growing)
+    together = sum(seconds[what] for what in growing)
+    return (
+        f"{each} per message, {together:.1f} s together; solver {seconds['solver']:.1f} s, "
+        f"plots {seconds['plotting']:.1f} s"
+    )
