@@ -43,12 +43,13 @@ class ControlLoop {
   /// The measured state of the last cycle, or of start().
   const inverse_dynamics_control::JointState& state() const noexcept { return state_; }
 
-  /// Finds the interfaces, and begins anew.
+  /// Finds the interfaces, and begins anew, with the law's safe torque: what is written now may be
+  /// the hardware's for a cycle before the first update.
   ///
   /// Throws inverse_dynamics_solver::Exception: one is missing; the hardware doesn't know where its
   /// joints are.
   void start(inverse_dynamics_control::ControlLaw& law, const StateInterfaces& states,
-             const CommandInterfaces& commands) {
+             CommandInterfaces& commands) {
     interfaces_.bind(states, commands);
     interfaces_.read(states, state_);
     for (Eigen::Index j = 0; j < state_.q.size(); ++j) {
@@ -60,6 +61,8 @@ class ControlLoop {
     }
     fault_.reset();
     law.start();
+    law.hold(state_, 0.0, tau_);
+    interfaces_.write(tau_, commands);
   }
 
   /// One cycle. Real time: no allocation, lock, exception or system call.

@@ -24,6 +24,12 @@ TEST_F(GravityCompensationControllerTest, CommandsGravityAndDamping) {
   EXPECT_EQ(log.text(), "");
 }
 
+TEST_F(GravityCompensationControllerTest, ActivationAlreadyCarriesTheArm) {
+  ASSERT_TRUE(configure(good()) && activate()) << log.text();
+  const Eigen::VectorXd expected = solver()->getGravityVector(q) - 4.0 * qd;
+  EXPECT_LT((hardware.effort() - expected).norm(), kRounding);
+}
+
 TEST_F(GravityCompensationControllerTest, TakesASolverWhoseInertiaIsNotPhysical) {
   Parameters parameters = good();
   parameters["plugin_name"] = rclcpp::ParameterValue(kUr10);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulation/simulated_arm.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <hardware_interface/types/hardware_interface_type_values.hpp>
 #include <pluginlib/class_list_macros.hpp>
@@ -111,19 +112,43 @@ CallbackReturn SimulatedArm::on_activate(const rclcpp_lifecycle::State&) {
   return CallbackReturn::SUCCESS;
 }
 
+return_type SimulatedArm::perform_command_mode_switch(const std::vector<std::string>& start,
+                                                      const std::vector<std::string>& stop) {
+  const auto has = [](const std::vector<std::string>& keys, const std::string& key) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
+  const bool was_braked = isBraked();
+  for (Joint& joint : joints_) {
+    const std::string key = joint.name + "/" + HW_IF_EFFORT;
+    joint.claimed = has(start, key) || (joint.claimed && !has(stop, key));
+  }
+  if (isBraked() && !was_braked) {
+    tau_.setZero();
+    arm_->setPosition(arm_->q());
+  }
+  return return_type::OK;
+}
+
+bool SimulatedArm::isBraked() const {
+  return std::none_of(joints_.begin(), joints_.end(),
+                      [](const Joint& joint) { return joint.claimed; });
+}
+
 return_type SimulatedArm::read(const rclcpp::Time&, const rclcpp::Duration&) {
+  const bool braked = isBraked();
   const Eigen::VectorXd q = arm_->q(), qd = arm_->qd(), qdd = arm_->qdd();
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const auto row = static_cast<Eigen::Index>(j);
     joints_[j].position = q[row];
     joints_[j].velocity = qd[row];
-    joints_[j].acceleration = qdd[row];
+    joints_[j].acceleration = braked ? 0.0 : qdd[row];
     joints_[j].effort = tau_[row];
   }
   return return_type::OK;
 }
 
 return_type SimulatedArm::write(const rclcpp::Time&, const rclcpp::Duration& period) {
+  if (isBraked()) return return_type::OK;
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     if (!std::isfinite(joints_[j].command)) {
       RCLCPP_ERROR(logger(), "joint %s: an effort of NaN or infinity was commanded",

@@ -15,7 +15,8 @@
 ///       </joint>
 ///
 /// The robot is what the rest of the same URDF describes. It goes on by the control loop's period
-/// at every write; efforts that aren't finite are an error, and the arm keeps the last ones.
+/// at every write; efforts that aren't finite are an error, and the arm keeps the last ones. Brakes
+/// hold it at rest while no controller has claimed an effort.
 #pragma once
 
 #include <hardware_interface/system_interface.hpp>
@@ -45,6 +46,8 @@ class SimulatedArm : public hardware_interface::SystemInterface {
   std::vector<hardware_interface::StateInterface> export_state_interfaces() override;
   std::vector<hardware_interface::CommandInterface> export_command_interfaces() override;
   hardware_interface::CallbackReturn on_activate(const rclcpp_lifecycle::State& state) override;
+  hardware_interface::return_type perform_command_mode_switch(
+      const std::vector<std::string>& start, const std::vector<std::string>& stop) override;
   hardware_interface::return_type read(const rclcpp::Time& time,
                                        const rclcpp::Duration& period) override;
   hardware_interface::return_type write(const rclcpp::Time& time,
@@ -54,8 +57,10 @@ class SimulatedArm : public hardware_interface::SystemInterface {
   struct Joint {
     std::string name;
     double position = 0.0, velocity = 0.0, acceleration = 0.0, effort = 0.0, command = 0.0;
+    bool claimed = false;  // by a controller
   };
 
+  bool isBraked() const;
   hardware_interface::CallbackReturn initialize(const hardware_interface::HardwareInfo& info);
 
   std::vector<Joint> joints_;  // not resized any more once interfaces are exported
