@@ -52,7 +52,7 @@ std::vector<std::string> findingsOf(const JointLog& log, const SampleReport& sam
                    " stamp" + left_out + ": the first is " + firstBackwardStamp(log, samples));
   }
   if (filtered && samples.time_base != TimeBase::kStamps) {
-    said.push_back(
+    said.emplace_back(
         "positions and velocities contradict the stamps: samples taken at equal distances "
         "fit them better");
   }
