@@ -22,7 +22,8 @@ def available_solvers() -> list[str]:
 class Solver:
     """An inverse dynamics solver, made by name and ready to compute. Threads: safe.
 
-    rad, rad/s, rad/s^2, N m (prismatic m, m/s, m/s^2, N); joints in the order of joint_names.
+    rad, rad/s, rad/s^2, N m (prismatic m, m/s, m/s^2, N); joints in the order of joint_names. out:
+    an array that takes the result, doubles row after row; it is given back.
     """
 
     def __init__(
@@ -38,21 +39,46 @@ class Solver:
         parameters: dict[str, Parameter] = ...,
     ) -> None: ...
     @property
-    def plugin(self) -> str: ...
+    def plugin(self) -> str:
+        """Its name: package/Class."""
+
     @property
-    def joint_names(self) -> tuple[str, ...]: ...
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints, from root to tip: the order of all arrays."""
+
     @property
-    def warnings(self) -> tuple[str, ...]: ...
+    def warnings(self) -> tuple[str, ...]:
+        """What is odd about the robot but doesn't prevent computing, a sentence each."""
+
     @property
-    def inertia_is_physical(self) -> bool: ...
+    def inertia_is_physical(self) -> bool:
+        """Whether H is symmetric and positive definite by construction."""
+
     @property
-    def drive_gains(self) -> Floats | None: ...
-    def torques(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Floats: ...
-    def inertia_matrix(self, q: ArrayLike) -> Floats: ...
-    def coriolis_vector(self, q: ArrayLike, qd: ArrayLike) -> Floats: ...
-    def gravity_vector(self, q: ArrayLike) -> Floats: ...
-    def friction_vector(self, qd: ArrayLike) -> Floats: ...
-    def dynamic_components(self, q: ArrayLike, qd: ArrayLike) -> tuple[Floats, Floats, Floats]: ...
+    def drive_gains(self) -> Floats | None:
+        """(n,) N m/A (prismatic N/A) of a model identified in motor currents; None of any other."""
+
+    def torques(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, out: Floats | None = None
+    ) -> Floats:
+        """Tau = H(q) qdd + C(q, qd) qd + f(qd) + g(q)."""
+
+    def inertia_matrix(self, q: ArrayLike, *, out: Floats | None = None) -> Floats:
+        """H(q), (n, n) or (N, n, n)."""
+
+    def coriolis_vector(self, q: ArrayLike, qd: ArrayLike, *, out: Floats | None = None) -> Floats:
+        """C(q, qd) qd."""
+
+    def gravity_vector(self, q: ArrayLike, *, out: Floats | None = None) -> Floats:
+        """g(q): what holds the robot still."""
+
+    def friction_vector(self, qd: ArrayLike, *, out: Floats | None = None) -> Floats:
+        """f(qd); zero if the solver has no friction model or was made without."""
+
+    def dynamic_components(
+        self, q: ArrayLike, qd: ArrayLike, *, out: tuple[Floats, Floats, Floats] | None = None
+    ) -> tuple[Floats, Floats, Floats]:
+        """H(q), C(q, qd) qd, g(q)."""
 
 class SampleRules:
     """Which rules on faults of samples are acted upon."""

@@ -4,8 +4,9 @@
 /// control laws, on numpy arrays.
 ///
 /// A batch is an (N, n) array, one state a row. Row after row in memory it is, byte for byte, the
-/// n x N matrix of Eigen with one state a column: nothing is copied. Another layout (a transposed
-/// or strided array, another type) is copied once on the way in. All computing releases the GIL.
+/// n x N matrix of Eigen with one state a column: nothing is copied. Solvers copy another layout (a
+/// transposed or strided array) a tile of states at a time, and another type as a whole; the other
+/// functions copy either once on the way in. All computing releases the GIL.
 
 #include <pybind11/pybind11.h>
 

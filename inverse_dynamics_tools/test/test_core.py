@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
-import pickle
 import threading
 
 import numpy as np
@@ -106,22 +105,6 @@ def test_one_state_gives_what_it_gives_within_a_batch(ur10):
     assert ur10.inertia_matrix(q).shape == (len(q), 6, 6)
 
 
-@pytest.mark.parametrize(
-    "layout",
-    [
-        np.asfortranarray,
-        lambda a: np.repeat(a, 2, axis=0)[::2],
-        lambda a: a[::-1][::-1],
-        lambda a: a.tolist(),
-    ],
-    ids=["columns", "strided", "reversed", "list"],
-)
-def test_arrays_of_any_layout_give_the_same(ur10, layout):
-    _, expected = states("ur10")
-    arrays = [expected[name] for name in ("q", "qd", "qdd")]
-    np.testing.assert_array_equal(ur10.torques(*(layout(a) for a in arrays)), ur10.torques(*arrays))
-
-
 def test_an_empty_batch_gives_an_empty_result(ur10):
     nothing = np.zeros((0, 6))
     assert ur10.torques(nothing, nothing, nothing).shape == (0, 6)
@@ -150,16 +133,6 @@ def test_drive_gains_of_a_model_in_currents(ur10):
     gains = json.loads((DATA / "reference/ur10.json").read_text())["drive_gains"]
     np.testing.assert_array_equal(ur10.drive_gains, gains)
     assert not ur10.inertia_is_physical
-
-
-def test_a_solver_is_pickled_with_all_it_was_made_from():
-    solver = Solver(
-        RIGID_BODY, urdf=PENDULUM, gravity=(1, 2, 3), parameters={"locked_joints.x": 1.0}
-    )
-    copy = pickle.loads(pickle.dumps(solver))
-    assert copy.plugin == RIGID_BODY
-    q = np.linspace(-3, 3, 7)[:, None]
-    np.testing.assert_array_equal(copy.gravity_vector(q), solver.gravity_vector(q))
 
 
 def test_threads_compute_at_once_and_the_same(ur10):
@@ -211,16 +184,6 @@ def test_parameter_of_the_wrong_type_is_an_error():
         Solver(RIGID_BODY, urdf=PENDULUM, parameters={"attached": 3})
     with pytest.raises(TypeError, match=r"parameter 'x': expected bool, int, .* got complex"):
         Solver(RIGID_BODY, urdf=PENDULUM, parameters={"x": 1j})
-
-
-def test_arrays_of_the_wrong_size_are_an_error(ur10):
-    six = np.zeros(6)
-    with pytest.raises(errors.SizeMismatchError, match="qd"):
-        ur10.torques(six, np.zeros(5), six)
-    with pytest.raises(errors.SizeMismatchError):
-        ur10.torques(np.zeros((4, 6)), np.zeros((3, 6)), np.zeros((4, 6)))
-    with pytest.raises(ValueError, match=r"q: expected an array \(n,\) or \(N, n\)"):
-        ur10.gravity_vector(np.zeros((2, 2, 6)))
 
 
 def test_errors_of_solvers_are_user_errors():

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver_origin.hpp"
+
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace inverse_dynamics_tools {
+
+namespace py = pybind11;
+namespace ids = inverse_dynamics_solver;
+
+std::map<std::string, ids::ParameterValue> parametersOf(const Origin& origin) {
+  auto all = origin.parameters;
+  all["friction"] = origin.friction;
+  if (!origin.root.empty()) all["root"] = origin.root;
+  if (!origin.tip.empty()) all["tip"] = origin.tip;
+  if (!origin.attached.empty()) all["attached"] = origin.attached;
+  if (origin.model) all["model"] = *origin.model;
+  if (origin.gravity) {
+    all["gravity"] = std::vector<double>(origin.gravity->begin(), origin.gravity->end());
+  }
+  return all;
+}
+
+ids::ParameterValue parameterOf(const std::string& name, const py::handle& value) {
+  // pybind11 would take the first alternative that it can convert to.
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
+  if (py::isinstance<py::int_>(value)) return value.cast<std::int64_t>();
+  if (py::isinstance<py::float_>(value)) return value.cast<double>();
+  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  if (py::isinstance<py::sequence>(value)) {
+    const auto all = [&](auto is) {
+      for (const py::handle entry : value)
+        if (!is(entry)) return false;
+      return true;
+    };
+    if (all([](py::handle e) { return py::isinstance<py::str>(e); })) {
+      return value.cast<std::vector<std::string>>();
+    }
+    if (all([](py::handle e) { return py::isinstance<py::bool_>(e); })) {
+      return value.cast<std::vector<bool>>();
+    }
+    if (all([](py::handle e) { return py::isinstance<py::int_>(e); })) {
+      return value.cast<std::vector<std::int64_t>>();
+    }
+    if (all([](py::handle e) {
+          return py::isinstance<py::float_>(e) || py::isinstance<py::int_>(e);
+        })) {
+      return value.cast<std::vector<double>>();
+    }
+  }
+  throw py::type_error("parameter '" + name +
+                       "': expected bool, int, float, str or a list of one of them, got " +
+                       std::string(py::str(py::type::of(value).attr("__name__"))));
+}
+
+py::tuple argumentsOf(const Origin& origin) {
+  py::dict parameters;
+  for (const auto& [name, value] : origin.parameters) parameters[py::str(name)] = py::cast(value);
+  return py::make_tuple(origin.plugin, origin.urdf, origin.root, origin.tip, origin.gravity,
+                        origin.friction, origin.attached, origin.model, parameters);
+}
+
+}  // namespace inverse_dynamics_tools
