@@ -26,7 +26,7 @@ template <typename V>
 struct Recursions {
   void (*torques)(const Robot&, const State<V>&, const double* root, V* tau);
   void (*gravity)(const Robot&, const State<V>&, V* g);
-  void (*inertia)(const Robot&, const State<V>&, const MatrixLanes<V>& H);
+  void (*inertia)(const Robot&, const State<V>&, const Entries<V>& H);
 };
 
 template <typename V>
@@ -65,10 +65,24 @@ FAST_INLINE void addOffset(const V& offset_cos, const V& offset_sin, V& s, V& c)
   s = sum;
 }
 
+template <typename V>
+FAST_INLINE double* numbersOf(V* packs) {
+  return reinterpret_cast<double*>(packs);
+}
+template <typename V>
+FAST_INLINE const double* numbersOf(const V* packs) {
+  return reinterpret_cast<const double*>(packs);
+}
+
 /// Memory for one number per joint, with room for a pack at the end.
 struct JointNumbers {
   double values[kMaxJoints + kShortWidth];
 };
+
+// The pack at joint i: the last one overlaps the one before it, if there is one.
+FAST_INLINE int firstOfPack(int i, int joints) {
+  return i == 0 || i + kShortWidth <= joints ? i : joints - kShortWidth;
+}
 
 // Cosine and sine of all joints of one state, several joints at a time.
 void turnsOfState(const Robot& robot, const double* q, double* c, double* s) {
@@ -80,8 +94,7 @@ void turnsOfState(const Robot& robot, const double* q, double* c, double* s) {
   }
   ShortBits beyond{};
   for (int i = 0; i < n; i += kShortWidth) {
-    // the last pack overlaps the one before
-    const int first = n < kShortWidth || i + kShortWidth <= n ? i : n - kShortWidth;
+    const int first = firstOfPack(i, n);
     Short sine;
     Short cosine;
     beyond |=
@@ -107,26 +120,29 @@ void turnsOfState(const Robot& robot, const double* q, double* c, double* s) {
 }
 
 // Cosine and sine of all joints, a state in each lane.
-void turnsOfPack(const Robot& robot, const Pack* q, Pack* c, Pack* s) {
-  for (int i = 0; i < robot.joints; ++i) {
+FAST_INLINE void turnsOfPack(const Robot& robot, const Pack* q, Pack* c, Pack* s) {
+  const int n = robot.joints;
+  BitsOf<Pack> beyond{};
+  for (int i = 0; i < n; ++i) {
+    beyond |= sineCosine(q[i], all<Pack>(robot.quarter_turns[i]), s[i], c[i]);
+  }
+  if (any<Pack>(beyond)) {
+    // numbers of a pack stand side by side in memory
+    for (int k = 0; k < n * kWidth; ++k) {
+      sineCosineOfAny(numbersOf(q)[k], robot.quarter_turns[k / kWidth], numbersOf(s)[k],
+                      numbersOf(c)[k]);
+    }
+  }
+  if (!robot.general_offsets && !robot.mixed) return;
+  for (int i = 0; i < n; ++i) {
     const Placement& X = robot.placements[i];
+    const Pack offset_cos = all<Pack>(X.offset_cos);
+    const Pack offset_sin = all<Pack>(X.offset_sin);
     if (X.prismatic) {
-      c[i] = all<Pack>(X.offset_cos);
-      s[i] = all<Pack>(X.offset_sin);
-      continue;
-    }
-    const double quarter_turns = robot.quarter_turns[i];
-    if (any<Pack>(sineCosine(q[i], all<Pack>(quarter_turns), s[i], c[i]))) {
-      for (int lane = 0; lane < kWidth; ++lane) {
-        double sine;
-        double cosine;
-        sineCosineOfAny(q[i][lane], quarter_turns, sine, cosine);
-        s[i][lane] = sine;
-        c[i][lane] = cosine;
-      }
-    }
-    if (robot.general_offsets) {
-      addOffset(all<Pack>(X.offset_cos), all<Pack>(X.offset_sin), s[i], c[i]);
+      c[i] = offset_cos;
+      s[i] = offset_sin;
+    } else {
+      addOffset(offset_cos, offset_sin, s[i], c[i]);
     }
   }
 }
@@ -143,20 +159,32 @@ FAST_INLINE V frictionOf(const V& qd, const Number& number) {
          number(3) * (sigmoid<V>(number(4) * (qd + number(5))) - number(6));
 }
 
-void frictionOfState(const Robot& robot, const double* qd, double* f) {
+// f has room for a pack at the end.
+void frictionNumbers(const Robot& robot, const double* qd, double* f) {
   const int n = robot.joints;
+  double padded[kShortWidth] = {};
+  for (int i = 0; i < n; i += kShortWidth) {
+    const int first = firstOfPack(i, n);
+    const double* from = qd + first;
+    if (n < kShortWidth) {
+      for (int j = 0; j < n; ++j) padded[j] = qd[j];
+      from = padded;
+    }
+    const auto number = [&](int k) {
+      return load<Short>(robot.friction + k * robot.stride + first);
+    };
+    store(frictionOf(load<Short>(from), number), f + first);
+  }
+}
+
+void frictionOfState(const Robot& robot, const double* qd, double* f) {
   if (robot.friction == nullptr) {
-    for (int i = 0; i < n; ++i) f[i] = 0.0 * qd[i];  // keeps a NaN
+    for (int i = 0; i < robot.joints; ++i) f[i] = 0.0 * qd[i];  // keeps a NaN
     return;
   }
-  JointNumbers in;
-  JointNumbers out;
-  __builtin_memcpy(in.values, qd, static_cast<unsigned>(n) * sizeof(double));
-  for (int i = 0; i < n; i += kShortWidth) {
-    const auto number = [&](int k) { return load<Short>(robot.friction + k * robot.stride + i); };
-    store(frictionOf(load<Short>(in.values + i), number), out.values + i);
-  }
-  __builtin_memcpy(f, out.values, static_cast<unsigned>(n) * sizeof(double));
+  JointNumbers numbers;
+  frictionNumbers(robot, qd, numbers.values);
+  for (int i = 0; i < robot.joints; ++i) f[i] = numbers.values[i];
 }
 
 FAST_INLINE Pack frictionOfPack(const Robot& robot, int i, const Pack& qd) {
@@ -201,11 +229,14 @@ void torquesOfState(const Robot& robot, int structure, const double* q, const do
   JointNumbers c;
   JointNumbers s;
   turnsOfState(robot, q, c.values, s.values);
+  if (robot.friction == nullptr) {
+    torquesOf(robot, structure, State<double>{c.values, s.values, q, qd, qdd}, tau);
+    return;
+  }
+  JointNumbers f;
+  frictionNumbers(robot, qd, f.values);
   torquesOf(robot, structure, State<double>{c.values, s.values, q, qd, qdd}, tau);
-  if (robot.friction == nullptr) return;
-  double f[kMaxJoints];
-  frictionOfState(robot, qd, f);
-  for (int i = 0; i < robot.joints; ++i) tau[i] += f[i];
+  for (int i = 0; i < robot.joints; ++i) tau[i] += f.values[i];
 }
 
 void coriolisOfState(const Robot& robot, int structure, const double* q, const double* qd,
@@ -229,7 +260,8 @@ void inertiaOfState(const Robot& robot, int structure, const double* q, Matrices
   JointNumbers s;
   turnsOfState(robot, q, c.values, s.values);
   const State<double> state{c.values, s.values, q, nullptr, nullptr};
-  recursionsOf<double>(robot, structure).inertia(robot, state, MatrixLanes<double>{H, 1});
+  recursionsOf<double>(robot, structure)
+      .inertia(robot, state, Entries<double>{H.data, H.row_step, H.column_step});
 }
 
 void componentsOfState(const Robot& robot, int structure, const double* q, const double* qd,
@@ -238,7 +270,8 @@ void componentsOfState(const Robot& robot, int structure, const double* q, const
   JointNumbers s;
   turnsOfState(robot, q, c.values, s.values);
   const State<double> state{c.values, s.values, q, qd, kAtRest};
-  recursionsOf<double>(robot, structure).inertia(robot, state, MatrixLanes<double>{H, 1});
+  recursionsOf<double>(robot, structure)
+      .inertia(robot, state, Entries<double>{H.data, H.row_step, H.column_step});
   coriolisOf(robot, structure, state, coriolis);
   gravityOf(robot, structure, state, g);
 }
@@ -262,27 +295,43 @@ FAST_INLINE void forEachPack(std::ptrdiff_t states, const One& one) {
   }
 }
 
+// The common cases have no branch per number: a full pack of states that stand apart, or side by
+// side.
 FAST_INLINE void gather(const Robot& robot, const Samples& from, const Lanes& lanes, Pack* to) {
-  for (int i = 0; i < robot.joints; ++i) {
-    const double* const row = from.data + i * from.joint_step;
-    if (from.state_step == 1 && lanes.count == kWidth) {
-      to[i] = load<Pack>(row + lanes.first);
-    } else {
-      for (int lane = 0; lane < kWidth; ++lane) to[i][lane] = row[lanes[lane] * from.state_step];
+  const std::ptrdiff_t step = from.state_step;
+  const double* const first = from.data + lanes.first * step;
+  const int n = robot.joints;
+  if (lanes.count < kWidth) {
+    for (int i = 0; i < n; ++i) {
+      for (int lane = 0; lane < kWidth; ++lane) {
+        to[i][lane] = from.data[lanes[lane] * step + i * from.joint_step];
+      }
     }
+  } else if (step == 1) {
+    for (int i = 0; i < n; ++i) to[i] = load<Pack>(first + i * from.joint_step);
+  } else {
+    for (int i = 0; i < n; ++i) to[i] = loadSteps(first + i * from.joint_step, step);
+  }
+}
+
+// packs[i] to the numbers of each state at to[i pack_step + state state_step].
+FAST_INLINE void scatter(const Pack* packs, int count, const Lanes& lanes, double* to,
+                         std::ptrdiff_t pack_step, std::ptrdiff_t state_step) {
+  to += lanes.first * state_step;
+  if (lanes.count < kWidth) {
+    for (int i = 0; i < count; ++i) {
+      for (int k = 0; k < lanes.count; ++k) to[i * pack_step + k * state_step] = packs[i][k];
+    }
+  } else if (state_step == 1) {
+    for (int i = 0; i < count; ++i) store(packs[i], to + i * pack_step);
+  } else {
+    for (int i = 0; i < count; ++i) storeSteps(packs[i], to + i * pack_step, state_step);
   }
 }
 
 FAST_INLINE void scatter(const Robot& robot, const Pack* from, const Lanes& lanes,
                          const Samples& to) {
-  for (int i = 0; i < robot.joints; ++i) {
-    double* const row = to.data + i * to.joint_step;
-    if (to.state_step == 1 && lanes.count == kWidth) {
-      store(from[i], row + lanes.first);
-    } else {
-      for (int lane = 0; lane < kWidth; ++lane) row[lanes[lane] * to.state_step] = from[i][lane];
-    }
-  }
+  scatter(from, robot.joints, lanes, to.data, to.joint_step, to.state_step);
 }
 
 /// Memory of one pack of states.
@@ -296,9 +345,30 @@ struct PackOfStates {
   }
 };
 
-MatrixLanes<Pack> matricesAt(const Matrices& H, const Lanes& lanes) {
-  return {{H.data + lanes.first * H.state_step, H.row_step, H.column_step, H.state_step},
-          lanes.count};
+/// Longest chain whose matrices of one pack of states fit on the stack.
+constexpr int kPackedMatrixJoints = 16;
+
+FAST_INLINE void inertiaOfPack(const Robot& robot, int structure, const State<Pack>& state,
+                               const Lanes& lanes, const Matrices& H) {
+  const int n = robot.joints;
+  Pack entries[kPackedMatrixJoints * kPackedMatrixJoints];
+  recursionsOf<Pack>(robot, structure).inertia(robot, state, Entries<Pack>{entries, 1, n});
+  for (int j = 0; j < n; ++j) {
+    scatter(entries + j * n, n, lanes, H.data + j * H.column_step, H.row_step, H.state_step);
+  }
+}
+
+// For longer chains.
+void inertiaOneByOne(const Robot& robot, int structure, std::ptrdiff_t states, const Samples& q,
+                     Matrices H) {
+  for (std::ptrdiff_t k = 0; k < states; ++k) {
+    double position[kMaxJoints];
+    for (int i = 0; i < robot.joints; ++i) {
+      position[i] = q.data[i * q.joint_step + k * q.state_step];
+    }
+    inertiaOfState(robot, structure, position, H);
+    H.data += H.state_step;
+  }
 }
 
 void torquesBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Samples qd,
@@ -344,19 +414,21 @@ void inertiaBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates x;
     x.readPositions(robot, q, lanes);
-    recursionsOf<Pack>(robot, structure).inertia(robot, x.state(), matricesAt(H, lanes));
+    inertiaOfPack(robot, structure, x.state(), lanes, H);
   });
 }
 
 void componentsBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
                      Samples qd, Matrices H, Samples c, Samples g) {
+  const bool packed = robot.joints <= kPackedMatrixJoints;
+  if (!packed) inertiaOneByOne(robot, structure, states, q, H);
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates x;
     Pack result[kMaxJoints];
     gather(robot, qd, lanes, x.qd);
     for (int i = 0; i < robot.joints; ++i) x.qdd[i] = Pack{};
     x.readPositions(robot, q, lanes);
-    recursionsOf<Pack>(robot, structure).inertia(robot, x.state(), matricesAt(H, lanes));
+    if (packed) inertiaOfPack(robot, structure, x.state(), lanes, H);
     coriolisOf(robot, structure, x.state(), result);
     scatter(robot, result, lanes, c);
     gravityOf(robot, structure, x.state(), result);

@@ -57,9 +57,41 @@ FAST_INLINE V load(const double* from) {
   return v;
 }
 
+// Numbers that don't stand side by side: from[0], from[step], ...
+FAST_INLINE Pack loadSteps(const double* from, std::ptrdiff_t step) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+  return Pack{from[0],        from[step],     from[2 * step], from[3 * step],
+              from[4 * step], from[5 * step], from[6 * step], from[7 * step]};
+#elif defined(__AVX__)
+  return Pack{from[0], from[step], from[2 * step], from[3 * step]};
+#else
+  return Pack{from[0], from[step]};
+#endif
+}
+
 template <typename V>
 FAST_INLINE void store(const V& v, double* to) {
   __builtin_memcpy(to, &v, sizeof(V));
+}
+
+FAST_INLINE void storeSteps(const Pack& pack, double* to, std::ptrdiff_t step) {
+  to[0] = pack[0];
+  to[step] = pack[1];
+#if defined(__AVX__)
+  to[2 * step] = pack[2];
+  to[3 * step] = pack[3];
+#endif
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+  to[4 * step] = pack[4];
+  to[5 * step] = pack[5];
+  to[6 * step] = pack[6];
+  to[7 * step] = pack[7];
+#endif
+}
+
+template <typename V>
+FAST_INLINE double laneOf(const V& v, int lane) {
+  return v[lane];
 }
 
 // All lanes the same number.

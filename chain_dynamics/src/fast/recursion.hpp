@@ -199,8 +199,8 @@ FAST_INLINE void forEachMotion(const Robot& robot, const State<V>& state, const 
 
 /// The forces through the joints from tip to `first`, given what each link needs for itself;
 /// each(i, force along or moment about the axis of joint i).
-template <typename S, typename V, typename P, typename Own, typename Each>
-FAST_INLINE void forEachJointForce(const Robot& robot, const State<V>& state, int first,
+template <typename S, typename V, typename P, typename First, typename Own, typename Each>
+FAST_INLINE void forEachJointForce(const Robot& robot, const State<V>& state, First first,
                                    const Own& own, const Each& each) {
   Wrench<P> W{};
   S::backwards(robot, first, [&](auto i) FAST_LAMBDA {
@@ -231,9 +231,18 @@ struct BodyLanes {
   P mcx, mcy, Sxx, Sxy, Sxz, Syy, Syz, mcz, m, mass_beyond;
 
   FAST_INLINE BodyLanes(const Robot& robot, int i, int first_row) {
-    const double* from = robot.row_lanes + i * kBodyNumbers * robot.stride + first_row;
-    P* const numbers[] = {&mcx, &mcy, &Sxx, &Sxy, &Sxz, &Syy, &Syz, &mcz, &m, &mass_beyond};
-    for (int k = 0; k < kBodyNumbers; ++k) *numbers[k] = load<P>(from + k * robot.stride);
+    const double* const from = robot.row_lanes + i * kBodyNumbers * robot.stride + first_row;
+    const auto number = [&](int k) FAST_LAMBDA { return load<P>(from + k * robot.stride); };
+    mcx = number(0);
+    mcy = number(1);
+    Sxx = number(2);
+    Sxy = number(3);
+    Sxz = number(4);
+    Syy = number(5);
+    Syz = number(6);
+    mcz = number(7);
+    m = number(8);
+    mass_beyond = number(9);
   }
 };
 
@@ -251,7 +260,7 @@ void torques(const Robot& robot, const State<V>& state, const double* root, V* t
     own[i] = wrenchOfLink<S>(robot, i, U, robot.bodies[i]);
   });
   forEachJointForce<S, V, V>(
-      robot, state, 0, [&](auto i) FAST_LAMBDA { return own[i]; },
+      robot, state, Constant<0>(), [&](auto i) FAST_LAMBDA { return own[i]; },
       [&](auto i, const V& force)
           FAST_LAMBDA { tau[i] = force + robot.placements[i].rotor_inertia * state.qdd[i]; });
 }
@@ -264,7 +273,7 @@ void torquesByRow(const Robot& robot, const State<V>& state, const double* root,
                    [&](auto i, const LinkMotion<V>& U) FAST_LAMBDA { motion[i] = U; });
   if constexpr (sizeof(V) == sizeof(double)) {
     // rows as lanes
-    for (int first = 0; first < robot.joints; first += kShortWidth) {
+    S::template inSteps<kShortWidth>(robot, [&](auto first) FAST_LAMBDA {
       forEachJointForce<S, V, Short>(
           robot, state, first,
           [&](auto i) FAST_LAMBDA {
@@ -272,13 +281,13 @@ void torquesByRow(const Robot& robot, const State<V>& state, const double* root,
           },
           [&](auto i, const Short& force) FAST_LAMBDA {
             if (i < first + kShortWidth) {
-              tau[i] = force[i - first] + robot.placements[i].rotor_inertia * state.qdd[i];
+              tau[i] = laneOf(force, i - first) + robot.placements[i].rotor_inertia * state.qdd[i];
             }
           });
-    }
+    });
   } else {
     // states as lanes, one row after the other
-    for (int row = 0; row < robot.joints; ++row) {
+    S::template inSteps<1>(robot, [&](auto row) FAST_LAMBDA {
       forEachJointForce<S, V, V>(
           robot, state, row,
           [&](auto i)
@@ -286,14 +295,14 @@ void torquesByRow(const Robot& robot, const State<V>& state, const double* root,
           [&](auto i, const V& force) FAST_LAMBDA {
             if (i == row) tau[i] = force + robot.placements[i].rotor_inertia * state.qdd[i];
           });
-    }
+    });
   }
 }
 
 /// Gravity in the links' frames, then what hangs on each joint as a heavy point, from tip to
 /// `first`; each(i, torque).
-template <typename S, typename V, typename P, typename BodyOf, typename Each>
-FAST_INLINE void forEachGravity(const Robot& robot, const State<V>& state, int first,
+template <typename S, typename V, typename P, typename First, typename BodyOf, typename Each>
+FAST_INLINE void forEachGravity(const Robot& robot, const State<V>& state, First first,
                                 const Vec<V>* a, const BodyOf& bodyOf, const Each& each) {
   Vec<P> mc{};
   S::backwards(robot, first, [&](auto i) FAST_LAMBDA {
@@ -344,7 +353,7 @@ void gravity(const Robot& robot, const State<V>& state, V* g) {
   Vec<V> a[S::kJoints];
   gravityInLinks<S>(robot, state, a);
   forEachGravity<S, V, V>(
-      robot, state, 0, a, [&](auto i) FAST_LAMBDA -> const Body& { return bodies[i]; },
+      robot, state, Constant<0>(), a, [&](auto i) FAST_LAMBDA -> const Body& { return bodies[i]; },
       [&](auto i, const V& torque) FAST_LAMBDA { g[i] = torque; });
 }
 
@@ -354,23 +363,23 @@ void gravityByRow(const Robot& robot, const State<V>& state, V* g) {
   Vec<V> a[S::kJoints];
   gravityInLinks<S>(robot, state, a);
   if constexpr (sizeof(V) == sizeof(double)) {
-    for (int first = 0; first < robot.joints; first += kShortWidth) {
+    S::template inSteps<kShortWidth>(robot, [&](auto first) FAST_LAMBDA {
       forEachGravity<S, V, Short>(
           robot, state, first, a,
           [&](auto i) FAST_LAMBDA { return BodyLanes<Short>(robot, i, first); },
           [&](auto i, const Short& torque) FAST_LAMBDA {
-            if (i < first + kShortWidth) g[i] = torque[i - first];
+            if (i < first + kShortWidth) g[i] = laneOf(torque, i - first);
           });
-    }
+    });
   } else {
-    for (int row = 0; row < robot.joints; ++row) {
+    S::template inSteps<1>(robot, [&](auto row) FAST_LAMBDA {
       forEachGravity<S, V, V>(
           robot, state, row, a,
           [&](auto i) FAST_LAMBDA -> const Body& { return robot.rows[row][i]; },
           [&](auto i, const V& torque) FAST_LAMBDA {
             if (i == row) g[i] = torque;
           });
-    }
+    });
   }
 }
 
@@ -454,8 +463,8 @@ FAST_INLINE void shift(int i, const Placement& X, const M& m, Composite<P>& I) {
 
 /// The composite bodies from tip to `first`, and the forces at each joint j <= i that accelerate
 /// joint i by one; each(i, j, H_ij).
-template <typename S, typename V, typename P, typename BodyOf, typename Each>
-FAST_INLINE void forEachInertia(const Robot& robot, const State<V>& state, int first,
+template <typename S, typename V, typename P, typename First, typename BodyOf, typename Each>
+FAST_INLINE void forEachInertia(const Robot& robot, const State<V>& state, First first,
                                 const BodyOf& bodyOf, const Each& each) {
   Composite<P> I;
   S::backwards(robot, first, [&](auto i) FAST_LAMBDA {
@@ -503,29 +512,23 @@ FAST_INLINE void forEachInertia(const Robot& robot, const State<V>& state, int f
   });
 }
 
-/// Where the numbers of one matrix per lane go.
+/// Where the entries of the inertia matrix go.
 template <typename V>
-struct MatrixLanes {
-  Matrices H;
-  int states;  // lanes beyond this number are copies
+struct Entries {
+  V* data;
+  std::ptrdiff_t row_step, column_step;
 
   FAST_INLINE void set(int row, int column, const V& value) const {
-    double* const to = H.data + row * H.row_step + column * H.column_step;
-    if constexpr (sizeof(V) == sizeof(double)) {
-      *to = value;
-    } else {
-      for (int lane = 0; lane < kLanes<V>; ++lane) {
-        if (lane < states) to[lane * H.state_step] = value[lane];
-      }
-    }
+    data[row * row_step + column * column_step] = value;
   }
 };
 
 /// Inertia matrix; one set of parameters for all rows.
 template <typename S, typename V>
-void inertia(const Robot& robot, const State<V>& state, const MatrixLanes<V>& H) {
+void inertia(const Robot& robot, const State<V>& state, const Entries<V>& H) {
   forEachInertia<S, V, V>(
-      robot, state, 0, [&](auto i) FAST_LAMBDA -> const Body& { return robot.bodies[i]; },
+      robot, state, Constant<0>(),
+      [&](auto i) FAST_LAMBDA -> const Body& { return robot.bodies[i]; },
       [&](auto i, auto j, const V& value) FAST_LAMBDA {
         H.set(i, j, value);
         if (i != j) H.set(j, i, value);
@@ -534,20 +537,20 @@ void inertia(const Robot& robot, const State<V>& state, const MatrixLanes<V>& H)
 
 /// The same with a set of parameters for each row.
 template <typename S, typename V>
-void inertiaByRow(const Robot& robot, const State<V>& state, const MatrixLanes<V>& H) {
+void inertiaByRow(const Robot& robot, const State<V>& state, const Entries<V>& H) {
   if constexpr (sizeof(V) == sizeof(double)) {
-    for (int first = 0; first < robot.joints; first += kShortWidth) {
+    S::template inSteps<kShortWidth>(robot, [&](auto first) FAST_LAMBDA {
       const int end = first + kShortWidth;
       forEachInertia<S, V, Short>(
           robot, state, first,
           [&](auto i) FAST_LAMBDA { return BodyLanes<Short>(robot, i, first); },
           [&](auto i, auto j, const Short& value) FAST_LAMBDA {
-            if (i < end) H.set(i, j, value[i - first]);
-            if (first <= j && j < end && i != j) H.set(j, i, value[j - first]);
+            if (i < end) H.set(i, j, laneOf(value, i - first));
+            if (first <= j && j < end && i != j) H.set(j, i, laneOf(value, j - first));
           });
-    }
+    });
   } else {
-    for (int row = 0; row < robot.joints; ++row) {
+    S::template inSteps<1>(robot, [&](auto row) FAST_LAMBDA {
       forEachInertia<S, V, V>(
           robot, state, row, [&](auto i) FAST_LAMBDA -> const Body& { return robot.rows[row][i]; },
           [&](auto i, auto j, const V& value) FAST_LAMBDA {
@@ -557,7 +560,7 @@ void inertiaByRow(const Robot& robot, const State<V>& state, const MatrixLanes<V
               H.set(row, i, value);
             }
           });
-    }
+    });
   }
 }
 

@@ -58,6 +58,12 @@ struct AnyStructure {
   static FAST_INLINE void backwards(const Robot& robot, int first, const Step& step) {
     for (int i = robot.joints - 1; i >= first; --i) step(i);
   }
+  /// step(first) for first = 0, width, 2 width .. < joints.
+  template <int kStep, typename Step>
+  static FAST_INLINE void inSteps(const Robot& robot, const Step& step) {
+    for (int first = 0; first < robot.joints; first += kStep) step(first);
+  }
+
   /// step(j) for j = from .. 1.
   template <typename Step>
   static FAST_INLINE void backwardsFrom(int from, const Step& step) {
@@ -84,11 +90,16 @@ struct Known {
   static FAST_INLINE void forwards(const Robot&, const Step& step) {
     countUp<0, N>(step);
   }
-  template <typename Step>
-  static FAST_INLINE void backwards(const Robot&, int first, const Step& step) {
+  template <typename First, typename Step>
+  static FAST_INLINE void backwards(const Robot&, First first, const Step& step) {
     countDown<N - 1>([&](auto i) FAST_LAMBDA {
       if (i >= first) step(i);
     });
+  }
+  template <int kStep, typename Step>
+  static FAST_INLINE void inSteps(const Robot&, const Step& step) {
+    countUp<0, (N + kStep - 1) / kStep>(
+        [&](auto k) FAST_LAMBDA { step(Constant<decltype(k)() * kStep>()); });
   }
   template <int I, typename Step>
   static FAST_INLINE void backwardsFrom(Constant<I> from, const Step& step) {
