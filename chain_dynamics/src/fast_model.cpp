@@ -44,11 +44,9 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-const Kernels* kernelsNamed(const std::string& name) {
-  const std::vector<const Kernels*> usable = usableKernels();
-  if (name.empty()) return usable.back();
-  for (const Kernels* kernels : usable) {
-    if (name == kernels->name) return kernels;
+const Kernels& kernelsNamed(const std::string& name) {
+  for (const Kernels* kernels : usableKernels()) {
+    if (name == kernels->name) return *kernels;
   }
   throw ModelError("fast model", "instruction set", joined(FastModel::instructionSets()), name,
                    "leave it empty for the best");
@@ -157,8 +155,7 @@ std::vector<std::string> FastModel::instructionSets() {
   return names;
 }
 
-FastModel::FastModel(const Model& model, const std::string& instruction_set)
-    : kernels_(kernelsNamed(instruction_set)) {
+FastModel::FastModel(const Model& model, const std::string& instruction_set) {
   const Eigen::Index n = model.chain.jointCount();
   if (n > kMaxJoints) {
     throw ModelError("fast model of " + model.name, "joints",
@@ -166,7 +163,50 @@ FastModel::FastModel(const Model& model, const std::string& instruction_set)
                      "use the functions of model.hpp");
   }
   data_ = std::make_unique<const Data>(model);
-  structure_ = kernels_->structureOf(robot());
+  if (instruction_set.empty()) {
+    useBest(model);
+  } else {
+    use(kernelsNamed(instruction_set));
+  }
+}
+
+void FastModel::useBest(const Model& model) {
+  std::vector<const Kernels*> kernels = usableKernels();
+  use(*kernels.back());
+  while (kernels.size() > 1 && !equalsPlain(model)) {
+    kernels.pop_back();
+    use(*kernels.back());
+  }
+}
+
+void FastModel::use(const Kernels& kernels) {
+  kernels_ = &kernels;
+  structure_ = kernels.structureOf(robot());
+}
+
+std::string FastModel::instructionSet() const { return kernels_->name; }
+
+bool FastModel::equalsPlain(const Model& model) const {
+  constexpr double kTolerance = 1e-9;  // of the largest: far above rounding, far below a mistake
+  constexpr Eigen::Index kStates = kPack;
+  const Eigen::Index n = model.chain.jointCount();
+  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(n, 0.3, 2.9);
+  Eigen::MatrixXd H(n, n);
+  Eigen::VectorXd c(n), g(n), f(n);
+  chain_dynamics::dynamicComponents(model, q, q, H, c, g);
+  chain_dynamics::frictionVector(model, q, f);
+  const Eigen::VectorXd tau = H * q + c + g + f;
+
+  // the same state in every lane
+  Eigen::MatrixXd fast_H(n, n), fast_tau(n, kStates);
+  inertiaMatrix(q.data(), fast_H.data(), n);
+  torques(q.data(), q.data(), q.data(), f.data());
+  torquesBatch(kStates, {q.data(), 1, 0}, {q.data(), 1, 0}, {q.data(), 1, 0},
+               {fast_tau.data(), 1, n});
+  const auto near = [](const auto& a, const auto& b) {
+    return (a - b).cwiseAbs().maxCoeff() <= kTolerance * (1 + b.cwiseAbs().maxCoeff());
+  };
+  return near(fast_H, H) && near(f, tau) && near(fast_tau, tau.replicate(1, kStates));
 }
 
 FastModel::~FastModel() = default;

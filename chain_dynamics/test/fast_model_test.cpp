@@ -5,8 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
-#include <thread>
+#include <utility>
+#include <vector>
 
 #include "allocation_guard.hpp"
 #include "chain_dynamics/error.hpp"
@@ -14,6 +16,7 @@
 #include "chain_dynamics/urdf.hpp"
 #include "random_chains.hpp"
 #include "reference.hpp"
+#include "robot.hpp"
 
 namespace chain_dynamics {
 namespace {
@@ -69,6 +72,15 @@ void expectEqual(const Terms& a, const Terms& b, const State<double>& x, double 
 
 std::string robotFile(const std::string& name) {
   return std::string(CHAIN_DYNAMICS_ROBOTS_DIR "/") + name;
+}
+
+const fast::Kernels& kernelsNamed(const std::string& name) {
+#ifdef CHAIN_DYNAMICS_X86_KERNELS
+  if (name == "v3") return fast::kernelsV3();
+  if (name == "v4") return fast::kernelsV4();
+#endif
+  EXPECT_EQ(name, "portable");
+  return fast::kernelsPortable();
 }
 
 /// The same joints and links, all turning.
@@ -262,8 +274,141 @@ TEST_P(FastModelOn, BatchesEqualSingleCallsInAnyLayout) {
   }
 }
 
+// Each lane is a computation of its own: what the others hold, and how many there are, is nothing
+// to it.
+TEST_P(FastModelOn, AStateHasTheSameBitsWhereverItStandsInABatch) {
+  for (const auto& [name, model] : models()) {
+    const Index n = model.chain.jointCount();
+    if (n > 9) continue;
+    SCOPED_TRACE(name);
+    const FastModel fast(model, GetParam());
+    Random random(3);
+    const Index count = 19;
+    const MatrixXd q = 3 * random.vector(n * count).reshaped(n, count);
+    const MatrixXd qd = 2 * q;
+    const MatrixXd qdd = -q;
+    MatrixXd all(n, count);
+    MatrixXd alone(n, 1);
+    fast.torquesBatch(count, {q.data(), 1, n}, {qd.data(), 1, n}, {qdd.data(), 1, n},
+                      {all.data(), 1, n});
+    for (Index k = 0; k < count; ++k) {
+      fast.torquesBatch(1, {&q(0, k), 1, n}, {&qd(0, k), 1, n}, {&qdd(0, k), 1, n},
+                        {alone.data(), 1, n});
+      ASSERT_EQ(alone, all.col(k)) << "state " << k;
+    }
+  }
+}
+
+// Row i of the torques depends on all joints, as no axis of this arm meets or parallels another.
+TEST_P(FastModelOn, NanGoesToEveryEntry) {
+  const Model model(revolute(randomChain(6)));
+  const FastModel fast(model, GetParam());
+  for (VectorXd State<double>::*argument :
+       {&State<double>::q, &State<double>::qd, &State<double>::qdd}) {
+    for (Index j = argument == &State<double>::q ? 1 : 0; j < 6; ++j) {
+      State<double> x = randomState<double>(model.chain, 1);
+      (x.*argument)[j] = std::numeric_limits<double>::quiet_NaN();
+      const VectorXd tau = termsOf(fast, x).tau;
+      EXPECT_TRUE(tau.array().isNaN().all()) << "joint " << j << ": " << tau.transpose();
+    }
+  }
+}
+
+TEST_P(FastModelOn, FrictionOfNanIsNanAndThatOfAnyVelocityIsFinite) {
+  const Model model = identified(randomChain(9), false, false, 5);
+  const FastModel fast(model, GetParam());
+  VectorXd f(9);
+  for (const double velocity : {0.0, 1e-300, 1e3, 1e200, std::numeric_limits<double>::max() / 4}) {
+    for (const double sign : {-1.0, 1.0}) {
+      const VectorXd qd = VectorXd::Constant(9, sign * velocity);
+      fast.frictionVector(qd.data(), f.data());
+      EXPECT_TRUE(f.allFinite()) << sign * velocity << ": " << f.transpose();
+    }
+  }
+  const VectorXd nan = VectorXd::Constant(9, std::numeric_limits<double>::quiet_NaN());
+  fast.frictionVector(nan.data(), f.data());
+  EXPECT_TRUE(f.array().isNaN().all()) << f.transpose();
+}
+
+// |error| of sine and cosine: half a unit in the last place of numbers below one is 5.6e-17, once
+// for the angle within a quarter turn and, with the term before the last, twice for the result.
+constexpr double kTurnError = 1.7e-16;
+
+TEST_P(FastModelOn, SineAndCosineAreThoseOfTheLibraryAtAnyAngle) {
+  const fast::Kernels& kernels = kernelsNamed(GetParam());
+  Random random(11);
+  for (const double range : {1e-9, 0.8, 3.2, 100.0, 1e4, 9.9e5, 1.1e6, 1e15, 1e300}) {
+    for (int k = 0; k < 2000; ++k) {
+      const double angle = range * random();
+      const double quarter_turns = k % 4;
+      double s = 0;
+      double c = 0;
+      kernels.sineCosine(1, &angle, &quarter_turns, &s, &c);
+      long double expected_s = std::sin(static_cast<long double>(angle));
+      long double expected_c = std::cos(static_cast<long double>(angle));
+      for (int turn = 0; turn < k % 4; ++turn) {
+        std::swap(expected_s, expected_c);
+        expected_c = -expected_c;
+      }
+      ASSERT_LE(std::abs(static_cast<double>(s - expected_s)), kTurnError) << angle;
+      ASSERT_LE(std::abs(static_cast<double>(c - expected_c)), kTurnError) << angle;
+    }
+  }
+}
+
+TEST_P(FastModelOn, LargeAnglesInOneJointLeaveTheOthersRight) {
+  const Model model(randomChain(7));
+  const FastModel fast(model, GetParam());
+  for (const double angle : {1e4, 1e7, -3e12}) {
+    State<double> x = randomState<double>(model.chain, 2);
+    x.q[3] = angle;
+    expectEqual(termsOf(fast, x), termsOf(model, x), x, rounding<double>(model.chain));
+  }
+}
+
+TEST_P(FastModelOn, NoCallAllocates) {
+  if (!CHAIN_DYNAMICS_COUNTS_ALLOCATIONS) {
+    GTEST_SKIP() << "allocations are counted with the GNU C library, without sanitizers";
+  }
+  for (const auto& [name, model] : models()) {
+    const FastModel fast(model, GetParam());
+    const State<double> x = randomState<double>(model.chain, 1);
+    Terms terms(x.q.size());
+    const Index n = x.q.size();
+    const AllocationGuard guard;
+    fast.torques(x.q.data(), x.qd.data(), x.qdd.data(), terms.tau.data());
+    fast.dynamicComponents(x.q.data(), x.qd.data(), terms.H.data(), n, terms.c.data(),
+                           terms.g.data());
+    fast.frictionVector(x.qd.data(), terms.f.data());
+    fast.torquesBatch(1, {x.q.data(), 1, n}, {x.qd.data(), 1, n}, {x.qdd.data(), 1, n},
+                      {terms.tau.data(), 1, n});
+    EXPECT_EQ(guard.count(), 0) << name;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, FastModelOn, ::testing::ValuesIn(FastModel::instructionSets()),
                          [](const auto& test) { return test.param; });
+
+TEST(FastModel, UsesTheBestInstructionSetAsItEqualsThePlainFunctions) {
+  for (const auto& [name, model] : models()) {
+    EXPECT_EQ(FastModel(model).instructionSet(), FastModel::instructionSets().back()) << name;
+  }
+}
+
+TEST(FastModel, RefusesAChainThatIsTooLong) {
+  const Model model(randomChain(65));
+  EXPECT_THAT(errorOf([&] { const FastModel fast(model); }),
+              ::testing::AllOf(::testing::HasSubstr("fast model of random65: joints"),
+                               ::testing::HasSubstr("expected at most 64, got 65"),
+                               ::testing::HasSubstr("use the functions of model.hpp")));
+}
+
+TEST(FastModel, RefusesAnInstructionSetThatIsNotThere) {
+  EXPECT_THAT(
+      errorOf([&] { const FastModel fast(Model(randomChain(2)), "altivec"); }),
+      ::testing::AllOf(::testing::HasSubstr("instruction set"), ::testing::HasSubstr("portable"),
+                       ::testing::HasSubstr("got altivec")));
+}
 
 }  // namespace
 }  // namespace chain_dynamics

@@ -63,12 +63,16 @@ class FastModel {
   static std::vector<std::string> instructionSets();
 
   /// @param model            at most kMaxJoints joints.
-  /// @param instruction_set  one of instructionSets(); empty: the best.
+  /// @param instruction_set  one of instructionSets(); empty: the best of those that give what
+  ///     the functions of model.hpp give, to nine digits, at one state.
   /// @throws ModelError  longer chain, or unknown instruction set.
   explicit FastModel(const Model& model, const std::string& instruction_set = "");
   ~FastModel();
   FastModel(const FastModel&) = delete;
   FastModel& operator=(const FastModel&) = delete;
+
+  /// The instruction set in use.
+  std::string instructionSet() const;
 
   /// @name One state
   /// n numbers each; H: entry (i, j) at H[i + j * outer_step].
@@ -104,10 +108,14 @@ class FastModel {
 
  private:
   struct Data;
-  std::unique_ptr<const Data> data_;
   const fast::Robot& robot() const;
-  const fast::Kernels* kernels_;
-  int structure_;
+  void use(const fast::Kernels& kernels);
+  void useBest(const Model& model);
+  bool equalsPlain(const Model& model) const;
+
+  std::unique_ptr<const Data> data_;
+  const fast::Kernels* kernels_ = nullptr;
+  int structure_ = 0;  // of the kernels for joints of this kind
 };
 
 }  // namespace chain_dynamics

@@ -110,9 +110,7 @@ struct Kernels {
 
 /// The tables of the instruction sets that this build has.
 const Kernels& kernelsPortable();
-#ifdef CHAIN_DYNAMICS_X86_KERNELS
-const Kernels& kernelsV3();
-const Kernels& kernelsV4();
-#endif
+const Kernels& kernelsV3();  // x86-64 only
+const Kernels& kernelsV4();  // x86-64 only
 
 }  // namespace chain_dynamics::fast
