@@ -259,7 +259,7 @@ TEST_P(FastModelOn, EqualsThePlainFunctions) {
 TEST_P(FastModelOn, BatchesEqualSingleCallsInAnyLayout) {
   for (const auto& [name, model] : models()) {
     const Index n = model.chain.jointCount();
-    if (n > 13) continue;
+    if (n > 30) continue;
     SCOPED_TRACE(name);
     const FastModel fast(model, GetParam());
     for (const Index count : {0, 1, 3, 8, 21}) {
@@ -357,7 +357,7 @@ TEST_P(FastModelOn, SineAndCosineAreThoseOfTheLibraryAtAnyAngle) {
 }
 
 TEST_P(FastModelOn, LargeAnglesInOneJointLeaveTheOthersRight) {
-  const Model model(randomChain(7));
+  const Model model(revolute(randomChain(7)));
   const FastModel fast(model, GetParam());
   for (const double angle : {1e4, 1e7, -3e12}) {
     State<double> x = randomState<double>(model.chain, 2);

@@ -22,6 +22,10 @@ using SphericalWrist = Known<6, 0x010111, 0x011100, 0x010110>;
 /// Seven joints at right angles: Panda, FR3, iiwa, Gen3.
 using RightAngles = Known<7, 0x0111111, 0x0001101, 0x0111110>;
 
+/// Six or seven joints that turn about any axes.
+using AnySix = Known<6, 0x033333, 0x011111, 0x011111>;
+using AnySeven = Known<7, 0x0333333, 0x0111111, 0x0111111>;
+
 template <typename V>
 struct Recursions {
   void (*torques)(const Robot&, const State<V>&, const double* root, V* tau);
@@ -35,6 +39,8 @@ constexpr Recursions<V> kRecursions[] = {
     {torques<ParallelWrist, V>, gravity<ParallelWrist, V>, inertia<ParallelWrist, V>},
     {torques<SphericalWrist, V>, gravity<SphericalWrist, V>, inertia<SphericalWrist, V>},
     {torques<RightAngles, V>, gravity<RightAngles, V>, inertia<RightAngles, V>},
+    {torques<AnySix, V>, gravity<AnySix, V>, inertia<AnySix, V>},
+    {torques<AnySeven, V>, gravity<AnySeven, V>, inertia<AnySeven, V>},
 };
 
 // Identified models with parameters for each row.
@@ -48,7 +54,9 @@ constexpr Recursions<V> kRecursionsByRow[] = {
 int structureOf(const Robot& robot) {
   if (ParallelWrist::covers(robot)) return 1;
   if (robot.rows != nullptr) return 0;
-  return SphericalWrist::covers(robot) ? 2 : RightAngles::covers(robot) ? 3 : 0;
+  if (SphericalWrist::covers(robot)) return 2;
+  if (RightAngles::covers(robot)) return 3;
+  return AnySix::covers(robot) ? 4 : AnySeven::covers(robot) ? 5 : 0;
 }
 
 template <typename V>
@@ -411,6 +419,7 @@ void gravityBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
 }
 
 void inertiaBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Matrices H) {
+  if (robot.joints > kPackedMatrixJoints) return inertiaOneByOne(robot, structure, states, q, H);
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates x;
     x.readPositions(robot, q, lanes);
