@@ -158,8 +158,8 @@ class OpenRecording {
   UserError unreadable(const std::exception& error) const {
     return {path_, "a rosbag2 recording that this ROS 2 can read",
             "an error (" + std::string(error.what()) + ")",
-            "it is damaged, cut off, of another kind or from a later release; copy, record or "
-            "convert it again"};
+            "it is damaged, cut off or of another kind: copy or record it again; or its metadata "
+            "are those of a later release: give the .db3 or .mcap file in it"};
   }
 
   std::string path_;
