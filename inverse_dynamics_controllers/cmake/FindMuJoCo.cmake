@@ -3,7 +3,11 @@
 # MuJoCo's C library, of an installation or of the Python package `mujoco`: target MuJoCo::mujoco.
 # Where neither is found by itself: -DMuJoCo_ROOT=<directory with include/mujoco/mujoco.h>.
 
-find_program(MuJoCo_python NAMES python3)
+if(Python3_EXECUTABLE)
+  set(MuJoCo_python ${Python3_EXECUTABLE})
+else()
+  find_program(MuJoCo_python NAMES python3)
+endif()
 if(MuJoCo_python AND NOT MuJoCo_package)
   execute_process(
     COMMAND ${MuJoCo_python} -c

@@ -12,7 +12,13 @@ from xml.etree import ElementTree
 
 from ament_index_python.packages import get_package_share_directory
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, ExecuteProcess, OpaqueFunction
+from launch.actions import (
+    DeclareLaunchArgument,
+    ExecuteProcess,
+    OpaqueFunction,
+    RegisterEventHandler,
+)
+from launch.event_handlers import OnProcessExit
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
@@ -68,8 +74,8 @@ def generate_launch_description():
             DeclareLaunchArgument(
                 "bag",
                 default_value="",
-                description="Directory to record /joint_states into; it must not exist yet. "
-                "Empty: no recording",
+                description="Directory to record /joint_states into, once the controllers are active; "
+                "it must not exist yet. Empty: no recording",
             ),
             OpaqueFunction(function=_processes),
         ]
@@ -86,6 +92,11 @@ def _processes(context):
     description = {"robot_description": ParameterValue(simulated(robot), value_type=str)}
     sim_time = {"use_sim_time": True}
     spawned = ["joint_state_broadcaster", *CONTROLLERS[text("controller")]]
+    spawner = Node(
+        package="controller_manager",
+        executable="spawner",
+        arguments=[*spawned, "--param-file", config, "--controller-manager-timeout", "60"],
+    )
     actions = [
         Node(
             package="robot_state_publisher",
@@ -99,15 +110,14 @@ def _processes(context):
             remappings=[("~/robot_description", "/robot_description")],
             output="both",
         ),
-        Node(
-            package="controller_manager",
-            executable="spawner",
-            arguments=[*spawned, "--param-file", config, "--controller-manager-timeout", "60"],
-        ),
+        spawner,
     ]
     if bag:
+        # From when the controllers carry the arm: what its brakes give isn't measured.
         record = ["ros2", "bag", "record", "--use-sim-time", "-o", bag, "/joint_states"]
-        actions.append(ExecuteProcess(cmd=record, output="screen"))
+        recording = ExecuteProcess(cmd=record, output="screen")
+        start = OnProcessExit(target_action=spawner, on_exit=[recording])
+        actions.append(RegisterEventHandler(start))
     return actions
 
 
