@@ -78,7 +78,8 @@ void bindEnums(py::module_& module) {
       .value("TORQUE_NOT_FINITE", Status::kTorqueNotFinite)
       .value("SOLVER_FAILED", Status::kSolverFailed)
       .value("WRONG_SIZE", Status::kWrongSize)
-      .def_property_readonly("text", &text, "What happened, in words.")
+      .def_property_readonly(
+          "text", [](Status status) { return text(status); }, "What happened, in words.")
       .def_property_readonly("is_refusal", &isRefusal, "Whether the torque is the safe torque.");
   py::enum_<FrictionSource>(module, "FrictionSource", "Whose velocity decides about friction.")
       .value("NONE", FrictionSource::kNone)
