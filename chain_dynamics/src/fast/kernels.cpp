@@ -4,8 +4,12 @@
 // name of the function that gives the table. Everything else has internal linkage, and no header
 // but robot.hpp and math.h is used: the linker must not mix functions of different sets.
 
-#include "elementary.hpp"
-#include "recursion.hpp"
+#include "friction.hpp"
+#include "gravity_vector.hpp"
+#include "inertia_matrix.hpp"
+#include "lanes.hpp"
+#include "torques.hpp"
+#include "turns.hpp"
 
 namespace chain_dynamics::fast {
 namespace {
@@ -62,142 +66,6 @@ int structureOf(const Robot& robot) {
 template <typename V>
 FAST_INLINE const Recursions<V>& recursionsOf(const Robot& robot, int structure) {
   return robot.rows != nullptr ? kRecursionsByRow<V>[structure] : kRecursions<V>[structure];
-}
-
-// ---------------------------------------------------------------- angles
-
-template <typename V>
-FAST_INLINE void addOffset(const V& offset_cos, const V& offset_sin, V& s, V& c) {
-  const V sum = s * offset_cos + c * offset_sin;
-  c = c * offset_cos - s * offset_sin;
-  s = sum;
-}
-
-template <typename V>
-FAST_INLINE double* numbersOf(V* packs) {
-  return reinterpret_cast<double*>(packs);
-}
-template <typename V>
-FAST_INLINE const double* numbersOf(const V* packs) {
-  return reinterpret_cast<const double*>(packs);
-}
-
-/// Memory for one number per joint, with room for a pack at the end.
-struct JointNumbers {
-  double values[kMaxJoints + kShortWidth];
-};
-
-// The pack at joint i: the last one overlaps the one before it, if there is one.
-FAST_INLINE int firstOfPack(int i, int joints) {
-  return i == 0 || i + kShortWidth <= joints ? i : joints - kShortWidth;
-}
-
-// Cosine and sine of all joints of one state, several joints at a time.
-void turnsOfState(const Robot& robot, const double* q, double* c, double* s) {
-  const int n = robot.joints;
-  double padded[kShortWidth] = {};
-  if (n < kShortWidth) {
-    for (int i = 0; i < n; ++i) padded[i] = q[i];
-    q = padded;
-  }
-  ShortBits beyond{};
-  for (int i = 0; i < n; i += kShortWidth) {
-    const int first = firstOfPack(i, n);
-    Short sine;
-    Short cosine;
-    beyond |=
-        sineCosine(load<Short>(q + first), load<Short>(robot.quarter_turns + first), sine, cosine);
-    store(sine, s + first);
-    store(cosine, c + first);
-  }
-  if (any<Short>(beyond)) {
-    for (int i = 0; i < n; ++i) sineCosineOfAny(q[i], robot.quarter_turns[i], s[i], c[i]);
-  }
-  if (robot.general_offsets) {
-    for (int i = 0; i < n; ++i) {
-      addOffset(robot.placements[i].offset_cos, robot.placements[i].offset_sin, s[i], c[i]);
-    }
-  }
-  if (robot.mixed) {
-    for (int i = 0; i < n; ++i) {
-      if (!robot.placements[i].prismatic) continue;
-      c[i] = robot.placements[i].offset_cos;
-      s[i] = robot.placements[i].offset_sin;
-    }
-  }
-}
-
-// Cosine and sine of all joints, a state in each lane.
-FAST_INLINE void turnsOfPack(const Robot& robot, const Pack* q, Pack* c, Pack* s) {
-  const int n = robot.joints;
-  BitsOf<Pack> beyond{};
-  for (int i = 0; i < n; ++i) {
-    beyond |= sineCosine(q[i], all<Pack>(robot.quarter_turns[i]), s[i], c[i]);
-  }
-  if (any<Pack>(beyond)) {
-    // numbers of a pack stand side by side in memory
-    for (int k = 0; k < n * kWidth; ++k) {
-      sineCosineOfAny(numbersOf(q)[k], robot.quarter_turns[k / kWidth], numbersOf(s)[k],
-                      numbersOf(c)[k]);
-    }
-  }
-  if (!robot.general_offsets && !robot.mixed) return;
-  for (int i = 0; i < n; ++i) {
-    const Placement& X = robot.placements[i];
-    const Pack offset_cos = all<Pack>(X.offset_cos);
-    const Pack offset_sin = all<Pack>(X.offset_sin);
-    if (X.prismatic) {
-      c[i] = offset_cos;
-      s[i] = offset_sin;
-    } else {
-      addOffset(offset_cos, offset_sin, s[i], c[i]);
-    }
-  }
-}
-
-// ---------------------------------------------------------------- friction
-
-// number(k) is the k-th of kFrictionNumbers.
-template <typename V, typename Number>
-FAST_INLINE V frictionOf(const V& qd, const Number& number) {
-  const V zero{};
-  const V one = all<V>(1.0);
-  const V sign = (qd > 0.0 ? one : zero) - (qd < 0.0 ? one : zero);
-  return number(0) * qd + (number(1) * sign + number(2)) +
-         number(3) * (sigmoid<V>(number(4) * (qd + number(5))) - number(6));
-}
-
-// f has room for a pack at the end.
-void frictionNumbers(const Robot& robot, const double* qd, double* f) {
-  const int n = robot.joints;
-  double padded[kShortWidth] = {};
-  for (int i = 0; i < n; i += kShortWidth) {
-    const int first = firstOfPack(i, n);
-    const double* from = qd + first;
-    if (n < kShortWidth) {
-      for (int j = 0; j < n; ++j) padded[j] = qd[j];
-      from = padded;
-    }
-    const auto number = [&](int k) {
-      return load<Short>(robot.friction + k * robot.stride + first);
-    };
-    store(frictionOf(load<Short>(from), number), f + first);
-  }
-}
-
-void frictionOfState(const Robot& robot, const double* qd, double* f) {
-  if (robot.friction == nullptr) {
-    for (int i = 0; i < robot.joints; ++i) f[i] = 0.0 * qd[i];  // keeps a NaN
-    return;
-  }
-  JointNumbers numbers;
-  frictionNumbers(robot, qd, numbers.values);
-  for (int i = 0; i < robot.joints; ++i) f[i] = numbers.values[i];
-}
-
-FAST_INLINE Pack frictionOfPack(const Robot& robot, int i, const Pack& qd) {
-  if (robot.friction == nullptr) return 0.0 * qd;
-  return frictionOf(qd, [&](int k) { return all<Pack>(robot.friction[k * robot.stride + i]); });
 }
 
 // ---------------------------------------------------------------- one state, or a pack of states
@@ -285,62 +153,6 @@ void componentsOfState(const Robot& robot, int structure, const double* q, const
 }
 
 // ---------------------------------------------------------------- many states
-
-/// The states of one pack: lanes beyond the last state repeat it.
-struct Lanes {
-  std::ptrdiff_t first;
-  int count;
-
-  std::ptrdiff_t operator[](int lane) const { return first + (lane < count ? lane : count - 1); }
-};
-
-// one(lanes) for packs of states from the first to the last.
-template <typename One>
-FAST_INLINE void forEachPack(std::ptrdiff_t states, const One& one) {
-  for (std::ptrdiff_t k = 0; k < states; k += kWidth) {
-    const std::ptrdiff_t left = states - k;
-    one(Lanes{k, left < kWidth ? static_cast<int>(left) : kWidth});
-  }
-}
-
-// The common cases have no branch per number: a full pack of states that stand apart, or side by
-// side.
-FAST_INLINE void gather(const Robot& robot, const Samples& from, const Lanes& lanes, Pack* to) {
-  const std::ptrdiff_t step = from.state_step;
-  const double* const first = from.data + lanes.first * step;
-  const int n = robot.joints;
-  if (lanes.count < kWidth) {
-    for (int i = 0; i < n; ++i) {
-      for (int lane = 0; lane < kWidth; ++lane) {
-        to[i][lane] = from.data[lanes[lane] * step + i * from.joint_step];
-      }
-    }
-  } else if (step == 1) {
-    for (int i = 0; i < n; ++i) to[i] = load<Pack>(first + i * from.joint_step);
-  } else {
-    for (int i = 0; i < n; ++i) to[i] = loadSteps(first + i * from.joint_step, step);
-  }
-}
-
-// packs[i] to the numbers of each state at to[i pack_step + state state_step].
-FAST_INLINE void scatter(const Pack* packs, int count, const Lanes& lanes, double* to,
-                         std::ptrdiff_t pack_step, std::ptrdiff_t state_step) {
-  to += lanes.first * state_step;
-  if (lanes.count < kWidth) {
-    for (int i = 0; i < count; ++i) {
-      for (int k = 0; k < lanes.count; ++k) to[i * pack_step + k * state_step] = packs[i][k];
-    }
-  } else if (state_step == 1) {
-    for (int i = 0; i < count; ++i) store(packs[i], to + i * pack_step);
-  } else {
-    for (int i = 0; i < count; ++i) storeSteps(packs[i], to + i * pack_step, state_step);
-  }
-}
-
-FAST_INLINE void scatter(const Robot& robot, const Pack* from, const Lanes& lanes,
-                         const Samples& to) {
-  scatter(from, robot.joints, lanes, to.data, to.joint_step, to.state_step);
-}
 
 /// Memory of one pack of states.
 struct PackOfStates {

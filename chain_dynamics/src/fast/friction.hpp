@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Friction torques of all joints, of one state or of a pack of states.
+///
+/// Included by kernels.cpp only [pack.hpp].
+
+#pragma once
+
+#include "turns.hpp"
+
+namespace chain_dynamics::fast {
+namespace {
+
+// number(k) is the k-th of kFrictionNumbers.
+template <typename V, typename Number>
+FAST_INLINE V frictionOf(const V& qd, const Number& number) {
+  const V zero{};
+  const V one = all<V>(1.0);
+  const V sign = (qd > 0.0 ? one : zero) - (qd < 0.0 ? one : zero);
+  return number(0) * qd + (number(1) * sign + number(2)) +
+         number(3) * (sigmoid<V>(number(4) * (qd + number(5))) - number(6));
+}
+
+// f has room for a pack at the end.
+void frictionNumbers(const Robot& robot, const double* qd, double* f) {
+  const int n = robot.joints;
+  double padded[kShortWidth] = {};
+  for (int i = 0; i < n; i += kShortWidth) {
+    const int first = firstOfPack(i, n);
+    const double* from = qd + first;
+    if (n < kShortWidth) {
+      for (int j = 0; j < n; ++j) padded[j] = qd[j];
+      from = padded;
+    }
+    const auto number = [&](int k) {
+      return load<Short>(robot.friction + k * robot.stride + first);
+    };
+    store(frictionOf(load<Short>(from), number), f + first);
+  }
+}
+
+void frictionOfState(const Robot& robot, const double* qd, double* f) {
+  if (robot.friction == nullptr) {
+    for (int i = 0; i < robot.joints; ++i) f[i] = 0.0 * qd[i];  // keeps a NaN
+    return;
+  }
+  JointNumbers numbers;
+  frictionNumbers(robot, qd, numbers.values);
+  for (int i = 0; i < robot.joints; ++i) f[i] = numbers.values[i];
+}
+
+FAST_INLINE Pack frictionOfPack(const Robot& robot, int i, const Pack& qd) {
+  if (robot.friction == nullptr) return 0.0 * qd;
+  return frictionOf(qd, [&](int k) { return all<Pack>(robot.friction[k * robot.stride + i]); });
+}
+
+}  // namespace
+}  // namespace chain_dynamics::fast

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Gravity torques on one structure.
+///
+/// Included by kernels.cpp only [pack.hpp].
+
+#pragma once
+
+#include "link_motion.hpp"
+
+namespace chain_dynamics::fast {
+namespace {
+
+/// Gravity in the links' frames, then what hangs on each joint as a heavy point, from tip to
+/// `first`; each(i, torque).
+template <typename S, typename V, typename P, typename First, typename BodyOf, typename Each>
+FAST_INLINE void forEachGravity(const Robot& robot, const State<V>& state, First first,
+                                const Vec<V>* a, const BodyOf& bodyOf, const Each& each) {
+  Vec<P> mc{};
+  S::backwards(robot, first, [&](auto i) FAST_LAMBDA {
+    const auto& body = bodyOf(i);
+    const Placement& X = robot.placements[i];
+    const bool prismatic = S::kMixed && X.prismatic;
+    mc.x += body.mcx;
+    mc.y += body.mcy;
+    if (S::kMixed) mc.z += body.mcz;
+    if (prismatic) {
+      each(i, body.mass_beyond * a[i].z);
+    } else {
+      each(i, mc.x * a[i].y - mc.y * a[i].x);
+    }
+    if (i == first) return;
+
+    // on to the link before
+    if (prismatic) mc.z += body.mass_beyond * state.q[i];
+    constexpr Twist kTwist = S::twist(decltype(i)());
+    mc = outOf<kTwist>(Turn<V>{state.c[i], state.s[i], X}, mc);
+    if (S::kMixed) {  // joints that turn leave no mass
+      mc.x += body.mass_beyond * X.px;
+      mc.y += body.mass_beyond * X.py;
+    }
+  });
+}
+
+template <typename S, typename V>
+FAST_INLINE void gravityInLinks(const Robot& robot, const State<V>& state, Vec<V>* a) {
+  const V zero{};
+  Vec<V> in_link{robot.root[0] + zero, robot.root[1] + zero, robot.root[2] + zero};
+  S::forwards(robot, [&](auto i) FAST_LAMBDA {
+    const Turn<V> t{state.c[i], state.s[i], robot.placements[i]};
+    if (i == 0) {
+      in_link = into<Twist::kNone>(t, in_link);
+    } else {
+      constexpr Twist kTwist = S::twist(decltype(i)());
+      in_link = into<kTwist>(t, in_link);
+    }
+    a[i] = in_link;
+  });
+}
+
+/// Gravity torques; one set of parameters for all rows.
+template <typename S, typename V>
+void gravity(const Robot& robot, const State<V>& state, V* g) {
+  const Body* bodies = robot.gravity_bodies != nullptr ? robot.gravity_bodies : robot.bodies;
+  Vec<V> a[S::kJoints];
+  gravityInLinks<S>(robot, state, a);
+  forEachGravity<S, V, V>(
+      robot, state, Constant<0>(), a, [&](auto i) FAST_LAMBDA -> const Body& { return bodies[i]; },
+      [&](auto i, const V& torque) FAST_LAMBDA { g[i] = torque; });
+}
+
+/// The same with a set of parameters for each row.
+template <typename S, typename V>
+void gravityByRow(const Robot& robot, const State<V>& state, V* g) {
+  Vec<V> a[S::kJoints];
+  gravityInLinks<S>(robot, state, a);
+  if constexpr (sizeof(V) == sizeof(double)) {
+    S::template inSteps<kShortWidth>(robot, [&](auto first) FAST_LAMBDA {
+      forEachGravity<S, V, Short>(
+          robot, state, first, a,
+          [&](auto i) FAST_LAMBDA { return BodyLanes<Short>(robot, i, first); },
+          [&](auto i, const Short& torque) FAST_LAMBDA {
+            if (i < first + kShortWidth) g[i] = laneOf(torque, i - first);
+          });
+    });
+  } else {
+    S::template inSteps<1>(robot, [&](auto row) FAST_LAMBDA {
+      forEachGravity<S, V, V>(
+          robot, state, row, a,
+          [&](auto i) FAST_LAMBDA -> const Body& { return robot.rows[row][i]; },
+          [&](auto i, const V& torque) FAST_LAMBDA {
+            if (i == row) g[i] = torque;
+          });
+    });
+  }
+}
+
+}  // namespace
+}  // namespace chain_dynamics::fast

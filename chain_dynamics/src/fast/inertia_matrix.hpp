@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Inertia matrix on one structure: composite bodies, from tip to root.
+///
+/// Included by kernels.cpp only [pack.hpp].
+
+#pragma once
+
+#include "link_motion.hpp"
+
+namespace chain_dynamics::fast {
+namespace {
+
+/// A link and all after it as one body, in the link's frame.
+template <typename P>
+struct Composite {
+  Vec<P> mc{};
+  P xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
+
+  template <typename B>
+  FAST_INLINE void add(const B& b) {
+    mc.x += b.mcx;
+    mc.y += b.mcy;
+    mc.z += b.mcz;
+    xx += b.Sxx;
+    xy += b.Sxy;
+    xz += b.Sxz;
+    yy += b.Syy;
+    yz += b.Syz;
+  }
+};
+
+/// S' = R S R' for a turn about z.
+template <typename V, typename P>
+FAST_INLINE void turn(const V& c, const V& s, Composite<P>& I) {
+  const P row_x = c * I.xx - s * I.xy;
+  const P row_y = c * I.xy - s * I.yy;
+  const P trace = I.xx + I.yy;
+  I.xx = c * row_x - s * row_y;
+  I.xy = s * row_x + c * row_y;
+  I.yy = trace - I.xx;
+  const P xz = c * I.xz - s * I.yz;
+  I.yz = s * I.xz + c * I.yz;
+  I.xz = xz;
+}
+
+/// S' = R S R' for a twist about x.
+template <Twist kTwist, typename P>
+FAST_INLINE void twist(const Placement& X, Composite<P>& I) {
+  const Composite<P> J = I;
+  if constexpr (kTwist == Twist::kRight) {
+    I.xy = -J.xz;
+    I.xz = J.xy;
+    I.yy = J.zz;
+    I.yz = -J.yz;
+    I.zz = J.yy;
+  } else if constexpr (kTwist != Twist::kNone) {
+    const double c = X.cos_twist;
+    const double s = kTwist == Twist::kAlmostRight ? 1.0 : X.sin_twist;
+    I.xy = c * J.xy - s * J.xz;
+    I.xz = s * J.xy + c * J.xz;
+    const P row_y = c * J.yy - s * J.yz;
+    const P row_z = c * J.yz - s * J.zz;
+    I.yy = c * row_y - s * row_z;
+    I.yz = s * row_y + c * row_z;
+    I.zz = (J.yy + J.zz) - I.yy;
+  }
+}
+
+/// S' = S + mc p' + p mc' + m p p', mc' = mc + m p. m may be a number known to be zero.
+template <typename S, typename P, typename M>
+FAST_INLINE void shift(int i, const Placement& X, const M& m, Composite<P>& I) {
+  Vec<P> h = I.mc;
+  if (S::kMixed) {
+    h.x += m * (0.5 * X.px);
+    h.y += m * (0.5 * X.py);
+    I.mc.x += m * X.px;
+    I.mc.y += m * X.py;
+  }
+  if (S::px(i)) {
+    I.xx += (2.0 * X.px) * h.x;
+    I.xy += X.px * h.y;
+    I.xz += X.px * h.z;
+  }
+  if (S::py(i)) {
+    I.xy += X.py * h.x;
+    I.yy += (2.0 * X.py) * h.y;
+    I.yz += X.py * h.z;
+  }
+}
+
+/// The composite bodies from tip to `first`, and the forces at each joint j <= i that accelerate
+/// joint i by one; each(i, j, H_ij).
+template <typename S, typename V, typename P, typename First, typename BodyOf, typename Each>
+FAST_INLINE void forEachInertia(const Robot& robot, const State<V>& state, First first,
+                                const BodyOf& bodyOf, const Each& each) {
+  Composite<P> I;
+  S::backwards(robot, first, [&](auto i) FAST_LAMBDA {
+    const auto& body = bodyOf(i);
+    const Placement& X = robot.placements[i];
+    const bool prismatic = S::kMixed && X.prismatic;
+    I.add(body);
+
+    // F = I S
+    const P zero{};
+    Wrench<P> F{{-I.mc.y, I.mc.x, zero}, {-I.xz, -I.yz, I.xx + I.yy}};
+    if (prismatic) F = {{zero, zero, body.mass_beyond + zero}, {I.mc.y, -I.mc.x, zero}};
+    each(i, i, (prismatic ? F.f.z : F.n.z) + X.rotor_inertia);
+
+    // H_ji = S_j' F in the frames of the joints before
+    S::backwardsFrom(i, [&](auto j) FAST_LAMBDA {
+      const Placement& Y = robot.placements[j];
+      if (S::kMixed && Y.prismatic) {
+        F.n.x -= state.q[j] * F.f.y;
+        F.n.y += state.q[j] * F.f.x;
+      }
+      constexpr Twist kTwist = S::twist(decltype(j)());
+      const Turn<V> t{state.c[j], state.s[j], Y};
+      F.f = outOf<kTwist>(t, F.f);
+      F.n = outOf<kTwist>(t, F.n);
+      addLever<S>(j, Y, F);
+      each(i, j - 1, S::kMixed && robot.placements[j - 1].prismatic ? F.f.z : F.n.z);
+    });
+    if (i == first) return;
+
+    // on to the link before
+    if (prismatic) {
+      // moved along z by q
+      const P h = I.mc.z + (0.5 * body.mass_beyond) * state.q[i];
+      I.xz += state.q[i] * I.mc.x;
+      I.yz += state.q[i] * I.mc.y;
+      I.zz += 2.0 * (state.q[i] * h);
+      I.mc.z += body.mass_beyond * state.q[i];
+    }
+    constexpr Twist kTwist = S::twist(decltype(i)());
+    turn(state.c[i], state.s[i], I);
+    twist<kTwist>(X, I);
+    I.mc = outOf<kTwist>(Turn<V>{state.c[i], state.s[i], X}, I.mc);
+    shift<S>(i, X, body.mass_beyond, I);
+  });
+}
+
+/// Where the entries of the inertia matrix go.
+template <typename V>
+struct Entries {
+  V* data;
+  std::ptrdiff_t row_step, column_step;
+
+  FAST_INLINE void set(int row, int column, const V& value) const {
+    data[row * row_step + column * column_step] = value;
+  }
+};
+
+/// Inertia matrix; one set of parameters for all rows.
+template <typename S, typename V>
+void inertia(const Robot& robot, const State<V>& state, const Entries<V>& H) {
+  forEachInertia<S, V, V>(
+      robot, state, Constant<0>(),
+      [&](auto i) FAST_LAMBDA -> const Body& { return robot.bodies[i]; },
+      [&](auto i, auto j, const V& value) FAST_LAMBDA {
+        H.set(i, j, value);
+        if (i != j) H.set(j, i, value);
+      });
+}
+
+/// The same with a set of parameters for each row.
+template <typename S, typename V>
+void inertiaByRow(const Robot& robot, const State<V>& state, const Entries<V>& H) {
+  if constexpr (sizeof(V) == sizeof(double)) {
+    S::template inSteps<kShortWidth>(robot, [&](auto first) FAST_LAMBDA {
+      const int end = first + kShortWidth;
+      forEachInertia<S, V, Short>(
+          robot, state, first,
+          [&](auto i) FAST_LAMBDA { return BodyLanes<Short>(robot, i, first); },
+          [&](auto i, auto j, const Short& value) FAST_LAMBDA {
+            if (i < end) H.set(i, j, laneOf(value, i - first));
+            if (first <= j && j < end && i != j) H.set(j, i, laneOf(value, j - first));
+          });
+    });
+  } else {
+    S::template inSteps<1>(robot, [&](auto row) FAST_LAMBDA {
+      forEachInertia<S, V, V>(
+          robot, state, row, [&](auto i) FAST_LAMBDA -> const Body& { return robot.rows[row][i]; },
+          [&](auto i, auto j, const V& value) FAST_LAMBDA {
+            if (i == row) {
+              H.set(row, j, value);
+            } else if (j == row) {
+              H.set(row, i, value);
+            }
+          });
+    });
+  }
+}
+
+}  // namespace
+}  // namespace chain_dynamics::fast

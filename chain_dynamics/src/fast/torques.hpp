@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Joint torques on one structure: Newton and Euler, from tip to root.
+///
+/// Included by kernels.cpp only [pack.hpp].
+
+#pragma once
+
+#include "link_motion.hpp"
+
+namespace chain_dynamics::fast {
+namespace {
+
+/// The forces through the joints from tip to `first`, given what each link needs for itself;
+/// each(i, force along or moment about the axis of joint i).
+template <typename S, typename V, typename P, typename First, typename Own, typename Each>
+FAST_INLINE void forEachJointForce(const Robot& robot, const State<V>& state, First first,
+                                   const Own& own, const Each& each) {
+  Wrench<P> W{};
+  S::backwards(robot, first, [&](auto i) FAST_LAMBDA {
+    const Wrench<P> link = own(i);
+    addTo(W.f, link.f);
+    addTo(W.n, link.n);
+    const Placement& X = robot.placements[i];
+    const bool prismatic = S::kMixed && X.prismatic;
+    each(i, prismatic ? W.f.z : W.n.z);
+    if (i == first) return;
+
+    // on to the link before
+    if (prismatic) {
+      W.n.x -= state.q[i] * W.f.y;
+      W.n.y += state.q[i] * W.f.x;
+    }
+    constexpr Twist kTwist = S::twist(decltype(i)());
+    const Turn<V> t{state.c[i], state.s[i], X};
+    W.f = outOf<kTwist>(t, W.f);
+    W.n = outOf<kTwist>(t, W.n);
+    addLever<S>(i, X, W);
+  });
+}
+
+template <typename S, typename V, typename B>
+FAST_INLINE auto wrenchOfLink(const Robot& robot, int i, const LinkMotion<V>& U, const B& body) {
+  if (S::kMixed && robot.placements[i].prismatic) return wrenchOf<true>(U, body);
+  return wrenchOf<false>(U, body);
+}
+
+/// tau = H qdd + C qd, and with root the gravity torques; one set of parameters for all rows.
+template <typename S, typename V>
+void torques(const Robot& robot, const State<V>& state, const double* root, V* tau) {
+  Wrench<V> own[S::kJoints];
+  forEachMotion<S>(robot, state, root, [&](auto i, const LinkMotion<V>& U) FAST_LAMBDA {
+    own[i] = wrenchOfLink<S>(robot, i, U, robot.bodies[i]);
+  });
+  forEachJointForce<S, V, V>(
+      robot, state, Constant<0>(), [&](auto i) FAST_LAMBDA { return own[i]; },
+      [&](auto i, const V& force)
+          FAST_LAMBDA { tau[i] = force + robot.placements[i].rotor_inertia * state.qdd[i]; });
+}
+
+/// The same with a set of parameters for each row.
+template <typename S, typename V>
+void torquesByRow(const Robot& robot, const State<V>& state, const double* root, V* tau) {
+  LinkMotion<V> motion[S::kJoints];
+  forEachMotion<S>(robot, state, root,
+                   [&](auto i, const LinkMotion<V>& U) FAST_LAMBDA { motion[i] = U; });
+  if constexpr (sizeof(V) == sizeof(double)) {
+    // rows as lanes
+    S::template inSteps<kShortWidth>(robot, [&](auto first) FAST_LAMBDA {
+      forEachJointForce<S, V, Short>(
+          robot, state, first,
+          [&](auto i) FAST_LAMBDA {
+            return wrenchOfLink<S>(robot, i, motion[i], BodyLanes<Short>(robot, i, first));
+          },
+          [&](auto i, const Short& force) FAST_LAMBDA {
+            if (i < first + kShortWidth) {
+              tau[i] = laneOf(force, i - first) + robot.placements[i].rotor_inertia * state.qdd[i];
+            }
+          });
+    });
+  } else {
+    // states as lanes, one row after the other
+    S::template inSteps<1>(robot, [&](auto row) FAST_LAMBDA {
+      forEachJointForce<S, V, V>(
+          robot, state, row,
+          [&](auto i)
+              FAST_LAMBDA { return wrenchOfLink<S>(robot, i, motion[i], robot.rows[row][i]); },
+          [&](auto i, const V& force) FAST_LAMBDA {
+            if (i == row) tau[i] = force + robot.placements[i].rotor_inertia * state.qdd[i];
+          });
+    });
+  }
+}
+
+}  // namespace
+}  // namespace chain_dynamics::fast

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Cosine and sine of all joints, of one state or of a pack of states.
+///
+/// Included by kernels.cpp only [pack.hpp].
+
+#pragma once
+
+#include "elementary.hpp"
+#include "robot.hpp"
+
+namespace chain_dynamics::fast {
+namespace {
+
+template <typename V>
+FAST_INLINE void addOffset(const V& offset_cos, const V& offset_sin, V& s, V& c) {
+  const V sum = s * offset_cos + c * offset_sin;
+  c = c * offset_cos - s * offset_sin;
+  s = sum;
+}
+
+template <typename V>
+FAST_INLINE double* numbersOf(V* packs) {
+  return reinterpret_cast<double*>(packs);
+}
+template <typename V>
+FAST_INLINE const double* numbersOf(const V* packs) {
+  return reinterpret_cast<const double*>(packs);
+}
+
+/// Memory for one number per joint, with room for a pack at the end.
+struct JointNumbers {
+  double values[kMaxJoints + kShortWidth];
+};
+
+// The pack at joint i: the last one overlaps the one before it, if there is one.
+FAST_INLINE int firstOfPack(int i, int joints) {
+  return i == 0 || i + kShortWidth <= joints ? i : joints - kShortWidth;
+}
+
+// Cosine and sine of all joints of one state, several joints at a time.
+void turnsOfState(const Robot& robot, const double* q, double* c, double* s) {
+  const int n = robot.joints;
+  double padded[kShortWidth] = {};
+  if (n < kShortWidth) {
+    for (int i = 0; i < n; ++i) padded[i] = q[i];
+    q = padded;
+  }
+  ShortBits beyond{};
+  for (int i = 0; i < n; i += kShortWidth) {
+    const int first = firstOfPack(i, n);
+    Short sine;
+    Short cosine;
+    beyond |=
+        sineCosine(load<Short>(q + first), load<Short>(robot.quarter_turns + first), sine, cosine);
+    store(sine, s + first);
+    store(cosine, c + first);
+  }
+  if (any<Short>(beyond)) {
+    for (int i = 0; i < n; ++i) sineCosineOfAny(q[i], robot.quarter_turns[i], s[i], c[i]);
+  }
+  if (robot.general_offsets) {
+    for (int i = 0; i < n; ++i) {
+      addOffset(robot.placements[i].offset_cos, robot.placements[i].offset_sin, s[i], c[i]);
+    }
+  }
+  if (robot.mixed) {
+    for (int i = 0; i < n; ++i) {
+      if (!robot.placements[i].prismatic) continue;
+      c[i] = robot.placements[i].offset_cos;
+      s[i] = robot.placements[i].offset_sin;
+    }
+  }
+}
+
+// Cosine and sine of all joints, a state in each lane.
+FAST_INLINE void turnsOfPack(const Robot& robot, const Pack* q, Pack* c, Pack* s) {
+  const int n = robot.joints;
+  BitsOf<Pack> beyond{};
+  for (int i = 0; i < n; ++i) {
+    beyond |= sineCosine(q[i], all<Pack>(robot.quarter_turns[i]), s[i], c[i]);
+  }
+  if (any<Pack>(beyond)) {
+    // numbers of a pack stand side by side in memory
+    for (int k = 0; k < n * kWidth; ++k) {
+      sineCosineOfAny(numbersOf(q)[k], robot.quarter_turns[k / kWidth], numbersOf(s)[k],
+                      numbersOf(c)[k]);
+    }
+  }
+  if (!robot.general_offsets && !robot.mixed) return;
+  for (int i = 0; i < n; ++i) {
+    const Placement& X = robot.placements[i];
+    const Pack offset_cos = all<Pack>(X.offset_cos);
+    const Pack offset_sin = all<Pack>(X.offset_sin);
+    if (X.prismatic) {
+      c[i] = offset_cos;
+      s[i] = offset_sin;
+    } else {
+      addOffset(offset_cos, offset_sin, s[i], c[i]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chain_dynamics::fast
