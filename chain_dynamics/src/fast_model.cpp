@@ -181,7 +181,7 @@ void FastModel::useBest(const Model& model) {
 
 void FastModel::use(const Kernels& kernels) {
   kernels_ = &kernels;
-  structure_ = kernels.structureOf(robot());
+  structure_ = kernels.structure_of(robot());
 }
 
 std::string FastModel::instructionSet() const { return kernels_->name; }
@@ -240,31 +240,31 @@ void FastModel::dynamicComponents(const double* q, const double* qd, double* H,
 
 void FastModel::torquesBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd, ConstStates qdd,
                              States tau) const {
-  kernels_->torquesBatch(robot(), structure_, states, samples(q), samples(qd), samples(qdd),
-                         samples(tau));
+  kernels_->torques_batch(robot(), structure_, states, samples(q), samples(qd), samples(qdd),
+                          samples(tau));
 }
 
 void FastModel::inertiaMatrixBatch(std::ptrdiff_t states, ConstStates q, StridedMatrices H) const {
-  kernels_->inertiaBatch(robot(), structure_, states, samples(q), matrices(H));
+  kernels_->inertia_batch(robot(), structure_, states, samples(q), matrices(H));
 }
 
 void FastModel::coriolisVectorBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd,
                                     States c) const {
-  kernels_->coriolisBatch(robot(), structure_, states, samples(q), samples(qd), samples(c));
+  kernels_->coriolis_batch(robot(), structure_, states, samples(q), samples(qd), samples(c));
 }
 
 void FastModel::gravityVectorBatch(std::ptrdiff_t states, ConstStates q, States g) const {
-  kernels_->gravityBatch(robot(), structure_, states, samples(q), samples(g));
+  kernels_->gravity_batch(robot(), structure_, states, samples(q), samples(g));
 }
 
 void FastModel::frictionVectorBatch(std::ptrdiff_t states, ConstStates qd, States f) const {
-  kernels_->frictionBatch(robot(), states, samples(qd), samples(f));
+  kernels_->friction_batch(robot(), states, samples(qd), samples(f));
 }
 
 void FastModel::dynamicComponentsBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd,
                                        StridedMatrices H, States c, States g) const {
-  kernels_->componentsBatch(robot(), structure_, states, samples(q), samples(qd), matrices(H),
-                            samples(c), samples(g));
+  kernels_->components_batch(robot(), structure_, states, samples(q), samples(qd), matrices(H),
+                             samples(c), samples(g));
 }
 
 }  // namespace chain_dynamics

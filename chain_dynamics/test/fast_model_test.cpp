@@ -343,7 +343,7 @@ TEST_P(FastModelOn, SineAndCosineAreThoseOfTheLibraryAtAnyAngle) {
       const double quarter_turns = k % 4;
       double s = 0;
       double c = 0;
-      kernels.sineCosine(1, &angle, &quarter_turns, &s, &c);
+      kernels.sine_cosine(1, &angle, &quarter_turns, &s, &c);
       long double expected_s = std::sin(static_cast<long double>(angle));
       long double expected_c = std::cos(static_cast<long double>(angle));
       for (int turn = 0; turn < k % 4; ++turn) {

@@ -34,7 +34,7 @@ void frictionNumbers(const Robot& robot, const double* qd, double* f) {
       from = padded;
     }
     const auto number = [&](int k) {
-      return load<Short>(robot.friction + k * robot.stride + first);
+      return load<Short>(robot.friction + std::ptrdiff_t{k} * robot.stride + first);
     };
     store(frictionOf(load<Short>(from), number), f + first);
   }

@@ -46,18 +46,18 @@ FAST_INLINE void turn(const V& c, const V& s, Composite<P>& I) {
 }
 
 /// S' = R S R' for a twist about x.
-template <Twist kTwist, typename P>
+template <Twist Kind, typename P>
 FAST_INLINE void twist(const Placement& X, Composite<P>& I) {
   const Composite<P> J = I;
-  if constexpr (kTwist == Twist::kRight) {
+  if constexpr (Kind == Twist::kRight) {
     I.xy = -J.xz;
     I.xz = J.xy;
     I.yy = J.zz;
     I.yz = -J.yz;
     I.zz = J.yy;
-  } else if constexpr (kTwist != Twist::kNone) {
+  } else if constexpr (Kind != Twist::kNone) {
     const double c = X.cos_twist;
-    const double s = kTwist == Twist::kAlmostRight ? 1.0 : X.sin_twist;
+    const double s = Kind == Twist::kAlmostRight ? 1.0 : X.sin_twist;
     I.xy = c * J.xy - s * J.xz;
     I.xz = s * J.xy + c * J.xz;
     const P row_y = c * J.yy - s * J.yz;

@@ -37,17 +37,17 @@ struct Turn {
 };
 
 /// R' v: from frame i - 1 to frame i.
-template <Twist kTwist, typename V>
+template <Twist Kind, typename V>
 FAST_INLINE Vec<V> into(const Turn<V>& t, const Vec<V>& v) {
   V y = v.y;
   V z = v.z;
-  if constexpr (kTwist == Twist::kRight) {
+  if constexpr (Kind == Twist::kRight) {
     y = v.z;
     z = -v.y;
-  } else if constexpr (kTwist == Twist::kAlmostRight) {
+  } else if constexpr (Kind == Twist::kAlmostRight) {
     y = t.X.cos_twist * v.y + v.z;
     z = t.X.cos_twist * v.z - v.y;
-  } else if constexpr (kTwist == Twist::kAny) {
+  } else if constexpr (Kind == Twist::kAny) {
     y = t.X.cos_twist * v.y + t.X.sin_twist * v.z;
     z = t.X.cos_twist * v.z - t.X.sin_twist * v.y;
   }
@@ -55,13 +55,13 @@ FAST_INLINE Vec<V> into(const Turn<V>& t, const Vec<V>& v) {
 }
 
 /// RotX(twist) v.
-template <Twist kTwist, typename P>
+template <Twist Kind, typename P>
 FAST_INLINE Vec<P> twisted(const Placement& X, const Vec<P>& v) {
-  if constexpr (kTwist == Twist::kRight) {
+  if constexpr (Kind == Twist::kRight) {
     return {v.x, -v.z, v.y};
-  } else if constexpr (kTwist == Twist::kAlmostRight) {
+  } else if constexpr (Kind == Twist::kAlmostRight) {
     return {v.x, X.cos_twist * v.y - v.z, v.y + X.cos_twist * v.z};
-  } else if constexpr (kTwist == Twist::kAny) {
+  } else if constexpr (Kind == Twist::kAny) {
     return {v.x, X.cos_twist * v.y - X.sin_twist * v.z, X.sin_twist * v.y + X.cos_twist * v.z};
   } else {
     return v;
@@ -69,9 +69,9 @@ FAST_INLINE Vec<P> twisted(const Placement& X, const Vec<P>& v) {
 }
 
 /// R v: from frame i to frame i - 1.
-template <Twist kTwist, typename V, typename P>
+template <Twist Kind, typename V, typename P>
 FAST_INLINE Vec<P> outOf(const Turn<V>& t, const Vec<P>& v) {
-  return twisted<kTwist>(t.X, Vec<P>{t.c * v.x - t.s * v.y, t.s * v.x + t.c * v.y, v.z});
+  return twisted<Kind>(t.X, Vec<P>{t.c * v.x - t.s * v.y, t.s * v.x + t.c * v.y, v.z});
 }
 
 /// How one link moves: U = [dw]x + [w]x [w]x, so that a point r of it accelerates by a + U r.
@@ -123,12 +123,12 @@ FAST_INLINE void addLever(I i, const Placement& X, Wrench<P>& W) {
   }
 }
 
-template <bool kPrismatic, typename V, typename B>
+template <bool Prismatic, typename V, typename B>
 FAST_INLINE auto wrenchOf(const LinkMotion<V>& U, const B& b) {
   using P = decltype(U.xx * b.mcx);
   const Vec<V>& a = U.a;
   Wrench<P> W;
-  if constexpr (kPrismatic) {
+  if constexpr (Prismatic) {
     W.f = {b.m * a.x + U.xx * b.mcx + U.xy * b.mcy + U.xz * b.mcz,
            b.m * a.y + U.yx * b.mcx + U.yy * b.mcy + U.yz * b.mcz,
            b.m * a.z + U.zx * b.mcx + U.zy * b.mcy + U.zz * b.mcz};
@@ -203,8 +203,11 @@ struct BodyLanes {
   P mcx, mcy, Sxx, Sxy, Sxz, Syy, Syz, mcz, m, mass_beyond;
 
   FAST_INLINE BodyLanes(const Robot& robot, int i, int first_row) {
-    const double* const from = robot.row_lanes + i * kBodyNumbers * robot.stride + first_row;
-    const auto number = [&](int k) FAST_LAMBDA { return load<P>(from + k * robot.stride); };
+    const double* const from =
+        robot.row_lanes + std::ptrdiff_t{i} * kBodyNumbers * robot.stride + first_row;
+    const auto number = [&](int k) FAST_LAMBDA {
+      return load<P>(from + std::ptrdiff_t{k} * robot.stride);
+    };
     mcx = number(0);
     mcy = number(1);
     Sxx = number(2);

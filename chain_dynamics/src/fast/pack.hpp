@@ -26,12 +26,12 @@ constexpr int kWidth = 2;
 #endif
 constexpr int kShortWidth = kWidth < 4 ? kWidth : 4;
 
-typedef double Pack __attribute__((vector_size(kWidth * sizeof(double))));
-typedef long long PackBits __attribute__((vector_size(kWidth * sizeof(double))));
+using Pack __attribute__((vector_size(kWidth * sizeof(double)))) = double;
+using PackBits __attribute__((vector_size(kWidth * sizeof(double)))) = long long;
 
 // For the joints of one robot: few, so that wider packs would be empty.
-typedef double Short __attribute__((vector_size(kShortWidth * sizeof(double))));
-typedef long long ShortBits __attribute__((vector_size(kShortWidth * sizeof(double))));
+using Short __attribute__((vector_size(kShortWidth * sizeof(double)))) = double;
+using ShortBits __attribute__((vector_size(kShortWidth * sizeof(double)))) = long long;
 
 template <typename V>
 struct Traits;

@@ -82,7 +82,7 @@ struct Kernels {
   const char* name;
 
   /// Index of the structure compiled ahead of time that this robot has; 0: none, any robot's.
-  int (*structureOf)(const Robot&);
+  int (*structure_of)(const Robot&);
 
   void (*torques)(const Robot&, int structure, const double* q, const double* qd, const double* qdd,
                   double* tau);
@@ -93,19 +93,19 @@ struct Kernels {
                      double* c, double* g);
   void (*friction)(const Robot&, const double* qd, double* f);
 
-  void (*torquesBatch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
-                       Samples qdd, Samples tau);
-  void (*coriolisBatch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
-                        Samples c);
-  void (*gravityBatch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples g);
-  void (*inertiaBatch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Matrices H);
-  void (*componentsBatch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
-                          Matrices H, Samples c, Samples g);
-  void (*frictionBatch)(const Robot&, std::ptrdiff_t states, Samples qd, Samples f);
+  void (*torques_batch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                        Samples qdd, Samples tau);
+  void (*coriolis_batch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                         Samples c);
+  void (*gravity_batch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples g);
+  void (*inertia_batch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Matrices H);
+  void (*components_batch)(const Robot&, int structure, std::ptrdiff_t states, Samples q,
+                           Samples qd, Matrices H, Samples c, Samples g);
+  void (*friction_batch)(const Robot&, std::ptrdiff_t states, Samples qd, Samples f);
 
   /// For tests: sine and cosine of count angles plus quarter turns.
-  void (*sineCosine)(int count, const double* angle, const double* quarter_turns, double* sine,
-                     double* cosine);
+  void (*sine_cosine)(int count, const double* angle, const double* quarter_turns, double* sine,
+                      double* cosine);
 };
 
 /// The tables of the instruction sets that this build has.

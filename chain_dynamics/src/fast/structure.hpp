@@ -59,9 +59,9 @@ struct AnyStructure {
     for (int i = robot.joints - 1; i >= first; --i) step(i);
   }
   /// step(first) for first = 0, width, 2 width .. < joints.
-  template <int kStep, typename Step>
+  template <int Width, typename Step>
   static FAST_INLINE void inSteps(const Robot& robot, const Step& step) {
-    for (int first = 0; first < robot.joints; first += kStep) step(first);
+    for (int first = 0; first < robot.joints; first += Width) step(first);
   }
 
   /// step(j) for j = from .. 1.
@@ -72,19 +72,19 @@ struct AnyStructure {
   static bool covers(const Robot&) { return true; }
 };
 
-/// Revolute joints; hexadecimal digits stand for joints, the first joint in front. kTwists: 0 none,
-/// 1 a right angle, 2 a right angle within 1e-8, 3 any. kX, kY: whether px, py may differ from
+/// Revolute joints; hexadecimal digits stand for joints, the first joint in front. Twists: 0 none,
+/// 1 a right angle, 2 a right angle within 1e-8, 3 any. Px, Py: whether px, py may differ from
 /// zero.
-template <int N, unsigned long long kTwists, unsigned long long kX, unsigned long long kY>
+template <int N, unsigned long long Twists, unsigned long long Px, unsigned long long Py>
 struct Known {
   static constexpr bool kMixed = false;
   static constexpr int kJoints = N;
   static constexpr int digit(unsigned long long digits, int i) {
     return static_cast<int>((digits >> (4 * (N - 1 - i))) & 15);
   }
-  static constexpr Twist twist(int i) { return static_cast<Twist>(digit(kTwists, i)); }
-  static constexpr bool px(int i) { return digit(kX, i) != 0; }
-  static constexpr bool py(int i) { return digit(kY, i) != 0; }
+  static constexpr Twist twist(int i) { return static_cast<Twist>(digit(Twists, i)); }
+  static constexpr bool px(int i) { return digit(Px, i) != 0; }
+  static constexpr bool py(int i) { return digit(Py, i) != 0; }
 
   template <typename Step>
   static FAST_INLINE void forwards(const Robot&, const Step& step) {
@@ -96,10 +96,10 @@ struct Known {
       if (i >= first) step(i);
     });
   }
-  template <int kStep, typename Step>
+  template <int Width, typename Step>
   static FAST_INLINE void inSteps(const Robot&, const Step& step) {
-    countUp<0, (N + kStep - 1) / kStep>(
-        [&](auto k) FAST_LAMBDA { step(Constant<decltype(k)() * kStep>()); });
+    countUp<0, (N + Width - 1) / Width>(
+        [&](auto k) FAST_LAMBDA { step(Constant<decltype(k)() * Width>()); });
   }
   template <int I, typename Step>
   static FAST_INLINE void backwardsFrom(Constant<I> from, const Step& step) {
