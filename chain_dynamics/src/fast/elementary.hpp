@@ -7,7 +7,7 @@
 
 #pragma once
 
-#include <math.h>
+#include <math.h>  // NOLINT(modernize-deprecated-headers): <cmath> has inline functions
 
 #include "pack.hpp"
 

@@ -16,10 +16,10 @@ namespace {
 /// `first`; each(i, torque).
 template <typename S, typename V, typename P, typename First, typename BodyOf, typename Each>
 FAST_INLINE void forEachGravity(const Robot& robot, const State<V>& state, First first,
-                                const Vec<V>* a, const BodyOf& bodyOf, const Each& each) {
+                                const Vec<V>* a, const BodyOf& body_of, const Each& each) {
   Vec<P> mc{};
   S::backwards(robot, first, [&](auto i) FAST_LAMBDA {
-    const auto& body = bodyOf(i);
+    const auto& body = body_of(i);
     const Placement& X = robot.placements[i];
     const bool prismatic = S::kMixed && X.prismatic;
     mc.x += body.mcx;

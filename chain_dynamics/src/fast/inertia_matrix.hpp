@@ -94,10 +94,10 @@ FAST_INLINE void shift(int i, const Placement& X, const M& m, Composite<P>& I) {
 /// joint i by one; each(i, j, H_ij).
 template <typename S, typename V, typename P, typename First, typename BodyOf, typename Each>
 FAST_INLINE void forEachInertia(const Robot& robot, const State<V>& state, First first,
-                                const BodyOf& bodyOf, const Each& each) {
+                                const BodyOf& body_of, const Each& each) {
   Composite<P> I;
   S::backwards(robot, first, [&](auto i) FAST_LAMBDA {
-    const auto& body = bodyOf(i);
+    const auto& body = body_of(i);
     const Placement& X = robot.placements[i];
     const bool prismatic = S::kMixed && X.prismatic;
     I.add(body);

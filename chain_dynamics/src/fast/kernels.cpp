@@ -174,7 +174,8 @@ FAST_INLINE void inertiaOfPack(const Robot& robot, int structure, const State<Pa
   Pack entries[kPackedMatrixJoints * kPackedMatrixJoints];
   recursionsOf<Pack>(robot, structure).inertia(robot, state, Entries<Pack>{entries, 1, n});
   for (int j = 0; j < n; ++j) {
-    scatter(entries + j * n, n, lanes, H.data + j * H.column_step, H.row_step, H.state_step);
+    scatter(entries + std::ptrdiff_t{j} * n, n, lanes, H.data + j * H.column_step, H.row_step,
+            H.state_step);
   }
 }
 
@@ -283,22 +284,22 @@ void sineCosineOfEach(int count, const double* angle, const double* quarter_turn
 }  // namespace
 
 const Kernels& CHAIN_DYNAMICS_KERNELS() {
-  static constexpr Kernels kernels = {CHAIN_DYNAMICS_KERNELS_NAME,
-                                      structureOf,
-                                      torquesOfState,
-                                      coriolisOfState,
-                                      gravityOfState,
-                                      inertiaOfState,
-                                      componentsOfState,
-                                      frictionOfState,
-                                      torquesBatch,
-                                      coriolisBatch,
-                                      gravityBatch,
-                                      inertiaBatch,
-                                      componentsBatch,
-                                      frictionBatch,
-                                      sineCosineOfEach};
-  return kernels;
+  static constexpr Kernels kKernels = {CHAIN_DYNAMICS_KERNELS_NAME,
+                                       structureOf,
+                                       torquesOfState,
+                                       coriolisOfState,
+                                       gravityOfState,
+                                       inertiaOfState,
+                                       componentsOfState,
+                                       frictionOfState,
+                                       torquesBatch,
+                                       coriolisBatch,
+                                       gravityBatch,
+                                       inertiaBatch,
+                                       componentsBatch,
+                                       frictionBatch,
+                                       sineCosineOfEach};
+  return kKernels;
 }
 
 }  // namespace chain_dynamics::fast
