@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "error_of.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "motion.hpp"
 
@@ -13,7 +14,6 @@ namespace inverse_dynamics_evaluation {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 AccelerationEstimate estimate(const Motion& motion, const LowPassOptions& options = {}) {
   return lowPassAccelerations(motion.time, motion.q, motion.qd, motion.effort, options);
@@ -47,15 +47,14 @@ TEST(BackwardDifference, IsExactOnARampButForTheFirstSample) {
 TEST(BackwardDifference, RefusesBadInput) {
   const Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(4, 0.0, 1.0);
   EXPECT_THAT(
-      [&] { backwardDifference(time, Eigen::MatrixXd::Ones(2, 3)); },
-      ThrowsMessage<EvaluationError>(HasSubstr(
-          "backward difference: time: expected 3 stamps, one per column of the samples, got "
-          "4; a sample is a column")));
+      errorOf<EvaluationError>([&] { backwardDifference(time, Eigen::MatrixXd::Ones(2, 3)); }),
+      HasSubstr("backward difference: time: expected 3 stamps, one per column of the samples, got "
+                "4; a sample is a column"));
   EXPECT_THROW(backwardDifference(Eigen::VectorXd(), Eigen::MatrixXd(2, 0)), std::invalid_argument);
   Eigen::MatrixXd bad = Eigen::MatrixXd::Ones(2, 4);
   bad(0, 2) = -std::numeric_limits<double>::infinity();
-  EXPECT_THAT([&] { backwardDifference(time, bad); },
-              ThrowsMessage<EvaluationError>(HasSubstr("got -inf for joint 0 in sample 2")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { backwardDifference(time, bad); }),
+              HasSubstr("got -inf for joint 0 in sample 2"));
 }
 
 TEST(Derivative, IsExactForPolynomialsOfFourthOrder) {
@@ -78,8 +77,8 @@ TEST(Derivative, IsExactForParabolasBesideTheEndsAndForRampsAtThem) {
 
 TEST(Derivative, RefusesBadInput) {
   EXPECT_THROW(derivative(Eigen::MatrixXd::Ones(2, 1), 1.0), EvaluationError);
-  EXPECT_THAT([] { derivative(Eigen::MatrixXd::Ones(2, 9), 0.0); },
-              ThrowsMessage<EvaluationError>(HasSubstr("period: expected a positive number")));
+  EXPECT_THAT(errorOf<EvaluationError>([] { derivative(Eigen::MatrixXd::Ones(2, 9), 0.0); }),
+              HasSubstr("period: expected a positive number"));
 }
 
 TEST(LowPassAccelerations, AreThoseOfTheMotion) {
@@ -195,18 +194,16 @@ TEST(LowPassAccelerations, WorkWithoutEfforts) {
 
 TEST(LowPassAccelerations, RefuseWhatTheyCannotFilter) {
   const Motion motion = sines(100.0, 1.0, {0.5, 1.0});
-  EXPECT_THAT([&] { estimate(motion, cutoffOf(60.0)); },
-              ThrowsMessage<EvaluationError>(HasSubstr(
-                  "cut-off: expected above 0 and below half the sampling frequency, 50 Hz, "
-                  "got 60 Hz")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { estimate(motion, cutoffOf(60.0)); }),
+              HasSubstr("cut-off: expected above 0 and below half the sampling frequency, 50 Hz, "
+                        "got 60 Hz"));
   EXPECT_THROW(estimate(motion, cutoffOf(-1.0)), EvaluationError);
   Motion few = pick(motion, {0, 1, 2, 3, 4, 5, 6, 7, 8}, motion.time.head(9));
-  EXPECT_THAT([&] { estimate(few); },
-              ThrowsMessage<EvaluationError>(
-                  HasSubstr("samples: expected 10 or more that differ, without a gap, got 9")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { estimate(few); }),
+              HasSubstr("samples: expected 10 or more that differ, without a gap, got 9"));
   few = pick(motion, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, motion.time.head(12));
-  EXPECT_THAT([&] { estimate(few); }, ThrowsMessage<EvaluationError>(
-                                          HasSubstr("expected 16 or more without a gap, got 12")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { estimate(few); }),
+              HasSubstr("expected 16 or more without a gap, got 12"));
   EXPECT_TRUE(estimate(few, cutoffOf(10.0)).qdd.allFinite());  // enough where it is given
 }
 

@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "error_of.hpp"
 #include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "motion.hpp"
@@ -14,7 +15,6 @@ namespace inverse_dynamics_evaluation {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 // The criterion is an average over noise, and the residual may choose lower: what the chosen
 // cut-off may cost in acceleration, against the best one found by knowing the truth.
@@ -129,18 +129,15 @@ TEST(ChooseCutoff, UsesAllStretches) {
 
 TEST(ChooseCutoff, RefusesTooFewSamples) {
   const Eigen::MatrixXd few = Eigen::MatrixXd::Ones(2, 15);
-  EXPECT_THAT(
-      [&] {
-        chooseCutoff({{few, few}}, 100.0);
-      },
-      ThrowsMessage<EvaluationError>(
-          HasSubstr("cut-off: samples: expected 16 or more without a gap, got 15; give")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] {
+                chooseCutoff({{few, few}}, 100.0);
+              }),
+              HasSubstr("cut-off: samples: expected 16 or more without a gap, got 15; give"));
   EXPECT_THROW(chooseCutoff({}, 100.0), EvaluationError);
-  EXPECT_THAT(
-      [&] {
-        chooseCutoff({{few, few.topRows(1)}}, 100.0);
-      },
-      ThrowsMessage<EvaluationError>(HasSubstr("cut-off: q: expected 1 joints x 15")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] {
+                chooseCutoff({{few, few.topRows(1)}}, 100.0);
+              }),
+              HasSubstr("cut-off: q: expected 1 joints x 15"));
 }
 
 }  // namespace

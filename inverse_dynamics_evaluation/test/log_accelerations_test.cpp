@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "error_of.hpp"
 #include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 
@@ -15,7 +16,6 @@ namespace {
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 // A sine of 0.5 Hz, 10 s at 100 Hz.
 JointLog sine() {
@@ -64,10 +64,12 @@ TEST(LogAccelerations, AreThoseRecordedIfThereAreAny) {
   EXPECT_EQ(logAccelerations(log, AccelerationMethod::kAuto, 5.0).summary,
             "zero-phase low-pass, cut-off 5 Hz (given), then derivative");
   EXPECT_NE(logAccelerations(log, AccelerationMethod::kLowPass).qdd, log.qdd);
-  EXPECT_THAT([&] { logAccelerations(log, AccelerationMethod::kGiven, 5.0); },
-              ThrowsMessage<EvaluationError>(HasSubstr("given has none, got 5 Hz")));
-  EXPECT_THAT([&] { logAccelerations(sine(), AccelerationMethod::kGiven); },
-              ThrowsMessage<EvaluationError>(HasSubstr("recorded ones: expected some, got none")));
+  EXPECT_THAT(
+      errorOf<EvaluationError>([&] { logAccelerations(log, AccelerationMethod::kGiven, 5.0); }),
+      HasSubstr("given has none, got 5 Hz"));
+  EXPECT_THAT(
+      errorOf<EvaluationError>([&] { logAccelerations(sine(), AccelerationMethod::kGiven); }),
+      HasSubstr("recorded ones: expected some, got none"));
 }
 
 TEST(LogAccelerations, SayWhatIsOddAboutTheSamples) {
@@ -89,11 +91,12 @@ TEST(LogAccelerations, SayWhatIsOddAboutTheSamples) {
 }
 
 TEST(LogAccelerations, RefuseAnUnknownMethodAndACutOffWithoutAFilter) {
-  EXPECT_THAT([] { accelerationMethod("savgol"); },
-              ThrowsMessage<EvaluationError>(HasSubstr(
-                  "expected one of auto, low-pass, backward-difference, given, got 'savgol'")));
-  EXPECT_THAT([] { logAccelerations(sine(), AccelerationMethod::kBackwardDifference, 5.0); },
-              ThrowsMessage<EvaluationError>(HasSubstr("backward-difference has none, got 5 Hz")));
+  EXPECT_THAT(
+      errorOf<EvaluationError>([] { accelerationMethod("savgol"); }),
+      HasSubstr("expected one of auto, low-pass, backward-difference, given, got 'savgol'"));
+  EXPECT_THAT(errorOf<EvaluationError>(
+                  [] { logAccelerations(sine(), AccelerationMethod::kBackwardDifference, 5.0); }),
+              HasSubstr("backward-difference has none, got 5 Hz"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <array>
 #include <limits>
 
+#include "error_of.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "motion.hpp"
 
@@ -14,7 +15,6 @@ namespace inverse_dynamics_evaluation {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 // Two filters of the same mathematics in different forms, 40 samples: some hundred roundings.
 constexpr double kSameFilter = 1e-12;
@@ -169,26 +169,24 @@ TEST(LowPass, ContinuesEndsByOneAndAHalfPeriodsOfTheCutOff) {
 
 TEST(LowPass, RefusesWhatItCannotFilter) {
   const Eigen::MatrixXd x = Eigen::MatrixXd::Ones(2, 20);
-  EXPECT_THAT([&] { lowPass(x, 100.0, 50.0); },
-              ThrowsMessage<EvaluationError>(
-                  HasSubstr("low-pass: cut-off: expected above 0 and below half the sampling "
-                            "frequency, 50 Hz, got 50 Hz")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { lowPass(x, 100.0, 50.0); }),
+              HasSubstr("low-pass: cut-off: expected above 0 and below half the sampling "
+                        "frequency, 50 Hz, got 50 Hz"));
   EXPECT_THROW(lowPass(x, 100.0, 0.0), std::invalid_argument);
   EXPECT_THROW(lowPass(x, 100.0, std::numeric_limits<double>::quiet_NaN()), EvaluationError);
-  EXPECT_THAT([&] { lowPass(x, -1.0, 2.0); },
-              ThrowsMessage<EvaluationError>(HasSubstr("sampling frequency: expected a positive")));
-  EXPECT_THAT([&] { lowPass(x, 100.0, 2.0, 0); },
-              ThrowsMessage<EvaluationError>(HasSubstr("order: expected 1 to 12, got 0")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { lowPass(x, -1.0, 2.0); }),
+              HasSubstr("sampling frequency: expected a positive"));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { lowPass(x, 100.0, 2.0, 0); }),
+              HasSubstr("order: expected 1 to 12, got 0"));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { lowPass(x, 100.0, 2.0, 2, 20); }),
+              HasSubstr("padding: expected fewer than 20 samples, got 20"));
   EXPECT_THAT(
-      [&] { lowPass(x, 100.0, 2.0, 2, 20); },
-      ThrowsMessage<EvaluationError>(HasSubstr("padding: expected fewer than 20 samples, got 20")));
-  EXPECT_THAT([&] { lowPass(x.leftCols(9), 100.0, 2.0); },
-              ThrowsMessage<EvaluationError>(HasSubstr(
-                  "samples: expected 10 samples or more of 1 joint or more, got 2 joints x 9")));
+      errorOf<EvaluationError>([&] { lowPass(x.leftCols(9), 100.0, 2.0); }),
+      HasSubstr("samples: expected 10 samples or more of 1 joint or more, got 2 joints x 9"));
   Eigen::MatrixXd bad = x;
   bad(1, 17) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT([&] { lowPass(bad, 100.0, 2.0); },
-              ThrowsMessage<EvaluationError>(HasSubstr("got nan for joint 1 in sample 17")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { lowPass(bad, 100.0, 2.0); }),
+              HasSubstr("got nan for joint 1 in sample 17"));
 }
 
 }  // namespace

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <limits>
 
+#include "error_of.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 
 namespace inverse_dynamics_evaluation {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 constexpr double kRounding = 1e-14;
 const double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -96,23 +96,22 @@ TEST(Metrics, KeepTheDigitsOfR2BesideALargeOffset) {
 
 TEST(Metrics, RefuseWhatCannotBeCompared) {
   const Eigen::MatrixXd measured = Eigen::MatrixXd::Ones(2, 3);
-  EXPECT_THAT([&] { metrics(Eigen::MatrixXd::Ones(2, 4), measured); },
-              ThrowsMessage<EvaluationError>(HasSubstr(
-                  "metrics: computed: expected 2 joints x 3 samples as in measured, got 2 "
-                  "joints x 4 samples")));
-  EXPECT_THAT([&] { metrics(measured, measured, Mask::Constant(2, true)); },
-              ThrowsMessage<EvaluationError>(
-                  HasSubstr("mask: expected 3 truth values, one per sample, got 2")));
-  EXPECT_THAT([&] { metrics(measured, measured, Mask::Constant(3, false)); },
-              ThrowsMessage<EvaluationError>(HasSubstr("got none of 3")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { metrics(Eigen::MatrixXd::Ones(2, 4), measured); }),
+              HasSubstr("metrics: computed: expected 2 joints x 3 samples as in measured, got 2 "
+                        "joints x 4 samples"));
+  EXPECT_THAT(
+      errorOf<EvaluationError>([&] { metrics(measured, measured, Mask::Constant(2, true)); }),
+      HasSubstr("mask: expected 3 truth values, one per sample, got 2"));
+  EXPECT_THAT(
+      errorOf<EvaluationError>([&] { metrics(measured, measured, Mask::Constant(3, false)); }),
+      HasSubstr("got none of 3"));
   EXPECT_THROW(metrics(Eigen::MatrixXd(2, 0), Eigen::MatrixXd(2, 0)), std::invalid_argument);
   Eigen::MatrixXd bad = measured;
   bad(1, 2) = std::numeric_limits<double>::infinity();
-  EXPECT_THAT([&] { metrics(bad, measured); },
-              ThrowsMessage<EvaluationError>(
-                  HasSubstr("computed: expected finite numbers, got inf for joint 1 in sample 2")));
-  EXPECT_THAT([&] { metrics(measured, bad); },
-              ThrowsMessage<EvaluationError>(HasSubstr("metrics: measured: expected finite")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { metrics(bad, measured); }),
+              HasSubstr("computed: expected finite numbers, got inf for joint 1 in sample 2"));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { metrics(measured, bad); }),
+              HasSubstr("metrics: measured: expected finite"));
 }
 
 }  // namespace

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <random>
 
+#include "error_of.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 
 namespace inverse_dynamics_evaluation {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 using Step = OnlineDerivative::Step;
 
 constexpr double kPi = 3.14159265358979323846;
@@ -108,10 +108,10 @@ TEST(OnlineDerivative, LeavesASampleWithTheSameStampOut) {
 }
 
 TEST(OnlineDerivative, RefusesACutOffThatIsNone) {
-  EXPECT_THAT([] { OnlineDerivative(1, 0.0); },
-              ThrowsMessage<EvaluationError>(HasSubstr("cut-off [Hz]: expected a number above 0")));
-  EXPECT_THAT([] { OnlineDerivative(1, 5.0, -1.0); },
-              ThrowsMessage<EvaluationError>(HasSubstr("longest gap [s]: expected a number")));
+  EXPECT_THAT(errorOf<EvaluationError>([] { OnlineDerivative(1, 0.0); }),
+              HasSubstr("cut-off [Hz]: expected a number above 0"));
+  EXPECT_THAT(errorOf<EvaluationError>([] { OnlineDerivative(1, 5.0, -1.0); }),
+              HasSubstr("longest gap [s]: expected a number"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "error_of.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "motion.hpp"
 
@@ -14,7 +15,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 SampleReport examine(const Motion& motion, const SampleRules& rules = {}) {
   return examineSamples(motion.time, motion.q, motion.qd, motion.effort, rules);
@@ -93,10 +93,9 @@ TEST(ExamineSamples, LeavesStampsThatDoNotIncreaseOut) {
 
   rules.non_increasing = false;
   EXPECT_THAT(
-      [&] { examine(motion, rules); },
-      ThrowsMessage<EvaluationError>(HasSubstr(
-          "samples: time: expected stamps that increase, got 2 of 401 that don't, the first "
-          "in sample 50 (counted from 0)")));
+      errorOf<EvaluationError>([&] { examine(motion, rules); }),
+      HasSubstr("samples: time: expected stamps that increase, got 2 of 401 that don't, the first "
+                "in sample 50 (counted from 0)"));
 }
 
 TEST(ExamineSamples, ReplacesJitteringStampsByEqualDistances) {
@@ -262,37 +261,35 @@ TEST(ExamineSamples, RefusesWhatItCannotExamine) {
   const Motion motion = sines(100.0, 1.0, {0.5, 1.0});
   Motion bad = motion;
   bad.q(1, 7) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT([&] { examine(bad); },
-              ThrowsMessage<EvaluationError>(HasSubstr(
-                  "samples: q: expected finite numbers, got nan for joint 1 in sample 7")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { examine(bad); }),
+              HasSubstr("samples: q: expected finite numbers, got nan for joint 1 in sample 7"));
   bad = motion;
   bad.time[3] = std::numeric_limits<double>::infinity();
-  EXPECT_THAT([&] { examine(bad); }, ThrowsMessage<EvaluationError>(HasSubstr(
-                                         "time: expected finite stamps, got inf in sample 3")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { examine(bad); }),
+              HasSubstr("time: expected finite stamps, got inf in sample 3"));
   bad = motion;
   bad.time.conservativeResize(100);
-  EXPECT_THAT([&] { examine(bad); },
-              ThrowsMessage<EvaluationError>(
-                  HasSubstr("time: expected 101 stamps, one per column of the samples, got 100")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { examine(bad); }),
+              HasSubstr("time: expected 101 stamps, one per column of the samples, got 100"));
   bad = motion;
   bad.effort = bad.effort.topRows(1).eval();
-  EXPECT_THAT([&] { examine(bad); },
-              ThrowsMessage<EvaluationError>(HasSubstr("effort: expected 2 joints x 101 samples")));
-  EXPECT_THAT(
-      [&] {
-        examineSamples(motion.time.head(1), motion.q.leftCols(1), motion.qd.leftCols(1),
-                       Eigen::MatrixXd());
-      },
-      ThrowsMessage<EvaluationError>(HasSubstr("qd: expected 2 samples or more")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { examine(bad); }),
+              HasSubstr("effort: expected 2 joints x 101 samples"));
+  EXPECT_THAT(errorOf<EvaluationError>([&] {
+                examineSamples(motion.time.head(1), motion.q.leftCols(1), motion.qd.leftCols(1),
+                               Eigen::MatrixXd());
+              }),
+              HasSubstr("qd: expected 2 samples or more"));
   bad = motion;
   bad.time.reverseInPlace();
-  EXPECT_THAT([&] { examine(bad); },
-              ThrowsMessage<EvaluationError>(HasSubstr("stamps of which half increase or more")));
+  EXPECT_THAT(errorOf<EvaluationError>([&] { examine(bad); }),
+              HasSubstr("stamps of which half increase or more"));
   bad.time.setConstant(3.0);
   EXPECT_THROW(examine(bad), EvaluationError);
   const Eigen::MatrixXd same = Eigen::MatrixXd::Ones(2, 5);
-  EXPECT_THAT([&] { examineSamples(Eigen::VectorXd::LinSpaced(5, 0, 1), same, same, same); },
-              ThrowsMessage<EvaluationError>(HasSubstr("2 or more that differ")));
+  EXPECT_THAT(errorOf<EvaluationError>(
+                  [&] { examineSamples(Eigen::VectorXd::LinSpaced(5, 0, 1), same, same, same); }),
+              HasSubstr("2 or more that differ"));
 }
 
 }  // namespace
