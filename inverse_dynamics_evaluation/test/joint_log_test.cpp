@@ -42,7 +42,7 @@ Message armMessage() {
   return {{"b", "gripper", "a"}, {2, 9, 1}, {20, 90, 10}, {200, 900, 100}, {}, 5, 7, 0};
 }
 
-std::string errorOf(const Message& message, JointLogOptions options = {}) {
+std::string logErrorOf(const Message& message, JointLogOptions options = {}) {
   JointLogBuilder builder("bag: /joint_states", {"a", "b"}, std::move(options));
   return errorOf<RecordingError>([&] {
     builder.add(message.sample());
@@ -104,7 +104,7 @@ TEST(JointLog, TakesHeadersStampsAndThoseOfReceptionIfNoHeaderHasOne) {
 TEST(JointLog, SaysWhichJointsAreMissing) {
   Message message = armMessage();
   message.names[0] = "c";
-  EXPECT_EQ(errorOf(message, {true, "--joints"}),
+  EXPECT_EQ(logErrorOf(message, {true, "--joints"}),
             "bag: /joint_states, message 1: expected the joints a, b, got c, gripper, a; missing: "
             "b; give the recording's names with --joints, in the order of the chain");
 }
@@ -112,13 +112,13 @@ TEST(JointLog, SaysWhichJointsAreMissing) {
 TEST(JointLog, SaysWhichJointsAreThereTwice) {
   Message message = armMessage();
   message.names[1] = "a";
-  EXPECT_THAT(errorOf(message), HasSubstr("expected each joint once, got b, a, a; repeated: a"));
+  EXPECT_THAT(logErrorOf(message), HasSubstr("expected each joint once, got b, a, a; repeated: a"));
 }
 
 TEST(JointLog, SaysThatNoMessageHasAnyOfTheJoints) {
   Message message = armMessage();
   message.names = {"x", "y", "z"};
-  EXPECT_EQ(errorOf(message),
+  EXPECT_EQ(logErrorOf(message),
             "bag: /joint_states: expected the joints a, b, got only x, y, z; give the recording's "
             "names with joints, in the order of the chain");
   EXPECT_THAT(errorOf<RecordingError>([] { JointLogBuilder("bag", {"a"}).finish(); }),
@@ -130,30 +130,30 @@ TEST(JointLog, SaysWhichArrayIsTooShortOrEmpty) {
   message.number = 4;
   message.velocity.clear();
   EXPECT_EQ(
-      errorOf(message),
+      logErrorOf(message),
       "bag: /joint_states, message 5: velocity: expected 3 numbers, one per name, got an empty "
       "array; joint velocities are needed (accelerations come from them): does the driver "
       "publish them?");
   message = armMessage();
   message.effort.pop_back();
-  EXPECT_THAT(errorOf(message), HasSubstr("effort: expected 3 numbers, one per name, got 2"));
+  EXPECT_THAT(logErrorOf(message), HasSubstr("effort: expected 3 numbers, one per name, got 2"));
 }
 
 TEST(JointLog, SaysWhichNumberIsNotFinite) {
   Message message = armMessage();
   message.position[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(errorOf(message),
+  EXPECT_THAT(logErrorOf(message),
               HasSubstr("position of joint b: expected a finite number, got nan"));
   message = armMessage();
   message.position[1] = std::numeric_limits<double>::quiet_NaN();  // the gripper's
-  EXPECT_EQ(errorOf(message), "no error");
+  EXPECT_EQ(logErrorOf(message), "no error");
 }
 
 TEST(JointLog, MayLackEffortsWhereTheyAreNotRequired) {
   Message message = armMessage();
   message.effort.clear();
-  EXPECT_THAT(errorOf(message), HasSubstr("effort: expected 3 numbers"));
-  EXPECT_EQ(errorOf(message, {false}), "no error");
+  EXPECT_THAT(logErrorOf(message), HasSubstr("effort: expected 3 numbers"));
+  EXPECT_EQ(logErrorOf(message, {false}), "no error");
 
   JointLogBuilder builder("bag", {"a", "b"}, {false});
   builder.add(message.sample());
