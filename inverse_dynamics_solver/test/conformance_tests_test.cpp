@@ -23,8 +23,7 @@ class ConformanceTests : public ::testing::TestWithParam<Fault> {};
 TEST_P(ConformanceTests, FindTheFault) {
   const Fault& fault = GetParam();
   const std::string command = "FAULT=\"" + std::string(fault.fault) +
-                              "\" " TWO_LINK_TEST_PROGRAM
-                              " --gtest_brief=1 --gtest_output= --gtest_filter='*." +
+                              "\" " TWO_LINK_TEST_PROGRAM " --gtest_output= --gtest_filter='*." +
                               (fault.test[0] == '\0' ? "*" : fault.test) + "' 2>&1";
   FILE* const pipe = popen(command.c_str(), "r");
   ASSERT_NE(pipe, nullptr);

@@ -212,8 +212,10 @@ TEST(InverseDynamicsSolver, WrongSizesAreExplained) {
             "getInertiaMatrixBatch: argument H: wrong size: expected 2 x 10, got 2 x 3; the joints "
             "are joint0, joint1");
 
+#ifdef NDEBUG  // else Eigen's own assertion comes first
   // A matrix where one state is expected isn't taken for its first column.
   EXPECT_NE(error([&] { solver->getGravityVector(Eigen::MatrixXd::Zero(1, 4)); }), "no exception");
+#endif
 }
 
 TEST(InverseDynamicsSolver, TellsItsJoints) {
