@@ -191,6 +191,7 @@ def test_robots_shows_one(ids):
     assert code == 0
     for part in ("panda_real", "franka_inria_inverse_dynamics_solver/", "fer_joint7", "Gaz"):
         assert part in out
+    assert re.search(r"^urdf +/\S+/urdf/panda\.urdf$", out, re.MULTILINE)  # can be copied
     fails(ids("robots", "ur11"), "expected one of")
 
 

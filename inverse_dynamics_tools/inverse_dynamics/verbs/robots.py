@@ -51,23 +51,24 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _list() -> None:
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
     from inverse_dynamics.robots import load_robot, robot_names
 
-    table = Table(box=None, pad_edge=False, show_header=False)
-    for name in robot_names():
-        table.add_row(Text(name, "bold"), Text(load_robot(name).description))
-    Console().print(table)
+    _print_rows({name: load_robot(name).description for name in robot_names()})
+
+
+def _print_rows(rows: dict[str, str]) -> None:
+    """A key and a text a line; lines stay whole, so that paths can be copied. No text: no line."""
+    from rich.console import Console
+    from rich.text import Text
+
+    console = Console(highlight=False, soft_wrap=True)
+    width = max(map(len, rows), default=0) + 2
+    for key, text in rows.items():
+        if text:
+            console.print(Text(f"{key:<{width}}", "bold") + Text(text, "not bold"))
 
 
 def _show(robot: str) -> None:
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
     from inverse_dynamics.accelerations import METHODS
     from inverse_dynamics.effort import EFFORT_CHOICES
     from inverse_dynamics.robots import load_robot
@@ -76,6 +77,7 @@ def _show(robot: str) -> None:
     gravity = shown.gravity
     cutoff = "" if shown.cutoff is None else f", cut-off {shown.cutoff:g} Hz"
     rows = {
+        "name": shown.name,
         "description": shown.description,
         "plugin": shown.plugin,
         "urdf": str(shown.urdf or ""),
@@ -91,12 +93,4 @@ def _show(robot: str) -> None:
         "source": shown.source,
         "file": str(shown.file),
     }
-    table = Table(box=None, pad_edge=False, show_header=False)
-    table.add_column()
-    table.add_column(overflow="fold")  # paths whole
-    for key, text in rows.items():
-        if text:
-            table.add_row(Text(key, "bold"), Text(text))
-    console = Console()
-    console.print(Text(shown.name, "bold"))
-    console.print(table)
+    _print_rows(rows)
