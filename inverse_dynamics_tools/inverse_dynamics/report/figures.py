@@ -67,6 +67,8 @@ def _draw_distribution(axes: Axes, names: tuple[str, ...], error: Floats) -> Non
 
 
 def _draw_spectra(axes: Axes, evaluation: Evaluation, measured: Floats, error: Floats) -> None:
+    from matplotlib.ticker import LogLocator
+
     period = float(evaluation.time[-1]) / (len(evaluation.time) - 1)
     for values, color, label in ((measured, "black", "measured torque"), (error, _BLUE, "error")):
         frequency, amplitude = _spectrum(values, period)
@@ -76,6 +78,9 @@ def _draw_spectra(axes: Axes, evaluation: Evaluation, measured: Floats, error: F
         axes.axvline(
             evaluation.accelerations.cutoff, color="#009E73", linewidth=1.3, label="cut-off"
         )
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))  # also where a decade is all there is
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter("")
     axes.grid(color="#e3e6ea")
     axes.legend(frameon=False)
     axes.set_xlabel("frequency [Hz]", color=_MUTED)
