@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pinocchio_peer.hpp"
-
-#include <benchmark/benchmark.h>
-
 #include <memory>
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
-#include <pinocchio/multibody/data.hpp>
-#include <pinocchio/multibody/model.hpp>
-#include <pinocchio/parsers/urdf.hpp>
 
+#include "peers.hpp"
+#include "pinocchio_model.hpp"
 #include "states.hpp"
 #include "timing.hpp"
 
@@ -17,43 +12,52 @@ namespace inverse_dynamics_benchmarks {
 namespace {
 
 struct Peer {
-  explicit Peer(const std::string& urdf) {
-    pinocchio::urdf::buildModelFromXML(urdf, model);
-    data = std::make_unique<pinocchio::Data>(model);
-    states = std::make_unique<States>(model.nv);
+  explicit Peer(const chain_dynamics::Chain& chain)
+      : model(pinocchio_inverse_dynamics_solver::toPinocchio(chain)),
+        data(model),
+        states(chain.jointCount()) {}
+
+  auto torques(Eigen::Index k) {
+    return pinocchio::rnea(model, data, states.q.col(k), states.qd.col(k), states.qdd.col(k))
+        .data();
+  }
+  auto inertia(Eigen::Index k) {
+    return pinocchio::crba(model, data, states.q.col(k), pinocchio::Convention::LOCAL).data();
+  }
+  auto coriolis(Eigen::Index k) {  // and gravity: there is no call without it
+    return pinocchio::nonLinearEffects(model, data, states.q.col(k), states.qd.col(k)).data();
+  }
+  auto gravity(Eigen::Index k) {
+    return pinocchio::computeGeneralizedGravity(model, data, states.q.col(k)).data();
   }
 
   pinocchio::Model model;
-  std::unique_ptr<pinocchio::Data> data;
-  std::unique_ptr<States> states;
+  pinocchio::Data data;
+  States states;
 };
 
 }  // namespace
 
-void registerPinocchio(const std::string& robot, const std::string& urdf) {
-  const auto peer = std::make_shared<Peer>(urdf);
+void registerPinocchio(const PeerRobot& robot) {
+  const auto peer = std::make_shared<Peer>(robot.chain);
+  peer->torques(0);
+  requireSameTorques(robot, "Pinocchio", peer->data.tau);
   const auto add = [&](const char* quantity, auto call) {
-    registerOverStates(robot + "/" + quantity + "/pinocchio",
+    registerOverStates(robot.name + "/" + quantity + "/pinocchio",
                        [peer, call](Eigen::Index k) { call(*peer, k); });
   };
-  add("torques", [](Peer& p, Eigen::Index k) {
-    benchmark::DoNotOptimize(pinocchio::rnea(p.model, *p.data, p.states->q.col(k),
-                                             p.states->qd.col(k), p.states->qdd.col(k))
-                                 .data());
-  });
-  add("inertia", [](Peer& p, Eigen::Index k) {
-    benchmark::DoNotOptimize(
-        pinocchio::crba(p.model, *p.data, p.states->q.col(k), pinocchio::Convention::LOCAL).data());
-  });
-  add("coriolis", [](Peer& p, Eigen::Index k) {
-    benchmark::DoNotOptimize(
-        pinocchio::nonLinearEffects(p.model, *p.data, p.states->q.col(k), p.states->qd.col(k))
-            .data());
-  });
-  add("gravity", [](Peer& p, Eigen::Index k) {
-    benchmark::DoNotOptimize(
-        pinocchio::computeGeneralizedGravity(p.model, *p.data, p.states->q.col(k)).data());
+  using benchmark::DoNotOptimize;
+  add("torques", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.torques(k)); });
+  add("inertia", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.inertia(k)); });
+  add("coriolis", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.coriolis(k)); });
+  add("gravity", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.gravity(k)); });
+  add("components", [](Peer& p, Eigen::Index k) {
+    DoNotOptimize(p.inertia(k));
+    DoNotOptimize(p.coriolis(k));
+    DoNotOptimize(p.gravity(k));
   });
 }
+
+std::string pinocchioVersion() { return PINOCCHIO_VERSION; }
 
 }  // namespace inverse_dynamics_benchmarks

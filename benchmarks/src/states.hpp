@@ -16,8 +16,10 @@ constexpr Eigen::Index kStates = 1024;
 /// States as columns, the same numbers with every standard library.
 class States {
  public:
-  explicit States(Eigen::Index joints)
-      : q(random(joints, 3.1)), qd(random(joints, 2.0)), qdd(random(joints, 4.0)) {}
+  explicit States(Eigen::Index joints, Eigen::Index count = kStates)
+      : q(random(joints, count, 3.1)),
+        qd(random(joints, count, 2.0)),
+        qdd(random(joints, count, 4.0)) {}
 
  private:
   std::mt19937 engine_{2008};  // before the members that it fills
@@ -26,9 +28,9 @@ class States {
   Eigen::MatrixXd q, qd, qdd;
 
  private:
-  Eigen::MatrixXd random(Eigen::Index joints, double range) {
+  Eigen::MatrixXd random(Eigen::Index joints, Eigen::Index count, double range) {
     return Eigen::MatrixXd::NullaryExpr(
-        joints, kStates, [&] { return range * (2.0 * engine_() / 4294967295.0 - 1.0); });
+        joints, count, [&] { return range * (2.0 * engine_() / 4294967295.0 - 1.0); });
   }
 };
 

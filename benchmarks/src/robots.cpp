@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robots.hpp"
+
+#include <ament_index_cpp/get_package_share_directory.hpp>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "generated_chain.hpp"
+
+namespace inverse_dynamics_benchmarks {
+namespace {
+
+std::string textOf(const std::string& file) {
+  const std::string path =
+      ament_index_cpp::get_package_share_directory("inverse_dynamics_robots") + "/urdf/" + file;
+  std::ifstream stream(path);
+  if (!stream) throw std::runtime_error(path + ": can't be read");
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+std::vector<Robot> robots() {
+  std::vector<Robot> all = {{"ur10", textOf("ur10.urdf")}, {"panda", textOf("panda.urdf")}};
+  for (const int n : {1, 2, 3, 6, 7, 10, 15, 20, 30}) {
+    all.push_back({"mixed" + std::to_string(n), generatedChain(n, Joints::kTurningAndSliding)});
+  }
+  for (const int n : {6, 7}) {
+    all.push_back({"turning" + std::to_string(n), generatedChain(n, Joints::kTurning)});
+  }
+  return all;
+}
+
+}  // namespace inverse_dynamics_benchmarks

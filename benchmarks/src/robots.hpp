@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// The robots that every library is timed on.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace inverse_dynamics_benchmarks {
+
+/// A robot by its URDF.
+struct Robot {
+  std::string name;  ///< `ur10`, `panda`, `mixed7` (turning and sliding joints), `turning6`
+  std::string urdf;
+};
+
+/// UR10 and Panda, chains of 1 to 30 joints that turn and slide, and of 6 and 7 that turn.
+std::vector<Robot> robots();
+
+}  // namespace inverse_dynamics_benchmarks

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// This library's solvers, through the public interface, into the caller's memory.
+#pragma once
+
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <memory>
+#include <string>
+
+namespace inverse_dynamics_benchmarks {
+
+/// Benchmarks `ROBOT/QUANTITY/ours`, one state a call: torques, inertia, coriolis, gravity,
+/// components.
+void registerSingleCalls(
+    const std::string& robot,
+    const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver);
+
+/// Benchmark `ROBOT/friction/ours`.
+void registerFriction(
+    const std::string& robot,
+    const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver);
+
+/// Benchmarks `ROBOT/QUANTITY/ours`, all states a call: torques_batch, inertia_batch, ...
+void registerBatches(
+    const std::string& robot,
+    const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver);
+
+/// Benchmarks `ROBOT/torques_memory/ours`, a batch that no cache holds, and
+/// `ROBOT/torques_memory/sum`, the sum of the same three arrays: what the memory allows.
+void registerLargeBatch(
+    const std::string& robot,
+    const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver);
+
+}  // namespace inverse_dynamics_benchmarks
