@@ -198,11 +198,11 @@ bool FastModel::equalsPlain(const Model& model) const {
   const Eigen::VectorXd tau = H * q + c + g + f;
 
   // the same state in every lane
+  const ConstStates same{q.data(), n, kStates, 1, 0};
   Eigen::MatrixXd fast_H(n, n), fast_tau(n, kStates);
   inertiaMatrix(q.data(), fast_H.data(), n);
   torques(q.data(), q.data(), q.data(), f.data());
-  torquesBatch(kStates, {q.data(), 1, 0}, {q.data(), 1, 0}, {q.data(), 1, 0},
-               {fast_tau.data(), 1, n});
+  torquesBatch(same, same, same, fast_tau);
   const auto near = [](const auto& a, const auto& b) {
     return (a - b).cwiseAbs().maxCoeff() <= kTolerance * (1 + b.cwiseAbs().maxCoeff());
   };
@@ -238,32 +238,30 @@ void FastModel::dynamicComponents(const double* q, const double* qd, double* H,
   kernels_->components(robot(), structure_, q, qd, {H, 1, outer_step, 0}, c, g);
 }
 
-void FastModel::torquesBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd, ConstStates qdd,
-                             States tau) const {
-  kernels_->torques_batch(robot(), structure_, states, samples(q), samples(qd), samples(qdd),
+void FastModel::torquesBatch(ConstStates q, ConstStates qd, ConstStates qdd, States tau) const {
+  kernels_->torques_batch(robot(), structure_, q.count, samples(q), samples(qd), samples(qdd),
                           samples(tau));
 }
 
-void FastModel::inertiaMatrixBatch(std::ptrdiff_t states, ConstStates q, StridedMatrices H) const {
-  kernels_->inertia_batch(robot(), structure_, states, samples(q), matrices(H));
+void FastModel::inertiaMatrixBatch(ConstStates q, StridedMatrices H) const {
+  kernels_->inertia_batch(robot(), structure_, q.count, samples(q), matrices(H));
 }
 
-void FastModel::coriolisVectorBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd,
-                                    States c) const {
-  kernels_->coriolis_batch(robot(), structure_, states, samples(q), samples(qd), samples(c));
+void FastModel::coriolisVectorBatch(ConstStates q, ConstStates qd, States c) const {
+  kernels_->coriolis_batch(robot(), structure_, q.count, samples(q), samples(qd), samples(c));
 }
 
-void FastModel::gravityVectorBatch(std::ptrdiff_t states, ConstStates q, States g) const {
-  kernels_->gravity_batch(robot(), structure_, states, samples(q), samples(g));
+void FastModel::gravityVectorBatch(ConstStates q, States g) const {
+  kernels_->gravity_batch(robot(), structure_, q.count, samples(q), samples(g));
 }
 
-void FastModel::frictionVectorBatch(std::ptrdiff_t states, ConstStates qd, States f) const {
-  kernels_->friction_batch(robot(), states, samples(qd), samples(f));
+void FastModel::frictionVectorBatch(ConstStates qd, States f) const {
+  kernels_->friction_batch(robot(), qd.count, samples(qd), samples(f));
 }
 
-void FastModel::dynamicComponentsBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd,
-                                       StridedMatrices H, States c, States g) const {
-  kernels_->components_batch(robot(), structure_, states, samples(q), samples(qd), matrices(H),
+void FastModel::dynamicComponentsBatch(ConstStates q, ConstStates qd, StridedMatrices H, States c,
+                                       States g) const {
+  kernels_->components_batch(robot(), structure_, q.count, samples(q), samples(qd), matrices(H),
                              samples(c), samples(g));
 }
 

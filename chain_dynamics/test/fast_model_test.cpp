@@ -169,7 +169,7 @@ std::vector<NamedModel> models() {
 class Layout {
  public:
   Layout(Index n, Index count, Index joint_step, Index state_step)
-      : joint_step_(joint_step), state_step_(state_step) {
+      : n_(n), count_(count), joint_step_(joint_step), state_step_(state_step) {
     const Index size = n * std::abs(joint_step) + count * std::abs(state_step) + 1;
     numbers_ = VectorXd::Constant(2 * size, std::numeric_limits<double>::quiet_NaN());
     first_ = size;
@@ -177,11 +177,13 @@ class Layout {
   double& operator()(Index j, Index k) {
     return numbers_[first_ + j * joint_step_ + k * state_step_];
   }
-  ConstStates in() const { return {numbers_.data() + first_, joint_step_, state_step_}; }
-  States out() { return {numbers_.data() + first_, joint_step_, state_step_}; }
+  ConstStates in() const {
+    return {numbers_.data() + first_, n_, count_, joint_step_, state_step_};
+  }
+  States out() { return {numbers_.data() + first_, n_, count_, joint_step_, state_step_}; }
 
  private:
-  Index joint_step_, state_step_;
+  Index n_, count_, joint_step_, state_step_;
   VectorXd numbers_;
   Index first_ = 0;
 };
@@ -192,21 +194,21 @@ struct Batch {
       : q(n, count, joint_step, state_step), qd(q), qdd(q), tau(q), c(q), g(q), f(q) {
     H = MatrixXd::Constant(n + 1, n * count, std::numeric_limits<double>::quiet_NaN());
   }
-  StridedMatrices matrices() { return {H.data(), 1, H.rows(), H.rows() * (H.rows() - 1)}; }
+  StridedMatrices matrices() { return H.topRows(H.rows() - 1); }
   Layout q, qd, qdd, tau, c, g, f;
   MatrixXd H;
 };
 
-void compute(const FastModel& fast, Index count, Batch& b) {
-  fast.inertiaMatrixBatch(count, b.q.in(), b.matrices());
+void compute(const FastModel& fast, Batch& b) {
+  fast.inertiaMatrixBatch(b.q.in(), b.matrices());
   const MatrixXd H = b.H;
   b.H.setConstant(std::numeric_limits<double>::quiet_NaN());
-  fast.dynamicComponentsBatch(count, b.q.in(), b.qd.in(), b.matrices(), b.tau.out(), b.f.out());
+  fast.dynamicComponentsBatch(b.q.in(), b.qd.in(), b.matrices(), b.tau.out(), b.f.out());
   EXPECT_TRUE((H.topRows(H.rows() - 1).array() == b.H.topRows(H.rows() - 1).array()).all());
-  fast.coriolisVectorBatch(count, b.q.in(), b.qd.in(), b.c.out());
-  fast.gravityVectorBatch(count, b.q.in(), b.g.out());
-  fast.torquesBatch(count, b.q.in(), b.qd.in(), b.qdd.in(), b.tau.out());
-  fast.frictionVectorBatch(count, b.qd.in(), b.f.out());
+  fast.coriolisVectorBatch(b.q.in(), b.qd.in(), b.c.out());
+  fast.gravityVectorBatch(b.q.in(), b.g.out());
+  fast.torquesBatch(b.q.in(), b.qd.in(), b.qdd.in(), b.tau.out());
+  fast.frictionVectorBatch(b.qd.in(), b.f.out());
 }
 
 void expectBatchEqual(const FastModel& fast, Index n, Index count, Index joint_step,
@@ -222,7 +224,7 @@ void expectBatchEqual(const FastModel& fast, Index n, Index count, Index joint_s
       batch.qdd(j, k) = states.back().qdd[j];
     }
   }
-  compute(fast, count, batch);
+  compute(fast, batch);
   for (Index k = 0; k < count; ++k) {
     Terms terms(n);
     terms.H = batch.H.block(0, k * n, n, n);
@@ -289,11 +291,9 @@ TEST_P(FastModelOn, AStateHasTheSameBitsWhereverItStandsInABatch) {
     const MatrixXd qdd = -q;
     MatrixXd all(n, count);
     MatrixXd alone(n, 1);
-    fast.torquesBatch(count, {q.data(), 1, n}, {qd.data(), 1, n}, {qdd.data(), 1, n},
-                      {all.data(), 1, n});
+    fast.torquesBatch(q, qd, qdd, all);
     for (Index k = 0; k < count; ++k) {
-      fast.torquesBatch(1, {&q(0, k), 1, n}, {&qd(0, k), 1, n}, {&qdd(0, k), 1, n},
-                        {alone.data(), 1, n});
+      fast.torquesBatch(q.col(k), qd.col(k), qdd.col(k), alone);
       ASSERT_EQ(alone, all.col(k)) << "state " << k;
     }
   }
@@ -380,8 +380,7 @@ TEST_P(FastModelOn, NoCallAllocates) {
     fast.dynamicComponents(x.q.data(), x.qd.data(), terms.H.data(), n, terms.c.data(),
                            terms.g.data());
     fast.frictionVector(x.qd.data(), terms.f.data());
-    fast.torquesBatch(1, {x.q.data(), 1, n}, {x.qd.data(), 1, n}, {x.qdd.data(), 1, n},
-                      {terms.tau.data(), 1, n});
+    fast.torquesBatch(x.q, x.qd, x.qdd, terms.tau);
     EXPECT_EQ(guard.count(), 0) << name;
   }
 }

@@ -46,6 +46,18 @@ void readAttached(Configuration& configuration) {
   configuration.lump_attached = attached == "lump";
 }
 
+void readBatchThreads(Configuration& configuration) {
+  constexpr std::int64_t kMost = 4096;
+  const std::int64_t threads = configuration.get<std::int64_t>("batch_threads").value_or(1);
+  if (threads < 1 || threads > kMost) {
+    throw InvalidParameterValueException(
+        errorText("parameter '" + configuration.fullName("batch_threads") + "'", "wrong value",
+                  "1 to " + std::to_string(kMost), std::to_string(threads),
+                  "give how many threads may share a batch; 1: the library starts none"));
+  }
+  configuration.batch_threads = threads;
+}
+
 /// Reader of `locked_joints.<joint>`.
 std::function<double(const std::string&)> lockedPositions(const Configuration& configuration) {
   return [parameters = configuration.parameters,
@@ -78,6 +90,7 @@ Configuration readConfiguration(const Parameters& parameters, const std::string&
   configuration.friction = configuration.get<bool>("friction").value_or(true);
   readGravity(configuration);
   readAttached(configuration);
+  readBatchThreads(configuration);
   configuration.locked_position = lockedPositions(configuration);
   return configuration;
 }

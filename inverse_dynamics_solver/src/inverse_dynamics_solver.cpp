@@ -3,6 +3,9 @@
 
 #include <string>
 
+#include "one_state.hpp"
+#include "share_states.hpp"
+
 namespace inverse_dynamics_solver {
 namespace {
 
@@ -11,8 +14,6 @@ const Eigen::VectorXd kNoPositions;
 
 using Eigen::Index;
 
-/// Chains up to this many joints are computed without allocation.
-constexpr int kMaxStackJoints = 64;
 using StackVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxStackJoints, 1>;
 using StackMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStackJoints, kMaxStackJoints>;
@@ -48,6 +49,7 @@ void InverseDynamicsSolver::initialize(const Parameters& parameters,
 
   // Nothing below can fail.
   info_ = std::move(info);
+  batch_threads_ = configuration.batch_threads;
   initialized_ = true;
 }
 
@@ -93,6 +95,11 @@ void InverseDynamicsSolver::requireMatrix(const char* method, const char* argume
     throwSizeMismatch(method, argument, shape(n, expected_cols), shape(rows, cols),
                       info_.joint_names);
   }
+}
+
+void InverseDynamicsSolver::requireStates(const char* method, const char* argument,
+                                          const ConstStates& states, Index expected_count) const {
+  requireMatrix(method, argument, states.joints, states.count, expected_count);
 }
 
 // ---------------------------------------------------------------- one state
@@ -150,62 +157,82 @@ void InverseDynamicsSolver::getTorques(const ConstVectorRef& q, const ConstVecto
 
 // ---------------------------------------------------------------- many states
 
-void InverseDynamicsSolver::getInertiaMatrixBatch(const ConstMatrixRef& q, MatrixRef H) const {
+void InverseDynamicsSolver::getInertiaMatrixBatch(const ConstStatesRef& q,
+                                                  const StridedMatrices& H) const {
   const char* const method = "getInertiaMatrixBatch";
   requireInitialized(method);
-  requireMatrix(method, "q", q.rows(), q.cols(), q.cols());
-  requireMatrix(method, "H", H.rows(), H.cols(), q.rows() * q.cols());
-  computeInertiaMatrixBatch(q, H);
+  requireStates(method, "q", q, q.count);
+  requireMatrix(method, "H", H.rows, H.cols, q.joints * q.count);
+  shareStates(q.count, batch_threads_, [&](Index first, Index size) {
+    computeInertiaMatrixBatch(q.middle(first, size), H.middle(first, size));
+  });
 }
 
-void InverseDynamicsSolver::getCoriolisVectorBatch(const ConstMatrixRef& q,
-                                                   const ConstMatrixRef& qd, MatrixRef c) const {
+void InverseDynamicsSolver::getCoriolisVectorBatch(const ConstStatesRef& q,
+                                                   const ConstStatesRef& qd,
+                                                   const States& c) const {
   const char* const method = "getCoriolisVectorBatch";
   requireInitialized(method);
-  requireMatrix(method, "q", q.rows(), q.cols(), q.cols());
-  requireMatrix(method, "qd", qd.rows(), qd.cols(), q.cols());
-  requireMatrix(method, "c", c.rows(), c.cols(), q.cols());
-  computeCoriolisVectorBatch(q, qd, c);
+  requireStates(method, "q", q, q.count);
+  requireStates(method, "qd", qd, q.count);
+  requireStates(method, "c", c, q.count);
+  shareStates(q.count, batch_threads_, [&](Index first, Index size) {
+    computeCoriolisVectorBatch(q.middle(first, size), qd.middle(first, size),
+                               c.middle(first, size));
+  });
 }
 
-void InverseDynamicsSolver::getFrictionVectorBatch(const ConstMatrixRef& qd, MatrixRef f) const {
+void InverseDynamicsSolver::getFrictionVectorBatch(const ConstStatesRef& qd,
+                                                   const States& f) const {
   const char* const method = "getFrictionVectorBatch";
   requireInitialized(method);
-  requireMatrix(method, "qd", qd.rows(), qd.cols(), qd.cols());
-  requireMatrix(method, "f", f.rows(), f.cols(), qd.cols());
-  computeFrictionBatch(qd, f);
+  requireStates(method, "qd", qd, qd.count);
+  requireStates(method, "f", f, qd.count);
+  shareStates(qd.count, batch_threads_, [&](Index first, Index size) {
+    computeFrictionBatch(qd.middle(first, size), f.middle(first, size));
+  });
 }
 
-void InverseDynamicsSolver::getGravityVectorBatch(const ConstMatrixRef& q, MatrixRef g) const {
+void InverseDynamicsSolver::getGravityVectorBatch(const ConstStatesRef& q, const States& g) const {
   const char* const method = "getGravityVectorBatch";
   requireInitialized(method);
-  requireMatrix(method, "q", q.rows(), q.cols(), q.cols());
-  requireMatrix(method, "g", g.rows(), g.cols(), q.cols());
-  computeGravityVectorBatch(q, g);
+  requireStates(method, "q", q, q.count);
+  requireStates(method, "g", g, q.count);
+  shareStates(q.count, batch_threads_, [&](Index first, Index size) {
+    computeGravityVectorBatch(q.middle(first, size), g.middle(first, size));
+  });
 }
 
-void InverseDynamicsSolver::getDynamicComponentsBatch(const ConstMatrixRef& q,
-                                                      const ConstMatrixRef& qd, MatrixRef H,
-                                                      MatrixRef c, MatrixRef g) const {
+void InverseDynamicsSolver::getDynamicComponentsBatch(const ConstStatesRef& q,
+                                                      const ConstStatesRef& qd,
+                                                      const StridedMatrices& H, const States& c,
+                                                      const States& g) const {
   const char* const method = "getDynamicComponentsBatch";
   requireInitialized(method);
-  requireMatrix(method, "q", q.rows(), q.cols(), q.cols());
-  requireMatrix(method, "qd", qd.rows(), qd.cols(), q.cols());
-  requireMatrix(method, "H", H.rows(), H.cols(), q.rows() * q.cols());
-  requireMatrix(method, "c", c.rows(), c.cols(), q.cols());
-  requireMatrix(method, "g", g.rows(), g.cols(), q.cols());
-  computeDynamicComponentsBatch(q, qd, H, c, g);
+  requireStates(method, "q", q, q.count);
+  requireStates(method, "qd", qd, q.count);
+  requireMatrix(method, "H", H.rows, H.cols, q.joints * q.count);
+  requireStates(method, "c", c, q.count);
+  requireStates(method, "g", g, q.count);
+  shareStates(q.count, batch_threads_, [&](Index first, Index size) {
+    computeDynamicComponentsBatch(q.middle(first, size), qd.middle(first, size),
+                                  H.middle(first, size), c.middle(first, size),
+                                  g.middle(first, size));
+  });
 }
 
-void InverseDynamicsSolver::getTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
-                                            const ConstMatrixRef& qdd, MatrixRef tau) const {
+void InverseDynamicsSolver::getTorquesBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
+                                            const ConstStatesRef& qdd, const States& tau) const {
   const char* const method = "getTorquesBatch";
   requireInitialized(method);
-  requireMatrix(method, "q", q.rows(), q.cols(), q.cols());
-  requireMatrix(method, "qd", qd.rows(), qd.cols(), q.cols());
-  requireMatrix(method, "qdd", qdd.rows(), qdd.cols(), q.cols());
-  requireMatrix(method, "tau", tau.rows(), tau.cols(), q.cols());
-  computeTorquesBatch(q, qd, qdd, tau);
+  requireStates(method, "q", q, q.count);
+  requireStates(method, "qd", qd, q.count);
+  requireStates(method, "qdd", qdd, q.count);
+  requireStates(method, "tau", tau, q.count);
+  shareStates(q.count, batch_threads_, [&](Index first, Index size) {
+    computeTorquesBatch(q.middle(first, size), qd.middle(first, size), qdd.middle(first, size),
+                        tau.middle(first, size));
+  });
 }
 
 // ---------------------------------------------------------------- defaults
@@ -249,40 +276,66 @@ void InverseDynamicsSolver::computeTorques(const ConstVectorRef& q, const ConstV
   }
 }
 
-void InverseDynamicsSolver::computeInertiaMatrixBatch(const ConstMatrixRef& q, MatrixRef H) const {
-  const Index n = q.rows();
-  for (Index k = 0; k < q.cols(); ++k) computeInertiaMatrix(q.col(k), H.middleCols(k * n, n));
-}
-
-void InverseDynamicsSolver::computeCoriolisVectorBatch(const ConstMatrixRef& q,
-                                                       const ConstMatrixRef& qd,
-                                                       MatrixRef c) const {
-  for (Index k = 0; k < q.cols(); ++k) computeCoriolisVector(q.col(k), qd.col(k), c.col(k));
-}
-
-void InverseDynamicsSolver::computeFrictionBatch(const ConstMatrixRef& qd, MatrixRef f) const {
-  for (Index k = 0; k < qd.cols(); ++k) {
-    computeFriction(kNoPositions, qd.col(k), f.col(k));
+void InverseDynamicsSolver::computeInertiaMatrixBatch(const ConstStates& q,
+                                                      const StridedMatrices& H) const {
+  StateReader q_of(q);
+  MatrixWriter H_of(H);
+  for (Index k = 0; k < q.count; ++k) {
+    computeInertiaMatrix(q_of(k), H_of(k));
+    H_of.done(k);
   }
 }
 
-void InverseDynamicsSolver::computeGravityVectorBatch(const ConstMatrixRef& q, MatrixRef g) const {
-  for (Index k = 0; k < q.cols(); ++k) computeGravityVector(q.col(k), g.col(k));
-}
-
-void InverseDynamicsSolver::computeDynamicComponentsBatch(const ConstMatrixRef& q,
-                                                          const ConstMatrixRef& qd, MatrixRef H,
-                                                          MatrixRef c, MatrixRef g) const {
-  const Index n = q.rows();
-  for (Index k = 0; k < q.cols(); ++k) {
-    computeDynamicComponents(q.col(k), qd.col(k), H.middleCols(k * n, n), c.col(k), g.col(k));
+void InverseDynamicsSolver::computeCoriolisVectorBatch(const ConstStates& q, const ConstStates& qd,
+                                                       const States& c) const {
+  StateReader q_of(q), qd_of(qd);
+  StateWriter c_of(c);
+  for (Index k = 0; k < q.count; ++k) {
+    computeCoriolisVector(q_of(k), qd_of(k), c_of(k));
+    c_of.done(k);
   }
 }
 
-void InverseDynamicsSolver::computeTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
-                                                const ConstMatrixRef& qdd, MatrixRef tau) const {
-  for (Index k = 0; k < q.cols(); ++k) {
-    computeTorques(q.col(k), qd.col(k), qdd.col(k), tau.col(k));
+void InverseDynamicsSolver::computeFrictionBatch(const ConstStates& qd, const States& f) const {
+  StateReader qd_of(qd);
+  StateWriter f_of(f);
+  for (Index k = 0; k < qd.count; ++k) {
+    computeFriction(kNoPositions, qd_of(k), f_of(k));
+    f_of.done(k);
+  }
+}
+
+void InverseDynamicsSolver::computeGravityVectorBatch(const ConstStates& q, const States& g) const {
+  StateReader q_of(q);
+  StateWriter g_of(g);
+  for (Index k = 0; k < q.count; ++k) {
+    computeGravityVector(q_of(k), g_of(k));
+    g_of.done(k);
+  }
+}
+
+void InverseDynamicsSolver::computeDynamicComponentsBatch(const ConstStates& q,
+                                                          const ConstStates& qd,
+                                                          const StridedMatrices& H, const States& c,
+                                                          const States& g) const {
+  StateReader q_of(q), qd_of(qd);
+  MatrixWriter H_of(H);
+  StateWriter c_of(c), g_of(g);
+  for (Index k = 0; k < q.count; ++k) {
+    computeDynamicComponents(q_of(k), qd_of(k), H_of(k), c_of(k), g_of(k));
+    H_of.done(k);
+    c_of.done(k);
+    g_of.done(k);
+  }
+}
+
+void InverseDynamicsSolver::computeTorquesBatch(const ConstStates& q, const ConstStates& qd,
+                                                const ConstStates& qdd, const States& tau) const {
+  StateReader q_of(q), qd_of(qd), qdd_of(qdd);
+  StateWriter tau_of(tau);
+  for (Index k = 0; k < q.count; ++k) {
+    computeTorques(q_of(k), qd_of(k), qdd_of(k), tau_of(k));
+    tau_of.done(k);
   }
 }
 

@@ -45,6 +45,7 @@ TEST(Configuration, HasDefaults) {
   EXPECT_FALSE(configuration.gravity_given);
   EXPECT_TRUE(configuration.lump_attached);
   EXPECT_TRUE(configuration.friction);
+  EXPECT_EQ(configuration.batch_threads, 1);
   EXPECT_EQ(configuration.locked_position("finger"), 0.0);
 }
 
@@ -56,6 +57,7 @@ TEST(Configuration, IsReadBelowTheNamespace) {
                                  {"ids.friction", false},
                                  {"ids.locked_joints.finger", 0.25},
                                  {"ids.max_threads", 3},
+                                 {"ids.batch_threads", 2},
                                  {"tip", "another"}};
   const Configuration configuration = readConfiguration(parameters, "ids", "");
   EXPECT_EQ(configuration.root, "base");
@@ -64,6 +66,7 @@ TEST(Configuration, IsReadBelowTheNamespace) {
   EXPECT_TRUE(configuration.gravity_given);
   EXPECT_FALSE(configuration.lump_attached);
   EXPECT_FALSE(configuration.friction);
+  EXPECT_EQ(configuration.batch_threads, 2);
   EXPECT_EQ(configuration.locked_position("finger"), 0.25);
   EXPECT_EQ(configuration.get<std::int64_t>("max_threads"), 3);
   EXPECT_EQ(readConfiguration(parameters, "", "").tip, "another");
@@ -89,6 +92,13 @@ TEST(Configuration, MistakesNameTheParameterWithItsNamespace) {
   EXPECT_EQ(error("attached", "keep"),
             "parameter 'ids.attached': wrong value: expected \"lump\" or \"ignore\", got \"keep\"; "
             "lump: what hangs on the chain beside or beyond it counts; ignore: it doesn't");
+  EXPECT_EQ(error("batch_threads", 0),
+            "parameter 'ids.batch_threads': wrong value: expected 1 to 4096, got 0; give how many "
+            "threads may share a batch; 1: the library starts none");
+  EXPECT_NE(error("batch_threads", 4097).find("got 4097"), std::string::npos);
+  EXPECT_EQ(error("batch_threads", 2.0),
+            "parameter 'ids.batch_threads': wrong type: expected integer, got double; correct it "
+            "where it is set");
   EXPECT_EQ(error("friction", "off"),
             "parameter 'ids.friction': wrong type: expected bool, got string; correct it where it "
             "is set");

@@ -45,6 +45,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"a result is not finite", "ResultsHaveTheSizesOfTheRobotAndAreFinite"},
         Fault{"an entry is not written", "ResultsByValueEqualResultsInMemoryOfTheCaller"},
         Fault{"last state of a batch is missed", "BatchEqualsSingleCalls"},
+        Fault{"layouts are ignored", "BatchesOfAnyLayoutGiveTheBitsOfColumns"},
+        Fault{"parts of a batch differ", "ThreadsThatShareABatchGiveTheBitsOfOne"},
         Fault{"allocates", "CallsIntoMemoryOfTheCallerDoNotAllocate"},
         Fault{"state is shared", "ManyThreadsGetTheNumbersOfOne"},
         Fault{"NaN is swallowed", "NanGoesToEveryEntryThatDependsOnIt"},

@@ -159,24 +159,6 @@ TEST(InverseDynamicsSolver, ContiguousInputsAreNotCopied) {
   EXPECT_EQ(guard.count(), 0);
 }
 
-TEST(InverseDynamicsSolver, BatchesTakeMatricesOfAnyLayout) {
-  const auto solver = initialized(3);
-  const Eigen::Matrix3Xd q = Eigen::Matrix3Xd::Random(3, 4);
-  const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> q_rows = q;
-  const Eigen::MatrixXd expected = solver->getTorquesBatch(q, q, q);
-  EXPECT_EQ(expected.cols(), 4);
-  EXPECT_EQ(solver->getTorquesBatch(q_rows, q, 1 * q), expected);
-  EXPECT_EQ(solver->getTorquesBatch(q.leftCols(2), q.leftCols(2), q.leftCols(2)),
-            expected.leftCols(2));
-  EXPECT_EQ(expected.col(2), solver->getTorques(q.col(2), q.col(2), q.col(2)));
-  Eigen::Matrix3Xd tau(3, 4);
-  solver->getTorquesBatch(q, q, q, tau);
-  EXPECT_EQ(tau, expected);
-  const Eigen::MatrixXd H = solver->getInertiaMatrixBatch(q);
-  EXPECT_EQ(H.cols(), 12);
-  EXPECT_EQ(H.middleCols(3, 3), solver->getInertiaMatrix(q.col(1)));
-}
-
 TEST(InverseDynamicsSolver, ChecksBeforeItComputes) {
   const auto solver = initialized();
   const Vector6d q = Vector6d::Zero();

@@ -23,7 +23,7 @@ class Solver:
     """An inverse dynamics solver, made by name and ready to compute. Threads: safe.
 
     rad, rad/s, rad/s^2, N m (prismatic m, m/s, m/s^2, N); joints in the order of joint_names. out:
-    an array that takes the result, doubles row after row; it is given back.
+    an array of doubles, of any layout, that takes the result; it is given back.
     """
 
     def __init__(

@@ -3,10 +3,10 @@
 /// The extension module `inverse_dynamics._core`: solvers by name, accelerations, metrics and
 /// control laws, on numpy arrays.
 ///
-/// A batch is an (N, n) array, one state a row. Row after row in memory it is, byte for byte, the
-/// n x N matrix of Eigen with one state a column: nothing is copied. Solvers copy another layout (a
-/// transposed or strided array) a tile of states at a time, and another type as a whole; the other
-/// functions copy either once on the way in. All computing releases the GIL.
+/// A batch is an (N, n) array, one state a row. Solvers compute from and into doubles where they
+/// are, whatever their layout; another type is copied once on the way in. To the other functions an
+/// array row after row is, byte for byte, the n x N matrix of Eigen with one state a column, and
+/// anything else is copied once on the way in. All computing releases the GIL.
 
 #include <pybind11/pybind11.h>
 

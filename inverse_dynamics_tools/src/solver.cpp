@@ -36,28 +36,29 @@ class Solver {
 
   py::object torques(const py::object& q, const py::object& qd, const py::object& qdd,
                      const py::object& out) const {
-    return vectors("torques", {{"q", q}, {"qd", qd}, {"qdd", qdd}}, out, [&](auto& in, auto& tau) {
-      get().getTorquesBatch(in[0], in[1], in[2], tau[0]);
+    return vectors("torques", {{"q", q}, {"qd", qd}, {"qdd", qdd}}, out, [&](auto& call) {
+      get().getTorquesBatch(call.in(0), call.in(1), call.in(2), call.states(0));
     });
   }
   py::object coriolisVector(const py::object& q, const py::object& qd,
                             const py::object& out) const {
-    return vectors("coriolis_vector", {{"q", q}, {"qd", qd}}, out,
-                   [&](auto& in, auto& c) { get().getCoriolisVectorBatch(in[0], in[1], c[0]); });
+    return vectors("coriolis_vector", {{"q", q}, {"qd", qd}}, out, [&](auto& call) {
+      get().getCoriolisVectorBatch(call.in(0), call.in(1), call.states(0));
+    });
   }
   py::object gravityVector(const py::object& q, const py::object& out) const {
     return vectors("gravity_vector", {{"q", q}}, out,
-                   [&](auto& in, auto& g) { get().getGravityVectorBatch(in[0], g[0]); });
+                   [&](auto& call) { get().getGravityVectorBatch(call.in(0), call.states(0)); });
   }
   py::object frictionVector(const py::object& qd, const py::object& out) const {
     return vectors("friction_vector", {{"qd", qd}}, out,
-                   [&](auto& in, auto& f) { get().getFrictionVectorBatch(in[0], f[0]); });
+                   [&](auto& call) { get().getFrictionVectorBatch(call.in(0), call.states(0)); });
   }
   py::object inertiaMatrix(const py::object& q, const py::object& out) const {
     SolverCall call("inertia_matrix", get());
     call.input("q", q);
     call.matrices("out", out);
-    call.run([&](auto& in, auto& H) { get().getInertiaMatrixBatch(in[0], H[0]); });
+    call.run([&] { get().getInertiaMatrixBatch(call.in(0), call.inertia(0)); });
     return call.result(0);
   }
   py::tuple dynamicComponents(const py::object& q, const py::object& qd,
@@ -70,8 +71,9 @@ class Solver {
     call.matrices("out[0]", outs[0]);
     call.vectors("out[1]", outs[1]);
     call.vectors("out[2]", outs[2]);
-    call.run([&](auto& in, auto& result) {
-      get().getDynamicComponentsBatch(in[0], in[1], result[0], result[1], result[2]);
+    call.run([&] {
+      get().getDynamicComponentsBatch(call.in(0), call.in(1), call.inertia(0), call.states(1),
+                                      call.states(2));
     });
     return py::make_tuple(call.result(0), call.result(1), call.result(2));
   }
@@ -93,7 +95,7 @@ class Solver {
     SolverCall call(method, get());
     for (const auto& [name, values] : arguments) call.input(name, values);
     call.vectors("out", out);
-    call.run(compute);
+    call.run([&] { compute(call); });
     return call.result(0);
   }
 
@@ -156,8 +158,9 @@ void bindSolver(py::module_& module) {
       "An inverse dynamics solver, made by name and ready to compute.\n\n"
       "Arrays are (n,), one state, or (N, n), one state a row; results have the\n"
       "same shape. rad, rad/s, rad/s^2, N m (prismatic m, m/s, m/s^2, N); joints\n"
-      "in the order of joint_names. out: an array that takes the result, doubles row\n"
-      "after row. Threads: safe; the GIL is released. Pickled, it is made again.")
+      "in the order of joint_names. out: an array of doubles that takes the result.\n"
+      "Any layout, without copies. Threads: safe; the GIL is released. Pickled, it is\n"
+      "made again.")
       .def(py::init(&makeSolver), py::arg("plugin"), py::arg("urdf") = "", py::arg("root") = "",
            py::arg("tip") = "", py::arg("gravity") = py::none(), py::arg("friction") = true,
            py::arg("attached") = "", py::arg("model") = py::none(),
@@ -166,7 +169,8 @@ void bindSolver(py::module_& module) {
            "empty: the first and the last. gravity: 3 numbers, m/s^2, in the frame of the root\n"
            "link. friction: whether the solver adds its friction model. attached: 'lump' or\n"
            "'ignore' what hangs on the chain. model: file or name of a model. parameters: others\n"
-           "of the solver, by name. What isn't given is left to the solver.\n\n"
+           "of the solver, by name; batch_threads: among how many threads a large batch may be\n"
+           "shared. What isn't given is left to the solver.\n\n"
            "Raises SolverError: see inverse_dynamics.errors.")
       .def_property_readonly("plugin", [](const Solver& s) { return s.origin().plugin; })
       .def_property_readonly(

@@ -31,12 +31,24 @@ bool isAligned(const void* data) {
   return reinterpret_cast<std::uintptr_t>(data) % alignof(double) == 0;
 }
 
-bool isRowAfterRow(const py::array& array) {
-  return (array.flags() & py::array::c_style) != 0 && isAligned(array.data());
+/// Whether an array of doubles can have its numbers where this one has them.
+bool standsAsDoubles(const py::array& array) {
+  bool stands = isAligned(array.data());
+  for (py::ssize_t i = 0; i < array.ndim(); ++i) {
+    stands = stands && array.strides(i) % static_cast<py::ssize_t>(sizeof(double)) == 0;
+  }
+  return stands;
 }
 
-/// The same memory with the last two axes exchanged.
-py::array exchanged(const py::array& array) { return array.attr("swapaxes")(-1, -2); }
+/// For results: outOf() has made sure that they may be written.
+double* numbersOf(const py::array& array) {
+  return static_cast<double*>(const_cast<void*>(array.data()));
+}
+
+/// From a number to the next along an axis; zero for an axis that isn't there.
+std::ptrdiff_t stepOf(const py::array& array, py::ssize_t axis) {
+  return axis < 0 ? 0 : array.strides(axis) / static_cast<py::ssize_t>(sizeof(double));
+}
 
 /// Bytes from the first to behind the last that an array holds.
 std::pair<const char*, const char*> extent(const py::array& array) {
@@ -50,10 +62,12 @@ std::pair<const char*, const char*> extent(const py::array& array) {
   return {first, last + array.itemsize()};
 }
 
+/// Whether a number stands in both: one may lie in the gaps of the other.
 bool overlap(const py::array& a, const py::array& b) {
   const auto [a_first, a_last] = extent(a);
   const auto [b_first, b_last] = extent(b);
-  return a_first < b_last && b_first < a_last;
+  if (a_first >= b_last || b_first >= a_last) return false;
+  return py::module_::import("numpy").attr("shares_memory")(a, b).cast<bool>();
 }
 
 }  // namespace
@@ -94,121 +108,82 @@ void SolverCall::input(const char* name, const py::object& values) {
   }
   requireShape(name, array);
   if (!py::isinstance<Doubles>(array)) array = py::array_t<double>(array);
+  if (!standsAsDoubles(array)) array = array.attr("copy")();
 
-  const bool single = array.ndim() == 1;
   if (inputs_.empty()) {
     shape_ = shapeOf(array);
-    count_ = single ? 1 : array.shape(0);
+    count_ = array.ndim() == 1 ? 1 : array.shape(0);
   }
-  const Index state_stride = single ? 0 : array.strides(0);
-  inputs_.push_back({name, array, static_cast<const char*>(array.data()), state_stride,
-                     array.strides(array.ndim() - 1), isRowAfterRow(array), Eigen::MatrixXd()});
+  inputs_.push_back({name, array});
 }
 
 // ---------------------------------------------------------------- results
-
-void SolverCall::requireShapeOfResult(const std::string& name, const py::array& array,
-                                      const Shape& shape) const {
-  if (shapeOf(array) == shape) return;
-  throw ids::SizeMismatchException(
-      ids::errorText(place(name), "wrong shape", text(shape), text(shapeOf(array))));
-}
 
 py::array SolverCall::outOf(const std::string& name, const py::object& out,
                             const Shape& shape) const {
   if (!py::isinstance<py::array>(out)) refuse(name, "an array of float64", typeName(out));
   auto array = py::reinterpret_borrow<py::array>(out);
   if (!py::isinstance<Doubles>(array)) refuse(name, "an array of float64", py::str(array.dtype()));
-  requireShapeOfResult(name, array, shape);
+  if (shapeOf(array) != shape) {
+    throw ids::SizeMismatchException(
+        ids::errorText(place(name), "wrong shape", text(shape), text(shapeOf(array))));
+  }
   if (!array.writeable()) refuse(name, "an array that may be written to", "a read-only one");
+  if (!standsAsDoubles(array)) {
+    refuse(name, "an array at addresses of doubles", "fields of a packed record");
+  }
   return array;
 }
 
-void SolverCall::requireOwnMemory(const Result& result) const {
-  const auto require = [&](const auto& other) {
-    if (overlap(result.array, other.array)) {
-      refuse(result.name, "memory of its own", std::string("that of ") + other.name);
+void SolverCall::requireOwnMemory(const Argument& result) const {
+  for (const auto* const others : {&inputs_, &results_}) {
+    for (const Argument& other : *others) {
+      if (overlap(result.array, other.array)) {
+        refuse(result.name, "memory of its own", "that of " + other.name);
+      }
     }
-  };
-  for (const Input& input : inputs_) require(input);
-  for (const Result& other : results_) require(other);
+  }
+}
+
+void SolverCall::addResult(const std::string& name, const py::object& out, const Shape& shape) {
+  if (out.is_none()) {
+    results_.push_back({name, py::array_t<double>(shape)});
+    return;
+  }
+  Argument result{name, outOf(name, out, shape)};
+  requireOwnMemory(result);
+  results_.push_back(std::move(result));
 }
 
 void SolverCall::vectors(const std::string& name, const py::object& out) {
-  if (out.is_none()) {
-    py::array_t<double> array(shape_);
-    results_.push_back({name, array, array.mutable_data(), 1, false});
-    return;
-  }
-  py::array array = outOf(name, out, shape_);
-  if (!isRowAfterRow(array)) refuse(name, "an array row after row (C order)", "another layout");
-  Result result{name, array, static_cast<double*>(array.mutable_data()), 1, false};
-  requireOwnMemory(result);
-  results_.push_back(std::move(result));
+  addResult(name, out, shape_);
 }
 
 void SolverCall::matrices(const std::string& name, const py::object& out) {
   Shape shape = shape_;
   shape.push_back(n_);
-  if (out.is_none()) {
-    // H[k, i, j] is at row i, column k n + j of what is computed: nothing is turned round.
-    py::array_t<double> array(shape);
-    results_.push_back({name, exchanged(array), array.mutable_data(), n_, false});
-    return;
-  }
-  py::array array = outOf(name, out, shape);
-  const bool columns = isRowAfterRow(exchanged(array));
-  if (!columns && !isRowAfterRow(array)) {
-    refuse(name, "matrices row after row (C order) or column after column", "another layout");
-  }
-  Result result{name, array, static_cast<double*>(array.mutable_data()), n_, !columns};
-  requireOwnMemory(result);
-  results_.push_back(std::move(result));
+  addResult(name, out, shape);
 }
 
-// ---------------------------------------------------------------- computing, without the GIL
+// ---------------------------------------------------------------- memory, as solvers see it
 
-bool SolverCall::isContiguous() const {
-  return std::all_of(inputs_.begin(), inputs_.end(), [](const Input& i) { return i.contiguous; });
+ids::ConstStates SolverCall::in(std::size_t i) const {
+  const py::array& array = inputs_[i].array;
+  return {static_cast<const double*>(array.data()), n_, count_, stepOf(array, array.ndim() - 1),
+          stepOf(array, array.ndim() - 2)};
 }
 
-SolverCall::Inputs SolverCall::inputsAt(Index first, Index count) {
-  Inputs maps;
-  maps.reserve(inputs_.size());
-  for (Input& input : inputs_) {
-    if (input.contiguous) {
-      maps.emplace_back(reinterpret_cast<const double*>(input.data) + first * n_, n_, count);
-      continue;
-    }
-    input.tile.resize(n_, count);
-    for (Index k = 0; k < count; ++k) {
-      const char* const state = input.data + (first + k) * input.state_stride;
-      // By bytes: a field of a record may stand at any address.
-      for (Index j = 0; j < n_; ++j) {
-        std::memcpy(&input.tile(j, k), state + j * input.joint_stride, sizeof(double));
-      }
-    }
-    maps.emplace_back(input.tile.data(), n_, count);
-  }
-  return maps;
+ids::States SolverCall::states(std::size_t i) const {
+  const py::array& array = results_[i].array;
+  return {numbersOf(array), n_, count_, stepOf(array, array.ndim() - 1),
+          stepOf(array, array.ndim() - 2)};
 }
 
-SolverCall::Results SolverCall::resultsAt(Index first, Index count) {
-  Results maps;
-  maps.reserve(results_.size());
-  for (const Result& result : results_) {
-    maps.emplace_back(result.data + first * n_ * result.columns, n_, count * result.columns);
-  }
-  return maps;
-}
-
-void SolverCall::turnMatrices() {
-  for (const Result& result : results_) {
-    if (!result.turned) continue;
-    for (Index k = 0; k < count_; ++k) {
-      Eigen::Map<Eigen::MatrixXd>(result.data + k * n_ * n_, n_, n_).transposeInPlace();
-    }
-  }
+ids::StridedMatrices SolverCall::inertia(std::size_t i) const {
+  const py::array& array = results_[i].array;
+  const py::ssize_t last = array.ndim() - 1;
+  return {numbersOf(array),       n_, count_, stepOf(array, last - 1), stepOf(array, last),
+          stepOf(array, last - 2)};
 }
 
 }  // namespace inverse_dynamics_tools

@@ -56,19 +56,6 @@ std::vector<std::string> warningsOf(const chain_dynamics::Model& model, bool ine
           "dynamics"};
 }
 
-/// The states of a batch, one a column.
-chain_dynamics::ConstStates columns(const ConstMatrixRef& states) {
-  return {states.data(), 1, states.outerStride()};
-}
-chain_dynamics::States columns(MatrixRef& states) {
-  return {states.data(), 1, states.outerStride()};
-}
-
-/// The inertia matrices of a batch, side by side.
-chain_dynamics::StridedMatrices matrices(MatrixRef& H) {
-  return {H.data(), 1, H.outerStride(), H.rows() * H.outerStride()};
-}
-
 }  // namespace
 
 auto InverseDynamicsSolverRigidBody::configure(const Configuration& configuration) -> JointInfo {
@@ -152,46 +139,46 @@ void InverseDynamicsSolverRigidBody::computeTorques(const ConstVectorRef& q,
 
 // ---------------------------------------------------------------- many states
 
-void InverseDynamicsSolverRigidBody::computeInertiaMatrixBatch(const ConstMatrixRef& q,
-                                                               MatrixRef H) const {
+void InverseDynamicsSolverRigidBody::computeInertiaMatrixBatch(const ConstStates& q,
+                                                               const StridedMatrices& H) const {
   if (fast_ == nullptr) return InverseDynamicsSolver::computeInertiaMatrixBatch(q, H);
-  fast_->inertiaMatrixBatch(q.cols(), columns(q), matrices(H));
+  fast_->inertiaMatrixBatch(q, H);
 }
 
-void InverseDynamicsSolverRigidBody::computeCoriolisVectorBatch(const ConstMatrixRef& q,
-                                                                const ConstMatrixRef& qd,
-                                                                MatrixRef c) const {
+void InverseDynamicsSolverRigidBody::computeCoriolisVectorBatch(const ConstStates& q,
+                                                                const ConstStates& qd,
+                                                                const States& c) const {
   if (fast_ == nullptr) return InverseDynamicsSolver::computeCoriolisVectorBatch(q, qd, c);
-  fast_->coriolisVectorBatch(q.cols(), columns(q), columns(qd), columns(c));
+  fast_->coriolisVectorBatch(q, qd, c);
 }
 
-void InverseDynamicsSolverRigidBody::computeFrictionBatch(const ConstMatrixRef& qd,
-                                                          MatrixRef f) const {
+void InverseDynamicsSolverRigidBody::computeFrictionBatch(const ConstStates& qd,
+                                                          const States& f) const {
   if (fast_ == nullptr) return InverseDynamicsSolver::computeFrictionBatch(qd, f);
-  fast_->frictionVectorBatch(qd.cols(), columns(qd), columns(f));
+  fast_->frictionVectorBatch(qd, f);
 }
 
-void InverseDynamicsSolverRigidBody::computeGravityVectorBatch(const ConstMatrixRef& q,
-                                                               MatrixRef g) const {
+void InverseDynamicsSolverRigidBody::computeGravityVectorBatch(const ConstStates& q,
+                                                               const States& g) const {
   if (fast_ == nullptr) return InverseDynamicsSolver::computeGravityVectorBatch(q, g);
-  fast_->gravityVectorBatch(q.cols(), columns(q), columns(g));
+  fast_->gravityVectorBatch(q, g);
 }
 
-void InverseDynamicsSolverRigidBody::computeDynamicComponentsBatch(const ConstMatrixRef& q,
-                                                                   const ConstMatrixRef& qd,
-                                                                   MatrixRef H, MatrixRef c,
-                                                                   MatrixRef g) const {
+void InverseDynamicsSolverRigidBody::computeDynamicComponentsBatch(const ConstStates& q,
+                                                                   const ConstStates& qd,
+                                                                   const StridedMatrices& H,
+                                                                   const States& c,
+                                                                   const States& g) const {
   if (fast_ == nullptr) return InverseDynamicsSolver::computeDynamicComponentsBatch(q, qd, H, c, g);
-  fast_->dynamicComponentsBatch(q.cols(), columns(q), columns(qd), matrices(H), columns(c),
-                                columns(g));
+  fast_->dynamicComponentsBatch(q, qd, H, c, g);
 }
 
-void InverseDynamicsSolverRigidBody::computeTorquesBatch(const ConstMatrixRef& q,
-                                                         const ConstMatrixRef& qd,
-                                                         const ConstMatrixRef& qdd,
-                                                         MatrixRef tau) const {
+void InverseDynamicsSolverRigidBody::computeTorquesBatch(const ConstStates& q,
+                                                         const ConstStates& qd,
+                                                         const ConstStates& qdd,
+                                                         const States& tau) const {
   if (fast_ == nullptr) return InverseDynamicsSolver::computeTorquesBatch(q, qd, qdd, tau);
-  fast_->torquesBatch(q.cols(), columns(q), columns(qd), columns(qdd), columns(tau));
+  fast_->torquesBatch(q, qd, qdd, tau);
 }
 
 }  // namespace rigid_body_inverse_dynamics_solver

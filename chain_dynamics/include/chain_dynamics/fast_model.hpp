@@ -5,7 +5,7 @@
 ///
 ///     const FastModel fast(model);              // once: allocates
 ///     fast.torques(q, qd, qdd, tau);            // pointers to n numbers each, friction included
-///     fast.torquesBatch(N, {q, 1, n}, {qd, 1, n}, {qdd, 1, n}, {tau, 1, n});
+///     fast.torquesBatch(Q, QD, QDD, TAU);       // n x N matrices of any layout: states.hpp
 ///
 /// The same recursions as in torques.hpp, inertia_matrix.hpp and gravity_vector.hpp, with what can
 /// be done once done once [docs/speed.md]: frames whose placements have few numbers, inertial
@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "chain_dynamics/model.hpp"
+#include "chain_dynamics/states.hpp"
 
 namespace chain_dynamics {
 
@@ -28,26 +29,6 @@ namespace fast {
 struct Kernels;
 struct Robot;
 }  // namespace fast
-
-/// One number per joint of many states: that of joint j and state k stands at
-/// `data[j * joint_step + k * state_step]`, so states may be rows or columns.
-template <typename Number>
-struct StridedStates {
-  Number* data;
-  std::ptrdiff_t joint_step;
-  std::ptrdiff_t state_step;
-};
-using ConstStates = StridedStates<const double>;
-using States = StridedStates<double>;
-
-/// A matrix of many states: entry (i, j) of state k stands at
-/// `data[i * row_step + j * column_step + k * state_step]`.
-struct StridedMatrices {
-  double* data;
-  std::ptrdiff_t row_step;
-  std::ptrdiff_t column_step;
-  std::ptrdiff_t state_step;
-};
 
 /// A model made ready for the fast kernels.
 ///
@@ -94,16 +75,16 @@ class FastModel {
   /// @}
 
   /// @name Many states
-  /// The numbers of a state don't depend on its place among the others.
+  /// As many as the first argument has; n joints each. The numbers of a state don't depend on its
+  /// place among the others.
   /// @{
-  void torquesBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd, ConstStates qdd,
-                    States tau) const;
-  void inertiaMatrixBatch(std::ptrdiff_t states, ConstStates q, StridedMatrices H) const;
-  void coriolisVectorBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd, States c) const;
-  void gravityVectorBatch(std::ptrdiff_t states, ConstStates q, States g) const;
-  void frictionVectorBatch(std::ptrdiff_t states, ConstStates qd, States f) const;
-  void dynamicComponentsBatch(std::ptrdiff_t states, ConstStates q, ConstStates qd,
-                              StridedMatrices H, States c, States g) const;
+  void torquesBatch(ConstStates q, ConstStates qd, ConstStates qdd, States tau) const;
+  void inertiaMatrixBatch(ConstStates q, StridedMatrices H) const;
+  void coriolisVectorBatch(ConstStates q, ConstStates qd, States c) const;
+  void gravityVectorBatch(ConstStates q, States g) const;
+  void frictionVectorBatch(ConstStates qd, States f) const;
+  void dynamicComponentsBatch(ConstStates q, ConstStates qd, StridedMatrices H, States c,
+                              States g) const;
   /// @}
 
  private:

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -30,6 +31,7 @@ namespace inverse_dynamics_solver {
 /// | locked_joints.<joint>         | double    | 0                                           |
 /// | allow_massless                | bool      | false                                       |
 /// | friction                      | bool      | true                                        |
+/// | batch_threads                 | integer   | 1: the library starts no thread             |
 // clang-format on
 struct Configuration {
   /// URDF text; empty if there is none.
@@ -54,6 +56,9 @@ struct Configuration {
   /// Whether a solver adds its friction model: false where the robot's controller compensates
   /// friction.
   bool friction = true;
+
+  /// Up to how many threads share a large batch, the caller's one of them (1 to 4096).
+  std::int64_t batch_threads = 1;
 
   /// Position [rad or m] at which a movable joint beside or beyond the chain is held; by joint
   /// name.

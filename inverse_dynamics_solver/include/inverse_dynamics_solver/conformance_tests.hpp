@@ -14,14 +14,15 @@
 /// In CMake: `inverse_dynamics_solver_add_plugin_test(my_solver_conformance_test
 /// test/my_solver_conformance_test.cpp PLUGIN my_solver_plugin)`.
 ///
-/// Part one, initialization_tests.hpp, and part two, contract_tests.hpp, are what callers are
-/// promised; part three, law_tests.hpp, is physics. A test that doesn't apply to a solver is
-/// skipped and says why.
+/// Parts one to three, initialization_tests.hpp, contract_tests.hpp and batch_tests.hpp, are what
+/// callers are promised; part four, law_tests.hpp, is physics. A test that doesn't apply to a
+/// solver is skipped and says why.
 ///
 /// The plugin is loaded by name, as users do. Random states have a fixed seed, and a failure prints
 /// its state as C++ to be pasted. Tolerances and their reasons stand in solver_fixture.hpp.
 #pragma once
 
+#include "inverse_dynamics_solver/conformance/batch_tests.hpp"
 #include "inverse_dynamics_solver/conformance/contract_tests.hpp"
 #include "inverse_dynamics_solver/conformance/initialization_tests.hpp"
 #include "inverse_dynamics_solver/conformance/law_tests.hpp"
@@ -36,9 +37,11 @@ REGISTER_TYPED_TEST_SUITE_P(
     // Contract.
     JointNamesAreDistinctAndCounted, ResultsHaveTheSizesOfTheRobotAndAreFinite,
     UninitializedSolverRefusesEveryMethod, WrongSizeIsRefusedNamingArgumentExpectedAndGot,
-    BatchOfWrongShapeIsRefused, ResultsByValueEqualResultsInMemoryOfTheCaller,
-    BatchEqualsSingleCalls, CallsIntoMemoryOfTheCallerDoNotAllocate, ManyThreadsGetTheNumbersOfOne,
-    NanGoesToEveryEntryThatDependsOnIt,
+    ResultsByValueEqualResultsInMemoryOfTheCaller, CallsIntoMemoryOfTheCallerDoNotAllocate,
+    ManyThreadsGetTheNumbersOfOne, NanGoesToEveryEntryThatDependsOnIt,
+    // Many states at once.
+    BatchOfWrongShapeIsRefused, BatchEqualsSingleCalls, BatchesOfAnyLayoutGiveTheBitsOfColumns,
+    ThreadsThatShareABatchGiveTheBitsOfOne,
     // Physics.
     TorquesAreTheSumOfTheirTerms, ComponentsEqualTheSingleMethods, TorquesAreLinearInAcceleration,
     CoriolisTorquesAreQuadraticInVelocity, GravityTorquesAreProportionalToGravity,

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "inverse_dynamics_solver/configuration.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "inverse_dynamics_solver/parameters.hpp"
+#include "inverse_dynamics_solver/states.hpp"
 
 namespace inverse_dynamics_solver {
 
@@ -28,7 +30,6 @@ namespace inverse_dynamics_solver {
 inline namespace v1 {
 
 using ConstVectorRef = Eigen::Ref<const Eigen::VectorXd>;
-using ConstMatrixRef = Eigen::Ref<const Eigen::MatrixXd>;
 using VectorRef = Eigen::Ref<Eigen::VectorXd>;
 using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
 
@@ -42,8 +43,9 @@ using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
 /// the caller, overlapping no input); for many states at once (`...Batch`: one state a column, n x
 /// N).
 ///
-/// Inputs may be any Eigen expression; one that isn't contiguous (a row of a matrix, a sum) is
-/// copied by Eigen into a temporary. Outputs must be contiguous columns.
+/// Inputs may be any Eigen expression. Of one state, one that isn't contiguous (a row of a matrix,
+/// a sum) is copied by Eigen into a temporary, and outputs must be contiguous columns. Of many
+/// states, what stands in memory is taken as it is.
 ///
 /// All methods but initialize() throw UninitializedException before a successful initialize(), and
 /// SizeMismatchException for a wrong size. A NaN in gives NaN in every entry that depends on it.
@@ -151,47 +153,49 @@ class InverseDynamicsSolver {
 
   /// @name Many states at once
   /// State k is column k of each n x N matrix; its H is columns k n to k n + n - 1 of the n x (n N)
-  /// matrix H.
+  /// matrix H. Inputs and outputs may have any layout: states.hpp. With the parameter
+  /// `batch_threads` large batches are shared among threads: the same bits, whatever their number.
   /// @{
-  void getInertiaMatrixBatch(const ConstMatrixRef& q, MatrixRef H) const;
-  void getCoriolisVectorBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd, MatrixRef c) const;
-  void getFrictionVectorBatch(const ConstMatrixRef& qd, MatrixRef f) const;
-  void getGravityVectorBatch(const ConstMatrixRef& q, MatrixRef g) const;
-  void getDynamicComponentsBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd, MatrixRef H,
-                                 MatrixRef c, MatrixRef g) const;
-  void getTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd, const ConstMatrixRef& qdd,
-                       MatrixRef tau) const;
+  void getInertiaMatrixBatch(const ConstStatesRef& q, const StridedMatrices& H) const;
+  void getCoriolisVectorBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
+                              const States& c) const;
+  void getFrictionVectorBatch(const ConstStatesRef& qd, const States& f) const;
+  void getGravityVectorBatch(const ConstStatesRef& q, const States& g) const;
+  void getDynamicComponentsBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
+                                 const StridedMatrices& H, const States& c, const States& g) const;
+  void getTorquesBatch(const ConstStatesRef& q, const ConstStatesRef& qd, const ConstStatesRef& qdd,
+                       const States& tau) const;
 
-  Eigen::MatrixXd getInertiaMatrixBatch(const ConstMatrixRef& q) const {
-    Eigen::MatrixXd H = squareMatrix("getInertiaMatrixBatch", q.cols());
+  Eigen::MatrixXd getInertiaMatrixBatch(const ConstStatesRef& q) const {
+    Eigen::MatrixXd H = squareMatrix("getInertiaMatrixBatch", q.count);
     getInertiaMatrixBatch(q, H);
     return H;
   }
-  Eigen::MatrixXd getCoriolisVectorBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd) const {
-    Eigen::MatrixXd c(q.rows(), q.cols());
+  Eigen::MatrixXd getCoriolisVectorBatch(const ConstStatesRef& q, const ConstStatesRef& qd) const {
+    Eigen::MatrixXd c(q.joints, q.count);
     getCoriolisVectorBatch(q, qd, c);
     return c;
   }
-  Eigen::MatrixXd getFrictionVectorBatch(const ConstMatrixRef& qd) const {
-    Eigen::MatrixXd f(qd.rows(), qd.cols());
+  Eigen::MatrixXd getFrictionVectorBatch(const ConstStatesRef& qd) const {
+    Eigen::MatrixXd f(qd.joints, qd.count);
     getFrictionVectorBatch(qd, f);
     return f;
   }
-  Eigen::MatrixXd getGravityVectorBatch(const ConstMatrixRef& q) const {
-    Eigen::MatrixXd g(q.rows(), q.cols());
+  Eigen::MatrixXd getGravityVectorBatch(const ConstStatesRef& q) const {
+    Eigen::MatrixXd g(q.joints, q.count);
     getGravityVectorBatch(q, g);
     return g;
   }
   std::tuple<Eigen::MatrixXd, Eigen::MatrixXd, Eigen::MatrixXd> getDynamicComponentsBatch(
-      const ConstMatrixRef& q, const ConstMatrixRef& qd) const {
-    Eigen::MatrixXd H = squareMatrix("getDynamicComponentsBatch", q.cols());
-    Eigen::MatrixXd c(q.rows(), q.cols()), g(q.rows(), q.cols());
+      const ConstStatesRef& q, const ConstStatesRef& qd) const {
+    Eigen::MatrixXd H = squareMatrix("getDynamicComponentsBatch", q.count);
+    Eigen::MatrixXd c(q.joints, q.count), g(q.joints, q.count);
     getDynamicComponentsBatch(q, qd, H, c, g);
     return {std::move(H), std::move(c), std::move(g)};
   }
-  Eigen::MatrixXd getTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
-                                  const ConstMatrixRef& qdd) const {
-    Eigen::MatrixXd tau(q.rows(), q.cols());
+  Eigen::MatrixXd getTorquesBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
+                                  const ConstStatesRef& qdd) const {
+    Eigen::MatrixXd tau(q.joints, q.count);
     getTorquesBatch(q, qd, qdd, tau);
     return tau;
   }
@@ -236,16 +240,18 @@ class InverseDynamicsSolver {
   virtual void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
                               const ConstVectorRef& qdd, VectorRef tau) const;
 
-  /// By default loops over the columns.
-  virtual void computeInertiaMatrixBatch(const ConstMatrixRef& q, MatrixRef H) const;
-  virtual void computeCoriolisVectorBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
-                                          MatrixRef c) const;
-  virtual void computeFrictionBatch(const ConstMatrixRef& qd, MatrixRef f) const;
-  virtual void computeGravityVectorBatch(const ConstMatrixRef& q, MatrixRef g) const;
-  virtual void computeDynamicComponentsBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
-                                             MatrixRef H, MatrixRef c, MatrixRef g) const;
-  virtual void computeTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
-                                   const ConstMatrixRef& qdd, MatrixRef tau) const;
+  /// By default one state after the other. Called with parts of a batch where threads share it, so
+  /// a state's numbers must not depend on the others, nor on its place among them.
+  virtual void computeInertiaMatrixBatch(const ConstStates& q, const StridedMatrices& H) const;
+  virtual void computeCoriolisVectorBatch(const ConstStates& q, const ConstStates& qd,
+                                          const States& c) const;
+  virtual void computeFrictionBatch(const ConstStates& qd, const States& f) const;
+  virtual void computeGravityVectorBatch(const ConstStates& q, const States& g) const;
+  virtual void computeDynamicComponentsBatch(const ConstStates& q, const ConstStates& qd,
+                                             const StridedMatrices& H, const States& c,
+                                             const States& g) const;
+  virtual void computeTorquesBatch(const ConstStates& q, const ConstStates& qd,
+                                   const ConstStates& qdd, const States& tau) const;
 
   /// Answer of inertiaIsPhysical(). No default: a wrong yes makes robots oscillate.
   virtual bool inertiaIsPhysicalImpl() const = 0;
@@ -256,6 +262,8 @@ class InverseDynamicsSolver {
   void requireVector(const char* method, const char* argument, Eigen::Index size) const;
   void requireMatrix(const char* method, const char* argument, Eigen::Index rows, Eigen::Index cols,
                      Eigen::Index expected_cols) const;
+  void requireStates(const char* method, const char* argument, const ConstStates& states,
+                     Eigen::Index expected_count) const;
 
   // Results of the methods by value: allocated and freed by the caller's code, whatever its
   // alignment.
@@ -270,6 +278,7 @@ class InverseDynamicsSolver {
   }
 
   JointInfo info_;
+  std::int64_t batch_threads_ = 1;
   bool initialized_ = false;
 };
 

@@ -106,10 +106,12 @@ void TwoLinkSolver::computeTorques(const ConstVectorRef& q, const ConstVectorRef
   if (has("torques are not linear")) tau += 1e-6 * qdd.cwiseAbs2();
 }
 
-void TwoLinkSolver::computeTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
-                                        const ConstMatrixRef& qdd, MatrixRef tau) const {
+void TwoLinkSolver::computeTorquesBatch(const ConstStates& q, const ConstStates& qd,
+                                        const ConstStates& qdd, const States& tau) const {
   InverseDynamicsSolver::computeTorquesBatch(q, qd, qdd, tau);
-  if (has("last state of a batch is missed") && tau.cols() > 1) tau.rightCols(1) *= 0.99;
+  if (has("last state of a batch is missed") && tau.count > 1) tau(0, tau.count - 1) += 1.0;
+  if (has("layouts are ignored") && tau.joint_step != 1) tau(0, 0) += 1e-6;
+  if (has("parts of a batch differ") && tau.count < 4096) tau(0, 0) += 1e-13;
 }
 
 // Drive gains 2 and 4 N m/A.

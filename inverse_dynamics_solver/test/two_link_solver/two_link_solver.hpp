@@ -38,8 +38,8 @@ class TwoLinkSolver : public InverseDynamicsSolver, public MotorCurrents {
                                 VectorRef c, VectorRef g) const override;
   void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
                       VectorRef tau) const override;
-  void computeTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
-                           const ConstMatrixRef& qdd, MatrixRef tau) const override;
+  void computeTorquesBatch(const ConstStates& q, const ConstStates& qd, const ConstStates& qdd,
+                           const States& tau) const override;
   bool inertiaIsPhysicalImpl() const override { return true; }
 
  private:

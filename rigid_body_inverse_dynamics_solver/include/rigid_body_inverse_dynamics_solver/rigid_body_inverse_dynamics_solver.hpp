@@ -18,9 +18,11 @@
 namespace rigid_body_inverse_dynamics_solver {
 
 using inverse_dynamics_solver::Configuration;
-using inverse_dynamics_solver::ConstMatrixRef;
+using inverse_dynamics_solver::ConstStates;
 using inverse_dynamics_solver::ConstVectorRef;
 using inverse_dynamics_solver::MatrixRef;
+using inverse_dynamics_solver::States;
+using inverse_dynamics_solver::StridedMatrices;
 using inverse_dynamics_solver::VectorRef;
 
 /// The engine as a solver.
@@ -62,15 +64,16 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
                                 VectorRef c, VectorRef g) const override;
   void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
                       VectorRef tau) const override;
-  void computeInertiaMatrixBatch(const ConstMatrixRef& q, MatrixRef H) const override;
-  void computeCoriolisVectorBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
-                                  MatrixRef c) const override;
-  void computeFrictionBatch(const ConstMatrixRef& qd, MatrixRef f) const override;
-  void computeGravityVectorBatch(const ConstMatrixRef& q, MatrixRef g) const override;
-  void computeDynamicComponentsBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd, MatrixRef H,
-                                     MatrixRef c, MatrixRef g) const override;
-  void computeTorquesBatch(const ConstMatrixRef& q, const ConstMatrixRef& qd,
-                           const ConstMatrixRef& qdd, MatrixRef tau) const override;
+  void computeInertiaMatrixBatch(const ConstStates& q, const StridedMatrices& H) const override;
+  void computeCoriolisVectorBatch(const ConstStates& q, const ConstStates& qd,
+                                  const States& c) const override;
+  void computeFrictionBatch(const ConstStates& qd, const States& f) const override;
+  void computeGravityVectorBatch(const ConstStates& q, const States& g) const override;
+  void computeDynamicComponentsBatch(const ConstStates& q, const ConstStates& qd,
+                                     const StridedMatrices& H, const States& c,
+                                     const States& g) const override;
+  void computeTorquesBatch(const ConstStates& q, const ConstStates& qd, const ConstStates& qdd,
+                           const States& tau) const override;
   bool inertiaIsPhysicalImpl() const override { return inertia_is_physical_; }
 
  private:

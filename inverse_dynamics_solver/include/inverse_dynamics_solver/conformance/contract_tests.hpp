@@ -86,20 +86,6 @@ TYPED_TEST_P(SolverConformance, WrongSizeIsRefusedNamingArgumentExpectedAndGot) 
   }
 }
 
-TYPED_TEST_P(SolverConformance, BatchOfWrongShapeIsRefused) {
-  const InverseDynamicsSolver& s = *this->solver_;
-  const Eigen::Index n = s.jointCount(), count = n + 2;
-  const Eigen::MatrixXd ok = Eigen::MatrixXd::Zero(n, count), no = ok.leftCols(n + 1);
-  Eigen::MatrixXd short_out(n, n + 1), short_H(n, count * n - 1);
-  errorOf<SizeMismatchException>([&] { s.getTorquesBatch(ok, no, ok); });
-  errorOf<SizeMismatchException>([&] { s.getTorquesBatch(ok, ok, ok, short_out); });
-  errorOf<SizeMismatchException>([&] { s.getCoriolisVectorBatch(ok, no); });
-  errorOf<SizeMismatchException>([&] { s.getFrictionVectorBatch(ok, short_out); });
-  errorOf<SizeMismatchException>([&] { s.getInertiaMatrixBatch(ok, short_H); });
-  errorOf<SizeMismatchException>([&] { s.getDynamicComponentsBatch(no, ok); });
-  errorOf<SizeMismatchException>([&] { s.getGravityVectorBatch(ok.transpose()); });
-}
-
 TYPED_TEST_P(SolverConformance, ResultsByValueEqualResultsInMemoryOfTheCaller) {
   const InverseDynamicsSolver& s = *this->solver_;
   const Eigen::Index n = s.jointCount();
@@ -129,47 +115,6 @@ TYPED_TEST_P(SolverConformance, ResultsByValueEqualResultsInMemoryOfTheCaller) {
     EXPECT_TRUE(identical(flat(H_value), flat(H)));
     EXPECT_TRUE(identical(c_value, c));
     EXPECT_TRUE(identical(g_value, g));
-  }
-}
-
-TYPED_TEST_P(SolverConformance, BatchEqualsSingleCalls) {
-  const InverseDynamicsSolver& s = *this->solver_;
-  const Eigen::Index n = s.jointCount();
-  for (const int count : {0, 1, 7}) {
-    const std::vector<State> states = this->randomStates(count);
-    Eigen::MatrixXd q(n, count), qd(n, count), qdd(n, count);
-    for (int k = 0; k < count; ++k) {
-      q.col(k) = states[static_cast<std::size_t>(k)].q;
-      qd.col(k) = states[static_cast<std::size_t>(k)].qd;
-      qdd.col(k) = states[static_cast<std::size_t>(k)].qdd;
-    }
-
-    // Outputs with a stride: the lower rows of larger matrices.
-    Eigen::MatrixXd tau_memory(n + 3, count), H_memory(n + 1, n * count);
-    s.getTorquesBatch(q, qd, qdd, tau_memory.bottomRows(n));
-    s.getInertiaMatrixBatch(q, H_memory.bottomRows(n));
-    const Eigen::MatrixXd tau = tau_memory.bottomRows(n), H = H_memory.bottomRows(n);
-    const Eigen::MatrixXd c = s.getCoriolisVectorBatch(q, qd), f = s.getFrictionVectorBatch(qd);
-    const Eigen::MatrixXd g = s.getGravityVectorBatch(q);
-    const auto [H_all, c_all, g_all] = s.getDynamicComponentsBatch(q, qd);
-    EXPECT_EQ(g_all.cols(), count);
-    for (int k = 0; k < count; ++k) {
-      const State& x = states[static_cast<std::size_t>(k)];
-      SCOPED_TRACE(toString(x));
-      const Eigen::MatrixXd H_one = s.getInertiaMatrix(x.q);
-      const Eigen::VectorXd c_one = s.getCoriolisVector(x.q, x.qd);
-      const Eigen::VectorXd f_one = s.getFrictionVector(x.qd);
-      const Eigen::VectorXd g_one = s.getGravityVector(x.q);
-      const Eigen::VectorXd tau_one = s.getTorques(x.q, x.qd, x.qdd);
-      EXPECT_TRUE(near(H.middleCols(k * n, n), H_one, kRounding, sizeOf(H_one)));
-      EXPECT_TRUE(near(c.col(k), c_one, kRounding, sizeOf(c_one)));
-      EXPECT_TRUE(near(f.col(k), f_one, kRounding, sizeOf(f_one)));
-      EXPECT_TRUE(near(g.col(k), g_one, kRounding, sizeOf(g_one)));
-      EXPECT_TRUE(near(tau.col(k), tau_one, kRounding, sizeOf(tau_one)));
-      EXPECT_TRUE(near(H_all.middleCols(k * n, n), H_one, kRounding, sizeOf(H_one)));
-      EXPECT_TRUE(near(c_all.col(k), c_one, kRounding, sizeOf(c_one)));
-      EXPECT_TRUE(near(g_all.col(k), g_one, kRounding, sizeOf(g_one)));
-    }
   }
 }
 

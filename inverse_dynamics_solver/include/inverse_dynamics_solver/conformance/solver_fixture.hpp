@@ -207,6 +207,13 @@ class SolverConformance : public ::testing::Test {
     return result;
   }
 
+  /// n x count, a state a column, of numbers that are small enough for a velocity.
+  Eigen::MatrixXd randomColumns(Eigen::Index count) {
+    Eigen::MatrixXd result(solver_->jointCount(), count);
+    for (Eigen::Index k = 0; k < count; ++k) result.col(k) = randomVector(Traits::kVelocity);
+    return result;
+  }
+
   State randomState() {
     State state;
     state.q = randomVector(Traits::kPosition);
