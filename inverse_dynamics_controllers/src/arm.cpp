@@ -3,6 +3,7 @@
 
 #include <inverse_dynamics_control/damping.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
+#include <inverse_dynamics_solver/strict_initialization.hpp>
 
 #include "robot_description.hpp"
 
@@ -72,7 +73,8 @@ Arm makeArm(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
   const std::string description =
       findRobotDescription(node, parameters.robot_description, managers_description,
                            parameters.robot_description_timeout);
-  solver->initialize(node->get_node_parameters_interface(), "ids", description);
+  inverse_dynamics_solver::initializeStrictly(*solver, node->get_node_parameters_interface(), "ids",
+                                              description);
   for (const std::string& warning : solver->warnings()) {
     RCLCPP_WARN(node->get_logger(), "%s: %s", parameters.plugin_name.c_str(), warning.c_str());
   }

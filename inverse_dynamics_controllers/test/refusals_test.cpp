@@ -64,6 +64,12 @@ TEST_F(Refusals, AMistypedParameterOfTheSolver) {
   EXPECT_TRUE(log.has("ids.gravity")) << log.text();
 }
 
+TEST_F(Refusals, AMisspeltParameterOfTheSolver) {
+  expectRefused(but("ids.gravty", rclcpp::ParameterValue(Numbers{0.0, 0.0, -9.81})),
+                "parameter 'ids.gravty': the solver doesn't know it: expected one of "
+                "ids.allow_massless, ids.attached, ids.friction, ids.gravity, ");
+}
+
 TEST_F(Refusals, NoGains) {
   expectRefused(but("gains.natural_frequency", rclcpp::ParameterValue(Numbers{})),
                 "parameter 'gains.natural_frequency': not set: expected numbers above zero "

@@ -2,9 +2,9 @@
 
 #include "node_solver.hpp"
 
-#include <algorithm>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
+#include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <set>
 
 #include "user_error.hpp"
@@ -14,59 +14,19 @@ namespace {
 
 using inverse_dynamics_evaluation::listed;
 using inverse_dynamics_solver::InverseDynamicsSolver;
-using inverse_dynamics_solver::Parameters;
-using ParametersInterface = rclcpp::node_interfaces::NodeParametersInterface;
-
-/// A node's parameters, noting which ones were asked for.
-class NotedParameters {
- public:
-  explicit NotedParameters(ParametersInterface::SharedPtr parameters)
-      : parameters_(std::move(parameters)) {}
-
-  bool has_parameter(const std::string& name) const {
-    asked_.insert(name);
-    return parameters_->has_parameter(name);
-  }
-  rclcpp::Parameter get_parameter(const std::string& name) const {
-    return parameters_->get_parameter(name);
-  }
-
-  bool wasAsked(const std::string& name) const { return asked_.count(name) > 0; }
-
-  /// Names below the solver's namespace that were asked for.
-  std::vector<std::string> asked() const {
-    std::vector<std::string> names;
-    std::copy_if(asked_.begin(), asked_.end(), std::back_inserter(names),
-                 [](const auto& name) { return name.rfind(kSolverNamespace + ".", 0) == 0; });
-    return names;
-  }
-
- private:
-  ParametersInterface::SharedPtr parameters_;
-  mutable std::set<std::string> asked_;
-};
-
-// Names below the solver's namespace that the user gave.
-std::vector<std::string> givenNames(rclcpp::Node& node) {
-  std::vector<std::string> names;
-  for (const auto& [name, value] :
-       node.get_node_parameters_interface()->get_parameter_overrides()) {
-    if (name.rfind(kSolverNamespace + ".", 0) == 0) {
-      names.push_back(name);
-    }
-  }
-  return names;
-}
 
 }  // namespace
 
 void declareSolverParameters(rclcpp::Node& node) {
   const auto& overrides = node.get_node_parameters_interface()->get_parameter_overrides();
-  for (const std::string& name : givenNames(node)) {
+  for (const auto& [name, value] : overrides) {
+    if (name.rfind(kSolverNamespace + ".", 0) != 0) {
+      continue;
+    }
     rcl_interfaces::msg::ParameterDescriptor descriptor;
     descriptor.read_only = true;
     descriptor.dynamic_typing = true;  // the solver checks types
-    node.declare_parameter(name, overrides.at(name), descriptor);
+    node.declare_parameter(name, value, descriptor);
   }
 }
 
@@ -79,15 +39,8 @@ std::shared_ptr<const InverseDynamicsSolver> makeSolver(rclcpp::Node& node,
                     "set it to one of " + listed(loader.availableSolvers()));
   }
   const auto solver = loader.load(plugin_name);
-  const auto parameters = std::make_shared<NotedParameters>(node.get_node_parameters_interface());
-  solver->initialize(Parameters(parameters), kSolverNamespace, robot_description);
-  for (const std::string& name : givenNames(node)) {
-    if (!parameters->wasAsked(name)) {
-      throw UserError("parameter '" + name + "'", "a parameter that the solver reads",
-                      "one that " + plugin_name + " doesn't know",
-                      "correct its name; it reads " + listed(parameters->asked()));
-    }
-  }
+  inverse_dynamics_solver::initializeStrictly(*solver, node.get_node_parameters_interface(),
+                                              kSolverNamespace, robot_description);
   return solver;
 }
 

@@ -27,8 +27,9 @@ void declareSolverParameters(rclcpp::Node& node);
 ///
 /// @param plugin_name        parameter of that name: `package/Class`.
 /// @param robot_description  URDF text; empty: none.
-/// @throws UserError: no plugin name; a parameter below `ids.` that the solver doesn't know.
-/// @throws inverse_dynamics_solver::Exception: what the loader and the solver say.
+/// @throws UserError: no plugin name.
+/// @throws inverse_dynamics_solver::Exception: what the loader and the solver say; a parameter
+/// below `ids.` that the solver doesn't know.
 std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> makeSolver(
     rclcpp::Node& node, const std::string& plugin_name, const std::string& robot_description);
 

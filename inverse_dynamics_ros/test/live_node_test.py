@@ -236,7 +236,7 @@ class TestLiveNode(unittest.TestCase):
             "mistyped": "parameter 'min_rate' has invalid type",
             "bad_cutoff": "cutoff",
             "bad_tip": "tool0",
-            "misspelt": "parameter 'ids.gravty': expected a parameter that the solver reads",
+            "misspelt": "parameter 'ids.gravty': the solver doesn't know it: expected one of",
         }
         for name, text in expected.items():
             with self.subTest(name):

@@ -67,6 +67,15 @@ Parameters::Parameters(std::map<std::string, ParameterValue> values)
 Parameters::Parameters(std::initializer_list<std::pair<const std::string, ParameterValue>> values)
     : Parameters(std::map<std::string, ParameterValue>(values)) {}
 
+Parameters Parameters::watched(std::function<void(const std::string& name)> asked) const {
+  Parameters result;
+  result.find_ = [all = *this, asked = std::move(asked)](const std::string& name) {
+    asked(name);
+    return all.find(name);
+  };
+  return result;
+}
+
 std::optional<ParameterValue> Parameters::find(const std::string& name) const {
   return find_ ? find_(name) : std::nullopt;
 }

@@ -84,6 +84,19 @@ class NodeParameters : public NodeParametersInterface {
     parameter = Parameter(found->second);
     return true;
   }
+
+  struct ListParametersResult {
+    std::vector<std::string> names;
+  };
+  /// Of all depths, and one prefix.
+  ListParametersResult list_parameters(const std::vector<std::string>& prefixes,
+                                       std::uint64_t) const {
+    ListParametersResult result;
+    for (const auto& [name, value] : values) {
+      if (name.rfind(prefixes.at(0) + ".", 0) == 0) result.names.push_back(name);
+    }
+    return result;
+  }
 };
 
 /// Only the two methods without which nothing can be read; a parameter that isn't set has that

@@ -39,6 +39,16 @@ TEST(Parameters, AreEmptyFromNothing) {
   EXPECT_FALSE(implicitly(NodeParametersInterface::ConstSharedPtr()).find("root"));
 }
 
+TEST(Parameters, WatchedTellWhatIsAskedFor) {
+  std::vector<std::string> asked;
+  const Parameters watched = Parameters({{"tip", "tool0"}}).watched([&](const std::string& name) {
+    asked.push_back(name);
+  });
+  EXPECT_EQ(watched.get<std::string>("tip"), "tool0");
+  EXPECT_FALSE(watched.find("root"));
+  EXPECT_EQ(asked, (std::vector<std::string>{"tip", "root"}));
+}
+
 TEST(Parameters, AreReadFromASharedPointerToNodeParameters) {
   const auto node = std::make_shared<NodeParameters>();
   node->values = {{"b", true},

@@ -103,6 +103,9 @@ class Parameters {
   template <class T>
   T require(const std::string& name) const;
 
+  /// The same parameters, which tell each name that is asked for.
+  Parameters watched(std::function<void(const std::string& name)> asked) const;
+
  private:
   std::function<std::optional<ParameterValue>(const std::string&)> find_;
 };
