@@ -5,8 +5,7 @@
 #include <inverse_dynamics_controllers/feed_forward_controller_parameters.hpp>
 
 #include "arm.hpp"
-#include "control_loop.hpp"
-#include "reference_input.hpp"
+#include "follower.hpp"
 
 namespace inverse_dynamics_controllers {
 
@@ -17,7 +16,6 @@ using inverse_dynamics_control::JointState;
 using inverse_dynamics_control::LawOptions;
 using inverse_dynamics_control::ModelState;
 using inverse_dynamics_control::Reference;
-using inverse_dynamics_control::ReferenceGuard;
 using inverse_dynamics_control::Status;
 
 namespace {
@@ -37,47 +35,51 @@ void requireReferenceVelocity(const LawOptions& options, const ReferenceLayout& 
       "set one of them"));
 }
 
-}  // namespace
+/// Own gains about a reference beside the model's torque: n; N m/rad, N m s/rad.
+struct OwnGains {
+  Eigen::VectorXd P, D;
+};
 
-/// All that a configuration makes, at once or not at all.
-struct FeedForwardController::Configured {
-  ControlLoop loop;
-  FeedForward law;
-  ReferenceInput input;
-  Eigen::VectorXd P, D;    // n; N m/rad, N m s/rad
-  Eigen::VectorXd effort;  // scratch
-  Reference at_state;      // scratch: the measured state, going on as it is
+class FeedForwardFollower : public Follower {
+ public:
+  FeedForwardFollower(ControlLoop loop, ReferenceInput input, FeedForward law, OwnGains gains)
+      : Follower(std::move(loop), std::move(input)),
+        law_(std::move(law)),
+        gains_(std::move(gains)),
+        effort_(Eigen::VectorXd::Zero(gains_.P.size())),
+        at_state_(gains_.P.size()) {}
+
+  inverse_dynamics_control::ControlLaw& law() noexcept override { return law_; }
 
   Status update(const JointState& state, const std::vector<double>& references, double dt,
-                Eigen::VectorXd& tau) noexcept {
-    const bool motion = input.layout().hasMotion();
+                Eigen::VectorXd& tau) noexcept override {
+    const auto& [P, D] = gains_;
+    const bool motion = input().layout().hasMotion();
     // A stop needs feedback: own gains on a motion; else the safe torque brakes.
     const bool has_feedback = motion && (P.array() > 0).all() && (D.array() > 0).all();
-    if (input.stopped() && !has_feedback) return law.hold(state, dt, tau);
-    input.effort(references, effort);
+    if (input().stopped() && !has_feedback) return law_.hold(state, dt, tau);
+    input().effort(references, effort_);
     if (!motion) {
-      at_state.q = state.q;
-      at_state.qd = state.qd;
-      return law.update(state, at_state, effort, dt, tau);
+      at_state_.q = state.q;
+      at_state_.qd = state.qd;
+      return law_.update(state, at_state_, effort_, dt, tau);
     }
-    const Reference& reference = input.motion();
-    effort += P.cwiseProduct(reference.q - state.q) + D.cwiseProduct(reference.qd - state.qd);
-    return law.update(state, reference, effort, dt, tau);
+    const Reference& reference = input().motion();
+    effort_ += P.cwiseProduct(reference.q - state.q) + D.cwiseProduct(reference.qd - state.qd);
+    return law_.update(state, reference, effort_, dt, tau);
   }
+
+ private:
+  FeedForward law_;
+  OwnGains gains_;
+  Eigen::VectorXd effort_;  // scratch
+  Reference at_state_;      // scratch: the measured state, going on as it is
 };
+
+}  // namespace
 
 FeedForwardController::FeedForwardController() = default;
 FeedForwardController::~FeedForwardController() = default;
-
-controller_interface::InterfaceConfiguration
-FeedForwardController::command_interface_configuration() const {
-  return configured_ ? configured_->loop.interfaces().commands() : nothing();
-}
-
-controller_interface::InterfaceConfiguration FeedForwardController::state_interface_configuration()
-    const {
-  return configured_ ? configured_->loop.interfaces().states() : nothing();
-}
 
 CallbackReturn FeedForwardController::on_init() {
   return transition(get_node()->get_logger(), [this] {
@@ -85,67 +87,19 @@ CallbackReturn FeedForwardController::on_init() {
   });
 }
 
-CallbackReturn FeedForwardController::on_configure(const rclcpp_lifecycle::State&) {
-  return transition(get_node()->get_logger(), [this] {
-    const auto params = parameters_->get_params();
-    const ArmParameters arm_parameters = armParameters(params);
-    const Arm arm = makeArm(get_node(), arm_parameters, robotDescriptionOf(*this));
-    const ReferenceLayout layout(params.reference_interfaces, arm.joints);
-    const LawOptions options = lawOptions(arm, arm_parameters, get_update_rate());
-    requireReferenceVelocity(options, layout);
-    ReferenceGuard guard(referenceLimits(arm, params.limits),
-                         jointNumbers("stop_deceleration", params.stop_deceleration, arm.joints),
-                         arm.joints);
-    const auto n = static_cast<Eigen::Index>(arm.joints.size());
-    configured_.reset(new Configured{
-        ControlLoop(get_node(), arm.joints, params.tolerated_fault_time),
-        FeedForward(arm.solver, modelState(params, layout), options),
-        ReferenceInput(get_node(), layout, arm.joints, guard, params.reference_timeout),
-        jointNumbers("gains.p", params.gains.p, arm.joints),
-        jointNumbers("gains.d", params.gains.d, arm.joints), Eigen::VectorXd::Zero(n),
-        Reference(n)});
-  });
-}
-
-CallbackReturn FeedForwardController::on_activate(const rclcpp_lifecycle::State&) {
-  return transition(get_node()->get_logger(), [this] {
-    requireConfigured(configured_ != nullptr);
-    configured_->loop.start(configured_->law, state_interfaces_, command_interfaces_);
-    configured_->input.start(configured_->loop.state().q, reference_interfaces_);
-  });
-}
-
-CallbackReturn FeedForwardController::on_deactivate(const rclcpp_lifecycle::State&) {
-  if (configured_) configured_->loop.stop(command_interfaces_);
-  return CallbackReturn::SUCCESS;
-}
-
-CallbackReturn FeedForwardController::on_cleanup(const rclcpp_lifecycle::State&) {
-  configured_.reset();
-  return CallbackReturn::SUCCESS;
-}
-
-std::vector<hardware_interface::CommandInterface>
-FeedForwardController::on_export_reference_interfaces() {
-  if (!configured_) return {};
-  return configured_->input.exported(get_node()->get_name(), reference_interfaces_);
-}
-
-bool FeedForwardController::on_set_chained_mode(bool) { return true; }
-
-void FeedForwardController::readReferenceTopic() noexcept {
-  if (configured_) configured_->input.readTopic(reference_interfaces_);
-}
-
-controller_interface::return_type FeedForwardController::update_and_write_commands(
-    const rclcpp::Time&, const rclcpp::Duration& period) {
-  if (!configured_) return controller_interface::return_type::ERROR;
-  Configured& c = *configured_;
-  const auto update = [&](const JointState& state, double dt, Eigen::VectorXd& tau) {
-    c.input.advance(reference_interfaces_, is_in_chained_mode(), dt, c.loop.report());
-    return c.update(state, reference_interfaces_, dt, tau);
-  };
-  return c.loop.cycle(c.law, state_interfaces_, command_interfaces_, period, update);
+std::unique_ptr<Follower> FeedForwardController::makeFollower() {
+  const auto params = parameters_->get_params();
+  const ArmParameters arm_parameters = armParameters(params);
+  const Arm arm = makeArm(get_node(), arm_parameters, robotDescriptionOf(*this));
+  const ReferenceLayout layout(params.reference_interfaces, arm.joints);
+  const LawOptions options = lawOptions(arm, arm_parameters, get_update_rate());
+  requireReferenceVelocity(options, layout);
+  return std::make_unique<FeedForwardFollower>(
+      ControlLoop(get_node(), arm.joints, params.tolerated_fault_time),
+      referenceInput(get_node(), layout, arm, params),
+      FeedForward(arm.solver, modelState(params, layout), options),
+      OwnGains{jointNumbers("gains.p", params.gains.p, arm.joints),
+               jointNumbers("gains.d", params.gains.d, arm.joints)});
 }
 
 }  // namespace inverse_dynamics_controllers

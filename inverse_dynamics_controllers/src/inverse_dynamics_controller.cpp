@@ -5,8 +5,7 @@
 #include <inverse_dynamics_controllers/inverse_dynamics_controller_parameters.hpp>
 
 #include "arm.hpp"
-#include "control_loop.hpp"
-#include "reference_input.hpp"
+#include "follower.hpp"
 
 namespace inverse_dynamics_controllers {
 
@@ -14,7 +13,7 @@ using controller_interface::CallbackReturn;
 using inverse_dynamics_control::ComputedTorque;
 using inverse_dynamics_control::Gains;
 using inverse_dynamics_control::JointState;
-using inverse_dynamics_control::ReferenceGuard;
+using inverse_dynamics_control::Status;
 using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 
@@ -42,27 +41,26 @@ Gains gainsOf(const inverse_dynamics_controller::Params& params, const Arm& arm)
       jointNumbers("gains.damping_ratio", params.gains.damping_ratio, arm.joints));
 }
 
-}  // namespace
+class ComputedTorqueFollower : public Follower {
+ public:
+  ComputedTorqueFollower(ControlLoop loop, ReferenceInput input, ComputedTorque law)
+      : Follower(std::move(loop), std::move(input)), law_(std::move(law)) {}
 
-/// All that a configuration makes, at once or not at all.
-struct InverseDynamicsController::Configured {
-  ControlLoop loop;
-  ComputedTorque law;
-  ReferenceInput input;
+  inverse_dynamics_control::ControlLaw& law() noexcept override { return law_; }
+
+  Status update(const JointState& state, const std::vector<double>&, double dt,
+                Eigen::VectorXd& tau) noexcept override {
+    return law_.update(state, input().motion(), dt, tau);
+  }
+
+ private:
+  ComputedTorque law_;
 };
+
+}  // namespace
 
 InverseDynamicsController::InverseDynamicsController() = default;
 InverseDynamicsController::~InverseDynamicsController() = default;
-
-controller_interface::InterfaceConfiguration
-InverseDynamicsController::command_interface_configuration() const {
-  return configured_ ? configured_->loop.interfaces().commands() : nothing();
-}
-
-controller_interface::InterfaceConfiguration
-InverseDynamicsController::state_interface_configuration() const {
-  return configured_ ? configured_->loop.interfaces().states() : nothing();
-}
 
 CallbackReturn InverseDynamicsController::on_init() {
   return transition(get_node()->get_logger(), [this] {
@@ -70,63 +68,17 @@ CallbackReturn InverseDynamicsController::on_init() {
   });
 }
 
-CallbackReturn InverseDynamicsController::on_configure(const rclcpp_lifecycle::State&) {
-  return transition(get_node()->get_logger(), [this] {
-    const auto params = parameters_->get_params();
-    const ArmParameters arm_parameters = armParameters(params);
-    const Arm arm = makeArm(get_node(), arm_parameters, robotDescriptionOf(*this));
-    requirePhysicalInertia(arm, params.plugin_name);
-    ReferenceGuard guard(referenceLimits(arm, params.limits),
-                         jointNumbers("stop_deceleration", params.stop_deceleration, arm.joints),
-                         arm.joints);
-    configured_.reset(new Configured{
-        ControlLoop(get_node(), arm.joints, params.tolerated_fault_time),
-        ComputedTorque(arm.solver, gainsOf(params, arm),
-                       lawOptions(arm, arm_parameters, get_update_rate())),
-        ReferenceInput(get_node(), ReferenceLayout(params.reference_interfaces, arm.joints),
-                       arm.joints, guard, params.reference_timeout)});
-  });
-}
-
-CallbackReturn InverseDynamicsController::on_activate(const rclcpp_lifecycle::State&) {
-  return transition(get_node()->get_logger(), [this] {
-    requireConfigured(configured_ != nullptr);
-    configured_->loop.start(configured_->law, state_interfaces_, command_interfaces_);
-    configured_->input.start(configured_->loop.state().q, reference_interfaces_);
-  });
-}
-
-CallbackReturn InverseDynamicsController::on_deactivate(const rclcpp_lifecycle::State&) {
-  if (configured_) configured_->loop.stop(command_interfaces_);
-  return CallbackReturn::SUCCESS;
-}
-
-CallbackReturn InverseDynamicsController::on_cleanup(const rclcpp_lifecycle::State&) {
-  configured_.reset();
-  return CallbackReturn::SUCCESS;
-}
-
-std::vector<hardware_interface::CommandInterface>
-InverseDynamicsController::on_export_reference_interfaces() {
-  if (!configured_) return {};
-  return configured_->input.exported(get_node()->get_name(), reference_interfaces_);
-}
-
-bool InverseDynamicsController::on_set_chained_mode(bool) { return true; }
-
-void InverseDynamicsController::readReferenceTopic() noexcept {
-  if (configured_) configured_->input.readTopic(reference_interfaces_);
-}
-
-controller_interface::return_type InverseDynamicsController::update_and_write_commands(
-    const rclcpp::Time&, const rclcpp::Duration& period) {
-  if (!configured_) return controller_interface::return_type::ERROR;
-  auto& [loop, law, input] = *configured_;
-  const auto update = [&](const JointState& state, double dt, Eigen::VectorXd& tau) {
-    input.advance(reference_interfaces_, is_in_chained_mode(), dt, loop.report());
-    return law.update(state, input.motion(), dt, tau);
-  };
-  return loop.cycle(law, state_interfaces_, command_interfaces_, period, update);
+std::unique_ptr<Follower> InverseDynamicsController::makeFollower() {
+  const auto params = parameters_->get_params();
+  const ArmParameters arm_parameters = armParameters(params);
+  const Arm arm = makeArm(get_node(), arm_parameters, robotDescriptionOf(*this));
+  requirePhysicalInertia(arm, params.plugin_name);
+  const ReferenceLayout layout(params.reference_interfaces, arm.joints);
+  return std::make_unique<ComputedTorqueFollower>(
+      ControlLoop(get_node(), arm.joints, params.tolerated_fault_time),
+      referenceInput(get_node(), layout, arm, params),
+      ComputedTorque(arm.solver, gainsOf(params, arm),
+                     lawOptions(arm, arm_parameters, get_update_rate())));
 }
 
 }  // namespace inverse_dynamics_controllers

@@ -87,7 +87,7 @@ class ReferenceInput {
     if (guard_.stopped() && !was_stopped) report.noteStop(guard_.reason(), guard_.joint());
   }
 
-  /// The motion to follow in this cycle.
+  /// The motion to follow in this cycle; after advance().
   const inverse_dynamics_control::Reference& motion() const noexcept { return *motion_; }
 
   /// The effort of the controller before; zero before it has written any.
@@ -104,7 +104,7 @@ class ReferenceInput {
   ReferenceTopic topic_;
   inverse_dynamics_control::ReferenceGuard guard_;
   inverse_dynamics_control::Reference wished_;
-  const inverse_dynamics_control::Reference* motion_ = &wished_;
+  const inverse_dynamics_control::Reference* motion_ = nullptr;  // of the guard, from advance() on
   bool motion_written_ = false, effort_written_ = false;
   double timeout_, age_ = 0.0;  // s
 };

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What the controllers that follow references have in common: all but their law.
+///
+///     class MyController : public FollowingController {
+///       CallbackReturn on_init() override;                     // declare parameters
+///       std::unique_ptr<Follower> makeFollower() override;     // law and references from them
+///     };
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "inverse_dynamics_controllers/ros2_control_compatibility.hpp"
+
+namespace inverse_dynamics_controllers {
+
+class Follower;
+
+/// A chainable controller around a law that follows references.
+///
+/// Real time: update(): no allocation, lock, exception or system call of its own.
+class FollowingController : public ChainableController {
+ public:
+  FollowingController();
+  ~FollowingController() override;
+
+  controller_interface::InterfaceConfiguration command_interface_configuration() const override;
+  controller_interface::InterfaceConfiguration state_interface_configuration() const override;
+
+  controller_interface::CallbackReturn on_configure(const rclcpp_lifecycle::State& state) override;
+  controller_interface::CallbackReturn on_activate(const rclcpp_lifecycle::State& state) override;
+  controller_interface::CallbackReturn on_deactivate(const rclcpp_lifecycle::State& state) override;
+  controller_interface::CallbackReturn on_cleanup(const rclcpp_lifecycle::State& state) override;
+
+ protected:
+  /// All that a configuration makes; called when configured. What it throws fails that transition.
+  virtual std::unique_ptr<Follower> makeFollower() = 0;
+
+  std::vector<hardware_interface::CommandInterface> on_export_reference_interfaces() override;
+  bool on_set_chained_mode(bool chained_mode) override;
+  void readReferenceTopic() noexcept override;
+  controller_interface::return_type update_and_write_commands(
+      const rclcpp::Time& time, const rclcpp::Duration& period) override;
+
+ private:
+  std::unique_ptr<Follower> follower_;  // null until configured
+};
+
+}  // namespace inverse_dynamics_controllers
