@@ -7,10 +7,18 @@ ros2 run inverse_dynamics_controllers send_motion trajectory_to_inverse_dynamics
     wrist_1_joint wrist_2_joint wrist_3_joint --amplitudes 0.5 -0.4 0.6 0.5 -0.5 0.8
 """
 
-from pathlib import Path
 from xml.etree import ElementTree
 
-from ament_index_python.packages import get_package_share_directory
+from inverse_dynamics_controllers.simulations import (
+    LINKS,
+    add_hardware,
+    arguments,
+    description_of,
+    parameter_file,
+    spawner,
+    state_publisher,
+)
+from inverse_dynamics_ros.launch_files import failing_with_its_node, number, text
 from launch import LaunchDescription
 from launch.actions import (
     DeclareLaunchArgument,
@@ -19,57 +27,18 @@ from launch.actions import (
     RegisterEventHandler,
 )
 from launch.event_handlers import OnProcessExit
-from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
-from launch_ros.parameter_descriptions import ParameterValue
-
-INITIAL = {
-    "ur10": {
-        "shoulder_pan_joint": 0.0,
-        "shoulder_lift_joint": -1.6,
-        "elbow_joint": 1.2,
-        "wrist_1_joint": -1.0,
-        "wrist_2_joint": -1.5,
-        "wrist_3_joint": 0.3,
-    },
-    "panda": {
-        "fer_joint1": 0.0,
-        "fer_joint2": -0.5,
-        "fer_joint3": 0.0,
-        "fer_joint4": -2.0,
-        "fer_joint5": 0.0,
-        "fer_joint6": 1.6,
-        "fer_joint7": 0.8,
-    },
-}
-"""Where the joints of each robot are at first [rad]."""
-
-CONTROLLERS = {
-    "inverse_dynamics": ["inverse_dynamics_controller", "trajectory_to_inverse_dynamics"],
-    "feed_forward": ["feed_forward_controller", "trajectory_to_feed_forward"],
-    "gravity_compensation": ["gravity_compensation_controller"],
-}
-"""What is spawned for each choice, in this order."""
 
 
 def generate_launch_description():
     """What `ros2 launch` asks for."""
     return LaunchDescription(
         [
+            *arguments(),
             DeclareLaunchArgument(
-                "robot", default_value="ur10", choices=list(INITIAL), description="Which arm"
-            ),
-            DeclareLaunchArgument(
-                "controller",
-                default_value="inverse_dynamics",
-                choices=list(CONTROLLERS),
-                description="inverse_dynamics: computed torque after a joint_trajectory_controller; "
-                "feed_forward: PD and the model's torque after one; gravity_compensation",
-            ),
-            DeclareLaunchArgument(
-                "config",
-                default_value="",
-                description="Parameter file; empty: this package's for the robot",
+                "payload",
+                default_value="0.0",
+                description="Mass at the tip, of which the solver knows nothing [kg]",
             ),
             DeclareLaunchArgument(
                 "bag",
@@ -78,62 +47,38 @@ def generate_launch_description():
                 "it must not exist yet. Empty: no recording",
             ),
             OpaqueFunction(function=_processes),
+            failing_with_its_node(),
         ]
     )
 
 
 def _processes(context):
-    def text(argument):
-        return LaunchConfiguration(argument).perform(context)
-
-    robot, bag = text("robot"), text("bag")
-    share = Path(get_package_share_directory("inverse_dynamics_controllers"))
-    config = text("config") or str(share / "config" / f"{robot}.yaml")
-    description = {"robot_description": ParameterValue(simulated(robot), value_type=str)}
-    sim_time = {"use_sim_time": True}
-    spawned = ["joint_state_broadcaster", *CONTROLLERS[text("controller")]]
-    spawner = Node(
-        package="controller_manager",
-        executable="spawner",
-        arguments=[*spawned, "--param-file", config, "--controller-manager-timeout", "60"],
-    )
+    robot, bag = text(context, "robot"), text(context, "bag")
+    spawning = spawner(context)
     actions = [
-        Node(
-            package="robot_state_publisher",
-            executable="robot_state_publisher",
-            parameters=[description, sim_time],
-        ),
+        state_publisher(simulated(robot, number(context, "payload"))),
         Node(
             package="inverse_dynamics_controllers",
             executable="simulated_controller_manager",
-            parameters=[config, sim_time],
+            parameters=[parameter_file(context), {"use_sim_time": True}],
             remappings=[("~/robot_description", "/robot_description")],
             output="both",
         ),
-        spawner,
+        spawning,
     ]
     if bag:
         # From when the controllers carry the arm: what its brakes give isn't measured.
         record = ["ros2", "bag", "record", "--use-sim-time", "-o", bag, "/joint_states"]
         recording = ExecuteProcess(cmd=record, output="screen")
-        start = OnProcessExit(target_action=spawner, on_exit=[recording])
+        start = OnProcessExit(target_action=spawning, on_exit=[recording])
         actions.append(RegisterEventHandler(start))
     return actions
 
 
-def simulated(robot):
+def simulated(robot, payload):
     """The robot's description with a simulated hardware component."""
-    robots = Path(get_package_share_directory("inverse_dynamics_robots"))
-    root = ElementTree.parse(robots / "urdf" / f"{robot}.urdf").getroot()
-    system = ElementTree.SubElement(root, "ros2_control", name=robot, type="system")
-    hardware = ElementTree.SubElement(system, "hardware")
-    plugin = ElementTree.SubElement(hardware, "plugin")
-    plugin.text = "inverse_dynamics_controllers/SimulatedArm"
-    for name, position in INITIAL[robot].items():
-        joint = ElementTree.SubElement(system, "joint", name=name)
-        ElementTree.SubElement(joint, "command_interface", name="effort")
-        state = ElementTree.SubElement(joint, "state_interface", name="position")
-        ElementTree.SubElement(state, "param", name="initial_value").text = str(position)
-        for interface in ("velocity", "acceleration", "effort"):
-            ElementTree.SubElement(joint, "state_interface", name=interface)
+    root = description_of(robot)
+    _, tip = LINKS[robot]
+    plugin = "inverse_dynamics_controllers/SimulatedArm"
+    add_hardware(root, robot, plugin, {"payload": str(payload), "payload_link": tip})
     return ElementTree.tostring(root, encoding="unicode")

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import itertools
 import subprocess
+import tempfile
 import time
 import unittest
 from pathlib import Path
@@ -13,6 +15,7 @@ import launch_testing
 import launch_testing.actions
 import pytest
 import rclpy
+import yaml
 from ament_index_python.packages import get_package_share_directory
 from control_msgs.msg import JointTrajectoryControllerState
 from launch.actions import IncludeLaunchDescription
@@ -46,25 +49,66 @@ DURATION = 2.4
 TOLERANCE = 2e-3
 """Greatest error that is allowed [rad]: the motions are up to 0.8 rad, at up to 1 rad/s."""
 
+LOADED_TOLERANCE = 0.1
+"""The same with PAYLOAD [rad]: the model lacks it, and the feedback has no integral."""
+
+PAYLOAD = 2.0
+"""At the tip, unknown to the model [kg]."""
+
+STIFF = {"natural_frequency": [60.0], "damping_ratio": [1.5]}
+"""Gains to carry it with [rad/s]."""
+
+SETTLING = 1.5
+"""How long the arm is watched after the motion [s, of the simulation]."""
+
+REST = 1e-3
+"""Speed below which a joint stands [rad/s]."""
+
 PATIENCE = 60.0
 """For each step [s], on a busy computer."""
 
 
+CASES = [
+    ("ur10", "inverse_dynamics", 0.0),
+    ("panda", "inverse_dynamics", 0.0),
+    ("ur10", "feed_forward", 0.0),
+    ("panda", "feed_forward", 0.0),
+    ("ur10", "inverse_dynamics", PAYLOAD),
+    ("panda", "inverse_dynamics", PAYLOAD),
+]
+
+
+def stiff(robot):
+    """This package's parameter file with the gains STIFF."""
+    share = Path(get_package_share_directory("inverse_dynamics_controllers"))
+    parameters = yaml.safe_load((share / "config" / f"{robot}.yaml").read_text())
+    parameters["inverse_dynamics_controller"]["ros__parameters"]["gains"] = STIFF
+    with tempfile.NamedTemporaryFile("w", suffix=".yaml", delete=False) as file:
+        yaml.safe_dump(parameters, file)
+    return file.name
+
+
 @pytest.mark.launch_test
-@launch_testing.parametrize(
-    "robot, controller",
-    [("ur10", "inverse_dynamics"), ("panda", "inverse_dynamics"), ("ur10", "feed_forward")],
-)
-def generate_test_description(robot, controller):
+@launch_testing.parametrize("robot, controller, payload", CASES)
+def generate_test_description(robot, controller, payload):
     share = Path(get_package_share_directory("inverse_dynamics_controllers"))
     source = PythonLaunchDescriptionSource(str(share / "launch" / "simulated.launch.py"))
-    arguments = {"robot": robot, "controller": controller}
+    arguments = {
+        "robot": robot,
+        "controller": controller,
+        "payload": str(payload),
+        "config": stiff(robot) if payload else "",
+    }
     return launch.LaunchDescription(
         [
             IncludeLaunchDescription(source, launch_arguments=arguments.items()),
             launch_testing.actions.ReadyToTest(),
         ]
     )
+
+
+def seconds(state):
+    return state.header.stamp.sec + 1e-9 * state.header.stamp.nanosec
 
 
 class TestFollowing(unittest.TestCase):
@@ -84,16 +128,8 @@ class TestFollowing(unittest.TestCase):
             rclpy.spin_once(self.node, timeout_sec=0.1)
         return condition()
 
-    def test_errors_stay_small(self, proc_output, robot, controller):
-        trajectory = f"trajectory_to_{controller}"
-        states, joint_states = [], []
-        self.node.create_subscription(
-            JointTrajectoryControllerState, f"/{trajectory}/controller_state", states.append, 100
-        )
-        self.node.create_subscription(JointState, "/joint_states", joint_states.append, 100)
-        assert self.spin_until(lambda: states), "the trajectory controller says nothing"
-
-        amplitudes = AMPLITUDES[robot]
+    def move(self, trajectory, amplitudes):
+        """Sends the arm there and back; the time of the simulation when it has come back."""
         sending = subprocess.Popen(
             [
                 *("ros2", "run", "inverse_dynamics_controllers", "send_motion", trajectory),
@@ -107,15 +143,39 @@ class TestFollowing(unittest.TestCase):
         assert self.spin_until(lambda: sending.poll() is not None), "the motion doesn't end"
         said, _ = sending.communicate()
         assert sending.returncode == 0, said
+        return seconds(self.joint_states[-1])
 
-        # It moved, it followed, and nothing was cut.
-        first = joint_states[0].name.index("elbow_joint" if robot == "ur10" else "fer_joint4")
-        positions = [state.position[first] for state in joint_states]
-        wished = abs(amplitudes[joint_states[0].name[first]])
-        assert max(positions) - min(positions) > 0.99 * wished
+    def assert_settles(self, since):
+        """With at most one overshoot each joint comes to rest."""
+        assert self.spin_until(lambda: seconds(self.joint_states[-1]) > since + SETTLING)
+        settling = [state for state in self.joint_states if seconds(state) > since]
+        for speeds in zip(*(state.velocity for state in settling), strict=True):
+            directions = [speed > 0 for speed in speeds if abs(speed) > REST]
+            assert sum(a != b for a, b in itertools.pairwise(directions)) <= 1
+        assert max(map(abs, self.joint_states[-1].velocity)) < REST
+
+    def test_errors_stay_small(self, proc_output, robot, controller, payload):
+        trajectory = f"trajectory_to_{controller}"
+        states, self.joint_states = [], []
+        self.node.create_subscription(
+            JointTrajectoryControllerState, f"/{trajectory}/controller_state", states.append, 100
+        )
+        self.node.create_subscription(JointState, "/joint_states", self.joint_states.append, 100)
+        assert self.spin_until(lambda: states), "the trajectory controller says nothing"
+
+        # It moved, it followed, it came to rest, and nothing was cut.
+        amplitudes = AMPLITUDES[robot]
+        since = self.move(trajectory, amplitudes)
+        self.assert_settles(since)
+        first = self.joint_states[0].name.index("elbow_joint" if robot == "ur10" else "fer_joint4")
+        positions = [state.position[first] for state in self.joint_states]
+        wished = abs(amplitudes[self.joint_states[0].name[first]])
+        assert max(positions) - min(positions) > 0.9 * wished
         error = max(abs(e) for state in states for e in state.error.positions)
-        print(f"{robot}, {controller}: greatest error {error:.2e} rad")
-        assert error < TOLERANCE
+        print(f"{robot}, {controller}, payload {payload:g} kg: greatest error {error:.2e} rad")
+        assert error < (LOADED_TOLERANCE if payload else TOLERANCE)
+        if payload:
+            assert error > TOLERANCE, "the payload isn't there"
         output = "".join(process.text.decode() for process in proc_output)
         assert "effort cut to its limit" not in output
         assert "[ERROR]" not in output

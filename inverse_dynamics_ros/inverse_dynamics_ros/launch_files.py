@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from ast import literal_eval
 from pathlib import Path
+from signal import SIGINT, SIGKILL, SIGTERM
 from typing import TYPE_CHECKING, Any
 
 import yaml
@@ -204,7 +205,7 @@ def failing_with_its_node() -> RegisterEventHandler:
     """Have `ros2 launch` end with an error where a process of it did."""
 
     def check(event: ProcessExited, _context: LaunchContext) -> None:
-        if event.returncode > 0:
+        if event.returncode not in (0, *(-end for end in (SIGINT, SIGTERM, SIGKILL))):
             raise RuntimeError(f"{event.process_name} ended with exit code {event.returncode}")
 
     return RegisterEventHandler(OnProcessExit(on_exit=check))

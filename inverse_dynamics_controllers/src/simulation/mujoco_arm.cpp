@@ -23,12 +23,22 @@ constexpr double kLongestStep = 1e-3;  // s
                 "simple shapes instead of meshes are understood"));
 }
 
-mjModel* compiled(const std::string& urdf) {
+void attach(const Payload& payload, mjSpec& spec) {
+  if (payload.mass == 0) return;
+  mjsBody* const link = mjs_findBody(&spec, payload.link.c_str());
+  if (link == nullptr) refuse("no link '" + payload.link + "' that could carry the payload");
+  mjsBody* const body = mjs_addBody(link, nullptr);
+  body->mass = payload.mass;
+  body->explicitinertial = 1;
+}
+
+mjModel* compiled(const std::string& urdf, const Payload& payload) {
   std::array<char, 1000> error{};
   const std::unique_ptr<mjSpec, void (*)(mjSpec*)> spec(
       mj_parseXMLString(urdf.c_str(), nullptr, error.data(), static_cast<int>(error.size())),
       mj_deleteSpec);
   if (spec == nullptr) refuse(error.data());
+  attach(payload, *spec);
   spec->compiler.fusestatic = 0;  // each link stays a body, so that its inertia can be written
   spec->compiler.balanceinertia = 1;
   spec->compiler.inertiafromgeom = mjINERTIAFROMGEOM_FALSE;
@@ -70,8 +80,9 @@ void writeTrueInertia(const std::string& urdf, mjModel& model) {
 
 }  // namespace
 
-MujocoArm::MujocoArm(const std::string& urdf, const std::vector<std::string>& joints)
-    : model_(compiled(urdf)) {
+MujocoArm::MujocoArm(const std::string& urdf, const std::vector<std::string>& joints,
+                     const Payload& payload)
+    : model_(compiled(urdf, payload)) {
   writeTrueInertia(urdf, *model_);
   mju_zero(model_->dof_damping, static_cast<int>(model_->nv));
   mju_zero(model_->dof_frictionloss, static_cast<int>(model_->nv));

@@ -21,15 +21,23 @@
 
 namespace inverse_dynamics_controllers {
 
+/// A point mass at the origin of a link's frame.
+struct Payload {
+  std::string link;
+  double mass = 0.0;  // kg; 0: none
+};
+
 /// Rigid bodies under given torques, integrated by a fourth-order Runge-Kutta method. Not
 /// thread-safe.
 class MujocoArm {
  public:
-  /// @param urdf    with shapes, without meshes; other movable joints than `joints` are free.
-  /// @param joints  n names of revolute or prismatic joints.
+  /// @param urdf     with shapes, without meshes; other movable joints than `joints` are free.
+  /// @param joints   n names of revolute or prismatic joints.
+  /// @param payload  what the arm carries beside what the URDF says.
   /// Throws inverse_dynamics_solver::InvalidRobotDescriptionException: MuJoCo refuses the URDF, no
-  /// such joint.
-  MujocoArm(const std::string& urdf, const std::vector<std::string>& joints);
+  /// such joint or link.
+  MujocoArm(const std::string& urdf, const std::vector<std::string>& joints,
+            const Payload& payload = {});
 
   /// Rest at q, n; rad.
   void setPosition(const Eigen::VectorXd& q);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "inverse_dynamics_controllers/ros2_control_compatibility.hpp"
+#include "joint_numbers.hpp"
 
 namespace inverse_dynamics_controllers {
 
@@ -23,29 +24,48 @@ namespace {
 
 rclcpp::Logger logger() { return rclcpp::get_logger("simulated_arm"); }
 
+double number(const std::string& where, const std::string& unit, const std::string& text) {
+  std::size_t used = 0;
+  double value = 0.0;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::logic_error&) {  // no number at all
+  }
+  if (used > 0 && used == text.size() && std::isfinite(value)) return value;
+  throw std::invalid_argument(where + ": expected a number [" + unit + "], got '" + text + "'");
+}
+
 // Where a joint is at first: `initial_value` of its position.
 double initialPosition(const hardware_interface::ComponentInfo& joint) {
   for (const hardware_interface::InterfaceInfo& state : joint.state_interfaces) {
     if (state.name != HW_IF_POSITION || state.initial_value.empty()) continue;
-    std::size_t used = 0;
-    double value = 0.0;
-    try {
-      value = std::stod(state.initial_value, &used);
-    } catch (const std::logic_error&) {  // no number at all
-    }
-    if (used == state.initial_value.size() && std::isfinite(value)) return value;
-    throw std::invalid_argument("joint " + joint.name + ": initial_value of position: expected a " +
-                                "number [rad], got '" + state.initial_value + "'");
+    return number("joint " + joint.name + ": initial_value of position", "rad",
+                  state.initial_value);
   }
   return 0.0;
+}
+
+// Of the parameters `payload` and `payload_link`.
+Payload payloadOf(const hardware_interface::HardwareInfo& info) {
+  const auto& parameters = info.hardware_parameters;
+  const auto mass = parameters.find("payload"), link = parameters.find("payload_link");
+  if (mass == parameters.end()) return {};
+  Payload payload{link == parameters.end() ? "" : link->second,
+                  number("parameter payload", "kg", mass->second)};
+  if (payload.mass >= 0) return payload;
+  throw std::invalid_argument("parameter payload: expected a mass [kg], got '" + mass->second +
+                              "'");
 }
 
 void requireEffort(const hardware_interface::ComponentInfo& joint) {
   if (joint.command_interfaces.size() == 1 && joint.command_interfaces[0].name == HW_IF_EFFORT) {
     return;
   }
+  std::vector<std::string> names;
+  for (const auto& command : joint.command_interfaces) names.push_back(command.name);
   throw std::invalid_argument("joint " + joint.name +
-                              ": command_interface: expected effort, and nothing else");
+                              ": command_interface: expected effort alone, got " +
+                              (names.empty() ? "none" : listed(names)));
 }
 
 }  // namespace
@@ -71,7 +91,7 @@ CallbackReturn SimulatedArm::initialize(const hardware_interface::HardwareInfo& 
       names.push_back(joint.name);
       joints_.push_back({joint.name, initialPosition(joint)});
     }
-    arm_ = std::make_unique<MujocoArm>(info.original_xml, names);
+    arm_ = std::make_unique<MujocoArm>(info.original_xml, names, payloadOf(info));
   } catch (const std::exception& error) {
     RCLCPP_FATAL(logger(), "%s: %s", info.name.c_str(), error.what());
     return CallbackReturn::ERROR;

@@ -5,6 +5,8 @@
 ///     <ros2_control name="ur10" type="system">
 ///       <hardware>
 ///         <plugin>inverse_dynamics_controllers/SimulatedArm</plugin>
+///         <param name="payload">2.0</param>                  <!-- kg; none by default -->
+///         <param name="payload_link">tool0</param>
 ///       </hardware>
 ///       <joint name="elbow_joint">
 ///         <command_interface name="effort"/>
@@ -14,7 +16,8 @@
 ///         <state_interface name="effort"/>
 ///       </joint>
 ///
-/// The robot is what the rest of the same URDF describes. It goes on by the control loop's period
+/// The robot is what the rest of the same URDF describes, and a payload as a point mass in a link's
+/// frame, of which the solvers know nothing. It goes on by the control loop's period
 /// at every write; efforts that aren't finite are an error, and the arm keeps the last ones. Brakes
 /// hold it at rest while no controller has claimed an effort.
 #pragma once
