@@ -35,8 +35,9 @@ TEST_F(StrictInitialization, RefusesWhatTheSolverDoesNotKnow) {
   } catch (const InvalidParameterValueException& error) {
     EXPECT_STREQ(error.what(),
                  "parameter 'ids.lenght': the solver doesn't know it: expected one of "
-                 "ids.allow_massless, ids.attached, ids.damping, ids.friction, ids.gravity, "
-                 "ids.length, ids.mass, ids.root, ids.tip, got another name; correct or remove it");
+                 "ids.allow_massless, ids.attached, ids.batch_threads, ids.damping, ids.friction, "
+                 "ids.gravity, ids.length, ids.mass, ids.root, ids.tip, got another name; correct "
+                 "or remove it");
   }
 }
 
