@@ -122,4 +122,18 @@ void frictionVector(const Model& model, const ConstVectorRef& qd, VectorRef f) {
   }
 }
 
+void frictionSlopes(const Model& model, const ConstVectorRef& qd, VectorRef slope) {
+  if (model.friction.empty()) {
+    slope = 0.0 * qd;  // keeps a NaN
+  } else {
+    frictionSlopes(model.friction, qd, slope);
+  }
+}
+
+void torqueDerivatives(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                       const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
+                       MatrixRef dtau_dqdd) {
+  torqueDerivatives(model.chain, setsOf(model), q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
+}
+
 }  // namespace chain_dynamics

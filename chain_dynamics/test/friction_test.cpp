@@ -98,6 +98,40 @@ TEST(Friction, ScaledLawScalesTheTorque) {
   }
 }
 
+// A difference quotient over 2e-6 rad/s: its own error grows with the third derivative, alpha^3.
+TEST(FrictionSlope, IsTheDerivative) {
+  for (const FrictionLaw& law : kAllLaws) {
+    for (const double qd : {-2.0, -0.01, 0.002, 0.0129, 1.0}) {
+      const double quotient = (friction(law, qd + 1e-6) - friction(law, qd - 1e-6)) / 2e-6;
+      const double slope = frictionSlope(law, qd);
+      EXPECT_NEAR(slope, quotient, 1e-7 * (1 + std::abs(slope))) << law.index() << " qd " << qd;
+    }
+  }
+}
+
+TEST(FrictionSlope, LeavesOutTheJumpAtRest) {
+  EXPECT_EQ(frictionSlope(ViscousCoulombOffset{0.5, 2.0, 0.25}, 0.0), 0.5);
+}
+
+TEST(FrictionSlope, IsFiniteForAnyFiniteVelocityAndNanForNan) {
+  for (const FrictionLaw& law : kAllLaws) {
+    for (const double qd : {1e3, 1e100, 1e300}) {
+      EXPECT_TRUE(std::isfinite(frictionSlope(law, qd))) << law.index() << " qd " << qd;
+      EXPECT_TRUE(std::isfinite(frictionSlope(law, -qd))) << law.index() << " qd " << -qd;
+    }
+    EXPECT_TRUE(std::isnan(frictionSlope(law, kNaN))) << law.index();
+  }
+}
+
+TEST(FrictionSlopes, EachJointHasItsOwnLaw) {
+  const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(5, -1.0, 2.0);
+  Eigen::VectorXd slope = Eigen::VectorXd::Constant(5, kNaN);
+  frictionSlopes(kAllLaws, qd, slope);
+  for (Eigen::Index j = 0; j < 5; ++j) {
+    EXPECT_EQ(slope[j], frictionSlope(kAllLaws[static_cast<std::size_t>(j)], qd[j])) << j;
+  }
+}
+
 TEST(FrictionVector, EachJointHasItsOwnLaw) {
   const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(5, -1.0, 2.0);
   Eigen::VectorXd f = Eigen::VectorXd::Constant(5, kNaN);

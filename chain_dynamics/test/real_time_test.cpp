@@ -32,6 +32,8 @@ struct Everything {
         g(chain.jointCount()),
         qdd(chain.jointCount()),
         H(chain.jointCount(), chain.jointCount()),
+        dtau_dq(H),
+        dtau_dqd(H),
         Y(chain.jointCount(), 10 * chain.jointCount()) {}
 
   void compute(const Chain& chain, const ParameterSets& sets) {
@@ -43,17 +45,19 @@ struct Everything {
     dynamicComponents(chain, q, qd, H, c, g);
     forwardDynamics(chain, q, qd, tau, qdd);
     regressor(chain, q, qd, a, Y);
+    torqueDerivatives(chain, q, qd, a, dtau_dq, dtau_dqd, H);
     energy = kineticEnergy(chain, q, qd) + potentialEnergy(chain, q);
     torques(chain, sets, q, qd, a, tau);
     inertiaMatrix(chain, sets, q, H);
     coriolisVector(chain, sets, q, qd, c);
     gravityVector(chain, sets, q, g);
     dynamicComponents(chain, sets, q, qd, H, c, g);
+    torqueDerivatives(chain, sets, q, qd, a, dtau_dq, dtau_dqd, H);
   }
 
   State<Scalar> state;
   VectorX<Scalar> tau, c, g, qdd;
-  MatrixX<Scalar> H, Y;
+  MatrixX<Scalar> H, dtau_dq, dtau_dqd, Y;
   Scalar energy;
 };
 
@@ -127,6 +131,8 @@ TEST(Threads, GiveTheSameNumbersAsOneAlone) {
   for (const Everything<double>& result : results) {
     EXPECT_EQ(result.tau, alone.tau);
     EXPECT_EQ(result.H, alone.H);
+    EXPECT_EQ(result.dtau_dq, alone.dtau_dq);
+    EXPECT_EQ(result.dtau_dqd, alone.dtau_dqd);
     EXPECT_EQ(result.c, alone.c);
     EXPECT_EQ(result.g, alone.g);
     EXPECT_EQ(result.qdd, alone.qdd);

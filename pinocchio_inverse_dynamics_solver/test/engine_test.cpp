@@ -6,10 +6,12 @@
 #include <chain_dynamics/forward_dynamics.hpp>
 #include <chain_dynamics/inertia_matrix.hpp>
 #include <chain_dynamics/regressor.hpp>
+#include <chain_dynamics/torque_derivatives.hpp>
 #include <chain_dynamics/torques.hpp>
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/regressor.hpp>
+#include <pinocchio/algorithm/rnea-derivatives.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 #include <random>
 
@@ -75,11 +77,12 @@ TEST_P(Engine, AgreesWithPinocchio) {
     const VectorXd qdd = 5 * VectorXd::Random(n);
 
     VectorXd tau(n), forward(n);
-    MatrixXd H(n, n), Y(n, 10 * n);
+    MatrixXd H(n, n), Y(n, 10 * n), dtau_dq(n, n), dtau_dqd(n, n), dtau_dqdd(n, n);
     chain_dynamics::torques(chain, q, qd, qdd, tau);
     chain_dynamics::inertiaMatrix(chain, q, H);
     chain_dynamics::regressor(chain, q, qd, qdd, Y);
     chain_dynamics::forwardDynamics(chain, q, qd, tau, forward);
+    chain_dynamics::torqueDerivatives(chain, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
 
     expectEqual(tau, pinocchio::rnea(model, data, q, qd, qdd), kRounding, "torques");
     pinocchio::crba(model, data, q);
@@ -90,6 +93,10 @@ TEST_P(Engine, AgreesWithPinocchio) {
                 kRounding, "regressor");
     expectEqual(forward, pinocchio::aba(model, data, q, qd, tau, pinocchio::Convention::LOCAL),
                 kForwardRounding, "forward dynamics");
+    pinocchio::computeRNEADerivatives(model, data, q, qd, qdd);
+    expectEqual(dtau_dq, data.dtau_dq, kRounding, "derivatives by position");
+    expectEqual(dtau_dqd, data.dtau_dv, kRounding, "derivatives by velocity");
+    expectEqual(dtau_dqdd, H, kRounding, "derivatives by acceleration");
   }
 }
 

@@ -19,8 +19,8 @@
 /// overflows within the velocities of a robot. It is therefore computed with the exponent that
 /// can't be positive: for x < 0 as exp(x) / (1 + exp(x)).
 ///
-/// A new law is a struct with its figures, a function `friction(law, qd)`, a function `scaled(law,
-/// factor)`, and one more name in FrictionLaw.
+/// A new law is a struct with its figures, functions `friction(law, qd)`, `frictionSlope(law, qd)`
+/// and `scaled(law, factor)`, and one more name in FrictionLaw.
 
 #pragma once
 
@@ -94,6 +94,31 @@ inline double friction(const FrictionLaw& law, double qd) {
   return std::visit([qd](const auto& named) { return friction(named, qd); }, law);
 }
 
+/// The derivative `df/dqd` [N m s/rad] of a law at the velocity qd [rad/s]. NaN for NaN.
+///
+/// A jump (Coulomb friction at rest) has none and counts as nothing.
+/// Real time: no allocation, lock, exception or system call. Threads: safe.
+inline double frictionSlope(const ViscousCoulombOffset& law, double qd) {
+  return std::isnan(qd) ? qd : law.fv;
+}
+
+/// @copydoc frictionSlope(const ViscousCoulombOffset&, double)
+inline double frictionSlope(const ViscousOffsetSigmoid& law, double qd) {
+  const double x = law.alpha * (qd + law.nu);
+  return law.fv + law.fc * law.alpha * sigmoid(x) * sigmoid(-x);
+}
+
+/// @copydoc frictionSlope(const ViscousCoulombOffset&, double)
+inline double frictionSlope(const CenteredSigmoid& law, double qd) {
+  const double x = law.alpha * (qd + law.delta);
+  return law.A * law.alpha * sigmoid(x) * sigmoid(-x);
+}
+
+/// @copydoc frictionSlope(const ViscousCoulombOffset&, double)
+inline double frictionSlope(const FrictionLaw& law, double qd) {
+  return std::visit([qd](const auto& named) { return frictionSlope(named, qd); }, law);
+}
+
 /// The same law with its torque multiplied by a factor: from motor currents [A] to torques by a
 /// drive gain [N m/A].
 inline FrictionLaw scaled(const ViscousCoulombOffset& law, double factor) {
@@ -123,5 +148,14 @@ inline FrictionLaw scaled(const FrictionLaw& law, double factor) {
 /// Real time: no allocation, lock, exception or system call. Threads: safe.
 void frictionVector(const std::vector<FrictionLaw>& laws,
                     const Eigen::Ref<const Eigen::VectorXd>& qd, Eigen::Ref<Eigen::VectorXd> f);
+
+/// Their derivatives: `slope_j = frictionSlope(laws[j], qd_j)`, the diagonal of `df/dqd`.
+///
+/// @param laws        one per joint.
+/// @param qd          n; rad/s (prismatic m/s).
+/// @param[out] slope  n; N m s/rad (prismatic N s/m).
+/// Real time: no allocation, lock, exception or system call. Threads: safe.
+void frictionSlopes(const std::vector<FrictionLaw>& laws,
+                    const Eigen::Ref<const Eigen::VectorXd>& qd, Eigen::Ref<Eigen::VectorXd> slope);
 
 }  // namespace chain_dynamics

@@ -121,4 +121,25 @@ void dynamicComponents(const Model& model, const ConstVectorRef& q, const ConstV
 /// Real time: no allocation, lock, exception or system call. Threads: safe.
 void frictionVector(const Model& model, const ConstVectorRef& qd, VectorRef f);
 
+/// Derivatives of the friction torques: the diagonal of `df/dqd`; zero where the model knows no
+/// friction, but NaN for NaN.
+///
+/// @param qd          n; rad/s (prismatic m/s).
+/// @param[out] slope  n; N m s/rad (prismatic N s/m).
+/// Real time: no allocation, lock, exception or system call. Threads: safe.
+void frictionSlopes(const Model& model, const ConstVectorRef& qd, VectorRef slope);
+
+/// Derivatives of the joint torques without friction: `dtau/dq`, `dtau/dqd`, `dtau/dqdd = H(q)`.
+///
+/// Recursion over blocks of links [torque_derivatives.hpp], O(n^2), or once per row, O(n^3).
+///
+/// @param q,qd,qdd        n each; rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2).
+/// @param[out] dtau_dq    n x n: entry (i, j) is that of tau_i by q_j; N m/rad (prismatic N, m).
+/// @param[out] dtau_dqd   n x n; N m s/rad (prismatic N, m).
+/// @param[out] dtau_dqdd  n x n; kg m^2 (prismatic kg, mixed kg m).
+/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+void torqueDerivatives(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                       const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
+                       MatrixRef dtau_dqdd);
+
 }  // namespace chain_dynamics

@@ -24,6 +24,7 @@
 #include "chain_dynamics/gravity_vector.hpp"
 #include "chain_dynamics/inertia_matrix.hpp"
 #include "chain_dynamics/kinematics.hpp"
+#include "chain_dynamics/torque_derivatives.hpp"
 #include "chain_dynamics/torques.hpp"
 
 namespace chain_dynamics {
@@ -127,6 +128,21 @@ void rowInertia(const Chain& chain, const ParameterSets& sets, const Scratch<Tra
   }
 }
 
+// Derivatives of the torques of the links' motion, row j with set j.
+template <typename Scalar, typename Matrices>
+void rowDerivatives(const Chain& chain, const ParameterSets& sets,
+                    const Scratch<Transform<Scalar>>& X, const Scratch<Motion<Scalar>>& V,
+                    const Scratch<Motion<Scalar>>& A, const Matrices& out) {
+  if (sets.rows.empty()) {
+    derivativesOfMotion(chain, chain.links(), X, V, A, 0, out);
+    return;
+  }
+  // as in rowTorques: only row j of set j stays
+  for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
+    derivativesOfMotion(chain, sets.rows[static_cast<std::size_t>(j)], X, V, A, j, out);
+  }
+}
+
 }  // namespace internal
 
 /// Joint torques of a given motion, as torques(chain, q, qd, qdd, tau), with these parameters.
@@ -227,6 +243,33 @@ void dynamicComponents(const Chain& chain, const ParameterSets& sets, const Eige
   internal::rowInertia(chain, sets, X, H.const_cast_derived());
   internal::rowTorques(chain, sets, X, V, A, c.const_cast_derived());
   internal::rowGravity(chain, sets, X, a, g.const_cast_derived());
+}
+
+/// Derivatives of the joint torques, as torqueDerivatives(chain, q, qd, qdd, dtau_dq, dtau_dqd,
+/// dtau_dqdd), with these parameters.
+template <typename Q, typename Qd, typename Qdd, typename MatrixQ, typename MatrixQd,
+          typename MatrixH>
+void torqueDerivatives(const Chain& chain, const ParameterSets& sets, const Eigen::MatrixBase<Q>& q,
+                       const Eigen::MatrixBase<Qd>& qd, const Eigen::MatrixBase<Qdd>& qdd,
+                       const Eigen::MatrixBase<MatrixQ>& dtau_dq,
+                       const Eigen::MatrixBase<MatrixQd>& dtau_dqd,
+                       const Eigen::MatrixBase<MatrixH>& dtau_dqdd) {
+  using Scalar = typename Q::Scalar;
+  const Eigen::Index n = chain.jointCount();
+  assert(internal::haveSizesOf(chain, sets));
+  Scratch<Transform<Scalar>> X(n);
+  Scratch<Motion<Scalar>> V(n);
+  Scratch<Motion<Scalar>> A(n);
+  const auto out = internal::derivativeMatrices(chain, dtau_dq, dtau_dqd, dtau_dqdd);
+
+  // gravity is either a part of the motion, or comes on top with its own parameters
+  const bool own_gravity = !sets.gravity.empty();
+  const Eigen::Vector3d gravity = own_gravity ? Eigen::Vector3d::Zero().eval() : chain.gravity();
+  internal::linkPoses(chain, q, X);
+  internal::linkVelocities(chain, X, qd, V);
+  internal::linkAccelerations(chain, X, V, qd, qdd, gravity, A);
+  internal::rowDerivatives(chain, sets, X, V, A, out);
+  if (own_gravity) internal::addGravityDerivatives(chain, sets.gravity, X, out.q);
 }
 
 }  // namespace chain_dynamics

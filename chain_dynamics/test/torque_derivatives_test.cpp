@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/torque_derivatives.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "chain_dynamics/dual.hpp"
+#include "chain_dynamics/parameter_sets.hpp"
+#include "example_robots.hpp"
+#include "lagrange.hpp"
+#include "random_chains.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+
+// A handful of operations on numbers of size ten.
+constexpr double kByHand = 1e-13;
+
+template <typename Scalar>
+struct Derivatives {
+  explicit Derivatives(Eigen::Index n) : q(n, n), qd(n, n), qdd(n, n) {
+    for (MatrixX<Scalar>* matrix : {&q, &qd, &qdd}) {
+      matrix->setConstant(std::numeric_limits<Scalar>::quiet_NaN());
+    }
+  }
+  MatrixX<Scalar> q, qd, qdd;
+};
+
+template <typename Scalar>
+Derivatives<Scalar> derivativesOf(const Chain& chain, const State<Scalar>& x) {
+  Derivatives<Scalar> d(chain.jointCount());
+  torqueDerivatives(chain, x.q, x.qd, x.qdd, d.q, d.qd, d.qdd);
+  return d;
+}
+
+template <typename Scalar>
+Derivatives<Scalar> derivativesOf(const Chain& chain, const ParameterSets& sets,
+                                  const State<Scalar>& x) {
+  Derivatives<Scalar> d(chain.jointCount());
+  torqueDerivatives(chain, sets, x.q, x.qd, x.qdd, d.q, d.qd, d.qdd);
+  return d;
+}
+
+// The same from the torques of dual numbers, one direction after the other.
+template <typename Scalar, typename Torques>
+Derivatives<Scalar> byDualNumbers(const State<Scalar>& x, const Torques& torques_of) {
+  const Eigen::Index n = x.q.size();
+  const auto constants = x.template cast<Dual<Scalar, 1>>();
+  const auto derivative = [&](const State<Dual<Scalar, 1>>& varied) {
+    VectorX<Dual<Scalar, 1>> tau(n);
+    torques_of(varied, tau);
+    return tau.unaryExpr([](const auto& t) { return t.derivative[0]; }).eval();
+  };
+  Derivatives<Scalar> d(n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    d.q.col(j) = derivative({variable(x.q, j), constants.qd, constants.qdd});
+    d.qd.col(j) = derivative({constants.q, variable(x.qd, j), constants.qdd});
+    d.qdd.col(j) = derivative({constants.q, constants.qd, variable(x.qdd, j)});
+  }
+  return d;
+}
+
+template <typename Scalar>
+void expectSame(const Chain& chain, const Derivatives<Scalar>& a, const Derivatives<Scalar>& b) {
+  const Scalar tolerance = rounding<Scalar>(chain);
+  EXPECT_TRUE(agree(a.q, b.q, largest(b.q), tolerance)) << "by q";
+  EXPECT_TRUE(agree(a.qd, b.qd, largest(b.qd), tolerance)) << "by qd";
+  EXPECT_TRUE(agree(a.qdd, b.qdd, largest(b.qdd), tolerance)) << "by qdd";
+}
+
+// Parameters that no body has, except that a Chain wants no negative mass.
+std::vector<LinkParameters> identifiedLinks(Random& random, const Chain& chain) {
+  std::vector<LinkParameters> links;
+  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
+    links.push_back(randomIdentifiedLink(random));
+    links.back().mass = std::abs(links.back().mass);
+  }
+  return links;
+}
+
+template <typename Scalar>
+class TorqueDerivativesOf : public ::testing::Test {};
+using Scalars = ::testing::Types<double, float>;
+TYPED_TEST_SUITE(TorqueDerivativesOf, Scalars);
+
+// tau = (m l^2 + J) qdd + m g l cos q
+TEST(TorqueDerivatives, OfAPendulumByHand) {
+  const Chain chain = pendulum(2, 0.5, 9.81, 0.25);
+  State<double> x{VectorX<double>(1), VectorX<double>(1), VectorX<double>(1)};
+  x.q << 0.7;
+  x.qd << 2;
+  x.qdd << -3;
+  const Derivatives<double> d = derivativesOf(chain, x);
+  EXPECT_NEAR(d.q(0, 0), -2 * 9.81 * 0.5 * std::sin(0.7), kByHand);
+  EXPECT_NEAR(d.qd(0, 0), 0, kByHand);
+  EXPECT_NEAR(d.qdd(0, 0), 0.75, kByHand);
+}
+
+// A mass at radius r on a turntable: tau = m (r^2 phi'' + 2 r r' phi'), f = m (r'' - r phi'^2).
+TEST(TorqueDerivatives, OfATurntableByHand) {
+  const double m = 3, r = 0.4, rd = -0.7, rdd = 1.1, phid = 2, phidd = 5;
+  State<double> x{VectorX<double>(2), VectorX<double>(2), VectorX<double>(2)};
+  x.q << 0.3, r;
+  x.qd << phid, rd;
+  x.qdd << phidd, rdd;
+  const Derivatives<double> d = derivativesOf(turntable(m), x);
+  Derivatives<double> expected(2);
+  expected.q << 0, m * (2 * r * phidd + 2 * rd * phid), 0, -m * phid * phid;
+  expected.qd << 2 * m * r * rd, 2 * m * r * phid, -2 * m * r * phid, 0;
+  expected.qdd << m * r * r, 0, 0, m;
+  EXPECT_TRUE(agree(d.q, expected.q, 1, kByHand));
+  EXPECT_TRUE(agree(d.qd, expected.qd, 1, kByHand));
+  EXPECT_TRUE(agree(d.qdd, expected.qdd, 1, kByHand));
+}
+
+TYPED_TEST(TorqueDerivativesOf, AnyRobotAreThoseOfDualNumbers) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& x) {
+    expectSame(chain, derivativesOf(chain, x), byDualNumbers(x, [&](const auto& varied, auto& tau) {
+                 torques(chain, varied.q, varied.qd, varied.qdd, tau);
+               }));
+  });
+}
+
+TEST(TorqueDerivatives, HoldAtLargeAngles) {
+  const Chain chain = randomChain(6);
+  for (const double angle : {1e4, -1e7}) {
+    State<double> x = randomState<double>(chain, 2);
+    x.q[0] = x.q[3] = angle;
+    expectSame(chain, derivativesOf(chain, x), byDualNumbers(x, [&](const auto& varied, auto& tau) {
+                 torques(chain, varied.q, varied.qd, varied.qdd, tau);
+               }));
+  }
+}
+
+TYPED_TEST(TorqueDerivativesOf, ParameterSetsAreThoseOfDualNumbers) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& x) {
+    if (chain.jointCount() > 9) return;
+    Random random(7);
+    std::vector<std::vector<LinkParameters>> rows;
+    for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
+      rows.push_back(identifiedLinks(random, chain));
+    }
+    const std::vector<LinkParameters> gravity = identifiedLinks(random, chain);
+    for (const auto& own_rows : {decltype(rows)(), rows}) {
+      for (const auto& own_gravity : {std::vector<LinkParameters>(), gravity}) {
+        const ParameterSets sets{own_rows, own_gravity};
+        expectSame(chain, derivativesOf(chain, sets, x),
+                   byDualNumbers(x, [&](const auto& varied, auto& tau) {
+                     torques(chain, sets, varied.q, varied.qd, varied.qdd, tau);
+                   }));
+      }
+    }
+  });
+}
+
+// Entry (i, j) depends on everything here but for what symmetry takes away: with one joint's
+// number unknown, no entry that depends on it may look known.
+TEST(TorqueDerivatives, AreNanWhereTheyDependOnANan) {
+  const Chain chain = randomChain(4);
+  const State<double> known = randomState<double>(chain, 0);
+  State<double> x = known;
+  x.q[3] = std::numeric_limits<double>::quiet_NaN();
+  Derivatives<double> d = derivativesOf(chain, x);
+  EXPECT_TRUE(d.q.array().isNaN().all()) << d.q;
+  EXPECT_TRUE(d.qd.topLeftCorner(3, 3).array().isNaN().all()) << d.qd;
+  x = known;
+  x.qd[0] = std::numeric_limits<double>::quiet_NaN();
+  d = derivativesOf(chain, x);
+  EXPECT_TRUE(d.q.rightCols(3).array().isNaN().all()) << d.q;
+  EXPECT_TRUE(d.qdd.allFinite());
+}
+
+}  // namespace
+}  // namespace chain_dynamics
