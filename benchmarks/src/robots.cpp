@@ -23,8 +23,12 @@ std::string textOf(const std::string& file) {
 
 }  // namespace
 
+std::vector<Robot> realRobots() {
+  return {{"ur10", textOf("ur10.urdf")}, {"panda", textOf("panda.urdf")}};
+}
+
 std::vector<Robot> robots() {
-  std::vector<Robot> all = {{"ur10", textOf("ur10.urdf")}, {"panda", textOf("panda.urdf")}};
+  std::vector<Robot> all = realRobots();
   for (const int n : {1, 2, 3, 6, 7, 10, 15, 20, 30}) {
     all.push_back({"mixed" + std::to_string(n), generatedChain(n, Joints::kTurningAndSliding)});
   }

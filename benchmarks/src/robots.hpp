@@ -15,7 +15,10 @@ struct Robot {
   std::string urdf;
 };
 
-/// UR10 and Panda, chains of 1 to 30 joints that turn and slide, and of 6 and 7 that turn.
+/// UR10 and Panda.
+std::vector<Robot> realRobots();
+
+/// These, chains of 1 to 30 joints that turn and slide, and of 6 and 7 that turn.
 std::vector<Robot> robots();
 
 }  // namespace inverse_dynamics_benchmarks
