@@ -14,9 +14,9 @@
 /// In CMake: `inverse_dynamics_solver_add_plugin_test(my_solver_conformance_test
 /// test/my_solver_conformance_test.cpp PLUGIN my_solver_plugin)`.
 ///
-/// Parts one to three, initialization_tests.hpp, contract_tests.hpp and batch_tests.hpp, are what
-/// callers are promised; part four, law_tests.hpp, is physics. A test that doesn't apply to a
-/// solver is skipped and says why.
+/// Parts one to four, initialization_tests.hpp, contract_tests.hpp, batch_tests.hpp and
+/// real_time_tests.hpp, are what callers are promised; part five, law_tests.hpp, is physics. A test
+/// that doesn't apply to a solver is skipped and says why.
 ///
 /// The plugin is loaded by name, as users do. Random states have a fixed seed, and a failure prints
 /// its state as C++ to be pasted. Tolerances and their reasons stand in solver_fixture.hpp.
@@ -26,6 +26,7 @@
 #include "inverse_dynamics_solver/conformance/contract_tests.hpp"
 #include "inverse_dynamics_solver/conformance/initialization_tests.hpp"
 #include "inverse_dynamics_solver/conformance/law_tests.hpp"
+#include "inverse_dynamics_solver/conformance/real_time_tests.hpp"
 
 namespace inverse_dynamics_solver::conformance {
 
@@ -42,6 +43,8 @@ REGISTER_TYPED_TEST_SUITE_P(
     // Many states at once.
     BatchOfWrongShapeIsRefused, BatchEqualsSingleCalls, BatchesOfAnyLayoutGiveTheBitsOfColumns,
     ThreadsThatShareABatchGiveTheBitsOfOne,
+    // Real time.
+    CallsIntoMemoryOfTheCallerMakeNoSystemCall, NoDenormalNumberArises,
     // Physics.
     TorquesAreTheSumOfTheirTerms, ComponentsEqualTheSingleMethods, TorquesAreLinearInAcceleration,
     CoriolisTorquesAreQuadraticInVelocity, GravityTorquesAreProportionalToGravity,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Conformance, part four: laws of physics, which need no expected digits. Include
+/// Conformance, part five: laws of physics, which need no expected digits. Include
 /// conformance_tests.hpp, not this.
 #pragma once
 

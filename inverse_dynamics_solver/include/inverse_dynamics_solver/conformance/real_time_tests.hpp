@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Conformance, part four: what a control loop can't have. Include conformance_tests.hpp, not
+/// this.
+#pragma once
+
+#include <unistd.h>
+
+#include <limits>
+
+#include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
+#include "inverse_dynamics_solver/conformance/without_system_calls.hpp"
+
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
+
+namespace inverse_dynamics_solver::conformance {
+
+/// Calls every method that writes into memory of the caller.
+class CallsOfALoop {
+ public:
+  explicit CallsOfALoop(const InverseDynamicsSolver& solver)
+      : solver_(solver),
+        H_(solver.jointCount(), solver.jointCount()),
+        c_(solver.jointCount()),
+        f_(c_),
+        g_(c_),
+        tau_(c_) {}
+
+  void operator()(const State& x) {
+    solver_.getInertiaMatrix(x.q, H_);
+    solver_.getCoriolisVector(x.q, x.qd, c_);
+    solver_.getFrictionVector(x.qd, f_);
+    solver_.getGravityVector(x.q, g_);
+    solver_.getDynamicComponents(x.q, x.qd, H_, c_, g_);
+    solver_.getTorques(x.q, x.qd, x.qdd, tau_);
+  }
+
+ private:
+  const InverseDynamicsSolver& solver_;
+  Eigen::MatrixXd H_;
+  Eigen::VectorXd c_, f_, g_, tau_;
+};
+
+/// The very first calls count too: the solver is a fresh one.
+TYPED_TEST_P(SolverConformance, CallsIntoMemoryOfTheCallerMakeNoSystemCall) {
+  const SystemCalls proof = runWithoutSystemCalls([] { getppid(); });
+  if (proof == SystemCalls::kNotKnown) GTEST_SKIP() << "system calls can't be forbidden here";
+  ASSERT_EQ(proof, SystemCalls::kMade) << "a system call isn't seen";
+
+  const std::vector<State> states = this->randomStates(kStates);
+  CallsOfALoop calls(*this->solver_);
+  EXPECT_EQ(runWithoutSystemCalls([&] {
+              for (const State& x : states) calls(x);
+            }),
+            SystemCalls::kNone);
+}
+
+#ifdef __SSE2__
+
+/// Flags of the processor that say: an operand, or a result, was too small for all its digits.
+constexpr unsigned kDenormalFlags = 0x0002U | 0x0010U;
+
+template <typename Code>
+unsigned denormalFlagsOf(const Code& code) {
+  const unsigned before = _mm_getcsr();
+  _mm_setcsr(before & ~_MM_EXCEPT_MASK);
+  code();
+  const unsigned after = _mm_getcsr();
+  _mm_setcsr(before);
+  return after & kDenormalFlags;
+}
+
+#endif
+
+/// Some processors take a hundred times as long for such numbers. At rest, and between 1e-100 and
+/// 1e9 rad/s, none arises; a filter that decays beyond that must be cut off by its owner.
+TYPED_TEST_P(SolverConformance, NoDenormalNumberArises) {
+#ifdef __SSE2__
+  volatile double smallest = std::numeric_limits<double>::min();
+  ASSERT_NE(denormalFlagsOf([&] { smallest = smallest / 3.0; }), 0U) << "the flags aren't set";
+
+  CallsOfALoop calls(*this->solver_);
+  for (const State& x : this->randomStates(kStates)) {
+    for (const double position : {0.0, 1.0}) {
+      for (const double motion : {0.0, 1e-100, 1e-9, 1.0, 1e3, 1e9}) {
+        const State scaled = {position * x.q, motion * x.qd, motion * x.qdd};
+        EXPECT_EQ(denormalFlagsOf([&] { calls(scaled); }), 0U) << toString(scaled);
+      }
+    }
+  }
+#else
+  GTEST_SKIP() << "this processor's flags aren't read";
+#endif
+}
+
+}  // namespace inverse_dynamics_solver::conformance
