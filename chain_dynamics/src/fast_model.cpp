@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "chain_dynamics/error.hpp"
+#include "chain_dynamics/forward_dynamics.hpp"
 #include "fast/regroup.hpp"
 #include "fast/robot.hpp"
 
@@ -17,6 +18,10 @@ using fast::Robot;
 
 static_assert(FastModel::kMaxJoints == fast::kMaxJoints);
 static_assert(sizeof(Body) == fast::kBodyNumbers * sizeof(double));
+
+/// Longest chain whose accelerations are solved for in O(n^3); beyond it the O(n) recursion is
+/// faster.
+constexpr Eigen::Index kSolvedJoints = 16;
 
 /// Rows and joints of arrays that are read a pack at a time.
 constexpr std::size_t kPack = 8;
@@ -86,7 +91,9 @@ fast::Matrices matrices(const StridedMatrices& H) {
 /// What the arrays of the robot are in.
 struct FastModel::Data {
   explicit Data(const Model& model)
-      : frames(fast::framesOf(model.chain)), bodies(fast::regrouped(frames, model.chain.links())) {
+      : chain(model.chain),
+        frames(fast::framesOf(chain)),
+        bodies(fast::regrouped(frames, model.chain.links())) {
     stride = padded(bodies.size());
     frames.quarter_turns.resize(stride, 0.0);
     if (!model.gravity_parameters.empty()) {
@@ -95,6 +102,7 @@ struct FastModel::Data {
     for (const auto& links : model.row_parameters) rows.push_back(fast::regrouped(frames, links));
     fillRowLanes();
     fillFriction(model.friction);
+    own = fast::ownPlacements(frames, chain);
     fillRobot();
   }
 
@@ -129,6 +137,7 @@ struct FastModel::Data {
                               [](const fast::Placement& X) { return X.prismatic; });
     std::copy_n(frames.root.data(), 3, robot.root);
     robot.placements = frames.placements.data();
+    robot.own = own.data();
     robot.quarter_turns = frames.quarter_turns.data();
     robot.bodies = bodies.data();
     robot.gravity_bodies = gravity_bodies.empty() ? nullptr : gravity_bodies.data();
@@ -138,7 +147,9 @@ struct FastModel::Data {
     robot.stride = static_cast<int>(stride);
   }
 
+  Chain chain;
   fast::Frames frames;
+  std::vector<fast::OwnPlacement> own;
   std::vector<Body> bodies;
   std::size_t stride = 0;
   std::vector<Body> gravity_bodies;
@@ -236,6 +247,35 @@ void FastModel::frictionVector(const double* qd, double* f) const {
 void FastModel::dynamicComponents(const double* q, const double* qd, double* H,
                                   std::ptrdiff_t outer_step, double* c, double* g) const {
   kernels_->components(robot(), structure_, q, qd, {H, 1, outer_step, 0}, c, g);
+}
+
+void FastModel::forwardDynamics(const double* q, const double* qd, const double* tau,
+                                double* qdd) const {
+  const Chain& chain = data_->chain;
+  const Eigen::Index n = chain.jointCount();
+  if (n <= kSolvedJoints || robot().rows != nullptr || robot().gravity_bodies != nullptr) {
+    kernels_->forward_dynamics(robot(), structure_, q, qd, tau, qdd);
+    return;
+  }
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
+  using Given = Eigen::Map<const Eigen::VectorXd>;
+  Vector without_friction(n);
+  kernels_->friction(robot(), qd, without_friction.data());
+  without_friction = Given(tau, n) - without_friction;
+  chain_dynamics::forwardDynamics(chain, Given(q, n), Given(qd, n), without_friction,
+                                  Eigen::Map<Eigen::VectorXd>(qdd, n));
+}
+
+void FastModel::regressor(const double* q, const double* qd, const double* qdd, double* Y,
+                          std::ptrdiff_t outer_step) const {
+  kernels_->regressor(robot(), q, qd, qdd, {Y, 1, outer_step, 0});
+}
+
+void FastModel::torqueDerivatives(const double* q, const double* qd, const double* qdd,
+                                  double* dtau_dq, double* dtau_dqd, double* dtau_dqdd,
+                                  std::ptrdiff_t outer_step) const {
+  kernels_->torque_derivatives(robot(), structure_, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd,
+                               outer_step);
 }
 
 void FastModel::torquesBatch(ConstStates q, ConstStates qd, ConstStates qdd, States tau) const {

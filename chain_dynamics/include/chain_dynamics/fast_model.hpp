@@ -72,6 +72,21 @@ class FastModel {
   /// `H(q)`, `C(q, qd) qd`, `g(q)`.
   void dynamicComponents(const double* q, const double* qd, double* H, std::ptrdiff_t outer_step,
                          double* c, double* g) const;
+  /// `qdd` of given torques, friction taken off: the inverse of torques().
+  ///
+  /// H and the rest, then their equations; a long chain with one set of parameters by the recursion
+  /// of forward_dynamics.hpp. What that header says of an H that isn't physical holds here: the
+  /// result solves the equations (with row parameters too, by elimination), but describes no
+  /// motion of a robot. Infinity or NaN where H is singular.
+  void forwardDynamics(const double* q, const double* qd, const double* tau, double* qdd) const;
+  /// `Y(q, qd, qdd)` of regressor.hpp, n x 10 n: of rigid bodies, whatever parameters and friction
+  /// the model has. Entry (i, j) at Y[i + j * outer_step].
+  void regressor(const double* q, const double* qd, const double* qdd, double* Y,
+                 std::ptrdiff_t outer_step) const;
+  /// `dtau/dq`, `dtau/dqd` and `dtau/dqdd = H(q)` of torques(), with frictionSlope(): n x n each,
+  /// entry (i, j), of tau_i by joint j, at [i + j * outer_step].
+  void torqueDerivatives(const double* q, const double* qd, const double* qdd, double* dtau_dq,
+                         double* dtau_dqd, double* dtau_dqdd, std::ptrdiff_t outer_step) const;
   /// @}
 
   /// @name Many states

@@ -22,8 +22,17 @@ FAST_INLINE V frictionOf(const V& qd, const Number& number) {
          number(3) * (sigmoid<V>(number(4) * (qd + number(5))) - number(6));
 }
 
-// f has room for a pack at the end.
-void frictionNumbers(const Robot& robot, const double* qd, double* f) {
+// Its derivative by qd; none at the jump of sign(qd).
+template <typename V, typename Number>
+FAST_INLINE V frictionSlopeOf(const V& qd, const Number& number) {
+  const V x = number(4) * (qd + number(5));
+  const V e = expOfMinus<V>(x < 0.0 ? -x : x);
+  return number(0) + (number(3) * number(4)) * (e / ((1.0 + e) * (1.0 + e)));
+}
+
+// of(qd, numbers of the law) for all joints; result has room for a pack at the end.
+template <typename Of>
+FAST_INLINE void forEachLaw(const Robot& robot, const double* qd, double* result, const Of& of) {
   const int n = robot.joints;
   double padded[kShortWidth] = {};
   for (int i = 0; i < n; i += kShortWidth) {
@@ -36,8 +45,19 @@ void frictionNumbers(const Robot& robot, const double* qd, double* f) {
     const auto number = [&](int k) {
       return load<Short>(robot.friction + std::ptrdiff_t{k} * robot.stride + first);
     };
-    store(frictionOf(load<Short>(from), number), f + first);
+    store(of(load<Short>(from), number), result + first);
   }
+}
+
+void frictionNumbers(const Robot& robot, const double* qd, double* f) {
+  forEachLaw(robot, qd, f,
+             [](const Short& x, const auto& number) FAST_LAMBDA { return frictionOf(x, number); });
+}
+
+void frictionSlopes(const Robot& robot, const double* qd, double* slopes) {
+  forEachLaw(robot, qd, slopes, [](const Short& x, const auto& number) FAST_LAMBDA {
+    return frictionSlopeOf(x, number);
+  });
 }
 
 void frictionOfState(const Robot& robot, const double* qd, double* f) {

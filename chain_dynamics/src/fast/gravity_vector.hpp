@@ -12,6 +12,20 @@
 namespace chain_dynamics::fast {
 namespace {
 
+/// First moment of what hangs on joint i, on to the link before; m is its mass.
+template <typename S, typename I, typename V, typename P, typename M>
+FAST_INLINE void carryPoint(I i, const Robot& robot, const State<V>& state, const M& m,
+                            Vec<P>& mc) {
+  const Placement& X = robot.placements[i];
+  if (S::kMixed && X.prismatic) mc.z += m * state.q[i];
+  constexpr Twist kTwist = S::twist(I());
+  mc = outOf<kTwist>(Turn<V>{state.c[i], state.s[i], X}, mc);
+  if (S::kMixed) {  // joints that turn leave no mass
+    mc.x += m * X.px;
+    mc.y += m * X.py;
+  }
+}
+
 /// Gravity in the links' frames, then what hangs on each joint as a heavy point, from tip to
 /// `first`; each(i, torque).
 template <typename S, typename V, typename P, typename First, typename BodyOf, typename Each>
@@ -30,16 +44,7 @@ FAST_INLINE void forEachGravity(const Robot& robot, const State<V>& state, First
     } else {
       each(i, mc.x * a[i].y - mc.y * a[i].x);
     }
-    if (i == first) return;
-
-    // on to the link before
-    if (prismatic) mc.z += body.mass_beyond * state.q[i];
-    constexpr Twist kTwist = S::twist(decltype(i)());
-    mc = outOf<kTwist>(Turn<V>{state.c[i], state.s[i], X}, mc);
-    if (S::kMixed) {  // joints that turn leave no mass
-      mc.x += body.mass_beyond * X.px;
-      mc.y += body.mass_beyond * X.py;
-    }
+    if (i != first) carryPoint<S>(i, robot, state, body.mass_beyond, mc);
   });
 }
 

@@ -90,6 +90,26 @@ FAST_INLINE void shift(int i, const Placement& X, const M& m, Composite<P>& I) {
   }
 }
 
+/// On to the link before joint i; m is the mass of the body.
+template <typename S, typename I, typename V, typename P, typename M>
+FAST_INLINE void carry(I i, const Robot& robot, const State<V>& state, const M& m,
+                       Composite<P>& body) {
+  const Placement& X = robot.placements[i];
+  if (S::kMixed && X.prismatic) {
+    // moved along z by q
+    const P h = body.mc.z + (0.5 * m) * state.q[i];
+    body.xz += state.q[i] * body.mc.x;
+    body.yz += state.q[i] * body.mc.y;
+    body.zz += 2.0 * (state.q[i] * h);
+    body.mc.z += m * state.q[i];
+  }
+  constexpr Twist kTwist = S::twist(I());
+  turn(state.c[i], state.s[i], body);
+  twist<kTwist>(X, body);
+  body.mc = outOf<kTwist>(Turn<V>{state.c[i], state.s[i], X}, body.mc);
+  shift<S>(i, X, m, body);
+}
+
 /// The composite bodies from tip to `first`, and the forces at each joint j <= i that accelerate
 /// joint i by one; each(i, j, H_ij).
 template <typename S, typename V, typename P, typename First, typename BodyOf, typename Each>
@@ -110,34 +130,10 @@ FAST_INLINE void forEachInertia(const Robot& robot, const State<V>& state, First
 
     // H_ji = S_j' F in the frames of the joints before
     S::backwardsFrom(i, [&](auto j) FAST_LAMBDA {
-      const Placement& Y = robot.placements[j];
-      if (S::kMixed && Y.prismatic) {
-        F.n.x -= state.q[j] * F.f.y;
-        F.n.y += state.q[j] * F.f.x;
-      }
-      constexpr Twist kTwist = S::twist(decltype(j)());
-      const Turn<V> t{state.c[j], state.s[j], Y};
-      F.f = outOf<kTwist>(t, F.f);
-      F.n = outOf<kTwist>(t, F.n);
-      addLever<S>(j, Y, F);
+      carry<S>(j, robot, state, F);
       each(i, j - 1, S::kMixed && robot.placements[j - 1].prismatic ? F.f.z : F.n.z);
     });
-    if (i == first) return;
-
-    // on to the link before
-    if (prismatic) {
-      // moved along z by q
-      const P h = I.mc.z + (0.5 * body.mass_beyond) * state.q[i];
-      I.xz += state.q[i] * I.mc.x;
-      I.yz += state.q[i] * I.mc.y;
-      I.zz += 2.0 * (state.q[i] * h);
-      I.mc.z += body.mass_beyond * state.q[i];
-    }
-    constexpr Twist kTwist = S::twist(decltype(i)());
-    turn(state.c[i], state.s[i], I);
-    twist<kTwist>(X, I);
-    I.mc = outOf<kTwist>(Turn<V>{state.c[i], state.s[i], X}, I.mc);
-    shift<S>(i, X, body.mass_beyond, I);
+    if (i != first) carry<S>(i, robot, state, body.mass_beyond, I);
   });
 }
 

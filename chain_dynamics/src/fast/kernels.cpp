@@ -8,6 +8,9 @@
 #include "gravity_vector.hpp"
 #include "inertia_matrix.hpp"
 #include "lanes.hpp"
+#include "linear_solve.hpp"
+#include "regressor.hpp"
+#include "torque_derivatives.hpp"
 #include "torques.hpp"
 #include "turns.hpp"
 
@@ -54,6 +57,14 @@ constexpr Recursions<V> kRecursionsByRow[] = {
     {torquesByRow<ParallelWrist, V>, gravityByRow<ParallelWrist, V>,
      inertiaByRow<ParallelWrist, V>},
 };
+
+// Of one state, with one set of parameters or one for each row.
+using Derivatives = void (*)(const Robot&, const State<double>&, const double* root,
+                             const DerivativeEntries&);
+constexpr Derivatives kDerivatives[] = {
+    torqueDerivatives<AnyStructure>,   torqueDerivatives<ParallelWrist>,
+    torqueDerivatives<SphericalWrist>, torqueDerivatives<RightAngles>,
+    torqueDerivatives<AnySix>,         torqueDerivatives<AnySeven>};
 
 int structureOf(const Robot& robot) {
   if (ParallelWrist::covers(robot)) return 1;
@@ -150,6 +161,52 @@ void componentsOfState(const Robot& robot, int structure, const double* q, const
       .inertia(robot, state, Entries<double>{H.data, H.row_step, H.column_step});
   coriolisOf(robot, structure, state, coriolis);
   gravityOf(robot, structure, state, g);
+}
+
+void forwardDynamicsOfState(const Robot& robot, int structure, const double* q, const double* qd,
+                            const double* tau, double* qdd) {
+  const int n = robot.joints;
+  JointNumbers c;
+  JointNumbers s;
+  JointNumbers bias;
+  double H[kMaxJoints * kMaxJoints];
+  double accelerating[kMaxJoints];
+  turnsOfState(robot, q, c.values, s.values);
+  const State<double> state{c.values, s.values, q, qd, kAtRest};
+  torquesOf(robot, structure, state, bias.values);
+  for (int i = 0; i < n; ++i) accelerating[i] = tau[i] - bias.values[i];
+  if (robot.friction != nullptr) {
+    frictionNumbers(robot, qd, bias.values);
+    for (int i = 0; i < n; ++i) accelerating[i] -= bias.values[i];
+  }
+  recursionsOf<double>(robot, structure).inertia(robot, state, Entries<double>{H, n, 1});
+  (robot.rows != nullptr ? solveGeneral : solveSymmetric)(n, H, accelerating);
+  for (int i = 0; i < n; ++i) qdd[i] = accelerating[i];
+}
+
+void regressorOfState(const Robot& robot, const double* q, const double* qd, const double* qdd,
+                      Matrices Y) {
+  JointNumbers c;
+  JointNumbers s;
+  turnsOfState(robot, q, c.values, s.values);
+  regressor(robot, State<double>{c.values, s.values, q, qd, qdd}, Y);
+}
+
+void torqueDerivativesOfState(const Robot& robot, int structure, const double* q, const double* qd,
+                              const double* qdd, double* by_q, double* by_qd, double* by_qdd,
+                              std::ptrdiff_t outer_step) {
+  JointNumbers c;
+  JointNumbers s;
+  turnsOfState(robot, q, c.values, s.values);
+  const State<double> state{c.values, s.values, q, qd, qdd};
+  const bool own_gravity = robot.gravity_bodies != nullptr;
+  kDerivatives[structure](robot, state, own_gravity ? kNoGravity : robot.root,
+                          DerivativeEntries{by_q, by_qd, by_qdd, outer_step});
+  if (own_gravity) addGravityDerivatives(robot, state, by_q, outer_step);
+  if (robot.friction != nullptr) {
+    frictionSlopes(robot, qd, c.values);
+    for (int i = 0; i < robot.joints; ++i) by_qd[i + i * outer_step] += c.values[i];
+  }
 }
 
 // ---------------------------------------------------------------- many states
@@ -292,6 +349,9 @@ const Kernels& CHAIN_DYNAMICS_KERNELS() {
                                        inertiaOfState,
                                        componentsOfState,
                                        frictionOfState,
+                                       forwardDynamicsOfState,
+                                       regressorOfState,
+                                       torqueDerivativesOfState,
                                        torquesBatch,
                                        coriolisBatch,
                                        gravityBatch,

@@ -123,6 +123,31 @@ FAST_INLINE void addLever(I i, const Placement& X, Wrench<P>& W) {
   }
 }
 
+/// What a state consists of, joint by joint.
+template <typename V>
+struct State {
+  const V* c;
+  const V* s;
+  const V* q;  // read where joints slide
+  const V* qd;
+  const V* qdd;
+};
+
+/// On to the link before joint i.
+template <typename S, typename I, typename V, typename P>
+FAST_INLINE void carry(I i, const Robot& robot, const State<V>& state, Wrench<P>& W) {
+  const Placement& X = robot.placements[i];
+  if (S::kMixed && X.prismatic) {
+    W.n.x -= state.q[i] * W.f.y;
+    W.n.y += state.q[i] * W.f.x;
+  }
+  constexpr Twist kTwist = S::twist(I());
+  const Turn<V> t{state.c[i], state.s[i], X};
+  W.f = outOf<kTwist>(t, W.f);
+  W.n = outOf<kTwist>(t, W.n);
+  addLever<S>(i, X, W);
+}
+
 template <bool Prismatic, typename V, typename B>
 FAST_INLINE auto wrenchOf(const LinkMotion<V>& U, const B& b) {
   using P = decltype(U.xx * b.mcx);
@@ -142,16 +167,6 @@ FAST_INLINE auto wrenchOf(const LinkMotion<V>& U, const B& b) {
   }
   return W;
 }
-
-/// What a state consists of, joint by joint.
-template <typename V>
-struct State {
-  const V* c;
-  const V* s;
-  const V* q;  // read where joints slide
-  const V* qd;
-  const V* qdd;
-};
 
 /// The links' motion from root to tip; each(i, motion).
 template <typename S, typename V, typename Each>

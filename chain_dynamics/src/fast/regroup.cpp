@@ -191,4 +191,21 @@ std::vector<Body> regrouped(const Frames& frames, const std::vector<LinkParamete
   return bodies;
 }
 
+std::vector<OwnPlacement> ownPlacements(const Frames& frames, const Chain& chain) {
+  std::vector<OwnPlacement> own(frames.placements.size());
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    Angle offset{frames.placements[i].offset_cos, frames.placements[i].offset_sin};
+    for (int turn = 0; turn < static_cast<int>(frames.quarter_turns[i]); ++turn) {
+      offset = {-offset.s, offset.c};
+    }
+    // the root's placement is in the direction of gravity
+    Transform<double> X = chain.joints()[i].placement;
+    if (i == 0) X = Transform<double>::identity();
+    Eigen::Map<Matrix3<double>>(own[i].R) = X.R * rotationAboutZ(-offset);
+    Eigen::Map<Vector3<double>>(own[i].p) = X.p;
+    own[i].prismatic = frames.placements[i].prismatic;
+  }
+  return own;
+}
+
 }  // namespace chain_dynamics::fast

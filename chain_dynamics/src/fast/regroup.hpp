@@ -35,4 +35,7 @@ Frames framesOf(const Chain& chain);
 /// slides along z without changing (the second moment), is moved to the link before.
 std::vector<Body> regrouped(const Frames& frames, const std::vector<LinkParameters>& links);
 
+/// The chain's own frames, with the angles of the new ones: each is turned back by the offset.
+std::vector<OwnPlacement> ownPlacements(const Frames& frames, const Chain& chain);
+
 }  // namespace chain_dynamics::fast

@@ -47,6 +47,13 @@ constexpr int kBodyNumbers = 10;
 /// `f = fv qd + fc sign(qd) + fo + A (sigmoid(alpha (qd + shift)) - centre)`.
 constexpr int kFrictionNumbers = 7;
 
+/// A joint's place in the frames of the robot's description, with the angles of Placement.
+struct OwnPlacement {
+  double R[9];  ///< of frame i in frame i - 1 where the angle is zero, column by column
+  double p[3];  ///< origin; m
+  bool prismatic;
+};
+
 /// All of a robot. Pointers to arrays with one entry per joint, or null.
 struct Robot {
   int joints;
@@ -54,6 +61,7 @@ struct Robot {
   bool mixed;            ///< a joint slides
   double root[3];        ///< minus gravity, in the frame of the first joint at q = 0
   const Placement* placements;
+  const OwnPlacement* own;      ///< the regressor's
   const double* quarter_turns;  ///< 0, 1, 2 or 3 per joint: part of the offset
   const Body* bodies;           ///< one set for all rows
   const Body* gravity_bodies;   ///< null: gravity has the same set
@@ -92,6 +100,12 @@ struct Kernels {
   void (*components)(const Robot&, int structure, const double* q, const double* qd, Matrices H,
                      double* c, double* g);
   void (*friction)(const Robot&, const double* qd, double* f);
+  void (*forward_dynamics)(const Robot&, int structure, const double* q, const double* qd,
+                           const double* tau, double* qdd);
+  void (*regressor)(const Robot&, const double* q, const double* qd, const double* qdd, Matrices Y);
+  void (*torque_derivatives)(const Robot&, int structure, const double* q, const double* qd,
+                             const double* qdd, double* by_q, double* by_qd, double* by_qdd,
+                             std::ptrdiff_t outer_step);
 
   void (*torques_batch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
                         Samples qdd, Samples tau);

@@ -25,18 +25,7 @@ FAST_INLINE void forEachJointForce(const Robot& robot, const State<V>& state, Fi
     const Placement& X = robot.placements[i];
     const bool prismatic = S::kMixed && X.prismatic;
     each(i, prismatic ? W.f.z : W.n.z);
-    if (i == first) return;
-
-    // on to the link before
-    if (prismatic) {
-      W.n.x -= state.q[i] * W.f.y;
-      W.n.y += state.q[i] * W.f.x;
-    }
-    constexpr Twist kTwist = S::twist(decltype(i)());
-    const Turn<V> t{state.c[i], state.s[i], X};
-    W.f = outOf<kTwist>(t, W.f);
-    W.n = outOf<kTwist>(t, W.n);
-    addLever<S>(i, X, W);
+    if (i != first) carry<S>(i, robot, state, W);
   });
 }
 

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Regressor of the torques: the rows of all joints as lanes.
+///
+/// Included by kernels.cpp only [pack.hpp]. All ten parameters of a link, in the frame that its
+/// description has: neither the few parameters nor the simple frames of the other kernels are of
+/// use. The axes of the joints go along from link to link, as motions, and meet what each link
+/// would need for one unit of each of its parameters [chain_dynamics/regressor.hpp].
+
+#pragma once
+
+#include "link_motion.hpp"
+
+namespace chain_dynamics::fast {
+namespace {
+
+/// Axes and origin of a link's frame in that of the link before.
+struct Pose {
+  Vec<double> x, y, z, p;
+};
+
+FAST_INLINE Pose poseOf(const OwnPlacement& own, double c, double s, double q) {
+  const double* const R = own.R;  // columns
+  Pose X{{R[0] * c + R[3] * s, R[1] * c + R[4] * s, R[2] * c + R[5] * s},
+         {R[3] * c - R[0] * s, R[4] * c - R[1] * s, R[5] * c - R[2] * s},
+         {R[6], R[7], R[8]},
+         {own.p[0], own.p[1], own.p[2]}};
+  if (own.prismatic) addTo(X.p, {X.z.x * q, X.z.y * q, X.z.z * q});
+  return X;
+}
+
+template <typename P>
+FAST_INLINE P dot(const Vec<double>& a, const Vec<P>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// R' v
+template <typename P>
+FAST_INLINE Vec<P> into(const Pose& X, const Vec<P>& v) {
+  return {dot(X.x, v), dot(X.y, v), dot(X.z, v)};
+}
+
+/// v + w x p
+template <typename P>
+FAST_INLINE Vec<P> leverOf(const Vec<P>& v, const Vec<P>& w, const Vec<double>& p) {
+  return {v.x + (w.y * p.z - w.z * p.y), v.y + (w.z * p.x - w.x * p.z),
+          v.z + (w.x * p.y - w.y * p.x)};
+}
+
+/// From link to link, as in forEachMotion() but between any frames.
+struct OwnMotion {
+  Vec<double> w{}, dw{}, a{};
+  LinkMotion<double> U{};
+
+  FAST_INLINE void step(const Pose& X, bool prismatic, double qd, double qdd) {
+    addTo(a,
+          {U.xx * X.p.x + U.xy * X.p.y + U.xz * X.p.z, U.yx * X.p.x + U.yy * X.p.y + U.yz * X.p.z,
+           U.zx * X.p.x + U.zy * X.p.y + U.zz * X.p.z});
+    w = into(X, w);
+    dw = into(X, dw);
+    a = into(X, a);
+    if (prismatic) {
+      addTo(a, {2.0 * (w.y * qd), -2.0 * (w.x * qd), qdd});
+    } else {
+      dw = {dw.x + w.y * qd, dw.y - w.x * qd, dw.z + qdd};
+      w.z += qd;
+    }
+    U = motionOf(w, dw, a);
+  }
+};
+
+/// Ten columns of the rows whose joints' axes, seen from the link, are (w, v): power of the force
+/// that a unit of each parameter needs.
+template <typename P>
+FAST_INLINE void regressorColumns(const LinkMotion<double>& U, const Vec<P>& w, const Vec<P>& v,
+                                  P* columns) {
+  const Vec<double>& a = U.a;
+  // m: (0, a); mc: (mc x a, U mc)
+  columns[0] = dot(a, v);
+  columns[1] = (U.xx * v.x + U.yx * v.y + U.zx * v.z) + (a.y * w.z - a.z * w.y);
+  columns[2] = (U.xy * v.x + U.yy * v.y + U.zy * v.z) + (a.z * w.x - a.x * w.z);
+  columns[3] = (U.xz * v.x + U.yz * v.y + U.zz * v.z) + (a.x * w.y - a.y * w.x);
+
+  // second moments of mass, and from them I = trace(S) 1 - S
+  const P xx = 0.5 * (U.yx * w.z - U.zx * w.y);
+  const P yy = 0.5 * (U.zy * w.x - U.xy * w.z);
+  const P zz = 0.5 * (U.xz * w.y - U.yz * w.x);
+  columns[4] = yy + zz - xx;
+  columns[5] = U.zy * w.y - U.zx * w.x - U.yy_xx * w.z;
+  columns[6] = U.yx * w.x - U.xx_zz * w.y - U.yz * w.z;
+  columns[7] = zz + xx - yy;
+  columns[8] = U.xz * w.z - U.zz_yy * w.x - U.xy * w.y;
+  columns[9] = xx + yy - zz;
+}
+
+/// The axis of the joint of this lane, in the frame of its own link; lanes after it are zero.
+FAST_INLINE void startAxis(bool prismatic, int lane, Vec<Short>& w, Vec<Short>& v) {
+  constexpr int kMost = 4;
+  static constexpr double kOne[2 * kMost] = {0, 0, 0, 0, 1};
+  static constexpr double kBefore[2 * kMost] = {1, 1, 1, 1};
+  const ShortBits before = load<Short>(kBefore + kMost - lane) != 0.0;
+  const Short zero{};
+  w = {before ? w.x : zero, before ? w.y : zero, before ? w.z : zero};
+  v = {before ? v.x : zero, before ? v.y : zero, before ? v.z : zero};
+  (prismatic ? v : w).z += load<Short>(kOne + kMost - lane);
+}
+
+/// Lanes `first` and beyond of the joints up to the last.
+FAST_INLINE void storeRows(const Short& rows, int count, double* to, std::ptrdiff_t row_step) {
+  for (int lane = 0; lane < kShortWidth; ++lane) {
+    if (lane < count) to[lane * row_step] = rows[lane];
+  }
+}
+
+void regressor(const Robot& robot, const State<double>& state, const Matrices& Y) {
+  constexpr int kPacks = kMaxJoints / kShortWidth;
+  const int n = robot.joints;
+  Vec<Short> w[kPacks] = {};
+  Vec<Short> v[kPacks] = {};
+  OwnMotion motion;
+  motion.a = {robot.root[0], robot.root[1], robot.root[2]};
+  for (int i = 0; i < n; ++i) {
+    const OwnPlacement& own = robot.own[i];
+    const Pose X = poseOf(own, state.c[i], state.s[i], state.q[i]);
+    motion.step(X, own.prismatic, state.qd[i], state.qdd[i]);
+    double* const link = Y.data + 10 * i * Y.column_step;
+    for (int k = 0; k * kShortWidth < n; ++k) {
+      const int first = k * kShortWidth;
+      Short columns[10] = {};
+      if (first <= i) {
+        v[k] = into(X, leverOf(v[k], w[k], X.p));
+        w[k] = into(X, w[k]);
+        if (i < first + kShortWidth) startAxis(own.prismatic, i - first, w[k], v[k]);
+        regressorColumns(motion.U, w[k], v[k], columns);
+      }
+      for (int column = 0; column < 10; ++column) {
+        storeRows(columns[column], n - first, link + column * Y.column_step + first * Y.row_step,
+                  Y.row_step);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chain_dynamics::fast
