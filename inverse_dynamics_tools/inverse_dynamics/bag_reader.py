@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from inverse_dynamics.errors import BagError
+from inverse_dynamics.wording import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -68,7 +69,7 @@ class BagReader:
         """Connections of the topic; none given: of the only one with messages of the type."""
         topics = self.topics()
         there = "\n".join(
-            f"  {t.name}  {t.message_type}  {t.message_count} messages" for t in topics
+            f"  {t.name}  {t.message_type}  {counted(t.message_count, 'message')}" for t in topics
         )
         if not topics:
             raise BagError(f"{self._path}: is an empty recording: it has no topic; record it again")
@@ -135,11 +136,13 @@ def _check_there(path: Path) -> None:
                 _check_complete(path / log.name.removesuffix("-wal"))
             return
         files = sorted(f.name for f in path.iterdir() if f.suffix in {".db3", ".mcap"})
-        remedy = (
-            f"give {path / files[0]} itself, or run `ros2 bag reindex {path}`"
-            if files
-            else "is it another directory?"
-        )
+        inside = sorted(f.parent for f in path.glob("*/metadata.yaml"))
+        if files:
+            remedy = f"give {path / files[0]} itself, or run `ros2 bag reindex {path}`"
+        elif inside:
+            remedy = f"a recording is in it: give {inside[0]}"
+        else:
+            remedy = "is it another directory?"
         raise BagError(f"{path}: is not a rosbag2 recording: it has no metadata.yaml; {remedy}")
     if path.suffix == ".bag":
         raise BagError(

@@ -19,6 +19,7 @@ from inverse_dynamics.errors import BagError
 from inverse_dynamics.joint_log import CLOCKS, no_progress
 from inverse_dynamics.joint_log_builder import JointLogBuilder
 from inverse_dynamics.joint_state_cdr import MESSAGE_TYPE, Decoder, encode
+from inverse_dynamics.wording import counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -68,7 +69,7 @@ def read_joint_log(
             progress("reading", builder.messages, expected)
         if builder.messages < expected:
             raise BagError(
-                f"{where}: expected {expected} messages, as its metadata say, got "
+                f"{where}: expected {counted(expected, 'message')}, as its metadata say, got "
                 f"{builder.messages}: the file is cut off; copy or record it again"
             )
         if builder.messages == 0:

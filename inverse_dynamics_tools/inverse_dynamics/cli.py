@@ -2,7 +2,8 @@
 """The command `ids`: verbs, errors, exit codes.
 
 A verb is a module of inverse_dynamics.verbs with `add_parser(subparsers)` and `run(arguments)`; it
-imports what is heavy inside `run`. Exit code 0: done; 2: a mistake of the user, said on stderr.
+imports what is heavy inside `run`. Exit code 0: done; 2: a mistake of the user, said on stderr
+(without a verb: the help).
 """
 
 from __future__ import annotations
@@ -72,7 +73,11 @@ def make_parser() -> argparse.ArgumentParser:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line; give its exit code."""
     given = _with_numbers_joined(list(sys.argv[1:] if arguments is None else arguments))
-    options = make_parser().parse_args(given)
+    parser = make_parser()
+    if not given:
+        parser.print_help(sys.stderr)
+        return 2
+    options = parser.parse_args(given)
     try:
         options.run(options)
         sys.stdout.flush()

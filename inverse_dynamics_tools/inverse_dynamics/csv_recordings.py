@@ -22,6 +22,7 @@ import numpy as np
 from inverse_dynamics.csv_table import CsvTable
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.joint_log import JointLog, no_progress
+from inverse_dynamics.wording import counted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -190,7 +191,7 @@ def _rtde_columns(
             )
     if count > len(joints):
         raise BagError(
-            f"{table.path}: expected {len(joints)} joints, as the chain has, got {count}; is it "
+            f"{table.path}: expected {counted(len(joints), 'joint')}, as the chain has, got {count}; is it "
             "another robot's?"
         )
     return joints, columns
@@ -214,7 +215,7 @@ def check_seconds(table: CsvTable, name: str, time: Floats) -> None:
 
 def _left_out(table: CsvTable, used: Sequence[str]) -> tuple[str, ...]:
     others = [name for name in table.names if name not in set(used)]
-    return (f"{len(others)} columns left out: {_some(others)}",) if others else ()
+    return (f"{counted(len(others), 'column')} left out: {_some(others)}",) if others else ()
 
 
 def _some(names: Sequence[str]) -> str:

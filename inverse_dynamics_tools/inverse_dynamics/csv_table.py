@@ -15,6 +15,7 @@ import numpy as np
 
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.joint_log import no_progress
+from inverse_dynamics.wording import counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -112,7 +113,7 @@ class CsvTable:
             if (count := len(text.split(self._delimiter))) != len(self.names) and text.strip()
         )
         return BagError(
-            f"{self.path}:{line}: expected {len(self.names)} columns, as the header has, got "
+            f"{self.path}:{line}: expected {counted(len(self.names), 'column')}, as the header has, got "
             f"{got}; is the file cut off?"
         )
 

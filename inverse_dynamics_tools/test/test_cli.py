@@ -66,6 +66,8 @@ def test_evaluate_prints_errors_and_writes_results(ids, bag, tmp_path):
     assert "result/torques.png" in out
     result = read_evaluation(tmp_path / "result")
     assert f"{result.mean_rmse:.3f}" in out
+    remedy = "it has no metadata.yaml; a recording is in it: give result/bag\n"
+    fails(ids("evaluate", "result", "--robot", "ur10_simulated"), remedy)
     metrics = json.loads((tmp_path / "result/metrics.json").read_text())
     assert [j["joint"] for j in metrics["joints"]] == list(result.joint_names)
 
@@ -142,7 +144,6 @@ def test_mistakes_of_the_user_are_told_and_nothing_is_written(ids, bag, tmp_path
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        ((), "the following arguments are required: VERB"),
         (("torque",), "invalid choice: 'torque'"),
         (("evaluate", "bag"), "the following arguments are required: --robot"),
         (("evaluate", "bag", "--robot", "x", "--gravity", "1,2"), "expected three numbers, x,y,z"),
@@ -169,7 +170,14 @@ def test_a_wrong_command_line_takes_one_line_that_names_the_help(ids):
         "ids evaluate: error: the following arguments are required: --robot; see "
         "`ids evaluate --help`\n"
     )
-    assert ids()[2].endswith("; see `ids --help`\n")
+    assert ids("torque")[2].endswith("; see `ids --help`\n")
+
+
+def test_without_a_verb_the_help_is_shown(ids):
+    code, out, err = ids()
+    assert (code, out) == (2, "")
+    assert err.startswith("usage: ids [-h] VERB ...")
+    assert "start here:" in err
 
 
 def test_a_short_recording_says_so(ids, tmp_path):

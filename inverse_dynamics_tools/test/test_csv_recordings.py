@@ -62,7 +62,7 @@ def test_columns_are_matched_by_name_whatever_is_between_them(file, delimiter):
     np.testing.assert_array_equal(log.stamps, stamps)
     assert log.qdd is None
     assert log.effort_is == ""
-    assert log.notes == ("1 columns left out: spare",)
+    assert log.notes == ("1 column left out: spare",)
     assert read_recording(file).joint_names == JOINTS[::-1]
 
 
@@ -153,7 +153,7 @@ def test_what_urs_record_tool_should_have_recorded_is_said(file):
         joints=("a", "b"),
     )
     header = "timestamp actual_q_0 actual_q_1 actual_qd_0 actual_current_0\n"
-    fails(file, header, "expected 1 joints, as the chain has, got 2; is it another robot's?")
+    fails(file, header, "expected 1 joint, as the chain has, got 2; is it another robot's?")
 
 
 @pytest.mark.parametrize(

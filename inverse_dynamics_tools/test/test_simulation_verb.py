@@ -45,7 +45,7 @@ def test_says_what_was_made(
     printed = capsys.readouterr()
     assert "trajectory  1 s" in printed.out
     assert (
-        f"recording   {bag}, /joint_states: 125 messages of 1 joints, 1 s at 125 Hz" in printed.out
+        f"recording   {bag}, /joint_states: 125 messages of 1 joint, 1 s at 125 Hz" in printed.out
     )
     assert printed.err == ""
     assert len(read_joint_log(bag)) == 125

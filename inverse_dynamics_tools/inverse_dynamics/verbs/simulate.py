@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from inverse_dynamics.verbs.common import positive_number, progress_bar
 from inverse_dynamics.verbs.options import add_gravity, add_robot, add_verb
+from inverse_dynamics.wording import counted
 
 if TYPE_CHECKING:
     from inverse_dynamics.simulation import Payload, Resolution, SimulatedRun
@@ -227,7 +228,8 @@ def _print(result: SimulatedRun, out: Path) -> None:
         console.print(f"note        {note}")
     console.print(f"trajectory  {result.trajectory.duration:g} s{excitation}")
     console.print(
-        f"recording   {out}, {log.topic}: {len(log)} messages of {len(log.joint_names)} joints, "
+        f"recording   {out}, {log.topic}: {counted(len(log), 'message')} of "
+        f"{counted(len(log.joint_names), 'joint')}, "
         f"{settings['duration']:g} s at {settings['rate']} Hz"
     )
 

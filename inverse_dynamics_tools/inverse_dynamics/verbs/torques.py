@@ -8,6 +8,7 @@ from pathlib import Path
 
 from inverse_dynamics.verbs.common import progress_bar
 from inverse_dynamics.verbs.options import add_robot, add_robot_changes, add_verb, robot_changes
+from inverse_dynamics.wording import counted
 
 _EPILOG = """\
 examples:
@@ -94,7 +95,8 @@ def run(arguments: argparse.Namespace) -> None:
     console.print(robot.description or robot.name, style="bold")
     console.print(f"solver        {robot.plugin}{'' if robot.friction else ', friction left out'}")
     console.print(
-        f"trajectories  {len(result.times)}, with {sum(map(len, result.times))} points together"
+        f"trajectories  {len(result.times)}, with "
+        f"{counted(sum(map(len, result.times)), 'point')} together"
     )
     for note in (*result.notes, *notes):
         console.print(f"note          {note}")
