@@ -1,5 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
 
+# inverse_dynamics_solver_add_plugin([DEPENDENCIES <package>...])
+#
+# Makes the solver library ${PROJECT_NAME} a plugin, and installs and exports it with the headers below include/. The
+# registration, src/plugin.cpp, becomes a library of its own, ${PROJECT_NAME}_plugin, that only pluginlib opens;
+# ${PROJECT_NAME}.xml describes it. DEPENDENCIES: packages that users of the headers need, inverse_dynamics_solver by
+# default. A macro, since ament keeps what a package exports in the variables of its CMakeLists.txt.
+macro(inverse_dynamics_solver_add_plugin)
+  cmake_parse_arguments(_solver "" "" "DEPENDENCIES" ${ARGN})
+  if(NOT _solver_DEPENDENCIES)
+    set(_solver_DEPENDENCIES inverse_dynamics_solver)
+  endif()
+  target_include_directories(${PROJECT_NAME} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:include/${PROJECT_NAME}>)
+
+  find_package(pluginlib REQUIRED)
+  add_library(${PROJECT_NAME}_plugin SHARED src/plugin.cpp)
+  target_link_libraries(${PROJECT_NAME}_plugin PRIVATE ${PROJECT_NAME} pluginlib::pluginlib)
+  pluginlib_export_plugin_description_file(inverse_dynamics_solver ${PROJECT_NAME}.xml)
+
+  install(DIRECTORY include/ DESTINATION include/${PROJECT_NAME})
+  install(TARGETS ${PROJECT_NAME} EXPORT export_${PROJECT_NAME}
+    ARCHIVE DESTINATION lib LIBRARY DESTINATION lib RUNTIME DESTINATION bin)
+  install(TARGETS ${PROJECT_NAME}_plugin LIBRARY DESTINATION lib RUNTIME DESTINATION bin)
+  ament_export_targets(export_${PROJECT_NAME} HAS_LIBRARY_TARGET)
+  ament_export_dependencies(${_solver_DEPENDENCIES})
+endmacro()
+
 # inverse_dynamics_solver_add_plugin_test(<test> <source>... PLUGIN <target> [DESCRIPTION <file>]
 #                                         [TIMEOUT <seconds>])
 #

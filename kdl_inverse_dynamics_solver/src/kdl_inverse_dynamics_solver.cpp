@@ -1,57 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kdl_inverse_dynamics_solver/kdl_inverse_dynamics_solver.hpp"
 
-#include <utility>
-
-#include "chain_dynamics/model.hpp"
 #include "kdl_chain.hpp"
-#include "workspace.hpp"
+#include "kdl_workspace.hpp"
 
 namespace kdl_inverse_dynamics_solver {
 
-InverseDynamicsSolverKDL::InverseDynamicsSolverKDL() = default;
-InverseDynamicsSolverKDL::~InverseDynamicsSolverKDL() = default;
-
-auto InverseDynamicsSolverKDL::configure(const Configuration& configuration) -> JointInfo {
-  // Everything that can fail, aside.
-  const chain_dynamics::Chain chain = chainFromDescription(configuration);
-  auto pool = std::make_unique<Pool>(readMaxThreads(configuration), [chain] {
-    return std::make_unique<Workspace>(toKdl(chain), toKdl(chain.gravity()));
-  });
-  const bool inertia_is_physical = chain_dynamics::Model(chain).inertiaIsPhysical();
-  JointInfo info{chain.jointNames(), chain.warnings()};
-
-  // Nothing below can fail.
-  pool_ = std::move(pool);
-  inertia_is_physical_ = inertia_is_physical;
-  return info;
-}
-
-void InverseDynamicsSolverKDL::computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const {
-  pool_->acquire()->inertiaMatrix(q, H);
-}
-
-void InverseDynamicsSolverKDL::computeCoriolisVector(const ConstVectorRef& q,
-                                                     const ConstVectorRef& qd, VectorRef c) const {
-  pool_->acquire()->coriolisVector(q, qd, c);
-}
-
-void InverseDynamicsSolverKDL::computeGravityVector(const ConstVectorRef& q, VectorRef g) const {
-  pool_->acquire()->gravityVector(q, g);
-}
-
-void InverseDynamicsSolverKDL::computeDynamicComponents(const ConstVectorRef& q,
-                                                        const ConstVectorRef& qd, MatrixRef H,
-                                                        VectorRef c, VectorRef g) const {
-  const auto workspace = pool_->acquire();
-  workspace->inertiaMatrix(q, H);
-  workspace->coriolisVector(q, qd, c);
-  workspace->gravityVector(q, g);
-}
-
-void InverseDynamicsSolverKDL::computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
-                                              const ConstVectorRef& qdd, VectorRef tau) const {
-  pool_->acquire()->torques(q, qd, qdd, tau);
+auto InverseDynamicsSolverKDL::workspaceMaker(const chain_dynamics::Chain& chain) const
+    -> WorkspaceMaker {
+  return [chain] { return std::make_unique<KdlWorkspace>(toKdl(chain), toKdl(chain.gravity())); };
 }
 
 }  // namespace kdl_inverse_dynamics_solver

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "workspace.hpp"
+#include "kdl_workspace.hpp"
 
 #include <string>
 
@@ -20,7 +20,7 @@ void check(int code, const KDL::SolverI& solver, const char* what) {
 
 }  // namespace
 
-Workspace::Workspace(const KDL::Chain& chain, const KDL::Vector& gravity)
+KdlWorkspace::KdlWorkspace(const KDL::Chain& chain, const KDL::Vector& gravity)
     : chain_(chain),
       components_(chain_, gravity),
       newton_euler_(chain_, gravity),
@@ -31,27 +31,27 @@ Workspace::Workspace(const KDL::Chain& chain, const KDL::Vector& gravity)
       H_(chain_.getNrOfJoints()),
       no_forces_(chain_.getNrOfSegments(), KDL::Wrench::Zero()) {}
 
-void Workspace::inertiaMatrix(const Vector& q, Eigen::Ref<Eigen::MatrixXd> H) {
+void KdlWorkspace::inertiaMatrix(const ConstVectorRef& q, MatrixRef H) {
   q_.data = q;
   check(components_.JntToMass(q_, H_), components_, "inertia matrix");
   H = H_.data;
 }
 
-void Workspace::coriolisVector(const Vector& q, const Vector& qd, Eigen::Ref<Eigen::VectorXd> c) {
+void KdlWorkspace::coriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef c) {
   q_.data = q;
   qd_.data = qd;
   check(components_.JntToCoriolis(q_, qd_, result_), components_, "Coriolis torques");
   c = result_.data;
 }
 
-void Workspace::gravityVector(const Vector& q, Eigen::Ref<Eigen::VectorXd> g) {
+void KdlWorkspace::gravityVector(const ConstVectorRef& q, VectorRef g) {
   q_.data = q;
   check(components_.JntToGravity(q_, result_), components_, "gravity torques");
   g = result_.data;
 }
 
-void Workspace::torques(const Vector& q, const Vector& qd, const Vector& qdd,
-                        Eigen::Ref<Eigen::VectorXd> tau) {
+void KdlWorkspace::torques(const ConstVectorRef& q, const ConstVectorRef& qd,
+                           const ConstVectorRef& qdd, VectorRef tau) {
   q_.data = q;
   qd_.data = qd;
   qdd_.data = qdd;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "workspace.hpp"
+#include "kdl_workspace.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,8 +25,8 @@ chain_dynamics::Chain arm() {
                Eigen::Vector3d(0, 0, -10));
 }
 
-TEST(Workspace, CountsRotorInertiaAndSlides) {
-  Workspace workspace(toKdl(arm()), toKdl(arm().gravity()));
+TEST(KdlWorkspace, CountsRotorInertiaAndSlides) {
+  KdlWorkspace workspace(toKdl(arm()), toKdl(arm().gravity()));
   const Eigen::Vector2d q(0, 0.7), qd(2, 3), qdd(1, 4);
 
   // H = diag(2 * 0.5^2 + 0.3 + 1 * 0.7^2, 1); g = (-(2 * 0.5 + 0.7) 10, 0); C qd = (2 * 0.7 * 2 *
@@ -43,8 +43,8 @@ TEST(Workspace, CountsRotorInertiaAndSlides) {
   EXPECT_TRUE(tau.isApprox(Eigen::Vector2d(1.29 + 8.4 - 17, 4 - 2.8), 1e-14)) << tau;
 }
 
-TEST(Workspace, IsNotSpoiltByNan) {
-  Workspace workspace(toKdl(arm()), toKdl(arm().gravity()));
+TEST(KdlWorkspace, IsNotSpoiltByNan) {
+  KdlWorkspace workspace(toKdl(arm()), toKdl(arm().gravity()));
   const Eigen::Vector2d q(0.3, 0.7), nan = Eigen::Vector2d::Constant(std::nan(""));
   Eigen::VectorXd before(2), after(2);
   workspace.torques(q, q, q, before);

@@ -3,30 +3,30 @@
 /// KDL's solvers of a chain with the memory they write to.
 #pragma once
 
-#include <Eigen/Core>
 #include <kdl/chain.hpp>
 #include <kdl/chaindynparam.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl/jntarray.hpp>
 #include <kdl/jntspaceinertiamatrix.hpp>
 
+#include "inverse_dynamics_solver/pooled_solver.hpp"
+
 namespace kdl_inverse_dynamics_solver {
 
+using inverse_dynamics_solver::ConstVectorRef;
+using inverse_dynamics_solver::MatrixRef;
+using inverse_dynamics_solver::VectorRef;
+
 /// KDL's solvers of one chain and all that they write to. One thread at a time.
-class Workspace {
+class KdlWorkspace : public inverse_dynamics_solver::Workspace {
  public:
-  using Vector = Eigen::Ref<const Eigen::VectorXd>;
+  KdlWorkspace(const KDL::Chain& chain, const KDL::Vector& gravity);
 
-  Workspace(const KDL::Chain& chain, const KDL::Vector& gravity);
-  Workspace(const Workspace&) = delete;
-  Workspace& operator=(const Workspace&) = delete;
-
-  /// As the methods of the solver; n each, H n x n. No allocation.
-  void inertiaMatrix(const Vector& q, Eigen::Ref<Eigen::MatrixXd> H);
-  void coriolisVector(const Vector& q, const Vector& qd, Eigen::Ref<Eigen::VectorXd> c);
-  void gravityVector(const Vector& q, Eigen::Ref<Eigen::VectorXd> g);
-  void torques(const Vector& q, const Vector& qd, const Vector& qdd,
-               Eigen::Ref<Eigen::VectorXd> tau);
+  void inertiaMatrix(const ConstVectorRef& q, MatrixRef H) override;
+  void coriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef c) override;
+  void gravityVector(const ConstVectorRef& q, VectorRef g) override;
+  void torques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
+               VectorRef tau) override;
 
  private:
   KDL::Chain chain_;  // KDL's solvers refer to it; its joints remember the last position

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "workspace.hpp"
+#include "pinocchio_workspace.hpp"
 
 #include <pinocchio/algorithm/crba.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
@@ -7,10 +7,10 @@
 
 namespace pinocchio_inverse_dynamics_solver {
 
-Workspace::Workspace(std::shared_ptr<const Models> models)
+PinocchioWorkspace::PinocchioWorkspace(std::shared_ptr<const Models> models)
     : models_(std::move(models)), data_(models_->with_gravity) {}
 
-void Workspace::inertiaMatrix(const Vector& q, Eigen::Ref<Eigen::MatrixXd> H) {
+void PinocchioWorkspace::inertiaMatrix(const ConstVectorRef& q, MatrixRef H) {
 #if PINOCCHIO_VERSION_AT_LEAST(3, 0, 0)
   pinocchio::crba(models_->with_gravity, data_, q, pinocchio::Convention::LOCAL);
 #else
@@ -21,16 +21,17 @@ void Workspace::inertiaMatrix(const Vector& q, Eigen::Ref<Eigen::MatrixXd> H) {
   H.triangularView<Eigen::StrictlyLower>() = data_.M.transpose();
 }
 
-void Workspace::coriolisVector(const Vector& q, const Vector& qd, Eigen::Ref<Eigen::VectorXd> c) {
+void PinocchioWorkspace::coriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                        VectorRef c) {
   c = pinocchio::nonLinearEffects(models_->without_gravity, data_, q, qd);
 }
 
-void Workspace::gravityVector(const Vector& q, Eigen::Ref<Eigen::VectorXd> g) {
+void PinocchioWorkspace::gravityVector(const ConstVectorRef& q, VectorRef g) {
   g = pinocchio::computeGeneralizedGravity(models_->with_gravity, data_, q);
 }
 
-void Workspace::torques(const Vector& q, const Vector& qd, const Vector& qdd,
-                        Eigen::Ref<Eigen::VectorXd> tau) {
+void PinocchioWorkspace::torques(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                 const ConstVectorRef& qdd, VectorRef tau) {
   tau = pinocchio::rnea(models_->with_gravity, data_, q, qd, qdd);
 }
 

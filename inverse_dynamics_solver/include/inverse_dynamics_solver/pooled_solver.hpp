@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// For solvers over a library that writes to memory of its own: only the library is left to add.
+///
+///     class MySolver : public inverse_dynamics_solver::PooledSolver {
+///       WorkspaceMaker workspaceMaker(const chain_dynamics::Chain& chain) const override {
+///         return [model = toMyLibrary(chain)] { return std::make_unique<MyWorkspace>(model); };
+///       }
+///     };
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
+#include "inverse_dynamics_solver/workspace_pool.hpp"
+
+namespace inverse_dynamics_solver {
+inline namespace v1 {
+
+/// A library's algorithms of one chain, and all that they write to. One thread at a time.
+///
+/// Arguments, order and units are those of the solver's methods of the same name; n numbers each, H
+/// n x n; sizes are checked before. Real time: no allocation, lock, exception or system call.
+class Workspace {
+ public:
+  virtual ~Workspace() = default;
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  virtual void inertiaMatrix(const ConstVectorRef& q, MatrixRef H) = 0;
+  virtual void coriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef c) = 0;
+  virtual void gravityVector(const ConstVectorRef& q, VectorRef g) = 0;
+  /// Without friction.
+  virtual void torques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
+                       VectorRef tau) = 0;
+
+ protected:
+  Workspace() = default;
+};
+
+/// Solver of the rigid-body dynamics of the chain between `root` and `tip` of a robot description,
+/// by a library that keeps state: each call borrows a workspace of its own.
+///
+/// No friction: getFrictionVector() is zero.
+///
+/// Parameters: those of Configuration, and below the same namespace `max_threads`: how many threads
+/// may compute at the same time without allocating (see readMaxThreads()). Calls beyond it at the
+/// same time are right too, but make a workspace on the heap.
+///
+/// Real time (within max_threads): no allocation, lock, exception or system call. Threads: safe.
+class PooledSolver : public InverseDynamicsSolver {
+ protected:
+  using WorkspaceMaker = std::function<std::unique_ptr<Workspace>()>;
+
+  /// What makes the workspaces of a chain; it is called by many threads, even at the same time.
+  virtual WorkspaceMaker workspaceMaker(const chain_dynamics::Chain& chain) const = 0;
+
+ private:
+  JointInfo configure(const Configuration& configuration) final;
+  void computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const final;
+  void computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
+                             VectorRef c) const final;
+  void computeGravityVector(const ConstVectorRef& q, VectorRef g) const final;
+  void computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
+                                VectorRef c, VectorRef g) const final;
+  void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
+                      VectorRef tau) const final;
+  bool inertiaIsPhysicalImpl() const final { return inertia_is_physical_; }
+
+  std::unique_ptr<WorkspacePool<Workspace>> pool_;
+  bool inertia_is_physical_ = false;
+};
+
+}  // namespace v1
+}  // namespace inverse_dynamics_solver

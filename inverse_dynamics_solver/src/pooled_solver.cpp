@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/pooled_solver.hpp"
+
+#include <utility>
+
+#include "chain_dynamics/model.hpp"
+
+namespace inverse_dynamics_solver {
+
+auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
+  // Everything that can fail, aside.
+  const chain_dynamics::Chain chain = chainFromDescription(configuration);
+  auto pool = std::make_unique<WorkspacePool<Workspace>>(readMaxThreads(configuration),
+                                                         workspaceMaker(chain));
+  const bool inertia_is_physical = chain_dynamics::Model(chain).inertiaIsPhysical();
+  JointInfo info{chain.jointNames(), chain.warnings()};
+
+  // Nothing below can fail.
+  pool_ = std::move(pool);
+  inertia_is_physical_ = inertia_is_physical;
+  return info;
+}
+
+void PooledSolver::computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const {
+  pool_->acquire()->inertiaMatrix(q, H);
+}
+
+void PooledSolver::computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                         VectorRef c) const {
+  pool_->acquire()->coriolisVector(q, qd, c);
+}
+
+void PooledSolver::computeGravityVector(const ConstVectorRef& q, VectorRef g) const {
+  pool_->acquire()->gravityVector(q, g);
+}
+
+void PooledSolver::computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                            MatrixRef H, VectorRef c, VectorRef g) const {
+  const auto workspace = pool_->acquire();
+  workspace->inertiaMatrix(q, H);
+  workspace->coriolisVector(q, qd, c);
+  workspace->gravityVector(q, g);
+}
+
+void PooledSolver::computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                  const ConstVectorRef& qdd, VectorRef tau) const {
+  pool_->acquire()->torques(q, qd, qdd, tau);
+}
+
+}  // namespace inverse_dynamics_solver
