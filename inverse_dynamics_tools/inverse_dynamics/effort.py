@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.effort_meanings import EFFORT_CHOICES, EFFORT_MEANINGS
 from inverse_dynamics.errors import EvaluationError, RobotError
 
 if TYPE_CHECKING:
@@ -18,15 +19,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.effort_verdict import Verdict
     from inverse_dynamics.joint_log import Floats, JointLog, Mask
     from inverse_dynamics.robots import Robot
-
-# What each meaning has compared with the computed torques, as --help says it.
-EFFORT_MEANINGS = {
-    "torque": "torques, compared as they are",
-    "current": "motor currents, compared times the drive gains",
-    "torque_without_gravity": "torques as newer UR drivers send them, compared with computed "
-    "torques minus gravity",
-}
-EFFORT_CHOICES = {**EFFORT_MEANINGS, "auto": "the one that clearly fits the data, if there is one"}
 
 # Who stated the meaning, in words.
 OPTION = "as told"

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.ament import package_share, resolve
-from inverse_dynamics.effort import EFFORT_CHOICES
+from inverse_dynamics.effort_meanings import EFFORT_CHOICES
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.located_yaml import read_mapping
 
@@ -45,9 +45,7 @@ class Robot:
     friction: bool = True
     topic: str = DEFAULT_TOPIC
     joints: tuple[str, ...] = ()  # names in recordings, in the order of the chain
-    effort: str = (
-        "torque"  # what the field `effort` of a joint state means, of effort.EFFORT_CHOICES
-    )
+    effort: str = "torque"  # what the field `effort` of a joint state means, of EFFORT_CHOICES
     drive_gains: tuple[float, ...] = ()  # N m/A (prismatic N/A); empty: the solver's, if it has any
     accelerations: str = "auto"
     cutoff: float | None = None  # Hz

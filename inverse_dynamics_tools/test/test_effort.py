@@ -9,7 +9,7 @@ import pytest
 from test_evaluation import RIGID_BODY, UR10, URDF, motion, recording
 
 from inverse_dynamics import Solver, evaluate, evaluation, load_robot
-from inverse_dynamics.effort import EFFORT_MEANINGS
+from inverse_dynamics.effort_meanings import EFFORT_MEANINGS
 from inverse_dynamics.errors import EvaluationError, RobotError
 
 GAINS = (13.0, 14.0, 11.0, 10.0, 9.0, 8.0)

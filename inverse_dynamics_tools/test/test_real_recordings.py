@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from inverse_dynamics import evaluate, load_robot, read_joint_log, write_joint_logs
-from inverse_dynamics.effort import EFFORT_MEANINGS
+from inverse_dynamics.effort_meanings import EFFORT_MEANINGS
 from inverse_dynamics.solvers import open_solver
 
 BACKWARD_DIFFERENCE = {

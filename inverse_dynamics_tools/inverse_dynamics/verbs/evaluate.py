@@ -56,7 +56,7 @@ def add_parser(
 ) -> argparse.ArgumentParser:
     """Declare the verb."""
     from inverse_dynamics.accelerations import METHODS, RULES
-    from inverse_dynamics.effort import EFFORT_CHOICES
+    from inverse_dynamics.effort_meanings import EFFORT_CHOICES
     from inverse_dynamics.joint_log import CLOCKS
 
     parser = add_verb(

@@ -70,7 +70,7 @@ def _print_rows(rows: dict[str, str]) -> None:
 
 def _show(robot: str) -> None:
     from inverse_dynamics.accelerations import METHODS
-    from inverse_dynamics.effort import EFFORT_CHOICES
+    from inverse_dynamics.effort_meanings import EFFORT_CHOICES
     from inverse_dynamics.robots import load_robot
 
     shown = load_robot(robot)
