@@ -118,7 +118,7 @@ def evaluate(
 
     bag: rosbag2 recording or text file, see recordings.py. robot: a name of robot_names(), the file of a
     run configuration, or one that is loaded. What else is given replaces what the configuration
-    says: see Robot. effort_is: what recorded efforts mean, one of effort.EFFORT_CHOICES.
+    says: see Robot. effort_is: what recorded efforts mean, one of EFFORT_CHOICES.
     accelerations: one of accelerations.METHODS; cutoff: Hz, of a low-pass. clock: which stamps are
     the time. without_rules: those of accelerations.RULES not to be acted upon.
 
@@ -143,17 +143,12 @@ def evaluate(
         robot = replace(robot, cutoff=None)  # the configuration's belongs to its own method
     bag = Path(bag)
 
-    clock_start = time.perf_counter()
-    description = "" if robot.urdf is None else read_description(robot.urdf)
-    solver = open_solver(robot, description)
-    gains = drive_gains(robot, solver)
-    joint_names = tuple(solver.joint_names)
-    recorded_names = names_in_recording(robot, joint_names)
-    units = joint_units(robot.urdf, description, joint_names)
-    solver_ready = time.perf_counter()
+    start = time.perf_counter()
+    arm = _Arm(robot)
+    ready = time.perf_counter()
     log = read_recording(
         bag,
-        recorded_names,
+        arm.recorded_names,
         topic=topic or "",
         usual_topic=robot.topic,
         clock=clock,
@@ -161,9 +156,37 @@ def evaluate(
     )
     if log.qdd is not None and accelerations is None and cutoff is None:
         robot = replace(robot, accelerations="given", cutoff=None)
-    effort = stated_effort(effort_is, log, robot, gains)
-    read = time.perf_counter()
+    effort = stated_effort(effort_is, log, robot, arm.gains)
+    seconds = {"solver": ready - start, "reading": time.perf_counter() - ready}
     progress("computing", 0, len(log))
+    result = _compare(bag, robot, arm, log, effort, without_rules)
+    progress("computing", len(log), len(log))
+    notes = description_notes(robot, "drawn") if urdf is not None else ()
+    return replace(result, notes=(*notes, *result.notes), seconds={**seconds, **result.seconds})
+
+
+class _Arm:
+    """What a run configuration says of the arm, before anything is read. Raises UserError."""
+
+    def __init__(self, robot: Robot) -> None:
+        description = "" if robot.urdf is None else read_description(robot.urdf)
+        self.solver = open_solver(robot, description)
+        self.gains = drive_gains(robot, self.solver)
+        self.joint_names = tuple(self.solver.joint_names)
+        self.recorded_names = names_in_recording(robot, self.joint_names)
+        self.units = joint_units(robot.urdf, description, self.joint_names)
+
+
+def _compare(
+    bag: Path,
+    robot: Robot,
+    arm: _Arm,
+    log: JointLog,
+    effort: Effort,
+    without_rules: Sequence[str],
+) -> Evaluation:
+    """Computed torques of a log against its measured ones. Raises EvaluationError, RobotError."""
+    start = time.perf_counter()
     try:
         qdd, how, samples = estimate_accelerations(
             log, robot.accelerations, robot.cutoff, without_rules
@@ -172,25 +195,23 @@ def evaluate(
         where = f"{bag}: {log.topic}" if log.topic else f"{bag}"
         raise EvaluationError(f"{where}: {error}") from error
     filtered = time.perf_counter()
+    solver = arm.solver
     computed = solver.torques(log.q, log.qd, qdd)
     if effort.meaning == "auto":
-        effort = effort_of_data(solver, robot, log, computed, gains, samples.kept)
+        effort = effort_of_data(solver, robot, log, computed, arm.gains, samples.kept)
     computed, measured = compared_torques(effort, solver, log, computed)
-    errors = joint_errors(joint_names, units, computed, measured)
+    errors = joint_errors(arm.joint_names, arm.units, computed, measured)
     errors_of_kept = errors
     if samples.left_out:
-        errors_of_kept = joint_errors(joint_names, units, computed, measured, samples.kept)
+        errors_of_kept = joint_errors(arm.joint_names, arm.units, computed, measured, samples.kept)
     done = time.perf_counter()
-    progress("computing", len(log), len(log))
-    notes = [*solver.warnings, *log.notes, *effort_notes(effort, solver, robot, log)]
-    if urdf is not None:
-        notes += description_notes(robot, "drawn")
+    notes = (*solver.warnings, *log.notes, *effort_notes(effort, solver, robot, log))
     return Evaluation(
-        robot=replace(robot, joints=recorded_names, topic=log.topic, effort=effort.meaning),
+        robot=replace(robot, joints=arm.recorded_names, topic=log.topic, effort=effort.meaning),
         bag=bag,
         log=log,
-        joint_names=joint_names,
-        units=units,
+        joint_names=arm.joint_names,
+        units=arm.units,
         accelerations=how,
         samples=samples,
         qdd=qdd,
@@ -199,12 +220,7 @@ def evaluate(
         errors_of_kept=errors_of_kept,
         effort=effort,
         notes=(*notes, *findings(log, how, samples)),
-        seconds={
-            "solver": solver_ready - clock_start,
-            "reading": read - solver_ready,
-            "accelerations": filtered - read,
-            "torques": done - filtered,
-        },
+        seconds={"accelerations": filtered - start, "torques": done - filtered},
     )
 
 
