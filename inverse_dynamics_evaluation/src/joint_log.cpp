@@ -73,6 +73,9 @@ void JointLogBuilder::add(const JointSample& sample) {
   header_stamps_.push_back(sample.header_stamp);
   receive_stamps_.push_back(sample.receive_stamp);
   message_.push_back(sample.message);
+  if (frame_id_.empty()) {
+    frame_id_ = sample.frame_id;
+  }
 }
 
 JointLog JointLogBuilder::finish(Clock clock) const {
@@ -95,6 +98,7 @@ JointLog JointLogBuilder::finish(Clock clock) const {
   log.qd = matrix(velocity_);
   log.effort = matrix(effort_);
   log.qdd = matrix(acceleration_);
+  log.frame_id = frame_id_;
   log.message = message_;
   const Index left_out = samples_ - static_cast<Index>(message_.size());
   if (left_out > 0) {
@@ -152,7 +156,8 @@ void JointLogBuilder::append(Column& column, const JointSample::Numbers& numbers
   }
   if (numbers.size() != names || late) {
     const std::string expected =
-        late ? "none, as in those before it" : std::to_string(names) + " numbers, one per name";
+        late ? "none, as in those before it"
+             : std::to_string(names) + (names == 1 ? " number" : " numbers") + ", one per name";
     const std::string got = numbers.size() == 0 ? "an empty array" : std::to_string(numbers.size());
     throw RecordingError(place(sample) + ": " + column.field + ": expected " + expected + ", got " +
                          got + "; " + column.reason + ": does the driver publish them?");

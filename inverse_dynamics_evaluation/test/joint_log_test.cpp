@@ -101,6 +101,25 @@ TEST(JointLog, TakesHeadersStampsAndThoseOfReceptionIfNoHeaderHasOne) {
   }
 }
 
+TEST(JointLog, TakesTheFirstFrameThatAHeaderNames) {
+  JointLogBuilder builder("bag", {"a", "b"});
+  const Message message = armMessage();
+  for (const char* const frame : {"", "base", "other"}) {
+    JointSample sample = message.sample();
+    sample.frame_id = frame;
+    builder.add(sample);
+  }
+  EXPECT_EQ(builder.samples(), 3);
+  EXPECT_EQ(builder.finish().frame_id, "base");
+}
+
+TEST(JointLog, CountsOneNumberAsOne) {
+  const Message message{{"a"}, {1, 2}, {1}, {1}, {}, 1, 1, 0};
+  JointLogBuilder builder("bag", {"a"});
+  EXPECT_THAT(errorOf<RecordingError>([&] { builder.add(message.sample()); }),
+              HasSubstr("position: expected 1 number, one per name, got 2"));
+}
+
 TEST(JointLog, SaysWhichJointsAreMissing) {
   Message message = armMessage();
   message.names[0] = "c";

@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Types of the extension module: solvers, accelerations, metrics and control laws in C++.
+"""Types of the extension module: solvers, samples of recordings, accelerations, metrics, control laws.
 
 Arrays are (n,), one state, or (N, n), one state a row; results have the same shape.
 """
 
 from collections.abc import Sequence
 from enum import Enum
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from inverse_dynamics.joint_state_cdr import Block
+
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 Parameter = (
     bool | int | float | str | Sequence[bool] | Sequence[int] | Sequence[float] | Sequence[str]
@@ -153,6 +157,53 @@ class FilterChoice:
     def time_base(self) -> str: ...
     @property
     def pieces(self) -> int: ...
+
+class RecordedJoints:
+    """Joint states over time: joint_log.hpp. (N, n) arrays are views of its memory."""
+
+    @property
+    def joint_names(self) -> list[str]: ...
+    @property
+    def header_stamps(self) -> Integers:
+        """(N,) ns."""
+
+    @property
+    def receive_stamps(self) -> Integers:
+        """(N,) ns."""
+
+    @property
+    def q(self) -> Floats: ...
+    @property
+    def qd(self) -> Floats: ...
+    @property
+    def effort(self) -> Floats: ...
+    @property
+    def frame_id(self) -> str: ...
+    @property
+    def clock(self) -> Literal["header", "receive"]:
+        """Which of the stamps is the time."""
+
+    @property
+    def notes(self) -> list[str]:
+        """What was left out or assumed."""
+
+class JointLogBuilder:
+    """Collects messages, one row each, by the rules of joint_log.hpp.
+
+    where: file and topic, for error texts. joints: names in the order wanted; none: those of the
+    first message. Errors are BagError.
+    """
+
+    def __init__(self, where: str, joints: Sequence[str]) -> None: ...
+    @property
+    def messages(self) -> int:
+        """How many were added."""
+
+    def add(self, blocks: Sequence[Block], received: Integers) -> None:
+        """Add blocks that together hold len(received) messages, received at these times [ns]."""
+
+    def finish(self, clock: Literal["auto", "header", "receive"]) -> RecordedJoints:
+        """Everything added."""
 
 class JointMetrics:
     """Errors of one joint: inverse_dynamics_evaluation/metrics.hpp."""

@@ -4,7 +4,7 @@
     log = read_joint_log("recording", ["joint_1", "joint_2"])
     write_joint_logs("copy", {"/joint_states": log})
 
-Which messages and joints are taken, and which time: joint_log_builder.py.
+Which messages and joints are taken, and which time: inverse_dynamics_evaluation/joint_log.hpp.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics._core import JointLogBuilder
 from inverse_dynamics.bag_reader import BagReader, TopicSummary, error_text
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.joint_log import CLOCKS, no_progress
-from inverse_dynamics.joint_log_builder import JointLogBuilder
+from inverse_dynamics.joint_log import CLOCKS, JointLog, no_progress
 from inverse_dynamics.joint_state_cdr import MESSAGE_TYPE, Decoder, encode
 from inverse_dynamics.wording import counted
 
@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from inverse_dynamics.joint_log import Clock, JointLog, Progress, Storage
+    from inverse_dynamics._core import RecordedJoints
+    from inverse_dynamics.joint_log import Clock, Progress, Storage
     from inverse_dynamics.joint_state_cdr import Block
 
 _BLOCK = 4096  # messages encoded together
@@ -46,7 +47,7 @@ def read_joint_log(
     clock: Clock = "auto",
     progress: Progress = no_progress,
 ) -> JointLog:
-    """Joint states of one topic, by the rules of joint_log_builder.py.
+    """Joint states of one topic, by the rules of inverse_dynamics_evaluation/joint_log.hpp.
 
     path: directory with metadata.yaml, or a .db3 or .mcap file. joints: names, in the order wanted;
     none: those of the first message. topic: none: the only one with joint states. clock: which
@@ -62,7 +63,7 @@ def read_joint_log(
         topic = connections[0].topic
         where = f"{path}: {topic}"
         expected = sum(connection.msgcount for connection in connections)
-        builder = JointLogBuilder(where, joints, expected)
+        builder = JointLogBuilder(where, joints)
         decoder = Decoder()
         for messages, received in recording.blocks(connections):
             builder.add(_decoded(decoder, messages, where, builder.messages), received)
@@ -72,12 +73,24 @@ def read_joint_log(
                 f"{where}: expected {counted(expected, 'message')}, as its metadata say, got "
                 f"{builder.messages}: the file is cut off; copy or record it again"
             )
-        if builder.messages == 0:
-            raise BagError(
-                f"{where}: expected joint states, got no message; was the robot's driver running "
-                "while it was recorded?"
-            )
-        return builder.joint_log(clock, topic, recording.storage)
+        return _joint_log(builder.finish(clock), topic, recording.storage)
+
+
+def _joint_log(recorded: RecordedJoints, topic: str, storage: Storage) -> JointLog:
+    """The same memory, and where it comes from."""
+    return JointLog(
+        joint_names=tuple(recorded.joint_names),
+        header_stamps=recorded.header_stamps,
+        receive_stamps=recorded.receive_stamps,
+        q=recorded.q,
+        qd=recorded.qd,
+        effort=recorded.effort,
+        frame_id=recorded.frame_id,
+        clock=recorded.clock,
+        topic=topic,
+        storage=storage,
+        notes=tuple(recorded.notes),
+    )
 
 
 def _decoded(decoder: Decoder, messages: Sequence[bytes], where: str, before: int) -> list[Block]:

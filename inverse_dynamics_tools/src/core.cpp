@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The extension module `inverse_dynamics._core`: solvers by name, accelerations, metrics and
-/// control laws, on numpy arrays.
+/// The extension module `inverse_dynamics._core`: solvers by name, samples of recordings,
+/// accelerations, metrics and control laws, on numpy arrays.
 ///
 /// A batch is an (N, n) array, one state a row. Solvers compute from and into doubles where they
 /// are, whatever their layout; another type is copied once on the way in. To the other functions an
@@ -13,14 +13,16 @@
 #include "accelerations.hpp"
 #include "control.hpp"
 #include "errors.hpp"
+#include "joint_log.hpp"
 #include "metrics.hpp"
 #include "solver.hpp"
 
 PYBIND11_MODULE(_core, module) {
-  module.doc() = "Solvers, accelerations, metrics and control laws in C++.";
+  module.doc() = "Solvers, samples of recordings, accelerations, metrics and control laws in C++.";
   inverse_dynamics_tools::bindErrors();
   inverse_dynamics_tools::bindSolver(module);
   inverse_dynamics_tools::bindAccelerations(module);
+  inverse_dynamics_tools::bindJointLog(module);
   inverse_dynamics_tools::bindMetrics(module);
   inverse_dynamics_tools::bindControl(module);
 }

@@ -6,6 +6,7 @@
 #include <chain_dynamics/error.hpp>
 #include <exception>
 #include <inverse_dynamics_evaluation/error.hpp>
+#include <inverse_dynamics_evaluation/joint_log.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 
 namespace inverse_dynamics_tools {
@@ -37,6 +38,8 @@ void translate(std::exception_ptr thrown) {
     raise("SolverError", e);
   } catch (const inverse_dynamics_evaluation::EvaluationError& e) {
     raise("EvaluationError", e);
+  } catch (const inverse_dynamics_evaluation::RecordingError& e) {
+    raise("BagError", e);
   } catch (const chain_dynamics::ModelError& e) {
     raise("SolverError", e);
   }

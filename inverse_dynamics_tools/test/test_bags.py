@@ -226,7 +226,7 @@ def test_of_several_mistakes_the_first_message_is_named(tmp_path):
     messages[3] = joint_state(["a"], [1], [1, 2, 3], [1], 3)  # longer than the others
     messages[5] = joint_state(["a"], [1], [], [1], 5)  # shorter
     write_messages(tmp_path / "bag", messages)
-    fails(tmp_path / "bag", "message 4: velocity: expected 1 numbers, one per name, got 3")
+    fails(tmp_path / "bag", "message 4: velocity: expected 1 number, one per name, got 3")
 
 
 @pytest.mark.parametrize("field", ["q", "qd", "effort"])

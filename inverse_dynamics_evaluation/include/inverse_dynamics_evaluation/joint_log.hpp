@@ -23,6 +23,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "inverse_dynamics_evaluation/joint_matching.hpp"
@@ -59,6 +60,7 @@ struct JointSample {
   std::int64_t receive_stamp = 0;    ///< ns
   Eigen::Index message = 0;          ///< number of its message, counted from 0
   Eigen::Index point = -1;           ///< number of it in a message with several, counted from 0
+  std::string_view frame_id{};       ///< of the header
 };
 
 /// Joint states of one chain over time: N samples of n joints, a sample a column.
@@ -70,6 +72,7 @@ struct JointLog {
   Eigen::MatrixXd qd;                    ///< n x N; rad/s (prismatic m/s)
   Eigen::MatrixXd effort;                ///< n x N; as recorded; empty (0 x 0) if none was
   Eigen::MatrixXd qdd;                   ///< n x N; as recorded; empty (0 x 0) if none was
+  std::string frame_id;                  ///< the first that a header has
   std::vector<Eigen::Index> message;     ///< N; which message each sample is of
   Clock clock = Clock::kHeader;          ///< which of the stamps is the time
   std::vector<std::string> notes;        ///< what was left out or assumed, a sentence each
@@ -98,6 +101,9 @@ class JointLogBuilder {
   /// Adds a sample. @throws RecordingError by the rules at the top of this file.
   void add(const JointSample& sample);
 
+  /// How many samples were added, those left out too.
+  Eigen::Index samples() const { return samples_; }
+
   /// Everything added. @throws RecordingError: no sample with the joints.
   JointLog finish(Clock clock = Clock::kAuto) const;
 
@@ -119,6 +125,7 @@ class JointLogBuilder {
   JointMatching matching_;
   std::vector<std::string> other_names_;  // of the first message left out
   Eigen::Index samples_ = 0;              // all that came
+  std::string frame_id_;
   std::vector<std::int64_t> header_stamps_, receive_stamps_;
   std::vector<Eigen::Index> message_;
   Column position_, velocity_, effort_, acceleration_;
