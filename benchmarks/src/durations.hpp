@@ -27,8 +27,6 @@ class Durations {
   /// none.
   std::uint64_t quantile(double part) const;
 
-  std::uint64_t longest() const { return quantile(1.0); }
-
   std::uint64_t sum() const;
 
  private:

@@ -14,9 +14,9 @@ class Writer {
   Writer(std::ostream& stream, std::uint32_t seed) : stream_(stream), engine_(seed) {}
 
   void link(int number) {
-    const double mass = 3.0 + number_between(-2.0, 2.0);
-    const std::array<double, 3> size = {number_between(0.05, 0.3), number_between(0.05, 0.3),
-                                        number_between(0.05, 0.3)};
+    const double mass = 3.0 + numberBetween(-2.0, 2.0);
+    const std::array<double, 3> size = {numberBetween(0.05, 0.3), numberBetween(0.05, 0.3),
+                                        numberBetween(0.05, 0.3)};
     const auto moment = [&](double a, double b) { return mass / 12.0 * (a * a + b * b); };
     stream_ << "  <link name=\"link" << number << "\">\n    <inertial>\n      ";
     origin(0.1);
@@ -37,15 +37,15 @@ class Writer {
   }
 
  private:
-  double number_between(double low, double high) {
+  double numberBetween(double low, double high) {
     return low + (high - low) * (engine_() / 4294967295.0);
   }
 
   std::string triple(double range) {
     std::ostringstream text;
-    text << number_between(-range, range);
-    text << ' ' << number_between(-range, range);
-    text << ' ' << number_between(-range, range);
+    text << numberBetween(-range, range);
+    text << ' ' << numberBetween(-range, range);
+    text << ' ' << numberBetween(-range, range);
     return text.str();
   }
 

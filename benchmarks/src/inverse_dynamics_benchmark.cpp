@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Times every solver through the public interface, into the caller's memory, and other libraries on
-// the same states. Names: ROBOT/QUANTITY/LIBRARY. `ids bench` runs it and makes tables of it.
+// the same states. Names: ROBOT/QUANTITY/LIBRARY. `ids bench` runs it and makes tables of it; they
+// know, of the engine, `derivatives`, `forward_dynamics` and `regressor` of ur10 and panda.
 
 #include <benchmark/benchmark.h>
 
 #include <chain_dynamics/urdf.hpp>
+#include <cstdint>
 #include <exception>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <iostream>
+#include <map>
+#include <memory>
+#include <string>
 
 #include "context.hpp"
 #include "peers.hpp"
@@ -19,6 +24,8 @@
 namespace inverse_dynamics_benchmarks {
 namespace {
 
+using inverse_dynamics_solver::InverseDynamicsSolver;
+using inverse_dynamics_solver::ParameterValue;
 using inverse_dynamics_solver::SolverLoader;
 
 constexpr const char* kRigidBody =
@@ -34,13 +41,24 @@ void registerPeers(const PeerRobot& robot) {
 #endif
 }
 
+void registerLargerBatches(const SolverLoader& loader, const Robot& robot,
+                           const std::shared_ptr<const InverseDynamicsSolver>& solver) {
+  registerRows(robot.name, solver);
+  registerLargeBatch(robot.name, solver);
+  registerManyStates(robot.name, "ours", solver);
+  const auto threaded = loader.load(kRigidBody);
+  threaded->initialize(std::map<std::string, ParameterValue>{{"batch_threads", std::int64_t{2}}},
+                       "", robot.urdf);
+  registerManyStates(robot.name, "two_threads", threaded);
+}
+
 void registerRobot(const SolverLoader& loader, const Robot& robot) {
   const auto solver = loader.load(kRigidBody);
   solver->initialize({}, "", robot.urdf);
   registerSingleCalls(robot.name, solver);
   const Eigen::Index n = solver->jointCount();
   if (n == 6 || n == 7) registerBatches(robot.name, solver);
-  if (robot.name == "ur10") registerLargeBatch(robot.name, solver);
+  if (robot.name == "ur10") registerLargerBatches(loader, robot, solver);
 
   const States states(n);
   registerPeers({robot.name, robot.urdf, chain_dynamics::chainFromUrdf(robot.urdf),
@@ -68,6 +86,7 @@ int run(int argc, char** argv) {
   registerIdentified(loader, "panda_identified",
                      "franka_inria_inverse_dynamics_solver/InverseDynamicsSolverFrankaInria");
   benchmark::RunSpecifiedBenchmarks();
+  benchmark::ClearRegisteredBenchmarks();  // before the loader, which holds the solvers' libraries
   benchmark::Shutdown();
   return 0;
 }

@@ -32,16 +32,26 @@ class Report {
   template <typename Call>
   void measure(const std::string& name, Call call) {
     const Latency x = measureLatency(name, calls_, tick_, call);
-    std::cout << separator_ << "{\"name\": \"" << x.name << "\", \"calls\": " << x.calls
-              << ", \"p50\": " << x.p50 << ", \"p99\": " << x.p99 << ", \"p99.99\": " << x.p9999
-              << ", \"max\": " << x.max << ", \"slowest_state\": " << x.slowest_state
-              << ", \"interruptions_per_second\": " << x.interruptions_per_second
-              << ", \"context_switches\": " << x.context_switches
-              << ", \"page_faults\": " << x.page_faults << "}" << std::flush;
+    std::cout << separator_ << "{\"name\": \"" << x.name << '"';
+    field("calls", x.calls);
+    field("p50", x.p50);
+    field("p99", x.p99);
+    field("p99.99", x.p9999);
+    field("max", x.max);
+    field("slowest_state", x.slowest_state);
+    field("interruptions_per_second", x.interruptions_per_second);
+    field("context_switches", x.context_switches);
+    field("page_faults", x.page_faults);
+    std::cout << '}' << std::flush;
     separator_ = ",\n";
   }
 
  private:
+  template <typename Number>
+  static void field(const char* name, Number value) {
+    std::cout << ", \"" << name << "\": " << value;
+  }
+
   long calls_;
   double tick_;
   const char* separator_ = "";

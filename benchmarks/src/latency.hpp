@@ -36,20 +36,37 @@ struct Latency {
 
 constexpr double kInterruption = 1000.0;  // ns
 
-/// Times `call(k)` for states k = 0, 1, ..., kStates - 1 again and again, `calls` times in all.
+/// Calls with state 0, 1, ..., kStates - 1 again and again, one by one, and remembers the least
+/// time of each state.
+template <typename Call>
+class TimedCalls {
+ public:
+  explicit TimedCalls(Call call) : call_(call) {
+    least_.fill(std::numeric_limits<std::uint64_t>::max());
+  }
+
+  /// Ticks that call i takes.
+  std::uint64_t operator()(long i) {
+    const std::uint64_t begin = ticks();
+    call_(static_cast<Eigen::Index>(i % kStates));
+    const std::uint64_t duration = ticks() - begin;
+    std::uint64_t& least = least_[static_cast<std::size_t>(i % kStates)];
+    least = std::min(least, duration);
+    return duration;
+  }
+
+  std::uint64_t least(long i) const { return least_[static_cast<std::size_t>(i % kStates)]; }
+  std::uint64_t slowestState() const { return *std::max_element(least_.begin(), least_.end()); }
+
+ private:
+  Call call_;
+  std::array<std::uint64_t, kStates> least_;
+};
+
+/// Times `call(k)` for states k, `calls` times in all. tick: nanoseconds of a tick.
 template <typename Call>
 Latency measureLatency(const std::string& name, long calls, double tick, Call call) {
-  std::array<std::uint64_t, kStates> least;
-  least.fill(std::numeric_limits<std::uint64_t>::max());
-  const auto timed = [&](long i) {
-    const Eigen::Index k = i % kStates;
-    const std::uint64_t begin = ticks();
-    call(k);
-    const std::uint64_t duration = ticks() - begin;
-    auto& shortest = least[static_cast<std::size_t>(k)];
-    shortest = std::min(shortest, duration);
-    return duration;
-  };
+  TimedCalls<Call> timed(call);
   constexpr long kWarmUp = 16 * kStates;
   for (long i = 0; i < kWarmUp; ++i) timed(i);
 
@@ -60,8 +77,7 @@ Latency measureLatency(const std::string& name, long calls, double tick, Call ca
   getrusage(RUSAGE_THREAD, &before);
   for (long i = 0; i < calls; ++i) {
     const std::uint64_t duration = timed(i);
-    const std::uint64_t shortest = least[static_cast<std::size_t>(i % kStates)];
-    if (duration > shortest + interruption) ++interruptions;
+    if (duration > timed.least(i) + interruption) ++interruptions;
     durations.add(duration);
   }
   getrusage(RUSAGE_THREAD, &after);
@@ -72,8 +88,8 @@ Latency measureLatency(const std::string& name, long calls, double tick, Call ca
           time(durations.quantile(0.50)),
           time(durations.quantile(0.99)),
           time(durations.quantile(0.9999)),
-          time(durations.longest()),
-          time(*std::max_element(least.begin(), least.end())),
+          time(durations.quantile(1.0)),
+          time(timed.slowestState()),
           static_cast<double>(interruptions) / (1e-9 * time(durations.sum())),
           after.ru_nvcsw - before.ru_nvcsw + after.ru_nivcsw - before.ru_nivcsw,
           after.ru_minflt - before.ru_minflt + after.ru_majflt - before.ru_majflt};

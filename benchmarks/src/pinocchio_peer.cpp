@@ -51,11 +51,6 @@ void registerPinocchio(const PeerRobot& robot) {
   add("inertia", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.inertia(k)); });
   add("coriolis", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.coriolis(k)); });
   add("gravity", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.gravity(k)); });
-  add("components", [](Peer& p, Eigen::Index k) {
-    DoNotOptimize(p.inertia(k));
-    DoNotOptimize(p.coriolis(k));
-    DoNotOptimize(p.gravity(k));
-  });
 }
 
 std::string pinocchioVersion() { return PINOCCHIO_VERSION; }

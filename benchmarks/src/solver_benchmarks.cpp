@@ -34,6 +34,14 @@ struct BatchSubject : Subject {
   Eigen::MatrixXd H_all, c_all, g_all;
 };
 
+/// States, and room for their torques.
+struct Torques {
+  Torques(Eigen::Index joints, Eigen::Index count) : states(joints, count), tau(joints, count) {}
+
+  States states;
+  Eigen::MatrixXd tau;
+};
+
 }  // namespace
 
 void registerSingleCalls(const std::string& robot, const Solver& solver) {
@@ -92,19 +100,36 @@ void registerBatches(const std::string& robot, const Solver& solver) {
   });
 }
 
-void registerLargeBatch(const std::string& robot, const Solver& solver) {
-  constexpr Eigen::Index kLarge = 1 << 18;  // 50 MB for six joints
-  struct Large {
-    States states;
-    Eigen::MatrixXd tau;
+void registerRows(const std::string& robot, const Solver& solver) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  struct Rows {
+    RowMajor q, qd, qdd, tau;  // n x N like columns, but the numbers of a joint are neighbours
   };
-  const Eigen::Index n = solver->jointCount();
-  const auto large = std::make_shared<Large>(Large{States(n, kLarge), Eigen::MatrixXd(n, kLarge)});
-  registerBatch(robot + "/torques_memory/ours", kLarge, [solver, large] {
+  const States states(solver->jointCount());
+  const auto rows =
+      std::make_shared<Rows>(Rows{states.q, states.qd, states.qdd, RowMajor(states.q)});
+  registerBatch(robot + "/torques_rows/ours", kStates, [solver, rows] {
+    solver->getTorquesBatch(rows->q, rows->qd, rows->qdd, rows->tau);
+    benchmark::ClobberMemory();
+  });
+}
+
+void registerManyStates(const std::string& robot, const std::string& library,
+                        const Solver& solver) {
+  const auto many = std::make_shared<Torques>(solver->jointCount(), 1 << 14);
+  registerBatch(robot + "/torques_many/" + library, many->tau.cols(), [solver, many] {
+    solver->getTorquesBatch(many->states.q, many->states.qd, many->states.qdd, many->tau);
+    benchmark::ClobberMemory();
+  })->UseRealTime();
+}
+
+void registerLargeBatch(const std::string& robot, const Solver& solver) {
+  const auto large = std::make_shared<Torques>(solver->jointCount(), 1 << 18);  // 50 MB
+  registerBatch(robot + "/torques_memory/ours", large->tau.cols(), [solver, large] {
     solver->getTorquesBatch(large->states.q, large->states.qd, large->states.qdd, large->tau);
     benchmark::ClobberMemory();
   });
-  registerBatch(robot + "/torques_memory/sum", kLarge, [large] {
+  registerBatch(robot + "/torques_memory/sum", large->tau.cols(), [large] {
     large->tau = large->states.q + large->states.qd + large->states.qdd;
     benchmark::ClobberMemory();
   });

@@ -26,6 +26,17 @@ void registerBatches(
     const std::string& robot,
     const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver);
 
+/// Benchmark `ROBOT/torques_rows/ours`: row-major, so that a state's numbers stand far apart.
+void registerRows(
+    const std::string& robot,
+    const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver);
+
+/// Benchmark `ROBOT/torques_many/LIBRARY`: 16384 states, enough to be shared among
+/// threads; in real time.
+void registerManyStates(
+    const std::string& robot, const std::string& library,
+    const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver);
+
 /// Benchmarks `ROBOT/torques_memory/ours`, a batch that no cache holds, and
 /// `ROBOT/torques_memory/sum`, the sum of the same three arrays: what the memory allows.
 void registerLargeBatch(

@@ -32,15 +32,17 @@ void registerOverStates(const std::string& name, Call call) {
   }));
 }
 
-/// `call()` for `states` states at once; the counter `states` says how many. In real time, since
-/// several threads may share the work.
+/// `call()` for `states` states at once; the counter `states` says how many.
 template <typename Call>
-void registerBatch(const std::string& name, Eigen::Index states, Call call) {
-  asTimePerState(
+benchmark::internal::Benchmark* registerBatch(const std::string& name, Eigen::Index states,
+                                              Call call) {
+  benchmark::internal::Benchmark* const batch =
       benchmark::RegisterBenchmark(name.c_str(), [call, states](benchmark::State& state) {
         for (auto _ : state) call();
         state.counters["states"] = static_cast<double>(states);
-      })->UseRealTime());
+      });
+  asTimePerState(batch);
+  return batch;
 }
 
 }  // namespace inverse_dynamics_benchmarks
