@@ -36,6 +36,8 @@ apt_packages=(
   libament-index-cpp-dev python3-ament-index libclass-loader-dev pluginlib-dev
   # Mathematics, robot descriptions, data files, tests.
   libeigen3-dev libgtest-dev liborocos-kdl-dev libtinyxml2-dev liburdfdom-dev libyaml-cpp-dev
+  # How fast this machine is: ids bench.
+  libbenchmark-dev
   # Pictures of simulated robots without a screen.
   libosmesa6
   # Tests of the report's page: in a browser, and on paper.

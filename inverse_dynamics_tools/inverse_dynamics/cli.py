@@ -32,6 +32,7 @@ VERBS = (
     "report",
     "video",
     "export",
+    "bench",
 )
 
 _EPILOG = """\

@@ -54,15 +54,16 @@ STYLE: Any = {
 
 def save_torque_figure(evaluation: Evaluation, file: Path) -> None:
     """Save torque_figure(); the format is that of the suffix. The same evaluation, the same bytes."""
-    _save(lambda: torque_figure(evaluation), file)
+    save_figure(lambda: torque_figure(evaluation), file)
 
 
 def save_comparison_figure(comparison: Comparison, file: Path) -> None:
     """Save comparison_figure(); the format is that of the suffix. The same runs, the same bytes."""
-    _save(lambda: comparison_figure(comparison), file)
+    save_figure(lambda: comparison_figure(comparison), file)
 
 
-def _save(make: Callable[[], Figure], file: Path) -> None:
+def save_figure(make: Callable[[], Figure], file: Path) -> None:
+    """Save what `make` draws, in the common style. The same figure, the same bytes."""
     import matplotlib as mpl
 
     with mpl.rc_context({**STYLE, "svg.hashsalt": "inverse_dynamics"}):

@@ -11,6 +11,7 @@ import pytest
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
+from inverse_dynamics import cli
 from inverse_dynamics.joint_log import JointLog
 
 STORE = get_typestore(Stores.ROS2_HUMBLE)
@@ -72,3 +73,30 @@ def recordings() -> Path:
     if not directory:
         pytest.skip("IDS_DATA_DIR is not set: no recordings of real robots")
     return Path(directory) / "bags"
+
+
+@pytest.fixture
+def ids(tmp_path, monkeypatch, capsys):
+    """Run `ids` in an empty directory; gives exit code, stdout, stderr."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "120")
+
+    def run(*arguments):
+        try:
+            code = cli.main([str(a) for a in arguments])
+        except SystemExit as exit_:  # argparse
+            code = exit_.code
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err
+
+    return run
+
+
+def fails(result, *expected):
+    """The user is told, on stderr, without a traceback; exit code 2."""
+    code, out, err = result
+    assert code == 2
+    assert out == ""
+    assert "Traceback" not in err
+    for part in expected:
+        assert part in err

@@ -8,7 +8,7 @@ import sys
 from dataclasses import replace
 
 import pytest
-from conftest import joint_log
+from conftest import fails, joint_log
 from test_evaluation import RIGID_BODY, UR10, URDF, recording
 
 from inverse_dynamics import Solver, cli, read_evaluation
@@ -22,33 +22,6 @@ def bag(tmp_path_factory):
     path = tmp_path_factory.mktemp("recording") / "motion"
     recording(path, Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0"))
     return path
-
-
-@pytest.fixture
-def ids(tmp_path, monkeypatch, capsys):
-    """Run `ids` in an empty directory; gives exit code, stdout, stderr."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "120")
-
-    def run(*arguments):
-        try:
-            code = cli.main([str(a) for a in arguments])
-        except SystemExit as exit_:  # argparse
-            code = exit_.code
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return run
-
-
-def fails(result, *expected):
-    """The user is told, on stderr, without a traceback; exit code 2."""
-    code, out, err = result
-    assert code == 2
-    assert out == ""
-    assert "Traceback" not in err
-    for part in expected:
-        assert part in err
 
 
 def test_evaluate_prints_errors_and_writes_results(ids, bag, tmp_path):

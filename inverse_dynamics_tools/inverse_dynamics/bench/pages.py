@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A measurement as Markdown: parts, each by its name, for a page of its own or within another.
+
+In a page that people write, `<!-- ids bench: NAME -->` and `<!-- ids bench: end -->` enclose a part.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.bench import asked
+from inverse_dynamics.errors import OutputError
+from inverse_dynamics.files import write_text_whole
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from pathlib import Path
+
+    from inverse_dynamics.bench.measurement import Measurement
+
+_LIBRARIES = {"ours": "this library", "pinocchio": "Pinocchio", "kdl": "KDL", "mujoco": "MuJoCo"}
+_QUANTITIES = {
+    "torques": "torques",
+    "inertia": "H",
+    "coriolis": "Coriolis",
+    "gravity": "gravity",
+    "components": "H, C qd, g",
+    "friction": "friction",
+}
+_ENGINE = {
+    "derivatives": "derivatives of the torques",
+    "forward_dynamics": "forward dynamics",
+    "regressor": "regressor",
+}
+_ROBOTS = {
+    "ur10": "UR10",
+    "panda": "Panda",
+    "mixed6": "6 joints, 2 slide",
+    "mixed7": "7 joints, 2 slide",
+    "turning6": "6 joints, all turn",
+    "turning7": "7 joints, all turn",
+    "ur10_identified": "UR10, identified",
+    "panda_identified": "Panda, identified",
+}
+_MARKED = re.compile(r"<!-- ids bench: (\w+) -->\n(.*?)<!-- ids bench: end -->", re.DOTALL)
+
+
+def page(result: Measurement) -> str:
+    """All parts that were measured, under a heading."""
+    texts = (PARTS[name](result) for name in PARTS)
+    body = "\n".join(text for text in texts if text)
+    return f"# Speed of this machine\n\n{body}"
+
+
+def updated(text: str, result: Measurement, where: str) -> str:
+    """A page with its generated parts made anew. `where` begins the text of an OutputError."""
+    if not _MARKED.search(text):
+        raise OutputError(
+            f"{where}: expected a part between `<!-- ids bench: NAME -->` and `<!-- ids bench: end "
+            f"-->`, got none; NAME is one of {', '.join(PARTS)}"
+        )
+
+    def part(match: re.Match[str]) -> str:
+        name = match[1]
+        if name not in PARTS:
+            raise OutputError(
+                f"{where}: part '{name}': expected one of {', '.join(PARTS)}; correct its name"
+            )
+        return f"<!-- ids bench: {name} -->\n{PARTS[name](result)}<!-- ids bench: end -->"
+
+    return _MARKED.sub(part, text)
+
+
+def update_pages(files: Sequence[Path], result: Measurement) -> None:
+    """Write pages with their generated parts made anew: all of them, or none. Raises OutputError."""
+    texts = {}
+    for file in files:
+        try:
+            texts[file] = updated(file.read_text(encoding="utf-8"), result, str(file))
+        except OSError as error:
+            raise OutputError(f"{file}: can't be read ({error.strerror or error})") from error
+    for file, text in texts.items():
+        write_text_whole(file, text)
+
+
+def machine(result: Measurement) -> str:
+    """What was measured with what, a paragraph."""
+    context = result.context
+    load = ", ".join(
+        f"{loads[0]:.1f} {when}"
+        for key, when in (("load_avg", "before"), ("load_avg_after", "after"))
+        if (loads := context.get(key))
+    )
+    versions = ", ".join(
+        f"{title} {context[key]}" for key, title in _LIBRARIES.items() if key in context
+    )
+    lines = [
+        f"{context.get('processor', 'unknown processor')}, {context.get('num_cpus', '?')} cores, "
+        f"{context.get('mhz_per_cpu', '?')} MHz; {context.get('compiler', '?')}, "
+        f"`{context.get('compiler_flags', '')}`, kernels {context.get('kernels', '?')}; {versions}.",
+    ]
+    if result.times:
+        lines.append(
+            f"Least of {context.get('repetitions', '?')} repetitions in random order; their median "
+            f"is {100 * (context.get('median_by_least', 1) - 1):.0f} % above it, for half of the "
+            f"rows. Load of the machine: {load}."
+        )
+    missing = [title for key, title in _LIBRARIES.items() if key not in (*context, "ours")]
+    if missing:
+        lines.append(f"Not found when the benchmarks were built: {', '.join(missing)}.")
+    if context.get("optimized") == "no":
+        lines.append(
+            "**Compiled without optimisation: these figures say nothing.** Build with "
+            "`-DCMAKE_BUILD_TYPE=Release`."
+        )
+    return "\n".join(lines) + "\n"
+
+
+def calls(result: Measurement) -> str:
+    """One state a call [ns]."""
+    robots = [*asked.REAL, *asked.GENERATED, *asked.IDENTIFIED]
+    rows = []
+    for robot in robots:
+        for quantity in _QUANTITIES:
+            ours = result.time(robot, quantity, "ours")
+            pinocchio = asked.peer_time(result, robot, quantity)
+            if robot in asked.IDENTIFIED and quantity == "torques":
+                pinocchio = asked.peer_time(result, asked.IDENTIFIED[robot], quantity)
+            others = [result.time(robot, quantity, library) for library in ("kdl", "mujoco")]
+            if ours is not None:
+                cells = [_time(t) for t in (ours, pinocchio, *others)]
+                rows.append(
+                    [_ROBOTS[robot], _QUANTITIES[quantity], *cells, _ratio(pinocchio, ours)]
+                )
+    return _table(["robot", "quantity [ns]", *_LIBRARIES.values(), "ratio"], rows, 2)
+
+
+def batches(result: Measurement) -> str:
+    """1024 states a call [ns per state], beside Pinocchio's single call."""
+    rows = []
+    for robot in _ROBOTS:
+        for quantity, title in _QUANTITIES.items():
+            ours = result.time(robot, f"{quantity}_batch", "ours")
+            peer = asked.peer_time(result, asked.IDENTIFIED.get(robot, robot), quantity)
+            if robot in asked.IDENTIFIED and quantity != "torques":
+                peer = None
+            if ours is not None:
+                rows.append([_ROBOTS[robot], title, _time(ours), _time(peer), _ratio(peer, ours)])
+    return _table(["robot", "batch of [ns]", "this library", "Pinocchio", "ratio"], rows, 2)
+
+
+def chains(result: Measurement) -> str:
+    """Time over the number of joints [ns]; ratio: KDL's time by ours."""
+    rows = []
+    for robot in asked.CHAINS:
+        ours = {q: result.time(robot, q, "ours") for q in asked.QUANTITIES}
+        kdl = {q: result.time(robot, q, "kdl") for q in asked.QUANTITIES}
+        if any(ours.values()):
+            pinocchio = result.time(robot, "torques", "pinocchio")
+            rows.append(
+                [
+                    robot.removeprefix("mixed"),
+                    *(_time(t) for t in (ours["torques"], pinocchio, kdl["torques"])),
+                    *(_ratio(kdl[q], ours[q]) for q in asked.QUANTITIES),
+                ]
+            )
+    heads = ["joints", "torques [ns]", "Pinocchio", "KDL"]
+    heads += [f"KDL by ours: {_QUANTITIES[q]}" for q in asked.QUANTITIES]
+    return _table(heads, rows, 1)
+
+
+def engine(result: Measurement) -> str:
+    """Functions of the engine [ns]."""
+    rows = []
+    for robot in asked.REAL:
+        for quantity, title in _ENGINE.items():
+            ours = result.time(robot, quantity, "ours")
+            peer = result.time(robot, quantity, "pinocchio")
+            if ours is not None:
+                rows.append([_ROBOTS[robot], title, _time(ours), _time(peer), _ratio(peer, ours)])
+    return _table(["robot", "quantity [ns]", "this library", "Pinocchio", "ratio"], rows, 2)
+
+
+def memory(result: Measurement) -> str:
+    """A batch beyond the caches, and threads [ns per state]."""
+    rows = [
+        ["262144 states, 50 MB", _time(result.time("ur10", "torques_memory", "ours"))],
+        ["sum of the same arrays", _time(result.time("ur10", "torques_memory", "sum"))],
+        ["16384 states", _time(result.time("ur10", "torques_many", "ours"))],
+        ["16384 states, two threads", _time(result.time("ur10", "torques_many", "two_threads"))],
+        ["1024 states, a state a row", _time(result.time("ur10", "torques_rows", "ours"))],
+    ]
+    return _table(["UR10, torques", "ns"], [row for row in rows if row[1]], 1)
+
+
+def bounds(result: Measurement) -> str:
+    """What is asked of speed, and what was reached."""
+    rows = []
+    for bound in asked.bounds(result):
+        if bound.reached is None:
+            continue
+        place = f" ({_ROBOTS.get(bound.where, bound.where)})" if bound.where else ""
+        rows.append(
+            [
+                bound.what,
+                bound.other,
+                f"{bound.asked:g}",
+                f"{bound.reached:.3g}{place}",
+                "yes" if bound.holds else "**no**",
+            ]
+        )
+    return _table(["what", "how many times as fast as", "asked", "reached", "holds"], rows, 2)
+
+
+def latency(result: Measurement) -> str:
+    """How long single calls take [ns]."""
+    rows = []
+    for entry in result.latency:
+        robot, quantity, library = entry["name"].split("/")
+        what = quantity if robot == "system" else f"{_ROBOTS[robot]}, {_QUANTITIES[quantity]}"
+        rows.append(
+            [
+                what if robot != "system" else f"*{what}*",
+                _LIBRARIES.get(library, ""),
+                *(_time(entry[key]) for key in ("slowest_state", "p50", "p99", "p99.99", "max")),
+                f"{entry['interruptions_per_second']:.0f}",
+                str(entry["context_switches"]),
+                str(entry["page_faults"]),
+            ]
+        )
+    heads = ["call [ns]", "by", "slowest state", "p50", "p99", "p99.99", "max"]
+    heads += ["> 1 µs more, per s", "switches", "page faults"]
+    return _table(heads, rows, 2)
+
+
+def _table(heads: Sequence[str], rows: Iterable[Sequence[str]], words: int) -> str:
+    """Markdown; the first `words` columns are text, the others figures. Empty without rows."""
+    lines = ["| " + " | ".join(row) + " |" for row in rows]
+    rule = "|" + "".join("---|" if i < words else "--:|" for i in range(len(heads)))
+    return "\n".join(["| " + " | ".join(heads) + " |", rule, *lines]) + "\n" if lines else ""
+
+
+def _time(nanoseconds: float | None) -> str:
+    if nanoseconds is None:
+        return ""
+    return f"{nanoseconds:.1f}" if nanoseconds < 30 else f"{nanoseconds:.0f}"
+
+
+def _ratio(slow: float | None, fast: float | None) -> str:
+    value = asked.ratio(slow, fast)
+    return "" if value is None else f"{value:.1f}"
+
+
+PARTS: Mapping[str, Callable[[Measurement], str]] = {
+    "machine": machine,
+    "calls": calls,
+    "batches": batches,
+    "memory": memory,
+    "chains": chains,
+    "engine": engine,
+    "latency": latency,
+    "bounds": bounds,
+}

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids bench`: how fast this machine computes inverse dynamics."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.verbs.common import positive_number
+from inverse_dynamics.verbs.options import add_verb
+
+if TYPE_CHECKING:
+    from inverse_dynamics.bench import Measurement
+
+_EPILOG = """\
+examples:
+  ids bench                                      this machine's tables, in about a minute
+  ids bench --only ur10/torques                  only what has such a name
+  ids bench --latency                            the slowest of a million single calls too
+  ids bench --repetitions 200 --json speed.json  with less noise; the figures in a file
+  ids bench --from speed.json --plot speed.svg   a figure of figures measured before
+  ids bench --from docs/speed.json --update docs/speed.md --update docs/real_time.md
+      generated parts of pages, between `<!-- ids bench: NAME -->` and `<!-- ids bench: end -->`
+
+One thread, double precision, the same 1024 random states for all; time of one state, the least of
+the repetitions, which come in random order. This library is called through its public interface,
+checks included; KDL, Pinocchio and MuJoCo by their own fastest calls. Keep the machine quiet.
+Needs the package inverse_dynamics_benchmarks and Google Benchmark (Debian: libbenchmark-dev).
+"""
+
+
+def add_parser(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+) -> argparse.ArgumentParser:
+    """Declare the verb."""
+    parser = add_verb(
+        subparsers,
+        "bench",
+        summary="how fast this machine is, beside KDL, Pinocchio and MuJoCo",
+        description="Time this library, KDL, Pinocchio and MuJoCo on this machine.",
+        epilog=_EPILOG,
+    )
+    _add_measuring(parser.add_argument_group("what is measured"))
+    results = parser.add_argument_group("where results go, besides the screen")
+    results.add_argument("--json", metavar="FILE", type=Path, help="all figures, for --from")
+    results.add_argument("--markdown", metavar="FILE", type=Path, help="the tables as a page")
+    results.add_argument("--plot", metavar="FILE", type=Path, help="a figure: .svg, .png or .pdf")
+    results.add_argument(
+        "--update",
+        metavar="PAGE",
+        type=Path,
+        action="append",
+        default=[],
+        help="make the generated parts of a page anew; more than once: several pages",
+    )
+    results.add_argument("--overwrite", action="store_true", help="replace existing files")
+    return parser
+
+
+def _add_measuring(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--from",
+        dest="source",
+        metavar="FILE",
+        type=Path,
+        help="nothing: show what --json wrote earlier",
+    )
+    group.add_argument(
+        "--only",
+        metavar="REGEX",
+        type=_regular_expression,
+        default="",
+        help="benchmarks whose name, ROBOT/QUANTITY/LIBRARY, matches",
+    )
+    group.add_argument(
+        "--repetitions",
+        metavar="N",
+        type=_count,
+        default=20,
+        help="of each benchmark (default: 20)",
+    )
+    group.add_argument(
+        "--seconds",
+        metavar="S",
+        type=positive_number,
+        default=0.003,
+        help="of each repetition (default: 0.003)",
+    )
+    group.add_argument(
+        "--latency", action="store_true", help="time single calls too: their worst, not their least"
+    )
+    group.add_argument(
+        "--calls",
+        metavar="N",
+        type=_count,
+        default=1_000_000,
+        help="how many with --latency (default: 1000000)",
+    )
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from rich.console import Console
+
+    from inverse_dynamics.bench import measure, page, read_measurement, write_measurement
+    from inverse_dynamics.bench.pages import update_pages
+    from inverse_dynamics.bench.plot import check_figure_name, save_speed_figure
+    from inverse_dynamics.files import check_output_file, write_text_whole
+
+    for file in (arguments.json, arguments.markdown, arguments.plot):
+        if file is not None:
+            check_output_file(file, overwrite=arguments.overwrite)
+    if arguments.plot is not None:
+        check_figure_name(arguments.plot)
+
+    if arguments.source is not None:
+        result = read_measurement(arguments.source)
+    else:
+        with Console(stderr=True).status("measuring; keep the machine quiet"):
+            result = measure(
+                repetitions=arguments.repetitions,
+                seconds=arguments.seconds,
+                only=arguments.only,
+                latency_calls=arguments.calls if arguments.latency else 0,
+            )
+    if arguments.json is not None:
+        write_measurement(result, arguments.json)
+    if arguments.markdown is not None:
+        write_text_whole(arguments.markdown, page(result))
+    if arguments.plot is not None:
+        save_speed_figure(result, arguments.plot)
+    update_pages(arguments.update, result)
+    _print(result)
+
+
+def _print(result: Measurement) -> None:
+    from rich.console import Console
+    from rich.markdown import Markdown
+
+    from inverse_dynamics.bench import page
+
+    Console(highlight=False).print(Markdown(page(result)))
+
+
+def _count(text: str) -> int:
+    if not re.fullmatch(r"[0-9]{1,10}", text) or int(text) == 0:
+        raise argparse.ArgumentTypeError(f"expected a whole number above zero, got '{text}'")
+    return int(text)
+
+
+def _regular_expression(text: str) -> str:
+    try:
+        re.compile(text)
+    except re.error as error:
+        raise argparse.ArgumentTypeError(
+            f"expected a regular expression, got '{text}' ({error})"
+        ) from None
+    return text

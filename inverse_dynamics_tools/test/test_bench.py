@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: Apache-2.0
+import json
+import os
+import re
+from pathlib import Path
+
+import pytest
+from conftest import fails
+
+from inverse_dynamics.ament import PackageNotFoundError, package_share
+from inverse_dynamics.bench import bounds, measure, page, read_measurement
+from inverse_dynamics.bench.measurement import measurement
+from inverse_dynamics.bench.pages import PARTS, updated
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = ("speed.md", "real_time.md")
+
+
+def entry(name, time, *, real=0.0, **more):
+    """Of Google Benchmark's JSON, as random interleaving with aggregates writes it."""
+    return {
+        "name": f"{name}_min",
+        "run_name": name,
+        "run_type": "aggregate",
+        "aggregate_name": "min",
+        "real_time": real,
+        "cpu_time": time,
+        "time_unit": "ns",
+        **more,
+    }
+
+
+def document(*entries, **context):
+    return {"context": {"processor": "Abacus", **context}, "benchmarks": list(entries)}
+
+
+@pytest.fixture
+def speed_json(tmp_path):
+    file = tmp_path / "speed.json"
+    entries = [
+        entry("ur10/torques/ours", 100.0),
+        entry("ur10/torques/pinocchio", 900.0),
+        entry("ur10/torques/kdl", 1500.0),
+        entry("panda/torques/ours", 200.0),
+        entry("panda/torques/pinocchio", 1400.0),
+        entry("ur10/torques_batch/ours/real_time", 1.0, real=25_600.0, states=1024),
+    ]
+    file.write_text(json.dumps(document(*entries)))
+    return file
+
+
+def benchmarks_installed():
+    try:
+        prefix = package_share("inverse_dynamics_benchmarks").parents[1]
+    except PackageNotFoundError:
+        return False
+    return (prefix / "bin/inverse_dynamics_benchmark").is_file()
+
+
+needs_benchmarks = pytest.mark.skipif(
+    not benchmarks_installed(), reason="built without Google Benchmark (Debian: libbenchmark-dev)"
+)
+
+
+@needs_benchmarks
+def test_one_command_measures_and_writes_everything(ids, tmp_path):
+    options = ["--repetitions", "2", "--seconds", "1e-6", "--only", "^ur10/torques(_batch)?/"]
+    files = ["--json", "out/a.json", "--markdown", "out/a.md", "--plot", "out/a.svg"]
+    code, out, err = ids("bench", *options, "--latency", "--calls", "100", *files)
+    assert (code, err) == (0, "")
+    assert re.search(r"UR10 +torques +\d", out)
+    result = read_measurement(tmp_path / "out/a.json")
+    for library in ("ours", "kdl"):
+        assert 1 < result.time("ur10", "torques", library) < 1e7
+    assert 1 < result.time("ur10", "torques_batch", "ours") < 1e7
+    assert result.context["repetitions"] == 2
+    assert re.search(r"gcc|clang", result.context["compiler"])
+    assert page(result) == (tmp_path / "out/a.md").read_text()
+    for row in result.latency:
+        assert row["calls"] == 100
+        assert row["p50"] <= row["p99"] <= row["p99.99"] <= row["max"]
+    names = [row["name"] for row in result.latency]
+    assert names[:2] == ["system/nothing/none", "system/multiplications/none"]
+    assert "ur10_identified/torques/ours" in names
+    assert "<svg" in (tmp_path / "out/a.svg").read_text()
+
+
+@needs_benchmarks
+def test_a_name_that_no_benchmark_has_is_told(ids):
+    fails(
+        ids("bench", "--only", "nonsense"),
+        "inverse_dynamics_benchmark failed: Failed to match any benchmarks against regex: nonsense",
+    )
+
+
+def test_without_the_benchmarks_the_remedy_is_told(ids, tmp_path, monkeypatch):
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    remedy = "install Google Benchmark (Debian: apt install libbenchmark-dev)"
+    fails(ids("bench"), "package inverse_dynamics_benchmarks: not in any", remedy)
+
+    marker = tmp_path / "share/ament_index/resource_index/packages/inverse_dynamics_benchmarks"
+    marker.parent.mkdir(parents=True)
+    marker.touch()
+    fails(ids("bench"), "bin/inverse_dynamics_benchmark: not there", remedy)
+
+
+def test_a_benchmark_that_fails_is_told_by_its_last_words(tmp_path, monkeypatch):
+    index = tmp_path / "share/ament_index/resource_index/packages"
+    index.mkdir(parents=True)
+    (index / "inverse_dynamics_benchmarks").touch()
+    program = tmp_path / "bin/inverse_dynamics_benchmark"
+    program.parent.mkdir()
+    program.write_text("#!/bin/sh\necho first >&2\necho ur10: no such robot >&2\nexit 1\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    with pytest.raises(Exception, match="inverse_dynamics_benchmark failed: ur10: no such robot"):
+        measure()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (("--repetitions", "0"), "--repetitions: expected a whole number above zero, got '0'"),
+        (("--repetitions", "1.5"), "expected a whole number above zero, got '1.5'"),
+        (("--calls", "-1"), "--calls: expected a whole number above zero, got '-1'"),
+        (("--seconds", "0"), "--seconds: expected a number above zero, got '0'"),
+        (("--only", "("), "--only: expected a regular expression, got '('"),
+        (("--from", "nothing.json"), "nothing.json: can't be read (No such file or directory)"),
+        (("--plot", "speed.gif"), "speed.gif: expected a name that ends in .svg, .png or .pdf"),
+    ],
+)
+def test_options_that_make_no_sense_are_told(ids, arguments, expected):
+    fails(ids("bench", *arguments), expected)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("{", "expected JSON of `ids bench --json`: Expecting"),
+        ("[]", "expected a result of `ids bench --json`, got something else"),
+        ('{"context": {}}', "got something else (no 'benchmarks'); measure again"),
+        (json.dumps(document()), "no entry with the aggregate_name 'min', and no latency"),
+        (
+            json.dumps(document(entry("a/b/c", 1.0, time_unit="ms"))),
+            "time_unit: expected ns, got ms",
+        ),
+    ],
+)
+def test_a_file_that_is_no_measurement_is_told(ids, tmp_path, text, expected):
+    (tmp_path / "a.json").write_text(text)
+    fails(ids("bench", "--from", "a.json"), "ids: error: a.json: ", expected)
+
+
+def test_what_exists_is_replaced_only_if_told(ids, speed_json):
+    before = speed_json.read_text()
+    command = ("bench", "--from", "speed.json", "--json", "speed.json")
+    fails(ids(*command), "speed.json: exists already", "--overwrite")
+    assert speed_json.read_text() == before
+    assert ids(*command, "--overwrite")[0] == 0
+    assert read_measurement(speed_json).time("ur10", "torques", "ours") == 100.0
+
+
+def test_times_are_of_one_state_and_by_the_right_clock(speed_json):
+    result = read_measurement(speed_json)
+    assert result.time("ur10", "torques", "ours") == 100.0
+    assert result.time("ur10", "torques_batch", "ours") == 25.0
+    assert result.time("ur10", "inertia", "ours") is None
+
+
+def test_a_bound_takes_the_least_ratio_and_says_where(speed_json):
+    found = {bound.what: bound for bound in bounds(read_measurement(speed_json))}
+    torques = found["torques: UR10, Panda"]
+    assert (torques.asked, torques.reached, torques.where) == (8.0, 7.0, "panda")
+    assert not torques.holds
+    batch = found["torques, batch: UR10, Panda"]
+    assert (batch.asked, batch.reached, batch.holds) == (30.0, 36.0, True)
+    kdl = found["every quantity, 1 to 30 joints"]
+    assert (kdl.reached, kdl.where) == (15.0, "ur10, torques")
+    assert found["forward dynamics"].reached is None
+    assert not found["forward dynamics"].holds
+
+
+def test_all_components_stand_beside_the_sum_of_three_calls():
+    times = {"inertia": 400.0, "coriolis": 900.0, "gravity": 500.0}
+    entries = [entry(f"ur10/{q}/pinocchio", t) for q, t in times.items()]
+    result = measurement(document(*entries, entry("ur10/components/ours", 150.0)), "here")
+    found = {bound.what: bound for bound in bounds(result)}
+    assert found["components: UR10, Panda"].reached == 12.0
+
+
+def test_tables_say_what_was_measured(speed_json):
+    text = page(read_measurement(speed_json))
+    assert "| UR10 | torques | 100 | 900 | 1500 |  | 9.0 |" in text
+    assert "| UR10 | torques | 25.0 | 900 | 36.0 |" in text
+    assert "| torques: UR10, Panda | Pinocchio | 8 | 7 (Panda) | **no** |" in text
+    assert "forward dynamics" not in text
+    assert "Abacus" in text
+
+
+def test_a_build_without_optimisation_is_told():
+    result = measurement(document(entry("ur10/torques/ours", 1.0), optimized="no"), "here")
+    assert "**Compiled without optimisation: these figures say nothing.**" in page(result)
+
+
+def test_libraries_that_are_missing_are_told():
+    result = measurement(document(entry("ur10/torques/ours", 1.0), kdl="1.5.1"), "here")
+    text = page(result)
+    assert "KDL 1.5.1" in text
+    assert "Not found when the benchmarks were built: Pinocchio, MuJoCo." in text
+
+
+def test_only_marked_parts_of_a_page_change(ids, speed_json, tmp_path):
+    file = tmp_path / "page.md"
+    file.write_text("by hand\n<!-- ids bench: calls -->\nold\n<!-- ids bench: end -->\nthe end\n")
+    assert ids("bench", "--from", speed_json, "--update", "page.md")[0] == 0
+    text = file.read_text()
+    assert text.startswith("by hand\n<!-- ids bench: calls -->\n| robot |")
+    assert text.endswith("|\n<!-- ids bench: end -->\nthe end\n")
+    assert "old" not in text
+
+    file.write_text("nothing")
+    command = ("bench", "--from", speed_json, "--update", "page.md")
+    fails(ids(*command), "page.md: expected a part between `<!-- ids bench: NAME -->`")
+    file.write_text("<!-- ids bench: call -->\n<!-- ids bench: end -->")
+    fails(ids(*command), "page.md: part 'call': expected one of machine, calls,")
+
+
+def test_a_figure_is_the_same_for_the_same_figures(ids, speed_json, tmp_path):
+    for name in ("a.svg", "b.svg"):
+        assert ids("bench", "--from", speed_json, "--plot", name)[0] == 0
+    svg = (tmp_path / "a.svg").read_bytes()
+    assert svg == (tmp_path / "b.svg").read_bytes()
+    assert b"this library" in svg
+    assert b"900" in svg
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_pages_say_what_the_measurement_beside_them_says(name):
+    text = (DOCS / name).read_text(encoding="utf-8")
+    result = read_measurement(DOCS / "speed.json")
+    remedy = f"ids bench --from docs/speed.json --update docs/{name}"
+    assert updated(text, result, name) == text, remedy
+
+
+def test_every_part_is_on_one_of_the_pages():
+    text = "".join((DOCS / name).read_text(encoding="utf-8") for name in PAGES)
+    assert sorted(re.findall(r"<!-- ids bench: (\w+) -->", text)) == sorted(
+        [*PARTS, *["end"] * len(PARTS)]
+    )
+
+
+def test_the_measurement_names_neither_machine_nor_date():
+    text = (DOCS / "speed.json").read_text(encoding="utf-8")
+    assert not {"date", "host_name", "executable"} & set(json.loads(text)["context"])
+    assert os.path.expanduser("~") + "/" not in text
