@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <cstring>
 #include <functional>
 #include <iomanip>
 #include <map>
@@ -114,9 +116,10 @@ inline const std::vector<Quantity>& quantities() {
   return all;
 }
 
-/// True if the numbers are the same bit for bit (a zero may differ in sign).
+/// True if the numbers are the same bit for bit.
 inline bool identical(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  return a.size() == b.size() && (a.array() == b.array()).all();
+  const auto bytes = static_cast<std::size_t>(a.size()) * sizeof(double);
+  return a.size() == b.size() && (bytes == 0 || std::memcmp(a.data(), b.data(), bytes) == 0);
 }
 
 /// Passes if a and b differ by at most `tolerance` times `size` in each entry; prints the worst.
