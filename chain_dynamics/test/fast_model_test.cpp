@@ -196,11 +196,12 @@ TEST_P(FastModelOn, AStateHasTheSameBitsWhereverItStandsInABatch) {
     const FastModel fast(model, GetParam());
     Random random(3);
     const Index count = 19;
-    const MatrixXd q = 3 * random.vector(n * count).reshaped(n, count);
+    MatrixXd q = 3 * random.vector(n * count).reshaped(n, count);
     const MatrixXd qd = 2 * q;
     const MatrixXd qdd = -q;
     MatrixXd all(n, count);
     MatrixXd alone(n, 1);
+    q(0, 5) = 1e9;  // beyond the kernels' own sine and cosine, its neighbours within
     fast.torquesBatch(q, qd, qdd, all);
     for (Index k = 0; k < count; ++k) {
       fast.torquesBatch(q.col(k), qd.col(k), qdd.col(k), alone);
@@ -247,7 +248,7 @@ constexpr double kTurnError = 1.7e-16;
 TEST_P(FastModelOn, SineAndCosineAreThoseOfTheLibraryAtAnyAngle) {
   const fast::Kernels& kernels = kernelsNamed(GetParam());
   Random random(11);
-  for (const double range : {1e-9, 0.8, 3.2, 100.0, 1e4, 9.9e5, 1.1e6, 1e15, 1e300}) {
+  for (const double range : {1e-9, 0.8, 3.2, 100.0, 1e4, 1.6e6, 1.7e6, 1e15, 1e300}) {
     for (int k = 0; k < 2000; ++k) {
       const double angle = range * random();
       const double quarter_turns = k % 4;

@@ -14,9 +14,9 @@
 namespace chain_dynamics::fast {
 namespace {
 
-// Up to here the parts of pi/2 below times the number of quarter turns are exact; beyond it the C
-// library's functions take over.
-constexpr double kLargestAngle = 1e6;
+// Up to this many quarter turns (1.6e6 rad) the parts of pi/2 below times their number are exact;
+// beyond it the C library's functions take over.
+constexpr long long kMostQuarterTurns = 1 << 20;
 
 // pi/2 in three parts, the first two of 33 bits.
 constexpr double kHalfPi1 = 0x1.921fb544p+0;
@@ -27,10 +27,29 @@ constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
 // A number added and taken away again rounds to an integer, which stands in its lowest bits.
 constexpr double kRound = 0x1.8p52;
 
+constexpr long long kSign = static_cast<long long>(0x8000000000000000);
+
+// How a polynomial is evaluated: with the fewest instructions, where there are many to evaluate, or
+// with the shortest chain of them.
+enum class Scheme { kHorner, kEstrin };
+
+// c0 + c1 z + ... + c5 z^5
+template <Scheme How, typename V>
+FAST_INLINE V polynomial(const V& z, double c0, double c1, double c2, double c3, double c4,
+                         double c5) {
+  if constexpr (How == Scheme::kHorner) {
+    return c0 + z * (c1 + z * (c2 + z * (c3 + z * (c4 + z * c5))));
+  } else {
+    const V z2 = z * z;
+    return (c0 + z * c1) + z2 * (c2 + z * c3) + (z2 * z2) * (c4 + z * c5);
+  }
+}
+
 // Sine and cosine of angle + quarter_turns pi/2, to 1.2e-16 (about one unit in the last place of
-// one). Returns lanes with angles beyond kLargestAngle, which aren't right yet. NaN gives NaN.
-template <typename V>
-FAST_INLINE BitsOf<V> sineCosine(const V& angle, const V& quarter_turns, V& sine, V& cosine) {
+// one). Adds to `beyond` where they aren't right yet: anyBeyond(). NaN gives NaN.
+template <Scheme How, typename V>
+FAST_INLINE void sineCosine(const V& angle, const V& quarter_turns, V& sine, V& cosine,
+                            BitsOf<V>& beyond) {
   using Bits = BitsOf<V>;
 
   // angle = k pi/2 + r, r within pi/4
@@ -40,39 +59,56 @@ FAST_INLINE BitsOf<V> sineCosine(const V& angle, const V& quarter_turns, V& sine
 
   // Taylor-like polynomials, minimax on this interval, in z = r^2
   const V z = r * r;
-  const V z2 = z * z;
-  const V z4 = z2 * z2;
-  const V sin_tail = (z * 8.33333333332248946124e-03 - 1.66666666666666324348e-01) +
-                     z2 * (z * 2.75573137070700676789e-06 - 1.98412698298579493134e-04) +
-                     z4 * (z * 1.58969099521155010221e-10 - 2.50507602534068634195e-08);
-  const V cos_tail = (z * -1.38888888888741095749e-03 + 4.16666666666666019037e-02) +
-                     z2 * (z * -2.75573143513906633035e-07 + 2.48015872894767294178e-05) +
-                     z4 * (z * -1.13596475577881948265e-11 + 2.08757232129817482790e-09);
+  const V sin_tail = polynomial<How>(z, -1.66666666666666324348e-01, 8.33333333332248946124e-03,
+                                     -1.98412698298579493134e-04, 2.75573137070700676789e-06,
+                                     -2.50507602534068634195e-08, 1.58969099521155010221e-10);
+  const V cos_tail = polynomial<How>(z, 4.16666666666666019037e-02, -1.38888888888741095749e-03,
+                                     2.48015872894767294178e-05, -2.75573143513906633035e-07,
+                                     2.08757232129817482790e-09, -1.13596475577881948265e-11);
   const V sin_r = r + (r * z) * sin_tail;
-  const V cos_r = 1.0 - (z * 0.5 - z2 * cos_tail);
+  const V cos_r = 1.0 - z * (0.5 - z * cos_tail);
 
-  // each quarter turn makes (sine, cosine) into (cosine, -sine)
-  const V turned = rounded + quarter_turns;
-  Bits turns;
-  __builtin_memcpy(&turns, &turned, sizeof(turns));
-  const Bits swapped = 0 - (turns & 1);
-  const V s = swapped ? cos_r : sin_r;
-  const V c = swapped ? sin_r : cos_r;
-  const Bits sine_sign = (turns & 2) << 62;
-  const Bits cosine_sign = ((turns + 1) & 2) << 62;
+  // each quarter turn makes (sine, cosine) into (cosine, -sine); the lowest bits stand for them
+  const Bits turns = reinterpret_cast<Bits>(rounded + quarter_turns);
+  const Bits odd = turns << 63;
+  const Bits sine_sign = (turns << 62) & kSign;
+  const V s = odd < 0 ? cos_r : sin_r;
+  const V c = odd < 0 ? sin_r : cos_r;
   sine = reinterpret_cast<V>(reinterpret_cast<Bits>(s) ^ sine_sign);
-  cosine = reinterpret_cast<V>(reinterpret_cast<Bits>(c) ^ cosine_sign);
-  return (angle > kLargestAngle) | (angle < -kLargestAngle);
+  cosine = reinterpret_cast<V>(reinterpret_cast<Bits>(c) ^ sine_sign ^ odd);
+
+  // k + kMostQuarterTurns: no bit above those of twice as many, if k is small enough
+  constexpr long long kRoundBits = 0x4338000000000000;
+  beyond |= reinterpret_cast<Bits>(rounded) + (kMostQuarterTurns - kRoundBits);
 }
 
-// The same for angles of any size, by the C library.
-__attribute__((noinline, cold)) void sineCosineOfAny(double angle, double quarter_turns,
-                                                     double& sine, double& cosine) {
-  const double s = sin(angle);
-  const double c = cos(angle);
-  const int turns = static_cast<int>(quarter_turns) & 3;
-  sine = turns == 0 ? s : turns == 1 ? c : turns == 2 ? -s : -c;
-  cosine = turns == 0 ? c : turns == 1 ? -s : turns == 2 ? -c : s;
+// Whether sines and cosines that were added to `beyond` are for the C library.
+template <typename V>
+FAST_INLINE bool anyBeyond(const BitsOf<V>& beyond) {
+  unsigned long long bits = 0;
+  for (int lane = 0; lane < kLanes<V>; ++lane)
+    bits |= static_cast<unsigned long long>(beyond[lane]);
+  return bits >= 2 * kMostQuarterTurns;
+}
+
+// By the C library where an angle is beyond; the others keep their bits. `repeated` angles in turn
+// have one entry of quarter_turns.
+__attribute__((noinline, cold)) void sineCosineBeyond(int count, const double* angle,
+                                                      const double* quarter_turns, int repeated,
+                                                      double* sine, double* cosine) {
+  for (int k = 0; k < count; ++k) {
+    Short ignored_sine;
+    Short ignored_cosine;
+    ShortBits beyond{};
+    const Short x = all<Short>(angle[k]);
+    sineCosine<Scheme::kHorner>(x, x, ignored_sine, ignored_cosine, beyond);
+    if (!anyBeyond<Short>(beyond)) continue;
+    const double s = sin(angle[k]);
+    const double c = cos(angle[k]);
+    const int turns = static_cast<int>(quarter_turns[k / repeated]) & 3;
+    sine[k] = turns == 0 ? s : turns == 1 ? c : turns == 2 ? -s : -c;
+    cosine[k] = turns == 0 ? c : turns == 1 ? -s : turns == 2 ? -c : s;
+  }
 }
 
 // exp(-x) for x >= 0, where more than 708 count as 708 (3e-308); NaN gives NaN.

@@ -216,9 +216,13 @@ struct PackOfStates {
   Pack q[kMaxJoints], c[kMaxJoints], s[kMaxJoints], qd[kMaxJoints], qdd[kMaxJoints];
   State<Pack> state() const { return {c, s, q, qd, qdd}; }
 
-  void readPositions(const Robot& robot, const Samples& from, const Lanes& lanes) {
+  FAST_INLINE void readPositions(const Robot& robot, const Samples& from, const Lanes& lanes) {
     gather(robot, from, lanes, q);
     turnsOfPack(robot, q, c, s);
+  }
+  FAST_INLINE void readAtRest(const Robot& robot, const Samples& from, const Lanes& lanes) {
+    gather(robot, from, lanes, qd);
+    for (int i = 0; i < robot.joints; ++i) qdd[i] = Pack{};
   }
 };
 
@@ -229,9 +233,19 @@ FAST_INLINE void inertiaOfPack(const Robot& robot, int structure, const State<Pa
                                const Lanes& lanes, const Matrices& H) {
   const int n = robot.joints;
   Pack entries[kPackedMatrixJoints * kPackedMatrixJoints];
-  recursionsOf<Pack>(robot, structure).inertia(robot, state, Entries<Pack>{entries, 1, n});
+
+  // columns in turn, or rows, whichever stand side by side
+  const bool columns = H.column_step != 1;
+  const std::ptrdiff_t major_step = columns ? H.column_step : H.row_step;
+  const std::ptrdiff_t minor_step = columns ? H.row_step : 1;
+  recursionsOf<Pack>(robot, structure)
+      .inertia(robot, state, Entries<Pack>{entries, columns ? 1 : n, columns ? n : 1});
+  if (minor_step == 1 && major_step == n) {
+    scatter(entries, n * n, lanes, H.data, 1, H.state_step);
+    return;
+  }
   for (int j = 0; j < n; ++j) {
-    scatter(entries + std::ptrdiff_t{j} * n, n, lanes, H.data + j * H.column_step, H.row_step,
+    scatter(entries + std::ptrdiff_t{j} * n, n, lanes, H.data + j * major_step, minor_step,
             H.state_step);
   }
 }
@@ -270,8 +284,7 @@ void coriolisBatch(const Robot& robot, int structure, std::ptrdiff_t states, Sam
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates x;
     Pack result[kMaxJoints];
-    gather(robot, qd, lanes, x.qd);
-    for (int i = 0; i < robot.joints; ++i) x.qdd[i] = Pack{};
+    x.readAtRest(robot, qd, lanes);
     x.readPositions(robot, q, lanes);
     coriolisOf(robot, structure, x.state(), result);
     scatter(robot, result, lanes, c);
@@ -304,8 +317,7 @@ void componentsBatch(const Robot& robot, int structure, std::ptrdiff_t states, S
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates x;
     Pack result[kMaxJoints];
-    gather(robot, qd, lanes, x.qd);
-    for (int i = 0; i < robot.joints; ++i) x.qdd[i] = Pack{};
+    x.readAtRest(robot, qd, lanes);
     x.readPositions(robot, q, lanes);
     if (packed) inertiaOfPack(robot, structure, x.state(), lanes, H);
     coriolisOf(robot, structure, x.state(), result);
@@ -329,11 +341,12 @@ void sineCosineOfEach(int count, const double* angle, const double* quarter_turn
   for (int k = 0; k < count; ++k) {
     Pack s;
     Pack c;
-    if (any<Pack>(sineCosine(all<Pack>(angle[k]), all<Pack>(quarter_turns[k]), s, c))) {
-      sineCosineOfAny(angle[k], quarter_turns[k], sine[k], cosine[k]);
-    } else {
-      sine[k] = s[kWidth - 1];
-      cosine[k] = c[kWidth - 1];
+    BitsOf<Pack> beyond{};
+    sineCosine<Scheme::kHorner>(all<Pack>(angle[k]), all<Pack>(quarter_turns[k]), s, c, beyond);
+    sine[k] = s[kWidth - 1];
+    cosine[k] = c[kWidth - 1];
+    if (anyBeyond<Pack>(beyond)) {
+      sineCosineBeyond(1, angle + k, quarter_turns + k, 1, sine + k, cosine + k);
     }
   }
 }

@@ -9,6 +9,8 @@
 
 #include "pack.hpp"
 #include "robot.hpp"
+#include "square.hpp"
+#include "structure.hpp"
 
 namespace chain_dynamics::fast {
 namespace {
@@ -30,12 +32,26 @@ FAST_INLINE void forEachPack(std::ptrdiff_t states, const One& one) {
   }
 }
 
-// The common cases have no branch per number: a full pack of states that stand apart, or side by
-// side.
+/// For numbers that stand side by side: whole(first) for packs of kWidth of them, the last of which
+/// may overlap the one before; one(i) where there are fewer.
+template <typename Whole, typename One>
+FAST_INLINE void inBlocks(int count, const Whole& whole, const One& one) {
+  if (count < kWidth) {
+    for (int i = 0; i < count; ++i) one(i);
+    return;
+  }
+  int first = 0;
+  for (; first + kWidth <= count; first += kWidth) whole(first);
+  if (first < count) whole(count - kWidth);
+}
+
+// The common cases have no branch per number: a full pack of states that stand apart, each with its
+// numbers side by side, or of states that stand side by side themselves.
 FAST_INLINE void gather(const Robot& robot, const Samples& from, const Lanes& lanes, Pack* to) {
   const std::ptrdiff_t step = from.state_step;
   const double* const first = from.data + lanes.first * step;
   const int n = robot.joints;
+  const auto one = [&](int i) FAST_LAMBDA { to[i] = loadSteps(first + i * from.joint_step, step); };
   if (lanes.count < kWidth) {
     for (int i = 0; i < n; ++i) {
       for (int lane = 0; lane < kWidth; ++lane) {
@@ -44,8 +60,20 @@ FAST_INLINE void gather(const Robot& robot, const Samples& from, const Lanes& la
     }
   } else if (step == 1) {
     for (int i = 0; i < n; ++i) to[i] = load<Pack>(first + i * from.joint_step);
+  } else if (from.joint_step == 1) {
+    inBlocks(
+        n,
+        [&](int i) FAST_LAMBDA {
+          Square block;
+          countUp<0, kWidth>([&](auto lane) FAST_LAMBDA {
+            block.rows[lane] = load<Pack>(first + i + lane * step);
+          });
+          block.transpose();
+          countUp<0, kWidth>([&](auto k) FAST_LAMBDA { to[i + k] = block.rows[k]; });
+        },
+        one);
   } else {
-    for (int i = 0; i < n; ++i) to[i] = loadSteps(first + i * from.joint_step, step);
+    for (int i = 0; i < n; ++i) one(i);
   }
 }
 
@@ -53,14 +81,26 @@ FAST_INLINE void gather(const Robot& robot, const Samples& from, const Lanes& la
 FAST_INLINE void scatter(const Pack* packs, int count, const Lanes& lanes, double* to,
                          std::ptrdiff_t pack_step, std::ptrdiff_t state_step) {
   to += lanes.first * state_step;
+  const auto one = [&](int i) FAST_LAMBDA { storeSteps(packs[i], to + i * pack_step, state_step); };
   if (lanes.count < kWidth) {
     for (int i = 0; i < count; ++i) {
       for (int k = 0; k < lanes.count; ++k) to[i * pack_step + k * state_step] = packs[i][k];
     }
   } else if (state_step == 1) {
     for (int i = 0; i < count; ++i) store(packs[i], to + i * pack_step);
+  } else if (pack_step == 1) {
+    inBlocks(
+        count,
+        [&](int i) FAST_LAMBDA {
+          Square block;
+          countUp<0, kWidth>([&](auto k) FAST_LAMBDA { block.rows[k] = packs[i + k]; });
+          block.transpose();
+          countUp<0, kWidth>(
+              [&](auto lane) FAST_LAMBDA { store(block.rows[lane], to + i + lane * state_step); });
+        },
+        one);
   } else {
-    for (int i = 0; i < count; ++i) storeSteps(packs[i], to + i * pack_step, state_step);
+    for (int i = 0; i < count; ++i) one(i);
   }
 }
 

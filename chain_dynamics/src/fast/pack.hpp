@@ -100,12 +100,5 @@ FAST_INLINE V all(double number) {
   return number - V{};
 }
 
-template <typename V>
-FAST_INLINE bool any(const BitsOf<V>& mask) {
-  long long bits = 0;
-  for (int lane = 0; lane < kLanes<V>; ++lane) bits |= mask[lane];
-  return bits != 0;
-}
-
 }  // namespace
 }  // namespace chain_dynamics::fast

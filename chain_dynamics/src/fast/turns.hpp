@@ -52,14 +52,12 @@ void turnsOfState(const Robot& robot, const double* q, double* c, double* s) {
     const int first = firstOfPack(i, n);
     Short sine;
     Short cosine;
-    beyond |=
-        sineCosine(load<Short>(q + first), load<Short>(robot.quarter_turns + first), sine, cosine);
+    sineCosine<Scheme::kEstrin>(load<Short>(q + first), load<Short>(robot.quarter_turns + first),
+                                sine, cosine, beyond);
     store(sine, s + first);
     store(cosine, c + first);
   }
-  if (any<Short>(beyond)) {
-    for (int i = 0; i < n; ++i) sineCosineOfAny(q[i], robot.quarter_turns[i], s[i], c[i]);
-  }
+  if (anyBeyond<Short>(beyond)) sineCosineBeyond(n, q, robot.quarter_turns, 1, s, c);
   if (robot.general_offsets) {
     for (int i = 0; i < n; ++i) {
       addOffset(robot.placements[i].offset_cos, robot.placements[i].offset_sin, s[i], c[i]);
@@ -79,14 +77,12 @@ FAST_INLINE void turnsOfPack(const Robot& robot, const Pack* q, Pack* c, Pack* s
   const int n = robot.joints;
   BitsOf<Pack> beyond{};
   for (int i = 0; i < n; ++i) {
-    beyond |= sineCosine(q[i], all<Pack>(robot.quarter_turns[i]), s[i], c[i]);
+    sineCosine<Scheme::kHorner>(q[i], all<Pack>(robot.quarter_turns[i]), s[i], c[i], beyond);
   }
-  if (any<Pack>(beyond)) {
+  if (anyBeyond<Pack>(beyond)) {
     // numbers of a pack stand side by side in memory
-    for (int k = 0; k < n * kWidth; ++k) {
-      sineCosineOfAny(numbersOf(q)[k], robot.quarter_turns[k / kWidth], numbersOf(s)[k],
-                      numbersOf(c)[k]);
-    }
+    sineCosineBeyond(n * kWidth, numbersOf(q), robot.quarter_turns, kWidth, numbersOf(s),
+                     numbersOf(c));
   }
   if (!robot.general_offsets && !robot.mixed) return;
   for (int i = 0; i < n; ++i) {
