@@ -27,6 +27,18 @@ TEST(Reference, PandaDescriptionGivesPinocchiosValues) {
   expectReferenceValues(solver, "panda_urdf.json", kTolerance);
 }
 
+// 1600 turns are 1e4 rad, which a double states to 1e-12 rad: up to 500 N m/rad make 5e-10 of it.
+TEST(Reference, ValuesHoldAtLargeAngles) {
+  constexpr double kLargeAngleTolerance = 1e-9;
+  InverseDynamicsSolverRigidBody ur10, panda;
+  ur10.initialize({}, "", textOf(robotsFile("urdf/ur10.urdf")));
+  panda.initialize({}, "", textOf(robotsFile("urdf/panda.urdf")));
+  for (const int turns : {1600, -1600}) {
+    expectReferenceValues(ur10, "ur10_urdf.json", kLargeAngleTolerance, turns);
+    expectReferenceValues(panda, "panda_urdf.json", kLargeAngleTolerance, turns);
+  }
+}
+
 TEST(Reference, RootAndTipNeedNotBeNamed) {
   InverseDynamicsSolverRigidBody ur10, panda;
   ur10.initialize({}, "", textOf(robotsFile("urdf/ur10.urdf")));

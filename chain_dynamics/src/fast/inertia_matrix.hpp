@@ -128,12 +128,14 @@ FAST_INLINE void forEachInertia(const Robot& robot, const State<V>& state, First
     if (prismatic) F = {{zero, zero, body.mass_beyond + zero}, {I.mc.y, -I.mc.x, zero}};
     each(i, i, (prismatic ? F.f.z : F.n.z) + X.rotor_inertia);
 
+    // on to the link before; first, since what follows can wait
+    if (i != first) carry<S>(i, robot, state, body.mass_beyond, I);
+
     // H_ji = S_j' F in the frames of the joints before
     S::backwardsFrom(i, [&](auto j) FAST_LAMBDA {
       carry<S>(j, robot, state, F);
       each(i, j - 1, S::kMixed && robot.placements[j - 1].prismatic ? F.f.z : F.n.z);
     });
-    if (i != first) carry<S>(i, robot, state, body.mass_beyond, I);
   });
 }
 
@@ -150,7 +152,9 @@ struct Entries {
 
 /// Inertia matrix; one set of parameters for all rows.
 template <typename S, typename V>
-void inertia(const Robot& robot, const State<V>& state, const Entries<V>& H) {
+void inertia(const Robot& robot, const State<V>& state, const Entries<V>& to) {
+  // packs stand side by side; that makes their places constants
+  const Entries<V> H = sizeof(V) == sizeof(double) ? to : Entries<V>{to.data, 1, S::count(robot)};
   forEachInertia<S, V, V>(
       robot, state, Constant<0>(),
       [&](auto i) FAST_LAMBDA -> const Body& { return robot.bodies[i]; },

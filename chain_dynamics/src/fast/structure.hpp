@@ -41,6 +41,7 @@ FAST_INLINE void countDown(const Step& step) {
 struct AnyStructure {
   static constexpr bool kMixed = true;
   static constexpr int kJoints = kMaxJoints;
+  static int count(const Robot& robot) { return robot.joints; }
   template <int I>
   static constexpr Twist twist(Constant<I>) {
     return Twist::kAny;
@@ -79,6 +80,7 @@ template <int N, unsigned long long Twists, unsigned long long Px, unsigned long
 struct Known {
   static constexpr bool kMixed = false;
   static constexpr int kJoints = N;
+  static constexpr int count(const Robot&) { return N; }
   static constexpr int digit(unsigned long long digits, int i) {
     return static_cast<int>((digits >> (4 * (N - 1 - i))) & 15);
   }
