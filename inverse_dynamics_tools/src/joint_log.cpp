@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <inverse_dynamics_evaluation/joint_log.hpp>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -85,9 +86,9 @@ JointLog finish(const JointLogBuilder& builder, const std::string& clock) {
 }
 
 /// (N, n), or (N,) of a vector: memory of `log`, which the array keeps alive.
-template <auto kMember>
+template <auto Member>
 py::array view(const py::object& log) {
-  auto& matrix = log.cast<JointLog&>().*kMember;
+  auto& matrix = log.cast<JointLog&>().*Member;
   using Matrix = std::remove_reference_t<decltype(matrix)>;
   if constexpr (Matrix::IsVectorAtCompileTime) {
     return py::array_t<typename Matrix::Scalar>(matrix.size(), matrix.data(), log);
