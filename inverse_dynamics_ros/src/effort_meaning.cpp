@@ -38,7 +38,7 @@ Eigen::VectorXd gainsOf(const std::vector<double>& given, const InverseDynamicsS
     }
     return currents->getDriveGainsMatrix().diagonal();
   }
-  const Eigen::VectorXd gains =
+  Eigen::VectorXd gains =
       Eigen::Map<const Eigen::VectorXd>(given.data(), static_cast<Eigen::Index>(given.size()));
   const bool positive = std::all_of(given.begin(), given.end(),
                                     [](double gain) { return gain > 0 && std::isfinite(gain); });

@@ -41,6 +41,8 @@ def live(name, **parameters):
 def generate_test_description():
     nodes = {
         "arm": live("arm", plugin_name=SOLVER),
+        "unfed": live("unfed", plugin_name=UR10),
+        "undescribed": live("undescribed", plugin_name=SOLVER),
         "unknown_plugin": live("unknown_plugin", plugin_name="no/Solver"),
         "no_plugin": live("no_plugin"),
         "mistyped": live("mistyped", plugin_name=SOLVER, min_rate="fast"),
@@ -228,6 +230,18 @@ class TestLiveNode(unittest.TestCase):
 
     def test_9_runs_as_a_component(self, proc_output, container):
         proc_output.assertWaitFor(f"solver: {UR10}, 6 joints", process=container, timeout=60)
+
+    def test_says_again_and_again_what_does_not_come(self, proc_output, nodes):
+        expected = {
+            "unfed": "no joint states on /unfed/joint_states: 0 publisher(s)",
+            "undescribed": "still waiting for a robot description on "
+            "/undescribed/robot_description: 0 publisher(s)",
+        }
+        for name, text in expected.items():
+            proc_output.assertWaitFor(text, process=nodes[name], timeout=60)
+            said = "".join(o.text.decode() for o in proc_output[nodes[name]])
+            line = next(line for line in said.splitlines() if text in line)
+            self.assertIn("[WARN]", line)
 
     def test_ends_with_an_error_that_says_why(self, proc_info, proc_output, nodes):
         expected = {
