@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
+#include <inverse_dynamics_solver/conformance/real_time_section.hpp>
 
 #include "controller_fixture.hpp"
 #include "inverse_dynamics_controllers/feed_forward_controller.hpp"
@@ -10,9 +11,13 @@ namespace inverse_dynamics_controllers {
 namespace {
 
 using inverse_dynamics_solver::conformance::AllocationGuard;
+using inverse_dynamics_solver::conformance::inRealTime;
 using inverse_dynamics_solver::conformance::kAllocationGuardWorks;
+using inverse_dynamics_solver::conformance::kRealtimeSanitizerWatches;
 
 void proveTheGuard() {
+  if (kRealtimeSanitizerWatches) return;
+  if (!kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted in this build";
   AllocationGuard proof;
   Eigen::VectorXd().resize(2);
   ASSERT_GT(proof.count(), 0) << "the allocation guard doesn't see allocations";
@@ -23,7 +28,9 @@ template <class Fixture, class SetReference>
 long allocationsOf(Fixture& fixture, FakeHardware& hardware, const SetReference& setReference) {
   AllocationGuard guard;
   const auto cycles = [&fixture] {
-    for (int k = 0; k < 30; ++k) fixture.update();
+    inRealTime([&fixture] {
+      for (int k = 0; k < 30; ++k) fixture.update();
+    });
   };
   cycles();
   setReference(0.1);
@@ -42,9 +49,9 @@ class InverseDynamicsCycle : public ChainedFixture<InverseDynamicsController> {
   using ControllerFixture::update;
 };
 
-TEST_F(InverseDynamicsCycle, AllocatesNothing) {
-  if (!kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted in this build";
+TEST_F(InverseDynamicsCycle, AllocatesLocksAndThrowsNothing) {
   proveTheGuard();
+  if (IsSkipped() || HasFatalFailure()) return;
   Parameters parameters = good();
   parameters["gains.natural_frequency"] = rclcpp::ParameterValue(std::vector<double>{50.0});
   parameters["limits.effort_rate"] = rclcpp::ParameterValue(std::vector<double>{1e4});
@@ -63,9 +70,9 @@ class FeedForwardCycle : public ChainedFixture<FeedForwardController> {
   using ControllerFixture::update;
 };
 
-TEST_F(FeedForwardCycle, AllocatesNothing) {
-  if (!kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted in this build";
+TEST_F(FeedForwardCycle, AllocatesLocksAndThrowsNothing) {
   proveTheGuard();
+  if (IsSkipped() || HasFatalFailure()) return;
   Parameters parameters = good();
   parameters["reference_interfaces"] = rclcpp::ParameterValue(
       std::vector<std::string>{"position", "velocity", "acceleration", "effort"});
@@ -86,9 +93,9 @@ class GravityCompensationCycle : public ControllerFixture<GravityCompensationCon
   using ControllerFixture::update;
 };
 
-TEST_F(GravityCompensationCycle, AllocatesNothing) {
-  if (!kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted in this build";
+TEST_F(GravityCompensationCycle, AllocatesLocksAndThrowsNothing) {
   proveTheGuard();
+  if (IsSkipped() || HasFatalFailure()) return;
   ASSERT_TRUE(configure(good()) && activate()) << log.text();
   EXPECT_EQ(allocationsOf(*this, hardware, [](double) {}), 0);
 }
