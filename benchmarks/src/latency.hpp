@@ -27,7 +27,8 @@ struct Latency {
   /// least of them is what the state takes; this is the greatest of these.
   double slowest_state;
 
-  /// Calls that took kInterruption longer than the least of their state, per second of calls.
+  /// Calls that took more than twice the least of their state and kInterruption, per second of
+  /// calls.
   double interruptions_per_second;
 
   /// What the system says of this thread in the meantime.
@@ -77,7 +78,7 @@ Latency measureLatency(const std::string& name, long calls, double tick, Call ca
   getrusage(RUSAGE_THREAD, &before);
   for (long i = 0; i < calls; ++i) {
     const std::uint64_t duration = timed(i);
-    if (duration > timed.least(i) + interruption) ++interruptions;
+    if (duration > 2 * timed.least(i) + interruption) ++interruptions;
     durations.add(duration);
   }
   getrusage(RUSAGE_THREAD, &after);

@@ -75,7 +75,7 @@ def _identified(result: Measurement) -> Iterator[Bound]:
         reached = ratio(
             peer_time(result, IDENTIFIED[robot], "torques"), result.time(robot, "torques", "ours")
         )
-        yield Bound(f"torques: {robot.replace('_', ', ')}", "Pinocchio, URDF", times, reached)
+        yield Bound("torques, identified", "Pinocchio, from the URDF", times, reached, robot)
 
 
 def _batches(result: Measurement) -> Iterator[Bound]:

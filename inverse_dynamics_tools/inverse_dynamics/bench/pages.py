@@ -214,7 +214,7 @@ def bounds(result: Measurement) -> str:
 
 
 def latency(result: Measurement) -> str:
-    """How long single calls take [ns]."""
+    """How long single calls take."""
     rows = []
     for entry in result.latency:
         robot, quantity, library = entry["name"].split("/")
@@ -223,14 +223,14 @@ def latency(result: Measurement) -> str:
             [
                 what if robot != "system" else f"*{what}*",
                 _LIBRARIES.get(library, ""),
-                *(_time(entry[key]) for key in ("slowest_state", "p50", "p99", "p99.99", "max")),
+                *(_span(entry[key]) for key in ("slowest_state", "p50", "p99", "p99.99", "max")),
                 f"{entry['interruptions_per_second']:.0f}",
                 str(entry["context_switches"]),
                 str(entry["page_faults"]),
             ]
         )
-    heads = ["call [ns]", "by", "slowest state", "p50", "p99", "p99.99", "max"]
-    heads += ["> 1 µs more, per s", "switches", "page faults"]
+    heads = ["call", "by", "slowest state", "p50", "p99", "p99.99", "max"]
+    heads += ["interrupted/s", "switches", "page faults"]
     return _table(heads, rows, 2)
 
 
@@ -245,6 +245,12 @@ def _time(nanoseconds: float | None) -> str:
     if nanoseconds is None:
         return ""
     return f"{nanoseconds:.1f}" if nanoseconds < 30 else f"{nanoseconds:.0f}"
+
+
+def _span(nanoseconds: float) -> str:
+    if nanoseconds >= 999_500:
+        return f"{nanoseconds / 1e6:.3g} ms"
+    return f"{nanoseconds / 1e3:.3g} µs" if nanoseconds >= 9_999.5 else f"{nanoseconds:.0f} ns"
 
 
 def _ratio(slow: float | None, fast: float | None) -> str:

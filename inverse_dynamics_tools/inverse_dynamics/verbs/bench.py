@@ -141,7 +141,8 @@ def _print(result: Measurement) -> None:
 
     from inverse_dynamics.bench import page
 
-    Console(highlight=False).print(Markdown(page(result)))
+    # Whole figures on a narrow screen too, if need be by scrolling.
+    Console(highlight=False, width=max(120, Console().width)).print(Markdown(page(result)))
 
 
 def _count(text: str) -> int:
