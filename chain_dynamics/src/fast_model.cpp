@@ -6,6 +6,7 @@
 
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/forward_dynamics.hpp"
+#include "chain_dynamics/regressor.hpp"
 #include "fast/regroup.hpp"
 #include "fast/robot.hpp"
 
@@ -84,6 +85,11 @@ fast::Samples samples(const States& states) {
 }
 fast::Matrices matrices(const StridedMatrices& H) {
   return {H.data, H.row_step, H.column_step, H.state_step};
+}
+
+/// Equal to nine digits of the largest: far above rounding, far below a mistake.
+bool near(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff() <= 1e-9 * (1 + b.cwiseAbs().maxCoeff());
 }
 
 }  // namespace
@@ -198,7 +204,6 @@ void FastModel::use(const Kernels& kernels) {
 std::string FastModel::instructionSet() const { return kernels_->name; }
 
 bool FastModel::equalsPlain(const Model& model) const {
-  constexpr double kTolerance = 1e-9;  // of the largest: far above rounding, far below a mistake
   constexpr Eigen::Index kStates = kPack;
   const Eigen::Index n = model.chain.jointCount();
   const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(n, 0.3, 2.9);
@@ -214,10 +219,25 @@ bool FastModel::equalsPlain(const Model& model) const {
   inertiaMatrix(q.data(), fast_H.data(), n);
   torques(q.data(), q.data(), q.data(), f.data());
   torquesBatch(same, same, same, fast_tau);
-  const auto near = [](const auto& a, const auto& b) {
-    return (a - b).cwiseAbs().maxCoeff() <= kTolerance * (1 + b.cwiseAbs().maxCoeff());
-  };
-  return near(fast_H, H) && near(f, tau) && near(fast_tau, tau.replicate(1, kStates));
+  return near(fast_H, H) && near(f, tau) && near(fast_tau, tau.replicate(1, kStates)) &&
+         derivativesEqualPlain(model, q);
+}
+
+bool FastModel::derivativesEqualPlain(const Model& model, const Eigen::VectorXd& q) const {
+  const Eigen::Index n = model.chain.jointCount();
+  Eigen::MatrixXd by_q(n, n), by_qd(n, n), by_qdd(n, n), Y(n, 10 * n);
+  Eigen::MatrixXd fast_by_q(n, n), fast_by_qd(n, n), fast_by_qdd(n, n), fast_Y(n, 10 * n);
+  Eigen::VectorXd slope(n);
+  chain_dynamics::torqueDerivatives(model, q, q, q, by_q, by_qd, by_qdd);
+  chain_dynamics::frictionSlopes(model, q, slope);
+  by_qd.diagonal() += slope;
+  chain_dynamics::regressor(model.chain, q, q, q, Y);
+
+  const double* x = q.data();
+  torqueDerivatives(x, x, x, fast_by_q.data(), fast_by_qd.data(), fast_by_qdd.data(), n);
+  regressor(x, x, x, fast_Y.data(), n);
+  return near(fast_by_q, by_q) && near(fast_by_qd, by_qd) && near(fast_by_qdd, by_qdd) &&
+         near(fast_Y, Y);
 }
 
 FastModel::~FastModel() = default;
@@ -268,7 +288,7 @@ void FastModel::forwardDynamics(const double* q, const double* qd, const double*
 
 void FastModel::regressor(const double* q, const double* qd, const double* qdd, double* Y,
                           std::ptrdiff_t outer_step) const {
-  kernels_->regressor(robot(), q, qd, qdd, {Y, 1, outer_step, 0});
+  kernels_->regressor(robot(), q, qd, qdd, Y, outer_step);
 }
 
 void FastModel::torqueDerivatives(const double* q, const double* qd, const double* qdd,

@@ -108,6 +108,7 @@ class FastModel {
   void use(const fast::Kernels& kernels);
   void useBest(const Model& model);
   bool equalsPlain(const Model& model) const;
+  bool derivativesEqualPlain(const Model& model, const Eigen::VectorXd& q) const;
 
   std::unique_ptr<const Data> data_;
   const fast::Kernels* kernels_ = nullptr;

@@ -185,11 +185,11 @@ void forwardDynamicsOfState(const Robot& robot, int structure, const double* q, 
 }
 
 void regressorOfState(const Robot& robot, const double* q, const double* qd, const double* qdd,
-                      Matrices Y) {
+                      double* Y, std::ptrdiff_t outer_step) {
   JointNumbers c;
   JointNumbers s;
   turnsOfState(robot, q, c.values, s.values);
-  regressor(robot, State<double>{c.values, s.values, q, qd, qdd}, Y);
+  regressor(robot, State<double>{c.values, s.values, q, qd, qdd}, Y, outer_step);
 }
 
 void torqueDerivativesOfState(const Robot& robot, int structure, const double* q, const double* qd,

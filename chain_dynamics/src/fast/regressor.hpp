@@ -106,38 +106,58 @@ FAST_INLINE void startAxis(bool prismatic, int lane, Vec<Short>& w, Vec<Short>& 
   (prismatic ? v : w).z += load<Short>(kOne + kMost - lane);
 }
 
-/// Lanes `first` and beyond of the joints up to the last.
-FAST_INLINE void storeRows(const Short& rows, int count, double* to, std::ptrdiff_t row_step) {
-  for (int lane = 0; lane < kShortWidth; ++lane) {
-    if (lane < count) to[lane * row_step] = rows[lane];
+/// The first `Rows` lanes of ten columns.
+template <int Rows>
+FAST_INLINE void storeRows(const Short* columns, double* to, std::ptrdiff_t outer_step) {
+  for (int column = 0; column < 10; ++column) {
+    double* const rows = to + column * outer_step;
+    if constexpr (Rows == kShortWidth) {
+      store(columns[column], rows);
+    } else {
+      for (int lane = 0; lane < Rows; ++lane) rows[lane] = columns[column][lane];
+    }
   }
 }
 
-void regressor(const Robot& robot, const State<double>& state, const Matrices& Y) {
-  constexpr int kPacks = kMaxJoints / kShortWidth;
+FAST_INLINE void storeRows(const Short* columns, int rows, double* to, std::ptrdiff_t outer_step) {
+  if (rows >= kShortWidth) return storeRows<kShortWidth>(columns, to, outer_step);
+  if (rows == 1) return storeRows<1>(columns, to, outer_step);
+  if constexpr (kShortWidth == 4) {
+    if (rows == 2) return storeRows<2>(columns, to, outer_step);
+    storeRows<3>(columns, to, outer_step);
+  }
+}
+
+/// Y(i, j) at Y[i + j * outer_step].
+void regressor(const Robot& robot, const State<double>& state, double* Y,
+               std::ptrdiff_t outer_step) {
+  static constexpr Short kZeros[10] = {};
   const int n = robot.joints;
-  Vec<Short> w[kPacks] = {};
-  Vec<Short> v[kPacks] = {};
+  Vec<Short> w[kMaxJoints / kShortWidth];  // axes of the joints so far
+  Vec<Short> v[kMaxJoints / kShortWidth];
   OwnMotion motion;
   motion.a = {robot.root[0], robot.root[1], robot.root[2]};
   for (int i = 0; i < n; ++i) {
     const OwnPlacement& own = robot.own[i];
     const Pose X = poseOf(own, state.c[i], state.s[i], state.q[i]);
     motion.step(X, own.prismatic, state.qd[i], state.qdd[i]);
-    double* const link = Y.data + 10 * i * Y.column_step;
-    for (int k = 0; k * kShortWidth < n; ++k) {
-      const int first = k * kShortWidth;
-      Short columns[10] = {};
-      if (first <= i) {
+    double* const link = Y + 10 * i * outer_step;
+    for (int first = 0, k = 0; first < n; first += kShortWidth, ++k) {
+      if (first > i) {
+        storeRows(kZeros, n - first, link + first, outer_step);
+        continue;
+      }
+      if (first == i) {
+        w[k] = Vec<Short>{};
+        v[k] = Vec<Short>{};
+      } else {
         v[k] = into(X, leverOf(v[k], w[k], X.p));
         w[k] = into(X, w[k]);
-        if (i < first + kShortWidth) startAxis(own.prismatic, i - first, w[k], v[k]);
-        regressorColumns(motion.U, w[k], v[k], columns);
       }
-      for (int column = 0; column < 10; ++column) {
-        storeRows(columns[column], n - first, link + column * Y.column_step + first * Y.row_step,
-                  Y.row_step);
-      }
+      if (i < first + kShortWidth) startAxis(own.prismatic, i - first, w[k], v[k]);
+      Short columns[10];
+      regressorColumns(motion.U, w[k], v[k], columns);
+      storeRows(columns, n - first, link + first, outer_step);
     }
   }
 }

@@ -102,7 +102,8 @@ struct Kernels {
   void (*friction)(const Robot&, const double* qd, double* f);
   void (*forward_dynamics)(const Robot&, int structure, const double* q, const double* qd,
                            const double* tau, double* qdd);
-  void (*regressor)(const Robot&, const double* q, const double* qd, const double* qdd, Matrices Y);
+  void (*regressor)(const Robot&, const double* q, const double* qd, const double* qdd, double* Y,
+                    std::ptrdiff_t outer_step);
   void (*torque_derivatives)(const Robot&, int structure, const double* q, const double* qd,
                              const double* qdd, double* by_q, double* by_qd, double* by_qdd,
                              std::ptrdiff_t outer_step);

@@ -41,6 +41,8 @@ FAST_INLINE AxisRates ratesOf(bool prismatic, const LinkMotion<double>& U, const
   return {w_x_z, {v.y, -v.x, 0.0}, U_z, a_x_z};
 }
 
+FAST_INLINE Vec<double> twice(const Vec<double>& v) { return {2.0 * v.x, 2.0 * v.y, 2.0 * v.z}; }
+
 /// From root to tip.
 template <typename S>
 FAST_INLINE void moveLinks(const Robot& robot, const State<double>& state, const double* root,
@@ -67,18 +69,20 @@ FAST_INLINE void moveLinks(const Robot& robot, const State<double>& state, const
   });
 }
 
-/// How the mass of a link and all after it flows [chain_dynamics/mass_flow.hpp].
+/// How the mass of a link and all after it flows [chain_dynamics/mass_flow.hpp], twice: for points
+/// of mass m at r with velocity u.
 struct Flow {
-  Vec<double> p{};            ///< sum of m u
-  Vec<double> x{}, y{}, z{};  ///< columns of the sum of m u r'
+  Vec<double> p{};            ///< sum of 2 m u
+  Vec<double> x{}, y{}, z{};  ///< columns of the sum of 2 m u r'
 
-  template <typename B>
-  FAST_INLINE void add(bool prismatic, const B& b, const Vec<double>& w, const Vec<double>& v) {
-    addTo(p, {w.y * b.mcz - w.z * b.mcy, w.z * b.mcx - w.x * b.mcz, w.x * b.mcy - w.y * b.mcx});
+  FAST_INLINE void add(bool prismatic, const Body& b, const MovingLink& link) {
+    const Vec<double> w = twice(link.w);
+    const Vec<double> v = twice(link.v);
+    addTo(p, {-(w.z * b.mcy), w.z * b.mcx, w.x * b.mcy - w.y * b.mcx});
     addTo(x, {v.x * b.mcx, v.y * b.mcx, v.z * b.mcx});
     addTo(y, {v.x * b.mcy, v.y * b.mcy, v.z * b.mcy});
     if (prismatic) {
-      addTo(p, {b.m * v.x, b.m * v.y, b.m * v.z});
+      addTo(p, {b.m * v.x + w.y * b.mcz, b.m * v.y - w.x * b.mcz, b.m * v.z});
       addTo(z, {v.x * b.mcz, v.y * b.mcz, v.z * b.mcz});
     } else {
       addTo(x, {w.y * b.Sxz - w.z * b.Sxy, w.z * b.Sxx - w.x * b.Sxz, w.x * b.Sxy - w.y * b.Sxx});
@@ -121,38 +125,35 @@ FAST_INLINE Wrench<double> timesMotion(const Composite<double>& I, double m, con
            (I.xx + I.yy) * w.z - I.xz * w.x - I.yz * w.y + (I.mc.x * v.y - I.mc.y * v.x)}};
 }
 
-/// The forces of joint i, side by side. `joint_force` is what goes through it, `m` the mass of what
-/// it moves.
+/// The forces of joint i, side by side. `force` is what goes through it, `m` the mass of what it
+/// moves.
 FAST_INLINE Wrench<Four> forceRates(bool prismatic, const Composite<double>& I, double m,
-                                    const Flow& flow, const Wrench<double>& joint_force,
+                                    const Flow& flow, const Wrench<double>& force,
                                     const AxisRates& r) {
-  const Wrench<double> first = timesMotion(I, m, r.w, r.v);
+  const Wrench<double> first = timesMotion(I, m, twice(r.w), twice(r.v));
   const Wrench<double> second = timesMotion(I, m, r.dw, r.dv);
-  const Vec<double>& f = joint_force.f;
-  const Vec<double>& n = joint_force.n;
+  const Vec<double>& f = force.f;
+  const Vec<double>& n = force.n;
   if (prismatic) {
     // nothing turns: no Coriolis' force but by what turns before
-    const Vec<double> by_q{second.n.x - f.y, second.n.y + f.x, second.n.z};
     return {
-        {Four{second.f.x, 2.0 * first.f.x, 0.0, 0.0}, Four{second.f.y, 2.0 * first.f.y, 0.0, 0.0},
-         Four{second.f.z, 2.0 * first.f.z, m, 0.0}},
-        {Four{by_q.x, 2.0 * first.n.x, I.mc.y, 2.0 * flow.p.y},
-         Four{by_q.y, 2.0 * first.n.y, -I.mc.x, -2.0 * flow.p.x},
-         Four{by_q.z, 2.0 * first.n.z, 0.0, 0.0}}};
+        {Four{second.f.x, first.f.x, 0, 0}, Four{second.f.y, first.f.y, 0, 0},
+         Four{second.f.z, first.f.z, m, 0}},
+        {Four{second.n.x - f.y, first.n.x, I.mc.y, flow.p.y},
+         Four{second.n.y + f.x, first.n.y, -I.mc.x, -flow.p.x}, Four{second.n.z, first.n.z, 0, 0}}};
   }
   // Coriolis' force 2 w x p and moment 2 (trace(Q) w - Q w), of w = (w.x, w.y, 0) and of z
   const Vec<double>& w = r.w;
   const double xx_yy = flow.x.x + flow.y.y;
-  const double by_q_x = second.n.x - n.y + 2.0 * ((flow.y.y + flow.z.z) * w.x - flow.y.x * w.y);
-  const double by_q_y = second.n.y + n.x + 2.0 * ((flow.x.x + flow.z.z) * w.y - flow.x.y * w.x);
-  const double by_q_z = second.n.z - 2.0 * (flow.x.z * w.x + flow.y.z * w.y);
-  return {
-      {Four{second.f.x - f.y + 2.0 * (w.y * flow.p.z), 2.0 * (first.f.x - flow.p.y), -I.mc.y, 0.0},
-       Four{second.f.y + f.x - 2.0 * (w.x * flow.p.z), 2.0 * (first.f.y + flow.p.x), I.mc.x, 0.0},
-       Four{second.f.z + 2.0 * (w.x * flow.p.y - w.y * flow.p.x), 2.0 * first.f.z, 0.0, 0.0}},
-      {Four{by_q_x, 2.0 * (first.n.x - flow.z.x), -I.xz, -2.0 * flow.x.z},
-       Four{by_q_y, 2.0 * (first.n.y - flow.z.y), -I.yz, -2.0 * flow.y.z},
-       Four{by_q_z, 2.0 * (first.n.z + xx_yy), I.xx + I.yy, 2.0 * xx_yy}}};
+  const double c_x = (flow.y.y + flow.z.z) * w.x - flow.y.x * w.y;
+  const double c_y = (flow.x.x + flow.z.z) * w.y - flow.x.y * w.x;
+  const double c_z = flow.x.z * w.x + flow.y.z * w.y;
+  return {{Four{second.f.x - f.y + w.y * flow.p.z, first.f.x - flow.p.y, -I.mc.y, 0},
+           Four{second.f.y + f.x - w.x * flow.p.z, first.f.y + flow.p.x, I.mc.x, 0},
+           Four{second.f.z + w.x * flow.p.y - w.y * flow.p.x, first.f.z, 0, 0}},
+          {Four{second.n.x - n.y + c_x, first.n.x - flow.z.x, -I.xz, -flow.x.z},
+           Four{second.n.y + n.x + c_y, first.n.y - flow.z.y, -I.yz, -flow.y.z},
+           Four{second.n.z - c_z, first.n.z + xx_yy, I.xx + I.yy, xx_yy}}};
 }
 
 /// Where the entries go.
@@ -168,6 +169,20 @@ struct DerivativeEntries {
   }
 };
 
+/// Row i and column i at joint j before it, from the forces of joint i, `along` the axis of j: what
+/// moves joint j is felt by i as motion, what moves joint i by j as force.
+FAST_INLINE void setEntries(int i, int j, int first, const Wrench<Four>& F, const Four& along,
+                            const AxisRates& r, const DerivativeEntries& out) {
+  const Vec<Four>& n = F.n;
+  const Vec<Four>& f = F.f;
+  const double by_q = (r.w.x * n.x[3] + r.w.y * n.y[3]) +
+                      (r.dw.x * n.x[2] + r.dw.y * n.y[2] + r.dw.z * n.z[2]) +
+                      (r.dv.x * f.x[2] + r.dv.y * f.y[2] + r.dv.z * f.z[2]);
+  const double by_qd = r.w.x * n.x[2] + r.w.y * n.y[2] + r.v.x * f.x[2] + r.v.y * f.y[2];
+  out.set(i, j, by_q, along[3] + 2.0 * by_qd, along[2]);
+  if (j >= first) out.set(j, i, along[0], along[1], along[2]);
+}
+
 /// Rows first .. joints - 1 with one set of parameters.
 template <typename S>
 FAST_INLINE void derivativesOfMotion(const Robot& robot, const State<double>& state,
@@ -180,32 +195,25 @@ FAST_INLINE void derivativesOfMotion(const Robot& robot, const State<double>& st
     const Body& body = bodies[i];
     const Placement& X = robot.placements[i];
     const bool prismatic = S::kMixed && X.prismatic;
+    const double m = S::kMixed ? body.mass_beyond : 0.0;  // joints that turn leave none
     const Wrench<double> own = wrenchOfLink<S>(robot, i, links[i].U, body);
     addTo(W.f, own.f);
     addTo(W.n, own.n);
     I.add(body);
-    flow.add(prismatic, body, links[i].w, links[i].v);
+    flow.add(prismatic, body, links[i]);
 
-    Wrench<Four> F = forceRates(prismatic, I, body.mass_beyond, flow, W, links[i].rates);
+    Wrench<Four> F = forceRates(prismatic, I, m, flow, W, links[i].rates);
     const Four& along = prismatic ? F.f.z : F.n.z;
     out.set(i, i, along[0], along[1], along[2] + X.rotor_inertia);
     S::backwardsFrom(i, [&](auto j) FAST_LAMBDA {
       carry<S>(j, robot, state, F);
-      const AxisRates& r = links[j - 1].rates;
       const bool sliding = S::kMixed && robot.placements[j - 1].prismatic;
-      const Four here = sliding ? F.f.z : F.n.z;
-      // row i: what moves joint j - 1 is felt as motion; column i: as force
-      const double felt = r.w.x * F.n.x[2] + r.w.y * F.n.y[2] + r.v.x * F.f.x[2] + r.v.y * F.f.y[2];
-      const double by_q = (r.w.x * F.n.x[3] + r.w.y * F.n.y[3]) +
-                          (r.dw.x * F.n.x[2] + r.dw.y * F.n.y[2] + r.dw.z * F.n.z[2]) +
-                          (r.dv.x * F.f.x[2] + r.dv.y * F.f.y[2] + r.dv.z * F.f.z[2]);
-      out.set(i, j - 1, by_q, here[3] + 2.0 * felt, here[2]);
-      if (j - 1 >= first) out.set(j - 1, i, here[0], here[1], here[2]);
+      setEntries(i, j - 1, first, F, sliding ? F.f.z : F.n.z, links[j - 1].rates, out);
     });
     if (i == first) return;
 
     // on to the link before
-    carry<S>(i, robot, state, body.mass_beyond, I);
+    carry<S>(i, robot, state, m, I);
     carry<S>(i, robot, state, W);
     flow.carry<S>(i, robot, state);
   });
