@@ -2,7 +2,7 @@
 
 // Times every solver through the public interface, into the caller's memory, and other libraries on
 // the same states. Names: ROBOT/QUANTITY/LIBRARY. `ids bench` runs it and makes tables of it; they
-// know, of the engine, `derivatives`, `forward_dynamics` and `regressor` of ur10 and panda.
+// know, of the engine, `derivatives`, `forward_dynamics` and `regressor`.
 
 #include <benchmark/benchmark.h>
 

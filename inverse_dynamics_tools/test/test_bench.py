@@ -188,6 +188,16 @@ def test_all_components_stand_beside_the_sum_of_three_calls():
     assert found["components: UR10, Panda"].reached == 12.0
 
 
+def test_functions_of_the_engine_are_compared_for_generated_chains_too():
+    times = {("panda", "ours"): 100.0, ("mixed6", "ours"): 150.0}
+    times |= {("panda", "pinocchio"): 900.0, ("mixed6", "pinocchio"): 600.0}
+    entries = [entry(f"{robot}/derivatives/{library}", t) for (robot, library), t in times.items()]
+    result = measurement(document(*entries), "here")
+    derivatives = {bound.what: bound for bound in bounds(result)}["derivatives"]
+    assert (derivatives.asked, derivatives.reached, derivatives.where) == (3.0, 4.0, "mixed6")
+    assert "| 6 joints, 2 slide | derivatives of the torques | 150 | 600 | 4.0 |" in page(result)
+
+
 def test_tables_say_what_was_measured(speed_json):
     text = page(read_measurement(speed_json))
     assert "| UR10 | torques | 100 | 900 | 1500 |  | 9.0 |" in text

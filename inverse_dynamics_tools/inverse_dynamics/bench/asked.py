@@ -67,7 +67,8 @@ def _single_calls(result: Measurement) -> Iterator[Bound]:
         anywhere = 6.0 if quantity == "torques" else times
         yield _of_pinocchio(result, f"{quantity}: any 6 or 7 joints", anywhere, GENERATED, quantity)
     for quantity, times in _ENGINE:
-        yield _of_pinocchio(result, quantity.replace("_", " "), times, REAL, quantity)
+        robots = (*REAL, *GENERATED)
+        yield _of_pinocchio(result, quantity.replace("_", " "), times, robots, quantity)
 
 
 def _identified(result: Measurement) -> Iterator[Bound]:

@@ -173,7 +173,7 @@ def chains(result: Measurement) -> str:
 def engine(result: Measurement) -> str:
     """Functions of the engine [ns]."""
     rows = []
-    for robot in asked.REAL:
+    for robot in (*asked.REAL, *asked.GENERATED):
         for quantity, title in _ENGINE.items():
             ours = result.time(robot, quantity, "ours")
             peer = result.time(robot, quantity, "pinocchio")
