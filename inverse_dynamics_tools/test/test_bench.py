@@ -210,10 +210,11 @@ def test_tables_say_what_was_measured(speed_json):
 def test_long_calls_are_in_units_that_can_be_read():
     figures = {"slowest_state": 150.2, "p50": 160.0, "p99": 4538.4, "p99.99": 24807.0, "max": 2.4e7}
     counts = {"interruptions_per_second": 88.6, "context_switches": 9, "page_faults": 0}
-    row = {"name": "ur10/torques/ours", "calls": 100, **figures, **counts}
+    row = {"name": "ur10/torques/ours", "calls": 20_000, **figures, **counts}
     result = measurement({**document(), "latency": [row]}, "here")
     expected = "| 150 ns | 160 ns | 4538 ns | 24.8 µs | 24 ms | 89 | 9 | 0 |"
     assert f"| UR10, torques | this library {expected}" in page(result)
+    assert "20 000 of each call.\n\n| call |" in page(result)
 
 
 def test_a_build_without_optimisation_is_told():

@@ -229,9 +229,12 @@ def latency(result: Measurement) -> str:
                 str(entry["page_faults"]),
             ]
         )
+    if not rows:
+        return ""
+    number = f"{result.latency[0]['calls']:,}".replace(",", " ")
     heads = ["call", "by", "slowest state", "p50", "p99", "p99.99", "max"]
     heads += ["interrupted/s", "switches", "page faults"]
-    return _table(heads, rows, 2)
+    return f"{number} of each call.\n\n" + _table(heads, rows, 2)
 
 
 def _table(heads: Sequence[str], rows: Iterable[Sequence[str]], words: int) -> str:
