@@ -63,6 +63,7 @@ std::vector<std::string> torqueUnits(rclcpp::Node& node,
     }
   }
   std::vector<std::string> units;
+  units.reserve(joint_names.size());
   for (const std::string& name : joint_names) {
     units.emplace_back(prismatic.count(name) > 0 ? "N" : "N m");
   }

@@ -28,6 +28,7 @@ class GravityCompensationController : public controller_interface::ControllerInt
 
   /// Takes the solver's parameters from the parameter file, in all releases; overrides where there
   /// is something to override.
+  // NOLINTNEXTLINE(readability-identifier-naming)
   rclcpp::NodeOptions define_custom_node_options() const { return declaringNodeOptions(); }
 
   controller_interface::return_type update(const rclcpp::Time& time,

@@ -99,12 +99,14 @@ inline hardware_interface::CommandInterface referenceInterface(const std::string
 /// so, for the other one doesn't.
 class ChainableController : public controller_interface::ChainableControllerInterface {
  public:
+  // NOLINTNEXTLINE(readability-identifier-naming): the base class's name, from jazzy on
   rclcpp::NodeOptions define_custom_node_options() const { return declaringNodeOptions(); }
 
  protected:
   /// Called in each cycle that isn't in chained mode, before update_and_write_commands().
   virtual void readReferenceTopic() noexcept = 0;
 
+  // NOLINTBEGIN(readability-identifier-naming, modernize-use-override): one overrides, one doesn't
   controller_interface::return_type update_reference_from_subscribers() {
     readReferenceTopic();
     return controller_interface::return_type::OK;
@@ -114,6 +116,7 @@ class ChainableController : public controller_interface::ChainableControllerInte
     readReferenceTopic();
     return controller_interface::return_type::OK;
   }
+  // NOLINTEND(readability-identifier-naming, modernize-use-override)
 };
 
 }  // namespace inverse_dynamics_controllers
