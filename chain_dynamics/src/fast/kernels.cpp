@@ -33,6 +33,10 @@ using RightAngles = Known<7, 0x0111111, 0x0001101, 0x0111110>;
 using AnySix = Known<6, 0x033333, 0x011111, 0x011111>;
 using AnySeven = Known<7, 0x0333333, 0x0111111, 0x0111111>;
 
+/// Six or seven joints that turn or slide.
+using MixedSix = Known<6, 0x033333, 0x011111, 0x011111, true>;
+using MixedSeven = Known<7, 0x0333333, 0x0111111, 0x0111111, true>;
+
 template <typename V>
 struct Recursions {
   void (*torques)(const Robot&, const State<V>&, const double* root, V* tau);
@@ -48,6 +52,8 @@ constexpr Recursions<V> kRecursions[] = {
     {torques<RightAngles, V>, gravity<RightAngles, V>, inertia<RightAngles, V>},
     {torques<AnySix, V>, gravity<AnySix, V>, inertia<AnySix, V>},
     {torques<AnySeven, V>, gravity<AnySeven, V>, inertia<AnySeven, V>},
+    {torques<MixedSix, V>, gravity<MixedSix, V>, inertia<MixedSix, V>},
+    {torques<MixedSeven, V>, gravity<MixedSeven, V>, inertia<MixedSeven, V>},
 };
 
 // Identified models with parameters for each row.
@@ -64,14 +70,17 @@ using Derivatives = void (*)(const Robot&, const State<double>&, const double* r
 constexpr Derivatives kDerivatives[] = {
     torqueDerivatives<AnyStructure>,   torqueDerivatives<ParallelWrist>,
     torqueDerivatives<SphericalWrist>, torqueDerivatives<RightAngles>,
-    torqueDerivatives<AnySix>,         torqueDerivatives<AnySeven>};
+    torqueDerivatives<AnySix>,         torqueDerivatives<AnySeven>,
+    torqueDerivatives<AnyStructure>,   torqueDerivatives<AnyStructure>};
 
 int structureOf(const Robot& robot) {
   if (ParallelWrist::covers(robot)) return 1;
   if (robot.rows != nullptr) return 0;
   if (SphericalWrist::covers(robot)) return 2;
   if (RightAngles::covers(robot)) return 3;
-  return AnySix::covers(robot) ? 4 : AnySeven::covers(robot) ? 5 : 0;
+  if (AnySix::covers(robot)) return 4;
+  if (AnySeven::covers(robot)) return 5;
+  return MixedSix::covers(robot) ? 6 : MixedSeven::covers(robot) ? 7 : 0;
 }
 
 template <typename V>

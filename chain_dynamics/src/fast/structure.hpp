@@ -73,12 +73,13 @@ struct AnyStructure {
   static bool covers(const Robot&) { return true; }
 };
 
-/// Revolute joints; hexadecimal digits stand for joints, the first joint in front. Twists: 0 none,
-/// 1 a right angle, 2 a right angle within 1e-8, 3 any. Px, Py: whether px, py may differ from
-/// zero.
-template <int N, unsigned long long Twists, unsigned long long Px, unsigned long long Py>
+/// Joints that turn, or any (Mixed); hexadecimal digits stand for joints, the first joint in front.
+/// Twists: 0 none, 1 a right angle, 2 a right angle within 1e-8, 3 any. Px, Py: whether px, py may
+/// differ from zero.
+template <int N, unsigned long long Twists, unsigned long long Px, unsigned long long Py,
+          bool Mixed = false>
 struct Known {
-  static constexpr bool kMixed = false;
+  static constexpr bool kMixed = Mixed;
   static constexpr int kJoints = N;
   static constexpr int count(const Robot&) { return N; }
   static constexpr int digit(unsigned long long digits, int i) {
@@ -113,7 +114,7 @@ struct Known {
 
   /// Whether the robot has this structure, or one with more zeros.
   static bool covers(const Robot& robot) {
-    if (robot.joints != N || robot.mixed) return false;
+    if (robot.joints != N || (robot.mixed && !Mixed)) return false;
     for (int i = 1; i < N; ++i) {
       const Placement& X = robot.placements[i];
       const bool fits = twist(i) == Twist::kNone          ? X.sin_twist == 0 && X.cos_twist == 1
