@@ -10,16 +10,16 @@ void shareAmongThreads(Eigen::Index count, Eigen::Index parts,
                        const std::function<void(Eigen::Index, Eigen::Index)>& compute) {
   // Part i begins at state i count / parts. A future waits for its part when it is destroyed.
   const auto begin = [&](Eigen::Index part) { return part * count / parts; };
-  const auto computePart = [&](Eigen::Index part) {
+  const auto compute_part = [&](Eigen::Index part) {
     compute(begin(part), begin(part + 1) - begin(part));
   };
   constexpr auto kThreadIfThereIsOne = std::launch::async | std::launch::deferred;
   std::vector<std::future<void>> others;
   others.reserve(static_cast<std::size_t>(parts - 1));
   for (Eigen::Index part = 1; part < parts; ++part) {
-    others.push_back(std::async(kThreadIfThereIsOne, computePart, part));
+    others.push_back(std::async(kThreadIfThereIsOne, compute_part, part));
   }
-  computePart(0);
+  compute_part(0);
   for (std::future<void>& other : others) other.get();
 }
 
