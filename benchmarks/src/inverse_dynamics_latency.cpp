@@ -32,7 +32,7 @@ class Report {
   template <typename Call>
   void measure(const std::string& name, Call call) {
     const Latency x = measureLatency(name, calls_, tick_, call);
-    std::cout << separator_ << "{\"name\": \"" << x.name << '"';
+    std::cout << separator_ << R"({"name": ")" << x.name << '"';
     field("calls", x.calls);
     field("p50", x.p50);
     field("p99", x.p99);
