@@ -16,6 +16,7 @@
 #include <string>
 
 #include "context.hpp"
+#include "engine_benchmarks.hpp"
 #include "peers.hpp"
 #include "robots.hpp"
 #include "solver_benchmarks.hpp"
@@ -57,11 +58,13 @@ void registerRobot(const SolverLoader& loader, const Robot& robot) {
   solver->initialize({}, "", robot.urdf);
   registerSingleCalls(robot.name, solver);
   const Eigen::Index n = solver->jointCount();
-  if (n == 6 || n == 7) registerBatches(robot.name, solver);
+  if (isArm(n)) registerBatches(robot.name, solver);
   if (robot.name == "ur10") registerLargerBatches(loader, robot, solver);
 
+  const chain_dynamics::Chain chain = chain_dynamics::chainFromUrdf(robot.urdf);
+  if (isArm(n)) registerEngine(robot.name, chain);
   const States states(n);
-  registerPeers({robot.name, robot.urdf, chain_dynamics::chainFromUrdf(robot.urdf),
+  registerPeers({robot.name, robot.urdf, chain,
                  solver->getTorques(states.q.col(0), states.qd.col(0), states.qdd.col(0))});
 }
 

@@ -31,7 +31,8 @@ void requireSameTorques(const PeerRobot& robot, const std::string& library,
 void registerKdl(const PeerRobot& robot);
 
 /// rnea, crba (LOCAL convention), nonLinearEffects, computeGeneralizedGravity; `components` is
-/// these last three.
+/// these last three. Of arms also aba (LOCAL), computeJointTorqueRegressor and
+/// computeRNEADerivatives, beside registerEngine().
 void registerPinocchio(const PeerRobot& robot);
 
 /// Kinematics, then mj_rne or mj_makeM: what mj_inverse does for an arm without contacts.

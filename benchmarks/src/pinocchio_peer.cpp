@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
+#include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/crba.hpp>
+#include <pinocchio/algorithm/regressor.hpp>
+#include <pinocchio/algorithm/rnea-derivatives.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
 
 #include "peers.hpp"
 #include "pinocchio_model.hpp"
+#include "robots.hpp"
 #include "states.hpp"
 #include "timing.hpp"
 
@@ -30,6 +34,21 @@ struct Peer {
   auto gravity(Eigen::Index k) {
     return pinocchio::computeGeneralizedGravity(model, data, states.q.col(k)).data();
   }
+  auto forwardDynamics(Eigen::Index k) {  // LOCAL is the faster convention
+    return pinocchio::aba(model, data, states.q.col(k), states.qd.col(k), states.qdd.col(k),
+                          pinocchio::Convention::LOCAL)
+        .data();
+  }
+  auto regressor(Eigen::Index k) {
+    return pinocchio::computeJointTorqueRegressor(model, data, states.q.col(k), states.qd.col(k),
+                                                  states.qdd.col(k))
+        .data();
+  }
+  auto derivatives(Eigen::Index k) {
+    pinocchio::computeRNEADerivatives(model, data, states.q.col(k), states.qd.col(k),
+                                      states.qdd.col(k));
+    return data.dtau_dq.data();
+  }
 
   pinocchio::Model model;
   pinocchio::Data data;
@@ -51,6 +70,10 @@ void registerPinocchio(const PeerRobot& robot) {
   add("inertia", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.inertia(k)); });
   add("coriolis", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.coriolis(k)); });
   add("gravity", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.gravity(k)); });
+  if (!isArm(robot.chain.jointCount())) return;
+  add("forward_dynamics", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.forwardDynamics(k)); });
+  add("regressor", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.regressor(k)); });
+  add("derivatives", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.derivatives(k)); });
 }
 
 std::string pinocchioVersion() { return PINOCCHIO_VERSION; }

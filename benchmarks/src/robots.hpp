@@ -4,6 +4,7 @@
 /// The robots that every library is timed on.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ struct Robot {
   std::string name;  ///< `ur10`, `panda`, `mixed7` (turning and sliding joints), `turning6`
   std::string urdf;
 };
+
+/// Whether a chain has as many joints as most arms: these are measured more closely.
+inline bool isArm(std::ptrdiff_t joints) { return joints == 6 || joints == 7; }
 
 /// UR10 and Panda.
 std::vector<Robot> realRobots();

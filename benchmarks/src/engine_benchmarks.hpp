@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// What the engine computes and no solver offers.
+#pragma once
+
+#include <chain_dynamics/chain.hpp>
+#include <string>
+
+namespace inverse_dynamics_benchmarks {
+
+/// Forward dynamics, regressor and derivatives of torques: ROBOT/QUANTITY/ours.
+void registerEngine(const std::string& robot, const chain_dynamics::Chain& chain);
+
+}  // namespace inverse_dynamics_benchmarks
