@@ -6,9 +6,9 @@
 
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/forward_dynamics.hpp"
-#include "chain_dynamics/regressor.hpp"
 #include "fast/regroup.hpp"
 #include "fast/robot.hpp"
+#include "fast_model_check.hpp"
 
 namespace chain_dynamics {
 namespace {
@@ -22,7 +22,7 @@ static_assert(sizeof(Body) == fast::kBodyNumbers * sizeof(double));
 
 /// Longest chain whose accelerations are solved for in O(n^3); beyond it the O(n) recursion is
 /// faster.
-constexpr Eigen::Index kSolvedJoints = 16;
+constexpr Eigen::Index kSolvedJoints = 32;
 
 /// Rows and joints of arrays that are read a pack at a time.
 constexpr std::size_t kPack = 8;
@@ -85,11 +85,6 @@ fast::Samples samples(const States& states) {
 }
 fast::Matrices matrices(const StridedMatrices& H) {
   return {H.data, H.row_step, H.column_step, H.state_step};
-}
-
-/// Equal to nine digits of the largest: far above rounding, far below a mistake.
-bool near(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff() <= 1e-9 * (1 + b.cwiseAbs().maxCoeff());
 }
 
 }  // namespace
@@ -190,7 +185,7 @@ FastModel::FastModel(const Model& model, const std::string& instruction_set) {
 void FastModel::useBest(const Model& model) {
   std::vector<const Kernels*> kernels = usableKernels();
   use(*kernels.back());
-  while (kernels.size() > 1 && !equalsPlain(model)) {
+  while (kernels.size() > 1 && !equalsPlain(*this, model)) {
     kernels.pop_back();
     use(*kernels.back());
   }
@@ -202,43 +197,6 @@ void FastModel::use(const Kernels& kernels) {
 }
 
 std::string FastModel::instructionSet() const { return kernels_->name; }
-
-bool FastModel::equalsPlain(const Model& model) const {
-  constexpr Eigen::Index kStates = kPack;
-  const Eigen::Index n = model.chain.jointCount();
-  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(n, 0.3, 2.9);
-  Eigen::MatrixXd H(n, n);
-  Eigen::VectorXd c(n), g(n), f(n);
-  chain_dynamics::dynamicComponents(model, q, q, H, c, g);
-  chain_dynamics::frictionVector(model, q, f);
-  const Eigen::VectorXd tau = H * q + c + g + f;
-
-  // the same state in every lane
-  const ConstStates same{q.data(), n, kStates, 1, 0};
-  Eigen::MatrixXd fast_H(n, n), fast_tau(n, kStates);
-  inertiaMatrix(q.data(), fast_H.data(), n);
-  torques(q.data(), q.data(), q.data(), f.data());
-  torquesBatch(same, same, same, fast_tau);
-  return near(fast_H, H) && near(f, tau) && near(fast_tau, tau.replicate(1, kStates)) &&
-         derivativesEqualPlain(model, q);
-}
-
-bool FastModel::derivativesEqualPlain(const Model& model, const Eigen::VectorXd& q) const {
-  const Eigen::Index n = model.chain.jointCount();
-  Eigen::MatrixXd by_q(n, n), by_qd(n, n), by_qdd(n, n), Y(n, 10 * n);
-  Eigen::MatrixXd fast_by_q(n, n), fast_by_qd(n, n), fast_by_qdd(n, n), fast_Y(n, 10 * n);
-  Eigen::VectorXd slope(n);
-  chain_dynamics::torqueDerivatives(model, q, q, q, by_q, by_qd, by_qdd);
-  chain_dynamics::frictionSlopes(model, q, slope);
-  by_qd.diagonal() += slope;
-  chain_dynamics::regressor(model.chain, q, q, q, Y);
-
-  const double* x = q.data();
-  torqueDerivatives(x, x, x, fast_by_q.data(), fast_by_qd.data(), fast_by_qdd.data(), n);
-  regressor(x, x, x, fast_Y.data(), n);
-  return near(fast_by_q, by_q) && near(fast_by_qd, by_qd) && near(fast_by_qdd, by_qdd) &&
-         near(fast_Y, Y);
-}
 
 FastModel::~FastModel() = default;
 

@@ -107,8 +107,6 @@ class FastModel {
   const fast::Robot& robot() const;
   void use(const fast::Kernels& kernels);
   void useBest(const Model& model);
-  bool equalsPlain(const Model& model) const;
-  bool derivativesEqualPlain(const Model& model, const Eigen::VectorXd& q) const;
 
   std::unique_ptr<const Data> data_;
   const fast::Kernels* kernels_ = nullptr;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "fast_model_check.hpp"
+
+#include "chain_dynamics/regressor.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+bool near(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff() <= 1e-9 * (1 + b.cwiseAbs().maxCoeff());
+}
+
+bool torquesEqual(const FastModel& fast, const Model& model, const Eigen::VectorXd& q) {
+  constexpr Eigen::Index kStates = 8;  // a pack, the same state in every lane
+  const Eigen::Index n = q.size();
+  Eigen::MatrixXd H(n, n);
+  Eigen::VectorXd c(n), g(n), f(n);
+  dynamicComponents(model, q, q, H, c, g);
+  frictionVector(model, q, f);
+  const Eigen::VectorXd tau = H * q + c + g + f;
+
+  const ConstStates same{q.data(), n, kStates, 1, 0};
+  Eigen::MatrixXd fast_H(n, n), fast_tau(n, kStates);
+  fast.inertiaMatrix(q.data(), fast_H.data(), n);
+  fast.torques(q.data(), q.data(), q.data(), f.data());
+  fast.torquesBatch(same, same, same, fast_tau);
+  return near(fast_H, H) && near(f, tau) && near(fast_tau, tau.replicate(1, kStates));
+}
+
+bool derivativesEqual(const FastModel& fast, const Model& model, const Eigen::VectorXd& q) {
+  const Eigen::Index n = q.size();
+  Eigen::MatrixXd by_q(n, n), by_qd(n, n), by_qdd(n, n);
+  Eigen::VectorXd slope(n);
+  torqueDerivatives(model, q, q, q, by_q, by_qd, by_qdd);
+  frictionSlopes(model, q, slope);
+  by_qd.diagonal() += slope;
+
+  Eigen::MatrixXd fast_by_q(n, n), fast_by_qd(n, n), fast_by_qdd(n, n);
+  fast.torqueDerivatives(q.data(), q.data(), q.data(), fast_by_q.data(), fast_by_qd.data(),
+                         fast_by_qdd.data(), n);
+  return near(fast_by_q, by_q) && near(fast_by_qd, by_qd) && near(fast_by_qdd, by_qdd);
+}
+
+bool regressorsEqual(const FastModel& fast, const Chain& chain, const Eigen::VectorXd& q) {
+  const Eigen::Index n = q.size();
+  Eigen::MatrixXd Y(n, 10 * n), fast_Y(n, 10 * n);
+  regressor(chain, q, q, q, Y);
+  fast.regressor(q.data(), q.data(), q.data(), fast_Y.data(), n);
+  return near(fast_Y, Y);
+}
+
+}  // namespace
+
+bool equalsPlain(const FastModel& fast, const Model& model) {
+  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(model.chain.jointCount(), 0.3, 2.9);
+  return torquesEqual(fast, model, q) && derivativesEqual(fast, model, q) &&
+         regressorsEqual(fast, model.chain, q);
+}
+
+}  // namespace chain_dynamics
