@@ -97,16 +97,16 @@ void run(rclcpp::Node& node) {
 
 int main(int argc, char** argv) {
   using inverse_dynamics_ros::Failure;
+  using inverse_dynamics_ros::Interrupted;
   rclcpp::init(argc, argv);
   Failure failure{inverse_dynamics_ros::kExitFine, ""};
   const rclcpp::Logger logger = rclcpp::get_logger("evaluate_solver");
   try {
     auto node = std::make_shared<rclcpp::Node>("evaluate_solver");
     inverse_dynamics_ros::run(*node);
-  } catch (const inverse_dynamics_ros::Interrupted& interrupted) {
-    failure = {inverse_dynamics_ros::kExitInterrupted, interrupted.what()};
   } catch (const std::exception& error) {
-    failure = inverse_dynamics_ros::failureOf(error);
+    failure = rclcpp::ok() ? inverse_dynamics_ros::failureOf(error)
+                           : Failure{inverse_dynamics_ros::kExitInterrupted, Interrupted().what()};
   }
   if (failure.code != inverse_dynamics_ros::kExitFine) {
     RCLCPP_FATAL(logger, "%s", failure.text.c_str());

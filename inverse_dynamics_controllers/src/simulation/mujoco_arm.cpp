@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
 
 namespace inverse_dynamics_controllers {
@@ -29,7 +30,7 @@ void attach(const Payload& payload, mjSpec& spec) {
   if (link == nullptr) refuse("no link '" + payload.link + "' that could carry the payload");
   mjsBody* const body = mjs_addBody(link, nullptr);
   body->mass = payload.mass;
-  body->explicitinertial = 1;
+  body->explicitinertial = true;
 }
 
 mjModel* compiled(const std::string& urdf, const Payload& payload) {
@@ -39,8 +40,8 @@ mjModel* compiled(const std::string& urdf, const Payload& payload) {
       mj_deleteSpec);
   if (spec == nullptr) refuse(error.data());
   attach(payload, *spec);
-  spec->compiler.fusestatic = 0;  // each link stays a body, so that its inertia can be written
-  spec->compiler.balanceinertia = 1;
+  spec->compiler.fusestatic = false;  // each link stays a body, so that its inertia can be written
+  spec->compiler.balanceinertia = true;
   spec->compiler.inertiafromgeom = mjINERTIAFROMGEOM_FALSE;
   mjModel* const model = mj_compile(spec.get(), nullptr);
   if (model == nullptr) refuse(mjs_getError(spec.get()));
@@ -52,7 +53,7 @@ Eigen::Quaterniond rotationOf(const urdf::Pose& pose) {
 }
 
 // Mass, centre of mass, moments about the principal axes, and these axes.
-void writeInertia(const urdf::Inertial& inertial, int body, mjModel& model) {
+void writeInertia(const urdf::Inertial& inertial, std::ptrdiff_t body, mjModel& model) {
   Eigen::Matrix3d tensor;
   tensor << inertial.ixx, inertial.ixy, inertial.ixz, inertial.ixy, inertial.iyy, inertial.iyz,
       inertial.ixz, inertial.iyz, inertial.izz;

@@ -169,10 +169,10 @@ return_type SimulatedArm::read(const rclcpp::Time&, const rclcpp::Duration&) {
 
 return_type SimulatedArm::write(const rclcpp::Time&, const rclcpp::Duration& period) {
   if (isBraked()) return return_type::OK;
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    if (!std::isfinite(joints_[j].command)) {
+  for (const Joint& joint : joints_) {
+    if (!std::isfinite(joint.command)) {
       RCLCPP_ERROR(logger(), "joint %s: an effort of NaN or infinity was commanded",
-                   joints_[j].name.c_str());
+                   joint.name.c_str());
       return return_type::ERROR;
     }
   }
