@@ -115,9 +115,9 @@ void derivativesUpToDiagonal(const Chain& chain, const Scratch<Transform<Scalar>
   for (Eigen::Index j = i; j >= 0; --j) {
     const Joint& at = joint(chain, j);
     const Motion<Scalar> S = axisMotion<Scalar>(at);
-    const Motion<Scalar>& dS = rates[j].first;
-    out.q(i, j) = dot(dS, forces.turned) + dot(rates[j].second, forces.by_qdd);
-    out.qd(i, j) = dot(S, forces.turned) + Scalar(2) * dot(dS, forces.by_qdd);
+    const auto& [first_rate, second_rate] = rates[j];
+    out.q(i, j) = dot(first_rate, forces.turned) + dot(second_rate, forces.by_qdd);
+    out.qd(i, j) = dot(S, forces.turned) + Scalar(2) * dot(first_rate, forces.by_qdd);
     out.qdd(i, j) = alongAxis(at, forces.by_qdd);
     if (j >= first) {
       out.q(j, i) = alongAxis(at, forces.by_q);
