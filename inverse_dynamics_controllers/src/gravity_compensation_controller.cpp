@@ -43,7 +43,7 @@ CallbackReturn GravityCompensationController::on_configure(const rclcpp_lifecycl
     const auto params = parameters_->get_params();
     const ArmParameters arm_parameters = armParameters(params);
     const Arm arm = makeArm(get_node(), arm_parameters, robotDescriptionOf(*this));
-    configured_.reset(new Configured{
+    configured_ = std::make_unique<Configured>(Configured{
         ControlLoop(get_node(), arm.joints, params.tolerated_fault_time),
         GravityCompensation(arm.solver, lawOptions(arm, arm_parameters, get_update_rate()))});
   });
