@@ -101,9 +101,7 @@ ReferenceTopic::ReferenceTopic(const std::shared_ptr<rclcpp_lifecycle::Lifecycle
                        node->get_logger(), node->get_clock()}),
       subscription_(node->create_subscription<JointTrajectory>(
           "~/reference", rclcpp::SystemDefaultsQoS(),
-          [inbox = inbox_](JointTrajectory::ConstSharedPtr message) {
-            inbox->receive(*message);
-          })) {}
+          [inbox = inbox_](const JointTrajectory& message) { inbox->receive(message); })) {}
 
 bool ReferenceTopic::read(std::vector<double>& values) noexcept {
   const std::vector<double>* const newest = inbox_->newest.take();
