@@ -7,8 +7,9 @@
 namespace chain_dynamics {
 namespace {
 
+// Entry by entry: the largest of numbers of which one is NaN may be any of them.
 bool near(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff() <= 1e-9 * (1 + b.cwiseAbs().maxCoeff());
+  return ((a - b).array().abs() <= 1e-9 * (1 + b.cwiseAbs().maxCoeff())).all();
 }
 
 bool torquesEqual(const FastModel& fast, const Model& model, const Eigen::VectorXd& q) {

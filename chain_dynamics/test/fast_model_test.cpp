@@ -305,6 +305,14 @@ TEST(FastModel, UsesTheBestInstructionSetAsItEqualsThePlainFunctions) {
   }
 }
 
+// The check that chooses kernels must see a number that is none: friction of the second joint here.
+TEST(FastModel, DoesNotTakeNanForEqualWhenItChecksInstructionSets) {
+  Model model(randomChain(3));
+  model.friction.resize(3, ViscousCoulombOffset{0, 0, 0});
+  model.friction[1] = ViscousCoulombOffset{std::numeric_limits<double>::quiet_NaN(), 0, 0};
+  EXPECT_EQ(FastModel(model).instructionSet(), FastModel::instructionSets().front());
+}
+
 TEST(FastModel, RefusesAChainThatIsTooLong) {
   const Model model(randomChain(65));
   EXPECT_THAT(errorOf([&] { const FastModel fast(model); }),
