@@ -83,6 +83,9 @@ TEST(Batches, TakeEveryKindOfMatrix) {
       solver->getTorquesBatch(q.leftCols(2), q.leftCols(2), q.leftCols(2) + 0 * q.leftCols(2)),
       expected.leftCols(2));
   EXPECT_EQ(solver->getTorquesBatch(q.col(1), q.col(1), q.col(1)), expected.col(1));
+  const auto every_second = q(Eigen::seqN(0, 3), Eigen::seqN(0, 2, Eigen::fix<2>));
+  EXPECT_EQ(solver->getTorquesBatch(every_second, every_second, every_second).col(1),
+            expected.col(2));
 
   // Results.
   Eigen::Matrix3Xd tau(3, 4);

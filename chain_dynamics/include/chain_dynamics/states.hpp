@@ -15,6 +15,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <type_traits>
+#include <utility>
 
 namespace chain_dynamics {
 
@@ -31,12 +32,18 @@ std::false_type ownsMemory(const void*);
 template <typename T>
 constexpr bool kIsEigen = decltype(isEigen(static_cast<std::decay_t<T>*>(nullptr)))::value;
 
+/// Whether it tells where its numbers stand; a choice of columns by Eigen::seq() doesn't.
+template <typename T, typename = void>
+constexpr bool kHasData = false;
+template <typename T>
+constexpr bool kHasData<T, std::void_t<decltype(std::declval<T&>().data())>> = true;
+
 /// Whether its numbers are doubles that stand in memory; those of a sum or a product don't.
 template <typename T, bool = kIsEigen<T>>
 constexpr bool kStandsInMemory = false;
 template <typename T>
 constexpr bool kStandsInMemory<T, true> =
-    std::is_same_v<typename std::decay_t<T>::Scalar, double> &&
+    std::is_same_v<typename std::decay_t<T>::Scalar, double> && kHasData<T> &&
     (std::decay_t<T>::Flags & Eigen::DirectAccessBit) != 0;
 
 /// Whether they may be written: a block or map may, a matrix if it isn't const or a temporary.
