@@ -3,10 +3,9 @@
 /// @file
 /// How the mass of a body flows past a frame: what the derivatives of torques need.
 ///
-///     MassFlow<double> flow = flowOf(I_B, V_B);            // of one link
-///     Force<double> F_B = flow.coriolis(w_B);              // what a turn of its whole motion
-///     costs flow = X_AB * flow;                                  // the same mass, stated in frame
-///     A
+///     MassFlow<double> flow = flowOf(I_B, V_B);   // of one link
+///     Force<double> F_B = flow.coriolis(w_B);     // what a turn of its whole motion costs
+///     flow = X_AB * flow;                         // the same mass, stated in frame A
 ///
 /// A point of mass m at r that moves with velocity u needs the force 2 m w x u more when its
 /// surroundings turn with w: Coriolis' force. Of a body, or of many bodies that move each in its

@@ -4,8 +4,7 @@
 ///
 ///     auto solver = SolverLoader().load("kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL");
 ///     solver->initialize({{"tip", "tool0"}}, "", urdf);
-///     Eigen::VectorXd tau = solver->getTorques(q, qd, qdd);   // H(q) qdd + C(q, qd) qd + f(qd) +
-///     g(q)
+///     Eigen::VectorXd tau = solver->getTorques(q, qd, qdd);   // H qdd + C qd + f + g
 #pragma once
 
 #include <Eigen/Core>

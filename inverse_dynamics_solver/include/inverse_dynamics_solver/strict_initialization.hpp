@@ -3,8 +3,7 @@
 /// A solver initialized with the parameters of a node, of which it must know all in its namespace:
 /// a misspelt one would silently leave the default.
 ///
-///     initializeStrictly(*solver, node->get_node_parameters_interface(), "ids",
-///     robot_description);
+///     initializeStrictly(*solver, node->get_node_parameters_interface(), "ids", urdf);
 #pragma once
 
 #include <memory>
