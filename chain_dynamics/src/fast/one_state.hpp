@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// What is computed of one state, from its numbers in memory.
+///
+/// Included by kernels.cpp only [pack.hpp].
+
+#pragma once
+
+#include "friction.hpp"
+#include "linear_solve.hpp"
+#include "recursions.hpp"
+#include "regressor.hpp"
+#include "turns.hpp"
+
+namespace chain_dynamics::fast {
+namespace {
+
+void torquesOfState(const Robot& robot, int structure, const double* q, const double* qd,
+                    const double* qdd, double* tau) {
+  JointNumbers c;
+  JointNumbers s;
+  turnsOfState(robot, q, c.values, s.values);
+  if (robot.friction == nullptr) {
+    torquesOf(robot, structure, State<double>{c.values, s.values, q, qd, qdd}, tau);
+    return;
+  }
+  JointNumbers f;
+  frictionNumbers(robot, qd, f.values);
+  torquesOf(robot, structure, State<double>{c.values, s.values, q, qd, qdd}, tau);
+  for (int i = 0; i < robot.joints; ++i) tau[i] += f.values[i];
+}
+
+void coriolisOfState(const Robot& robot, int structure, const double* q, const double* qd,
+                     double* coriolis) {
+  JointNumbers c;
+  JointNumbers s;
+  turnsOfState(robot, q, c.values, s.values);
+  const State<double> state{c.values, s.values, q, qd, kAtRest};
+  coriolisOf(robot, structure, state, coriolis);
+}
+
+void gravityOfState(const Robot& robot, int structure, const double* q, double* g) {
+  JointNumbers c;
+  JointNumbers s;
+  turnsOfState(robot, q, c.values, s.values);
+  gravityOf(robot, structure, State<double>{c.values, s.values, q, nullptr, nullptr}, g);
+}
+
+void inertiaOfState(const Robot& robot, int structure, const double* q, Matrices H) {
+  JointNumbers c;
+  JointNumbers s;
+  turnsOfState(robot, q, c.values, s.values);
+  const State<double> state{c.values, s.values, q, nullptr, nullptr};
+  recursionsOf<double>(robot, structure)
+      .inertia(robot, state, Entries<double>{H.data, H.row_step, H.column_step});
+}
+
+void componentsOfState(const Robot& robot, int structure, const double* q, const double* qd,
+                       Matrices H, double* coriolis, double* g) {
+  JointNumbers c;
+  JointNumbers s;
+  turnsOfState(robot, q, c.values, s.values);
+  const State<double> state{c.values, s.values, q, qd, kAtRest};
+  recursionsOf<double>(robot, structure)
+      .inertia(robot, state, Entries<double>{H.data, H.row_step, H.column_step});
+  coriolisOf(robot, structure, state, coriolis);
+  gravityOf(robot, structure, state, g);
+}
+
+void forwardDynamicsOfState(const Robot& robot, int structure, const double* q, const double* qd,
+                            const double* tau, double* qdd) {
+  const int n = robot.joints;
+  JointNumbers c;
+  JointNumbers s;
+  JointNumbers bias;
+  double H[kMaxJoints * kMaxJoints];
+  double accelerating[kMaxJoints];
+  turnsOfState(robot, q, c.values, s.values);
+  const State<double> state{c.values, s.values, q, qd, kAtRest};
+  torquesOf(robot, structure, state, bias.values);
+  for (int i = 0; i < n; ++i) accelerating[i] = tau[i] - bias.values[i];
+  if (robot.friction != nullptr) {
+    frictionNumbers(robot, qd, bias.values);
+    for (int i = 0; i < n; ++i) accelerating[i] -= bias.values[i];
+  }
+  recursionsOf<double>(robot, structure).inertia(robot, state, Entries<double>{H, n, 1});
+  (robot.rows != nullptr ? solveGeneral : solveSymmetric)(n, H, accelerating);
+  for (int i = 0; i < n; ++i) qdd[i] = accelerating[i];
+}
+
+void regressorOfState(const Robot& robot, const double* q, const double* qd, const double* qdd,
+                      double* Y, std::ptrdiff_t outer_step) {
+  JointNumbers c;
+  JointNumbers s;
+  turnsOfState(robot, q, c.values, s.values);
+  regressor(robot, State<double>{c.values, s.values, q, qd, qdd}, Y, outer_step);
+}
+
+void torqueDerivativesOfState(const Robot& robot, int structure, const double* q, const double* qd,
+                              const double* qdd, double* by_q, double* by_qd, double* by_qdd,
+                              std::ptrdiff_t outer_step) {
+  JointNumbers c;
+  JointNumbers s;
+  turnsOfState(robot, q, c.values, s.values);
+  const State<double> state{c.values, s.values, q, qd, qdd};
+  const bool own_gravity = robot.gravity_bodies != nullptr;
+  kDerivatives[structure](robot, state, own_gravity ? kNoGravity : robot.root,
+                          DerivativeEntries{by_q, by_qd, by_qdd, outer_step});
+  if (own_gravity) addGravityDerivatives(robot, state, by_q, outer_step);
+  if (robot.friction != nullptr) {
+    frictionSlopes(robot, qd, c.values);
+    for (int i = 0; i < robot.joints; ++i) by_qd[i + i * outer_step] += c.values[i];
+  }
+}
+
+}  // namespace
+}  // namespace chain_dynamics::fast
