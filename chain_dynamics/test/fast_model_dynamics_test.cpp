@@ -108,13 +108,11 @@ TEST_P(FastModelOn, GivesDerivativesRegressorAndAccelerationsOfThePlainFunctions
 }
 
 TEST_P(FastModelOn, LargeAnglesInOneJointLeaveTheOthersRight) {
-  const Model model(randomChain(7));
+  const Model model(revolute(randomChain(7)));
   const FastModel fast(model, GetParam());
-  for (const double angle : {1e4, 1e7}) {
+  for (const double angle : {1e4, 1e7, -3e12}) {
     State<double> x = randomState<double>(model.chain, 2);
-    for (Index j = 0; j < 7; ++j) {
-      if (!isPrismatic(model.chain.joints()[static_cast<std::size_t>(j)])) x.q[j] += angle;
-    }
+    x.q[3] = angle;
     const Results results = resultsOf(fast, x, x.qdd);
     expectDerivatives(results, model, x);
     expectRegressor(results, model.chain, x);

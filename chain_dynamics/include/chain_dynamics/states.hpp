@@ -43,8 +43,8 @@ template <typename T, bool = kIsEigen<T>>
 constexpr bool kStandsInMemory = false;
 template <typename T>
 constexpr bool kStandsInMemory<T, true> =
-    std::is_same_v<typename std::decay_t<T>::Scalar, double>&& kHasData<T> &&
-    (std::decay_t<T>::Flags & Eigen::DirectAccessBit) != 0;
+    std::is_same_v<typename std::decay_t<T>::Scalar, double> &&
+    (std::decay_t<T>::Flags & Eigen::DirectAccessBit) != 0 && kHasData<T>;
 
 /// Whether they may be written: a block or map may, a matrix if it isn't const or a temporary.
 template <typename T, bool = kStandsInMemory<T>>
