@@ -26,8 +26,10 @@ std::string numberText(double number) {
   return text.str();
 }
 
-Stamps stampsOf(const std::vector<std::int64_t>& stamps) {
-  return Eigen::Map<const Stamps>(stamps.data(), static_cast<Index>(stamps.size()));
+// The stamps; their own memory is freed.
+Stamps takenStamps(std::vector<std::int64_t>& stamps) {
+  const auto given = std::exchange(stamps, {});
+  return Eigen::Map<const Stamps>(given.data(), static_cast<Index>(given.size()));
 }
 
 }  // namespace
@@ -68,8 +70,8 @@ void JointLogBuilder::add(const JointSample& sample) {
   append(position_, sample.position, sample, true);
   append(velocity_, sample.velocity, sample, true);
   append(effort_, sample.effort, sample,
-         options_.effort_required || (!first && !effort_.numbers.empty()));
-  append(acceleration_, sample.acceleration, sample, !first && !acceleration_.numbers.empty());
+         options_.effort_required || (!first && effort_.numbers.size() != 0));
+  append(acceleration_, sample.acceleration, sample, !first && acceleration_.numbers.size() != 0);
   header_stamps_.push_back(sample.header_stamp);
   receive_stamps_.push_back(sample.receive_stamp);
   message_.push_back(sample.message);
@@ -78,33 +80,24 @@ void JointLogBuilder::add(const JointSample& sample) {
   }
 }
 
-JointLog JointLogBuilder::finish(Clock clock) const {
-  if (message_.empty()) {
-    if (samples_ == 0) {
-      throw RecordingError(where_ +
-                           ": expected joint states, got no message; was the robot's driver "
-                           "running while it was recorded?");
-    }
-    throw RecordingError(where_ + ": expected the joints " + listed(matching_.joints()) +
-                         ", got only " + listed(other_names_) +
-                         "; give the recording's names with " + options_.joints_option +
-                         ", in the order of the chain");
-  }
+JointLog JointLogBuilder::finish(Clock clock) {
+  requireSamples();
   JointLog log;
   log.joint_names = matching_.joints();
-  log.header_stamps = stampsOf(header_stamps_);
-  log.receive_stamps = stampsOf(receive_stamps_);
-  log.q = matrix(position_);
-  log.qd = matrix(velocity_);
-  log.effort = matrix(effort_);
-  log.qdd = matrix(acceleration_);
-  log.frame_id = frame_id_;
-  log.message = message_;
-  const Index left_out = samples_ - static_cast<Index>(message_.size());
+  log.header_stamps = takenStamps(header_stamps_);
+  log.receive_stamps = takenStamps(receive_stamps_);
+  log.q = taken(position_);
+  log.qd = taken(velocity_);
+  log.effort = taken(effort_);
+  log.qdd = taken(acceleration_);
+  log.frame_id = std::exchange(frame_id_, {});
+  log.message = std::exchange(message_, {});
+  const Index samples = std::exchange(samples_, 0);
+  const std::vector<std::string> others = std::exchange(other_names_, {});
+  const Index left_out = samples - static_cast<Index>(log.message.size());
   if (left_out > 0) {
-    log.notes.push_back(std::to_string(left_out) + " of " + std::to_string(samples_) +
-                        " messages left out: they hold none of the joints, but " +
-                        listed(other_names_));
+    log.notes.push_back(std::to_string(left_out) + " of " + std::to_string(samples) +
+                        " messages left out: they hold none of the joints, but " + listed(others));
   }
   log.clock = clock;
   if (clock == Clock::kAuto) {
@@ -115,6 +108,20 @@ JointLog JointLogBuilder::finish(Clock clock) const {
     }
   }
   return log;
+}
+
+void JointLogBuilder::requireSamples() const {
+  if (!message_.empty()) {
+    return;
+  }
+  if (samples_ == 0) {
+    throw RecordingError(where_ +
+                         ": expected joint states, got no message; was the robot's driver "
+                         "running while it was recorded?");
+  }
+  throw RecordingError(where_ + ": expected the joints " + listed(matching_.joints()) +
+                       ", got only " + listed(other_names_) + "; give the recording's names with " +
+                       options_.joints_option + ", in the order of the chain");
 }
 
 // Whether the sample is of the joints.
@@ -150,7 +157,7 @@ bool JointLogBuilder::matches(const JointSample& sample) {
 void JointLogBuilder::append(Column& column, const JointSample::Numbers& numbers,
                              const JointSample& sample, bool required) {
   const auto names = static_cast<Index>(sample.names.size());
-  const bool late = !message_.empty() && column.numbers.empty();  // absent from those before
+  const bool late = !message_.empty() && column.numbers.size() == 0;  // absent from those before
   if (numbers.size() == 0 && !required) {
     return;
   }
@@ -162,6 +169,11 @@ void JointLogBuilder::append(Column& column, const JointSample::Numbers& numbers
     throw RecordingError(place(sample) + ": " + column.field + ": expected " + expected + ", got " +
                          got + "; " + column.reason + ": does the driver publish them?");
   }
+  const auto n = static_cast<Index>(matching_.joints().size());
+  const auto count = static_cast<Index>(message_.size());
+  if (column.numbers.cols() == count) {  // full: twice the room, by realloc, which copies no pages
+    column.numbers.conservativeResize(n, std::max<Index>(64, 2 * count));
+  }
   for (std::size_t j = 0; j < matching_.columns().size(); ++j) {
     const double number = numbers[static_cast<Index>(matching_.columns()[j])];
     if (!std::isfinite(number)) {
@@ -170,7 +182,7 @@ void JointLogBuilder::append(Column& column, const JointSample::Numbers& numbers
                            numberText(number) +
                            "; cut such messages out of the recording, or record it again");
     }
-    column.numbers.push_back(number);
+    column.numbers(static_cast<Index>(j), count) = number;
   }
 }
 
@@ -183,13 +195,12 @@ std::string JointLogBuilder::place(const JointSample& sample) const {
   return text;
 }
 
-Eigen::MatrixXd JointLogBuilder::matrix(const Column& column) const {
-  if (column.numbers.empty()) {
-    return {};
+// What was appended, in the same memory.
+Eigen::MatrixXd JointLogBuilder::taken(Column& column) const {
+  if (column.numbers.size() != 0) {
+    column.numbers.conservativeResize(Eigen::NoChange, static_cast<Index>(message_.size()));
   }
-  return Eigen::Map<const Eigen::MatrixXd>(column.numbers.data(),
-                                           static_cast<Index>(matching_.joints().size()),
-                                           static_cast<Index>(message_.size()));
+  return std::exchange(column.numbers, {});
 }
 
 }  // namespace inverse_dynamics_evaluation

@@ -203,7 +203,7 @@ class JointLogBuilder:
         """Add blocks that together hold len(received) messages, received at these times [ns]."""
 
     def finish(self, clock: Literal["auto", "header", "receive"]) -> RecordedJoints:
-        """Everything added."""
+        """Everything added, whose memory the builder gives away: it holds no message then."""
 
 class JointMetrics:
     """Errors of one joint: inverse_dynamics_evaluation/metrics.hpp."""

@@ -78,7 +78,7 @@ void add(JointLogBuilder& builder, const std::vector<py::object>& blocks,
   }
 }
 
-JointLog finish(const JointLogBuilder& builder, const std::string& clock) {
+JointLog finish(JointLogBuilder& builder, const std::string& clock) {
   for (const auto known : {evaluation::Clock::kHeader, evaluation::Clock::kReceive}) {
     if (clock == evaluation::name(known)) return builder.finish(known);
   }
@@ -121,7 +121,8 @@ void bindJointLog(py::module_& module) {
       .def_property_readonly("messages", &JointLogBuilder::samples, "How many were added.")
       .def("add", &add, py::arg("blocks"), py::arg("received"),
            "Add blocks that together hold len(received) messages, received at these times [ns].")
-      .def("finish", &finish, py::arg("clock"), "Everything added.");
+      .def("finish", &finish, py::arg("clock"),
+           "Everything added, whose memory the builder gives away: it holds no message then.");
 }
 
 }  // namespace inverse_dynamics_tools

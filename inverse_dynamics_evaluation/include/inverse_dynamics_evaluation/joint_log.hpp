@@ -104,21 +104,24 @@ class JointLogBuilder {
   /// How many samples were added, those left out too.
   Eigen::Index samples() const { return samples_; }
 
-  /// Everything added. @throws RecordingError: no sample with the joints.
-  JointLog finish(Clock clock = Clock::kAuto) const;
+  /// Everything added, whose memory the builder gives away: it holds no sample then.
+  ///
+  /// @throws RecordingError: no sample with the joints.
+  JointLog finish(Clock clock = Clock::kAuto);
 
  private:
   struct Column {
     const char* field;
-    const char* reason;  // why it is needed
-    std::vector<double> numbers;
+    const char* reason;       // why it is needed
+    Eigen::MatrixXd numbers;  // with room for more samples than there are
   };
 
   bool matches(const JointSample& sample);
   void append(Column& column, const JointSample::Numbers& numbers, const JointSample& sample,
               bool required);
   std::string place(const JointSample& sample) const;
-  Eigen::MatrixXd matrix(const Column& column) const;
+  void requireSamples() const;
+  Eigen::MatrixXd taken(Column& column) const;
 
   std::string where_;
   JointLogOptions options_;
