@@ -40,13 +40,20 @@ def check_output_directory(target: Path, *, overwrite: bool = False, mark: str =
         )
 
 
-def check_output_file(target: Path, *, overwrite: bool = False) -> None:
-    """Raise OutputError unless a file may be made at `target`."""
+def check_output_file(target: Path, *, overwrite: bool = False, option: str = "--out") -> None:
+    """Raise OutputError unless a file may be made at `target`. option: what names it."""
     if target.is_dir():
         raise OutputError(f"{target}: is a directory; expected the name of a file to write")
     if target.exists() and not overwrite:
         raise OutputError(
-            f"{target}: exists already; name another file with --out, or replace it with --overwrite"
+            f"{target}: exists already; name another file with {option}, or replace it with "
+            "--overwrite"
+        )
+    above = next(parent for parent in target.absolute().parents if parent.exists())
+    if not above.is_dir() or not os.access(above, os.W_OK | os.X_OK):
+        reason = "may not be written to" if above.is_dir() else "is not a directory"
+        raise OutputError(
+            f"{target}: can't be written ({above} {reason}); name another file with {option}"
         )
 
 

@@ -127,9 +127,21 @@ def test_a_benchmark_that_fails_is_told_by_its_last_words(tmp_path, monkeypatch)
         (("--only", "("), "--only: expected a regular expression, got '('"),
         (("--from", "nothing.json"), "nothing.json: can't be read (No such file or directory)"),
         (("--plot", "speed.gif"), "speed.gif: expected a name that ends in .svg, .png or .pdf"),
+        (
+            ("--json", "a", "--plot", "./a"),
+            "a: expected a file of its own for each result, got the same for --json and --plot; "
+            "name another file with --plot",
+        ),
+        (("--update", "page.md"), "page.md: can't be read (No such file or directory); expected"),
+        (("--update", "text"), "text: expected a part between `<!-- ids bench: NAME -->`"),
+        (("--json", "text/a.json"), "text is not a directory); name another file with --json"),
     ],
 )
-def test_options_that_make_no_sense_are_told(ids, arguments, expected):
+def test_options_that_make_no_sense_are_told_before_anything_is_measured(
+    ids, tmp_path, monkeypatch, arguments, expected
+):
+    monkeypatch.setattr("inverse_dynamics.bench.measure", lambda **_: pytest.fail("measured"))
+    (tmp_path / "text").write_text("by hand")
     fails(ids("bench", *arguments), expected)
 
 
@@ -154,7 +166,7 @@ def test_a_file_that_is_no_measurement_is_told(ids, tmp_path, text, expected):
 def test_what_exists_is_replaced_only_if_told(ids, speed_json):
     before = speed_json.read_text()
     command = ("bench", "--from", "speed.json", "--json", "speed.json")
-    fails(ids(*command), "speed.json: exists already", "--overwrite")
+    fails(ids(*command), "speed.json: exists already; name another file with --json", "--overwrite")
     assert speed_json.read_text() == before
     assert ids(*command, "--overwrite")[0] == 0
     assert read_measurement(speed_json).time("ur10", "torques", "ours") == 100.0

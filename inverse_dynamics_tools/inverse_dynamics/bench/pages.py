@@ -55,33 +55,50 @@ def page(result: Measurement) -> str:
 
 def updated(text: str, result: Measurement, where: str) -> str:
     """A page with its generated parts made anew. `where` begins the text of an OutputError."""
-    if not _MARKED.search(text):
-        raise OutputError(
-            f"{where}: expected a part between `<!-- ids bench: NAME -->` and `<!-- ids bench: end "
-            f"-->`, got none; NAME is one of {', '.join(PARTS)}"
-        )
+    _check_parts(text, where)
+    return _MARKED.sub(
+        lambda match: (
+            f"<!-- ids bench: {match[1]} -->\n{PARTS[match[1]](result)}<!-- ids bench: end -->"
+        ),
+        text,
+    )
 
-    def part(match: re.Match[str]) -> str:
-        name = match[1]
-        if name not in PARTS:
-            raise OutputError(
-                f"{where}: part '{name}': expected one of {', '.join(PARTS)}; correct its name"
-            )
-        return f"<!-- ids bench: {name} -->\n{PARTS[name](result)}<!-- ids bench: end -->"
 
-    return _MARKED.sub(part, text)
+def check_pages(files: Iterable[Path]) -> None:
+    """Raise OutputError unless all of them are pages that update_pages() can make anew."""
+    for file in files:
+        _check_parts(_read(file), str(file))
 
 
 def update_pages(files: Sequence[Path], result: Measurement) -> None:
     """Write pages with their generated parts made anew: all of them, or none. Raises OutputError."""
-    texts = {}
-    for file in files:
-        try:
-            texts[file] = updated(file.read_text(encoding="utf-8"), result, str(file))
-        except OSError as error:
-            raise OutputError(f"{file}: can't be read ({error.strerror or error})") from error
+    texts = {file: updated(_read(file), result, str(file)) for file in files}
     for file, text in texts.items():
         write_text_whole(file, text)
+
+
+def _read(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise OutputError(
+            f"{file}: can't be read ({reason}); expected a page of Markdown with parts to make anew"
+        ) from error
+
+
+def _check_parts(text: str, where: str) -> None:
+    names = [match[1] for match in _MARKED.finditer(text)]
+    if not names:
+        raise OutputError(
+            f"{where}: expected a part between `<!-- ids bench: NAME -->` and `<!-- ids bench: end "
+            f"-->`, got none; NAME is one of {', '.join(PARTS)}"
+        )
+    for name in names:
+        if name not in PARTS:
+            raise OutputError(
+                f"{where}: part '{name}': expected one of {', '.join(PARTS)}; correct its name"
+            )
 
 
 def machine(result: Measurement) -> str:

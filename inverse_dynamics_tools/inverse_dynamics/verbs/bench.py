@@ -105,15 +105,15 @@ def run(arguments: argparse.Namespace) -> None:
     from rich.console import Console
 
     from inverse_dynamics.bench import measure, page, read_measurement, write_measurement
-    from inverse_dynamics.bench.pages import update_pages
+    from inverse_dynamics.bench.pages import check_pages, update_pages
     from inverse_dynamics.bench.plot import check_figure_name, save_speed_figure
-    from inverse_dynamics.files import check_output_file, write_text_whole
+    from inverse_dynamics.files import write_text_whole
 
-    for file in (arguments.json, arguments.markdown, arguments.plot):
-        if file is not None:
-            check_output_file(file, overwrite=arguments.overwrite)
+    # Before anything is measured: that may take ten minutes.
+    _check_outputs(arguments)
     if arguments.plot is not None:
         check_figure_name(arguments.plot)
+    check_pages(arguments.update)
 
     if arguments.source is not None:
         result = read_measurement(arguments.source)
@@ -133,6 +133,24 @@ def run(arguments: argparse.Namespace) -> None:
         save_speed_figure(result, arguments.plot)
     update_pages(arguments.update, result)
     _print(result)
+
+
+def _check_outputs(arguments: argparse.Namespace) -> None:
+    from inverse_dynamics.errors import OutputError
+    from inverse_dynamics.files import check_output_file
+
+    others: dict[Path, str] = {}
+    for option in ("--json", "--markdown", "--plot"):
+        file: Path | None = getattr(arguments, option.removeprefix("--"))
+        if file is None:
+            continue
+        check_output_file(file, overwrite=arguments.overwrite, option=option)
+        other = others.setdefault(file.resolve(), option)
+        if other != option:
+            raise OutputError(
+                f"{file}: expected a file of its own for each result, got the same for {other} "
+                f"and {option}; name another file with {option}"
+            )
 
 
 def _print(result: Measurement) -> None:
