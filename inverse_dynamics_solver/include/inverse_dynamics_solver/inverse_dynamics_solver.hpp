@@ -49,9 +49,9 @@ using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
 /// All methods but initialize() throw UninitializedException before a successful initialize(), and
 /// SizeMismatchException for a wrong size. A NaN in gives NaN in every entry that depends on it.
 ///
-/// Real time: calls into the caller's memory with contiguous inputs: no allocation, lock or system
-/// call, and for valid calls no exception. Threads: const methods are safe; initialize() needs the
-/// solver for itself.
+/// Real time (up to 64 joints): calls into the caller's memory with contiguous inputs: no
+/// allocation, lock or system call, and for valid calls no exception. Threads: const methods are
+/// safe; initialize() needs the solver for itself.
 class InverseDynamicsSolver {
  public:
   virtual ~InverseDynamicsSolver() = default;
