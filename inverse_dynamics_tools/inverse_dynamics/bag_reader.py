@@ -139,8 +139,10 @@ def _check_there(path: Path) -> None:
         inside = sorted(f.parent for f in path.glob("*/metadata.yaml"))
         if files:
             remedy = f"give {path / files[0]} itself, or run `ros2 bag reindex {path}`"
-        elif inside:
+        elif len(inside) == 1:
             remedy = f"a recording is in it: give {inside[0]}"
+        elif inside:
+            remedy = f"recordings are in it: give one of {', '.join(map(str, inside))}"
         else:
             remedy = "is it another directory?"
         raise BagError(f"{path}: is not a rosbag2 recording: it has no metadata.yaml; {remedy}")

@@ -89,7 +89,8 @@ def test_one_command_measures_and_writes_everything(ids, tmp_path):
 def test_a_name_that_no_benchmark_has_is_told(ids):
     fails(
         ids("bench", "--only", "nonsense"),
-        "inverse_dynamics_benchmark failed: Failed to match any benchmarks against regex: nonsense",
+        "inverse_dynamics_benchmark failed: Failed to match any benchmarks against regex: nonsense; "
+        "names are ROBOT/QUANTITY/LIBRARY, such as ur10/torques/ours",
     )
 
 
@@ -134,6 +135,8 @@ def test_a_benchmark_that_fails_is_told_by_its_last_words(tmp_path, monkeypatch)
         ),
         (("--update", "page.md"), "page.md: can't be read (No such file or directory); expected"),
         (("--update", "text"), "text: expected a part between `<!-- ids bench: NAME -->`"),
+        (("--from", "a", "--only", "b"), "--only: expected no such choice beside --from"),
+        (("--from", "a", "--latency"), "--latency: expected no such choice beside --from"),
         (("--json", "text/a.json"), "text is not a directory); name another file with --json"),
     ],
 )

@@ -45,6 +45,16 @@ def test_evaluate_prints_errors_and_writes_results(ids, bag, tmp_path):
     assert [j["joint"] for j in metrics["joints"]] == list(result.joint_names)
 
 
+def test_a_folder_of_recordings_names_them_all(ids, tmp_path):
+    for name in ("b", "a"):
+        (tmp_path / "bags" / name).mkdir(parents=True)
+        (tmp_path / "bags" / name / "metadata.yaml").touch()
+    fails(
+        ids("evaluate", "bags", "--robot", "ur10_real"),
+        "recordings are in it: give one of bags/a, bags/b",
+    )
+
+
 def test_results_go_beside_where_one_is_if_nothing_is_said(ids, bag, tmp_path):
     code, _, _ = ids("evaluate", bag, "--robot", "ur10_simulated", *RAW)
     assert code == 0

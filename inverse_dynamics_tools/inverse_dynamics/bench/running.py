@@ -22,6 +22,9 @@ _REMEDY = (
     "install Google Benchmark (Debian: apt install libbenchmark-dev), then "
     f"`./scripts/build --packages-select {PACKAGE}` in the workspace"
 )
+_NAMES = (
+    "; names are ROBOT/QUANTITY/LIBRARY, such as ur10/torques/ours (those of `ids bench --json`)"
+)
 
 
 class BenchmarkError(UserError):
@@ -85,7 +88,8 @@ def _run(command: Sequence[str], result: Path | None = None) -> str:
     written = result is None or (result.is_file() and result.stat().st_size > 0)
     if done.returncode != 0 or not written:
         lines = done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
-        raise BenchmarkError(f"{Path(command[0]).name} failed: {lines[-1]}")
+        remedy = _NAMES if lines[-1].startswith("Failed to match any benchmarks") else ""
+        raise BenchmarkError(f"{Path(command[0]).name} failed: {lines[-1]}{remedy}")
     return done.stdout
 
 

@@ -111,6 +111,7 @@ def run(arguments: argparse.Namespace) -> None:
 
     # Before anything is measured: that may take ten minutes.
     _check_outputs(arguments)
+    _check_source(arguments)
     if arguments.plot is not None:
         check_figure_name(arguments.plot)
     check_pages(arguments.update)
@@ -150,6 +151,17 @@ def _check_outputs(arguments: argparse.Namespace) -> None:
             raise OutputError(
                 f"{file}: expected a file of its own for each result, got the same for {other} "
                 f"and {option}; name another file with {option}"
+            )
+
+
+def _check_source(arguments: argparse.Namespace) -> None:
+    from inverse_dynamics.errors import UserError
+
+    for option in ("--only", "--latency"):
+        if arguments.source is not None and getattr(arguments, option.removeprefix("--")):
+            raise UserError(
+                f"{option}: expected no such choice beside --from, which shows everything that was "
+                "measured; leave one of them out"
             )
 
 
