@@ -200,7 +200,10 @@ class JointLogBuilder:
         """How many were added."""
 
     def add(self, blocks: Sequence[Block], received: Integers) -> None:
-        """Add blocks that together hold len(received) messages, received at these times [ns]."""
+        """Add blocks that together hold len(received) messages, received at these times [ns].
+
+        ValueError: blocks that don't.
+        """
 
     def finish(self, clock: Literal["auto", "header", "receive"]) -> RecordedJoints:
         """Everything added, whose memory the builder gives away: it holds no message then."""

@@ -25,6 +25,12 @@ using evaluation::JointLogBuilder;
 using evaluation::JointSample;
 using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
+void require(bool fulfilled, const char* what, Index expected, Index got) {
+  if (fulfilled) return;
+  throw py::value_error("JointLogBuilder.add: " + std::string(what) + ": expected " +
+                        std::to_string(expected) + ", got " + std::to_string(got));
+}
+
 /// Messages with the same names and array lengths: the NamedTuple Block of joint_state_cdr.py.
 struct Block {
   explicit Block(const py::handle& block)
@@ -34,7 +40,13 @@ struct Block {
         stamps(block.attr("stamps").cast<Integers>()),
         position(block.attr("position").cast<Array>()),
         velocity(block.attr("velocity").cast<Array>()),
-        effort(block.attr("effort").cast<Array>()) {}
+        effort(block.attr("effort").cast<Array>()) {
+    const Index count = rows.size();
+    require(stamps.size() == count, "stamps of a block", count, stamps.size());
+    for (const Array* array : {&position, &velocity, &effort}) {
+      require(array->shape(0) == count, "rows of numbers of a block", count, array->shape(0));
+    }
+  }
 
   /// Message i of the block.
   JointSample sample(Index i) const {
@@ -67,6 +79,9 @@ void add(JointLogBuilder& builder, const std::vector<py::object>& blocks,
     for (Index i = 0; i < block.rows.size(); ++i) {
       places.at(static_cast<std::size_t>(block.rows.data()[i])) = {&block, i};
     }
+  }
+  for (const auto& [block, i] : places) {
+    if (block == nullptr) throw py::value_error("JointLogBuilder.add: a message is in no block");
   }
   const std::int64_t* stamp = received.data();
   const py::gil_scoped_release release;
