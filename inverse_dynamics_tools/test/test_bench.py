@@ -112,8 +112,12 @@ def test_a_benchmark_that_fails_is_told_by_its_last_words(tmp_path, monkeypatch)
     program = tmp_path / "bin/inverse_dynamics_benchmark"
     program.parent.mkdir()
     program.write_text("#!/bin/sh\necho first >&2\necho ur10: no such robot >&2\nexit 1\n")
-    program.chmod(0o755)
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    with pytest.raises(
+        Exception, match=r"benchmark: can't be run \(Permission denied\); build inv"
+    ):
+        measure()
+    program.chmod(0o755)
     with pytest.raises(Exception, match="inverse_dynamics_benchmark failed: ur10: no such robot"):
         measure()
 
@@ -122,6 +126,7 @@ def test_a_benchmark_that_fails_is_told_by_its_last_words(tmp_path, monkeypatch)
     ("arguments", "expected"),
     [
         (("--repetitions", "0"), "--repetitions: expected a whole number above zero, got '0'"),
+        (("--repetitions", "1"), "--repetitions: expected two or more, got '1'"),
         (("--repetitions", "1.5"), "expected a whole number above zero, got '1.5'"),
         (("--calls", "-1"), "--calls: expected a whole number above zero, got '-1'"),
         (("--seconds", "0"), "--seconds: expected a number above zero, got '0'"),

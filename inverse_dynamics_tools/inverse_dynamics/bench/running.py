@@ -36,7 +36,7 @@ def measure(
 ) -> Measurement:
     """Measure this machine.
 
-    repetitions: of each benchmark, in random order among the others; seconds: of each repetition;
+    repetitions: of each benchmark, two or more, in random order among the others; seconds: of each repetition;
     only: regular expression that names, `ROBOT/QUANTITY/LIBRARY`, must match; latency_calls: how
     many single calls are timed, 0: none. Raises BenchmarkError.
     """
@@ -84,7 +84,12 @@ def _program(name: str) -> str:
 
 def _run(command: Sequence[str], result: Path | None = None) -> str:
     """Standard output. result: a file that the command must have written."""
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise BenchmarkError(
+            f"{command[0]}: can't be run ({error.strerror or error}); build {PACKAGE} again"
+        ) from error
     written = result is None or (result.is_file() and result.stat().st_size > 0)
     if done.returncode != 0 or not written:
         lines = done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]

@@ -77,9 +77,9 @@ def _add_measuring(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--repetitions",
         metavar="N",
-        type=_count,
+        type=_repetitions,
         default=20,
-        help="of each benchmark (default: 20)",
+        help="of each benchmark, two or more (default: 20)",
     )
     group.add_argument(
         "--seconds",
@@ -179,6 +179,13 @@ def _count(text: str) -> int:
     if not re.fullmatch(r"[0-9]{1,10}", text) or int(text) == 0:
         raise argparse.ArgumentTypeError(f"expected a whole number above zero, got '{text}'")
     return int(text)
+
+
+def _repetitions(text: str) -> int:
+    count = _count(text)
+    if count == 1:  # no statistics of one
+        raise argparse.ArgumentTypeError("expected two or more, got '1'")
+    return count
 
 
 def _regular_expression(text: str) -> str:
