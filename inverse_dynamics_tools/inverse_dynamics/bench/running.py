@@ -36,9 +36,9 @@ def measure(
 ) -> Measurement:
     """Measure this machine.
 
-    repetitions: of each benchmark, two or more, in random order among the others; seconds: of each repetition;
-    only: regular expression that names, `ROBOT/QUANTITY/LIBRARY`, must match; latency_calls: how
-    many single calls are timed, 0: none. Raises BenchmarkError.
+    repetitions: of each benchmark, two or more, in random order among the others; seconds: of each
+    repetition; only: regular expression that names, `ROBOT/QUANTITY/LIBRARY`, must match;
+    latency_calls: how many single calls are timed, 0: none. Raises BenchmarkError.
     """
     document = _speed(repetitions, seconds, only)
     document["context"]["repetitions"] = repetitions
