@@ -12,21 +12,41 @@ bool near(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return ((a - b).array().abs() <= 1e-9 * (1 + b.cwiseAbs().maxCoeff())).all();
 }
 
+// One state.
 bool torquesEqual(const FastModel& fast, const Model& model, const Eigen::VectorXd& q) {
-  constexpr Eigen::Index kStates = 8;  // a pack, the same state in every lane
   const Eigen::Index n = q.size();
-  Eigen::MatrixXd H(n, n);
-  Eigen::VectorXd c(n), g(n), f(n);
+  Eigen::MatrixXd H(n, n), fast_H(n, n);
+  Eigen::VectorXd c(n), g(n), f(n), fast_tau(n);
   dynamicComponents(model, q, q, H, c, g);
   frictionVector(model, q, f);
-  const Eigen::VectorXd tau = H * q + c + g + f;
-
-  const ConstStates same{q.data(), n, kStates, 1, 0};
-  Eigen::MatrixXd fast_H(n, n), fast_tau(n, kStates);
   fast.inertiaMatrix(q.data(), fast_H.data(), n);
-  fast.torques(q.data(), q.data(), q.data(), f.data());
-  fast.torquesBatch(same, same, same, fast_tau);
-  return near(fast_H, H) && near(f, tau) && near(fast_tau, tau.replicate(1, kStates));
+  fast.torques(q.data(), q.data(), q.data(), fast_tau.data());
+  return near(fast_H, H) && near(fast_tau, H * q + c + g + f);
+}
+
+// More states than the widest pack has lanes, each another one: none may get a neighbour's numbers.
+bool batchesEqual(const FastModel& fast, const Model& model, const Eigen::VectorXd& q) {
+  constexpr Eigen::Index kStates = 11;
+  const Eigen::Index n = q.size();
+  Eigen::MatrixXd states = q.replicate(1, kStates);
+  states.rowwise() += Eigen::RowVectorXd::LinSpaced(kStates, 0.0, 1.0);
+  Eigen::MatrixXd fast_H(n, n * kStates);
+  Eigen::MatrixXd fast_tau(n, kStates), fast_c(n, kStates), fast_g(n, kStates);
+  fast.torquesBatch(states, states, states, fast_tau);
+  fast.dynamicComponentsBatch(states, states, fast_H, fast_c, fast_g);
+
+  Eigen::MatrixXd H(n, n);
+  Eigen::VectorXd c(n), g(n), f(n);
+  for (Eigen::Index k = 0; k < kStates; ++k) {
+    const Eigen::VectorXd state = states.col(k);
+    dynamicComponents(model, state, state, H, c, g);
+    frictionVector(model, state, f);
+    if (!near(fast_tau.col(k), H * state + c + g + f) || !near(fast_c.col(k), c) ||
+        !near(fast_g.col(k), g) || !near(fast_H.middleCols(k * n, n), H)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 bool derivativesEqual(const FastModel& fast, const Model& model, const Eigen::VectorXd& q) {
@@ -55,8 +75,8 @@ bool regressorsEqual(const FastModel& fast, const Chain& chain, const Eigen::Vec
 
 bool equalsPlain(const FastModel& fast, const Model& model) {
   const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(model.chain.jointCount(), 0.3, 2.9);
-  return torquesEqual(fast, model, q) && derivativesEqual(fast, model, q) &&
-         regressorsEqual(fast, model.chain, q);
+  return torquesEqual(fast, model, q) && batchesEqual(fast, model, q) &&
+         derivativesEqual(fast, model, q) && regressorsEqual(fast, model.chain, q);
 }
 
 }  // namespace chain_dynamics

@@ -11,8 +11,8 @@
 
 namespace chain_dynamics {
 
-/// Whether the fast kernels give what the functions of model.hpp give, at one state: to nine digits
-/// of the largest number, far above rounding, far below a mistake.
+/// Whether the fast kernels give what the functions of model.hpp give, at a few states: to nine
+/// digits of the largest number, far above rounding, far below a mistake.
 bool equalsPlain(const FastModel& fast, const Model& model);
 
 }  // namespace chain_dynamics

@@ -45,7 +45,7 @@ class FastModel {
 
   /// @param model            at most kMaxJoints joints.
   /// @param instruction_set  one of instructionSets(); empty: the best of those that give what
-  ///     the functions of model.hpp give, to nine digits, at one state.
+  ///     the functions of model.hpp give, to nine digits, at a few states.
   /// @throws ModelError  longer chain, or unknown instruction set.
   explicit FastModel(const Model& model, const std::string& instruction_set = "");
   ~FastModel();
