@@ -23,7 +23,7 @@ void initializeStrictly(InverseDynamicsSolver& solver, const Parameters& paramet
 ///
 /// @param parameters  rclcpp's NodeParametersInterface.
 /// Throws as InverseDynamicsSolver::initialize(), and InvalidParameterValueException: one that the
-/// solver doesn't know.
+/// solver doesn't know; then the solver is initialized nevertheless, without it.
 template <class Interface>
 void initializeStrictly(InverseDynamicsSolver& solver, const std::shared_ptr<Interface>& parameters,
                         const std::string& param_namespace, const std::string& robot_description) {
