@@ -223,8 +223,15 @@ def test_tables_say_what_was_measured(speed_json):
     assert "| UR10 | torques | 100 | 900 | 1500 |  | 9.0 |" in text
     assert "| UR10 | torques | 25.0 | 900 | 36.0 |" in text
     assert "| torques: UR10, Panda | Pinocchio | 8 | 7 (Panda) | **no** |" in text
+    assert "| every quantity, 1 to 30 joints | KDL | 1 | 15 (UR10, torques) | yes |" in text
     assert "forward dynamics" not in text
     assert "Abacus" in text
+
+
+def test_bounds_name_chains_and_quantities_as_the_other_tables_do():
+    entries = [entry("mixed1/inertia/ours", 50.0), entry("mixed1/inertia/kdl", 200.0)]
+    text = page(measurement(document(*entries), "here"))
+    assert "| every quantity, 1 to 30 joints | KDL | 1 | 4 (1 joint, H) | yes |" in text
 
 
 def test_long_calls_are_in_units_that_can_be_read():

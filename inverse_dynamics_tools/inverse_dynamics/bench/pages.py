@@ -217,10 +217,10 @@ def bounds(result: Measurement) -> str:
     for bound in asked.bounds(result):
         if bound.reached is None:
             continue
-        place = f" ({_ROBOTS.get(bound.where, bound.where)})" if bound.where else ""
+        place = f" ({_in_words(bound.where)})" if bound.where else ""
         rows.append(
             [
-                bound.what,
+                _in_words(bound.what),
                 bound.other,
                 f"{bound.asked:g}",
                 f"{bound.reached:.3g}{place}",
@@ -228,6 +228,13 @@ def bounds(result: Measurement) -> str:
             ]
         )
     return _table(["what", "how many times as fast as", "asked", "reached", "holds"], rows, 2)
+
+
+def _in_words(names: str) -> str:
+    """Names of robots and quantities as the other tables have them."""
+    words = {**_ROBOTS, **_QUANTITIES}
+    chains = re.sub(r"\bmixed(\d+)", r"\1 joints", re.sub(r"\bmixed1\b", "1 joint", names))
+    return re.sub(r"\w+", lambda name: words.get(name[0], name[0]), words.get(names, chains))
 
 
 def latency(result: Measurement) -> str:
