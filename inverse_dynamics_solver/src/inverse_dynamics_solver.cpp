@@ -4,13 +4,9 @@
 #include <string>
 
 #include "one_state.hpp"
-#include "share_states.hpp"
 
 namespace inverse_dynamics_solver {
 namespace {
-
-// What computeFriction() gets for q where only velocities are known.
-const Eigen::VectorXd kNoPositions;
 
 using Eigen::Index;
 
@@ -124,7 +120,7 @@ void InverseDynamicsSolver::getFrictionVector(const ConstVectorRef& qd, VectorRe
   requireInitialized("getFrictionVector");
   requireVector("getFrictionVector", "qd", qd.size());
   requireVector("getFrictionVector", "f", f.size());
-  computeFriction(kNoPositions, qd, f);
+  computeFriction(Eigen::VectorXd(), qd, f);  // positions are not known
 }
 
 void InverseDynamicsSolver::getGravityVector(const ConstVectorRef& q, VectorRef g) const {
@@ -153,86 +149,6 @@ void InverseDynamicsSolver::getTorques(const ConstVectorRef& q, const ConstVecto
   requireVector("getTorques", "qdd", qdd.size());
   requireVector("getTorques", "tau", tau.size());
   computeTorques(q, qd, qdd, tau);
-}
-
-// ---------------------------------------------------------------- many states
-
-void InverseDynamicsSolver::getInertiaMatrixBatch(const ConstStatesRef& q,
-                                                  const StridedMatrices& H) const {
-  const char* const method = "getInertiaMatrixBatch";
-  requireInitialized(method);
-  requireStates(method, "q", q, q.count);
-  requireMatrix(method, "H", H.rows, H.cols, q.joints * q.count);
-  shareStates(q.count, batch_threads_, [&](Index first, Index size) {
-    computeInertiaMatrixBatch(q.middle(first, size), H.middle(first, size));
-  });
-}
-
-void InverseDynamicsSolver::getCoriolisVectorBatch(const ConstStatesRef& q,
-                                                   const ConstStatesRef& qd,
-                                                   const States& c) const {
-  const char* const method = "getCoriolisVectorBatch";
-  requireInitialized(method);
-  requireStates(method, "q", q, q.count);
-  requireStates(method, "qd", qd, q.count);
-  requireStates(method, "c", c, q.count);
-  shareStates(q.count, batch_threads_, [&](Index first, Index size) {
-    computeCoriolisVectorBatch(q.middle(first, size), qd.middle(first, size),
-                               c.middle(first, size));
-  });
-}
-
-void InverseDynamicsSolver::getFrictionVectorBatch(const ConstStatesRef& qd,
-                                                   const States& f) const {
-  const char* const method = "getFrictionVectorBatch";
-  requireInitialized(method);
-  requireStates(method, "qd", qd, qd.count);
-  requireStates(method, "f", f, qd.count);
-  shareStates(qd.count, batch_threads_, [&](Index first, Index size) {
-    computeFrictionBatch(qd.middle(first, size), f.middle(first, size));
-  });
-}
-
-void InverseDynamicsSolver::getGravityVectorBatch(const ConstStatesRef& q, const States& g) const {
-  const char* const method = "getGravityVectorBatch";
-  requireInitialized(method);
-  requireStates(method, "q", q, q.count);
-  requireStates(method, "g", g, q.count);
-  shareStates(q.count, batch_threads_, [&](Index first, Index size) {
-    computeGravityVectorBatch(q.middle(first, size), g.middle(first, size));
-  });
-}
-
-void InverseDynamicsSolver::getDynamicComponentsBatch(const ConstStatesRef& q,
-                                                      const ConstStatesRef& qd,
-                                                      const StridedMatrices& H, const States& c,
-                                                      const States& g) const {
-  const char* const method = "getDynamicComponentsBatch";
-  requireInitialized(method);
-  requireStates(method, "q", q, q.count);
-  requireStates(method, "qd", qd, q.count);
-  requireMatrix(method, "H", H.rows, H.cols, q.joints * q.count);
-  requireStates(method, "c", c, q.count);
-  requireStates(method, "g", g, q.count);
-  shareStates(q.count, batch_threads_, [&](Index first, Index size) {
-    computeDynamicComponentsBatch(q.middle(first, size), qd.middle(first, size),
-                                  H.middle(first, size), c.middle(first, size),
-                                  g.middle(first, size));
-  });
-}
-
-void InverseDynamicsSolver::getTorquesBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
-                                            const ConstStatesRef& qdd, const States& tau) const {
-  const char* const method = "getTorquesBatch";
-  requireInitialized(method);
-  requireStates(method, "q", q, q.count);
-  requireStates(method, "qd", qd, q.count);
-  requireStates(method, "qdd", qdd, q.count);
-  requireStates(method, "tau", tau, q.count);
-  shareStates(q.count, batch_threads_, [&](Index first, Index size) {
-    computeTorquesBatch(q.middle(first, size), qd.middle(first, size), qdd.middle(first, size),
-                        tau.middle(first, size));
-  });
 }
 
 // ---------------------------------------------------------------- defaults
@@ -273,69 +189,6 @@ void InverseDynamicsSolver::computeTorques(const ConstVectorRef& q, const ConstV
     Eigen::MatrixXd H(n, n);
     Eigen::VectorXd term(n);
     sum(H, term);
-  }
-}
-
-void InverseDynamicsSolver::computeInertiaMatrixBatch(const ConstStates& q,
-                                                      const StridedMatrices& H) const {
-  StateReader q_of(q);
-  MatrixWriter H_of(H);
-  for (Index k = 0; k < q.count; ++k) {
-    computeInertiaMatrix(q_of(k), H_of(k));
-    H_of.done(k);
-  }
-}
-
-void InverseDynamicsSolver::computeCoriolisVectorBatch(const ConstStates& q, const ConstStates& qd,
-                                                       const States& c) const {
-  StateReader q_of(q), qd_of(qd);
-  StateWriter c_of(c);
-  for (Index k = 0; k < q.count; ++k) {
-    computeCoriolisVector(q_of(k), qd_of(k), c_of(k));
-    c_of.done(k);
-  }
-}
-
-void InverseDynamicsSolver::computeFrictionBatch(const ConstStates& qd, const States& f) const {
-  StateReader qd_of(qd);
-  StateWriter f_of(f);
-  for (Index k = 0; k < qd.count; ++k) {
-    computeFriction(kNoPositions, qd_of(k), f_of(k));
-    f_of.done(k);
-  }
-}
-
-void InverseDynamicsSolver::computeGravityVectorBatch(const ConstStates& q, const States& g) const {
-  StateReader q_of(q);
-  StateWriter g_of(g);
-  for (Index k = 0; k < q.count; ++k) {
-    computeGravityVector(q_of(k), g_of(k));
-    g_of.done(k);
-  }
-}
-
-void InverseDynamicsSolver::computeDynamicComponentsBatch(const ConstStates& q,
-                                                          const ConstStates& qd,
-                                                          const StridedMatrices& H, const States& c,
-                                                          const States& g) const {
-  StateReader q_of(q), qd_of(qd);
-  MatrixWriter H_of(H);
-  StateWriter c_of(c), g_of(g);
-  for (Index k = 0; k < q.count; ++k) {
-    computeDynamicComponents(q_of(k), qd_of(k), H_of(k), c_of(k), g_of(k));
-    H_of.done(k);
-    c_of.done(k);
-    g_of.done(k);
-  }
-}
-
-void InverseDynamicsSolver::computeTorquesBatch(const ConstStates& q, const ConstStates& qd,
-                                                const ConstStates& qdd, const States& tau) const {
-  StateReader q_of(q), qd_of(qd), qdd_of(qdd);
-  StateWriter tau_of(tau);
-  for (Index k = 0; k < q.count; ++k) {
-    computeTorques(q_of(k), qd_of(k), qdd_of(k), tau_of(k));
-    tau_of.done(k);
   }
 }
 
