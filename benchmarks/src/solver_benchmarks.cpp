@@ -116,7 +116,7 @@ void registerRows(const std::string& robot, const Solver& solver) {
 
 void registerManyStates(const std::string& robot, const std::string& library,
                         const Solver& solver) {
-  const auto many = std::make_shared<Torques>(solver->jointCount(), 1 << 14);
+  const auto many = std::make_shared<Torques>(solver->jointCount(), 1 << 17);
   registerBatch(robot + "/torques_many/" + library, many->tau.cols(), [solver, many] {
     solver->getTorquesBatch(many->states.q, many->states.qd, many->states.qdd, many->tau);
     benchmark::ClobberMemory();

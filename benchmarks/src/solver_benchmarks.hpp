@@ -31,7 +31,7 @@ void registerRows(
     const std::string& robot,
     const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver);
 
-/// Benchmark `ROBOT/torques_many/LIBRARY`: 16384 states, enough to be shared among
+/// Benchmark `ROBOT/torques_many/LIBRARY`: 131072 states, enough to be shared among
 /// threads; in real time.
 void registerManyStates(
     const std::string& robot, const std::string& library,

@@ -24,12 +24,32 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-[[noreturn]] void throwSizeMismatch(const char* method, const char* argument,
-                                    const std::string& expected, const std::string& got,
-                                    const std::vector<std::string>& joint_names) {
+// What throws is apart from the checks, which are then small enough to be inlined.
+[[noreturn, gnu::noinline]] void throwUninitialized(const char* method) {
+  throw UninitializedException(method);
+}
+
+[[noreturn, gnu::noinline]] void throwSizeMismatch(const char* method, const char* argument,
+                                                   const std::string& expected,
+                                                   const std::string& got,
+                                                   const std::vector<std::string>& joint_names) {
   throw SizeMismatchException(errorText(std::string(method) + ": argument " + argument,
                                         "wrong size", expected, got,
                                         "the joints are " + joined(joint_names)));
+}
+
+[[noreturn, gnu::noinline]] void throwVectorMismatch(const char* method, const char* argument,
+                                                     Index size,
+                                                     const std::vector<std::string>& joint_names) {
+  throwSizeMismatch(method, argument, std::to_string(joint_names.size()) + " numbers",
+                    std::to_string(size), joint_names);
+}
+
+[[noreturn, gnu::noinline]] void throwMatrixMismatch(const char* method, const char* argument,
+                                                     Index expected_cols, Index rows, Index cols,
+                                                     const std::vector<std::string>& joint_names) {
+  throwSizeMismatch(method, argument, shape(static_cast<Index>(joint_names.size()), expected_cols),
+                    shape(rows, cols), joint_names);
 }
 
 }  // namespace
@@ -72,15 +92,13 @@ bool InverseDynamicsSolver::inertiaIsPhysical() const {
 // ---------------------------------------------------------------- checks
 
 void InverseDynamicsSolver::requireInitialized(const char* method) const {
-  if (!initialized_) throw UninitializedException(method);
+  if (!initialized_) throwUninitialized(method);
 }
 
 void InverseDynamicsSolver::requireVector(const char* method, const char* argument,
                                           Index size) const {
-  const auto n = static_cast<Index>(info_.joint_names.size());
-  if (size != n) {
-    throwSizeMismatch(method, argument, std::to_string(n) + " numbers", std::to_string(size),
-                      info_.joint_names);
+  if (size != static_cast<Index>(info_.joint_names.size())) {
+    throwVectorMismatch(method, argument, size, info_.joint_names);
   }
 }
 
@@ -88,8 +106,7 @@ void InverseDynamicsSolver::requireMatrix(const char* method, const char* argume
                                           Index cols, Index expected_cols) const {
   const auto n = static_cast<Index>(info_.joint_names.size());
   if (rows != n || cols != expected_cols) {
-    throwSizeMismatch(method, argument, shape(n, expected_cols), shape(rows, cols),
-                      info_.joint_names);
+    throwMatrixMismatch(method, argument, expected_cols, rows, cols, info_.joint_names);
   }
 }
 

@@ -14,14 +14,21 @@
 namespace chain_dynamics::fast {
 namespace {
 
+/// Whether gravity torques depend on the first joint's angle: not if its axis is vertical. Inertia
+/// and Coriolis' forces never do.
+FAST_INLINE bool gravityTurns(const Robot& robot) {
+  return robot.root[0] != 0 || robot.root[1] != 0;
+}
+
 /// Memory of one pack of states.
 struct PackOfStates {
   Pack q[kMaxJoints], c[kMaxJoints], s[kMaxJoints], qd[kMaxJoints], qdd[kMaxJoints];
   State<Pack> state() const { return {c, s, q, qd, qdd}; }
 
-  FAST_INLINE void readPositions(const Robot& robot, const Samples& from, const Lanes& lanes) {
+  FAST_INLINE void readPositions(const Robot& robot, const Samples& from, const Lanes& lanes,
+                                 bool first_matters) {
     gather(robot, from, lanes, q);
-    turnsOfPack(robot, q, c, s);
+    turnsOfPack(robot, q, first_matters, c, s);
   }
   FAST_INLINE void readAtRest(const Robot& robot, const Samples& from, const Lanes& lanes) {
     gather(robot, from, lanes, qd);
@@ -73,7 +80,7 @@ void torquesBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
     Pack result[kMaxJoints];
     gather(robot, qd, lanes, x.qd);
     gather(robot, qdd, lanes, x.qdd);
-    x.readPositions(robot, q, lanes);
+    x.readPositions(robot, q, lanes, gravityTurns(robot));
     torquesOf(robot, structure, x.state(), result);
     if (robot.friction != nullptr) {
       for (int i = 0; i < robot.joints; ++i) result[i] += frictionOfPack(robot, i, x.qd[i]);
@@ -88,7 +95,7 @@ void coriolisBatch(const Robot& robot, int structure, std::ptrdiff_t states, Sam
     PackOfStates x;
     Pack result[kMaxJoints];
     x.readAtRest(robot, qd, lanes);
-    x.readPositions(robot, q, lanes);
+    x.readPositions(robot, q, lanes, false);
     coriolisOf(robot, structure, x.state(), result);
     scatter(robot, result, lanes, c);
   });
@@ -98,7 +105,7 @@ void gravityBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates x;
     Pack result[kMaxJoints];
-    x.readPositions(robot, q, lanes);
+    x.readPositions(robot, q, lanes, gravityTurns(robot));
     gravityOf(robot, structure, x.state(), result);
     scatter(robot, result, lanes, g);
   });
@@ -108,7 +115,7 @@ void inertiaBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
   if (robot.joints > kPackedMatrixJoints) return inertiaOneByOne(robot, structure, states, q, H);
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates x;
-    x.readPositions(robot, q, lanes);
+    x.readPositions(robot, q, lanes, false);
     inertiaOfPack(robot, structure, x.state(), lanes, H);
   });
 }
@@ -121,7 +128,7 @@ void componentsBatch(const Robot& robot, int structure, std::ptrdiff_t states, S
     PackOfStates x;
     Pack result[kMaxJoints];
     x.readAtRest(robot, qd, lanes);
-    x.readPositions(robot, q, lanes);
+    x.readPositions(robot, q, lanes, gravityTurns(robot));
     if (packed) inertiaOfPack(robot, structure, x.state(), lanes, H);
     coriolisOf(robot, structure, x.state(), result);
     scatter(robot, result, lanes, c);

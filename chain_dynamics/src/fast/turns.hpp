@@ -72,11 +72,15 @@ void turnsOfState(const Robot& robot, const double* q, double* c, double* s) {
   }
 }
 
-// Cosine and sine of all joints, a state in each lane.
-FAST_INLINE void turnsOfPack(const Robot& robot, const Pack* q, Pack* c, Pack* s) {
+// Cosine and sine of all joints, a state in each lane; if the angle of the first joint makes no
+// difference, without its own: one, zero.
+FAST_INLINE void turnsOfPack(const Robot& robot, const Pack* q, bool first_matters, Pack* c,
+                             Pack* s) {
   const int n = robot.joints;
   BitsOf<Pack> beyond{};
-  for (int i = 0; i < n; ++i) {
+  c[0] = all<Pack>(1.0);
+  s[0] = Pack{};
+  for (int i = first_matters ? 0 : 1; i < n; ++i) {
     sineCosine<Scheme::kHorner>(q[i], all<Pack>(robot.quarter_turns[i]), s[i], c[i], beyond);
   }
   if (anyBeyond<Pack>(beyond)) {

@@ -204,8 +204,8 @@ def memory(result: Measurement) -> str:
     rows = [
         ["262144 states, 50 MB", _time(result.time("ur10", "torques_memory", "ours"))],
         ["sum of the same arrays", _time(result.time("ur10", "torques_memory", "sum"))],
-        ["16384 states", _time(result.time("ur10", "torques_many", "ours"))],
-        ["16384 states, two threads", _time(result.time("ur10", "torques_many", "two_threads"))],
+        ["131072 states", _time(result.time("ur10", "torques_many", "ours"))],
+        ["131072 states, two threads", _time(result.time("ur10", "torques_many", "two_threads"))],
         ["1024 states, a state a row", _time(result.time("ur10", "torques_rows", "ours"))],
     ]
     return _table(["UR10, torques", "ns"], [row for row in rows if row[1]], 1)
