@@ -8,7 +8,7 @@ import pytest
 from conftest import fails
 
 from inverse_dynamics.ament import PackageNotFoundError, package_share
-from inverse_dynamics.bench import bounds, measure, page, read_measurement
+from inverse_dynamics.bench import bounds, measure, page, read_measurement, write_measurement
 from inverse_dynamics.bench.measurement import measurement
 from inverse_dynamics.bench.pages import PARTS, updated
 
@@ -270,6 +270,12 @@ def test_only_marked_parts_of_a_page_change(ids, speed_json, tmp_path):
     fails(ids(*command), "page.md: expected a part between `<!-- ids bench: NAME -->`")
     file.write_text("<!-- ids bench: call -->\n<!-- ids bench: end -->")
     fails(ids(*command), "page.md: part 'call': expected one of machine, calls,")
+
+
+def test_a_measurement_has_the_figures_of_its_file(tmp_path):
+    result = measurement(document(entry("ur10/torques/ours", 1265.4999)), "here")
+    write_measurement(result, tmp_path / "speed.json")
+    assert read_measurement(tmp_path / "speed.json").times == result.times
 
 
 def test_a_figure_is_the_same_for_the_same_figures(ids, speed_json, tmp_path):

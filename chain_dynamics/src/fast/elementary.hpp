@@ -100,7 +100,7 @@ __attribute__((noinline, cold)) void sineCosineBeyond(int count, const double* a
     Short ignored_sine;
     Short ignored_cosine;
     ShortBits beyond{};
-    const Short x = all<Short>(angle[k]);
+    const auto x = all<Short>(angle[k]);
     sineCosine<Scheme::kHorner>(x, x, ignored_sine, ignored_cosine, beyond);
     if (!anyBeyond<Short>(beyond)) continue;
     const double s = sin(angle[k]);

@@ -18,11 +18,11 @@ namespace {
 /// articulated inertias of forward dynamics in recursive form.
 void solveSymmetric(int n, double* H, double* x) {
   for (int k = n - 1; k >= 0; --k) {
-    double* const row_k = H + k * n;
+    double* const row_k = H + std::ptrdiff_t{k} * n;
     const double inverse_D = 1.0 / row_k[k];
     for (int i = 0; i < k; ++i) {
       const double factor = row_k[i] * inverse_D;
-      double* const row_i = H + i * n;
+      double* const row_i = H + std::ptrdiff_t{i} * n;
       for (int j = 0; j <= i; ++j) row_i[j] -= factor * row_k[j];
       x[i] -= factor * x[k];
     }
@@ -30,7 +30,7 @@ void solveSymmetric(int n, double* H, double* x) {
   }
   // row k now says: H_kk x_k + sum of H_kj x_j, j < k, is what is left in x_k
   for (int k = 0; k < n; ++k) {
-    const double* const row_k = H + k * n;
+    const double* const row_k = H + std::ptrdiff_t{k} * n;
     for (int j = 0; j < k; ++j) x[k] -= row_k[j] * x[j];
     x[k] *= row_k[k];
   }

@@ -141,7 +141,7 @@ void regressor(const Robot& robot, const State<double>& state, double* Y,
     const OwnPlacement& own = robot.own[i];
     const Pose X = poseOf(own, state.c[i], state.s[i], state.q[i]);
     motion.step(X, own.prismatic, state.qd[i], state.qdd[i]);
-    double* const link = Y + 10 * i * outer_step;
+    double* const link = Y + std::ptrdiff_t{i} * 10 * outer_step;
     for (int first = 0, k = 0; first < n; first += kShortWidth, ++k) {
       if (first > i) {
         storeRows(kZeros, n - first, link + first, outer_step);

@@ -70,7 +70,8 @@ def measurement(document: Mapping[str, Any], where: str) -> Measurement:
     try:
         context = dict(document["context"])
         entries = document["benchmarks"]
-        times, medians = _times(entries, "min"), _times(entries, "median")
+        least = [_trimmed(e) for e in entries if e.get("aggregate_name") == "min"]
+        times, medians = _times(least, "min"), _times(entries, "median")
         if times.keys() == medians.keys() and times:
             context["median_by_least"] = round(median(medians[n] / t for n, t in times.items()), 3)
         latency = tuple({key: row[key] for key in _LATENCY} for row in document.get("latency", ()))
@@ -78,7 +79,7 @@ def measurement(document: Mapping[str, Any], where: str) -> Measurement:
             raise ValueError("no entry with the aggregate_name 'min', and no latency")
         kept: dict[str, Any] = {
             "context": {key: context[key] for key in _CONTEXT if key in context},
-            "benchmarks": [_trimmed(e) for e in entries if e.get("aggregate_name") == "min"],
+            "benchmarks": least,
             "latency": list(latency),
         }
         return Measurement(kept["context"], times, latency, kept)
