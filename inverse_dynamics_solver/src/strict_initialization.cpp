@@ -11,16 +11,16 @@ void initializeStrictly(InverseDynamicsSolver& solver, const Parameters& paramet
                         const std::string& param_namespace, const std::string& robot_description,
                         const std::vector<std::string>& names) {
   const std::string prefix = param_namespace + ".";
-  const auto isOfNamespace = [&](const std::string& name) { return name.rfind(prefix, 0) == 0; };
+  const auto is_of_namespace = [&](const std::string& name) { return name.rfind(prefix, 0) == 0; };
   const auto asked = std::make_shared<std::set<std::string>>();  // the solver may ask later, too
   solver.initialize(parameters.watched([asked](const std::string& name) { asked->insert(name); }),
                     param_namespace, robot_description);
 
   for (const std::string& name : names) {
-    if (!isOfNamespace(name) || asked->count(name) > 0) continue;
+    if (!is_of_namespace(name) || asked->count(name) > 0) continue;
     std::string known;
     for (const std::string& other : *asked) {
-      if (isOfNamespace(other)) known += (known.empty() ? "" : ", ") + other;
+      if (is_of_namespace(other)) known += (known.empty() ? "" : ", ") + other;
     }
     throw InvalidParameterValueException(errorText("parameter '" + name + "'",
                                                    "the solver doesn't know it", "one of " + known,
