@@ -8,9 +8,7 @@
 
 #include <chain_dynamics/urdf.hpp>
 #include <cstdint>
-#include <exception>
 #include <inverse_dynamics_solver/solver_loader.hpp>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <string>
@@ -18,6 +16,7 @@
 #include "context.hpp"
 #include "engine_benchmarks.hpp"
 #include "peers.hpp"
+#include "program.hpp"
 #include "robots.hpp"
 #include "solver_benchmarks.hpp"
 #include "states.hpp"
@@ -98,10 +97,6 @@ int run(int argc, char** argv) {
 }  // namespace inverse_dynamics_benchmarks
 
 int main(int argc, char** argv) {
-  try {
-    return inverse_dynamics_benchmarks::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "inverse_dynamics_benchmark: " << error.what() << "\n";
-    return 1;
-  }
+  using inverse_dynamics_benchmarks::run;
+  return inverse_dynamics_benchmarks::statusOf("inverse_dynamics_benchmark", run, argc, argv);
 }

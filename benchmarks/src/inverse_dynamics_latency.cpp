@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <exception>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include "latency.hpp"
+#include "program.hpp"
 #include "robots.hpp"
 
 namespace inverse_dynamics_benchmarks {
@@ -121,10 +121,6 @@ int run(int argc, char** argv) {
 }  // namespace inverse_dynamics_benchmarks
 
 int main(int argc, char** argv) {
-  try {
-    return inverse_dynamics_benchmarks::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "inverse_dynamics_latency: " << error.what() << "\n";
-    return 1;
-  }
+  using inverse_dynamics_benchmarks::run;
+  return inverse_dynamics_benchmarks::statusOf("inverse_dynamics_latency", run, argc, argv);
 }
