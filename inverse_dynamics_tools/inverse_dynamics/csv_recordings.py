@@ -15,6 +15,7 @@ currents in A.
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,7 +34,14 @@ if TYPE_CHECKING:
 TIME = "time"
 EFFORT = "effort"
 CURRENT = "current"
-_QUANTITIES = ("position", "velocity", EFFORT, CURRENT, "acceleration")
+_QUANTITIES = {
+    "position": "rad (prismatic m)",
+    "velocity": "rad/s (prismatic m/s)",
+    EFFORT: "N m (prismatic N)",
+    CURRENT: "A",
+    "acceleration": "rad/s^2 (prismatic m/s^2)",
+}
+_UNIT_AT_END = re.compile(r"\s*[\[(][^\])]*[\])]$")
 _REASONS = {
     EFFORT: "; measured efforts are what computed torques are compared with; where there are none,"
     " `ids torques` computes them",
@@ -100,6 +108,7 @@ def generic_columns(
 
     Raises BagError where a column that is needed is missing.
     """
+    _refuse_units(table)
     there = list(
         dict.fromkeys(
             joint
@@ -134,6 +143,18 @@ def generic_columns(
                     f"{_REASONS.get(kind, '')}"
                 )
     return joints, chosen
+
+
+def _refuse_units(table: CsvTable) -> None:
+    """Raise BagError for `position.joint_1 [deg]`: a unit would be taken for part of the name."""
+    for name in table.names:
+        kind, _, joint = name.partition(".")
+        if kind in _QUANTITIES and (unit := _UNIT_AT_END.search(joint)):
+            raise BagError(
+                f"{table.path}: column {name}: expected a joint's name without a unit, got "
+                f"'{unit[0].strip()}'; give numbers in {_QUANTITIES[kind]}, and name the column "
+                f"{name.removesuffix(unit[0])}"
+            )
 
 
 def read_columns(

@@ -139,6 +139,16 @@ def test_currents_have_a_name_of_their_own(file):
     fails(file, HEADER.replace("velocity.a", "current.b") + ROWS, "column velocity.a")
 
 
+@pytest.mark.parametrize(
+    ("name", "unit", "right"),
+    [("position.a", " [deg]", "rad (prismatic m)"), ("velocity.a", "(deg/s)", "rad/s (prismatic")],
+)
+def test_a_unit_in_a_heading_is_an_error(file, name, unit, right):
+    expected = f"column {name}{unit}: expected a joint's name without a unit, got '{unit.strip()}'"
+    fails(file, HEADER.replace(name, name + unit) + ROWS, expected)
+    fails(file, HEADER.replace(name, name + unit) + ROWS, f"give numbers in {right}", joints=())
+
+
 def test_what_urs_record_tool_should_have_recorded_is_said(file):
     fails(
         file,
