@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -32,6 +33,7 @@ def run(*command: str) -> str:
 def test_example_builds_and_passes_its_tests() -> None:
     build = Path(os.environ["EXAMPLE_BUILD_DIRECTORY"])
     install = build / "install"
+    shutil.rmtree(install, ignore_errors=True)  # what an earlier run installed proves nothing
     run(
         "cmake",
         "-S",
@@ -47,7 +49,7 @@ def test_example_builds_and_passes_its_tests() -> None:
     # What users of the solver need is installed.
     run("cmake", "--install", str(build))
     name = "pendulum_inverse_dynamics_solver"
-    assert (install / "include" / name / f"{name}.hpp").is_file()
+    assert (install / "include" / name / name / f"{name}.hpp").is_file()
     assert (install / "share" / name / "cmake" / f"{name}Config.cmake").is_file()
     index = install / "share/ament_index/resource_index/inverse_dynamics_solver__pluginlib__plugin"
     assert (index / name).read_text().strip() == f"share/{name}/{name}.xml"
