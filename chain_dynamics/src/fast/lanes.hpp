@@ -7,10 +7,8 @@
 
 #pragma once
 
-#include "pack.hpp"
+#include "columns.hpp"
 #include "robot.hpp"
-#include "square.hpp"
-#include "structure.hpp"
 
 namespace chain_dynamics::fast {
 namespace {
@@ -32,17 +30,17 @@ FAST_INLINE void forEachPack(std::ptrdiff_t states, const One& one) {
   }
 }
 
-/// For numbers that stand side by side: whole(first) for packs of kWidth of them, the last of which
+/// For numbers that stand side by side: whole(first) for blocks of Size of them, the last of which
 /// may overlap the one before; one(i) where there are fewer.
-template <typename Whole, typename One>
+template <int Size, typename Whole, typename One>
 FAST_INLINE void inBlocks(int count, const Whole& whole, const One& one) {
-  if (count < kWidth) {
+  if (count < Size) {
     for (int i = 0; i < count; ++i) one(i);
     return;
   }
   int first = 0;
-  for (; first + kWidth <= count; first += kWidth) whole(first);
-  if (first < count) whole(count - kWidth);
+  for (; first + Size <= count; first += Size) whole(first);
+  if (first < count) whole(count - Size);
 }
 
 // The common cases have no branch per number: a full pack of states that stand apart, each with its
@@ -61,17 +59,8 @@ FAST_INLINE void gather(const Robot& robot, const Samples& from, const Lanes& la
   } else if (step == 1) {
     for (int i = 0; i < n; ++i) to[i] = load<Pack>(first + i * from.joint_step);
   } else if (from.joint_step == 1) {
-    inBlocks(
-        n,
-        [&](int i) FAST_LAMBDA {
-          Square block;
-          countUp<0, kWidth>([&](auto lane) FAST_LAMBDA {
-            block.rows[lane] = load<Pack>(first + i + lane * step);
-          });
-          block.transpose();
-          countUp<0, kWidth>([&](auto k) FAST_LAMBDA { to[i + k] = block.rows[k]; });
-        },
-        one);
+    inBlocks<2>(
+        n, [&](int i) FAST_LAMBDA { loadColumns(first + i, step, to[i], to[i + 1]); }, one);
   } else {
     for (int i = 0; i < n; ++i) one(i);
   }
@@ -89,14 +78,16 @@ FAST_INLINE void scatter(const Pack* packs, int count, const Lanes& lanes, doubl
   } else if (state_step == 1) {
     for (int i = 0; i < count; ++i) store(packs[i], to + i * pack_step);
   } else if (pack_step == 1) {
-    inBlocks(
+    inBlocks<kWidth>(
         count,
         [&](int i) FAST_LAMBDA {
-          Square block;
-          countUp<0, kWidth>([&](auto k) FAST_LAMBDA { block.rows[k] = packs[i + k]; });
-          block.transpose();
-          countUp<0, kWidth>(
-              [&](auto lane) FAST_LAMBDA { store(block.rows[lane], to + i + lane * state_step); });
+          for (int lane = 0; lane < kWidth; lane += 2) {
+            Pack state;
+            Pack next;
+            loadColumns(numbersOf(packs + i) + lane, kWidth, state, next);
+            store(state, to + i + lane * state_step);
+            store(next, to + i + (lane + 1) * state_step);
+          }
         },
         one);
   } else {

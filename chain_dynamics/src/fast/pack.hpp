@@ -94,6 +94,16 @@ FAST_INLINE double laneOf(const V& v, int lane) {
   return v[lane];
 }
 
+// The numbers of packs stand side by side in memory.
+template <typename V>
+FAST_INLINE double* numbersOf(V* packs) {
+  return reinterpret_cast<double*>(packs);
+}
+template <typename V>
+FAST_INLINE const double* numbersOf(const V* packs) {
+  return reinterpret_cast<const double*>(packs);
+}
+
 // All lanes the same number.
 template <typename V>
 FAST_INLINE V all(double number) {

@@ -20,15 +20,6 @@ FAST_INLINE void addOffset(const V& offset_cos, const V& offset_sin, V& s, V& c)
   s = sum;
 }
 
-template <typename V>
-FAST_INLINE double* numbersOf(V* packs) {
-  return reinterpret_cast<double*>(packs);
-}
-template <typename V>
-FAST_INLINE const double* numbersOf(const V* packs) {
-  return reinterpret_cast<const double*>(packs);
-}
-
 /// Memory for one number per joint, with room for a pack at the end.
 struct JointNumbers {
   double values[kMaxJoints + kShortWidth];
@@ -84,7 +75,6 @@ FAST_INLINE void turnsOfPack(const Robot& robot, const Pack* q, bool first_matte
     sineCosine<Scheme::kHorner>(q[i], all<Pack>(robot.quarter_turns[i]), s[i], c[i], beyond);
   }
   if (anyBeyond<Pack>(beyond)) {
-    // numbers of a pack stand side by side in memory
     sineCosineBeyond(n * kWidth, numbersOf(q), robot.quarter_turns, kWidth, numbersOf(s),
                      numbersOf(c));
   }
