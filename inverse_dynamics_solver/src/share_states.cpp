@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "share_states.hpp"
 
+#include <atomic>
 #include <future>
 #include <vector>
 
 namespace inverse_dynamics_solver {
 
-void shareAmongThreads(Eigen::Index count, Eigen::Index parts,
+void shareAmongThreads(Eigen::Index count, Eigen::Index threads,
                        const std::function<void(Eigen::Index, Eigen::Index)>& compute) {
-  // Part i begins at state i count / parts. A future waits for its part when it is destroyed.
-  const auto begin = [&](Eigen::Index part) { return part * count / parts; };
-  const auto compute_part = [&](Eigen::Index part) {
-    compute(begin(part), begin(part + 1) - begin(part));
+  std::atomic<Eigen::Index> next{0};
+  const auto take_parts = [&] {
+    for (Eigen::Index first = 0; (first = next.fetch_add(kStatesOfAPart)) < count;) {
+      compute(first, std::min(kStatesOfAPart, count - first));
+    }
   };
+  // A future waits for its thread when it is destroyed.
   constexpr auto kThreadIfThereIsOne = std::launch::async | std::launch::deferred;
   std::vector<std::future<void>> others;
-  others.reserve(static_cast<std::size_t>(parts - 1));
-  for (Eigen::Index part = 1; part < parts; ++part) {
-    others.push_back(std::async(kThreadIfThereIsOne, compute_part, part));
+  others.reserve(static_cast<std::size_t>(threads - 1));
+  for (Eigen::Index i = 1; i < threads; ++i) {
+    others.push_back(std::async(kThreadIfThereIsOne, take_parts));
   }
-  compute_part(0);
+  take_parts();
   for (std::future<void>& other : others) other.get();
 }
 

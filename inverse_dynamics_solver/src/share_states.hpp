@@ -10,25 +10,24 @@
 
 namespace inverse_dynamics_solver {
 
-/// A thread is worth its start from this many states on: starting and joining one takes tens of
-/// microseconds, and so do this many states of the fastest solver.
-constexpr Eigen::Index kLeastStatesOfAThread = 2048;
+/// States of one part of a batch. A thread is worth its start from so many on: starting and joining
+/// one takes tens of microseconds, and so do this many states of the fastest solver.
+constexpr Eigen::Index kStatesOfAPart = 2048;
 
-/// shareStates() where there are enough states for `parts` > 1 threads.
-void shareAmongThreads(Eigen::Index count, Eigen::Index parts,
+/// shareStates() where there are enough states for `threads` > 1.
+void shareAmongThreads(Eigen::Index count, Eigen::Index threads,
                        const std::function<void(Eigen::Index first, Eigen::Index size)>& compute);
 
 /// Calls compute(first, size) for contiguous parts of `count` states, which together are all of
 /// them, on up to `threads` threads, the caller's one of them; for one thread without allocation.
 ///
-/// Returns when all have ended. Where the system refuses a thread, the caller's does its part.
-/// Throws what a part throws: of several, that of the first.
+/// A thread that is done with a part takes the next one. Returns when all have ended. Where the
+/// system refuses a thread, the others do its parts. Throws what a part throws, one of several.
 template <typename Compute>
 void shareStates(Eigen::Index count, std::int64_t threads, const Compute& compute) {
-  const Eigen::Index parts =
-      std::min(static_cast<Eigen::Index>(threads), count / kLeastStatesOfAThread);
-  if (parts <= 1) return compute(0, count);
-  shareAmongThreads(count, parts, std::cref(compute));
+  const Eigen::Index worth_it = std::min<Eigen::Index>(threads, count / kStatesOfAPart);
+  if (worth_it <= 1) return compute(0, count);
+  shareAmongThreads(count, worth_it, std::cref(compute));
 }
 
 }  // namespace inverse_dynamics_solver

@@ -2,6 +2,8 @@
 /// What a batch takes, and who computes it.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -17,11 +19,14 @@ namespace {
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// g = 100 q, c = q qd, H(i, j) = q_i + 10 j; notes which threads compute.
+/// g = 100 q, c = q qd, H(i, j) = q_i + 10 j; notes which threads compute gravity, and lets each of
+/// them wait until `expected` have come.
 class MadeUp : public InverseDynamicsSolver {
  public:
   mutable std::mutex mutex;
+  mutable std::condition_variable came;
   mutable std::set<std::thread::id> seen;
+  std::size_t expected = 1;
 
  protected:
   JointInfo configure(const Configuration& configuration) override {
@@ -40,8 +45,10 @@ class MadeUp : public InverseDynamicsSolver {
   void computeGravityVector(const ConstVectorRef& q, VectorRef g) const override { g = 100.0 * q; }
   void computeGravityVectorBatch(const ConstStates& q, const States& g) const override {
     {
-      const std::lock_guard<std::mutex> lock(mutex);
+      std::unique_lock<std::mutex> lock(mutex);
       seen.insert(std::this_thread::get_id());
+      came.notify_all();
+      came.wait_for(lock, std::chrono::seconds(60), [this] { return seen.size() >= expected; });
     }
     for (Eigen::Index k = 0; k < q.count; ++k) {
       if (q(0, k) < 0) throw std::domain_error("state " + std::to_string(q(0, k)));
@@ -156,24 +163,24 @@ TEST(Batches, OfLongChainsMayHaveAnyLayout) {
   EXPECT_EQ(H, solver->getInertiaMatrixBatch(q));
 }
 
-std::size_t threadsOf(MadeUp& solver, Eigen::Index states) {
+void expectThreads(MadeUp& solver, Eigen::Index states, std::size_t expected) {
   solver.seen.clear();
+  solver.expected = expected;
   const Eigen::MatrixXd q = Eigen::MatrixXd::Random(3, states).cwiseAbs();
   EXPECT_EQ(solver.getGravityVectorBatch(q), 100.0 * q) << states;
-  return solver.seen.size();
+  EXPECT_EQ(solver.seen.size(), expected) << states;
+  EXPECT_EQ(solver.seen.count(std::this_thread::get_id()), 1U) << states;
 }
 
 TEST(Batches, AreSharedAmongThreadsOnlyWhenAskedAndWorthIt) {
   const auto alone = initialized(3);
-  EXPECT_EQ(threadsOf(*alone, 100000), 1U);
-  EXPECT_EQ(alone->seen.count(std::this_thread::get_id()), 1U);
+  expectThreads(*alone, 100000, 1);
 
   const auto shared = initialized(3, 3);
-  EXPECT_EQ(threadsOf(*shared, 0), 1U);
-  EXPECT_EQ(threadsOf(*shared, 2 * 2048 - 1), 1U);
-  EXPECT_EQ(threadsOf(*shared, 2 * 2048), 2U);
-  EXPECT_EQ(threadsOf(*shared, 100000), 3U);
-  EXPECT_EQ(shared->seen.count(std::this_thread::get_id()), 1U);
+  expectThreads(*shared, 0, 1);
+  expectThreads(*shared, 2 * 2048 - 1, 1);
+  expectThreads(*shared, 2 * 2048, 2);
+  expectThreads(*shared, 100000, 3);
 }
 
 TEST(Batches, PassExceptionsOfThreadsOn) {
