@@ -10,6 +10,7 @@ import re
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.bench import asked
+from inverse_dynamics.bench.names import ENGINE, LIBRARIES, QUANTITIES, ROBOTS
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.files import write_text_whole
 
@@ -19,30 +20,6 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.bench.measurement import Measurement
 
-_LIBRARIES = {"ours": "this library", "pinocchio": "Pinocchio", "kdl": "KDL", "mujoco": "MuJoCo"}
-_QUANTITIES = {
-    "torques": "torques",
-    "inertia": "H",
-    "coriolis": "Coriolis",
-    "gravity": "gravity",
-    "components": "H, C qd, g",
-    "friction": "friction",
-}
-_ENGINE = {
-    "derivatives": "derivatives of the torques",
-    "forward_dynamics": "forward dynamics",
-    "regressor": "regressor",
-}
-_ROBOTS = {
-    "ur10": "UR10",
-    "panda": "Panda",
-    "mixed6": "6 joints, 2 slide",
-    "mixed7": "7 joints, 2 slide",
-    "turning6": "6 joints, all turn",
-    "turning7": "7 joints, all turn",
-    "ur10_identified": "UR10, identified",
-    "panda_identified": "Panda, identified",
-}
 _MARKED = re.compile(r"<!-- ids bench: (\w+) -->\n(.*?)<!-- ids bench: end -->", re.DOTALL)
 
 
@@ -110,7 +87,7 @@ def machine(result: Measurement) -> str:
         if (loads := context.get(key))
     )
     versions = ", ".join(
-        f"{title} {context[key]}" for key, title in _LIBRARIES.items() if key in context
+        f"{title} {context[key]}" for key, title in LIBRARIES.items() if key in context
     )
     lines = [
         f"{context.get('processor', 'unknown processor')}, {context.get('num_cpus', '?')} cores, "
@@ -123,7 +100,7 @@ def machine(result: Measurement) -> str:
             f"is {100 * (context.get('median_by_least', 1) - 1):.0f} % above it, for half of the "
             f"rows. Load of the machine: {load}."
         )
-    missing = [title for key, title in _LIBRARIES.items() if key not in (*context, "ours")]
+    missing = [title for key, title in LIBRARIES.items() if key not in (*context, "ours")]
     if missing:
         lines.append(f"Not found when the benchmarks were built: {', '.join(missing)}.")
     if context.get("optimized") == "no":
@@ -139,7 +116,7 @@ def calls(result: Measurement) -> str:
     robots = [*asked.REAL, *asked.GENERATED, *asked.IDENTIFIED]
     rows = []
     for robot in robots:
-        for quantity in _QUANTITIES:
+        for quantity in QUANTITIES:
             ours = result.time(robot, quantity, "ours")
             pinocchio = asked.peer_time(result, robot, quantity)
             if robot in asked.IDENTIFIED and quantity == "torques":
@@ -147,23 +124,21 @@ def calls(result: Measurement) -> str:
             others = [result.time(robot, quantity, library) for library in ("kdl", "mujoco")]
             if ours is not None:
                 cells = [_time(t) for t in (ours, pinocchio, *others)]
-                rows.append(
-                    [_ROBOTS[robot], _QUANTITIES[quantity], *cells, _ratio(pinocchio, ours)]
-                )
-    return _table(["robot", "quantity [ns]", *_LIBRARIES.values(), "ratio"], rows, 2)
+                rows.append([ROBOTS[robot], QUANTITIES[quantity], *cells, _ratio(pinocchio, ours)])
+    return _table(["robot", "quantity [ns]", *LIBRARIES.values(), "ratio"], rows, 2)
 
 
 def batches(result: Measurement) -> str:
     """1024 states a call [ns per state], beside Pinocchio's single call."""
     rows = []
-    for robot in _ROBOTS:
-        for quantity, title in _QUANTITIES.items():
+    for robot in ROBOTS:
+        for quantity, title in QUANTITIES.items():
             ours = result.time(robot, f"{quantity}_batch", "ours")
             peer = asked.peer_time(result, asked.IDENTIFIED.get(robot, robot), quantity)
             if robot in asked.IDENTIFIED and quantity != "torques":
                 peer = None
             if ours is not None:
-                rows.append([_ROBOTS[robot], title, _time(ours), _time(peer), _ratio(peer, ours)])
+                rows.append([ROBOTS[robot], title, _time(ours), _time(peer), _ratio(peer, ours)])
     return _table(["robot", "batch of [ns]", "this library", "Pinocchio", "ratio"], rows, 2)
 
 
@@ -183,7 +158,7 @@ def chains(result: Measurement) -> str:
                 ]
             )
     heads = ["joints", "torques [ns]", "Pinocchio", "KDL"]
-    heads += [f"KDL by ours: {_QUANTITIES[q]}" for q in asked.QUANTITIES]
+    heads += [f"KDL by ours: {QUANTITIES[q]}" for q in asked.QUANTITIES]
     return _table(heads, rows, 1)
 
 
@@ -191,11 +166,11 @@ def engine(result: Measurement) -> str:
     """Functions of the engine [ns]."""
     rows = []
     for robot in (*asked.REAL, *asked.GENERATED):
-        for quantity, title in _ENGINE.items():
+        for quantity, title in ENGINE.items():
             ours = result.time(robot, quantity, "ours")
             peer = result.time(robot, quantity, "pinocchio")
             if ours is not None:
-                rows.append([_ROBOTS[robot], title, _time(ours), _time(peer), _ratio(peer, ours)])
+                rows.append([ROBOTS[robot], title, _time(ours), _time(peer), _ratio(peer, ours)])
     return _table(["robot", "quantity [ns]", "this library", "Pinocchio", "ratio"], rows, 2)
 
 
@@ -232,7 +207,7 @@ def bounds(result: Measurement) -> str:
 
 def _in_words(names: str) -> str:
     """Names of robots and quantities as the other tables have them."""
-    words = {**_ROBOTS, **_QUANTITIES}
+    words = {**ROBOTS, **QUANTITIES}
     chains = re.sub(r"\bmixed(\d+)", r"\1 joints", re.sub(r"\bmixed1\b", "1 joint", names))
     return re.sub(r"\w+", lambda name: words.get(name[0], name[0]), words.get(names, chains))
 
@@ -242,11 +217,11 @@ def latency(result: Measurement) -> str:
     rows = []
     for entry in result.latency:
         robot, quantity, library = entry["name"].split("/")
-        what = quantity if robot == "system" else f"{_ROBOTS[robot]}, {_QUANTITIES[quantity]}"
+        what = quantity if robot == "system" else f"{ROBOTS[robot]}, {QUANTITIES[quantity]}"
         rows.append(
             [
                 what if robot != "system" else f"*{what}*",
-                _LIBRARIES.get(library, ""),
+                LIBRARIES.get(library, ""),
                 *(_span(entry[key]) for key in ("slowest_state", "p50", "p99", "p99.99", "max")),
                 f"{entry['interruptions_per_second']:.0f}",
                 str(entry["context_switches"]),

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.bench.asked import CHAINS, QUANTITIES, REAL, peer_time
+from inverse_dynamics.bench import asked
+from inverse_dynamics.bench.names import LIBRARIES, QUANTITIES, ROBOTS
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.plots import save_figure
 
@@ -22,19 +23,12 @@ if TYPE_CHECKING:
 
 # Okabe and Ito: for all eyes.
 _COLORS = {
-    "kdl": ("KDL", "#CC79A7"),
-    "mujoco": ("MuJoCo", "#009E73"),
-    "pinocchio": ("Pinocchio", "#0072B2"),
-    "ours": ("this library", "#D55E00"),
+    "kdl": "#CC79A7",
+    "mujoco": "#009E73",
+    "pinocchio": "#0072B2",
+    "ours": "#D55E00",
 }
-_BATCH = ("this library, batch", "#F0B88F")
-_LABELS = {
-    "torques": "torques",
-    "inertia": "H",
-    "coriolis": "Coriolis",
-    "gravity": "gravity",
-    "components": "H, C qd, g",
-}
+_BATCH = (f"{LIBRARIES['ours']}, batch", "#F0B88F")
 
 
 def check_figure_name(file: Path) -> None:
@@ -55,9 +49,9 @@ def speed_figure(result: Measurement) -> Figure:
 
     figure = Figure(figsize=(10.0, 4.2), layout="constrained", facecolor="white")
     axes = figure.subplots(1, 3, width_ratios=(1, 1, 1.15))
-    for axis, robot, title in zip(axes, REAL, ("UR10", "Panda"), strict=False):
+    for axis, robot in zip(axes, asked.REAL, strict=False):
         _draw_robot(axis, result, robot)
-        axis.set_title(f"{title}: time of one state [ns]", loc="left")
+        axis.set_title(f"{ROBOTS[robot]}: time of one state [ns]", loc="left")
     _draw_chains(axes[2], result)
     handles: dict[str, Any] = {}
     for axis in axes:
@@ -75,15 +69,15 @@ def speed_figure(result: Measurement) -> Figure:
 
 def _draw_robot(axes: Axes, result: Measurement, robot: str) -> None:
     bars: list[tuple[str, str, dict[str, float | None]]] = [
-        (label, color, {q: _time(result, robot, q, library) for q in QUANTITIES})
-        for library, (label, color) in _COLORS.items()
+        (LIBRARIES[library], color, {q: _time(result, robot, q, library) for q in asked.QUANTITIES})
+        for library, color in _COLORS.items()
     ]
-    batch = {q: result.time(robot, f"{q}_batch", "ours") for q in QUANTITIES}
+    batch = {q: result.time(robot, f"{q}_batch", "ours") for q in asked.QUANTITIES}
     bars.append((*_BATCH, batch))
     height = 0.85 / len(bars)
     for k, (label, color, times) in enumerate(bars):
-        at = [i + (k - len(bars) / 2 + 0.5) * height for i, q in enumerate(QUANTITIES) if times[q]]
-        widths = [t for q in QUANTITIES if (t := times[q]) is not None]
+        at = [i + (k - len(bars) / 2 + 0.5) * height for i, t in enumerate(times.values()) if t]
+        widths = [t for t in times.values() if t]
         if not widths:
             continue
         drawn = axes.barh(at, widths, height=0.92 * height, color=color, label=label)
@@ -92,16 +86,17 @@ def _draw_robot(axes: Axes, result: Measurement, robot: str) -> None:
     axes.set_xlim(8, 9900)
     axes.xaxis.set_major_formatter("{x:g}")
     axes.set_axisbelow(True)
-    axes.set_yticks(range(len(QUANTITIES)), [_LABELS[q] for q in QUANTITIES])
+    axes.set_yticks(range(len(asked.QUANTITIES)), [QUANTITIES[q] for q in asked.QUANTITIES])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
 
 
 def _draw_chains(axes: Axes, result: Measurement) -> None:
-    for library, (label, color) in _COLORS.items():
+    for library, color in _COLORS.items():
+        label = LIBRARIES[library]
         points = [
             (int(chain.removeprefix("mixed")), t)
-            for chain in CHAINS
+            for chain in asked.CHAINS
             if (t := result.time(chain, "torques", library)) is not None
         ]
         if points:
@@ -120,5 +115,5 @@ def _draw_chains(axes: Axes, result: Measurement) -> None:
 
 def _time(result: Measurement, robot: str, quantity: str, library: str) -> float | None:
     if library == "pinocchio":
-        return peer_time(result, robot, quantity)
+        return asked.peer_time(result, robot, quantity)
     return result.time(robot, quantity, library)

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What tables and figures call the libraries, quantities and robots of a measurement."""
+
+LIBRARIES = {"ours": "this library", "pinocchio": "Pinocchio", "kdl": "KDL", "mujoco": "MuJoCo"}
+"""Those that are compared."""
+
+QUANTITIES = {
+    "torques": "torques",
+    "inertia": "H",
+    "coriolis": "Coriolis",
+    "gravity": "gravity",
+    "components": "H, C qd, g",
+    "friction": "friction",
+}
+"""What solvers compute."""
+
+ENGINE = {
+    "derivatives": "derivatives of the torques",
+    "forward_dynamics": "forward dynamics",
+    "regressor": "regressor",
+}
+"""What the engine computes besides."""
+
+ROBOTS = {
+    "ur10": "UR10",
+    "panda": "Panda",
+    "mixed6": "6 joints, 2 slide",
+    "mixed7": "7 joints, 2 slide",
+    "turning6": "6 joints, all turn",
+    "turning7": "7 joints, all turn",
+    "ur10_identified": "UR10, identified",
+    "panda_identified": "Panda, identified",
+}
+"""Arms, and chains that are generated."""
