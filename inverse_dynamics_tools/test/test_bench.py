@@ -142,6 +142,11 @@ def test_a_benchmark_that_fails_is_told_by_its_last_words(tmp_path, monkeypatch)
         (("--update", "text"), "text: expected a part between `<!-- ids bench: NAME -->`"),
         (("--from", "a", "--only", "b"), "--only: expected no such choice beside --from"),
         (("--from", "a", "--latency"), "--latency: expected no such choice beside --from"),
+        (("--from", "a", "--calls", "9"), "--calls: expected no such choice beside --from"),
+        (
+            ("--calls", "9"),
+            "--calls: expected --latency beside it, got none; add --latency, or leave --calls out",
+        ),
         (("--json", "text/a.json"), "text is not a directory); name another file with --json"),
     ],
 )
@@ -151,6 +156,18 @@ def test_options_that_make_no_sense_are_told_before_anything_is_measured(
     monkeypatch.setattr("inverse_dynamics.bench.measure", lambda **_: pytest.fail("measured"))
     (tmp_path / "text").write_text("by hand")
     fails(ids("bench", *arguments), expected)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "calls"),
+    [((), 0), (("--latency",), 1_000_000), (("--latency", "--calls", "9"), 9)],
+)
+def test_single_calls_are_timed_if_told(ids, speed_json, monkeypatch, arguments, calls):
+    told = {}
+    result = read_measurement(speed_json)
+    monkeypatch.setattr("inverse_dynamics.bench.measure", lambda **k: told.update(k) or result)
+    assert ids("bench", *arguments)[0] == 0
+    assert told["latency_calls"] == calls
 
 
 @pytest.mark.parametrize(

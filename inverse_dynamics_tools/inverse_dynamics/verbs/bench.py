@@ -30,6 +30,8 @@ checks included; KDL, Pinocchio and MuJoCo by their own fastest calls. Keep the 
 Needs the package inverse_dynamics_benchmarks and Google Benchmark (Debian: libbenchmark-dev).
 """
 
+_CALLS = 1_000_000
+
 
 def add_parser(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
@@ -95,8 +97,7 @@ def _add_measuring(group: argparse._ArgumentGroup) -> None:
         "--calls",
         metavar="N",
         type=_count,
-        default=1_000_000,
-        help="how many with --latency (default: 1000000)",
+        help=f"how many with --latency (default: {_CALLS})",
     )
 
 
@@ -111,7 +112,7 @@ def run(arguments: argparse.Namespace) -> None:
 
     # Before anything is measured: that may take ten minutes.
     _check_outputs(arguments)
-    _check_source(arguments)
+    _check_measuring(arguments)
     if arguments.plot is not None:
         check_figure_name(arguments.plot)
     check_pages(arguments.update)
@@ -124,7 +125,7 @@ def run(arguments: argparse.Namespace) -> None:
                 repetitions=arguments.repetitions,
                 seconds=arguments.seconds,
                 only=arguments.only,
-                latency_calls=arguments.calls if arguments.latency else 0,
+                latency_calls=(arguments.calls or _CALLS) if arguments.latency else 0,
             )
     if arguments.json is not None:
         write_measurement(result, arguments.json)
@@ -154,15 +155,19 @@ def _check_outputs(arguments: argparse.Namespace) -> None:
             )
 
 
-def _check_source(arguments: argparse.Namespace) -> None:
+def _check_measuring(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.errors import UserError
 
-    for option in ("--only", "--latency"):
+    for option in ("--only", "--latency", "--calls"):
         if arguments.source is not None and getattr(arguments, option.removeprefix("--")):
             raise UserError(
                 f"{option}: expected no such choice beside --from, which shows everything that was "
                 "measured; leave one of them out"
             )
+    if arguments.calls is not None and not arguments.latency:
+        raise UserError(
+            "--calls: expected --latency beside it, got none; add --latency, or leave --calls out"
+        )
 
 
 def _print(result: Measurement) -> None:
