@@ -241,8 +241,24 @@ def test_tables_say_what_was_measured(speed_json):
     assert "| UR10 | torques | 25.0 | 900 | 36.0 |" in text
     assert "| torques: UR10, Panda | Pinocchio | 8 | 7 (Panda) | **no** |" in text
     assert "| every quantity, 1 to 30 joints | KDL | 1 | 15 (UR10, torques) | yes |" in text
-    assert "forward dynamics" not in text
+    assert "| UR10 | forward dynamics |" not in text
     assert "Abacus" in text
+
+
+def test_bounds_that_were_not_measured_are_named(speed_json):
+    text = PARTS["bounds"](read_measurement(speed_json))
+    assert "| H: UR10, Panda | Pinocchio | 4 | not measured |  |\n" in text
+    assert "| 5 | not measured (Panda, identified) |  |\n" in text
+    assert "| torques, batch: two threads | one thread | 1.8 | not measured |  |\n" in text
+    complete = PARTS["bounds"](read_measurement(DOCS / "speed.json"))
+    assert text.count("\n") == complete.count("\n")
+    assert "not measured" not in complete
+
+
+def test_without_any_bound_measured_there_is_no_table_of_them():
+    result = measurement(document(entry("ur10/torques/ours", 1.0)), "here")
+    assert PARTS["bounds"](result) == ""
+    assert "how many times as fast as" not in page(result)
 
 
 def test_bounds_name_chains_and_quantities_as_the_other_tables_do():

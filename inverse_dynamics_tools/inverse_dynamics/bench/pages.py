@@ -187,22 +187,22 @@ def memory(result: Measurement) -> str:
 
 
 def bounds(result: Measurement) -> str:
-    """What is asked of speed, and what was reached."""
-    rows = []
-    for bound in asked.bounds(result):
-        if bound.reached is None:
-            continue
-        place = f" ({_in_words(bound.where)})" if bound.where else ""
-        rows.append(
-            [
-                _in_words(bound.what),
-                bound.other,
-                f"{bound.asked:g}",
-                f"{bound.reached:.3g}{place}",
-                "yes" if bound.holds else "**no**",
-            ]
-        )
+    """What is asked of speed, and what was reached. Empty if nothing of it was measured."""
+    found = asked.bounds(result)
+    if all(bound.reached is None for bound in found):
+        return ""
+    rows = [
+        [_in_words(bound.what), bound.other, f"{bound.asked:g}", *_judged(bound)] for bound in found
+    ]
     return _table(["what", "how many times as fast as", "asked", "reached", "holds"], rows, 2)
+
+
+def _judged(bound: asked.Bound) -> tuple[str, str]:
+    """What was reached and where, and whether the bound holds."""
+    place = f" ({_in_words(bound.where)})" if bound.where else ""
+    if bound.reached is None:
+        return f"not measured{place}", ""
+    return f"{bound.reached:.3g}{place}", "yes" if bound.holds else "**no**"
 
 
 def _in_words(names: str) -> str:
