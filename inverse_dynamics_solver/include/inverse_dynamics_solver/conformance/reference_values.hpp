@@ -76,17 +76,14 @@ inline void expectEntry(const YAML::Node& state, const std::string& name,
 
 /// Expects inertia, Coriolis, gravity and total torques of the reference file, and friction where
 /// it has friction; by the single methods and by the one that gives all components.
-///
-/// @param turns  whole turns added to every joint's angle, which change nothing.
 inline void expectReferenceValues(const InverseDynamicsSolver& solver, const std::string& file,
-                                  double tolerance, int turns = 0) {
-  constexpr double kTurn = 6.283185307179586;
+                                  double tolerance) {
   const std::vector<YAML::Node> states = referenceStates(file);
   ASSERT_FALSE(states.empty()) << file;
   for (std::size_t k = 0; k < states.size(); ++k) {
     const YAML::Node& state = states[k];
     const std::string where = file + " state " + std::to_string(k);
-    const Eigen::VectorXd q = numbersOf(state["q"]).array() + turns * kTurn;
+    const Eigen::VectorXd q = numbersOf(state["q"]);
     const Eigen::VectorXd qd = numbersOf(state["qd"]);
     const Eigen::VectorXd qdd = numbersOf(state["qdd"]);
     expectEntry(state, "inertia", solver.getInertiaMatrix(q), tolerance, where);
