@@ -143,6 +143,7 @@ def test_a_benchmark_that_fails_is_told_by_its_last_words(tmp_path, monkeypatch)
         (("--from", "a", "--only", "b"), "--only: expected no such choice beside --from"),
         (("--from", "a", "--latency"), "--latency: expected no such choice beside --from"),
         (("--from", "a", "--calls", "9"), "--calls: expected no such choice beside --from"),
+        (("--from", "a", "--seconds", "1"), "--seconds: expected no such choice beside --from"),
         (
             ("--calls", "9"),
             "--calls: expected --latency beside it, got none; add --latency, or leave --calls out",

@@ -30,6 +30,8 @@ checks included; KDL, Pinocchio and MuJoCo by their own fastest calls. Keep the 
 Needs the package inverse_dynamics_benchmarks and Google Benchmark (Debian: libbenchmark-dev).
 """
 
+_REPETITIONS = 20
+_SECONDS = 0.003
 _CALLS = 1_000_000
 
 
@@ -80,15 +82,13 @@ def _add_measuring(group: argparse._ArgumentGroup) -> None:
         "--repetitions",
         metavar="N",
         type=_repetitions,
-        default=20,
-        help="of each benchmark, two or more (default: 20)",
+        help=f"of each benchmark, two or more (default: {_REPETITIONS})",
     )
     group.add_argument(
         "--seconds",
         metavar="S",
         type=positive_number,
-        default=0.003,
-        help="of each repetition (default: 0.003)",
+        help=f"of each repetition (default: {_SECONDS})",
     )
     group.add_argument(
         "--latency", action="store_true", help="time single calls too: their worst, not their least"
@@ -122,8 +122,8 @@ def run(arguments: argparse.Namespace) -> None:
     else:
         with Console(stderr=True).status("measuring; keep the machine quiet"):
             result = measure(
-                repetitions=arguments.repetitions,
-                seconds=arguments.seconds,
+                repetitions=arguments.repetitions or _REPETITIONS,
+                seconds=arguments.seconds or _SECONDS,
                 only=arguments.only,
                 latency_calls=(arguments.calls or _CALLS) if arguments.latency else 0,
             )
@@ -158,7 +158,7 @@ def _check_outputs(arguments: argparse.Namespace) -> None:
 def _check_measuring(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.errors import UserError
 
-    for option in ("--only", "--latency", "--calls"):
+    for option in ("--only", "--repetitions", "--seconds", "--latency", "--calls"):
         if arguments.source is not None and getattr(arguments, option.removeprefix("--")):
             raise UserError(
                 f"{option}: expected no such choice beside --from, which shows everything that was "
