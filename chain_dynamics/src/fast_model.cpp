@@ -28,18 +28,18 @@ constexpr Eigen::Index kSolvedJoints = 32;
 constexpr std::size_t kPack = 8;
 std::size_t padded(std::size_t joints) { return (joints + kPack - 1) / kPack * kPack; }
 
-/// The tables of kernels that run on this processor, the best last.
-std::vector<const Kernels*> usableKernels() {
-  std::vector<const Kernels*> usable = {&fast::kernelsPortable()};
+/// The tables of kernels that run on this processor, for so many joints, the best last.
+std::vector<const Kernels*> usableKernels(int joints) {
+  std::vector<const Kernels*> usable = {&fast::kernelsPortable(joints)};
 #ifdef CHAIN_DYNAMICS_X86_KERNELS
   __builtin_cpu_init();
   const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
                   __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
-  if (v3) usable.push_back(&fast::kernelsV3());
+  if (v3) usable.push_back(&fast::kernelsV3(joints));
   const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                   __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
                   __builtin_cpu_supports("avx512cd");
-  if (v4) usable.push_back(&fast::kernelsV4());
+  if (v4) usable.push_back(&fast::kernelsV4(joints));
 #endif
   return usable;
 }
@@ -50,8 +50,8 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-const Kernels& kernelsNamed(const std::string& name) {
-  for (const Kernels* kernels : usableKernels()) {
+const Kernels& kernelsNamed(const std::string& name, int joints) {
+  for (const Kernels* kernels : usableKernels(joints)) {
     if (name == kernels->name) return *kernels;
   }
   throw ModelError("fast model", "instruction set", joined(FastModel::instructionSets()), name,
@@ -163,7 +163,7 @@ struct FastModel::Data {
 
 std::vector<std::string> FastModel::instructionSets() {
   std::vector<std::string> names;
-  for (const Kernels* kernels : usableKernels()) names.emplace_back(kernels->name);
+  for (const Kernels* kernels : usableKernels(0)) names.emplace_back(kernels->name);
   return names;
 }
 
@@ -178,12 +178,12 @@ FastModel::FastModel(const Model& model, const std::string& instruction_set) {
   if (instruction_set.empty()) {
     useBest(model);
   } else {
-    use(kernelsNamed(instruction_set));
+    use(kernelsNamed(instruction_set, robot().joints));
   }
 }
 
 void FastModel::useBest(const Model& model) {
-  std::vector<const Kernels*> kernels = usableKernels();
+  std::vector<const Kernels*> kernels = usableKernels(robot().joints);
   use(*kernels.back());
   while (kernels.size() > 1 && !equalsPlain(*this, model)) {
     kernels.pop_back();

@@ -67,12 +67,13 @@ void expectEqual(const Terms& a, const Terms& b, const State<double>& x, double 
 }
 
 const fast::Kernels& kernelsNamed(const std::string& name) {
+  constexpr int kAnyJoints = 0;
 #ifdef CHAIN_DYNAMICS_X86_KERNELS
-  if (name == "v3") return fast::kernelsV3();
-  if (name == "v4") return fast::kernelsV4();
+  if (name == "v3") return fast::kernelsV3(kAnyJoints);
+  if (name == "v4") return fast::kernelsV4(kAnyJoints);
 #endif
   EXPECT_EQ(name, "portable");
-  return fast::kernelsPortable();
+  return fast::kernelsPortable(kAnyJoints);
 }
 
 /// Memory of one number per joint and state, in some layout.

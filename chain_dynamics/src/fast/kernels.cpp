@@ -25,28 +25,30 @@ void sineCosineOfEach(int count, const double* angle, const double* quarter_turn
   }
 }
 
+template <int N>
+constexpr Kernels kKernels = {CHAIN_DYNAMICS_KERNELS_NAME,
+                              structureOf,
+                              torquesOfState,
+                              coriolisOfState,
+                              gravityOfState,
+                              inertiaOfState,
+                              componentsOfState,
+                              frictionOfState,
+                              forwardDynamicsOfState,
+                              regressorOfState,
+                              torqueDerivativesOfState,
+                              torquesBatch<N>,
+                              coriolisBatch<N>,
+                              gravityBatch<N>,
+                              inertiaBatch<N>,
+                              componentsBatch<N>,
+                              frictionBatch<N>,
+                              sineCosineOfEach};
+
 }  // namespace
 
-const Kernels& CHAIN_DYNAMICS_KERNELS() {
-  static constexpr Kernels kKernels = {CHAIN_DYNAMICS_KERNELS_NAME,
-                                       structureOf,
-                                       torquesOfState,
-                                       coriolisOfState,
-                                       gravityOfState,
-                                       inertiaOfState,
-                                       componentsOfState,
-                                       frictionOfState,
-                                       forwardDynamicsOfState,
-                                       regressorOfState,
-                                       torqueDerivativesOfState,
-                                       torquesBatch,
-                                       coriolisBatch,
-                                       gravityBatch,
-                                       inertiaBatch,
-                                       componentsBatch,
-                                       frictionBatch,
-                                       sineCosineOfEach};
-  return kKernels;
+const Kernels& CHAIN_DYNAMICS_KERNELS(int joints) {
+  return joints == 6 ? kKernels<6> : joints == 7 ? kKernels<7> : kKernels<0>;
 }
 
 }  // namespace chain_dynamics::fast

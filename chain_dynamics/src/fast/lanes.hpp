@@ -9,6 +9,7 @@
 
 #include "columns.hpp"
 #include "robot.hpp"
+#include "structure.hpp"
 
 namespace chain_dynamics::fast {
 namespace {
@@ -30,25 +31,38 @@ FAST_INLINE void forEachPack(std::ptrdiff_t states, const One& one) {
   }
 }
 
-/// For numbers that stand side by side: whole(first) for blocks of Size of them, the last of which
-/// may overlap the one before; one(i) where there are fewer.
-template <int Size, typename Whole, typename One>
-FAST_INLINE void inBlocks(int count, const Whole& whole, const One& one) {
-  if (count < Size) {
-    for (int i = 0; i < count; ++i) one(i);
-    return;
+/// How many joints the robot has: N, if that isn't zero, and then for the compiler to know.
+template <int N>
+FAST_INLINE int jointsOf(const Robot& robot) {
+  return N > 0 ? N : robot.joints;
+}
+
+// each(i) for i = 0 .. count - 1; count is N, if that isn't zero.
+template <int N, typename Each>
+FAST_INLINE void forEachOf(int count, const Each& each) {
+  if constexpr (N > 0) {
+    countUp<0, N>(each);
+  } else {
+    for (int i = 0; i < count; ++i) each(i);
   }
-  int first = 0;
-  for (; first + Size <= count; first += Size) whole(first);
-  if (first < count) whole(count - Size);
+}
+
+/// For numbers that stand side by side: whole(first) for blocks of Size of them, the last of which
+/// may overlap the one before; one(i) where there are fewer. Their count is N, if that isn't zero.
+template <int Size, int N, typename Whole, typename One>
+FAST_INLINE void inBlocks(int count, const Whole& whole, const One& one) {
+  if (count < Size) return forEachOf<N>(count, one);
+  forEachOf<N / Size>(count / Size, [&](auto block) FAST_LAMBDA { whole(Size * block); });
+  if (count % Size != 0) whole(count - Size);
 }
 
 // The common cases have no branch per number: a full pack of states that stand apart, each with its
 // numbers side by side, or of states that stand side by side themselves.
+template <int N>
 FAST_INLINE void gather(const Robot& robot, const Samples& from, const Lanes& lanes, Pack* to) {
   const std::ptrdiff_t step = from.state_step;
   const double* const first = from.data + lanes.first * step;
-  const int n = robot.joints;
+  const int n = jointsOf<N>(robot);
   const auto one = [&](int i) FAST_LAMBDA { to[i] = loadSteps(first + i * from.joint_step, step); };
   if (lanes.count < kWidth) {
     for (int i = 0; i < n; ++i) {
@@ -57,16 +71,17 @@ FAST_INLINE void gather(const Robot& robot, const Samples& from, const Lanes& la
       }
     }
   } else if (step == 1) {
-    for (int i = 0; i < n; ++i) to[i] = load<Pack>(first + i * from.joint_step);
+    forEachOf<N>(n, [&](int i) FAST_LAMBDA { to[i] = load<Pack>(first + i * from.joint_step); });
   } else if (from.joint_step == 1) {
-    inBlocks<2>(
+    inBlocks<2, N>(
         n, [&](int i) FAST_LAMBDA { loadColumns(first + i, step, to[i], to[i + 1]); }, one);
   } else {
     for (int i = 0; i < n; ++i) one(i);
   }
 }
 
-// packs[i] to the numbers of each state at to[i pack_step + state state_step].
+// packs[i], `count` of them (N, if that isn't zero), to the numbers of each state at to[i pack_step + state state_step].
+template <int N>
 FAST_INLINE void scatter(const Pack* packs, int count, const Lanes& lanes, double* to,
                          std::ptrdiff_t pack_step, std::ptrdiff_t state_step) {
   to += lanes.first * state_step;
@@ -78,16 +93,17 @@ FAST_INLINE void scatter(const Pack* packs, int count, const Lanes& lanes, doubl
   } else if (state_step == 1) {
     for (int i = 0; i < count; ++i) store(packs[i], to + i * pack_step);
   } else if (pack_step == 1) {
-    inBlocks<kWidth>(
+    inBlocks<kWidth, N>(
         count,
         [&](int i) FAST_LAMBDA {
-          for (int lane = 0; lane < kWidth; lane += 2) {
+          countUp<0, kWidth / 2>([&](auto half) FAST_LAMBDA {
+            const int lane = 2 * half;
             Pack state;
             Pack next;
             loadColumns(numbersOf(packs + i) + lane, kWidth, state, next);
             store(state, to + i + lane * state_step);
             store(next, to + i + (lane + 1) * state_step);
-          }
+          });
         },
         one);
   } else {
@@ -95,9 +111,10 @@ FAST_INLINE void scatter(const Pack* packs, int count, const Lanes& lanes, doubl
   }
 }
 
+template <int N>
 FAST_INLINE void scatter(const Robot& robot, const Pack* from, const Lanes& lanes,
                          const Samples& to) {
-  scatter(from, robot.joints, lanes, to.data, to.joint_step, to.state_step);
+  scatter<N>(from, jointsOf<N>(robot), lanes, to.data, to.joint_step, to.state_step);
 }
 
 }  // namespace

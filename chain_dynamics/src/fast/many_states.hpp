@@ -3,6 +3,8 @@
 /// @file
 /// What is computed of many states, a pack at a time.
 ///
+/// N is the number of joints where the compiler is to know it, or zero.
+///
 /// Included by kernels.cpp only [pack.hpp].
 
 #pragma once
@@ -25,23 +27,26 @@ struct PackOfStates {
   Pack q[kMaxJoints], c[kMaxJoints], s[kMaxJoints], qd[kMaxJoints], qdd[kMaxJoints];
   State<Pack> state() const { return {c, s, q, qd, qdd}; }
 
+  template <int N>
   FAST_INLINE void readPositions(const Robot& robot, const Samples& from, const Lanes& lanes,
                                  bool first_matters) {
-    gather(robot, from, lanes, q);
+    gather<N>(robot, from, lanes, q);
     turnsOfPack(robot, q, first_matters, c, s);
   }
+  template <int N>
   FAST_INLINE void readAtRest(const Robot& robot, const Samples& from, const Lanes& lanes) {
-    gather(robot, from, lanes, qd);
-    for (int i = 0; i < robot.joints; ++i) qdd[i] = Pack{};
+    gather<N>(robot, from, lanes, qd);
+    for (int i = 0; i < jointsOf<N>(robot); ++i) qdd[i] = Pack{};
   }
 };
 
 /// Longest chain whose matrices of one pack of states fit on the stack.
 constexpr int kPackedMatrixJoints = 16;
 
+template <int N>
 FAST_INLINE void inertiaOfPack(const Robot& robot, int structure, const State<Pack>& state,
                                const Lanes& lanes, const Matrices& H) {
-  const int n = robot.joints;
+  const int n = jointsOf<N>(robot);
   Pack entries[kPackedMatrixJoints * kPackedMatrixJoints];
 
   // columns in turn, or rows, whichever stand side by side
@@ -51,11 +56,11 @@ FAST_INLINE void inertiaOfPack(const Robot& robot, int structure, const State<Pa
   recursionsOf<Pack>(robot, structure)
       .inertia(robot, state, Entries<Pack>{entries, columns ? 1 : n, columns ? n : 1});
   if (minor_step == 1 && major_step == n) {
-    scatter(entries, n * n, lanes, H.data, 1, H.state_step);
+    scatter<N * N>(entries, n * n, lanes, H.data, 1, H.state_step);
     return;
   }
   for (int j = 0; j < n; ++j) {
-    scatter(entries + std::ptrdiff_t{j} * n, n, lanes, H.data + j * major_step, minor_step,
+    scatter<N>(entries + std::ptrdiff_t{j} * n, n, lanes, H.data + j * major_step, minor_step,
             H.state_step);
   }
 }
@@ -73,53 +78,58 @@ void inertiaOneByOne(const Robot& robot, int structure, std::ptrdiff_t states, c
   }
 }
 
+template <int N>
 void torquesBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Samples qd,
                   Samples qdd, Samples tau) {
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates x;
     Pack result[kMaxJoints];
-    gather(robot, qd, lanes, x.qd);
-    gather(robot, qdd, lanes, x.qdd);
-    x.readPositions(robot, q, lanes, gravityTurns(robot));
+    gather<N>(robot, qd, lanes, x.qd);
+    gather<N>(robot, qdd, lanes, x.qdd);
+    x.readPositions<N>(robot, q, lanes, gravityTurns(robot));
     torquesOf(robot, structure, x.state(), result);
     if (robot.friction != nullptr) {
-      for (int i = 0; i < robot.joints; ++i) result[i] += frictionOfPack(robot, i, x.qd[i]);
+      for (int i = 0; i < jointsOf<N>(robot); ++i) result[i] += frictionOfPack(robot, i, x.qd[i]);
     }
-    scatter(robot, result, lanes, tau);
+    scatter<N>(robot, result, lanes, tau);
   });
 }
 
+template <int N>
 void coriolisBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Samples qd,
                    Samples c) {
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates x;
     Pack result[kMaxJoints];
-    x.readAtRest(robot, qd, lanes);
-    x.readPositions(robot, q, lanes, false);
+    x.readAtRest<N>(robot, qd, lanes);
+    x.readPositions<N>(robot, q, lanes, false);
     coriolisOf(robot, structure, x.state(), result);
-    scatter(robot, result, lanes, c);
+    scatter<N>(robot, result, lanes, c);
   });
 }
 
+template <int N>
 void gravityBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Samples g) {
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates x;
     Pack result[kMaxJoints];
-    x.readPositions(robot, q, lanes, gravityTurns(robot));
+    x.readPositions<N>(robot, q, lanes, gravityTurns(robot));
     gravityOf(robot, structure, x.state(), result);
-    scatter(robot, result, lanes, g);
+    scatter<N>(robot, result, lanes, g);
   });
 }
 
+template <int N>
 void inertiaBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Matrices H) {
   if (robot.joints > kPackedMatrixJoints) return inertiaOneByOne(robot, structure, states, q, H);
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates x;
-    x.readPositions(robot, q, lanes, false);
-    inertiaOfPack(robot, structure, x.state(), lanes, H);
+    x.readPositions<N>(robot, q, lanes, false);
+    inertiaOfPack<N>(robot, structure, x.state(), lanes, H);
   });
 }
 
+template <int N>
 void componentsBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
                      Samples qd, Matrices H, Samples c, Samples g) {
   const bool packed = robot.joints <= kPackedMatrixJoints;
@@ -127,22 +137,23 @@ void componentsBatch(const Robot& robot, int structure, std::ptrdiff_t states, S
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates x;
     Pack result[kMaxJoints];
-    x.readAtRest(robot, qd, lanes);
-    x.readPositions(robot, q, lanes, gravityTurns(robot));
-    if (packed) inertiaOfPack(robot, structure, x.state(), lanes, H);
+    x.readAtRest<N>(robot, qd, lanes);
+    x.readPositions<N>(robot, q, lanes, gravityTurns(robot));
+    if (packed) inertiaOfPack<N>(robot, structure, x.state(), lanes, H);
     coriolisOf(robot, structure, x.state(), result);
-    scatter(robot, result, lanes, c);
+    scatter<N>(robot, result, lanes, c);
     gravityOf(robot, structure, x.state(), result);
-    scatter(robot, result, lanes, g);
+    scatter<N>(robot, result, lanes, g);
   });
 }
 
+template <int N>
 void frictionBatch(const Robot& robot, std::ptrdiff_t states, Samples qd, Samples f) {
   forEachPack(states, [&](const Lanes& lanes) {
     Pack x[kMaxJoints];
-    gather(robot, qd, lanes, x);
-    for (int i = 0; i < robot.joints; ++i) x[i] = frictionOfPack(robot, i, x[i]);
-    scatter(robot, x, lanes, f);
+    gather<N>(robot, qd, lanes, x);
+    for (int i = 0; i < jointsOf<N>(robot); ++i) x[i] = frictionOfPack(robot, i, x[i]);
+    scatter<N>(robot, x, lanes, f);
   });
 }
 

@@ -123,9 +123,9 @@ struct Kernels {
                       double* cosine);
 };
 
-/// The tables of the instruction sets that this build has.
-const Kernels& kernelsPortable();
-const Kernels& kernelsV3();  // x86-64 only
-const Kernels& kernelsV4();  // x86-64 only
+/// The tables of the instruction sets that this build has, for robots of so many joints.
+const Kernels& kernelsPortable(int joints);
+const Kernels& kernelsV3(int joints);  // x86-64 only
+const Kernels& kernelsV4(int joints);  // x86-64 only
 
 }  // namespace chain_dynamics::fast
