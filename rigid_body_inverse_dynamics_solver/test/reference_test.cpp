@@ -32,8 +32,8 @@ TEST(Reference, PandaDescriptionGivesPinocchiosValues) {
 }
 
 // Whole turns change nothing but the angle's last digits: 1600 turns are 1e4 rad, which a double
-// states to 1e-12 rad, and up to 500 N m/rad make 5e-10 N m of that. So the values are to be those at
-// the angle as it was rounded, less the turns.
+// states to 1e-12 rad, and up to 500 N m/rad make 5e-10 N m of that. So the values are to be those
+// at the angle as it was rounded, less the turns.
 void expectReferenceValuesAfterTurns(const InverseDynamicsSolver& solver, const std::string& file,
                                      int turns) {
   constexpr long double kTurn = 6.283185307179586476925286766559L;

@@ -80,7 +80,8 @@ FAST_INLINE void gather(const Robot& robot, const Samples& from, const Lanes& la
   }
 }
 
-// packs[i], `count` of them (N, if that isn't zero), to the numbers of each state at to[i pack_step + state state_step].
+// packs[i], `count` of them (N, if that isn't zero), to the numbers of each state at
+// to[i pack_step + state state_step].
 template <int N>
 FAST_INLINE void scatter(const Pack* packs, int count, const Lanes& lanes, double* to,
                          std::ptrdiff_t pack_step, std::ptrdiff_t state_step) {

@@ -61,7 +61,7 @@ FAST_INLINE void inertiaOfPack(const Robot& robot, int structure, const State<Pa
   }
   for (int j = 0; j < n; ++j) {
     scatter<N>(entries + std::ptrdiff_t{j} * n, n, lanes, H.data + j * major_step, minor_step,
-            H.state_step);
+               H.state_step);
   }
 }
 
