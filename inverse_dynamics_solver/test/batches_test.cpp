@@ -26,7 +26,7 @@ class MadeUp : public InverseDynamicsSolver {
   mutable std::mutex mutex;
   mutable std::condition_variable came;
   mutable std::set<std::thread::id> seen;
-  std::size_t expected = 1;
+  mutable std::size_t expected = 1;
 
  protected:
   JointInfo configure(const Configuration& configuration) override {
@@ -48,7 +48,9 @@ class MadeUp : public InverseDynamicsSolver {
       std::unique_lock<std::mutex> lock(mutex);
       seen.insert(std::this_thread::get_id());
       came.notify_all();
-      came.wait_for(lock, std::chrono::seconds(60), [this] { return seen.size() >= expected; });
+      const auto all_came = [this] { return seen.size() >= expected; };
+      // who waited in vain lets the others go
+      if (!came.wait_for(lock, std::chrono::seconds(20), all_came)) expected = 0;
     }
     for (Eigen::Index k = 0; k < q.count; ++k) {
       if (q(0, k) < 0) throw std::domain_error("state " + std::to_string(q(0, k)));
