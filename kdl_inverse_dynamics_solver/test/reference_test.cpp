@@ -39,9 +39,10 @@ TEST(Reference, PandaGivesPinocchiosValues) { compare(kPanda, textOf(robotsFile(
 class MakersDescription : public ::testing::TestWithParam<Robot> {};
 
 TEST_P(MakersDescription, GivesPinocchiosValues) {
-  const char* const data = std::getenv("IDS_DATA_DIR");
-  if (data == nullptr) GTEST_SKIP() << "IDS_DATA_DIR isn't set: no makers' robot descriptions";
-  compare(GetParam(), textOf(std::string(data) + "/" + GetParam().urdf));
+  const char* const variable = std::getenv("IDS_DATA_DIR");
+  const std::string data = variable == nullptr ? "" : variable;
+  if (data.empty()) GTEST_SKIP() << "IDS_DATA_DIR isn't set: no makers' robot descriptions";
+  compare(GetParam(), textOf(data + "/" + GetParam().urdf));
 }
 
 INSTANTIATE_TEST_SUITE_P(Robots, MakersDescription, ::testing::Values(kUr10, kPanda));
