@@ -68,6 +68,10 @@ void checkJoint(const std::string& where, const Joint& joint) {
   if (!std::isfinite(joint.rotor_inertia) || joint.rotor_inertia < 0) {
     throw ModelError(where, "rotor inertia", "a finite number >= 0", text(joint.rotor_inertia), "");
   }
+  if (!std::isfinite(joint.damping) || !std::isfinite(joint.friction)) {
+    throw ModelError(where, "damping and friction", "finite numbers",
+                     text(joint.damping) + " and " + text(joint.friction), "");
+  }
 }
 
 void checkLink(const std::string& where, const LinkParameters& link) {

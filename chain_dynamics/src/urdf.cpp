@@ -234,6 +234,10 @@ class Builder {
                                                           : JointType::kRevolute;
     result.placement = {X_EU_.R * R_UE, X_EU_.p};
     result.limits = limits(joint);
+    if (joint.dynamics != nullptr) {
+      result.damping = joint.dynamics->damping;
+      result.friction = joint.dynamics->friction;
+    }
     joints_.push_back(result);
     links_.push_back(LinkParameters::zero());
     X_EU_ = {R_UE.transpose(), Eigen::Vector3d::Zero()};

@@ -213,7 +213,9 @@ void checkJoint(Item& joint) {
   if (XMLElement* dynamics = joint.optionalChild(joint.element(), "dynamics")) {
     joint.optionalNumber(*dynamics, "damping");
     joint.optionalNumber(*dynamics, "friction");
-    joint.element().DeleteChild(dynamics);
+    if (dynamics->Attribute("damping") == nullptr && dynamics->Attribute("friction") == nullptr) {
+      joint.element().DeleteChild(dynamics);  // urdfdom would refuse the robot
+    }
   }
 }
 

@@ -131,6 +131,20 @@ TEST(Urdf, JointsCarryNamesTypesAndLimits) {
   EXPECT_EQ(continuous.velocity, 40);
 }
 
+TEST(Urdf, JointsCarryTheDampingAndFrictionOfDynamics) {
+  const auto chain = chainFromUrdf(
+      robot(link("base", "") + link("a") + link("b") + link("c") +
+            joint("both", "continuous", "base", "a", "<dynamics damping='0.5' friction='1.5'/>") +
+            joint("one", "continuous", "a", "b", "<dynamics friction='2.5'/>") +
+            joint("empty", "continuous", "b", "c", "<dynamics/>")));
+  EXPECT_EQ(chain.joints()[0].damping, 0.5);
+  EXPECT_EQ(chain.joints()[0].friction, 1.5);
+  EXPECT_EQ(chain.joints()[1].damping, 0);
+  EXPECT_EQ(chain.joints()[1].friction, 2.5);
+  EXPECT_EQ(chain.joints()[2].damping, 0);
+  EXPECT_EQ(chain.joints()[2].friction, 0);
+}
+
 TEST(Urdf, WhatMayBeLeftOutHasUrdfsMeaning) {
   // no origin: identity; no axis: x; no limit of a continuous joint: none
   const auto chain = chainFromUrdf(

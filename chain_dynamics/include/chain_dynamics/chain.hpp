@@ -48,6 +48,11 @@ struct Joint {
   /// Inertia of motor and gear, reflected to the joint (gear ratio squared); kg m^2, prismatic kg.
   /// Adds to the diagonal of H; the rotor's gyroscopic effects are neglected.
   double rotor_inertia = 0;
+  /// Viscous damping as the robot description states it; N m s/rad, prismatic N s/m. 0: not stated.
+  /// No algorithm reads it, nor `friction`: for the torques of friction see friction.hpp.
+  double damping = 0;
+  /// Coulomb friction as the robot description states it; N m, prismatic N. 0: not stated.
+  double friction = 0;
 };
 
 /// The ten parameters `[m, mc, I]` of one link, in the link's frame, I about its origin.

@@ -18,8 +18,10 @@
 /// - What hangs on the chain beside the path or beyond the tip moves with it and is lumped into
 ///   the link it hangs on, unless `lump_attached` is false. Movable joints out there are held at
 ///   `locked_position`; one that mimics another follows it.
-/// - `<dynamics damping friction>` isn't used (simulators disagree on its meaning); neither are
-///   `<visual>`, `<collision>`, `<transmission>`, `<calibration>` and `<safety_controller>`.
+/// - `<dynamics damping friction>` becomes Joint::damping and Joint::friction, which no algorithm
+///   reads (simulators disagree on its meaning).
+/// - `<visual>`, `<collision>`, `<transmission>`, `<calibration>` and `<safety_controller>` aren't
+///   read.
 ///
 /// What URDF allows to be left out keeps URDF's meaning: no `<origin>` is the identity, no `<axis>`
 /// is x, no `<inertial>` is no mass. Everything else that is missing, malformed or not a finite
