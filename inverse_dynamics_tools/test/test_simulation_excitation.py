@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from simulation_arms import pendulum, simulated, two_links
+from simulation_arms import CHAINS, pendulum, robots_package, simulated, two_links
 
+from inverse_dynamics.simulation import excitation
 from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.evolution import minimise
@@ -14,6 +15,7 @@ from inverse_dynamics.simulation.excitation import condition_of, optimise_excita
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
 from inverse_dynamics.simulation.model import Payload, SimulatedRobot
 from inverse_dynamics.simulation.trajectory import FourierTrajectory
+from inverse_dynamics.simulation.trajectory_file import read_trajectory
 
 
 def ellipsoid(x: np.ndarray) -> float:
@@ -85,6 +87,20 @@ def test_condition_grows_where_a_joint_rests() -> None:
         good.cosine * [[1.0], [1e-3], [1.0]],
     )
     assert condition_of(robot, resting) > 10 * condition_of(robot, good)
+
+
+@pytest.mark.parametrize("name", CHAINS)
+def test_stored_trajectory_is_twice_as_good_as_the_best_of_a_hundred_random_ones(name: str) -> None:
+    robot = simulated(name)
+    stored, _ = read_trajectory(
+        robots_package() / f"trajectories/{name}.yaml", robot.chain.joint_names
+    )
+    assert isinstance(stored, FourierTrajectory)
+    limits = MotionLimits.of(robot, excitation.TIME_TO_FULL_SPEED).fraction(excitation.MARGIN)
+    family = excitation._Family(stored.joint_names, limits, stored.period, stored.sine.shape[1])
+    starts = 0.3 * np.random.default_rng(0).normal(size=(100, family.size))
+    random = [condition_of(robot, family.member(start)) for start in starts]
+    assert 2 * condition_of(robot, stored) < min(random)
 
 
 def test_search_needs_limits() -> None:

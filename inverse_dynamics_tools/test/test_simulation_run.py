@@ -297,5 +297,4 @@ def test_stored_configuration_names_its_trajectory(name: str) -> None:
     file = config["trajectory"].removeprefix("package://inverse_dynamics_robots/")
     run = simulate(stored(name), trajectory=package / file, rate=config["rate"], duration=0.1)
     assert run.condition_number is not None
-    assert run.condition_number < 20
-    assert f"{run.condition_number:.4g}" in run.trajectory_source
+    assert f"base regressor {run.condition_number:.4g}." in run.trajectory_source

@@ -5,9 +5,10 @@
     found.trajectory, found.condition_number
 
 The measure is the condition number of the base regressor, stacked over the motion [Gautier and Khalil 1992]: how much
-measurement noise grows into errors of parameters. Each trial is a Fourier series that starts and ends at rest; its
-amplitudes are scaled into the limits of position, velocity and acceleration, so those always hold; what goes beyond the
-effort limits or comes too close to itself or to the table is penalised until nothing does.
+measurement noise grows into errors of parameters. The base parameters are taken in an orthonormal basis, so the measure
+is the ratio of the nonzero singular values of the regressor. Each trial is a Fourier series that starts and ends at
+rest; its amplitudes are scaled into the limits of position, velocity and acceleration, so those always hold; what goes
+beyond the effort limits or comes too close to itself or to the table is penalised until nothing does.
 
 The search is an evolution strategy (CMA-ES with a diagonal covariance [Ros and Hansen 2008]): no gradients, few
 parameters, and the same seed gives the same trajectory (on one kind of machine: rounding differs between processors).
@@ -27,7 +28,7 @@ from inverse_dynamics.simulation.evolution import minimise
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
 from inverse_dynamics.simulation.regressor import (
     ArmGeometry,
-    base_columns,
+    base_count,
     condition_number,
     inertial_parameters,
     regressor,
@@ -98,7 +99,7 @@ def condition_of(robot: SimulatedRobot, trajectory: FourierTrajectory) -> float:
     """Condition number of the base regressor over a trajectory."""
     arm = ArmGeometry.of(robot)
     time = np.linspace(0.0, trajectory.duration, _SAMPLES, endpoint=False)
-    return condition_number(regressor(arm, *trajectory.at(time)), base_columns(arm))
+    return condition_number(regressor(arm, *trajectory.at(time)), base_count(arm))
 
 
 def _shrunk_until_free(
@@ -186,7 +187,7 @@ class _Judge:
     ) -> None:
         self._robot, self._family, self._limits, self._checker = robot, family, limits, checker
         self._arm = ArmGeometry.of(robot)
-        self._columns = base_columns(self._arm)
+        self._count = base_count(self._arm)
         self._parameters = inertial_parameters(robot)
         self._contact_time = np.linspace(0.0, family.period, _CONTACT_SAMPLES, endpoint=False)
         self._time = np.linspace(0.0, family.period, _SAMPLES, endpoint=False)
@@ -200,4 +201,4 @@ class _Judge:
             values.max() + values.mean()
             for values in (np.maximum(excess, 0.0), 10.0 * np.maximum(violations, 0.0))
         )
-        return float(np.log10(condition_number(Y, self._columns)) + _PENALTY * penalty)
+        return float(np.log10(condition_number(Y, self._count)) + _PENALTY * penalty)

@@ -3,8 +3,7 @@
 
     arm = ArmGeometry.of(robot)
     Y = regressor(arm, q, qd, qdd)          # (N, n, 10 n)
-    columns = base_columns(arm)             # those that are independent
-    condition_number(Y, columns)
+    condition_number(Y, base_count(arm))
 
 Parameters per link: m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz in the frame of the link's body, the moment of
 inertia about that frame's origin. It serves the search for exciting trajectories, which needs thousands of states per
@@ -118,33 +117,27 @@ def inertial_parameters(robot: SimulatedRobot) -> Floats:
     return p.ravel()
 
 
-def base_columns(arm: ArmGeometry) -> NDArray[np.intp]:
-    """Columns of Y that are linearly independent for all motions: one set of base parameters."""
+def base_count(arm: ArmGeometry) -> int:
+    """Number of base parameters: the rank of Y over all motions."""
     random = np.random.default_rng(0)
     joints = len(arm.axis)
     q, qd, qdd = random.uniform(-np.pi, np.pi, (3, 20 * joints, joints))
-    rest = regressor(arm, q, qd, qdd).reshape(-1, PARAMETERS_PER_LINK * joints)
-    scale = np.linalg.norm(rest, axis=0).max()
-    chosen: list[int] = []
-    # take the column that stands out most of what is chosen already, until none does
-    for _ in range(rest.shape[1]):
-        norms = np.linalg.norm(rest, axis=0)
-        k = int(np.argmax(norms))
-        if norms[k] < 1e-8 * scale:
-            break
-        chosen.append(k)
-        unit = rest[:, k] / norms[k]
-        rest = rest - np.outer(unit, unit @ rest)
-    return np.array(sorted(chosen), dtype=np.intp)
+    Y = regressor(arm, q, qd, qdd).reshape(-1, PARAMETERS_PER_LINK * joints)
+    values = np.linalg.svd(Y, compute_uv=False)
+    # rounding leaves about 1e-15 of the greatest one where there is none
+    return int((values > 1e-8 * values[0]).sum())
 
 
-def condition_number(Y: Floats, columns: NDArray[np.intp]) -> float:
-    """Condition number (2-norm) of the stacked base regressor."""
-    base = Y[:, :, columns]
+def condition_number(Y: Floats, count: int) -> float:
+    """Ratio of the greatest to the least of the `count` nonzero singular values of the stacked Y.
+
+    It is the condition number of `Y V`, V an orthonormal basis of the base parameters: every such basis gives the same
+    one. A choice of independent columns of Y would not: columns of equal norm leave that choice to rounding.
+    """
     # the square of the condition, from a small matrix: enough digits up to about 1e6
     # (summed sample by sample: one large product would start threads, which costs more than it saves)
-    squares = np.linalg.eigvalsh((base.transpose(0, 2, 1) @ base).sum(axis=0))
-    return float(np.sqrt(squares[-1] / max(squares[0], 1e-16 * squares[-1])))
+    squares = np.linalg.eigvalsh((Y.transpose(0, 2, 1) @ Y).sum(axis=0))
+    return float(np.sqrt(squares[-1] / max(squares[-count], 1e-16 * squares[-1])))
 
 
 def _pose(arm: ArmGeometry, i: int, q: Floats) -> tuple[Floats, Floats]:
