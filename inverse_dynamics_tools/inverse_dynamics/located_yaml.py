@@ -5,22 +5,38 @@
     name = robot.required("name").text()
     robot.reject_others()
 
-Strict: what isn't asked for is an error, so is a key that stands twice.
+Strict: what isn't asked for is an error, so is a key that stands twice. Values without quotes have
+the types of the core schema of YAML 1.2: `1:30` and `1_000` are texts, `yes` is one too, `1e-3` is a
+number. Tags, aliases and other encodings than UTF-8 are errors.
 """
 
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import yaml
+
+from inverse_dynamics.wording import did_you_mean, shown
 
 if TYPE_CHECKING:
     from collections.abc import Collection
     from pathlib import Path
 
     from inverse_dynamics.errors import UserError
+
+Scalar = bool | int | float | str
+
+_MOST_BYTES = 4 * 2**20
+_MOST_VALUES = 200_000
+_MOST_LEVELS = 50
+_NULLS = {"", "~", "null", "Null", "NULL"}
+_TRUTHS = {word: word.lower() == "true" for word in "true True TRUE false False FALSE".split()}
+_INTEGER = re.compile(r"[-+]?[0-9]+")
+_NUMBER = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+_NOT_FINITE = re.compile(r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
 
 
 @dataclass
@@ -43,41 +59,61 @@ class Value:
         got = self._shown()
         raise self.error(f"{self.where}: expected {expected}, got {got}{remedy and '; ' + remedy}")
 
-    def data(self) -> Any:
-        """The value as plain Python data."""
-        return yaml.SafeLoader("").construct_document(self.node)
+    @property
+    def is_null(self) -> bool:
+        """Whether there is a key, but nothing behind it."""
+        return self._plain in _NULLS
+
+    def scalar(self) -> Scalar:
+        """A text, a finite number, an integer, true or false: what it looks like."""
+        if not isinstance(self.node, yaml.ScalarNode) or self.is_null:
+            self.fail("a text, a number, true or false")
+        word = self._plain
+        if word is None:
+            return str(self.node.value)
+        if word in _TRUTHS:
+            return _TRUTHS[word]
+        if _INTEGER.fullmatch(word):
+            return self.integer()
+        if _NUMBER.fullmatch(word) or _NOT_FINITE.fullmatch(word):
+            return self.number()
+        return word
 
     def text(self, one_of: Collection[str] = ()) -> str:
         """A text; one of these, if any are given."""
-        value = self.data()
-        if not isinstance(value, str):
+        if not isinstance(self.node, yaml.ScalarNode):
             self.fail("a text")
+        value = str(self.node.value)
         if one_of and value not in one_of:
-            self.fail(f"one of {', '.join(one_of)}")
+            self.fail(f"one of {', '.join(one_of)}", did_you_mean(value, one_of))
+        if self._plain is not None and not isinstance(self.scalar(), str):
+            self.fail("a text", "put it in quotes")
         return value
 
     def number(self) -> float:
         """A finite number."""
-        value = self.data()
-        if isinstance(value, bool) or not isinstance(value, int | float):
+        word = self._plain
+        if word is None or not (_NUMBER.fullmatch(word) or _NOT_FINITE.fullmatch(word)):
             self.fail("a number")
+        value = math.nan if _NOT_FINITE.fullmatch(word) else float(word)
         if not math.isfinite(value):
             self.fail("a finite number")
-        return float(value)
+        return value
 
     def integer(self) -> int:
-        """An integer."""
-        value = self.data()
-        if isinstance(value, bool) or not isinstance(value, int):
+        """An integer of 64 bits."""
+        word = self._plain
+        if word is None or not _INTEGER.fullmatch(word):
             self.fail("an integer")
-        return value
+        if len(word) > 20 or not -(2**63) <= int(word) < 2**63:
+            self.fail("an integer of at most 64 bits")
+        return int(word)
 
     def truth(self) -> bool:
         """True or false."""
-        value = self.data()
-        if not isinstance(value, bool):
+        if self._plain not in _TRUTHS:
             self.fail("true or false")
-        return value
+        return _TRUTHS[self._plain]
 
     def entries(self, length: int | None = None) -> list[Value]:
         """A list; of this length, if one is given."""
@@ -96,6 +132,8 @@ class Value:
             self.fail("keys with values")
         values: dict[str, Value] = {}
         for key_node, value_node in self.node.value:
+            if not isinstance(key_node, yaml.ScalarNode):
+                Value(key_node, self.file, self.key, self.error).fail("a text as a key")
             inner = str(key_node.value)
             name = f"{self.key}.{inner}" if self.key else inner
             value = Value(value_node, self.file, name, self.error)
@@ -105,12 +143,18 @@ class Value:
             values[inner] = value
         return Mapping(self, values)
 
+    @property
+    def _plain(self) -> str | None:
+        """What stands there without quotes."""
+        plain = isinstance(self.node, yaml.ScalarNode) and self.node.style is None
+        return str(self.node.value) if plain else None
+
     def _shown(self) -> str:
         if isinstance(self.node, yaml.MappingNode):
             return "keys with values"
         if isinstance(self.node, yaml.SequenceNode):
             return f"a list of {len(self.node.value)}"
-        return f"'{self.node.value}'" if self.node.value else "nothing"
+        return shown(self.node.value) if self.node.value else "nothing"
 
 
 @dataclass
@@ -133,33 +177,75 @@ class Mapping:
         """The value of a key, or None if it is absent or null."""
         self.asked.append(key)
         found = self.values.get(key)
-        if found is not None and found.node.tag == "tag:yaml.org,2002:null":
-            return None
-        return found
+        return None if found is None or found.is_null else found
 
     def reject_others(self) -> None:
         """Raise the error for a key that nobody has asked for."""
         for key, value in self.values.items():
             if key not in self.asked:
+                known = ", ".join(dict.fromkeys(self.asked))
+                hint = did_you_mean(key, self.asked)
                 raise self.value.error(
-                    f"{value.where}: unknown key; known here: {', '.join(self.asked)}"
+                    f"{value.where}: unknown key{hint and f'; {hint}'}; known here: {known}"
                 )
 
 
 def read_mapping(file: Path, error: type[UserError]) -> Mapping:
     """Read a YAML file that holds keys with values."""
+    text = _text_of(file, error)
     try:
-        node = yaml.compose(file.read_text(), Loader=yaml.SafeLoader)
-    except OSError as problem:
-        raise error(f"{file}: can't be read ({problem.strerror})") from problem
-    except UnicodeDecodeError as problem:
-        raise error(f"{file}: isn't a text file; expected YAML") from problem
+        node = yaml.compose(text, Loader=_Loader)
     except yaml.MarkedYAMLError as problem:
         mark = problem.problem_mark
         line = f":{mark.line + 1}" if mark else ""
         raise error(f"{file}{line}: isn't YAML: {problem.problem}") from problem
-    except yaml.YAMLError as problem:
-        raise error(f"{file}: isn't YAML: {problem}") from problem
+    except yaml.reader.ReaderError as problem:
+        line = f":{text.count(chr(10), 0, problem.position) + 1}"
+        got = shown(chr(problem.character))
+        raise error(f"{file}{line}: isn't YAML: the character {got} isn't allowed") from problem
     if node is None:
         raise error(f"{file}: is empty; expected keys with values")
     return Value(node, file, "", error).mapping()
+
+
+def _text_of(file: Path, error: type[UserError]) -> str:
+    try:
+        with file.open("rb") as stream:
+            data = stream.read(_MOST_BYTES + 1)
+    except OSError as problem:
+        raise error(f"{file}: can't be read ({problem.strerror})") from problem
+    if len(data) > _MOST_BYTES:
+        raise error(f"{file}: expected YAML of at most {_MOST_BYTES >> 20} MiB, got a longer file")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as problem:
+        line = data.count(b"\n", 0, problem.start) + 1
+        raise error(
+            f"{file}:{line}: isn't text in UTF-8; expected YAML; save it in that encoding"
+        ) from problem
+
+
+class _Loader(yaml.BaseLoader):
+    """Composes nodes without any types, and refuses what no configuration needs."""
+
+    levels = 0
+    values = 0
+
+    def compose_node(self, parent: yaml.Node | None, index: object) -> yaml.Node | None:
+        event = self.peek_event()
+        refused = ""
+        if isinstance(event, yaml.AliasEvent):
+            refused = f"the alias *{event.anchor} isn't supported; write out what it stands for"
+        elif getattr(event, "tag", None) is not None:
+            refused = f"the tag {shown(event.tag)} isn't supported; leave it out"
+        elif self.levels == _MOST_LEVELS:
+            refused = f"expected at most {_MOST_LEVELS} levels, got more"
+        elif self.values == _MOST_VALUES:
+            refused = f"expected at most {_MOST_VALUES} values, got more"
+        if refused:
+            raise yaml.MarkedYAMLError(problem=refused, problem_mark=event.start_mark)
+        self.levels += 1
+        self.values += 1
+        node = super().compose_node(parent, index)
+        self.levels -= 1
+        return node

@@ -3,7 +3,41 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
 
 def counted(count: int, noun: str) -> str:
     """A number of things: `1 joint`, `6 joints`."""
     return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def shown(text: object, longest: int = 60) -> str:
+    """A text from a file for an error message: in quotes, on one line, nothing a terminal acts upon."""
+    quoted = repr(str(text)[: longest + 1])[1:-1].replace("\\'", "'")
+    return f"'{quoted}'" if len(str(text)) <= longest else f"'{quoted[:longest]}...'"
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """`did you mean tool0?`, or "" where nothing that is known is like the word."""
+    distances = {other: _distance(word, other) for other in known if len(other) < 2 * len(word)}
+    best = min(distances, key=lambda other: distances[other], default="")
+    return f"did you mean {best}?" if best and 3 * distances[best] <= max(3, len(word)) else ""
+
+
+def _distance(a: str, b: str) -> int:
+    """How many letters must be put in, left out, replaced or swapped with the next to make b of a."""
+    if abs(len(a) - len(b)) > len(b):
+        return abs(len(a) - len(b))
+    before: list[int] = []
+    above = list(range(len(b) + 1))
+    for i, letter in enumerate(a, 1):
+        row = [i]
+        for j, other in enumerate(b, 1):
+            row.append(min(row[-1] + 1, above[j] + 1, above[j - 1] + (letter != other)))
+            if i > 1 and j > 1 and letter == b[j - 2] and a[i - 2] == other:
+                row[-1] = min(row[-1], before[j - 2] + 1)
+        before, above = above, row
+    return above[-1]

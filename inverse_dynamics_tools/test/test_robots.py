@@ -85,7 +85,7 @@ def test_four_keys_are_enough(write):
     ("line", "changed", "expected"),
     [
         ("name: mine", "nam: mine", ":1: the key name is missing; keys: schema, nam, description"),
-        ("tip: tool0", "tpi: tool0", ":7: tpi: unknown key; known here: schema, name"),
+        ("tip: tool0", "tpi: tool0", ":7: tpi: unknown key; did you mean tip?; known here: schema"),
         ("tip: tool0", "root: tool0", ":7: root: stands here for a second time"),
         ("schema: 1", "schema: 2", ":1: schema: expected 1, got '2'; it was written for another"),
         ("schema: 1", "schema: one", ":1: schema: expected an integer, got 'one'"),
@@ -106,7 +106,11 @@ def test_four_keys_are_enough(write):
         (GAINS, "drive_gains: [a, 9]", ":13: drive_gains[0]: expected a number, got 'a'"),
         ("  method: low-pass", "  method: best", ":15: accelerations.method: expected one of auto"),
         ("  cutoff: 5", "  cutoff: -5", ":16: accelerations.cutoff: expected a frequency in Hz"),
-        ("  cutoff: 5", "  cut_off: 5", ":16: accelerations.cut_off: unknown key; known here: me"),
+        (
+            "  cutoff: 5",
+            "  cut_off: 5",
+            ":16: accelerations.cut_off: unknown key; did you mean cut",
+        ),
         ("urdf: arm.urdf", "urdf: leg.urdf", ":5: urdf: expected a file, got 'leg.urdf'; "),
         ("urdf: arm.urdf", "urdf: [arm.urdf]", ":5: urdf: expected a text, got a list of 1"),
         ("tip: tool0", "tip: [tool0", ":8: isn't YAML: expected ',' or ']'"),

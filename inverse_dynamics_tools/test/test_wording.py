@@ -1,9 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
 import pytest
 
-from inverse_dynamics.wording import counted
+from inverse_dynamics.wording import counted, did_you_mean, shown
 
 
 @pytest.mark.parametrize(("count", "expected"), [(0, "0 joints"), (1, "1 joint"), (2, "2 joints")])
 def test_one_thing_is_not_many(count, expected):
     assert counted(count, "joint") == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("tool0", "'tool0'"),
+        ("it's", "'it's'"),
+        ("café", "'café'"),
+        ("a\x1b[31m\nb", "'a\\x1b[31m\\nb'"),
+        ("x" * 100_000, "'" + "x" * 60 + "...'"),
+        (12, "'12'"),
+    ],
+)
+def test_what_a_file_says_is_short_and_harmless_in_a_message(text, expected):
+    assert shown(text) == expected
+
+
+def test_a_word_like_a_known_one_is_proposed():
+    known = ("evaluate", "export", "tool0", "tip", "topic")
+    assert did_you_mean("tpi", known) == "did you mean tip?"
+    assert did_you_mean("evalute", known) == "did you mean evaluate?"
+    assert did_you_mean("tol0", known) == "did you mean tool0?"
+    assert did_you_mean("simulate it", known) == ""
+    assert did_you_mean("x" * 10_000_000, known) == ""

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: Apache-2.0
+"""YAML files of all kinds, good and hostile: read as meant, or one line with file and line."""
+
+from __future__ import annotations
+
+import os
+import re
+import time
+from pathlib import Path
+
+import pytest
+
+from inverse_dynamics.errors import RobotError
+from inverse_dynamics.located_yaml import Value, read_mapping
+
+
+def value(directory: Path, text: str) -> Value:
+    file = directory / "robot.yaml"
+    file.write_text(f"first: 1\nkey: {text}\n", encoding="utf-8")
+    return read_mapping(file, RobotError).required("key")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("1", 1.0),
+        ("-9.81", -9.81),
+        ("+.5", 0.5),
+        ("5.", 5.0),
+        ("1e-3", 1e-3),  # a text in YAML 1.1
+        ("-1.5E+2", -150.0),
+        ("010", 10.0),  # 8 in YAML 1.1
+    ],
+)
+def test_numbers_are_those_of_yaml_1_2(tmp_path, text, expected):
+    assert value(tmp_path, text).number() == expected
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["1:30", "-9_81", "1_0", "0x10", "0b1", "１２", "'1'", '"1"', "1,5", "1 2", "--1", "1e", "."]
+    + ["e5", "inf", "nan", "2001-01-01", "true", "[1]", "{a: 1}", "1" + "0" * 5000 + "x"],
+)
+def test_what_is_no_number_is_an_error(tmp_path, text):
+    with pytest.raises(RobotError, match=r"robot.yaml:2: key: expected a number, got .{1,70}$"):
+        value(tmp_path, text).number()
+
+
+@pytest.mark.parametrize("text", [".inf", "-.INF", ".nan", "1e999", "9" * 400])
+def test_a_number_that_is_not_finite_is_an_error(tmp_path, text):
+    with pytest.raises(
+        RobotError, match=r"robot.yaml:2: key: expected a finite number, got .{1,70}$"
+    ):
+        value(tmp_path, text).number()
+
+
+def test_integers_fit_64_bits(tmp_path):
+    assert value(tmp_path, str(-(2**63))).integer() == -(2**63)
+    for text in (str(2**63), "1" * 400, "1" * 5000):
+        with pytest.raises(RobotError, match=r":2: key: expected an integer of at most 64 bits"):
+            value(tmp_path, text).integer()
+    for text in ("1.0", "1_0", "1:30", "0x1"):
+        with pytest.raises(RobotError, match=r":2: key: expected an integer, got"):
+            value(tmp_path, text).integer()
+
+
+@pytest.mark.parametrize("text", ["yes", "no", "on", "off", "y", "tRUE", "1", "'true'"])
+def test_truth_is_true_or_false(tmp_path, text):
+    assert value(tmp_path, "True").truth() is True
+    with pytest.raises(RobotError, match=r":2: key: expected true or false, got"):
+        value(tmp_path, text).truth()
+
+
+def test_texts_that_look_like_something_else_need_quotes(tmp_path):
+    assert value(tmp_path, "'1'").text() == "1"
+    assert value(tmp_path, "no").text() == "no"
+    assert value(tmp_path, "1:30").text() == "1:30"
+    with pytest.raises(RobotError, match=r":2: key: expected a text, got '1'; put it in quotes"):
+        value(tmp_path, "1").text()
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [("true", True), ("3", 3), ("3.0", 3.0), ("'3'", "3"), ("abc", "abc"), ("1_0", "1_0")],
+)
+def test_a_scalar_has_the_type_it_looks_like(tmp_path, text, expected):
+    found = value(tmp_path, text).scalar()
+    assert (type(found), found) == (type(expected), expected)
+
+
+def bomb() -> str:
+    lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
+    lines += [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 9)}]" for i in range(1, 12)]
+    return "\n".join(lines)
+
+
+HOSTILE = {
+    "a tag": (b"a: !!float abc\n", ":1: isn't YAML: the tag 'tag:yaml.org,2002:float' isn't"),
+    "a tag of its own": (b"a: 1\nb: !robot {c: 1}\n", ":2: isn't YAML: the tag '!robot' isn't"),
+    "a tag of Python": (b"a: !!python/object/apply:os.system [x]\n", ":1: isn't YAML: the tag"),
+    "the tag of no tag": (b"a: ! 12\n", ":1: isn't YAML: the tag '!' isn't supported"),
+    "an alias": (b"a: &x 1\nb: *x\n", ":2: isn't YAML: the alias *x isn't supported; write out"),
+    "an alias of itself": (b"a: &x [*x]\n", ":1: isn't YAML: the alias *x isn't supported"),
+    "an alias of nothing": (b"a: *x\n", ":1: isn't YAML: the alias *x isn't supported"),
+    "many aliases": (bomb().encode(), ":2: isn't YAML: the alias *a0 isn't supported"),
+    "deep lists": (b"a: " + b"[" * 100_000, ":1: isn't YAML: expected at most 50 levels, got more"),
+    "deep mappings": (b"a: " + b"{a: " * 100_000, ":1: isn't YAML: expected at most 50 levels"),
+    "deep blocks": (
+        "".join(f"{' ' * i}a:\n" for i in range(2000)).encode(),
+        ":50: isn't YAML: expected at most 50 levels, got more",
+    ),
+    "deep dashes": (b"a:\n" + b"- " * 100_000, ":2: isn't YAML: expected at most 50 levels"),
+    "a key twice": (b"a: 1\nb: 2\na: 3\n", ":3: a: stands here for a second time"),
+    "a list as a key": (b"[a, b]: 1\n", ":1: expected a text as a key, got a list of 2"),
+    "a mapping as a key": (b"? {a: 1}\n: 1\n", ":1: expected a text as a key, got keys with"),
+    "a merge": (b"<<: {a: 1}\n", ":1: <<: unknown key"),
+    "two documents": (b"a: 1\n---\nb: 2\n", ":2: isn't YAML: but found another document"),
+    "a NUL": (b"a: 1\nb: \0\n", ":2: isn't YAML: the character '\\x00' isn't allowed"),
+    "a control character": (b"a: \x1b[31m\n", ":1: isn't YAML: the character '\\x1b' isn't"),
+    "UTF-16": ("a: 1\n".encode("utf-16"), ":1: isn't text in UTF-8; expected YAML; save it"),
+    "UTF-16 without a mark": ("a: 1\n".encode("utf-16-le"), ":1: isn't YAML: the character"),
+    "Latin-1": (b"a: 1\nb: caf\xe9\n", ":2: isn't text in UTF-8; expected YAML"),
+    "a picture": (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", ":1: isn't text in UTF-8; expected YAML"),
+    "noise": (bytes(range(256)) * 100, ":2: isn't text in UTF-8"),
+    "a tab": (b"a:\n\tb: 1\n", ":2: isn't YAML: found character '\\t' that cannot start"),
+    "an open bracket": (b"a: [1, 2\n", ":2: isn't YAML: expected ',' or ']'"),
+    "a text": (b"hello", ":1: expected keys with values, got 'hello'"),
+    "a long text": (b"x" * 1_000_000, ":1: expected keys with values, got 'xxx"),
+    "nothing": (b"", ": is empty; expected keys with values"),
+    "a byte order mark alone": (b"\xef\xbb\xbf", ": is empty; expected keys with values"),
+    "too long a file": (b"#" * (5 * 2**20), ": expected YAML of at most 4 MiB, got a longer file"),
+    "many values": (b"a: [" + b"1," * 500_000 + b"]", ":1: isn't YAML: expected at most 200000 va"),
+    "a directive": (b"%YAML 3.0\n---\na: 1\n", ":1: isn't YAML: found incompatible YAML document"),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_file_is_one_line_with_its_place(tmp_path, name):
+    content, expected = HOSTILE[name]
+    file = tmp_path / "robot.yaml"
+    file.write_bytes(content)
+    start = time.process_time()
+    with pytest.raises(RobotError) as caught:
+        read_mapping(file, RobotError).reject_others()
+    text = str(caught.value)
+    assert text.startswith(f"{file}{expected}")
+    assert re.fullmatch(r"[^\x00-\x1f]{1,400}", text)
+    assert time.process_time() - start < 10.0  # quadratic work would take hours
+
+
+def test_a_byte_order_mark_is_left_out(tmp_path):
+    file = tmp_path / "robot.yaml"
+    file.write_bytes(b"\xef\xbb\xbfa: 1\n")
+    assert read_mapping(file, RobotError).required("a").integer() == 1
+
+
+def test_encoding_is_utf_8_whatever_the_locale(tmp_path, monkeypatch):
+    monkeypatch.setattr(Path, "read_text", None)  # what depends on the locale
+    assert value(tmp_path, "café").text() == "café"
+
+
+def test_what_is_no_file_is_one_line(tmp_path):
+    with pytest.raises(RobotError, match=r": can't be read \(Is a directory\)$"):
+        read_mapping(tmp_path, RobotError)
+    with pytest.raises(RobotError, match=r": can't be read \(No such file or directory\)$"):
+        read_mapping(tmp_path / "gone.yaml", RobotError)
+    with pytest.raises(RobotError, match=r": can't be read \(File name too long\)$"):
+        read_mapping(tmp_path / ("x" * 300 + ".yaml"), RobotError)
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="the superuser may read every file")
+def test_a_file_that_may_not_be_read_is_one_line(tmp_path):
+    file = tmp_path / "robot.yaml"
+    file.write_text("a: 1\n")
+    file.chmod(0)
+    with pytest.raises(RobotError, match=r": can't be read \(Permission denied\)$"):
+        read_mapping(file, RobotError)
+
+
+def test_an_unknown_key_like_a_known_one_is_told(tmp_path):
+    file = tmp_path / "robot.yaml"
+    file.write_text("name: a\ngravty: 1\n")
+    top = read_mapping(file, RobotError)
+    for key in ("name", "gravity"):
+        top.optional(key)
+    with pytest.raises(RobotError, match=r":2: gravty: unknown key; did you mean gravity\?; known"):
+        top.reject_others()
