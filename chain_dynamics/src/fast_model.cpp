@@ -44,12 +44,6 @@ std::vector<const Kernels*> usableKernels(int joints) {
   return usable;
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 const Kernels& kernelsNamed(const std::string& name, int joints) {
   for (const Kernels* kernels : usableKernels(joints)) {
     if (name == kernels->name) return *kernels;

@@ -49,31 +49,6 @@ LinkParameters parameters(const urdf::Link& link) {
 // ---------------------------------------------------------------------------------------------
 // Names
 
-/// How many letters have to be changed, added or left out to get from one word to another.
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) {
-    row[j] = j;
-  }
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
-
-std::string list(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) {
-    text += (text.empty() ? "" : ", ") + name;
-  }
-  return text;
-}
-
 /// The link of that name; an unknown name is answered by the nearest known ones.
 LinkPtr linkNamed(const urdf::ModelInterface& robot, const std::string& name,
                   const std::string& role) {
@@ -92,7 +67,7 @@ LinkPtr linkNamed(const urdf::ModelInterface& robot, const std::string& name,
     nearest.push_back(known[i].second);
   }
   throw ModelError("URDF: robot " + robot.getName(), role, "a link of the robot", "'" + name + "'",
-                   (known.size() > kShown ? "nearest names: " : "links: ") + list(nearest));
+                   (known.size() > kShown ? "nearest names: " : "links: ") + joined(nearest));
 }
 
 // ---------------------------------------------------------------------------------------------

@@ -3,11 +3,13 @@
 
 #include <string>
 
+#include "chain_dynamics/text.hpp"
 #include "one_state.hpp"
 
 namespace inverse_dynamics_solver {
 namespace {
 
+using chain_dynamics::joined;
 using Eigen::Index;
 
 using StackVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxStackJoints, 1>;
@@ -16,12 +18,6 @@ using StackMatrix =
 
 std::string shape(Index rows, Index cols) {
   return std::to_string(rows) + " x " + std::to_string(cols);
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 // What throws is apart from the checks, which are then small enough to be inlined.

@@ -5,13 +5,16 @@
 #include <ament_index_cpp/get_resources.hpp>
 #include <atomic>
 #include <mutex>
-#include <numeric>
 #include <pluginlib/class_loader.hpp>
 #include <utility>
+
+#include "chain_dynamics/text.hpp"
 
 namespace inverse_dynamics_solver {
 namespace {
 
+using chain_dynamics::editDistance;
+using chain_dynamics::joined;
 using PluginLoader = pluginlib::ClassLoader<InverseDynamicsSolver>;
 
 const char* const kSource = "source the workspace that has it: source install/local_setup.bash";
@@ -55,22 +58,6 @@ struct LoadedSolver {
   std::shared_ptr<PluginLoader> loader;
   pluginlib::UniquePtr<InverseDynamicsSolver> solver;  // destroyed before the loader
 };
-
-/// Number of characters to insert, delete or replace to make b of a (Levenshtein).
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
-}
 
 /// "; did you mean NAME?" with the name nearest to the given one; empty if none is near.
 std::string suggestion(const std::string& name, const std::vector<std::string>& available) {
@@ -118,11 +105,9 @@ struct SolverLoader::Implementation {
     }
     if (std::binary_search(names.begin(), names.end(), name)) return;
 
-    std::string list;
-    for (const std::string& candidate : names) list += (list.empty() ? "" : ", ") + candidate;
     const std::string nearest = suggestion(name, names);
-    throw PluginNotFoundException(errorText(where, "not found", "one of " + list, "'" + name + "'",
-                                            nearest.empty() ? kSource : nearest));
+    throw PluginNotFoundException(errorText(where, "not found", "one of " + joined(names),
+                                            "'" + name + "'", nearest.empty() ? kSource : nearest));
   }
 };
 

@@ -12,6 +12,7 @@
 namespace rigid_body_inverse_dynamics_solver {
 namespace {
 
+using chain_dynamics::joined;
 using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::Exception;
 using std::filesystem::path;
@@ -26,12 +27,6 @@ path modelsFolder() {
                               "an installed package of that name", e.what(),
                               "source the workspace that has it: source install/local_setup.bash"));
   }
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 bool isPath(const path& name_or_path) {

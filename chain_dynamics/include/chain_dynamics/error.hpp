@@ -12,21 +12,24 @@
 #include <stdexcept>
 #include <string>
 
+#include "chain_dynamics/text.hpp"
+
 namespace chain_dynamics {
 
 /// A user's mistake in a robot description, model file or argument.
 ///
-/// The text says where, what, what was expected, what was found, and the remedy. Mistakes of
-/// developers (a vector of the wrong size) are assertions of debug builds instead.
+/// The text says where, what, what was expected, what was found, and the remedy; it is printable()
+/// [text.hpp]. Mistakes of developers (a vector of the wrong size) are assertions of debug builds
+/// instead.
 class ModelError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// A text as it is, of up to 8000 bytes.
+  explicit ModelError(const std::string& text) : std::runtime_error(printable(text, 8000)) {}
 
-  /// Text `where: what: expected ..., got ...; remedy`. An empty remedy is left out.
+  /// Text `where: what: expected ..., got ...; remedy`. Empty parts are left out.
   ModelError(const std::string& where, const std::string& what, const std::string& expected,
              const std::string& got, const std::string& remedy)
-      : std::runtime_error(where + ": " + what + ": expected " + expected + ", got " + got +
-                           (remedy.empty() ? "" : "; " + remedy)) {}
+      : std::runtime_error(errorText(where, what, expected, got, remedy)) {}
 };
 
 }  // namespace chain_dynamics

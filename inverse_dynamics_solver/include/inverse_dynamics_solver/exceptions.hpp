@@ -15,6 +15,8 @@ namespace inverse_dynamics_solver {
 
 /// Text of every error: `where: what: expected ..., got ...; remedy`. Empty parts are left out.
 ///
+/// Each part is printable and of limited length [chain_dynamics/text.hpp].
+///
 /// @param where     parameter with its namespace, file with its line, or method and argument.
 /// @param what      the mistake, in a few words.
 /// @param expected  what would have been right.
