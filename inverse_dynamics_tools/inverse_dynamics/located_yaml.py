@@ -33,7 +33,10 @@ _MOST_BYTES = 4 * 2**20
 _MOST_VALUES = 200_000
 _MOST_LEVELS = 50
 _NULLS = {"", "~", "null", "Null", "NULL"}
-_TRUTHS = {word: word.lower() == "true" for word in "true True TRUE false False FALSE".split()}
+_TRUTHS = {
+    **dict.fromkeys(("true", "True", "TRUE"), True),
+    **dict.fromkeys(("false", "False", "FALSE"), False),
+}
 _INTEGER = re.compile(r"[-+]?[0-9]+")
 _NUMBER = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 _NOT_FINITE = re.compile(r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
@@ -231,8 +234,8 @@ class _Loader(yaml.BaseLoader):
     levels = 0
     values = 0
 
-    def compose_node(self, parent: yaml.Node | None, index: object) -> yaml.Node | None:
-        event = self.peek_event()
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
+        event = self.peek_event()  # type: ignore[no-untyped-call]
         refused = ""
         if isinstance(event, yaml.AliasEvent):
             refused = f"the alias *{event.anchor} isn't supported; write out what it stands for"

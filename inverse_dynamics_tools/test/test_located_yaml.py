@@ -36,11 +36,12 @@ def test_numbers_are_those_of_yaml_1_2(tmp_path, text, expected):
     assert value(tmp_path, text).number() == expected
 
 
-@pytest.mark.parametrize(
-    "text",
-    ["1:30", "-9_81", "1_0", "0x10", "0b1", "１２", "'1'", '"1"', "1,5", "1 2", "--1", "1e", "."]
-    + ["e5", "inf", "nan", "2001-01-01", "true", "[1]", "{a: 1}", "1" + "0" * 5000 + "x"],
-)
+NO_NUMBERS = """
+1:30  -9_81  1_0  0x10  0b1  １２  '1'  "1"  1,5  --1  1e  .  e5  inf  nan  2001-01-01  true  [1]  {a:1}
+"""
+
+
+@pytest.mark.parametrize("text", [*NO_NUMBERS.split(), "1 2", "1" + "0" * 5000 + "x"])
 def test_what_is_no_number_is_an_error(tmp_path, text):
     with pytest.raises(RobotError, match=r"robot.yaml:2: key: expected a number, got .{1,70}$"):
         value(tmp_path, text).number()
