@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -125,7 +126,7 @@ class BagReader:
 
 def _check_there(path: Path) -> None:
     """What can be said of a path before it is opened."""
-    if not path.exists():
+    if not os.path.exists(path):  # Path.exists() raises where the path is too long
         raise BagError(
             f"{path}: no such file or directory; expected a rosbag2 recording (a directory with "
             "metadata.yaml, or a .db3 or .mcap file), or a table (.csv or .txt)"

@@ -15,15 +15,17 @@ currents in A.
 
 from __future__ import annotations
 
+import math
 import re
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from inverse_dynamics.csv_table import CsvTable
+from inverse_dynamics.decimals import LARGEST
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.joint_log import JointLog, no_progress
-from inverse_dynamics.wording import counted
+from inverse_dynamics.wording import counted, harmless, listed, shown
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -119,13 +121,13 @@ def generic_columns(
     if not there:
         raise BagError(
             f"{table.path}: expected columns {TIME}, position.JOINT, velocity.JOINT, effort.JOINT "
-            f"(or current.JOINT), or those of UR's RTDE record tool, got {_some(table.names)}"
+            f"(or current.JOINT), or those of UR's RTDE record tool, got {listed(table.names)}"
         )
     joints = tuple(joints) or tuple(there)
     if unknown := [joint for joint in joints if joint not in there]:
         raise BagError(
-            f"{table.path}: expected the joints {', '.join(joints)}, got {', '.join(there)}; "
-            f"missing: {', '.join(unknown)}; give the file's names with --joints, in the order of "
+            f"{table.path}: expected the joints {listed(joints, 20)}, got {listed(there, 20)}; "
+            f"missing: {listed(unknown, 20)}; give the file's names with --joints, in the order of "
             "the chain"
         )
     columns = {kind: [f"{kind}.{joint}" for joint in joints] for kind in _QUANTITIES}
@@ -151,9 +153,9 @@ def _refuse_units(table: CsvTable) -> None:
         kind, _, joint = name.partition(".")
         if kind in _QUANTITIES and (unit := _UNIT_AT_END.search(joint)):
             raise BagError(
-                f"{table.path}: column {name}: expected a joint's name without a unit, got "
-                f"'{unit[0].strip()}'; give numbers in {_QUANTITIES[kind]}, and name the column "
-                f"{name.removesuffix(unit[0])}"
+                f"{table.path}: column {harmless(name)}: expected a joint's name without a unit, got "
+                f"{shown(unit[0].strip())}; give numbers in {_QUANTITIES[kind]}, and name the "
+                f"column {harmless(name.removesuffix(unit[0]))}"
             )
 
 
@@ -165,13 +167,16 @@ def read_columns(
 ) -> dict[str, Floats]:
     """Numbers by quantity, (N, n) each, and the time (N, 1). Raises BagError."""
     if time_name not in table.names:
-        raise BagError(f"{table.path}: expected a column {time_name} [s], got {_some(table.names)}")
+        raise BagError(
+            f"{table.path}: expected a column {time_name} [s], got {listed(table.names)}"
+        )
     groups = {TIME: [time_name], **columns}
     names = [name for group in groups.values() for name in group]
     if twice := [name for name in names if table.names.count(name) > 1]:
         raise BagError(f"{table.path}: expected each column once, got several named {twice[0]}")
     ends = np.cumsum([len(group) for group in groups.values()])[:-1]
-    numbers = table.read(names, progress)
+    largest = [math.inf] + [LARGEST] * (len(names) - 1)  # check_seconds() sees to the time
+    numbers = table.read(names, largest, progress)
     return dict(zip(groups, np.split(numbers, ends, axis=1), strict=True))
 
 
@@ -204,10 +209,10 @@ def _rtde_columns(
     for kind, names in columns.items():
         if missing := [name for name in names if name not in table.names]:
             targets = [name for name in table.names if name.startswith("target_")]
-            only = f"; {_some(targets)} are what was asked for, not what was measured"
+            only = f"; {listed(targets)} are what was asked for, not what was measured"
             raise BagError(
                 f"{table.path}: expected the columns {names[0]} to {names[-1]} ({kind}, a joint "
-                f"each), missing: {', '.join(missing)}{only if targets else ''}; have the RTDE "
+                f"each), missing: {listed(missing)}{only if targets else ''}; have the RTDE "
                 f"record tool's configuration list {_RTDE[kind]}"
             )
     if count > len(joints):
@@ -236,8 +241,4 @@ def check_seconds(table: CsvTable, name: str, time: Floats) -> None:
 
 def _left_out(table: CsvTable, used: Sequence[str]) -> tuple[str, ...]:
     others = [name for name in table.names if name not in set(used)]
-    return (f"{counted(len(others), 'column')} left out: {_some(others)}",) if others else ()
-
-
-def _some(names: Sequence[str]) -> str:
-    return ", ".join(names[:6]) + (f" and {len(names) - 6} others" if len(names) > 6 else "")
+    return (f"{counted(len(others), 'column')} left out: {listed(others)}",) if others else ()

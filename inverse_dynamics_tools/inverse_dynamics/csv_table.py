@@ -7,15 +7,17 @@ asked for may hold anything.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator
 from operator import itemgetter
 from typing import TYPE_CHECKING, TextIO
 
 import numpy as np
 
+from inverse_dynamics.decimals import NOT_FINITE, decimal
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.joint_log import no_progress
-from inverse_dynamics.wording import counted
+from inverse_dynamics.wording import counted, harmless, shown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,11 +27,12 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".csv", ".txt")
 _BLOCK = 2**20  # characters read together
+_LONGEST_HEADER = 2**22  # characters
 
 
 def is_csv(path: Path) -> bool:
     """Whether the name is that of a text file."""
-    return path.suffix.lower() in SUFFIXES and not path.is_dir()
+    return path.suffix.lower() in SUFFIXES and not os.path.isdir(path)  # paths may be too long
 
 
 class CsvTable:
@@ -42,6 +45,11 @@ class CsvTable:
                 self._lines_before, header = _first_line(file)
         except (OSError, UnicodeDecodeError) as error:
             raise self._unreadable(error) from error
+        if len(header) >= _LONGEST_HEADER:
+            raise BagError(
+                f"{path}:{self._lines_before}: expected a header line of at most {_LONGEST_HEADER} "
+                "characters, got a longer one; is it a table of numbers?"
+            )
         if not header:
             raise BagError(f"{path}: is empty; expected a header line and rows of numbers")
         self._delimiter = _delimiter(header)
@@ -54,8 +62,14 @@ class CsvTable:
                 f"numbers; put one before them, such as time{self._delimiter or ' '}position.joint_1"
             )
 
-    def read(self, columns: Sequence[str], progress: Progress = no_progress) -> Floats:
-        """(N, columns) numbers, all of them finite. Raises BagError."""
+    def read(
+        self,
+        columns: Sequence[str],
+        largest: Sequence[float] | None = None,
+        progress: Progress = no_progress,
+    ) -> Floats:
+        """(N, columns) numbers, all of them finite and none larger than those. Raises BagError."""
+        limits = np.full(len(columns), np.inf) if largest is None else np.array(largest)
         where = [self.names.index(name) for name in columns]
         size = self.path.stat().st_size
         blocks = []
@@ -65,7 +79,7 @@ class CsvTable:
                     file.readline()
                 line, done = self._lines_before + 1, 0
                 while lines := file.readlines(_BLOCK):
-                    blocks.append(self._numbers(lines, line, where))
+                    blocks.append(self._numbers(lines, line, where, limits))
                     line += len(lines)
                     done += sum(map(len, lines))
                     progress("reading", min(done, size), size)
@@ -90,7 +104,7 @@ class CsvTable:
     def _open(self) -> TextIO:
         return self.path.open(encoding="utf-8-sig")
 
-    def _numbers(self, lines: list[str], first: int, where: list[int]) -> Floats:
+    def _numbers(self, lines: list[str], first: int, where: list[int], limits: Floats) -> Floats:
         """Numbers of some lines; first: the number of the first line in the file."""
         rows = [line.split(self._delimiter) for line in lines if not line.isspace()]
         if set(map(len, rows)) - {len(self.names)}:
@@ -98,12 +112,13 @@ class CsvTable:
         values = np.empty((len(rows), len(where)))
         try:
             for j, column in enumerate(where):
-                texts: Iterable[str] = map(itemgetter(column), rows)
+                texts = list(map(itemgetter(column), rows))
+                _refuse_other_notations("".join(texts))
                 values[:, j] = np.fromiter(map(float, texts), float, len(rows))
         except ValueError:
-            raise self._no_number(lines, first, where) from None
-        if not np.isfinite(values).all():
-            raise self._no_number(lines, first, where)
+            raise self._no_number(lines, first, where, limits) from None
+        if not (np.abs(values) <= np.minimum(limits, np.finfo(float).max)).all():
+            raise self._no_number(lines, first, where, limits)
         return values
 
     def _wrong_length(self, lines: list[str], first: int) -> BagError:
@@ -117,23 +132,28 @@ class CsvTable:
             f"{got}; is the file cut off?"
         )
 
-    def _no_number(self, lines: list[str], first: int, where: list[int]) -> BagError:
+    def _no_number(
+        self, lines: list[str], first: int, where: list[int], limits: Floats
+    ) -> BagError:
         for line, text in enumerate(lines, first):
             if text.isspace():
                 continue
             fields = text.split(self._delimiter)
-            for column in sorted(where):
+            for column, largest in sorted(zip(where, limits, strict=True)):
                 got = fields[column].strip()
                 if not _is_number(got):
                     hint = "; decimals need a point" if _is_number(got.replace(",", ".")) else ""
-                    return self._bad_field(line, column, f"a number, got '{got}'{hint}")
+                    return self._bad_field(line, column, f"a number, got {shown(got)}{hint}")
                 if not np.isfinite(float(got)):
-                    return self._bad_field(line, column, f"a finite number, got '{got}'")
+                    return self._bad_field(line, column, f"a finite number, got {shown(got)}")
+                if abs(float(got)) > largest:
+                    expected = f"a number of a motion, in SI units, of at most {largest:g}"
+                    return self._bad_field(line, column, f"{expected}, got {shown(got)}")
         raise AssertionError("no field is bad")
 
     def _bad_field(self, line: int, column: int, text: str) -> BagError:
         return BagError(
-            f"{self.path}:{line}: column {column + 1} ({self.names[column]}): expected {text}"
+            f"{self.path}:{line}: column {column + 1} ({harmless(self.names[column])}): expected {text}"
         )
 
     def _unreadable(self, error: Exception) -> BagError:
@@ -142,14 +162,16 @@ class CsvTable:
                 f"{self.path}: no such file; expected a table of numbers in text, or name a "
                 "rosbag2 recording"
             )
-        why = "it isn't text" if isinstance(error, UnicodeDecodeError) else str(error)
+        why = "it isn't text in UTF-8"
+        if isinstance(error, OSError):
+            why = error.strerror or str(error)
         return BagError(f"{self.path}: can't be read ({why}); expected a table of numbers in text")
 
 
 def _first_line(file: TextIO) -> tuple[int, str]:
     """Number and text of the first line that isn't blank; "" if there is none."""
     number = 0
-    while text := file.readline():
+    while text := file.readline(_LONGEST_HEADER):
         number += 1
         if not text.isspace():
             return number, text.strip()
@@ -164,7 +186,13 @@ def _delimiter(header: str) -> str | None:
 
 def _is_number(text: str) -> bool:
     try:
-        float(text)
+        decimal(text)
     except ValueError:
-        return False
+        return NOT_FINITE.fullmatch(text) is not None
     return True
+
+
+def _refuse_other_notations(texts: str) -> None:
+    """Raise ValueError for what float() takes beyond ASCII decimals: `1_0`, digits of other scripts."""
+    if "_" in texts or not texts.isascii():
+        raise ValueError("not all of them are decimal numbers")

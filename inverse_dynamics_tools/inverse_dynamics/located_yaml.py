@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 import yaml
 
+from inverse_dynamics.decimals import DECIMAL
 from inverse_dynamics.wording import did_you_mean, shown
 
 if TYPE_CHECKING:
@@ -38,7 +39,6 @@ _TRUTHS = {
     **dict.fromkeys(("false", "False", "FALSE"), False),
 }
 _INTEGER = re.compile(r"[-+]?[0-9]+")
-_NUMBER = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 _NOT_FINITE = re.compile(r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
 
 
@@ -78,7 +78,7 @@ class Value:
             return _TRUTHS[word]
         if _INTEGER.fullmatch(word):
             return self.integer()
-        if _NUMBER.fullmatch(word) or _NOT_FINITE.fullmatch(word):
+        if DECIMAL.fullmatch(word) or _NOT_FINITE.fullmatch(word):
             return self.number()
         return word
 
@@ -96,7 +96,7 @@ class Value:
     def number(self) -> float:
         """A finite number."""
         word = self._plain
-        if word is None or not (_NUMBER.fullmatch(word) or _NOT_FINITE.fullmatch(word)):
+        if word is None or not (DECIMAL.fullmatch(word) or _NOT_FINITE.fullmatch(word)):
             self.fail("a number")
         value = math.nan if _NOT_FINITE.fullmatch(word) else float(word)
         if not math.isfinite(value):

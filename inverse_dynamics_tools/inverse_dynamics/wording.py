@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
 
 def counted(count: int, noun: str) -> str:
@@ -15,9 +15,20 @@ def counted(count: int, noun: str) -> str:
 
 
 def shown(text: object, longest: int = 60) -> str:
-    """A text from a file for an error message: in quotes, on one line, nothing a terminal acts upon."""
+    """A text from a file for an error message: in quotes, short, nothing that a terminal acts upon."""
+    return f"'{harmless(text, longest)}'"
+
+
+def harmless(text: object, longest: int = 60) -> str:
+    """The same without quotes."""
     quoted = repr(str(text)[: longest + 1])[1:-1].replace("\\'", "'")
-    return f"'{quoted}'" if len(str(text)) <= longest else f"'{quoted[:longest]}...'"
+    return quoted if len(str(text)) <= longest else f"{quoted[:longest]}..."
+
+
+def listed(names: Sequence[str], most: int = 6) -> str:
+    """The first few names from a file for an error message."""
+    others = f" and {len(names) - most} others" if len(names) > most else ""
+    return ", ".join(harmless(name) for name in names[:most]) + others
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:

@@ -130,7 +130,16 @@ def test_mistakes_of_the_user_are_told_and_nothing_is_written(ids, bag, tmp_path
         (("torque",), "invalid choice: 'torque'"),
         (("evaluate", "bag"), "the following arguments are required: --robot"),
         (("evaluate", "bag", "--robot", "x", "--gravity", "1,2"), "expected three numbers, x,y,z"),
-        (("evaluate", "bag", "--robot", "x", "--gravity", "1,2,nan"), "expected finite numbers"),
+        (("evaluate", "bag", "--robot", "x", "--gravity", "1,2,1e999"), "expected finite numbers"),
+        (
+            ("evaluate", "bag", "--robot", "x", "--gravity", "0,0,-9_81"),
+            "expected three numbers, x",
+        ),
+        (
+            ("evaluate", "bag", "--robot", "x", "--gravity", "0,0,１"),
+            "expected three numbers, x,y,z",
+        ),
+        (("evaluate", "bag", "--robot", "x", "--cutoff", "1_0"), "expected a number above zero"),
         (("evaluate", "bag", "--robot", "x", "--cutoff", "-1"), "expected a number above zero"),
         (("evaluate", "bag", "--robot", "x", "--joints", "a,,b"), "expected names, a,b,c"),
         (("evaluate", "bag", "--robot", "x", "--accelerations", "best"), "choose from"),

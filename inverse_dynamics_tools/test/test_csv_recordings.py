@@ -232,7 +232,7 @@ def test_a_file_that_is_none_or_no_text_is_said(tmp_path):
         read_recording(tmp_path / "nothing.csv")
     file = tmp_path / "picture.csv"
     file.write_bytes(b"\x89PNG\xff\xfe")
-    with pytest.raises(BagError, match="can't be read \\(it isn't text\\)"):
+    with pytest.raises(BagError, match="can't be read \\(it isn't text in UTF-8\\)"):
         read_recording(file)
     with pytest.raises(BagError, match="clock: expected one of auto, header, receive, got 'wall'"):
         read_recording(file, clock="wall")

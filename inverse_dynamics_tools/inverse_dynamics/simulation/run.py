@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics.decimals import decimal
 from inverse_dynamics.descriptions import read_description
 from inverse_dynamics.joint_log import JointLog, no_progress
 from inverse_dynamics.simulation.collision import ContactChecker
@@ -163,7 +164,7 @@ def _friction(wish: JointFriction | float | str | None, chain: UrdfChain) -> Joi
     if wish == "urdf":
         return JointFriction(chain.friction, chain.damping)
     try:
-        part = float(wish)
+        part = decimal(wish) if isinstance(wish, str) else float(wish)
     except ValueError:
         part = np.nan
     if not 0 <= part < 1:

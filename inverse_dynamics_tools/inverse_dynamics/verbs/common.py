@@ -8,6 +8,8 @@ import math
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.decimals import decimal
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
 def three_numbers(text: str) -> tuple[float, float, float]:
     """`x,y,z` of an option."""
     try:
-        x, y, z = (float(part) for part in text.split(","))
+        x, y, z = (decimal(part) for part in text.split(","))
     except ValueError:
         raise argparse.ArgumentTypeError(f"expected three numbers, x,y,z, got '{text}'") from None
     if not all(math.isfinite(number) for number in (x, y, z)):
@@ -36,12 +38,30 @@ def names(text: str) -> tuple[str, ...]:
 def positive_number(text: str) -> float:
     """A number above zero of an option."""
     try:
-        number = float(text)
+        number = decimal(text)
     except ValueError:
         number = math.nan
     if not (number > 0 and math.isfinite(number)):
         raise argparse.ArgumentTypeError(f"expected a number above zero, got '{text}'")
     return number
+
+
+def number(text: str) -> float:
+    """A finite number of an option."""
+    try:
+        value = decimal(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"expected a number, got '{text}'")
+    return value
+
+
+def whole_number(text: str) -> int:
+    """A number of things of an option: 0, 1, 2, ..."""
+    if not (text.isascii() and text.isdecimal() and len(text) <= 18):
+        raise argparse.ArgumentTypeError(f"expected an integer that isn't negative, got '{text}'")
+    return int(text)
 
 
 @contextmanager

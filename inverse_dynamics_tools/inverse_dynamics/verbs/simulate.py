@@ -8,7 +8,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.common import positive_number, progress_bar
+from inverse_dynamics.decimals import decimal
+from inverse_dynamics.verbs.common import number, positive_number, progress_bar, whole_number
 from inverse_dynamics.verbs.options import add_gravity, add_robot, add_verb
 from inverse_dynamics.wording import counted
 
@@ -67,7 +68,7 @@ def add_parser(
     )
     parser.add_argument(
         "--seed",
-        type=_seed,
+        type=whole_number,
         default=0,
         help="of all random numbers: the same seed gives the same recording (default: 0)",
     )
@@ -94,7 +95,7 @@ def add_parser(
     motion.add_argument(
         "--rate",
         metavar="HZ",
-        type=int,
+        type=whole_number,
         help="of controller and recording: 125, 500 or 1000 (default: the run configuration's)",
     )
     motion.add_argument(
@@ -140,26 +141,26 @@ def add_parser(
         help="steps of the figures [rad, rad/s, N m] (without a value: 1e-5,1e-3,0.01)",
     )
     recording.add_argument(
-        "--drop", metavar="P", type=float, default=0.0, help="part of the messages that is lost"
+        "--drop", metavar="P", type=number, default=0.0, help="part of the messages that is lost"
     )
     recording.add_argument(
         "--repeat",
         metavar="P",
-        type=float,
+        type=number,
         default=0.0,
         help="part of the messages that repeats the figures of the one before",
     )
     recording.add_argument(
         "--jitter",
         metavar="S",
-        type=float,
+        type=number,
         default=0.0,
         help="standard deviation of the stamps [s]",
     )
     recording.add_argument(
         "--start-stamp",
         metavar="S",
-        type=float,
+        type=number,
         help="stamp of the start [s] (default: 1700000000; never the time of day)",
     )
     return parser
@@ -234,12 +235,6 @@ def _print(result: SimulatedRun, out: Path) -> None:
     )
 
 
-def _seed(text: str) -> int:
-    if not text.isdecimal():
-        raise argparse.ArgumentTypeError(f"expected an integer that isn't negative, got '{text}'")
-    return int(text)
-
-
 def _payload(text: str) -> Payload:
     from inverse_dynamics.simulation.model import Payload
 
@@ -258,10 +253,10 @@ def _resolution(text: str) -> Resolution | str:
 
 def _numbers(text: str, counts: tuple[int, ...]) -> list[float]:
     try:
-        numbers = [float(part) for part in text.split(",")]
+        numbers = [decimal(part) for part in text.split(",")]
     except ValueError:
         numbers = []
-    if len(numbers) not in counts or not all(math.isfinite(number) for number in numbers):
+    if len(numbers) not in counts or not all(math.isfinite(entry) for entry in numbers):
         expected = " or ".join(map(str, counts))
         raise argparse.ArgumentTypeError(
             f"expected {expected} numbers, separated by commas, got '{text}'"
