@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 # What each method does, as --help says it.
 METHODS = {
-    "auto": "low-pass with a cut-off chosen from the data",
+    "auto": "those of the recording if it has any, else low-pass with a cut-off chosen from the data",
     "low-pass": "zero-phase low-pass of the velocities, then their derivative",
-    "given": "those of the recording; the default where it has any",
+    "given": "those of the recording",
     "backward-difference": "(qd[k] - qd[k-1]) / (t[k] - t[k-1]), the first one zero; no filter",
 }
 
@@ -103,6 +103,8 @@ def estimate_accelerations(
         **{rule.replace("-", "_"): rule not in without_rules for rule in RULES}
     )
     time = log.time
+    if method == "auto":
+        method = "low-pass" if log.qdd is None or cutoff is not None else "given"
     if method in ("given", "backward-difference"):
         if cutoff is not None:
             raise EvaluationError(

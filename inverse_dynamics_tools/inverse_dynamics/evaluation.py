@@ -154,8 +154,6 @@ def evaluate(
         clock=clock,
         progress=progress,
     )
-    if log.qdd is not None and accelerations is None and cutoff is None:
-        robot = replace(robot, accelerations="given", cutoff=None)
     effort = stated_effort(effort_is, log, robot, arm.gains)
     seconds = {"solver": ready - start, "reading": time.perf_counter() - ready}
     progress("computing", 0, len(log))

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from test_evaluation import JOINTS, RIGID_BODY, URDF, motion
 
-from inverse_dynamics import Solver, evaluate, read_recording
+from inverse_dynamics import Solver, evaluate, load_robot, read_recording
 from inverse_dynamics.errors import BagError, EvaluationError
 
 HEADER = "time,position.a,velocity.a,effort.a\n"
@@ -86,7 +87,8 @@ def test_given_accelerations_are_taken_unless_told_otherwise(file, solver):
     assert result.accelerations.summary == "given by the recording"
     np.testing.assert_array_equal(result.qdd, qdd)
     assert max(error.max_abs for error in result.errors) < 1e-9  # rounding
-    for forced in ({"accelerations": "auto"}, {"cutoff": 20.0}):
+    assert evaluate(file, "ur10_simulated", accelerations="auto").accelerations.method == "given"
+    for forced in ({"accelerations": "low-pass"}, {"cutoff": 20.0}):
         assert evaluate(file, "ur10_simulated", **forced).accelerations.method == "low-pass"
     write_table(file, table_of(solver.torques(q, qd, qdd)))
     assert evaluate(file, "ur10_simulated").accelerations.method == "low-pass"
@@ -94,6 +96,32 @@ def test_given_accelerations_are_taken_unless_told_otherwise(file, solver):
         EvaluationError, match=r"motion\.csv: accelerations: the recording gives none"
     ):
         evaluate(file, "ur10_simulated", accelerations="given")
+
+
+@pytest.mark.parametrize(
+    ("configured", "options", "method", "cutoff"),
+    [
+        ("auto", {}, "given", None),
+        ("low-pass", {}, "low-pass", 7.0),
+        ("backward-difference", {}, "backward-difference", None),
+        ("backward-difference", {"accelerations": "auto"}, "given", None),
+        ("low-pass", {"accelerations": "given"}, "given", None),
+        ("given", {"accelerations": "low-pass", "cutoff": 9.0}, "low-pass", 9.0),
+        ("low-pass", {"cutoff": 9.0}, "low-pass", 9.0),
+    ],
+)
+def test_the_option_takes_precedence_over_the_configuration_and_that_over_the_recording(
+    file, solver, configured, options, method, cutoff
+):
+    q, qd, qdd, _ = motion()
+    write_table(file, table_of(solver.torques(q, qd, qdd), qdd))
+    robot = replace(
+        load_robot("ur10_simulated"),
+        accelerations=configured,
+        cutoff=7.0 if configured == "low-pass" else None,
+    )
+    found = evaluate(file, robot, **options).accelerations
+    assert (found.method, found.cutoff) == (method, cutoff)
 
 
 def rtde_table(currents):
