@@ -36,6 +36,7 @@ MESSAGE_TYPE = "sensor_msgs/msg/JointState"
 
 _LITTLE_ENDIAN_CDR = b"\x00\x01"
 _STAMP = 4  # offset of sec and nanosec
+_PADDING_AT_END = 3  # bytes at most: some middleware fills messages up to a multiple of 4
 _LAYOUTS_TRIED_PER_BLOCK = 32  # beyond it messages are read one by one
 
 
@@ -100,7 +101,10 @@ def layout_of(message: bytes) -> Layout | None:
         if offset + length > len(message):
             raise struct.error("string beyond the end")
         fixed.extend(range(offset, offset + length))
-        return message[offset : offset + length].rstrip(b"\0").decode(), offset + length
+        text = message[offset : offset + length]
+        if text.find(b"\0") != length - 1:  # of an empty one without the closing zero: -1
+            raise struct.error("string that doesn't end with its only zero")
+        return text[:-1].decode(), offset + length
 
     try:
         frame_id, at = string_at(at)
@@ -118,7 +122,7 @@ def layout_of(message: bytes) -> Layout | None:
             at += 8 * count
     except (struct.error, UnicodeDecodeError):
         return None
-    if at > len(message):
+    if not at <= len(message) <= at + _PADDING_AT_END:
         return None
     offsets = np.array(fixed, dtype=np.intp)
     return Layout(

@@ -97,6 +97,30 @@ def test_a_message_that_is_cut_off_raises(length):
         list(Decoder().decode([raw[:length]]))
 
 
+@pytest.mark.parametrize("more", [1, 3, 4, 40])
+def test_a_message_with_more_bytes_than_its_fields_and_padding_raises(more):
+    raw = serialized(joint_state(["a", "b"], [1, 2], [3, 4], [5, 6], 7)) + bytes(more)
+    if more < 4:  # padding to a multiple of 4, which some middleware adds
+        assert [b.names for b in Decoder().decode([raw])] == [("a", "b")]
+    else:
+        with pytest.raises(Exception, match="size mismatch"):
+            list(Decoder().decode([raw]))
+
+
+@pytest.mark.parametrize("name", [b"b\0Y\0\0", b"ab\0\0\0"])
+def test_zeros_within_a_name_are_read_as_rosbags_does(name):
+    raw = serialized(joint_state(["abcd"], [1], [2], [3], 7))
+    raw = raw.replace(b"abcd\0", name)
+    (block,) = Decoder().decode([raw])
+    check_block(block, [STORE.deserialize_cdr(raw, JOINT_STATE)])
+
+
+def test_a_name_without_its_closing_zero_raises():
+    raw = serialized(joint_state(["abcd"], [1], [2], [3], 7))
+    with pytest.raises(Exception, match="terminator"):
+        list(Decoder().decode([raw.replace(b"abcd\0", b"abcde")]))
+
+
 @pytest.mark.parametrize("names", [[], ["a"], ["joint_1", "joint_22", "joint_333"]])
 @pytest.mark.parametrize("frame_id", ["", "base", "base_link"])
 def test_encoded_messages_are_the_bytes_that_rosbags_writes(names, frame_id):
