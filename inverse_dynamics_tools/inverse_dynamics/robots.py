@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.ament import package_share, resolve
+from inverse_dynamics.ament import PackageNotFoundError, package_share, resolve
 from inverse_dynamics.effort_meanings import EFFORT_CHOICES
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.located_yaml import read_mapping
@@ -97,8 +97,6 @@ def _directory() -> Path:
 
 
 def _names_if_any() -> list[str]:
-    from inverse_dynamics.ament import PackageNotFoundError
-
     try:
         return robot_names()
     except PackageNotFoundError:
@@ -152,8 +150,12 @@ def _truth(value: Value | None, *, default: bool) -> bool:
 def _existing_file(value: Value | None) -> Path | None:
     if value is None:
         return None
-    path = resolve(value.text(), value.file.parent)
-    if not path.is_file():
+    try:
+        path = resolve(value.text(), value.file.parent)
+        there = path.is_file()
+    except (PackageNotFoundError, OSError, RuntimeError) as error:  # no home, or a name too long
+        value.fail("a file", str(error))
+    if not there:
         value.fail("a file", f"{path} isn't there")
     return path
 

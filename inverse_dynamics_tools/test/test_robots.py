@@ -112,6 +112,9 @@ def test_four_keys_are_enough(write):
             ":16: accelerations.cut_off: unknown key; did you mean cut",
         ),
         ("urdf: arm.urdf", "urdf: leg.urdf", ":5: urdf: expected a file, got 'leg.urdf'; "),
+        ("arm.urdf", "package://nobody/a.urdf", ":5: urdf: expected a file, got 'package://nobody"),
+        ("urdf: arm.urdf", "urdf: ~no_one/a.urdf", ":5: urdf: expected a file, got '~no_one/a.ur"),
+        ("arm.urdf", 300 * "u", ":5: urdf: expected a file, got 'uuuu"),
         ("urdf: arm.urdf", "urdf: [arm.urdf]", ":5: urdf: expected a text, got a list of 1"),
         ("tip: tool0", "tip: [tool0", ":8: isn't YAML: expected ',' or ']'"),
         (
