@@ -62,15 +62,15 @@ struct ArticulatedInertia {
                                       const ArticulatedInertia& I_B) {
     // turn the axes
     const Matrix3<Scalar>& R = X_AB.R;
-    const Matrix3<Scalar> J = R * I_B.J * R.transpose();
-    const Matrix3<Scalar> H = R * I_B.H * R.transpose();
-    const Matrix3<Scalar> M = R * I_B.M * R.transpose();
+    const Matrix3<Scalar> turned_J = R * I_B.J * R.transpose();
+    const Matrix3<Scalar> turned_H = R * I_B.H * R.transpose();
+    const Matrix3<Scalar> M_A = R * I_B.M * R.transpose();
 
     // move the origin, with v_B = v_A - p x w and n_A = n_B + p x f
     const Matrix3<Scalar> p_x = skew<Scalar>(X_AB.p);
-    const Matrix3<Scalar> H_A = H + p_x * M;
-    const Matrix3<Scalar> J_A = J - H * p_x + p_x * H_A.transpose();
-    return {J_A, H_A, M};
+    const Matrix3<Scalar> H_A = turned_H + p_x * M_A;
+    const Matrix3<Scalar> J_A = turned_J - turned_H * p_x + p_x * H_A.transpose();
+    return {J_A, H_A, M_A};
   }
 };
 

@@ -52,8 +52,8 @@ struct MassFlow {
 
   /// The same flow, stated in frame A: velocities keep their reference, r starts elsewhere.
   friend MassFlow operator*(const Transform<Scalar>& X_AB, const MassFlow& B) {
-    const Vector3<Scalar> momentum = X_AB.R * B.momentum;
-    return {momentum, X_AB.R * B.moment * X_AB.R.transpose() + momentum * X_AB.p.transpose()};
+    const Vector3<Scalar> momentum_A = X_AB.R * B.momentum;
+    return {momentum_A, X_AB.R * B.moment * X_AB.R.transpose() + momentum_A * X_AB.p.transpose()};
   }
 };
 
