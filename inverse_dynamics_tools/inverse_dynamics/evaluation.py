@@ -35,8 +35,9 @@ from inverse_dynamics.robots import Robot, load_robot, with_changes
 from inverse_dynamics.solvers import description_notes, open_solver
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
+    from inverse_dynamics._core import Parameter
     from inverse_dynamics.joint_log import Clock, Floats, JointLog, Mask, Progress
 
 
@@ -107,6 +108,7 @@ def evaluate(
     gravity: tuple[float, float, float] | None = None,
     topic: str | None = None,
     joints: Sequence[str] | None = None,
+    parameters: Mapping[str, Parameter] | None = None,
     effort_is: str | None = None,
     accelerations: str | None = None,
     cutoff: float | None = None,
@@ -118,7 +120,8 @@ def evaluate(
 
     bag: rosbag2 recording or text file, see recordings.py. robot: a name of robot_names(), the file of a
     run configuration, or one that is loaded. What else is given replaces what the configuration
-    says: see Robot. effort_is: what recorded efforts mean, one of EFFORT_CHOICES.
+    says: see Robot; parameters, of the solver, one by one. effort_is: what recorded efforts mean, one of
+    EFFORT_CHOICES.
     accelerations: one of accelerations.METHODS; cutoff: Hz, of a low-pass. clock: which stamps are
     the time. without_rules: those of accelerations.RULES not to be acted upon.
 
@@ -136,6 +139,7 @@ def evaluate(
         gravity=gravity,
         topic=topic,
         joints=None if joints is None else tuple(joints),
+        parameters=parameters,
         accelerations=accelerations,
         cutoff=cutoff,
     )

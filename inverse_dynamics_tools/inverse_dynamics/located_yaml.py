@@ -63,6 +63,16 @@ class Value:
         raise self.error(f"{self.where}: expected {expected}, got {got}{remedy and '; ' + remedy}")
 
     @property
+    def is_list(self) -> bool:
+        """Whether entries() may be called."""
+        return isinstance(self.node, yaml.SequenceNode)
+
+    @property
+    def is_mapping(self) -> bool:
+        """Whether mapping() may be called."""
+        return isinstance(self.node, yaml.MappingNode)
+
+    @property
     def is_null(self) -> bool:
         """Whether there is a key, but nothing behind it."""
         return self._plain in _NULLS
@@ -195,7 +205,11 @@ class Mapping:
 
 def read_mapping(file: Path, error: type[UserError]) -> Mapping:
     """Read a YAML file that holds keys with values."""
-    text = _text_of(file, error)
+    return parse_mapping(_text_of(file, error), file, error)
+
+
+def parse_mapping(text: str, file: Path, error: type[UserError]) -> Mapping:
+    """Read the YAML of a file."""
     try:
         node = yaml.compose(text, Loader=_Loader)
     except yaml.MarkedYAMLError as problem:

@@ -18,10 +18,12 @@ from inverse_dynamics.ament import PackageNotFoundError, package_share, resolve
 from inverse_dynamics.effort_meanings import EFFORT_CHOICES
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.located_yaml import read_mapping
+from inverse_dynamics.solver_parameters import solver_parameters
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
+    from inverse_dynamics._core import Parameter
     from inverse_dynamics.located_yaml import Mapping, Value
 
 SCHEMA = 1
@@ -49,6 +51,8 @@ class Robot:
     drive_gains: tuple[float, ...] = ()  # N m/A (prismatic N/A); empty: the solver's, if it has any
     accelerations: str = "auto"
     cutoff: float | None = None  # Hz
+    # Of the solver, beyond the fields above: dotted name to value.
+    parameters: dict[str, Parameter] = field(default_factory=dict)
     source: str = ""  # where description and figures come from
     # What only the simulator reads: not looked into here.
     simulation: Mapping | None = field(default=None, repr=False, compare=False)
@@ -84,11 +88,13 @@ def load_robot(name_or_file: str | Path) -> Robot:
 def with_changes(robot: Robot, **changes: Any) -> Robot:
     """The run configuration with all fields replaced for which something is given, not None.
 
-    A description that is given stands instead of a model file too.
+    A description that is given stands instead of a model file too; parameters are given one by one.
     """
     given = {name: value for name, value in changes.items() if value is not None}
     if "urdf" in given:
         given["model"] = None
+    if "parameters" in given:
+        given["parameters"] = {**robot.parameters, **given["parameters"]}
     return replace(robot, **given)
 
 
@@ -114,7 +120,7 @@ def _read(file: Path) -> Robot:
     if plugin.text().count("/") != 1:
         plugin.fail("package/Class", "`ids robots --plugins` lists what is installed")
     method, cutoff = _accelerations(top.optional("accelerations"))
-    simulation = top.optional("simulation")
+    simulation, parameters = top.optional("simulation"), top.optional("parameters")
     robot = Robot(
         name=name,
         description=description.strip(),
@@ -132,6 +138,7 @@ def _read(file: Path) -> Robot:
         drive_gains=_drive_gains(top.optional("drive_gains")),
         accelerations=method,
         cutoff=cutoff,
+        parameters=solver_parameters(parameters.mapping()) if parameters else {},
         source=_text(top.optional("source")).strip(),
         simulation=simulation.mapping() if simulation else None,
     )

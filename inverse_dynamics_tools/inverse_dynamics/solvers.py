@@ -27,6 +27,7 @@ def open_solver(robot: Robot, description: str = "") -> _core.Solver:
             gravity=robot.gravity,
             friction=robot.friction,
             model=None if robot.model is None else str(robot.model),
+            parameters=robot.parameters,
         )
     except SolverError as error:
         at_fault = isinstance(error, InvalidRobotDescriptionError)

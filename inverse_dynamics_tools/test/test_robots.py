@@ -25,6 +25,12 @@ accelerations:
   method: low-pass
   cutoff: 5
 source: measured
+parameters:
+  allow_massless: true
+  batch_threads: 4
+  locked_joints: {finger: 0.02, thumb: 1}
+  mode: fast
+  weights: [1, 2.5]
 """
 
 GAINS = "drive_gains: [13.5, 9]"
@@ -73,12 +79,29 @@ def test_every_key_is_read(write, tmp_path):
     assert (robot.effort, robot.accelerations, robot.cutoff) == ("torque", "low-pass", 5.0)
     assert robot.drive_gains == (13.5, 9.0)
     assert robot.source == "measured"
+    assert robot.parameters == {
+        "allow_massless": True,
+        "batch_threads": 4,
+        "locked_joints.finger": 0.02,
+        "locked_joints.thumb": 1,
+        "mode": "fast",
+        "weights": [1.0, 2.5],
+    }
+    assert [type(value) for value in robot.parameters.values()] == [
+        bool,
+        int,
+        float,
+        int,
+        str,
+        list,
+    ]
 
 
 def test_four_keys_are_enough(write):
     robot = load_robot(write(LEAST))
     assert (robot.topic, robot.friction, robot.accelerations) == ("/joint_states", True, "auto")
     assert (robot.gravity, robot.joints, robot.urdf) == (None, (), None)
+    assert robot.parameters == {}
 
 
 @pytest.mark.parametrize(
@@ -110,6 +133,34 @@ def test_four_keys_are_enough(write):
             "  cutoff: 5",
             "  cut_off: 5",
             ":16: accelerations.cut_off: unknown key; did you mean cut",
+        ),
+        ("  mode: fast", "  mode:", ":22: parameters.mode: expected a text, a number, true or fal"),
+        (
+            "  mode: fast",
+            "  tip: tool0",
+            ":22: parameters.tip: is a key of its own: put tip at the",
+        ),
+        ("  mode: fast", "  gravity: [0, 0, 1]", ":22: parameters.gravity: is a key of its own"),
+        ("  mode: fast", "  locked_joints.finger: 1", ":22: parameters.locked_joints.finger: stan"),
+        (
+            "[1, 2.5]",
+            "[1, fast]",
+            ":23: parameters.weights[1]: expected a number, as the entries be",
+        ),
+        (
+            "[1, 2.5]",
+            "[true, 1]",
+            ":23: parameters.weights[1]: expected true or false, as the entrie",
+        ),
+        (
+            "[1, 2.5]",
+            "[[1], [2]]",
+            ":23: parameters.weights[0]: expected a text, a number, true or",
+        ),
+        (
+            "[1, 2.5]",
+            "[1, .nan]",
+            ":23: parameters.weights[1]: expected a finite number, got '.nan'",
         ),
         ("urdf: arm.urdf", "urdf: leg.urdf", ":5: urdf: expected a file, got 'leg.urdf'; "),
         ("arm.urdf", "package://nobody/a.urdf", ":5: urdf: expected a file, got 'package://nobody"),

@@ -31,6 +31,7 @@ from inverse_dynamics.simulation.sensors import Recorded, Sensors
 from inverse_dynamics.simulation.trajectory import FourierTrajectory
 from inverse_dynamics.simulation.trajectory_file import read_trajectory
 from inverse_dynamics.simulation.urdf import chain_from_urdf
+from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
     from inverse_dynamics.joint_log import Progress
@@ -108,6 +109,10 @@ def simulate(
     if not checker.has_shapes:
         notes.append("the description has no collision shapes: self-collision can't be checked")
     check_trajectory(simulated, chosen, MotionLimits.of(simulated), checker)
+    if robot.parameters:
+        notes.append(
+            f"parameters of the solver aren't used by the simulation: {listed([*robot.parameters])}"
+        )
     if robot.effort not in ("torque", "auto"):
         notes.append(
             f"efforts are recorded as torques, though the run configuration says {robot.effort}: "

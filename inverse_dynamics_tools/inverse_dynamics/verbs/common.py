@@ -6,13 +6,17 @@ from __future__ import annotations
 import argparse
 import math
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.decimals import decimal
+from inverse_dynamics.errors import UserError
+from inverse_dynamics.wording import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from inverse_dynamics._core import Parameter
     from inverse_dynamics.joint_log import Progress
 
 
@@ -62,6 +66,24 @@ def whole_number(text: str) -> int:
     if not (text.isascii() and text.isdecimal() and len(text) <= 18):
         raise argparse.ArgumentTypeError(f"expected an integer that isn't negative, got '{text}'")
     return int(text)
+
+
+def parameter(text: str) -> tuple[str, Parameter]:
+    """`NAME=VALUE` of an option; the value as it would stand in a run configuration."""
+    from inverse_dynamics.located_yaml import parse_mapping
+    from inverse_dynamics.solver_parameters import solver_parameters
+
+    name, _, value = text.partition("=")
+    try:
+        found = solver_parameters(parse_mapping(f"{name}: {value}", Path("option"), UserError))
+    except UserError:
+        found = {}
+    if list(found) != [name]:
+        raise argparse.ArgumentTypeError(
+            "expected NAME=VALUE, VALUE a number, a text, true, false or a list of one of them, "
+            f"[1, 2], got {shown(text)}"
+        )
+    return name, found[name]
 
 
 @contextmanager

@@ -7,10 +7,10 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from inverse_dynamics.verbs.common import names, three_numbers
+from inverse_dynamics.verbs.common import names, parameter, three_numbers
 
 # Options of add_robot_changes(), by the names that with_changes() has for them.
-_CHANGES = ("plugin", "friction", "urdf", "root", "tip", "gravity", "joints")
+_CHANGES = ("plugin", "friction", "urdf", "root", "tip", "gravity", "joints", "parameters")
 
 
 def add_verb(
@@ -84,9 +84,21 @@ def add_robot_changes(parser: argparse.ArgumentParser, what: str) -> argparse._A
         type=names,
         help=f"names of the joints in the {what}, in the order of the chain",
     )
+    group.add_argument(
+        "--parameter",
+        dest="parameters",
+        metavar="NAME=VALUE",
+        type=parameter,
+        action="append",
+        help="a parameter of the solver, as under `parameters:` (docs/add_a_robot.md): "
+        "locked_joints.finger=0.02; may be given several times",
+    )
     return group
 
 
 def robot_changes(arguments: argparse.Namespace) -> dict[str, Any]:
     """What add_robot_changes() was told; None: nothing."""
-    return {name: getattr(arguments, name) for name in _CHANGES}
+    changes = {name: getattr(arguments, name) for name in _CHANGES}
+    if changes["parameters"] is not None:
+        changes["parameters"] = dict(changes["parameters"])
+    return changes

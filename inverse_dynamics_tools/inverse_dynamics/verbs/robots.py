@@ -89,6 +89,7 @@ def _show(robot: str) -> None:
         "joints": ", ".join(shown.joints) or "(named as in the chain)",
         "effort": f"{shown.effort}: {EFFORT_CHOICES[shown.effort]}",
         "drive gains": f"{list(shown.drive_gains)} N m/A" if shown.drive_gains else "",
+        "parameters": ", ".join(f"{name}: {value}" for name, value in shown.parameters.items()),
         "accelerations": f"{shown.accelerations}{cutoff}: {METHODS[shown.accelerations]}",
         "source": shown.source,
         "file": str(shown.file),

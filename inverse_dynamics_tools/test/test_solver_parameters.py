@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Parameters of solvers, from run configurations and options to torques."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import fails
+from simulation_arms import joint, link, pendulum, robot, two_links
+from test_evaluation import RIGID_BODY
+
+from inverse_dynamics import Solver, load_robot, read_evaluation
+from inverse_dynamics.simulation import simulate
+
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLE = ROOT / "inverse_dynamics_solver/examples/pendulum_inverse_dynamics_solver"
+
+# An arm with a finger beside the chain, which weighs elsewhere where it is locked elsewhere.
+WITH_FINGER = robot(
+    link("base"),
+    link("arm", 2.0, "0.5 0 0"),
+    link("tool", 0.5),
+    link("tip"),
+    link("finger", 1.0, "0.3 0 0"),
+    joint("swing", "base", "arm"),
+    joint("wrist", "arm", "tool", xyz="1 0 0"),
+    joint("end", "tool", "tip", kind="fixed", xyz="0.1 0 0"),
+    joint("bend", "tool", "finger"),
+)
+MASSLESS = robot(
+    link("base"),
+    link("arm", 2.0, "0.5 0 0"),
+    link("nothing"),
+    joint("swing", "base", "arm"),
+    joint("spin", "arm", "nothing", xyz="1 0 0"),
+)
+
+
+def write(directory: Path, urdf: str, more: str = "", plugin: str = RIGID_BODY) -> Path:
+    (directory / "arm.urdf").write_text(urdf)
+    file = directory / "arm.yaml"
+    file.write_text(
+        f"schema: 1\nname: arm\ndescription: an arm\nplugin: {plugin}\nurdf: arm.urdf\n{more}"
+    )
+    return file
+
+
+def planned(directory: Path, joints: tuple[str, ...]) -> Path:
+    """Three points, each joint at 0.1, 0.2, 0.3 rad, at rest."""
+    kinds = ("position", "velocity", "acceleration")
+    lines = [",".join(["time", *(f"{kind}.{name}" for kind in kinds for name in joints)])]
+    for k in range(3):
+        zeros = [0.0] * (2 * len(joints))
+        lines.append(",".join(map(str, [0.1 * k, *[0.1 * (k + 1)] * len(joints), *zeros])))
+    file = directory / "plan.csv"
+    file.write_text("\n".join(lines) + "\n")
+    return file
+
+
+def efforts(file: Path, name: str) -> np.ndarray:
+    table = np.genfromtxt(file, delimiter=",", names=True, deletechars="")
+    return table[f"effort.{name}"]
+
+
+def test_locked_joints_of_the_configuration_and_of_the_option_reach_the_solver(ids, tmp_path):
+    more = "tip: tip\nparameters:\n  locked_joints:\n    bend: 1.0\n"
+    arm = write(tmp_path, WITH_FINGER, more)
+    plan = planned(tmp_path, ("swing", "wrist"))
+    command = ("torques", plan, "--robot", arm)
+    q = np.array([[0.1, 0.1], [0.2, 0.2], [0.3, 0.3]])
+    for bend, option in ((1.0, ()), (-0.5, ("--parameter", "locked_joints.bend=-0.5"))):
+        out = f"out_{bend}.csv"
+        code, _, err = ids(*command, "--out", out, *option)
+        assert (code, err) == (0, ""), err
+        expected = Solver(
+            RIGID_BODY, WITH_FINGER, tip="tip", parameters={"locked_joints.bend": bend}
+        ).gravity_vector(q)
+        for j, name in enumerate(("swing", "wrist")):
+            np.testing.assert_allclose(efforts(Path(out), name), expected[:, j], rtol=1e-9)
+
+
+def test_massless_links_can_be_allowed(ids, tmp_path):
+    plan = planned(tmp_path, ("swing", "spin"))
+    arm = write(tmp_path, MASSLESS)
+    fails(ids("torques", plan, "--robot", arm, "--out", "a.csv"), "ids: error: robot arm", "spin")
+    arm = write(tmp_path, MASSLESS, "parameters: {allow_massless: true, batch_threads: 2}\n")
+    assert ids("torques", plan, "--robot", arm, "--out", "a.csv")[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("mass", "expected NAME=VALUE, VALUE a number"),
+        ("=1", "expected NAME=VALUE"),
+        ("mass=", "expected NAME=VALUE"),
+        ("mass={a: 1}", "expected NAME=VALUE"),
+        ("mass=[1, [2]]", "expected NAME=VALUE"),
+        ("mass=!!float 1", "expected NAME=VALUE"),
+        ("tip=tool0", "expected NAME=VALUE"),
+        ("a: 1\nb=1", "expected NAME=VALUE"),
+    ],
+)
+def test_malformed_option_is_told(ids, text, expected):
+    fails(ids("evaluate", "bag", "--robot", "x", "--parameter", text), "--parameter", expected)
+
+
+def test_wrong_type_is_told_with_the_robot(ids, tmp_path):
+    arm = write(tmp_path, pendulum(), "parameters: {batch_threads: many}\n")
+    plan = planned(tmp_path, ("swing",))
+    result = ids("torques", plan, "--robot", arm, "--out", "a.csv")
+    fails(result, "robot arm: parameter 'batch_threads'", "expected integer")
+
+
+def test_simulation_says_that_it_does_not_use_them(tmp_path):
+    arm = load_robot(
+        write(tmp_path, two_links(), "tip: tip\nparameters: {locked_joints: {a: 1}}\n")
+    )
+    from inverse_dynamics.simulation.trajectory import WaypointTrajectory
+
+    names = ("shoulder", "lift", "fold")
+    still = WaypointTrajectory.through(names, np.array([0.0, 1.0]), np.zeros((2, 3)) + 0.5)
+    notes = simulate(arm, trajectory=still, rate=125, duration=0.1).notes
+    assert "parameters of the solver aren't used by the simulation: locked_joints.a" in notes
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory):
+    """The example of docs/add_a_solver.md, built and installed as its reader does."""
+    build = tmp_path_factory.mktemp("pendulum")
+    options = ["-DBUILD_TESTING=OFF"]
+    if shutil.which("ccache"):
+        options.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
+    for command in (
+        ["-S", EXAMPLE, "-B", build, f"-DCMAKE_INSTALL_PREFIX={build}/install", *options],
+        ["--build", build],
+        ["--install", build],
+    ):
+        done = subprocess.run(["cmake", *command], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+    return build / "install"
+
+
+def test_the_solver_of_the_documentation_works_with_ids(tmp_path, example):
+    page = (ROOT / "docs/add_a_solver.md").read_text(encoding="utf-8")
+    (configuration,) = re.findall(r"^ *```yaml\n(.*?)^ *```", page, re.MULTILINE | re.DOTALL)
+    configuration = textwrap.dedent(configuration)
+    (tmp_path / "pendulum.yaml").write_text(configuration)
+    commands = re.findall(r"^ *ids (evaluate swing.csv .*)$", page, re.MULTILINE)
+    assert len(commands) == 2
+    time = 0.01 * np.arange(500)
+    q, qd, qdd = np.sin(time), np.cos(time), -np.sin(time)
+    effort = 2.0 * 0.5**2 * qdd + 0.1 * qd - 2.0 * 0.5 * -9.81 * np.sin(q)  # the law of the class
+    rows = np.column_stack([time, q, qd, qdd, effort]).tolist()
+    lines = ["time,position.pivot,velocity.pivot,acceleration.pivot,effort.pivot"]
+    lines += [",".join(map(repr, row)) for row in rows]
+    (tmp_path / "swing.csv").write_text("\n".join(lines) + "\n")
+
+    environment = dict(os.environ)  # what sourcing the workspace of the solver changes
+    for name, directory in (("AMENT_PREFIX_PATH", example), ("LD_LIBRARY_PATH", example / "lib")):
+        environment[name] = f"{directory}:{environment.get(name, '')}"
+
+    def ids(command: str) -> subprocess.CompletedProcess[str]:
+        script = "import sys; from inverse_dynamics.cli import main; sys.exit(main())"
+        return subprocess.run(
+            [sys.executable, "-c", script, *command.split()],
+            env=environment,
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    found = []
+    for out, command in enumerate(commands):
+        done = ids(f"{command} --out {out}")
+        assert (done.returncode, done.stderr) == (0, "")
+        found.append(read_evaluation(tmp_path / str(out)))
+    assert found[0].errors[0].max_abs < 1e-9
+    assert found[1].errors[0].max_abs > 0.1
+    assert found[1].robot.parameters == {"mass": 2.1, "length": 0.5, "damping": 0.1}
+
+    (tmp_path / "pendulum.yaml").write_text(configuration.replace("  mass: 2.0\n", ""))
+    done = ids(commands[0])
+    assert done.returncode == 2
+    assert done.stderr.startswith("ids: error: robot pendulum: parameter 'mass'")
