@@ -148,7 +148,7 @@ def evaluate(
     bag = Path(bag)
 
     start = time.perf_counter()
-    arm = _Arm(robot)
+    arm = Arm(robot)
     ready = time.perf_counter()
     log = read_recording(
         bag,
@@ -167,7 +167,7 @@ def evaluate(
     return replace(result, notes=(*notes, *result.notes), seconds={**seconds, **result.seconds})
 
 
-class _Arm:
+class Arm:
     """What a run configuration says of the arm, before anything is read. Raises UserError."""
 
     def __init__(self, robot: Robot) -> None:
@@ -182,7 +182,7 @@ class _Arm:
 def _compare(
     bag: Path,
     robot: Robot,
-    arm: _Arm,
+    arm: Arm,
     log: JointLog,
     effort: Effort,
     without_rules: Sequence[str],
@@ -249,12 +249,12 @@ def names_in_recording(robot: Robot, joint_names: tuple[str, ...]) -> tuple[str,
         return joint_names
     if len(robot.joints) != len(joint_names):
         raise RobotError(
-            f"joints: expected {len(joint_names)} names, one per joint of the chain "
+            f"{robot.file}: joints: expected {len(joint_names)} names, one per joint of the chain "
             f"({', '.join(joint_names)}), got {len(robot.joints)} ({', '.join(robot.joints)})"
         )
     if set(robot.joints) == set(joint_names) and robot.joints != joint_names:
         raise RobotError(
-            f"joints: expected the order of the chain, {', '.join(joint_names)}, got "
+            f"{robot.file}: joints: expected the order of the chain, {', '.join(joint_names)}, got "
             f"{', '.join(robot.joints)}; the recording's order doesn't matter, so leave --joints out"
         )
     return robot.joints

@@ -7,17 +7,51 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from inverse_dynamics import _core
-from inverse_dynamics.errors import InvalidRobotDescriptionError, SolverError
+from inverse_dynamics.errors import InvalidRobotDescriptionError, RobotError, SolverError
+from inverse_dynamics.wording import counted, listed
 
 if TYPE_CHECKING:
     from inverse_dynamics.robots import Robot
 
 
+# What reads a description for a solver that doesn't.
+_RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
+
+
 def open_solver(robot: Robot, description: str = "") -> _core.Solver:
     """The solver that a run configuration names. description: URDF text, or none.
 
-    Raises SolverError: the solver's, with the robot before its text.
+    Raises SolverError: the solver's, with the robot before its text; RobotError: root and tip that
+    the solver doesn't use, and that don't belong to its joints.
     """
+    solver = _made(robot, description)
+    if (robot.root or robot.tip) and (description or robot.urdf is None):
+        _check_links(robot, description, solver)
+    return solver
+
+
+def _check_links(robot: Robot, description: str, solver: _core.Solver) -> None:
+    if robot.model is not None or not brings_own_model(robot):
+        return
+    if not description:
+        given = " and ".join(name for name in ("root", "tip") if getattr(robot, name))
+        raise RobotError(
+            f"robot {robot.name}: {given}: expected none, as {robot.plugin} brings its own model and "
+            "there is no description to check them with; leave them out"
+        )
+    own, reader = list(solver.joint_names), replace(robot, plugin=_RIGID_BODY)
+    reader = replace(reader, gravity=None, parameters={"allow_massless": True})
+    chain = list(_made(reader, description).joint_names)
+    # joints of other names may be the same ones
+    if chain != own if set(chain) & set(own) else len(chain) != len(own):
+        raise RobotError(
+            f"robot {robot.name} ({robot.urdf}): root '{robot.root}', tip '{robot.tip}': {robot.plugin} "
+            f"doesn't use them: expected the {counted(len(own), 'joint')} of its own model between "
+            f"them, got {len(chain)}: {listed(chain)}; correct them or leave them out"
+        )
+
+
+def _made(robot: Robot, description: str) -> _core.Solver:
     try:
         return _core.Solver(
             robot.plugin,
@@ -48,7 +82,7 @@ def description_notes(robot: Robot, use: str) -> list[str]:
 def brings_own_model(robot: Robot) -> bool:
     """Whether the solver has no need of a description or model file: then it reads none."""
     try:
-        open_solver(replace(robot, model=None))
+        _made(replace(robot, model=None), "")
     except SolverError:
         return False
     return True

@@ -125,6 +125,88 @@ def test_mistakes_of_the_user_are_told_and_nothing_is_written(ids, bag, tmp_path
 
 
 @pytest.mark.parametrize(
+    ("option", "link", "expected"),
+    [
+        ("--tip", "tool1", "tool1"),
+        ("--root", "floor", "floor"),
+        (
+            "--tip",
+            "forearm_link",
+            "expected the 6 joints of its own model between them, got 3: sho",
+        ),
+    ],
+)
+def test_a_link_that_the_solver_does_not_use_is_checked_nevertheless(
+    ids, tmp_path, option, link, expected
+):
+    recording(tmp_path / "bag", Solver(UR10))
+    result = ids("evaluate", "bag", "--robot", "ur10_real", option, link, "--out", "out", *RAW)
+    fails(result, "ids: error: robot ur10_real", expected)
+    result = ids("evaluate", "bag", "--robot", "ur10_real", "--tip", "wrist_3_link", *RAW)
+    assert result[0] == 0
+
+
+def test_links_that_nothing_can_check_are_refused(ids, tmp_path):
+    lines = ["schema: 1", "name: arm", "description: an arm", f"plugin: {UR10}", "tip: tool1"]
+    (tmp_path / "arm.yaml").write_text("\n".join(lines))
+    fails(ids("robots", "arm.yaml"), "robot arm: tip: expected none", "brings its own model")
+
+
+ARM = f"""\
+schema: 1
+name: arm
+description: an arm
+plugin: {RIGID_BODY}
+urdf: {URDF}
+tip: tool0
+joints: [shoulder_pan_joint, shoulder_lift_joint, elbow_joint, wrist_1_joint, wrist_2_joint, w3]
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "changed", "expected"),
+    [
+        ("tip: tool0", "tip: tol", ("robot arm", "tol")),
+        ("tip: tool0", "tip: forearm_link", ("arm.yaml: joints: expected 3 names", "got 6")),
+        (RIGID_BODY, "a/B", ("'a/B': not found",)),
+        ("tip: tool0", "drive_gains: [1, 2]", ("arm.yaml: drive_gains: expected 6 figures",)),
+        (str(URDF), "arm.yaml", ("arm.yaml", "robot description")),
+        (
+            "tip: tool0",
+            "parameters: {batch_threads: no}",
+            ("robot arm: parameter 'batch_threads'",),
+        ),
+        (
+            "tip: tool0",
+            "simulation: {gains: {elbow: {p: 1}}}",
+            (":6: simulation.gains.elbow: unk",),
+        ),
+        ("tip: tool0", "simulation: {rate: 7}", (":6: simulation.rate: expected one of 125",)),
+    ],
+)
+def test_a_run_configuration_is_checked_as_far_as_it_goes(ids, tmp_path, line, changed, expected):
+    (tmp_path / "arm.yaml").write_text(ARM.replace(line, changed))
+    fails(ids("robots", "arm.yaml"), *expected)
+
+
+def test_a_joint_that_the_chain_lacks_is_told(ids, tmp_path):
+    (tmp_path / "arm.yaml").write_text(ARM)
+    code, out, err = ids("robots", "arm.yaml")
+    assert (code, err) == (0, "")
+    assert re.search(r"^chain +shoulder_pan_joint, .*, wrist_3_joint$", out, re.M)
+    assert "w3 is no joint of the chain: recordings must have it by this name" in out
+    (tmp_path / "arm.yaml").write_text(ARM.replace("w3", "wrist_3_joint"))
+    assert "is no joint of the chain" not in ids("robots", "arm.yaml")[1]
+
+
+@pytest.mark.parametrize("name", ["ur10_real", "panda_real", "ur10_simulated", "panda_simulated"])
+def test_the_projects_robots_pass_the_check(ids, name):
+    code, out, err = ids("robots", name)
+    assert (code, err) == (0, "")
+    assert re.search(r"^chain +.*(wrist_3_joint|fer_joint7)$", out, re.M)
+
+
+@pytest.mark.parametrize(
     ("arguments", "expected"),
     [
         (("torque",), "invalid choice: 'torque'"),

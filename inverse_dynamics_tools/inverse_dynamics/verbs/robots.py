@@ -10,6 +10,9 @@ from inverse_dynamics.verbs.options import add_verb
 if TYPE_CHECKING:
     import argparse
 
+    from inverse_dynamics.evaluation import Arm
+    from inverse_dynamics.robots import Robot
+
 _EPILOG = """\
 examples:
   ids robots                     a line each
@@ -74,6 +77,7 @@ def _show(robot: str) -> None:
     from inverse_dynamics.robots import load_robot
 
     shown = load_robot(robot)
+    arm, notes = _checked(shown)
     gravity = shown.gravity
     cutoff = "" if shown.cutoff is None else f", cut-off {shown.cutoff:g} Hz"
     rows = {
@@ -83,6 +87,7 @@ def _show(robot: str) -> None:
         "urdf": str(shown.urdf or ""),
         "model": str(shown.model or ""),
         "root, tip": f"{shown.root or '(the first link)'}, {shown.tip or '(the last link)'}",
+        "chain": ", ".join(arm.joint_names),
         "gravity": "(the solver's default)" if gravity is None else f"{list(gravity)} m/s²",
         "friction": "yes" if shown.friction else "no",
         "topic": shown.topic,
@@ -94,4 +99,30 @@ def _show(robot: str) -> None:
         "source": shown.source,
         "file": str(shown.file),
     }
-    _print_rows(rows)
+    _print_rows(rows | {f"note{'' if i == 0 else f' {i + 1}'}": n for i, n in enumerate(notes)})
+
+
+def _checked(robot: Robot) -> tuple[Arm, list[str]]:
+    """What can be told of it without a recording, and what is odd about it. Raises UserError."""
+    from inverse_dynamics.descriptions import effort_limits, read_description
+    from inverse_dynamics.evaluation import Arm
+    from inverse_dynamics.wording import did_you_mean
+
+    arm = Arm(robot)
+    notes = list(arm.solver.warnings)
+    if set(robot.joints) & set(arm.joint_names):  # else they have names of their own
+        for name in sorted(set(robot.joints) - set(arm.joint_names)):
+            hint = did_you_mean(name, set(arm.joint_names) - set(robot.joints))
+            notes.append(
+                f"{name} is no joint of the chain: recordings must have it by this name"
+                + (hint and f"; {hint}")
+            )
+    if robot.urdf is not None:
+        description = read_description(robot.urdf)
+        effort_limits(robot.urdf, description, arm.joint_names)
+        if robot.simulation is not None:
+            from inverse_dynamics.simulation.configuration import Wishes
+            from inverse_dynamics.simulation.urdf import chain_from_urdf
+
+            Wishes.of(robot, chain_from_urdf(description, robot.root, robot.tip))
+    return arm, notes
