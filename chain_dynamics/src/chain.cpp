@@ -10,6 +10,7 @@
 #include <utility>
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace {
 
 constexpr double kRotationTolerance = 1e-9;  // entries of R'R - 1: what ten printed digits leave
@@ -186,4 +187,5 @@ std::string inertiaDefect(const LinkParameters& link) {
   return "";
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

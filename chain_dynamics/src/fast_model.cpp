@@ -11,6 +11,7 @@
 #include "fast_model_check.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace {
 
 using fast::Body;
@@ -277,4 +278,5 @@ void FastModel::dynamicComponentsBatch(ConstStates q, ConstStates qd, StridedMat
                              samples(c), samples(g));
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -5,6 +5,7 @@
 #include "chain_dynamics/regressor.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace {
 
 // Entry by entry: the largest of numbers of which one is NaN may be any of them.
@@ -79,4 +80,5 @@ bool equalsPlain(const FastModel& fast, const Model& model) {
          derivativesEqual(fast, model, q) && regressorsEqual(fast, model.chain, q);
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

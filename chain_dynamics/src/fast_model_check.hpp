@@ -10,9 +10,11 @@
 #include "chain_dynamics/fast_model.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// Whether the fast kernels give what the functions of model.hpp give, at a few states: to nine
 /// digits of the largest number, far above rounding, far below a mistake.
 bool equalsPlain(const FastModel& fast, const Model& model);
 
+}  // namespace v2
 }  // namespace chain_dynamics

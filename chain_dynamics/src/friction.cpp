@@ -5,6 +5,7 @@
 #include <cassert>
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 void frictionVector(const std::vector<FrictionLaw>& laws,
                     const Eigen::Ref<const Eigen::VectorXd>& qd, Eigen::Ref<Eigen::VectorXd> f) {
@@ -23,4 +24,5 @@ void frictionSlopes(const std::vector<FrictionLaw>& laws,
   }
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

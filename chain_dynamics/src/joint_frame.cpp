@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 Matrix3<double> rotationFromZ(const Vector3<double>& axis) {
   // below the horizon, turn about x by pi first: the formula that follows fails near -z
@@ -31,4 +32,5 @@ LinkParameters symmetric(const LinkParameters& link) {
   return {link.mass, link.first_moment, 0.5 * (link.inertia + link.inertia.transpose())};
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

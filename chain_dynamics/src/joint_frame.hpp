@@ -16,6 +16,7 @@
 #include "chain_dynamics/chain.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// A rotation that turns z onto an axis; identity for z itself, half a turn about x for -z.
 ///
@@ -29,4 +30,5 @@ Matrix3<double> rotationFromRollPitchYaw(const Vector3<double>& rpy);
 /// Parameters with the last bits of rounding removed that make a moved inertia asymmetric.
 LinkParameters symmetric(const LinkParameters& link);
 
+}  // namespace v2
 }  // namespace chain_dynamics

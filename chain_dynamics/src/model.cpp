@@ -12,6 +12,7 @@
 #include "chain_dynamics/parameter_sets.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace {
 
 // Of the greatest entry: what moving an inertia to its center of mass leaves of a zero moment.
@@ -136,4 +137,5 @@ void torqueDerivatives(const Model& model, const ConstVectorRef& q, const ConstV
   torqueDerivatives(model.chain, setsOf(model), q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -15,6 +15,7 @@
 #include "yaml_value.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace {
 
 constexpr int kSchema = 1;
@@ -442,4 +443,5 @@ Model modelFromFile(const std::string& path) {
   return modelFromYaml(text, path);
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

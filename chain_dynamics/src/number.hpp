@@ -17,6 +17,7 @@
 #include <string>
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// The finite number that a text is, blanks around it aside; nothing if it isn't one.
 inline std::optional<double> finiteNumber(const std::string& text) {
@@ -30,4 +31,5 @@ inline std::optional<double> finiteNumber(const std::string& text) {
   return stream.eof() ? std::optional<double>(value) : std::nullopt;
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

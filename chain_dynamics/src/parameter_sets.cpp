@@ -7,6 +7,7 @@
 #include "chain_dynamics/error.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace {
 
 void checkSet(const Chain& chain, const std::string& where,
@@ -40,4 +41,5 @@ void checkParameterSets(const Chain& chain, const ParameterSets& sets) {
   }
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -9,6 +9,7 @@
 #include <numeric>
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace {
 
 struct Character {
@@ -185,4 +186,5 @@ std::string nearestName(const std::string& name, const std::vector<std::string>&
   return nearest;
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -16,6 +16,7 @@
 #include "urdf_check.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace {
 
 using JointPtr = urdf::JointConstSharedPtr;
@@ -339,4 +340,5 @@ Chain chainFromUrdf(const std::string& urdf_xml, const UrdfOptions& options) {
   return Builder(*robot, options, std::move(path)).chain();
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

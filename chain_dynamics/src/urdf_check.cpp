@@ -17,6 +17,7 @@
 #include "number.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace {
 
 using tinyxml2::XMLElement;
@@ -378,4 +379,5 @@ std::string checkedUrdf(const std::string& urdf_xml) {
   return printer.CStr();
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

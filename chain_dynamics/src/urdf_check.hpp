@@ -15,6 +15,7 @@
 #include <string>
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// The description without what a Chain doesn't use (looks, collision shapes, transmissions).
 ///
@@ -22,4 +23,5 @@ namespace chain_dynamics {
 /// @throws ModelError  `URDF:line: joint or link: what: expected ..., got ...; remedy`.
 std::string checkedUrdf(const std::string& urdf_xml);
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -9,6 +9,7 @@
 #include "number.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace {
 
 // yaml-cpp counts lines from zero; a node that doesn't exist has none.
@@ -160,4 +161,5 @@ void YamlMap::rejectOtherKeys() const {
   }
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

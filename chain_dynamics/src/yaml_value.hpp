@@ -21,6 +21,7 @@
 #include "chain_dynamics/error.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// One value: the node, its file, and what messages call it.
 class YamlValue {
@@ -82,4 +83,5 @@ class YamlMap {
   std::set<std::string> asked_;
 };
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -4,6 +4,7 @@
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
 
 namespace franka_inria_inverse_dynamics_solver {
+inline namespace v2 {
 
 auto InverseDynamicsSolverFrankaInria::configure(
     const inverse_dynamics_solver::Configuration& configuration) -> JointInfo {
@@ -11,4 +12,5 @@ auto InverseDynamicsSolverFrankaInria::configure(
              configuration);
 }
 
+}  // namespace v2
 }  // namespace franka_inria_inverse_dynamics_solver

@@ -6,6 +6,7 @@
 #include "option_checks.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 namespace {
 
 const char* const kLaw = "computed torque";
@@ -60,4 +61,5 @@ Status ComputedTorque::update(const JointState& state, const Reference& referenc
   });
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

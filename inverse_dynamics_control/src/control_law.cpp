@@ -6,6 +6,7 @@
 #include "option_checks.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 ControlLaw::ControlLaw(std::shared_ptr<const InverseDynamicsSolver> solver,
                        const LawOptions& options, const std::string& law)
@@ -70,4 +71,5 @@ void ControlLaw::updateGravity(const Eigen::VectorXd& q) noexcept {
   }
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -9,6 +9,7 @@
 #include "inverse_dynamics_control/model_terms.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 namespace {
 
 using inverse_dynamics_solver::errorText;
@@ -54,4 +55,5 @@ Eigen::VectorXd dampingFor(const InverseDynamicsSolver& solver, const Eigen::Vec
   return damping;
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -4,6 +4,7 @@
 #include <utility>
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 FeedForward::FeedForward(std::shared_ptr<const InverseDynamicsSolver> solver, ModelState at,
                          const LawOptions& options)
@@ -25,4 +26,5 @@ Status FeedForward::update(const JointState& state, const Reference& reference,
   });
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -7,6 +7,7 @@
 #include <sstream>
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 namespace {
 
 void require(bool fulfilled, const std::string& where, const std::string& expected, double got,
@@ -45,4 +46,5 @@ void FrictionCompensation::weigh(const Eigen::Ref<const Eigen::VectorXd>& v,
   for (Eigen::Index j = 0; j < f.size(); ++j) f[j] *= weight(v[j]);
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

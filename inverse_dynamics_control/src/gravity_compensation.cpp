@@ -4,6 +4,7 @@
 #include <utility>
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 GravityCompensation::GravityCompensation(std::shared_ptr<const InverseDynamicsSolver> solver,
                                          const LawOptions& options)
@@ -26,4 +27,5 @@ Status GravityCompensation::update(const JointState& state, const Eigen::VectorX
   });
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -4,6 +4,7 @@
 #include <utility>
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 ModelTerms::ModelTerms(std::shared_ptr<const InverseDynamicsSolver> solver,
                        const Compensated& compensated, const std::string& law)
@@ -43,4 +44,5 @@ void ModelTerms::friction(const Eigen::VectorXd& v, Eigen::VectorXd& f) const {
   }
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

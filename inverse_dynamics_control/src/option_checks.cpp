@@ -6,6 +6,7 @@
 #include <sstream>
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 namespace {
 
 bool isWithin(double value, Range range) {
@@ -65,4 +66,5 @@ void requireJointNumbers(const std::string& where, const Eigen::VectorXd& values
   }
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

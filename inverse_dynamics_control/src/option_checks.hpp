@@ -8,6 +8,7 @@
 #include <vector>
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// What the numbers of an option must be.
 enum class Range {
@@ -25,4 +26,5 @@ enum class Range {
 void requireJointNumbers(const std::string& where, const Eigen::VectorXd& values, Range range,
                          const std::string& unit, const std::vector<std::string>& joint_names);
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

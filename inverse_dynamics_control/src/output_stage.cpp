@@ -8,6 +8,7 @@
 #include "option_checks.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 OutputStage::OutputStage(const OutputLimits& limits, const std::vector<std::string>& joint_names,
                          const std::string& law)
@@ -50,4 +51,5 @@ Status OutputStage::apply(const Eigen::VectorXd& wished, double period,
   return rate_limited_.any() ? Status::kRateLimited : Status::kOk;
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -9,6 +9,7 @@
 #include "option_checks.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 namespace {
 
 // Rounding of whoever computes references up to the limit.
@@ -120,4 +121,5 @@ bool ReferenceGuard::isMoving() const noexcept {
   return (followed_.qd.array() != 0.0).any() || (followed_.qdd.array() != 0.0).any();
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

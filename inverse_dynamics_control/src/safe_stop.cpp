@@ -6,6 +6,7 @@
 #include "option_checks.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 SafeStop::SafeStop(const Eigen::VectorXd& deceleration, const std::vector<std::string>& joint_names)
     : deceleration_(deceleration),
@@ -45,4 +46,5 @@ Status SafeStop::advance(double period, Reference& reference) noexcept {
   return Status::kOk;
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

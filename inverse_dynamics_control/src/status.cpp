@@ -2,6 +2,7 @@
 #include "inverse_dynamics_control/status.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 const char* text(Status status) noexcept {
   switch (status) {
@@ -25,4 +26,5 @@ const char* text(Status status) noexcept {
   return "unknown status";
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -8,6 +8,7 @@
 #include "checks.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 namespace {
 
 using Eigen::Index;
@@ -196,4 +197,5 @@ AccelerationEstimate lowPassAccelerations(const Eigen::Ref<const Eigen::VectorXd
   return estimate;
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -15,6 +15,7 @@
 #include "inverse_dynamics_evaluation/error.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// "6 joints x 100 samples".
 inline std::string sizeText(Eigen::Index joints, Eigen::Index samples) {
@@ -85,4 +86,5 @@ inline void requireFiniteStamps(const std::string& where,
   }
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -12,6 +12,7 @@
 #include "spectrum.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 namespace {
 
 constexpr Eigen::Index kLeastSamples = 16;
@@ -153,4 +154,5 @@ CutoffChoice chooseCutoff(const std::vector<Stretch>& stretches, double sampling
   return choice;
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -9,6 +9,7 @@
 #include <utility>
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 namespace {
 
 using Eigen::Index;
@@ -203,4 +204,5 @@ Eigen::MatrixXd JointLogBuilder::taken(Column& column) const {
   return std::exchange(column.numbers, {});
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -6,6 +6,7 @@
 #include <utility>
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 JointMatching::JointMatching(std::vector<std::string> joints)
     : joints_(std::move(joints)), columns_(joints_.size()) {}
@@ -46,4 +47,5 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

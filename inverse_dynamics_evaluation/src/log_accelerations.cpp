@@ -9,6 +9,7 @@
 #include "inverse_dynamics_evaluation/error.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 namespace {
 
 using Eigen::Index;
@@ -133,4 +134,5 @@ LogAccelerations logAccelerations(const JointLog& log, AccelerationMethod method
   return result;
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

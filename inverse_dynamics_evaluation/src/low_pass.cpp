@@ -10,6 +10,7 @@
 #include "checks.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -136,4 +137,5 @@ Eigen::MatrixXd lowPass(const Eigen::Ref<const Eigen::MatrixXd>& samples, double
   return extended.middleCols(pad, count);
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

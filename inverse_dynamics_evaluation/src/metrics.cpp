@@ -8,6 +8,7 @@
 #include "checks.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 namespace {
 
 // One joint over the selected samples: a row of each.
@@ -94,4 +95,5 @@ std::vector<JointMetrics> metrics(const Eigen::Ref<const Eigen::MatrixXd>& compu
   return metrics(computed, measured, Mask::Constant(measured.cols(), true));
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -8,6 +8,7 @@
 #include "inverse_dynamics_evaluation/error.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -70,4 +71,5 @@ void OnlineDerivative::start(std::int64_t stamp, const Eigen::Ref<const Eigen::V
   derivative_.setZero();
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -10,6 +10,7 @@
 #include <vector>
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// @param values  at least one.
 /// @param share   0 to 1.
@@ -19,4 +20,5 @@ inline double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(rank)];
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

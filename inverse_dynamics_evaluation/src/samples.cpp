@@ -11,6 +11,7 @@
 #include "time_base.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 namespace {
 
 using Eigen::Index;
@@ -179,4 +180,5 @@ SampleReport examineSamples(const Eigen::Ref<const Eigen::VectorXd>& time,
   return report;
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/FFT>
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -136,4 +137,5 @@ VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sa
   return spectra;
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -13,6 +13,7 @@
 #include "inverse_dynamics_evaluation/cutoff.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// Averaged periodograms of all joints; F frequencies from 0 to half the sampling frequency.
 ///
@@ -28,4 +29,5 @@ struct VelocitySpectra {
 /// than a segment are left out.
 VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sampling_frequency);
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -9,6 +9,7 @@
 #include "quantile.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 namespace {
 
 using Eigen::Index;
@@ -76,4 +77,5 @@ Mask startTransient(const ConstMatrix& effort, const std::vector<Index>& sample,
   return transient;
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -11,6 +11,7 @@
 #include "inverse_dynamics_evaluation/samples.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// Everything up to the last jump in the first `window` [s].
 ///
@@ -22,4 +23,5 @@ Mask startTransient(const Eigen::Ref<const Eigen::MatrixXd>& effort,
                     const std::vector<Eigen::Index>& sample, const Eigen::VectorXd& time,
                     double period, double window);
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -8,6 +8,7 @@
 #include <limits>
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 namespace {
 
 using Eigen::Index;
@@ -138,4 +139,5 @@ Eigen::VectorXd timeOfAll(const TimedSamples& used, const Mask& repeated) {
   return time;
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

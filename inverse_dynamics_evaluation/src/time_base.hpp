@@ -11,6 +11,7 @@
 #include "inverse_dynamics_evaluation/samples.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// Some of the samples, and when they were taken.
 struct TimedSamples {
@@ -40,4 +41,5 @@ TimeBase chooseTimeBase(const std::vector<TimedSamples>& bases,
 /// its stamp lies between its neighbours in the recording.
 Eigen::VectorXd timeOfAll(const TimedSamples& used, const Mask& repeated);
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -9,6 +9,7 @@
 #include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 namespace {
 
 std::string describe(const std::vector<double>& numbers) {
@@ -116,4 +117,5 @@ chain_dynamics::Chain chainFromDescription(const Configuration& configuration) {
   }
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

@@ -4,6 +4,7 @@
 #include "chain_dynamics/text.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 std::string errorText(const std::string& where, const std::string& what,
                       const std::string& expected, const std::string& got,
@@ -17,4 +18,5 @@ UninitializedException::UninitializedException(const std::string& method)
     : Exception(errorText(method, "the solver is not initialized", "", "",
                           "call initialize() first, and see that it doesn't throw")) {}
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

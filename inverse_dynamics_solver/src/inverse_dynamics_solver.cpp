@@ -7,6 +7,7 @@
 #include "one_state.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 namespace {
 
 using chain_dynamics::joined;
@@ -205,4 +206,5 @@ void InverseDynamicsSolver::computeTorques(const ConstVectorRef& q, const ConstV
   }
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

@@ -8,6 +8,7 @@
 #include "share_states.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 using Eigen::Index;
 
@@ -154,4 +155,5 @@ void InverseDynamicsSolver::computeTorquesBatch(const ConstStates& q, const Cons
   }
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

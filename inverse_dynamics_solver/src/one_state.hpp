@@ -15,6 +15,7 @@
 #include "inverse_dynamics_solver/states.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 /// Chains up to this many joints are computed without allocation.
 constexpr int kMaxStackJoints = 64;
@@ -105,4 +106,5 @@ class MatrixWriter {
   Scratch<kMaxStackJoints * kMaxStackJoints> copy_;
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

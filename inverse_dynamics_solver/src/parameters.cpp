@@ -6,6 +6,7 @@
 #include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 namespace {
 
 /// Names in the order of ParameterValue's alternatives.
@@ -129,4 +130,5 @@ void throwUnsupportedType(const std::string& name, int type) {
 }
 
 }  // namespace detail
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

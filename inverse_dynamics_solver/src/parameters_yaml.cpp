@@ -10,6 +10,7 @@
 #include "inverse_dynamics_solver/parameters.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 namespace {
 
 using Values = std::map<std::string, ParameterValue>;
@@ -150,4 +151,5 @@ Parameters Parameters::fromYamlFile(const std::string& path) {
   return fromYaml(text.str(), path);
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

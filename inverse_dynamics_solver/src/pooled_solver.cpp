@@ -6,6 +6,7 @@
 #include "chain_dynamics/model.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
   // Everything that can fail, aside.
@@ -47,4 +48,5 @@ void PooledSolver::computeTorques(const ConstVectorRef& q, const ConstVectorRef&
   pool_->acquire()->torques(q, qd, qdd, tau);
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

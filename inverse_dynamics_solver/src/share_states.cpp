@@ -6,6 +6,7 @@
 #include <vector>
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 void shareAmongThreads(Eigen::Index count, Eigen::Index threads,
                        const std::function<void(Eigen::Index, Eigen::Index)>& compute) {
@@ -26,4 +27,5 @@ void shareAmongThreads(Eigen::Index count, Eigen::Index threads,
   for (std::future<void>& other : others) other.get();
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

@@ -9,6 +9,7 @@
 #include <functional>
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 /// States of one part of a batch. A thread is worth its start from so many on: starting and joining
 /// one takes tens of microseconds, and so do this many states of the fastest solver.
@@ -30,4 +31,5 @@ void shareStates(Eigen::Index count, std::int64_t threads, const Compute& comput
   shareAmongThreads(count, worth_it, std::cref(compute));
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

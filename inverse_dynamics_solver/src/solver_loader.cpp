@@ -11,6 +11,7 @@
 #include "chain_dynamics/text.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 namespace {
 
 using chain_dynamics::editDistance;
@@ -150,4 +151,5 @@ std::shared_ptr<InverseDynamicsSolver> SolverLoader::load(const std::string& nam
   throw PluginNotFoundException(why);
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

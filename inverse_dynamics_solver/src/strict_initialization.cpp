@@ -6,6 +6,7 @@
 #include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 void initializeStrictly(InverseDynamicsSolver& solver, const Parameters& parameters,
                         const std::string& param_namespace, const std::string& robot_description,
@@ -28,4 +29,5 @@ void initializeStrictly(InverseDynamicsSolver& solver, const Parameters& paramet
   }
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

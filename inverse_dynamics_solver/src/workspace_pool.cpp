@@ -7,6 +7,7 @@
 #include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 std::size_t readMaxThreads(const Configuration& configuration) {
   constexpr std::int64_t kMost = 4096;
@@ -23,4 +24,5 @@ std::size_t readMaxThreads(const Configuration& configuration) {
   return static_cast<std::size_t>(threads);
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

@@ -5,6 +5,7 @@
 #include <kdl/segment.hpp>
 
 namespace kdl_inverse_dynamics_solver {
+inline namespace v2 {
 namespace {
 
 KDL::Rotation rotation(const Eigen::Matrix3d& R) {
@@ -44,4 +45,5 @@ KDL::Chain toKdl(const chain_dynamics::Chain& chain) {
   return result;
 }
 
+}  // namespace v2
 }  // namespace kdl_inverse_dynamics_solver

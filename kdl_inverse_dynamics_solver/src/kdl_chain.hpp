@@ -8,6 +8,7 @@
 #include "chain_dynamics/chain.hpp"
 
 namespace kdl_inverse_dynamics_solver {
+inline namespace v2 {
 
 /// The same joints, links and rotor inertias; segment i of the result ends in frame i of the chain.
 KDL::Chain toKdl(const chain_dynamics::Chain& chain);
@@ -15,4 +16,5 @@ KDL::Chain toKdl(const chain_dynamics::Chain& chain);
 /// Gravity of the chain, in its root frame [m/s^2].
 KDL::Vector toKdl(const Eigen::Vector3d& vector);
 
+}  // namespace v2
 }  // namespace kdl_inverse_dynamics_solver

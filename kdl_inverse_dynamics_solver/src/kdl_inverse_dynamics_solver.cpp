@@ -5,10 +5,12 @@
 #include "kdl_workspace.hpp"
 
 namespace kdl_inverse_dynamics_solver {
+inline namespace v2 {
 
 auto InverseDynamicsSolverKDL::workspaceMaker(const chain_dynamics::Chain& chain) const
     -> WorkspaceMaker {
   return [chain] { return std::make_unique<KdlWorkspace>(toKdl(chain), toKdl(chain.gravity())); };
 }
 
+}  // namespace v2
 }  // namespace kdl_inverse_dynamics_solver

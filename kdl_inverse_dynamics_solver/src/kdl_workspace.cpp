@@ -6,6 +6,7 @@
 #include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace kdl_inverse_dynamics_solver {
+inline namespace v2 {
 namespace {
 
 /// KDL reports mistakes by number. None is possible with checked sizes; if one comes, it isn't
@@ -59,4 +60,5 @@ void KdlWorkspace::torques(const ConstVectorRef& q, const ConstVectorRef& qd,
   tau = result_.data;
 }
 
+}  // namespace v2
 }  // namespace kdl_inverse_dynamics_solver

@@ -12,6 +12,7 @@
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 
 namespace kdl_inverse_dynamics_solver {
+inline namespace v2 {
 
 using inverse_dynamics_solver::ConstVectorRef;
 using inverse_dynamics_solver::MatrixRef;
@@ -37,4 +38,5 @@ class KdlWorkspace : public inverse_dynamics_solver::Workspace {
   KDL::Wrenches no_forces_;
 };
 
+}  // namespace v2
 }  // namespace kdl_inverse_dynamics_solver

@@ -5,6 +5,7 @@
 #include "pinocchio_workspace.hpp"
 
 namespace pinocchio_inverse_dynamics_solver {
+inline namespace v2 {
 
 auto InverseDynamicsSolverPinocchio::workspaceMaker(const chain_dynamics::Chain& chain) const
     -> WorkspaceMaker {
@@ -13,4 +14,5 @@ auto InverseDynamicsSolverPinocchio::workspaceMaker(const chain_dynamics::Chain&
   return [models] { return std::make_unique<PinocchioWorkspace>(models); };
 }
 
+}  // namespace v2
 }  // namespace pinocchio_inverse_dynamics_solver

@@ -2,6 +2,7 @@
 #include "pinocchio_model.hpp"
 
 namespace pinocchio_inverse_dynamics_solver {
+inline namespace v2 {
 namespace {
 
 /// Pinocchio wants the center of mass and the inertia about it; ours is about the origin of the
@@ -34,4 +35,5 @@ pinocchio::Model toPinocchio(const chain_dynamics::Chain& chain) {
   return model;
 }
 
+}  // namespace v2
 }  // namespace pinocchio_inverse_dynamics_solver

@@ -6,6 +6,7 @@
 #include <utility>
 
 namespace pinocchio_inverse_dynamics_solver {
+inline namespace v2 {
 
 PinocchioWorkspace::PinocchioWorkspace(std::shared_ptr<const Models> models)
     : models_(std::move(models)), data_(models_->with_gravity) {}
@@ -35,4 +36,5 @@ void PinocchioWorkspace::torques(const ConstVectorRef& q, const ConstVectorRef& 
   tau = pinocchio::rnea(models_->with_gravity, data_, q, qd, qdd);
 }
 
+}  // namespace v2
 }  // namespace pinocchio_inverse_dynamics_solver

@@ -9,6 +9,7 @@
 #include "pinocchio_headers.hpp"
 
 namespace pinocchio_inverse_dynamics_solver {
+inline namespace v2 {
 
 using inverse_dynamics_solver::ConstVectorRef;
 using inverse_dynamics_solver::MatrixRef;
@@ -36,4 +37,5 @@ class PinocchioWorkspace : public inverse_dynamics_solver::Workspace {
   pinocchio::Data data_;
 };
 
+}  // namespace v2
 }  // namespace pinocchio_inverse_dynamics_solver

@@ -10,6 +10,7 @@
 #include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
+inline namespace v2 {
 namespace {
 
 using chain_dynamics::joined;
@@ -76,4 +77,5 @@ chain_dynamics::Model readModel(const std::string& name_or_path) {
   }
 }
 
+}  // namespace v2
 }  // namespace rigid_body_inverse_dynamics_solver

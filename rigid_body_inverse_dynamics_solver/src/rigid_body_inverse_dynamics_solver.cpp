@@ -7,6 +7,7 @@
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
+inline namespace v2 {
 namespace {
 
 using chain_dynamics::FastModel;
@@ -181,4 +182,5 @@ void InverseDynamicsSolverRigidBody::computeTorquesBatch(const ConstStates& q,
   fast_->torquesBatch(q, qd, qdd, tau);
 }
 
+}  // namespace v2
 }  // namespace rigid_body_inverse_dynamics_solver

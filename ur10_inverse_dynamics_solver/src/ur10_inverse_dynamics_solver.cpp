@@ -8,6 +8,7 @@
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
 
 namespace ur10_inverse_dynamics_solver {
+inline namespace v2 {
 namespace {
 
 const char* const kModel = "ur10_identified";
@@ -74,4 +75,5 @@ Eigen::MatrixXd InverseDynamicsSolverUR10::getDriveGainsMatrix() const {
   return model().drive_gains.asDiagonal();
 }
 
+}  // namespace v2
 }  // namespace ur10_inverse_dynamics_solver

@@ -17,6 +17,7 @@
 #include "chain_dynamics/spatial.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// Symmetric 6 x 6 inertia `[J, H; H', M]`: moment = J w + H v, force = H' w + M v.
 template <typename Scalar>
@@ -74,4 +75,5 @@ struct ArticulatedInertia {
   }
 };
 
+}  // namespace v2
 }  // namespace chain_dynamics

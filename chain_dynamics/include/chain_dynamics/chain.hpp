@@ -26,6 +26,7 @@
 #include "chain_dynamics/spatial.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// How a joint moves. A continuous joint is a revolute one without position limits.
 enum class JointType { kRevolute, kContinuous, kPrismatic };
@@ -115,4 +116,5 @@ std::string inertiaDefect(const LinkParameters& link);
 /// Whether the joint slides; otherwise it turns.
 inline bool isPrismatic(const Joint& joint) { return joint.type == JointType::kPrismatic; }
 
+}  // namespace v2
 }  // namespace chain_dynamics

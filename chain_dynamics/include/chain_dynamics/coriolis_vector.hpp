@@ -14,6 +14,7 @@
 #include "chain_dynamics/torques.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// Coriolis and centrifugal torques: `C(q, qd) qd`.
 ///
@@ -43,4 +44,5 @@ void coriolisVector(const Chain& chain, const Eigen::MatrixBase<Q>& q,
   internal::torquesOfMotion(chain, chain.links(), X, V, A, 0, c.const_cast_derived());
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -57,6 +57,7 @@
 #include <type_traits>
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// `value + derivative . e`: a number with its derivatives in N directions.
 ///
@@ -155,6 +156,7 @@ struct Dual {
   }
 };
 
+}  // namespace v2
 }  // namespace chain_dynamics
 
 namespace Eigen {

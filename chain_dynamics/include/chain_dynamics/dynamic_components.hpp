@@ -16,6 +16,7 @@
 #include "chain_dynamics/torques.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// Inertia matrix, Coriolis and gravity torques: `H(q)`, `C(q, qd) qd`, `g(q)`.
 ///
@@ -52,4 +53,5 @@ void dynamicComponents(const Chain& chain, const Eigen::MatrixBase<Q>& q,
   internal::gravityOfPoses(chain, chain.links(), X, a, 0, g.const_cast_derived());
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

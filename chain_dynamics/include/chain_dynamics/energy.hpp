@@ -15,6 +15,7 @@
 #include "chain_dynamics/kinematics.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// Kinetic energy: `T(q, qd) = sum of 1/2 V' I V + 1/2 rotor_inertia qd^2`, which is `1/2 qd' H
 /// qd`.
@@ -69,4 +70,5 @@ typename Q::Scalar potentialEnergy(const Chain& chain, const Eigen::MatrixBase<Q
   return energy;
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -15,6 +15,7 @@
 #include "chain_dynamics/text.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// A user's mistake in a robot description, model file or argument.
 ///
@@ -32,4 +33,5 @@ class ModelError : public std::runtime_error {
       : std::runtime_error(errorText(where, what, expected, got, remedy)) {}
 };
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -24,6 +24,7 @@
 #include "chain_dynamics/states.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 namespace fast {
 struct Kernels;
@@ -113,4 +114,5 @@ class FastModel {
   int structure_ = 0;  // of the kernels for joints of this kind
 };
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -14,6 +14,7 @@
 #include "chain_dynamics/kinematics.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace internal {
 
 // What the pass from tip to root leaves for the pass back, per joint.
@@ -101,4 +102,5 @@ void forwardDynamics(const Chain& chain, const Eigen::MatrixBase<Q>& q,
   internal::accelerate(chain, X, joints, qdd.const_cast_derived());
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -30,6 +30,7 @@
 #include <vector>
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// Coulomb friction with a viscous part and an offset: `f = fv qd + fc sign(qd) + fo`.
 struct ViscousCoulombOffset {
@@ -158,4 +159,5 @@ void frictionVector(const std::vector<FrictionLaw>& laws,
 void frictionSlopes(const std::vector<FrictionLaw>& laws,
                     const Eigen::Ref<const Eigen::VectorXd>& qd, Eigen::Ref<Eigen::VectorXd> slope);
 
+}  // namespace v2
 }  // namespace chain_dynamics

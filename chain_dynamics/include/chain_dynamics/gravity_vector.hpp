@@ -13,6 +13,7 @@
 #include "chain_dynamics/kinematics.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace internal {
 
 // A heavy point: all that gravity sees of a body, stated in a frame.
@@ -84,4 +85,5 @@ void gravityVector(const Chain& chain, const Eigen::MatrixBase<Q>& q,
   internal::gravityOfPoses(chain, chain.links(), X, a, 0, g.const_cast_derived());
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

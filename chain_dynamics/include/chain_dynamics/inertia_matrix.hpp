@@ -13,6 +13,7 @@
 #include "chain_dynamics/kinematics.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace internal {
 
 // Row and column i of H up to the diagonal, I_c being the inertia of link i and all links after it.
@@ -69,4 +70,5 @@ void inertiaMatrix(const Chain& chain, const Eigen::MatrixBase<Q>& q,
   internal::inertiaOfPoses(chain, chain.links(), X, H.const_cast_derived());
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -19,6 +19,7 @@
 #include "chain_dynamics/spatial.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// `S`: the joint's motion of one rad/s or m/s.
 template <typename Scalar>
@@ -65,4 +66,5 @@ Force<Scalar> timesAxis(const SpatialInertia<Scalar>& I, const Joint& joint) {
   return {I.inertia.col(2), -mc_x_z};
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

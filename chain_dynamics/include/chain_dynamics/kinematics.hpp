@@ -29,6 +29,7 @@
 #include "chain_dynamics/spatial.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// `X_(i-1)i = placement RotZ(q)`, prismatic `placement TransZ(q)`: pose of a link on the one
 /// before.
@@ -131,4 +132,5 @@ void gravityInLinks(const Chain& chain, const Scratch<Transform<Scalar>>& X,
 }
 
 }  // namespace internal
+}  // namespace v2
 }  // namespace chain_dynamics

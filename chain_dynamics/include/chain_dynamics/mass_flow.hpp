@@ -23,6 +23,7 @@
 #include "chain_dynamics/spatial.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// `sum of m u` and `sum of m u r'` over points of mass m at r with velocity u.
 template <typename Scalar>
@@ -69,4 +70,5 @@ MassFlow<Scalar> flowOf(const SpatialInertia<Scalar>& I, const Motion<Scalar>& V
           V.linear * mc.transpose() + skew<Scalar>(V.angular) * second_moment};
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -26,6 +26,7 @@
 #include "chain_dynamics/friction.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// A chain with identified parameters, friction and drive gains. Plain data; see checkModel().
 struct Model {
@@ -142,4 +143,5 @@ void torqueDerivatives(const Model& model, const ConstVectorRef& q, const ConstV
                        const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
                        MatrixRef dtau_dqdd);
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -17,6 +17,7 @@
 #include "chain_dynamics/model.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// The model of a file.
 ///
@@ -30,4 +31,5 @@ Model modelFromFile(const std::string& path);
 /// @throws ModelError  `where:line: key: expected ..., got ...; remedy`.
 Model modelFromYaml(const std::string& text, const std::string& where);
 
+}  // namespace v2
 }  // namespace chain_dynamics

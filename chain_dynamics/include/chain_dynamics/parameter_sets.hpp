@@ -28,6 +28,7 @@
 #include "chain_dynamics/torques.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// Which inertial parameters each quantity is made of. A view: the vectors must outlive it.
 struct ParameterSets {
@@ -272,4 +273,5 @@ void torqueDerivatives(const Chain& chain, const ParameterSets& sets, const Eige
   if (own_gravity) internal::addGravityDerivatives(chain, sets.gravity, X, out.q);
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

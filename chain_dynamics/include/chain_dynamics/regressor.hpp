@@ -23,6 +23,7 @@
 #include "chain_dynamics/kinematics.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// The ten parameters of every link, one below the other: `p` of `tau = Y p`.
 ///
@@ -127,4 +128,5 @@ void regressor(const Chain& chain, const Eigen::MatrixBase<Q>& q, const Eigen::M
   }
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -15,6 +15,7 @@
 #include <new>
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// Chains of up to this many joints need no memory but the stack.
 constexpr Eigen::Index kStackJoints = 64;
@@ -62,4 +63,5 @@ class Scratch {
   T* data_;
 };
 
+}  // namespace v2
 }  // namespace chain_dynamics

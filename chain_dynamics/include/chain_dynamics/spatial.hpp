@@ -29,6 +29,7 @@
 #include <Eigen/Geometry>
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 template <typename Scalar>
 using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
@@ -235,4 +236,5 @@ struct Transform {
   }
 };
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -18,6 +18,7 @@
 #include <utility>
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 namespace detail {
 
@@ -147,4 +148,5 @@ struct StridedMatrices {
   }
 };
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -16,6 +16,7 @@
 #include <vector>
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// Text of every error: `where: what: expected ..., got ...; remedy`. Empty parts are left out.
 ///
@@ -56,4 +57,5 @@ std::size_t editDistance(const std::string& a, const std::string& b);
 /// Near: at most a third of the letters differ; of short names, one.
 std::string nearestName(const std::string& name, const std::vector<std::string>& known);
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -30,6 +30,7 @@
 #include "chain_dynamics/mass_flow.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace internal {
 
 // What a unit of a joint's travel adds to the motion of all links after it.
@@ -209,4 +210,5 @@ void torqueDerivatives(const Chain& chain, const Eigen::MatrixBase<Q>& q,
                                 internal::derivativeMatrices(chain, dtau_dq, dtau_dqd, dtau_dqdd));
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

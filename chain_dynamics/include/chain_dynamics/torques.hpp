@@ -13,6 +13,7 @@
 #include "chain_dynamics/kinematics.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 namespace internal {
 
 // Rows first..n-1 of the torques with one parameter set, from the links' motion.
@@ -88,4 +89,5 @@ void torques(const Chain& chain, const Eigen::MatrixBase<Q>& q, const Eigen::Mat
   internal::addTo(tau.const_cast_derived(), rotor);
 }
 
+}  // namespace v2
 }  // namespace chain_dynamics

@@ -36,6 +36,7 @@
 #include "chain_dynamics/chain.hpp"
 
 namespace chain_dynamics {
+inline namespace v2 {
 
 /// Which part of a robot, and how it is taken.
 struct UrdfOptions {
@@ -67,4 +68,5 @@ struct UrdfOptions {
 /// Threads: safe.
 Chain chainFromUrdf(const std::string& urdf_xml, const UrdfOptions& options = {});
 
+}  // namespace v2
 }  // namespace chain_dynamics

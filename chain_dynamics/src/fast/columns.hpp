@@ -9,7 +9,9 @@
 
 #include "pack.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 // Lanes of a, then of b, by their numbers; constants of the compiler.
@@ -58,4 +60,6 @@ FAST_INLINE void loadColumns(const double* rows, std::ptrdiff_t step, Pack& firs
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -11,7 +11,9 @@
 
 #include "pack.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 // Up to this many quarter turns (1.6e6 rad) the parts of pi/2 below times their number are exact;
@@ -147,4 +149,6 @@ FAST_INLINE V sigmoid(const V& x) {
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

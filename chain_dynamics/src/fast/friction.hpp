@@ -9,7 +9,9 @@
 
 #include "turns.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 // number(k) is the k-th of kFrictionNumbers.
@@ -76,4 +78,6 @@ FAST_INLINE Pack frictionOfPack(const Robot& robot, int i, const Pack& qd) {
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

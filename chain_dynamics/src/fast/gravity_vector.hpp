@@ -9,7 +9,9 @@
 
 #include "link_motion.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 /// First moment of what hangs on joint i, on to the link before; m is its mass.
@@ -102,4 +104,6 @@ void gravityByRow(const Robot& robot, const State<V>& state, V* g) {
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -9,7 +9,9 @@
 
 #include "link_motion.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 /// A link and all after it as one body, in the link's frame.
@@ -194,4 +196,6 @@ void inertiaByRow(const Robot& robot, const State<V>& state, const Entries<V>& H
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -7,7 +7,9 @@
 #include "many_states.hpp"
 #include "one_state.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 void sineCosineOfEach(int count, const double* angle, const double* quarter_turns, double* sine,
@@ -51,4 +53,6 @@ const Kernels& CHAIN_DYNAMICS_KERNELS(int joints) {
   return joints == 6 ? kKernels<6> : joints == 7 ? kKernels<7> : kKernels<0>;
 }
 
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -11,7 +11,9 @@
 #include "robot.hpp"
 #include "structure.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 /// The states of one pack: lanes beyond the last state repeat it.
@@ -119,4 +121,6 @@ FAST_INLINE void scatter(const Robot& robot, const Pack* from, const Lanes& lane
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

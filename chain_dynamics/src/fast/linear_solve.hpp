@@ -9,7 +9,9 @@
 
 #include "pack.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 /// x = H^-1 x for symmetric H, H(i, j) at H[i n + j]; reads and overwrites its lower triangle.
@@ -65,4 +67,6 @@ void solveGeneral(int n, double* H, double* x) {
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

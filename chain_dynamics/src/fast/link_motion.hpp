@@ -13,7 +13,9 @@
 
 #include "structure.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 template <typename V>
@@ -237,4 +239,6 @@ struct BodyLanes {
 };
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

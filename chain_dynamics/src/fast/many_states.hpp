@@ -13,7 +13,9 @@
 #include "lanes.hpp"
 #include "one_state.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 /// Whether gravity torques depend on the first joint's angle: not if its axis is vertical. Inertia
@@ -158,4 +160,6 @@ void frictionBatch(const Robot& robot, std::ptrdiff_t states, Samples qd, Sample
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

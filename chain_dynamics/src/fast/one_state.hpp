@@ -13,7 +13,9 @@
 #include "regressor.hpp"
 #include "turns.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 void torquesOfState(const Robot& robot, int structure, const double* q, const double* qd,
@@ -115,4 +117,6 @@ void torqueDerivativesOfState(const Robot& robot, int structure, const double* q
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

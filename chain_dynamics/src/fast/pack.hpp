@@ -11,7 +11,9 @@
 
 #include <cstddef>
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 #define FAST_INLINE inline __attribute__((always_inline))
@@ -111,4 +113,6 @@ FAST_INLINE V all(double number) {
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

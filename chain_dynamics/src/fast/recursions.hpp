@@ -12,7 +12,9 @@
 #include "torque_derivatives.hpp"
 #include "torques.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 /// Joints 2, 3, 4 (the first is 1) are parallel, and right angles elsewhere: Universal Robots.
@@ -113,4 +115,6 @@ FAST_INLINE void coriolisOf(const Robot& robot, int structure, const State<V>& s
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -12,7 +12,9 @@
 
 #include "link_motion.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 /// Axes and origin of a link's frame in that of the link before.
@@ -163,4 +165,6 @@ void regressor(const Robot& robot, const State<double>& state, double* Y,
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 constexpr double kRounding = 1e-13;  // rad: what products of rotations leave of a right angle
@@ -208,4 +210,6 @@ std::vector<OwnPlacement> ownPlacements(const Frames& frames, const Chain& chain
   return own;
 }
 
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -14,7 +14,9 @@
 #include "chain_dynamics/chain.hpp"
 #include "robot.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 
 /// The frames of a chain, turned about and moved along the axes that its own frames have.
 struct Frames {
@@ -38,4 +40,6 @@ std::vector<Body> regrouped(const Frames& frames, const std::vector<LinkParamete
 /// The chain's own frames, with the angles of the new ones: each is turned back by the offset.
 std::vector<OwnPlacement> ownPlacements(const Frames& frames, const Chain& chain);
 
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

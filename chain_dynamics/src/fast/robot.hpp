@@ -16,7 +16,9 @@
 
 #include <cstddef>
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 
 constexpr int kMaxJoints = 64;
 
@@ -128,4 +130,6 @@ const Kernels& kernelsPortable(int joints);
 const Kernels& kernelsV3(int joints);  // x86-64 only
 const Kernels& kernelsV4(int joints);  // x86-64 only
 
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -11,7 +11,9 @@
 #include "pack.hpp"
 #include "robot.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 enum class Twist { kNone, kRight, kAlmostRight, kAny };
@@ -130,4 +132,6 @@ struct Known {
 };
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -12,7 +12,9 @@
 #include "inertia_matrix.hpp"
 #include "torques.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 /// by_q, by_qd, by_qdd, turned; not in a register of its own where the widest holds two.
@@ -262,4 +264,6 @@ void addGravityDerivatives(const Robot& robot, const State<double>& state, doubl
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -9,7 +9,9 @@
 
 #include "link_motion.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 /// The forces through the joints from tip to `first`, given what each link needs for itself;
@@ -83,4 +85,6 @@ void torquesByRow(const Robot& robot, const State<V>& state, const double* root,
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -10,7 +10,9 @@
 #include "elementary.hpp"
 #include "robot.hpp"
 
-namespace chain_dynamics::fast {
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
 namespace {
 
 template <typename V>
@@ -93,4 +95,6 @@ FAST_INLINE void turnsOfPack(const Robot& robot, const Pack* q, bool first_matte
 }
 
 }  // namespace
-}  // namespace chain_dynamics::fast
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -10,6 +10,7 @@
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 
 namespace franka_inria_inverse_dynamics_solver {
+inline namespace v2 {
 
 /// The Panda of Gaz, Cognetti, Oliva, Robuffo Giordano, De Luca, IEEE Robotics and Automation
 /// Letters, 2019, doi 10.1109/LRA.2019.2931248: the engine with the file
@@ -28,4 +29,5 @@ class InverseDynamicsSolverFrankaInria
   JointInfo configure(const inverse_dynamics_solver::Configuration& configuration) override;
 };
 
+}  // namespace v2
 }  // namespace franka_inria_inverse_dynamics_solver

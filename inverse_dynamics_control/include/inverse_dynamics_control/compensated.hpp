@@ -8,6 +8,7 @@
 #pragma once
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// Terms that every law of this package leaves out, as the robot's own controller adds them.
 struct Compensated {
@@ -16,4 +17,5 @@ struct Compensated {
   bool friction = false;  ///< f(qd)
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -23,6 +23,7 @@
 #include "inverse_dynamics_control/control_law.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// Gains of computed torque, diagonal matrices as vectors.
 struct Gains {
@@ -64,4 +65,5 @@ class ComputedTorque : public ControlLaw {
   Eigen::VectorXd acceleration_;  // scratch
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

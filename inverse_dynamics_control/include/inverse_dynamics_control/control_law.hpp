@@ -30,6 +30,7 @@
 #include "inverse_dynamics_control/status.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// Options of every law.
 struct LawOptions {
@@ -125,4 +126,5 @@ class ControlLaw {
   Eigen::VectorXd gravity_, gravity_candidate_;  // last known; scratch
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

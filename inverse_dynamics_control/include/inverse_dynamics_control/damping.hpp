@@ -12,6 +12,7 @@
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// Damping in proportion to the inertia of each joint: `D_j = rate H_jj(q)`.
 ///
@@ -30,4 +31,5 @@ namespace inverse_dynamics_control {
 Eigen::VectorXd dampingFor(const inverse_dynamics_solver::InverseDynamicsSolver& solver,
                            const Eigen::VectorXd& q, double rate, double period);
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -11,6 +11,7 @@
 #include "inverse_dynamics_control/status.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// Latches once updates have been refused for longer than is tolerated. Not thread-safe.
 ///
@@ -49,4 +50,5 @@ class FaultLatch {
   Status why_ = Status::kOk;
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

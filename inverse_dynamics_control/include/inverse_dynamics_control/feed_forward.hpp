@@ -13,6 +13,7 @@
 #include "inverse_dynamics_control/control_law.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// Where H, C and g are taken.
 enum class ModelState {
@@ -44,4 +45,5 @@ class FeedForward : public ControlLaw {
   ModelState at_;
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

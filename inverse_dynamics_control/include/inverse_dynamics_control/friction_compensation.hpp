@@ -21,6 +21,7 @@
 #include <string>
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// Whose velocity v decides about friction.
 enum class FrictionSource {
@@ -69,4 +70,5 @@ class FrictionCompensation {
   FrictionOptions options_;
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

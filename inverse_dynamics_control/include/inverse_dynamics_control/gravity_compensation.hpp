@@ -16,6 +16,7 @@
 #include "inverse_dynamics_control/control_law.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// `tau = g(q) - damping qd + f`; needs no physical H.
 class GravityCompensation : public ControlLaw {
@@ -42,4 +43,5 @@ class GravityCompensation : public ControlLaw {
   Eigen::VectorXd rest_;  // zero
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -14,6 +14,7 @@
 #include "inverse_dynamics_control/compensated.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 using inverse_dynamics_solver::ConstVectorRef;
 using inverse_dynamics_solver::InverseDynamicsSolver;
@@ -56,4 +57,5 @@ class ModelTerms {
   Eigen::VectorXd c_, g_;
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -14,6 +14,7 @@
 #include "inverse_dynamics_control/status.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// What the actuators may be asked for.
 struct OutputLimits {
@@ -68,4 +69,5 @@ class OutputStage {
   Joints saturated_, rate_limited_;
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

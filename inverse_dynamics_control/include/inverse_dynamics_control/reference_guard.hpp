@@ -21,6 +21,7 @@
 #include "inverse_dynamics_control/signals.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// What a reference may ask for, n numbers each; infinity: no limit.
 struct ReferenceLimits {
@@ -89,4 +90,5 @@ class ReferenceGuard {
   Eigen::Index joint_ = -1;
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

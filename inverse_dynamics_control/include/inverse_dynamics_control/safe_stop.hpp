@@ -21,6 +21,7 @@
 #include "inverse_dynamics_control/status.hpp"
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// Ramps references to a standstill. Not thread-safe.
 ///
@@ -60,4 +61,5 @@ class SafeStop {
   bool begun_ = false;
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// Measured state of n joints, in the order of the solver's jointNames().
 struct JointState {
@@ -35,4 +36,5 @@ struct Reference {
   Eigen::VectorXd qdd;  ///< n; rad/s^2 (prismatic m/s^2)
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -7,6 +7,7 @@
 #pragma once
 
 namespace inverse_dynamics_control {
+inline namespace v2 {
 
 /// Result of an update. From kReferenceNotFinite on the wish was refused, and the output is the
 /// safe torque [control_law.hpp].
@@ -28,4 +29,5 @@ constexpr bool isRefusal(Status status) noexcept { return status >= Status::kRef
 /// system call. Threads: safe.
 const char* text(Status status) noexcept;
 
+}  // namespace v2
 }  // namespace inverse_dynamics_control

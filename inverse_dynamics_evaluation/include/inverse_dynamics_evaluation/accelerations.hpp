@@ -23,6 +23,7 @@
 #include "inverse_dynamics_evaluation/samples.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// Accelerations by backward differences: `qdd_i = (qd_i - qd_(i-1)) / (t_i - t_(i-1))`.
 ///
@@ -91,4 +92,5 @@ AccelerationEstimate lowPassAccelerations(const Eigen::Ref<const Eigen::VectorXd
                                           const Eigen::Ref<const Eigen::MatrixXd>& effort,
                                           const LowPassOptions& options = {});
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -35,6 +35,7 @@
 #include <vector>
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// What was chosen, and what each look said; Hz.
 struct CutoffChoice {
@@ -61,4 +62,5 @@ struct Stretch {
 CutoffChoice chooseCutoff(const std::vector<Stretch>& stretches, double sampling_frequency,
                           int order = 2);
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -13,6 +13,7 @@
 #include <string>
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// A mistake in the arguments: sizes, too few samples, numbers that aren't finite, wrong stamps.
 ///
@@ -26,4 +27,5 @@ class EvaluationError : public std::invalid_argument {
                               "; " + remedy) {}
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -29,6 +29,7 @@
 #include "inverse_dynamics_evaluation/joint_matching.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// A recording that doesn't hold what is asked of it.
 ///
@@ -134,4 +135,5 @@ class JointLogBuilder {
   Column position_, velocity_, effort_, acceleration_;
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

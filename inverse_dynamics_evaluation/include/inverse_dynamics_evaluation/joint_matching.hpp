@@ -16,6 +16,7 @@
 #include <vector>
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// Finds joints among names, and remembers the answer for the same names in the next message.
 class JointMatching {
@@ -53,4 +54,5 @@ class JointMatching {
 /// `a, b, c`: names as texts list them.
 std::string listed(const std::vector<std::string>& names);
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

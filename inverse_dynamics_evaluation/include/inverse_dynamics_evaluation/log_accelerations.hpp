@@ -17,6 +17,7 @@
 #include "inverse_dynamics_evaluation/samples.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// Where accelerations come from.
 enum class AccelerationMethod {
@@ -50,4 +51,5 @@ LogAccelerations logAccelerations(const JointLog& log,
                                   AccelerationMethod method = AccelerationMethod::kAuto,
                                   double cutoff = 0, const SampleRules& rules = {});
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

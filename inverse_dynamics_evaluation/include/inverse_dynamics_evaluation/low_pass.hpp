@@ -23,6 +23,7 @@
 #include <Eigen/Core>
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// Gain of the zero-phase low-pass, forwards and backwards, at a frequency: `|B(f)|^2`.
 ///
@@ -46,4 +47,5 @@ Eigen::Index defaultPadding(Eigen::Index samples, double sampling_frequency, dou
 Eigen::MatrixXd lowPass(const Eigen::Ref<const Eigen::MatrixXd>& samples, double sampling_frequency,
                         double cutoff, int order = 2, Eigen::Index padding = -1);
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

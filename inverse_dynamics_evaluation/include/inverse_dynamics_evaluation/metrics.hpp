@@ -16,6 +16,7 @@
 #include <vector>
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// One truth value per sample.
 using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>;
@@ -52,4 +53,5 @@ std::vector<JointMetrics> metrics(const Eigen::Ref<const Eigen::MatrixXd>& compu
                                   const Eigen::Ref<const Eigen::MatrixXd>& measured,
                                   const Mask& mask);
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

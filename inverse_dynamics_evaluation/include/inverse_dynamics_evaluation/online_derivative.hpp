@@ -25,6 +25,7 @@
 #include <cstdint>
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// Filtered derivative of n numbers.
 ///
@@ -73,4 +74,5 @@ class OnlineDerivative {
   Eigen::VectorXd derivative_;         // y'
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

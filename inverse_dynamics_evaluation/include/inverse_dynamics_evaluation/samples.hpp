@@ -47,6 +47,7 @@
 #include "inverse_dynamics_evaluation/metrics.hpp"
 
 namespace inverse_dynamics_evaluation {
+inline namespace v2 {
 
 /// Which rules are acted upon. What they find is reported in any case.
 struct SampleRules {
@@ -111,4 +112,5 @@ SampleReport examineSamples(const Eigen::Ref<const Eigen::VectorXd>& time,
                             const Eigen::Ref<const Eigen::MatrixXd>& effort,
                             const SampleRules& rules = {});
 
+}  // namespace v2
 }  // namespace inverse_dynamics_evaluation

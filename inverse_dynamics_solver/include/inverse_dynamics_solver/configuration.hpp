@@ -18,6 +18,7 @@
 #include "inverse_dynamics_solver/parameters.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 /// The parameters every solver understands, read and checked, and a reader for a solver's own.
 ///
@@ -99,4 +100,5 @@ Configuration readConfiguration(const Parameters& parameters, const std::string&
 /// not a URDF, no such link, no chain, a joint or link that can't be computed with.
 chain_dynamics::Chain chainFromDescription(const Configuration& configuration);
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

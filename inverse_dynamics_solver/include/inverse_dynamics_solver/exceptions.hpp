@@ -12,6 +12,7 @@
 #include <string>
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 /// Text of every error: `where: what: expected ..., got ...; remedy`. Empty parts are left out.
 ///
@@ -71,4 +72,5 @@ class PluginNotFoundException : public Exception {
   using Exception::Exception;
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

@@ -21,12 +21,12 @@
 
 namespace inverse_dynamics_solver {
 
-/// Number of the binary interface: layout of the class, order of its virtual functions, types they
-/// take.
+/// Number of the binary interface: layouts, order of virtual functions, types that functions take.
 ///
-/// It is part of the class's true name, so a plugin built against another one is reported as not
-/// found instead of crashing. Source code and plugin descriptions leave it out.
-inline namespace v1 {
+/// The same in all packages, and part of every name that crosses a library, so a plugin built
+/// against another one is refused instead of crashing [docs/design.md]. Source code and plugin
+/// descriptions leave it out.
+inline namespace v2 {
 
 using ConstVectorRef = Eigen::Ref<const Eigen::VectorXd>;
 using VectorRef = Eigen::Ref<Eigen::VectorXd>;
@@ -281,5 +281,5 @@ class InverseDynamicsSolver {
   bool initialized_ = false;
 };
 
-}  // namespace v1
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

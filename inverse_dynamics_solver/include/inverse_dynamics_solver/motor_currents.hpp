@@ -11,7 +11,7 @@
 #include <Eigen/Core>
 
 namespace inverse_dynamics_solver {
-inline namespace v1 {
+inline namespace v2 {
 
 /// The motor currents of each term of the dynamics: torque = K current, K the drive gains.
 ///
@@ -51,5 +51,5 @@ class MotorCurrents {
   MotorCurrents& operator=(const MotorCurrents&) = default;
 };
 
-}  // namespace v1
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

@@ -22,6 +22,7 @@
 #include <vector>
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 /// The types a parameter can have; those of ROS 2 but byte arrays.
 using ParameterValue =
@@ -183,4 +184,5 @@ std::optional<ParameterValue> readParameter(Interface& interface, const std::str
 }
 
 }  // namespace detail
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

@@ -16,7 +16,7 @@
 #include "inverse_dynamics_solver/workspace_pool.hpp"
 
 namespace inverse_dynamics_solver {
-inline namespace v1 {
+inline namespace v2 {
 
 /// A library's algorithms of one chain, and all that they write to. One thread at a time.
 ///
@@ -72,5 +72,5 @@ class PooledSolver : public InverseDynamicsSolver {
   bool inertia_is_physical_ = false;
 };
 
-}  // namespace v1
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

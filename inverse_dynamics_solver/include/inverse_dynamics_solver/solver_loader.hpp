@@ -14,6 +14,7 @@
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 /// Finds the solver plugins of the sourced workspaces and makes solvers of them.
 ///
@@ -47,4 +48,5 @@ class SolverLoader {
   std::unique_ptr<Implementation> implementation_;
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

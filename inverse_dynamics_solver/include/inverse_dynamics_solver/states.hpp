@@ -17,6 +17,7 @@
 #include "chain_dynamics/states.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 using chain_dynamics::ConstStates;
 using chain_dynamics::States;
@@ -65,4 +66,5 @@ class ConstStatesRef : public ConstStates {
   Values values_;  // moving a vector leaves its numbers where they are
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

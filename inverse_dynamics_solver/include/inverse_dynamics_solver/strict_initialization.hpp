@@ -13,6 +13,7 @@
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 /// The same with the names of the parameters that the user has set, in any namespace.
 void initializeStrictly(InverseDynamicsSolver& solver, const Parameters& parameters,
@@ -32,4 +33,5 @@ void initializeStrictly(InverseDynamicsSolver& solver, const std::shared_ptr<Int
                      parameters->list_parameters({param_namespace}, kAllDepths).names);
 }
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

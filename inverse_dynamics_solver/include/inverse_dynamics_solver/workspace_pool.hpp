@@ -21,6 +21,7 @@
 #include "inverse_dynamics_solver/configuration.hpp"
 
 namespace inverse_dynamics_solver {
+inline namespace v2 {
 
 /// The parameter `max_threads`: how many threads compute at the same time without allocating; by
 /// default the number of processors, at least 16.
@@ -91,4 +92,5 @@ class WorkspacePool {
   std::vector<Slot> slots_;
 };
 
+}  // namespace v2
 }  // namespace inverse_dynamics_solver

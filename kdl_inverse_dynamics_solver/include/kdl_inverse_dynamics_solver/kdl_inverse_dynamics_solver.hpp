@@ -10,6 +10,7 @@
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 
 namespace kdl_inverse_dynamics_solver {
+inline namespace v2 {
 
 /// Torques by KDL's recursive Newton-Euler solver, H, C qd and g by its ChainDynParam [Featherstone
 /// 2008, ch. 5 and 6]. KDL's solvers keep state: parameters and promises are those of PooledSolver.
@@ -18,4 +19,5 @@ class InverseDynamicsSolverKDL : public inverse_dynamics_solver::PooledSolver {
   WorkspaceMaker workspaceMaker(const chain_dynamics::Chain& chain) const override;
 };
 
+}  // namespace v2
 }  // namespace kdl_inverse_dynamics_solver

@@ -11,6 +11,7 @@
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 
 namespace pinocchio_inverse_dynamics_solver {
+inline namespace v2 {
 
 /// Torques by Pinocchio's `rnea`, H by its `crba`, C qd and g by `nonLinearEffects` and
 /// `computeGeneralizedGravity` [Featherstone 2008, ch. 5 and 6]. Pinocchio writes to memory of its
@@ -20,4 +21,5 @@ class InverseDynamicsSolverPinocchio : public inverse_dynamics_solver::PooledSol
   WorkspaceMaker workspaceMaker(const chain_dynamics::Chain& chain) const override;
 };
 
+}  // namespace v2
 }  // namespace pinocchio_inverse_dynamics_solver

@@ -12,6 +12,7 @@
 #include "chain_dynamics/model.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
+inline namespace v2 {
 
 /// Names of the models that the installed package inverse_dynamics_robots brings, sorted.
 ///
@@ -26,4 +27,5 @@ std::vector<std::string> installedModels();
 /// mistake with line and key.
 chain_dynamics::Model readModel(const std::string& name_or_path);
 
+}  // namespace v2
 }  // namespace rigid_body_inverse_dynamics_solver

@@ -16,6 +16,7 @@
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
+inline namespace v2 {
 
 using inverse_dynamics_solver::Configuration;
 using inverse_dynamics_solver::ConstStates;
@@ -82,4 +83,5 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
   bool inertia_is_physical_ = false;  // known once for all: model_ doesn't change
 };
 
+}  // namespace v2
 }  // namespace rigid_body_inverse_dynamics_solver

@@ -14,6 +14,7 @@
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 
 namespace ur10_inverse_dynamics_solver {
+inline namespace v2 {
 
 // The names that programs written for the solver of this name know.
 // NOLINTBEGIN(readability-identifier-naming)
@@ -54,4 +55,5 @@ class InverseDynamicsSolverUR10
   JointInfo configure(const inverse_dynamics_solver::Configuration& configuration) override;
 };
 
+}  // namespace v2
 }  // namespace ur10_inverse_dynamics_solver
