@@ -288,10 +288,11 @@ def test_missing_description_is_an_error(bag, robot, tmp_path):
 
 def test_description_that_is_no_xml_is_an_error_whoever_reads_it(bag, robot, tmp_path):
     (tmp_path / "arm.urdf").write_text("<robot")
-    with pytest.raises(InvalidRobotDescriptionError, match=r"arm\.urdf"):
-        evaluate(bag, robot, urdf=tmp_path / "arm.urdf")
+    for changes in ({}, {"plugin": UR10}):
+        with pytest.raises(InvalidRobotDescriptionError, match=r"arm\.urdf.*well-formed XML"):
+            evaluate(bag, robot, urdf=tmp_path / "arm.urdf", **changes)
     with pytest.raises(RobotError, match=r"arm\.urdf: isn't a robot description: no XML"):
-        evaluate(bag, robot, urdf=tmp_path / "arm.urdf", plugin=UR10)
+        evaluate(bag, robot, urdf=tmp_path / "arm.urdf", plugin=UR10, root="", tip="")
 
 
 XACRO = """\
