@@ -24,6 +24,11 @@ SOURCES = {
     "urdf": "the plain URDF of inverse_dynamics_robots",
 }
 
+# Keys of a run configuration that the launch files understand or may leave aside.
+_USED = ("plugin", "urdf", "root", "tip", "gravity", "friction", "joints", "effort", "drive_gains")
+_KEYS = {*_USED, "accelerations", "schema", "name", "description", "topic", "source", "simulation"}
+_SCHEMA = 1
+
 
 @dataclass(frozen=True)
 class Xacro:
@@ -50,12 +55,25 @@ def robot_names() -> list[str]:
 def load_robot(name: str) -> dict[str, Any]:
     """The run configuration of that name; its keys are those of docs/add_a_robot.md.
 
-    Raises ValueError: no such name.
+    Raises ValueError: no such name; not keys with values; a key that the launch files don't know.
     """
     if name not in robot_names():
         raise ValueError(f"robot: expected one of {', '.join(robot_names())}, got '{name}'")
     share = Path(get_package_share_directory("inverse_dynamics_robots"))
-    configuration: dict[str, Any] = yaml.safe_load((share / "robots" / f"{name}.yaml").read_text())
+    file = share / "robots" / f"{name}.yaml"
+    configuration: dict[str, Any] = yaml.safe_load(file.read_text(encoding="utf-8"))
+    if not isinstance(configuration, dict):
+        raise ValueError(f"{file}: expected keys with values")
+    if configuration.get("schema") != _SCHEMA:
+        raise ValueError(f"{file}: schema: expected {_SCHEMA}, got {configuration.get('schema')}")
+    for key in configuration:
+        if key not in _KEYS:
+            raise ValueError(f"{file}: {key}: unknown key; known here: {', '.join(sorted(_KEYS))}")
+    if configuration.get("effort") == "auto":
+        raise ValueError(
+            f"{file}: effort: expected torque, current or torque_without_gravity, got auto; "
+            "`ids evaluate` finds it from the data, then state it"
+        )
     return configuration
 
 

@@ -64,8 +64,9 @@ EffortMeaning effortMeaning(const std::string& effort, const std::vector<double>
     meaning.without_gravity = true;
     meaning.summary = "torque without gravity: computed torques are without gravity, too";
   } else if (effort != "torque") {
-    throw UserError("parameter 'effort'", "one of torque, current, torque_without_gravity",
-                    "'" + effort + "'", "correct it");
+    throw UserError(
+        "parameter 'effort'", "one of torque, current, torque_without_gravity", "'" + effort + "'",
+        effort == "auto" ? "`ids evaluate` finds it from the data, then state it" : "correct it");
   }
   return meaning;
 }

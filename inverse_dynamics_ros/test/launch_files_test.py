@@ -7,11 +7,14 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 from ament_index_python.packages import get_package_share_directory
 from launch import LaunchDescription
 from launch_testing.actions import ReadyToTest
 from launch_testing.util import KeepAliveProc
+
+from inverse_dynamics_ros import robots
 
 sys.path.insert(0, str(Path(__file__).parent))
 import recordings
@@ -66,6 +69,36 @@ def launch(*arguments):
         timeout=120,
         check=False,
     )
+
+
+class TestRunConfigurations(unittest.TestCase):
+    def load(self, text):
+        """What the launch files make of a run configuration with this text."""
+        with tempfile.TemporaryDirectory() as share:
+            (Path(share) / "robots").mkdir()
+            (Path(share) / "robots/arm.yaml").write_text(text)
+            with mock.patch.object(robots, "get_package_share_directory", return_value=share):
+                return robots.load_robot("arm")
+
+    def test_read_the_projects_strictly(self):
+        for name in ROBOTS:
+            self.assertEqual(robots.load_robot(name)["name"], name)
+        self.assertEqual(self.load("schema: 1\nplugin: a/B\n")["plugin"], "a/B")
+        for text, expected in {
+            "schema: 1\ngravty: [0, 0, 1]\n": "arm.yaml: gravty: unknown key; known here: acc",
+            "schema: 1\nparameters: {mass: 1}\n": "arm.yaml: parameters: unknown key",
+            "schema: 1\nmodel: arm.yaml\n": "arm.yaml: model: unknown key",
+            "schema: 2\n": "arm.yaml: schema: expected 1, got 2",
+            "- 1\n": "arm.yaml: expected keys with values",
+            "schema: 1\neffort: auto\n": "arm.yaml: effort: expected torque, current or torque_wi",
+        }.items():
+            with self.subTest(text):
+                said = "nothing"
+                try:
+                    self.load(text)
+                except ValueError as error:
+                    said = str(error)
+                self.assertIn(expected, said)
 
 
 class TestLaunchFiles(unittest.TestCase):
