@@ -13,9 +13,10 @@ import os
 import re
 import sys
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.errors import UserError
+from inverse_dynamics.wording import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -48,11 +49,26 @@ start here:
 # A list of numbers that begins with a minus looks like an option to argparse.
 _NUMBERS = re.compile(r"-[\d.]+(e[-+]?\d+)?,[-+\d.,e]+", re.IGNORECASE)
 
+# What argparse says of a wrong verb or value.
+_CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)")
+
 
 class _Parser(argparse.ArgumentParser):
     """Says what is wrong in one line, and where help is: pages of usage would hide it."""
 
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """What is given; an unknown option is an error of the verb, whose help knows the right one."""
+        options, unknown = self.parse_known_args(args, namespace)
+        if unknown:
+            parser = getattr(options, "parser", self)
+            hint = did_you_mean(unknown[0].partition("=")[0], parser._option_string_actions)
+            parser.error(f"unrecognized arguments: {' '.join(unknown)}{hint and f'; {hint}'}")
+        return options
+
     def error(self, message: str) -> NoReturn:
+        if wrong := _CHOICE.search(message):
+            hint = did_you_mean(wrong[1], re.findall(r"[\w-]+", wrong[2]))
+            message += hint and f"; {hint}"
         self.exit(2, f"{self.prog}: error: {message}; see `{self.prog} --help`\n")
 
 
@@ -67,7 +83,8 @@ def make_parser() -> argparse.ArgumentParser:
     subparsers = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
     for verb in VERBS:
         module = import_module(f"inverse_dynamics.verbs.{verb}")
-        module.add_parser(subparsers).set_defaults(run=module.run)
+        verb_parser = module.add_parser(subparsers)
+        verb_parser.set_defaults(run=module.run, parser=verb_parser)
     return parser
 
 

@@ -19,6 +19,7 @@ from inverse_dynamics.effort_meanings import EFFORT_CHOICES
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.located_yaml import read_mapping
 from inverse_dynamics.solver_parameters import solver_parameters
+from inverse_dynamics.wording import did_you_mean, shown
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -79,8 +80,11 @@ def load_robot(name_or_file: str | Path) -> Robot:
         return _read(file)
     file = _directory() / f"{text}.yaml"
     if not file.is_file():
+        names = robot_names()
+        hint = did_you_mean(text, names)
         raise RobotError(
-            f"robot '{text}': expected one of {', '.join(robot_names())}, or a file ending in .yaml"
+            f"robot {shown(text)}: expected one of {', '.join(names)}, or a file ending in .yaml"
+            + (hint and f"; {hint}")
         )
     return _read(file)
 

@@ -247,6 +247,38 @@ def test_a_wrong_command_line_takes_one_line_that_names_the_help(ids):
     assert ids("torque")[2].endswith("; see `ids --help`\n")
 
 
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (("evalute",), "did you mean evaluate?; see `ids --help`\n"),
+        (
+            ("evaluate", "bag", "--robot", "x", "--accelerations", "lowpass"),
+            "did you mean low-pass?; see `ids evaluate --help`\n",
+        ),
+        (
+            ("evaluate", "bag", "--robot", "x", "--gravty", "0,0,1"),
+            "unrecognized arguments: --gravty 0,0,1; did you mean --gravity?; see `ids evaluate --help`\n",
+        ),
+        (("robots", "--list", "x"), "unrecognized arguments: --list; see `ids robots --help`\n"),
+        (("report", "a", "--ou=b"), None),
+        (("--versio",), "see `ids --help`\n"),
+    ],
+)
+def test_what_is_like_something_known_is_proposed_and_the_right_help_named(
+    ids, arguments, expected
+):
+    code, _, err = ids(*arguments)
+    assert code == 2
+    assert err.count("\n") == 1
+    assert expected is None or err.endswith(expected)
+
+
+def test_a_robot_that_is_like_a_known_one_is_proposed(ids):
+    fails(
+        ids("robots", "ur10real"), "robot 'ur10real': expected one of", "; did you mean ur10_real?"
+    )
+
+
 def test_without_a_verb_the_help_is_shown(ids):
     code, out, err = ids()
     assert (code, out) == (2, "")
