@@ -183,6 +183,12 @@ void JointLogBuilder::append(Column& column, const JointSample::Numbers& numbers
                            numberText(number) +
                            "; cut such messages out of the recording, or record it again");
     }
+    if (std::abs(number) > kLargestNumber) {
+      throw RecordingError(
+          place(sample) + ": " + column.field + " of joint " + matching_.joints()[j] +
+          ": expected a number of a motion, in SI units, of at most " + numberText(kLargestNumber) +
+          ", got " + numberText(number) + "; is the recording damaged?");
+    }
     column.numbers(static_cast<Index>(j), count) = number;
   }
 }

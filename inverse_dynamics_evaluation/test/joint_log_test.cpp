@@ -176,6 +176,23 @@ TEST(JointLog, SaysThatNoMessageHasAnyOfTheJoints) {
               HasSubstr("expected joint states, got no message"));
 }
 
+TEST(JointLog, NamesInTextsAreShortAndHarmless) {
+  Message message = armMessage();
+  std::string long_name = "x";
+  for (int i = 0; i < 50000; ++i) {
+    long_name += "\xc3\xa9";
+  }
+  message.names = {long_name, "\x1b[31mred\n", "z"};
+  std::string shortened = "x";
+  for (int i = 0; i < 29; ++i) {
+    shortened += "\xc3\xa9";  // whole characters
+  }
+  EXPECT_THAT(logErrorOf(message),
+              HasSubstr("got only " + shortened + "..., \\x1b[31mred\\x0a, z; give"));
+  message.names = Strings(10000, "n");
+  EXPECT_THAT(logErrorOf(message), HasSubstr("n, n and 9980 others; give"));
+}
+
 TEST(JointLog, SaysWhichArrayIsTooShortOrEmpty) {
   Message message = armMessage();
   message.number = 4;
@@ -197,6 +214,18 @@ TEST(JointLog, SaysWhichNumberIsNotFinite) {
               HasSubstr("position of joint b: expected a finite number, got nan"));
   message = armMessage();
   message.position[1] = std::numeric_limits<double>::quiet_NaN();  // the gripper's
+  EXPECT_EQ(logErrorOf(message), "no error");
+}
+
+TEST(JointLog, SaysWhichNumberIsTooLargeForAMotion) {
+  Message message = armMessage();
+  message.number = 20;
+  message.velocity[2] = -1e300;
+  EXPECT_EQ(
+      logErrorOf(message),
+      "bag: /joint_states, message 21: velocity of joint a: expected a number of a motion, in "
+      "SI units, of at most 1e+12, got -1e+300; is the recording damaged?");
+  message.velocity[2] = kLargestNumber;
   EXPECT_EQ(logErrorOf(message), "no error");
 }
 

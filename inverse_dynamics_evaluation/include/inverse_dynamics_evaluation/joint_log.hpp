@@ -15,7 +15,8 @@
 ///   only some of them is an error.
 /// - Time is the header's stamp; if no header has one, the time of reception. Stamps are taken as
 ///   they are, also where they don't increase: see samples.hpp.
-/// - Arrays that are empty or not as long as the names, and numbers that aren't finite, are errors.
+/// - Arrays that are empty or not as long as the names are errors; so are numbers that aren't
+///   finite or exceed kLargestNumber.
 
 #pragma once
 
@@ -47,6 +48,10 @@ enum class Clock { kAuto, kHeader, kReceive };
 
 /// `auto`, `header` or `receive`.
 std::string name(Clock clock);
+
+/// No position, velocity, effort or acceleration of a robot is larger, in SI units: beyond it lie
+/// damage and mistaken units. The fourth power still fits into a double.
+inline constexpr double kLargestNumber = 1e12;
 
 /// The state of some joints in a message, looked at where it lies.
 struct JointSample {
