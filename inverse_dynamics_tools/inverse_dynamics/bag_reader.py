@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import os
+from contextlib import closing, suppress
 from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.wording import counted
+from inverse_dynamics.wording import counted, harmless, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -48,10 +49,36 @@ class BagReader:
             self._reader.open()
         except Exception as error:  # readers of damaged files raise more than they document
             raise self._unreadable(error) from error
+        try:
+            for connection in self._reader.connections:
+                self._check(connection)
+        except BagError:
+            self._reader.close()
+            raise
         return self
 
     def __exit__(self, *_: object) -> None:
         self._reader.close()
+
+    def _check(self, connection: Connection) -> None:
+        """Raise BagError for what somebody has written into metadata or tables."""
+        form = getattr(connection.ext, "serialization_format", "cdr")
+        count = connection.msgcount
+        wrong = [
+            (what, expected, got)
+            for what, expected, got, right in (
+                ("name", "a text", connection.topic, isinstance(connection.topic, str)),
+                ("type", "a text", connection.msgtype, isinstance(connection.msgtype, str)),
+                ("serialization", "cdr", form, form == "cdr"),
+                ("messages", "their number", count, isinstance(count, int) and 0 <= count < 2**63),
+            )
+            if not right
+        ]
+        for what, expected, got in wrong:
+            raise BagError(
+                f"{self._path}: topic {harmless(connection.topic)}: {what}: expected {expected}, got "
+                f"{shown(got)}; was the recording edited? Copy or record it again"
+            )
 
     @property
     def storage(self) -> Storage:
@@ -76,6 +103,8 @@ class BagReader:
             raise BagError(f"{self._path}: is an empty recording: it has no topic; record it again")
         if not topic:
             candidates = [t.name for t in topics if t.message_type == message_type]
+            filled = {t.name for t in topics if t.message_count}
+            candidates = [name for name in candidates if name in filled] or candidates
             if len(candidates) != 1:
                 raise BagError(
                     f"{self._path}: expected one topic of type {message_type}, got "
@@ -104,16 +133,38 @@ class BagReader:
         yield from self._reader.messages()
 
     def blocks(self, connections: list[Connection]) -> Iterator[tuple[list[bytes], Integers]]:
-        """Serialised messages and their times of reception [ns], thousands at a time."""
+        """Serialised messages and their times of reception [ns], thousands at a time.
+
+        Raises BagError where they can't be read, and where they aren't as many as the metadata say.
+        """
+        topic, expected = connections[0].topic, sum(c.msgcount for c in connections)
+        done = 0
+        for messages, received in self._blocks(connections):
+            done += len(messages)
+            if done > expected:
+                break
+            yield messages, received
+        if done != expected:
+            raise BagError(
+                f"{self._path}: {topic}: expected {counted(expected, 'message')}, as its metadata "
+                f"say, got {done if done < expected else 'more'}: "
+                + (
+                    "the file is cut off; copy or record it again"
+                    if done < expected
+                    else "they belong to another recording; run `ros2 bag reindex` on it"
+                )
+            )
+
+    def _blocks(self, connections: list[Connection]) -> Iterator[tuple[list[bytes], Integers]]:
         messages = self._reader.messages(connections=connections)
         while True:
             try:
                 block = list(islice(messages, _BLOCK))
+                received = np.fromiter((m[1] for m in block), dtype=np.int64, count=len(block))
             except Exception as error:  # see __enter__
                 raise self._unreadable(error) from error
             if not block:
                 return
-            received = np.fromiter((m[1] for m in block), dtype=np.int64, count=len(block))
             yield [m[2] for m in block], received
 
     def _unreadable(self, error: Exception) -> BagError:
@@ -133,6 +184,8 @@ def _check_there(path: Path) -> None:
         )
     if path.is_dir():
         if (path / "metadata.yaml").exists():
+            for file in sorted(path.glob("*.db3")):
+                _check_tables(file)
             for log in sorted(path.glob("*.db3-wal")):
                 _check_complete(path / log.name.removesuffix("-wal"))
             return
@@ -162,6 +215,24 @@ def _check_there(path: Path) -> None:
             f"{path}: is empty (0 bytes); expected a rosbag2 recording; copy or record it again"
         )
     _check_complete(path)
+    if path.suffix == ".db3":
+        _check_tables(path)
+
+
+def _check_tables(file: Path) -> None:
+    """Raise BagError for a view in place of a table: it may compute without end."""
+    import sqlite3
+
+    query = "SELECT name, type FROM sqlite_master WHERE name IN ('messages', 'topics')"
+    with suppress(sqlite3.Error, UnicodeDecodeError):  # the reader will say what is wrong
+        database = sqlite3.connect(f"{file.absolute().as_uri()}?immutable=1", uri=True)
+        with closing(database):
+            for name, kind in database.execute(query).fetchall():
+                if kind not in ("table", "index"):
+                    raise BagError(
+                        f"{file}: expected the table {name}, got a {harmless(kind)}; was the "
+                        "recording edited? Copy or record it again"
+                    )
 
 
 def _check_complete(file: Path) -> None:
@@ -176,4 +247,5 @@ def _check_complete(file: Path) -> None:
 
 def error_text(error: Exception) -> str:
     """First line of what an error says, or its name."""
-    return str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+    lines = str(error).strip().splitlines()
+    return harmless(lines[0], 300) if lines else type(error).__name__

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics.bag_reader import BagReader, error_text
+from inverse_dynamics.decimals import LARGEST
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.joint_log import JointLog, no_progress
 
@@ -70,6 +71,12 @@ class JointTrajectory:
             raise BagError(
                 f"{self.where}, point {k + 1}: {field} of joint {joints[j]}: expected a finite "
                 f"number, got {values[k, j]}"
+            )
+        if (np.abs(values) > LARGEST).any():
+            k, j = (int(i) for i in np.argwhere(np.abs(values) > LARGEST)[0])
+            raise BagError(
+                f"{self.where}, point {k + 1}: {field} of joint {joints[j]}: expected a number of a "
+                f"motion, in SI units, of at most {LARGEST:g}, got {values[k, j]:g}; is it damaged?"
             )
         return values
 

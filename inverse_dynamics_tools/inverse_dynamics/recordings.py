@@ -51,7 +51,9 @@ def read_recording(
         return read_csv_log(open_table(path, topic=topic, clock=clock), joints, progress=progress)
     with BagReader(path) as bag:
         storage = bag.storage
-        types = {summary.name: summary.message_type for summary in bag.topics()}
+        topics = bag.topics()
+        types = {t.name: t.message_type for t in topics if t.message_count or t.name == topic}
+        types = types or {t.name: t.message_type for t in topics}
     if not topic:
         topic = _topic(types, usual_topic)
     if types.get(topic) != joint_trajectories.MESSAGE_TYPE:

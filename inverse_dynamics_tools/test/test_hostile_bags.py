@@ -1,0 +1,347 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings that aren't what they should be: one message with the place, or samples and a note."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import sqlite3
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import joint_state, write_messages
+from rosbags.rosbag2 import StoragePlugin
+from simulation_arms import pendulum, write_robot
+from test_evaluation import RIGID_BODY
+
+from inverse_dynamics import Robot, evaluate, load_robot, write_joint_logs
+from inverse_dynamics.bags import read_joint_log
+from inverse_dynamics.errors import UserError
+
+SAMPLES = 300
+NAMES = ["swing"]
+
+
+def states(**changes: Callable[[int], object]) -> list[object]:
+    """A swing of a pendulum at 100 Hz; changes: fields as functions of the number of the message."""
+    fields: dict[str, Callable[[int], object]] = {
+        "names": lambda _: NAMES,
+        "position": lambda k: [np.sin(0.01 * k)],
+        "velocity": lambda k: [np.cos(0.01 * k)],
+        "effort": lambda k: [10 * np.cos(0.01 * k)],
+        "stamp": lambda k: 10**9 + 10**7 * k,
+        **changes,
+    }
+    return [joint_state(**{name: at(k) for name, at in fields.items()}) for k in range(SAMPLES)]
+
+
+def at(message: int, value: object, default: Callable[[int], object]) -> Callable[[int], object]:
+    return lambda k: value if k == message else default(k)
+
+
+@pytest.fixture(scope="module")
+def good(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_messages(tmp_path_factory.mktemp("good") / "bag", states())
+
+
+@pytest.fixture(scope="module")
+def good_mcap(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("good") / "bag"
+    return write_messages(path, states(), storage=StoragePlugin.MCAP)
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> Robot:
+    file = write_robot(tmp_path_factory.mktemp("robot"), pendulum())
+    file.write_text(file.read_text().replace("some_package/SomeSolver", RIGID_BODY))
+    return load_robot(file)
+
+
+def refused(bag: Path, robot: Robot, expected: str = "", **options: object) -> None:
+    """Evaluation ends in time, with a text that begins with the place and is fit for a terminal."""
+    start = time.process_time()
+    with pytest.raises(UserError) as caught:
+        evaluate(bag, robot, **options)
+    text = str(caught.value)
+    assert text.startswith(str(bag))
+    assert expected in text
+    assert len(text) < 2000
+    # one line, and one for each topic there is
+    assert re.fullmatch(r"[^\x00-\x1f\x7f-\x9f]+(\n  [^\x00-\x1f\x7f-\x9f]+)*", text)
+    assert time.process_time() - start < 20.0
+
+
+# Metadata that somebody has edited: what stands there, and what instead.
+BOMB = "a: &a [x,x,x,x,x,x,x,x,x]\n" + "".join(
+    f"{b}: &{b} [{','.join(['*' + a] * 9)}]\n"
+    for a, b in zip("abcdefghi", "bcdefghij", strict=True)
+)
+METADATA = {
+    "nothing": (r"(?s).*", ""),
+    "a word": (r"(?s).*", "hello"),
+    "a list": (r"(?s).*", "[1, 2]"),
+    "no key": (r"rosbag2_bagfile_information", "rosbag"),
+    "NUL": (r"version", "vers\0ion"),
+    "an open bracket": (r"version: 9", "version: [9"),
+    "a tag of Python": (r"version: 9", "version: !!python/object/apply:os.getpid []"),
+    "deep lists": (r"version: 9", "version: " + "[" * 5000),
+    "deep mappings": (r"version: 9", "version: " + "{a: " * 5000),
+    "many aliases": (r"version: 9", "version: *j\n" + BOMB),
+    "version 99": (r"version: 9", "version: 99"),
+    "version of words": (r"version: 9", "version: nine"),
+    "no version": (r"version: 9", "versio: 9"),
+    "version null": (r"version: 9", "version:"),
+    "another storage": (r"storage_identifier: sqlite3", "storage_identifier: zip"),
+    "the wrong storage": (r"storage_identifier: sqlite3", "storage_identifier: mcap"),
+    "no storage": (r"storage_identifier: sqlite3", "storage: sqlite3"),
+    "a list as a storage": (r"storage_identifier: sqlite3", "storage_identifier: [sqlite3]"),
+    "a missing file": (r"bag.db3", "gone.db3"),
+    "a file elsewhere": (r"bag.db3", "../../../../etc/passwd"),
+    "files of numbers": (r"- bag.db3", "- 7"),
+    "a name of 100 kB": (r"bag.db3", "x" * 100_000),
+    "an escape sequence": (r"bag.db3", '"a\\\\x1b[31m.db3"'),
+    "too many messages": (r"message_count: 300", "message_count: 301"),
+    "too few messages": (r"message_count: 300", "message_count: 299"),
+    "no message": (r"message_count: 300", "message_count: 0"),
+    "messages in words": (r"message_count: 300", "message_count: many"),
+    "messages in a list": (r"message_count: 300", "message_count: [300]"),
+    "a negative count": (r"message_count: 300", "message_count: -1"),
+    "a huge count": (r"message_count: 300", f"message_count: {'9' * 400}"),
+    "a topic without a name": (r"name: /joint_states", "nam: /joint_states"),
+    "a topic of numbers": (r"name: /joint_states", "name: 7"),
+    "a topic of a list": (r"name: /joint_states", "name: [/joint_states]"),
+    "another topic": (r"name: /joint_states", "name: /other"),
+    "another type": (r"sensor_msgs/msg/JointState", "std_msgs/msg/String"),
+    "an unknown type": (r"sensor_msgs/msg/JointState", "a/b/c/d"),
+    "another serialization": (r"serialization_format: cdr", "serialization_format: protobuf"),
+    "no time": (r"nanoseconds_since_epoch: \d+", "nanoseconds_since_epoch: now"),
+    "a compression": (r"compression_mode: ''", "compression_mode: FILE"),
+    "another compression": (
+        r"compression_mode: ''",
+        "compression_mode: MESSAGE\n  compression_format: lzma",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", METADATA)
+def test_edited_metadata_are_refused(tmp_path, good, robot, name):
+    pattern, instead = METADATA[name]
+    bag = Path(shutil.copytree(good, tmp_path / "bag"))
+    text = (bag / "metadata.yaml").read_text()
+    changed = re.sub(pattern, lambda _: instead, text, count=0 if pattern[0] != "(" else 1)
+    assert changed != text
+    (bag / "metadata.yaml").write_text(changed)
+    refused(bag, robot)
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "latin-1"])
+def test_metadata_in_another_encoding_are_refused(tmp_path, good, robot, encoding):
+    bag = Path(shutil.copytree(good, tmp_path / "bag"))
+    text = (bag / "metadata.yaml").read_text().replace("bag.db3", "bäg.db3")
+    (bag / "metadata.yaml").write_bytes(text.encode(encoding))
+    refused(bag, robot)
+
+
+SQL = {
+    "no table of messages": ("DROP TABLE messages", ""),
+    "no table of topics": ("DROP TABLE topics", ""),
+    "no messages": ("DELETE FROM messages", "expected 300 messages, as its metadata say, got 0"),
+    "fewer messages": (
+        "DELETE FROM messages WHERE id > 9",
+        "expected 300 messages, as its metadata",
+    ),
+    "more messages": (
+        "INSERT INTO messages (topic_id, timestamp, data) SELECT topic_id, timestamp, data FROM messages",
+        "expected 300 messages, as its metadata say, got more",
+    ),
+    "no topics": ("DELETE FROM topics", "expected 300 messages, as its metadata say, got 0"),
+    "messages of no topic": ("UPDATE messages SET topic_id = 99", "expected 300 messages, as its"),
+    "stamps of words": ("UPDATE messages SET timestamp = 'now'", ""),
+    "stamps beyond 64 bits": ("UPDATE messages SET timestamp = 1e30", ""),
+    "data of words": ("UPDATE messages SET data = 'hello' WHERE id = 7", "messages 1 to 300 can't"),
+    "data of numbers": ("UPDATE messages SET data = 7 WHERE id = 7", "messages"),
+    "empty data": ("UPDATE messages SET data = x'' WHERE id = 7", "messages 1 to 300 can't be dec"),
+    "noise": ("UPDATE messages SET data = randomblob(200) WHERE id = 7", "messages 1 to 300 can't"),
+    "cut data": (
+        "UPDATE messages SET data = substr(data, 1, 60) WHERE id = 7",
+        "messages 1 to 300",
+    ),
+    "data of a gigabyte": (
+        "UPDATE messages SET data = CAST(substr(data, 1, 16) || x'ffffff3f' || substr(data, 21) AS BLOB) WHERE id = 7",
+        "messages 1 to 300 can't be decoded",
+    ),
+    "more names than bytes": (
+        "UPDATE messages SET data = CAST(substr(data, 1, 20) || x'ffffffff' || substr(data, 25) AS BLOB) WHERE id = 7",
+        "messages 1 to 300 can't be decoded",
+    ),
+    "another serialization": ("UPDATE topics SET serialization_format = 'xml'", ""),
+    "another type": ("UPDATE topics SET type = 'std_msgs/msg/String'", ""),
+    "an endless view": (
+        "ALTER TABLE messages RENAME TO m; CREATE VIEW messages AS WITH RECURSIVE r(id, topic_id, "
+        "timestamp, data) AS (SELECT 1, 1, 1, x'00' UNION ALL SELECT id, 1, 1, data FROM r) "
+        "SELECT * FROM r",
+        "expected the table messages, got a view",
+    ),
+}
+
+
+@pytest.mark.parametrize("whole", [True, False])
+@pytest.mark.parametrize("name", SQL)
+def test_edited_database_is_refused(tmp_path, good, robot, name, whole):
+    statement, expected = SQL[name]
+    bag = Path(shutil.copytree(good, tmp_path / "bag"))
+    with sqlite3.connect(bag / "bag.db3") as database:
+        database.executescript(statement)
+    database.close()
+    if whole:
+        refused(bag, robot, expected)
+    elif (
+        "metadata" not in expected and ", as its" not in expected
+    ):  # the file alone says how many it has
+        refused(bag / "bag.db3", robot, expected)
+
+
+@pytest.mark.parametrize("share", [0.001, 0.1, 0.5, 0.9, 0.999])
+@pytest.mark.parametrize("storage", ["good", "good_mcap"])
+def test_a_file_that_is_cut_off_is_refused(tmp_path, robot, share, storage, request):
+    bag = Path(shutil.copytree(request.getfixturevalue(storage), tmp_path / "bag"))
+    (file,) = (f for f in bag.iterdir() if f.suffix in {".db3", ".mcap"})
+    file.write_bytes(file.read_bytes()[: int(share * file.stat().st_size)])
+    refused(bag, robot)
+    refused(file, robot)
+
+
+@pytest.mark.parametrize("storage", ["good", "good_mcap"])
+def test_a_file_with_damaged_bytes_is_read_or_refused_but_never_crashes(
+    tmp_path, robot, storage, request
+):
+    good = request.getfixturevalue(storage)
+    (file,) = (f for f in good.iterdir() if f.suffix in {".db3", ".mcap"})
+    whole = file.read_bytes()
+    random = np.random.default_rng(0)
+    for _ in range(60):
+        damaged = bytearray(whole)
+        for place in random.integers(0, len(whole), 20):
+            damaged[place] = random.integers(256)
+        bag = tmp_path / file.name
+        bag.write_bytes(damaged)
+        try:
+            log = read_joint_log(bag, NAMES)
+        except UserError:
+            continue
+        assert np.isfinite([log.q, log.qd, log.effort]).all()
+
+
+position, velocity = (lambda k: [np.sin(0.01 * k)]), (lambda k: [np.cos(0.01 * k)])
+MESSAGES = {
+    "a velocity of 1e300": (
+        {"velocity": at(20, [1e300], velocity)},
+        "message 21: velocity of joint swing: expected a number of a motion, in SI units, of at most",
+    ),
+    "not a number": (
+        {"velocity": at(20, [np.nan], velocity)},
+        "message 21: velocity of joint swing: expected a finite number, got nan",
+    ),
+    "an infinite effort": (
+        {"effort": at(0, [-np.inf], velocity)},
+        "message 1: effort of joint swing: expected a finite number, got -inf",
+    ),
+    "a joint twice": (
+        {
+            "names": at(20, ["swing", "swing"], lambda _: NAMES),
+            **{name: at(20, [0.0, 0.0], velocity) for name in ("position", "velocity", "effort")},
+        },
+        "message 21: expected each joint once, got swing, swing",
+    ),
+    "names without numbers": (
+        {"names": at(20, ["swing", "other"], lambda _: NAMES)},
+        "message 21: position: expected 2 numbers, one per name, got 1",
+    ),
+    "no names": ({"names": lambda _: []}, "expected the joints swing, got only"),
+    "names of 100 kB": (
+        {"names": lambda _: ["x" * 100_000]},
+        "expected the joints swing, got only x",
+    ),
+    "long names beyond ASCII": (
+        {"names": lambda _: ["x" + "é" * 100]},
+        f"expected the joints swing, got only x{'é' * 29}...;",
+    ),
+    "10,000 names": (
+        {"names": lambda _: [f"j{i}" for i in range(10_000)]},
+        "expected the joints swing, got only j0, j1",
+    ),
+    "escapes in names": (
+        {"names": lambda _: ["\x1b[31mred\n"]},
+        "expected the joints swing, got only \\x1b[31mred\\x0a;",
+    ),
+    "equal stamps": ({"stamp": lambda _: 10**9}, ": "),
+    "stamps from the last to the first": ({"stamp": lambda k: 10**12 - 10**7 * k}, ": "),
+}
+
+
+@pytest.mark.parametrize("name", MESSAGES)
+def test_bad_messages_are_refused(tmp_path, robot, name):
+    changes, expected = MESSAGES[name]
+    bag = write_messages(tmp_path / "bag", states(**changes))
+    refused(bag, robot, expected)
+
+
+def test_few_samples_are_refused(tmp_path, robot):
+    for count in (1, 2, 3):
+        bag = write_messages(tmp_path / f"bag{count}", states()[:count])
+        refused(bag, robot)
+
+
+def test_a_changing_set_of_joints_is_no_matter_as_long_as_ours_are_there(tmp_path, robot):
+    more = {name: lambda k: [0.0] * (k % 3) + [np.cos(0.01 * k)] for name in ("velocity", "effort")}
+    names = {"names": lambda k: [f"finger_{i}" for i in range(k % 3)] + NAMES}
+    bag = write_messages(tmp_path / "bag", states(position=more["velocity"], **names, **more))
+    assert len(evaluate(bag, robot).log) == SAMPLES
+
+
+def test_a_stamp_that_goes_back_and_stamps_of_zero_are_told(tmp_path, robot):
+    back = write_messages(
+        tmp_path / "back", states(stamp=at(50, 10**9, lambda k: 10**9 + 10**7 * k))
+    )
+    assert "1 of 300 samples have an equal or backward header stamp" in "".join(
+        evaluate(back, robot).notes
+    )
+    zero = write_messages(tmp_path / "zero", states(stamp=lambda _: 0))
+    assert "no header has a stamp: the time of reception is used" in evaluate(zero, robot).notes
+
+
+def test_a_topic_without_messages_does_not_count(tmp_path, good, robot):
+    log = read_joint_log(good)
+    nothing = read_joint_log(good)
+    for name in ("header_stamps", "receive_stamps", "q", "qd", "effort"):
+        object.__setattr__(nothing, name, getattr(nothing, name)[:0])
+    write_joint_logs(tmp_path / "bag", {"/arm": log, "/other": nothing})
+    assert read_joint_log(tmp_path / "bag").topic == "/arm"
+    write_joint_logs(tmp_path / "empty", {"/arm": nothing, "/other": nothing})
+    with pytest.raises(
+        UserError, match="expected one topic of type .*, got 2; name it with --topic"
+    ):
+        read_joint_log(tmp_path / "empty")
+
+
+def test_a_process_of_its_own_survives_an_endless_recording(tmp_path, good):
+    """What might hang hangs there, where it can be ended."""
+    bag = Path(shutil.copytree(good, tmp_path / "bag"))
+    with sqlite3.connect(bag / "bag.db3") as database:
+        database.executescript(SQL["an endless view"][0])
+    database.close()
+    script = f"from inverse_dynamics import read_recording; read_recording({str(bag)!r})"
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert "BagError" in done.stderr
