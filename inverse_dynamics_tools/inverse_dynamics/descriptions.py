@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 import subprocess
 import sys
@@ -11,13 +12,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.decimals import decimal
 from inverse_dynamics.errors import RobotError
+from inverse_dynamics.wording import harmless, shown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
+    from inverse_dynamics.errors import UserError
     from inverse_dynamics.joint_log import Floats
+
+_MOST_BYTES = 64 * 2**20
+_MOST_LEVELS = 50
 
 
 def read_description(file: Path) -> str:
@@ -27,11 +34,57 @@ def read_description(file: Path) -> str:
     if file.suffix == ".xacro":
         return _expanded(file)
     try:
-        return file.read_text()
+        with file.open("rb") as stream:
+            data = stream.read(_MOST_BYTES + 1)
     except OSError as error:
         raise RobotError(f"{file}: can't be read ({error.strerror})") from error
+    if len(data) > _MOST_BYTES:
+        raise RobotError(f"{file}: expected a URDF of at most {_MOST_BYTES >> 20} MiB, got more")
+    try:
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise RobotError(f"{file}: isn't a text file; expected a URDF") from error
+        raise RobotError(f"{file}: isn't text in UTF-8; expected a URDF") from error
+
+
+def parse_description(
+    text: str, where: object = "robot description", raised: type[UserError] = RobotError
+) -> Element:
+    """The element <robot> of a URDF. Raises that error for what isn't one."""
+    import xml.etree.ElementTree as ElementTree
+
+    if "<!DOCTYPE" in text.partition("<robot")[0]:
+        raise raised(f"{where}: expected no document type, got one; no URDF needs it: remove it")
+    try:
+        robot = ElementTree.fromstring(text)
+    except (ElementTree.ParseError, ValueError) as error:
+        raise raised(f"{where}: isn't a robot description: no XML ({error})") from error
+    if robot.tag != "robot":
+        raise raised(
+            f"{where}: expected the element <robot>, got <{harmless(robot.tag)}>; give a URDF"
+        )
+    level = [robot]
+    for _ in range(_MOST_LEVELS):
+        level = [element for parent in level for element in parent]
+    if level:
+        raise raised(f"{where}: expected at most {_MOST_LEVELS} levels of elements, got more")
+    return robot
+
+
+def numbers_of(
+    element: Element, attribute: str, length: int, raised: type[UserError]
+) -> list[float]:
+    """Finite numbers of an attribute that is there."""
+    text = element.get(attribute, "")
+    try:
+        numbers = [decimal(word) for word in text.split()]
+    except ValueError:
+        numbers = []
+    if len(numbers) != length or not all(map(math.isfinite, numbers)):
+        what = "a finite number" if length == 1 else f"{length} finite numbers"
+        raise raised(
+            f"robot description: <{element.tag} {attribute}=...>: expected {what}, got {shown(text)}"
+        )
+    return numbers
 
 
 def joint_units(
@@ -59,11 +112,11 @@ def effort_limits(file: Path | None, description: str, joint_names: Sequence[str
         if joint.get("name") not in joint_names or text is None:
             continue
         try:
-            number = float(text)
+            number = decimal(text)
         except ValueError:
             raise RobotError(
                 f"{file}: joint {joint.get('name')}: limit: expected a number as effort, got "
-                f"'{text}'"
+                f"{shown(text)}"
             ) from None
         if number > 0:  # zero states none
             limits[list(joint_names).index(joint.get("name", ""))] = number
@@ -71,14 +124,7 @@ def effort_limits(file: Path | None, description: str, joint_names: Sequence[str
 
 
 def _joints(file: Path | None, description: str) -> list[Element]:
-    import xml.etree.ElementTree as ElementTree
-
-    if not description:
-        return []
-    try:
-        return list(ElementTree.fromstring(description).iter("joint"))
-    except ElementTree.ParseError as error:
-        raise RobotError(f"{file}: isn't a robot description: no XML ({error})") from error
+    return list(parse_description(description, file).iter("joint")) if description else []
 
 
 def _expanded(file: Path) -> str:

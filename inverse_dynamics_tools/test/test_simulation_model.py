@@ -152,7 +152,7 @@ FORKED = robot(
 @pytest.mark.parametrize(
     ("urdf", "chain", "text"),
     [
-        ("<robot", {}, "not well-formed XML"),
+        ("<robot", {}, "isn't a robot description: no XML"),
         ("<model/>", {}, "expected the element <robot>, got <model>"),
         (pendulum(), {"root": "bse"}, "there is no root link 'bse'; links: base, arm"),
         (pendulum(), {"tip": "hand"}, "there is no tip link 'hand'"),

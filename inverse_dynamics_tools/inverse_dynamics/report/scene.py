@@ -16,6 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inverse_dynamics.descriptions import numbers_of, parse_description
+from inverse_dynamics.errors import RobotError
+
 Matrix = NDArray[np.float64]
 DEFAULT_COLOR = (0.72, 0.75, 0.79)
 
@@ -27,7 +30,7 @@ def scene_from_urdf(urdf: str, joints: Sequence[str]) -> list[dict[str, Any]]:
     A link: parent (index or -1), joint (index in `joints` or -1), kind, axis, pose in its parent (4 x 4, column by
     column, m) and shapes: kind, size (as in the URDF, m), pose in the link, color (red, green, blue in 0..1).
     """
-    robot = ElementTree.fromstring(urdf)
+    robot = parse_description(urdf)
     shapes = _shapes_by_link(robot)
     if not any(shapes.values()):
         return []
@@ -43,7 +46,9 @@ def scene_from_urdf(urdf: str, joints: Sequence[str]) -> list[dict[str, Any]]:
     ]
     while waiting:
         name, parent, above = waiting.pop(0)
-        links.append(_link(parent, above, index, shapes[name]))
+        if len(links) > len(shapes):
+            raise RobotError("robot description: expected a tree, got a link below two joints")
+        links.append(_link(parent, above, index, shapes.get(name, [])))
         here = len(links) - 1
         waiting.extend((_link_of(child, "child"), here, child) for child in by_parent.get(name, []))
     return links
@@ -60,11 +65,9 @@ def _link(
     index: dict[str, int],
     shapes: list[dict[str, Any]],
 ) -> dict[str, Any]:
-    axis = (
-        _numbers(joint.find("axis"), "xyz", (1.0, 0.0, 0.0))
-        if joint is not None
-        else [0.0, 0.0, 1.0]
-    )
+    axis = [0.0, 0.0, 1.0]
+    if joint is not None:
+        axis = _numbers(joint.find("axis"), "xyz", 3, (1.0, 0.0, 0.0))
     length = math.hypot(*axis) or 1.0
     return {
         "parent": parent,
@@ -94,7 +97,11 @@ def _shape(visual: ElementTree.Element, colors: dict[str, list[float]]) -> dict[
     if geometry is None or len(geometry) == 0:
         return None
     element = geometry[0]
-    sizes = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}
+    sizes = {
+        "box": {"size": 3},
+        "cylinder": {"radius": 1, "length": 1},
+        "sphere": {"radius": 1},
+    }
     if element.tag not in sizes:
         return None
     material = visual.find("material")
@@ -103,7 +110,11 @@ def _shape(visual: ElementTree.Element, colors: dict[str, list[float]]) -> dict[
         color = _color(material) or colors.get(material.get("name", ""))
     return {
         "kind": element.tag,
-        "size": [number for key in sizes[element.tag] for number in _numbers(element, key, ())],
+        "size": [
+            number
+            for key, count in sizes[element.tag].items()
+            for number in numbers_of(element, key, count, RobotError)
+        ],
         "pose": _columns(_pose(visual.find("origin"))),
         "color": color or list(DEFAULT_COLOR),
     }
@@ -111,19 +122,20 @@ def _shape(visual: ElementTree.Element, colors: dict[str, list[float]]) -> dict[
 
 def _color(material: ElementTree.Element) -> list[float] | None:
     element = material.find("color")
-    return None if element is None else _numbers(element, "rgba", (*DEFAULT_COLOR, 1.0))[:3]
+    return None if element is None else _numbers(element, "rgba", 4, (*DEFAULT_COLOR, 1.0))[:3]
 
 
 def _numbers(
-    element: ElementTree.Element | None, key: str, default: Sequence[float]
+    element: ElementTree.Element | None, key: str, count: int, default: Sequence[float]
 ) -> list[float]:
-    text = None if element is None else element.get(key)
-    return list(default) if text is None else [float(word) for word in text.split()]
+    if element is None or element.get(key) is None:
+        return list(default)
+    return numbers_of(element, key, count, RobotError)
 
 
 def _pose(origin: ElementTree.Element | None) -> Matrix:
     """X: the pose of an <origin>: fixed-axis roll, pitch, yaw."""
-    roll, pitch, yaw = _numbers(origin, "rpy", (0.0, 0.0, 0.0))
+    roll, pitch, yaw = _numbers(origin, "rpy", 3, (0.0, 0.0, 0.0))
     cr, sr, cp, sp, cy, sy = (
         function(angle) for angle in (roll, pitch, yaw) for function in (math.cos, math.sin)
     )
@@ -133,7 +145,7 @@ def _pose(origin: ElementTree.Element | None) -> Matrix:
         [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
         [-sp, cp * sr, cp * cr],
     ]
-    pose[:3, 3] = _numbers(origin, "xyz", (0.0, 0.0, 0.0))
+    pose[:3, 3] = _numbers(origin, "xyz", 3, (0.0, 0.0, 0.0))
     return pose
 
 

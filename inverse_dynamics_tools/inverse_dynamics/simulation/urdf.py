@@ -16,7 +16,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.descriptions import numbers_of, parse_description
 from inverse_dynamics.simulation.errors import SimulationError
+from inverse_dynamics.wording import harmless, listed, shown
 
 if TYPE_CHECKING:
     from inverse_dynamics.joint_log import Floats
@@ -61,24 +63,23 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
 
     Movable joints that don't lie between the two are locked at zero.
     """
-    try:
-        robot = ElementTree.fromstring(text)
-    except ElementTree.ParseError as error:
-        raise SimulationError(f"robot description: not well-formed XML: {error}") from error
-    if robot.tag != "robot":
-        raise SimulationError(
-            f"robot description: expected the element <robot>, got <{robot.tag}>; give a URDF"
-        )
+    robot = parse_description(text, raised=SimulationError)
     links = [link.get("name", "") for link in robot.findall("link")]
-    joint_above = {_link_of(joint, "child"): joint for joint in robot.findall("joint")}
+    joints = robot.findall("joint")
+    _check_names("link", links)
+    _check_names("joint", [joint.get("name", "") for joint in joints])
+    for joint in joints:
+        _check_joint(joint, links)
+    joint_above = {_link_of(joint, "child"): joint for joint in joints}
+    if len(joint_above) < len(joints):
+        raise SimulationError("robot description: expected a tree, got a link below two joints")
     tree_root = _tree_root(links, joint_above)
     root = root or tree_root
     tip = tip or _only_leaf(links, joint_above)
     for role, link in (("root", root), ("tip", tip)):
         if link not in links:
-            known = ", ".join(links)
             raise SimulationError(
-                f"robot description: there is no {role} link '{link}'; links: {known}"
+                f"robot description: there is no {role} link {shown(link)}; links: {listed(links, 20)}"
             )
     for joint in joint_above.values():
         for tag, attribute in (("origin", "xyz"), ("origin", "rpy"), ("axis", "xyz")):
@@ -114,12 +115,36 @@ def _link_of(joint: ElementTree.Element, role: str) -> str:
     return "" if element is None else element.get("link", "")
 
 
+def _check_names(kind: str, names: list[str]) -> None:
+    seen: set[str] = set()
+    for name in names:
+        if not name or name in seen:
+            got = f"{shown(name)} twice" if name else "none"
+            raise SimulationError(
+                f"robot description: {kind}: expected a name of its own, got {got}"
+            )
+        seen.add(name)
+
+
+def _check_joint(joint: ElementTree.Element, links: list[str]) -> None:
+    where = f"robot description: joint {harmless(joint.get('name'))}"
+    for role in ("parent", "child"):
+        if _link_of(joint, role) not in links:
+            got = shown(_link_of(joint, role))
+            raise SimulationError(f"{where}: {role}: expected a link of the description, got {got}")
+    kind = joint.get("type", "")
+    if kind not in {*_MOVING, *_IMPOSSIBLE, "fixed"}:
+        raise SimulationError(
+            f"{where}: expected a type, such as revolute or fixed, got {shown(kind)}"
+        )
+
+
 def _tree_root(links: list[str], joint_above: dict[str, ElementTree.Element]) -> str:
     roots = [link for link in links if link not in joint_above]
     if len(roots) != 1:
         raise SimulationError(
             "robot description: expected one link without a joint above it, "
-            f"got {len(roots)}: {', '.join(roots)}"
+            f"got {len(roots)}: {listed(roots)}"
         )
     return roots[0]
 
@@ -134,7 +159,7 @@ def _only_leaf(links: list[str], joint_above: dict[str, ElementTree.Element]) ->
     }
     if len(paths) != 1:
         raise SimulationError(
-            f"robot description: several tips are possible: {', '.join(leaves)}; name one as `tip`"
+            f"robot description: several tips are possible: {listed(leaves, 20)}; name one as `tip`"
         )
     return leaves[-1]
 
@@ -181,16 +206,7 @@ def _vector(element: ElementTree.Element | None, attribute: str, length: int = 3
     text = None if element is None else element.get(attribute)
     if element is None or text is None:
         return np.zeros(length)
-    try:
-        numbers = np.array([float(word) for word in text.split()])
-    except ValueError:
-        numbers = np.empty(0)
-    if len(numbers) != length or not np.isfinite(numbers).all():
-        what = "a finite number" if length == 1 else f"{length} finite numbers"
-        raise SimulationError(
-            f"robot description: <{element.tag} {attribute}=...>: expected {what}, got '{text}'"
-        )
-    return numbers
+    return np.array(numbers_of(element, attribute, length, SimulationError))
 
 
 def _rotation(rpy: Floats) -> Floats:
