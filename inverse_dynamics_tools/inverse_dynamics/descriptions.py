@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import os
 import shutil
 import subprocess
 import sys
@@ -29,7 +30,7 @@ _MOST_LEVELS = 50
 
 def read_description(file: Path) -> str:
     """URDF text of a .urdf or .xacro file. Raises RobotError."""
-    if not file.is_file():
+    if not os.path.isfile(file):  # Path.is_file() raises where the path is too long
         raise RobotError(f"{file}: no such file; expected a robot description (URDF or .xacro)")
     if file.suffix == ".xacro":
         return _expanded(file)
@@ -136,6 +137,6 @@ def _expanded(file: Path) -> str:
         )
     result = subprocess.run([tool, str(file)], capture_output=True, text=True, check=False)
     if result.returncode != 0:
-        reason = result.stderr.strip() or f"exit code {result.returncode}"
-        raise RobotError(f"{file}: xacro can't expand it: {reason}")
+        lines = result.stderr.strip().splitlines() or [f"exit code {result.returncode}"]
+        raise RobotError(f"{file}: xacro can't expand it: {harmless('; '.join(lines), 500)}")
     return result.stdout

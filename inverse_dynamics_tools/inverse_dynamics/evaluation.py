@@ -13,12 +13,15 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from inverse_dynamics.accelerations import (
     Accelerations,
     Samples,
     estimate_accelerations,
     findings,
 )
+from inverse_dynamics.decimals import LARGEST
 from inverse_dynamics.descriptions import joint_units, read_description
 from inverse_dynamics.effort import (
     Effort,
@@ -199,6 +202,7 @@ def _compare(
     filtered = time.perf_counter()
     solver = arm.solver
     computed = solver.torques(log.q, log.qd, qdd)
+    check_torques(f"{bag}", arm, computed)
     if effort.meaning == "auto":
         effort = effort_of_data(solver, robot, log, computed, arm.gains, samples.kept)
     computed, measured = compared_torques(effort, solver, log, computed)
@@ -224,6 +228,17 @@ def _compare(
         notes=(*notes, *findings(log, how, samples)),
         seconds={"accelerations": filtered - start, "torques": done - filtered},
     )
+
+
+def check_torques(where: str, arm: Arm, computed: Floats) -> None:
+    """Raise EvaluationError for (N, n) computed torques that no robot has, infinite ones too."""
+    too_large = ~(np.abs(computed) <= LARGEST)
+    if too_large.any():
+        k, j = (int(i) for i in np.argwhere(too_large)[0])
+        raise EvaluationError(
+            f"{where}: sample {k + 1}: computed torque of joint {arm.joint_names[j]}: expected at most "
+            f"{LARGEST:g} {arm.units[j]}, got {computed[k, j]:g}; check masses, gravity and units"
+        )
 
 
 def joint_errors(

@@ -25,13 +25,12 @@ from inverse_dynamics.csv_recordings import (
     read_columns,
 )
 from inverse_dynamics.csv_table import is_csv
-from inverse_dynamics.descriptions import effort_limits, joint_units, read_description
+from inverse_dynamics.descriptions import effort_limits, read_description
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.evaluation import names_in_recording
+from inverse_dynamics.evaluation import Arm, check_torques
 from inverse_dynamics.joint_log import no_progress
 from inverse_dynamics.joint_trajectories import JointTrajectory, read_joint_trajectories
 from inverse_dynamics.robots import Robot, load_robot
-from inverse_dynamics.solvers import open_solver
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -118,8 +117,8 @@ def trajectory_torques(
     if not isinstance(robot, Robot):
         robot = load_robot(robot)
     description = "" if robot.urdf is None else read_description(robot.urdf)
-    solver = open_solver(robot, description)
-    joints = names_in_recording(robot, tuple(solver.joint_names))
+    arm = Arm(robot)
+    solver, joints = arm.solver, arm.recorded_names
     trajectories: list[JointTrajectory] = []
     if is_csv(path):
         states = [_states_of_table(open_table(path, topic=topic), joints, progress)]
@@ -130,12 +129,14 @@ def trajectory_torques(
         raise BagError(f"{path}: expected points of a trajectory, got none")
     progress("computing", 0, len(states))
     torques = [solver.torques(*state) if len(time) else state[0] for time, state in states]
+    for number, computed in enumerate(torques, 1):
+        check_torques(f"{path}, trajectory {number}", arm, computed)
     progress("computing", len(states), len(states))
     return TrajectoryTorques(
         path=path,
         robot=robot,
         joint_names=joints,
-        units=joint_units(robot.urdf, description, tuple(solver.joint_names)),
+        units=arm.units,
         limits=effort_limits(robot.urdf, description, solver.joint_names),
         times=tuple(time for time, _ in states),
         torques=tuple(torques),

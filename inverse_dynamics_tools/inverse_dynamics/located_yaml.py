@@ -167,6 +167,8 @@ class Value:
             return "keys with values"
         if isinstance(self.node, yaml.SequenceNode):
             return f"a list of {len(self.node.value)}"
+        if not self.key:
+            return "a text"  # a whole file, perhaps a wrong one
         return shown(self.node.value) if self.node.value else "nothing"
 
 

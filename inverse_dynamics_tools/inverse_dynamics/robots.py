@@ -10,6 +10,7 @@ like. Strict: unknown or missing keys and wrong types are errors with file, line
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -70,16 +71,16 @@ def load_robot(name_or_file: str | Path) -> Robot:
     What ends in .yaml or .yml, or has a directory, is a file. Raises RobotError.
     """
     text = str(name_or_file)
-    file = Path(text).expanduser()
+    file = Path(os.path.expanduser(text))  # Path's raises for unknown users
     if file.suffix in {".yaml", ".yml"} or file.name != text:
-        if not file.is_file():
+        if not os.path.isfile(file):  # Path.is_file() raises where the path is too long
             raise RobotError(
                 f"{text}: no such file; expected a run configuration, or one of the names "
                 f"{', '.join(_names_if_any())}"
             )
         return _read(file)
     file = _directory() / f"{text}.yaml"
-    if not file.is_file():
+    if not os.path.isfile(file):
         names = robot_names()
         hint = did_you_mean(text, names)
         raise RobotError(

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+import re
 import shutil
 import sys
 from dataclasses import replace
@@ -293,6 +294,24 @@ def test_description_that_is_no_xml_is_an_error_whoever_reads_it(bag, robot, tmp
             evaluate(bag, robot, urdf=tmp_path / "arm.urdf", **changes)
     with pytest.raises(RobotError, match=r"arm\.urdf: isn't a robot description: no XML"):
         evaluate(bag, robot, urdf=tmp_path / "arm.urdf", plugin=UR10, root="", tip="")
+
+
+def test_torques_that_no_robot_has_are_an_error_that_names_joint_and_sample(bag, robot, tmp_path):
+    heavy = re.sub(r'<mass value="[^"]*"', '<mass value="1e14"', URDF.read_text())
+    (tmp_path / "heavy.urdf").write_text(heavy)
+    expected = (
+        r"sample 1: computed torque of joint \w+: expected at most 1e\+12 N m, got -?[\d.]+e\+"
+    )
+    for change in ({"gravity": (0.0, 0.0, 1e300)}, {"urdf": tmp_path / "heavy.urdf"}):
+        with pytest.raises(EvaluationError, match=expected):
+            evaluate(bag, robot, **change)
+
+
+def test_a_path_of_a_description_that_is_too_long_is_an_error(bag, robot):
+    with pytest.raises(RobotError, match=r"x{100,}: (no such file|can't be read)"):
+        evaluate(bag, robot, urdf="x" * 5000)
+    with pytest.raises(RobotError, match=r"^robot 'x+\.\.\.': expected one of"):
+        evaluate(bag, "x" * 5000)
 
 
 XACRO = """\

@@ -204,6 +204,12 @@ def test_missing_file_is_an_error(tmp_path):
     fails(tmp_path / "mine.yaml", "no such file; expected a run configuration, or one of the names")
 
 
+@pytest.mark.parametrize("path", ["~nobody_at_all/mine.yaml", "x" * 5000 + ".yaml", "a\0b.yaml"])
+def test_a_path_that_can_not_be_is_an_error(path):
+    with pytest.raises(RobotError, match="no such file; expected a run configuration"):
+        load_robot(path)
+
+
 def test_unknown_name_lists_what_there_is():
     with pytest.raises(RobotError) as caught:
         load_robot("ur11")
