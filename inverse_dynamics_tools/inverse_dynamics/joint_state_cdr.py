@@ -102,7 +102,7 @@ def layout_of(message: bytes) -> Layout | None:
             raise struct.error("string beyond the end")
         fixed.extend(range(offset, offset + length))
         text = message[offset : offset + length]
-        if text.find(b"\0") != length - 1:  # of an empty one without the closing zero: -1
+        if not text or text.find(b"\0") != length - 1:
             raise struct.error("string that doesn't end with its only zero")
         return text[:-1].decode(), offset + length
 

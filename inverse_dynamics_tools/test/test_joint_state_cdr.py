@@ -115,10 +115,11 @@ def test_zeros_within_a_name_are_read_as_rosbags_does(name):
     check_block(block, [STORE.deserialize_cdr(raw, JOINT_STATE)])
 
 
-def test_a_name_without_its_closing_zero_raises():
+@pytest.mark.parametrize("name", [b"\5\0\0\0abcde\0\0\0", b"\0\0\0\0"])
+def test_a_name_without_its_closing_zero_raises(name):
     raw = serialized(joint_state(["abcd"], [1], [2], [3], 7))
-    with pytest.raises(Exception, match="terminator"):
-        list(Decoder().decode([raw.replace(b"abcd\0", b"abcde")]))
+    with pytest.raises(Exception, match=r"terminator|string length"):
+        list(Decoder().decode([raw.replace(b"\5\0\0\0abcd\0\0\0\0", name)]))
 
 
 @pytest.mark.parametrize("names", [[], ["a"], ["joint_1", "joint_22", "joint_333"]])
