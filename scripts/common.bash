@@ -19,6 +19,15 @@ requirements=inverse_dynamics_tools/requirements.txt
 # Debian's ament, colcon and pluginlib belong to Debian's own python3, whatever `python3` is first on PATH.
 system_python=/usr/bin/python3
 
+# Engine, interface and solvers; and what is built on them without ROS 2.
+solver_packages=(
+  chain_dynamics inverse_dynamics_robots inverse_dynamics_solver
+  rigid_body_inverse_dynamics_solver ur10_inverse_dynamics_solver
+  franka_inria_inverse_dynamics_solver kdl_inverse_dynamics_solver
+  pinocchio_inverse_dynamics_solver
+)
+user_packages=(inverse_dynamics_evaluation inverse_dynamics_control inverse_dynamics_tools)
+
 # Debian and Ubuntu packages, in groups.
 apt_packages=(
   # Fetching, compiling, checking.
@@ -85,4 +94,63 @@ enter_install() {
   # shellcheck source=/dev/null
   source install/local_setup.bash
   set -u
+}
+
+# What every build of the workspace needs: the virtual environment, Ninja and ccache where they are
+# installed, and `cmake_arguments`.
+prepare_build() {
+  enter_venv
+  [ -x "$venv/bin/python" ] || fail "there is no virtual environment .venv" "run ./scripts/setup first"
+  # As a variable, not an argument: build directories that a plain `colcon build` made stay usable.
+  if command -v ninja >/dev/null; then export CMAKE_GENERATOR=${CMAKE_GENERATOR:-Ninja}; fi
+  cmake_arguments=(
+    --no-warn-unused-cli # a package of data alone uses none of these
+    -DCMAKE_BUILD_TYPE=RelWithDebInfo
+    -DCMAKE_INSTALL_MESSAGE=NEVER
+    -DPython3_EXECUTABLE="$venv/bin/python"
+    -DPYTHON_EXECUTABLE="$venv/bin/python"
+  )
+  if command -v ccache >/dev/null; then
+    # Another clone finds what this one has compiled.
+    export CCACHE_BASEDIR=$workspace CCACHE_NOHASHDIR=1
+    cmake_arguments+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  fi
+}
+
+# build_into DIRECTORY PACKAGE...
+#
+# Builds packages with `cmake_arguments` below a directory, beside the usual build, without their
+# tests, and makes them known to this shell.
+build_into() {
+  local out=$1
+  shift
+  colcon --log-base "$out/log" build --build-base "$out/build" --install-base "$out/install" \
+    --packages-select "$@" --cmake-args "${cmake_arguments[@]}" -DBUILD_TESTING=OFF
+  # colcon's script reads variables that nobody has set
+  set +u
+  # shellcheck source=/dev/null
+  source "$out/install/local_setup.bash"
+  set -u
+}
+
+# test_in DIRECTORY PROGRAMS PACKAGE...
+#
+# Builds and runs the GoogleTest programs, of packages that build_into has built, whose names match
+# the regular expression PROGRAMS; fails if one fails, and counts them.
+test_in() {
+  local out=$1 programs=$2 package build targets status=0
+  shift 2
+  rm -rf "$out"/build/*/test_results "$out"/build/*/Testing
+  for package in "$@"; do
+    build=$out/build/$package
+    cmake "$build" -DBUILD_TESTING=ON >/dev/null || return
+    mapfile -t targets < <(ctest --test-dir "$build" -N -L '^g(test|mock)$' -R "$programs" |
+      sed -n 's/^ *Test .*: //p')
+    [ ${#targets[@]} -gt 0 ] || continue
+    say "$package: ${targets[*]}"
+    cmake --build "$build" --target "${targets[@]}" || return
+    ctest --test-dir "$build" --output-on-failure -L '^g(test|mock)$' -R "$programs" || status=1
+  done
+  "$system_python" scripts/count_tests.py "$out/build" || status=1
+  return $status
 }
