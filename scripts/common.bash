@@ -44,7 +44,7 @@ apt_packages=(
   ament-cmake ament-cmake-googletest ament-cmake-pytest ament-cmake-python
   libament-index-cpp-dev python3-ament-index libclass-loader-dev pluginlib-dev
   # Mathematics, robot descriptions, data files, tests.
-  libeigen3-dev libgtest-dev liborocos-kdl-dev libtinyxml2-dev liburdfdom-dev libyaml-cpp-dev
+  libeigen3-dev libgtest-dev liborocos-kdl-dev libtinyxml2-dev libyaml-cpp-dev
   # How fast this machine is: ids bench.
   libbenchmark-dev
   # Pictures of simulated robots without a screen.

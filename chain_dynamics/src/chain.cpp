@@ -15,6 +15,8 @@ namespace {
 
 constexpr double kRotationTolerance = 1e-9;  // entries of R'R - 1: what ten printed digits leave
 constexpr double kInertiaTolerance = 1e-9;  // of the greatest moment: published figures are rounded
+// Masses, squares of lengths and of velocities of this size have products that a double holds.
+constexpr double kGreatest = 1e50;
 constexpr double kSymmetryTolerance = 1e-12;  // of the greatest entry: a frame changed by R I R'
 
 // Any printable value, with enough digits to find it in a file.
@@ -40,6 +42,9 @@ void checkGravity(const std::string& chain, const Eigen::Vector3d& gravity) {
 void checkPose(const std::string& where, const std::string& what, const Transform<double>& X) {
   if (!X.R.allFinite() || !X.p.allFinite()) {
     throw ModelError(where, what, "finite numbers", "a NaN or an infinity", "");
+  }
+  if (X.p.cwiseAbs().maxCoeff() > kGreatest) {
+    throw ModelError(where, what, "lengths up to 1e50 m", text(Eigen::Vector3d(X.p)), "");
   }
   const double error = (X.R.transpose() * X.R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (error > kRotationTolerance || X.R.determinant() < 0) {
@@ -80,6 +85,10 @@ void checkLink(const std::string& where, const LinkParameters& link) {
     throw ModelError(where, "inertial parameters", "ten finite numbers", "a NaN or an infinity",
                      "");
   }
+  const double greatest = link.toVector().cwiseAbs().maxCoeff();
+  if (greatest > kGreatest) {
+    throw ModelError(where, "inertial parameters", "numbers up to 1e50", text(greatest), "");
+  }
   if (link.mass < 0) {
     throw ModelError(where, "mass", "a number >= 0 [kg]", text(link.mass), "");
   }
@@ -107,6 +116,10 @@ void checkNames(const std::string& chain, const std::vector<Joint>& joints) {
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (joints[i].name.empty()) {
       throw ModelError(chain, "name of joint " + std::to_string(i + 1), "a name", "none", "");
+    }
+    if (!isPrintable(joints[i].name)) {
+      throw ModelError(chain, "name of joint " + std::to_string(i + 1),
+                       "UTF-8 text without control characters", "'" + joints[i].name + "'", "");
     }
     if (!names.insert(joints[i].name).second) {
       throw ModelError(chain, "joint names", "each once", "'" + joints[i].name + "' twice", "");
@@ -147,6 +160,12 @@ Chain Chain::withGravity(const Eigen::Vector3d& gravity) const {
   checkGravity("chain " + name_, gravity);
   Chain result = *this;
   result.gravity_ = gravity;
+  return result;
+}
+
+Chain Chain::withWarnings(std::vector<std::string> warnings) const {
+  Chain result = *this;
+  result.warnings_ = std::move(warnings);
   return result;
 }
 

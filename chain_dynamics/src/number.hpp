@@ -10,26 +10,18 @@
 
 #pragma once
 
-#include <cmath>
-#include <locale>
 #include <optional>
-#include <sstream>
 #include <string>
 
 namespace chain_dynamics {
 inline namespace v2 {
 
-/// The finite number that a text is, blanks around it aside; nothing if it isn't one.
-inline std::optional<double> finiteNumber(const std::string& text) {
-  std::istringstream stream(text);
-  stream.imbue(std::locale::classic());
-  double value = 0;
-  if (!(stream >> value) || !std::isfinite(value)) {
-    return std::nullopt;
-  }
-  stream >> std::ws;
-  return stream.eof() ? std::optional<double>(value) : std::nullopt;
-}
+/// The finite number that a text is, blanks, tabs and line breaks around it aside; nothing if it
+/// isn't one.
+///
+/// A number is a sign or none, decimal digits with a point or without, and an exponent or none:
+/// `-1.5e-3`, `+2`, `.5`, `5.`. One too small for a double is 0, one too great isn't finite.
+std::optional<double> finiteNumber(const std::string& text);
 
 }  // namespace v2
 }  // namespace chain_dynamics

@@ -2,64 +2,57 @@
 
 #include "chain_dynamics/urdf.hpp"
 
-#include <urdf_model/model.h>
-#include <urdf_parser/urdf_parser.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "chain_dynamics/robot_description.hpp"
+#include "chain_dynamics/text.hpp"
 #include "joint_frame.hpp"
-#include "urdf_check.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
 namespace {
 
-using JointPtr = urdf::JointConstSharedPtr;
-using LinkPtr = urdf::LinkConstSharedPtr;
-using Path = std::vector<JointPtr>;
+using Link = RobotDescription::Link;
+using Type = RobotDescription::JointType;
+using Path = std::vector<std::size_t>;  // joints
 
-bool isFixed(const urdf::Joint& joint) { return joint.type == urdf::Joint::FIXED; }
+constexpr std::size_t kNone = RobotDescription::kNone;
 
-Eigen::Vector3d vector(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
-
-Transform<double> pose(const urdf::Pose& pose) {
-  const urdf::Rotation& r = pose.rotation;
-  return {Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix(),
-          vector(pose.position)};
-}
-
-/// Parameters of a URDF link in the link's frame, without what hangs on it.
-LinkParameters parameters(const urdf::Link& link) {
-  if (link.inertial == nullptr) {
+/// Parameters of a link in its frame, without what hangs on it.
+LinkParameters parameters(const Link& link) {
+  if (!link.inertial) {
     return LinkParameters::zero();
   }
-  const urdf::Inertial& given = *link.inertial;
-  Eigen::Matrix3d about_center;
-  about_center << given.ixx, given.ixy, given.ixz, given.ixy, given.iyy, given.iyz, given.ixz,
-      given.iyz, given.izz;
   // the given axes are those of <origin>, whose origin is the center of mass
-  return pose(given.origin) *
-         LinkParameters::fromCenterOfMass(given.mass, Eigen::Vector3d::Zero(), about_center);
+  return link.inertial->placement * LinkParameters::fromCenterOfMass(link.inertial->mass,
+                                                                     Eigen::Vector3d::Zero(),
+                                                                     link.inertial->inertia);
 }
 
+std::string where(const RobotDescription& robot) { return "URDF: robot " + robot.name; }
+
+std::string where(const RobotDescription::Joint& joint) { return "URDF: joint " + joint.name; }
+
 // ---------------------------------------------------------------------------------------------
-// Names
+// Paths
 
 /// The link of that name; an unknown name is answered by the nearest known ones.
-LinkPtr linkNamed(const urdf::ModelInterface& robot, const std::string& name,
-                  const std::string& role) {
-  if (LinkPtr link = robot.getLink(name)) {
+std::size_t linkNamed(const RobotDescription& robot, const std::string& name,
+                      const std::string& role) {
+  const std::size_t link = robot.linkIndex(name);
+  if (link != kNone) {
     return link;
   }
   constexpr std::size_t kShown = 8;
   std::vector<std::pair<std::size_t, std::string>> known;
-  for (const auto& [link_name, link] : robot.links_) {
-    known.emplace_back(editDistance(name, link_name), link_name);
+  for (const Link& other : robot.links) {
+    known.emplace_back(editDistance(name, other.name), other.name);
   }
   std::sort(known.begin(), known.end());
 
@@ -67,89 +60,199 @@ LinkPtr linkNamed(const urdf::ModelInterface& robot, const std::string& name,
   for (std::size_t i = 0; i < std::min(kShown, known.size()); ++i) {
     nearest.push_back(known[i].second);
   }
-  throw ModelError("URDF: robot " + robot.getName(), role, "a link of the robot", "'" + name + "'",
+  throw ModelError(where(robot), role, "a link of the robot", "'" + name + "'",
                    (known.size() > kShown ? "nearest names: " : "links: ") + joined(nearest));
 }
 
-// ---------------------------------------------------------------------------------------------
-// Paths
-
-/// The joints from root to tip, or nothing if tip isn't below root.
-bool findPath(const LinkPtr& root, const LinkPtr& tip, Path& path) {
-  path.clear();
-  for (LinkPtr link = tip; link != root; link = link->getParent()) {
-    if (link->parent_joint == nullptr) {
-      return false;
+/// The joints from root to tip; nothing if tip isn't below root.
+std::optional<Path> findPath(const RobotDescription& robot, std::size_t root, std::size_t tip) {
+  Path path;
+  for (std::size_t link = tip; link != root; link = robot.joints[path.back()].parent) {
+    if (robot.links[link].parent_joint == kNone) {
+      return std::nullopt;
     }
-    path.push_back(link->parent_joint);
+    path.push_back(robot.links[link].parent_joint);
   }
   std::reverse(path.begin(), path.end());
-  return true;
+  return path;
 }
 
-Path pathBetween(const urdf::ModelInterface& robot, const LinkPtr& root, const LinkPtr& tip) {
-  Path path;
-  if (!findPath(root, tip, path)) {
-    const bool swapped = findPath(tip, root, path);
-    throw ModelError(
-        "URDF: robot " + robot.getName(), "tip", "a link below root '" + root->name + "'",
-        "'" + tip->name + "'",
-        swapped ? "swap root and tip" : "choose a root nearer to '" + robot.getRoot()->name + "'");
+Path pathBetween(const RobotDescription& robot, std::size_t root, std::size_t tip) {
+  if (const auto path = findPath(robot, root, tip)) {
+    return *path;
+  }
+  throw ModelError(where(robot), "tip", "a link below root '" + robot.links[root].name + "'",
+                   "'" + robot.links[tip].name + "'",
+                   findPath(robot, tip, root)
+                       ? "swap root and tip"
+                       : "choose a root nearer to '" + robot.links[robot.root].name + "'");
+}
+
+/// A link with what is between it and the root.
+struct Reach {
+  std::size_t link = kNone;
+  std::size_t movable = 0;           // joints
+  std::size_t joints = 0;            // fixed ones, too
+  std::size_t last_movable = kNone;  // joint
+};
+
+/// The links below root that have no children.
+std::vector<Reach> leavesBelow(const RobotDescription& robot, std::size_t root) {
+  std::vector<Reach> reach(robot.links.size());
+  std::vector<Reach> leaves;
+  for (const std::size_t link : robot.linksBelow(root)) {
+    reach[link].link = link;
+    for (const std::size_t j : robot.links[link].child_joints) {
+      const bool movable = isMovable(robot.joints[j]);
+      reach[robot.joints[j].child] = {kNone, reach[link].movable + (movable ? 1 : 0),
+                                      reach[link].joints + 1,
+                                      movable ? j : reach[link].last_movable};
+    }
+    if (robot.links[link].child_joints.empty()) {
+      leaves.push_back(reach[link]);
+    }
+  }
+  return leaves;
+}
+
+/// The joints from root to the one leaf that all movable joints lead to.
+Path pathToLeaf(const RobotDescription& robot, std::size_t root) {
+  const std::vector<Reach> leaves = leavesBelow(robot, root);
+  const auto farther = [](const Reach& a, const Reach& b) {
+    return std::make_pair(a.movable, a.joints) < std::make_pair(b.movable, b.joints);
+  };
+  const Reach& tip = *std::max_element(leaves.begin(), leaves.end(), farther);
+  Path path = pathBetween(robot, root, tip.link);
+
+  // leaves moved by joints that don't lead to this tip
+  std::vector<bool> on_path(robot.joints.size(), false);
+  for (const std::size_t j : path) {
+    on_path[j] = true;
+  }
+  const auto described = [&robot](const Reach& leaf) {
+    return robot.links[leaf.link].name + " (moved by " + robot.joints[leaf.last_movable].name + ")";
+  };
+  std::string others;
+  for (const Reach& leaf : leaves) {
+    if (leaf.last_movable != kNone && !on_path[leaf.last_movable]) {
+      others += ", " + described(leaf);
+    }
+  }
+  if (!others.empty()) {
+    throw ModelError(where(robot), "tip", "one leaf below '" + robot.links[root].name + "'",
+                     described(tip) + others, "name one of them as tip");
   }
   return path;
 }
 
-/// A leaf with the joints above it.
-struct Leaf {
-  LinkPtr link;
-  Path path;
-  std::vector<std::string> movable;  // names of its movable joints, in order
+// ---------------------------------------------------------------------------------------------
+// Joints that are held
+
+/// Where the joints beside the path and beyond the tip are held.
+class LockedJoints {
+ public:
+  LockedJoints(const RobotDescription& robot, const UrdfOptions& options, const Path& path)
+      : robot_(robot), on_path_(robot.joints.size(), false), used_(on_path_) {
+    for (const std::size_t j : path) {
+      on_path_[j] = true;
+    }
+    given_.resize(robot.joints.size());
+    for (std::size_t j = 0; j < given_.size() && options.locked_position; ++j) {
+      given_[j] = options.locked_position(robot.joints[j].name);
+    }
+    position_.resize(robot.joints.size());
+  }
+
+  bool onPath(std::size_t j) const { return on_path_[j]; }
+
+  /// Where a joint off the path has moved its link.
+  Transform<double> motion(std::size_t j) {
+    const RobotDescription::Joint& joint = robot_.joints[j];
+    auto X = Transform<double>::identity();
+    if (!isMovable(joint)) {
+      return X;
+    }
+    if (joint.type == Type::kPlanar || joint.type == Type::kFloating) {
+      throw ModelError(where(joint), "type", "an attached joint that can be held at one position",
+                       joint.type == Type::kPlanar ? "planar" : "floating",
+                       "ignore attached bodies, or make it fixed");
+    }
+    const Eigen::Vector3d axis = joint.axis.stableNormalized();
+    if (joint.type == Type::kPrismatic) {
+      X.p = position(j) * axis;
+    } else {
+      X.R = Eigen::AngleAxisd(position(j), axis).toRotationMatrix();
+    }
+    return X;
+  }
+
+  /// A sentence for each given position that had no influence.
+  std::vector<std::string> warnings(bool lump_attached) const {
+    std::vector<std::string> texts;
+    for (std::size_t j = 0; j < given_.size(); ++j) {
+      const RobotDescription::Joint& joint = robot_.joints[j];
+      if (given_[j] && !used_[j]) {
+        const std::string reason =
+            !isMovable(joint) ? "the joint is fixed"
+            : onPath(j)       ? "the joint is on the path from root to tip"
+            : joint.mimic     ? "the joint follows joint " + robot_.joints[joint.mimic->joint].name
+            : !lump_attached  ? "attached bodies are ignored"
+                              : "no moving link carries the joint";
+        texts.push_back(printable("URDF:" + std::to_string(joint.line) + ": joint " + joint.name +
+                                  ": its locked position isn't used: " + reason));
+      }
+    }
+    return texts;
+  }
+
+ private:
+  /// The position of a joint, or the one that it has by following others.
+  double position(std::size_t j) {
+    Path followers;
+    std::size_t source = j;
+    while (!position_[source] && robot_.joints[source].mimic) {
+      followers.push_back(source);
+      source = robot_.joints[source].mimic->joint;
+      const bool endless = followers.size() > robot_.joints.size();
+      if (endless || (onPath(source) && isMovable(robot_.joints[source]))) {
+        throw ModelError(where(robot_.joints[followers.back()]), "<mimic>",
+                         "an attached joint that can be held",
+                         (endless ? "one that follows itself through joint "
+                                  : "one that moves with the chain's joint ") +
+                             robot_.joints[source].name,
+                         "ignore attached bodies, or make it fixed");
+      }
+    }
+    if (!position_[source]) {
+      position_[source] = givenPosition(source);
+    }
+    while (!followers.empty()) {
+      const RobotDescription::Mimic& mimic = *robot_.joints[followers.back()].mimic;
+      position_[followers.back()] = mimic.multiplier * *position_[source] + mimic.offset;
+      source = followers.back();
+      followers.pop_back();
+    }
+    return *position_[j];
+  }
+
+  double givenPosition(std::size_t j) {
+    if (!given_[j] || !isMovable(robot_.joints[j])) {
+      return 0;
+    }
+    used_[j] = true;
+    if (!std::isfinite(*given_[j])) {
+      throw ModelError(where(robot_.joints[j]), "locked position", "a finite number",
+                       std::to_string(*given_[j]), "");
+    }
+    return *given_[j];
+  }
+
+  const RobotDescription& robot_;
+  std::vector<bool> on_path_;
+  std::vector<bool> used_;
+  std::vector<std::optional<double>> given_;
+  std::vector<std::optional<double>> position_;  // of those asked for
 };
-
-void collectLeaves(const LinkPtr& link, Leaf& above, std::vector<Leaf>& leaves) {
-  if (link->child_joints.empty()) {
-    leaves.push_back(above);
-    leaves.back().link = link;
-  }
-  for (std::size_t i = 0; i < link->child_joints.size(); ++i) {
-    Leaf below = above;
-    below.path.push_back(link->child_joints[i]);
-    if (!isFixed(*link->child_joints[i])) {
-      below.movable.push_back(link->child_joints[i]->name);
-    }
-    collectLeaves(link->child_links[i], below, leaves);
-  }
-}
-
-bool isPrefix(const std::vector<std::string>& part, const std::vector<std::string>& whole) {
-  return part.size() <= whole.size() && std::equal(part.begin(), part.end(), whole.begin());
-}
-
-/// The joints from root to the one leaf that all movable joints lead to.
-Path pathToLeaf(const urdf::ModelInterface& robot, const LinkPtr& root) {
-  std::vector<Leaf> leaves;
-  Leaf start;
-  collectLeaves(root, start, leaves);
-  const auto farther = [](const Leaf& a, const Leaf& b) {
-    return std::make_pair(a.movable.size(), a.path.size()) <
-           std::make_pair(b.movable.size(), b.path.size());
-  };
-  const Leaf& tip = *std::max_element(leaves.begin(), leaves.end(), farther);
-
-  // leaves moved by joints that don't lead to this tip
-  std::string others;
-  for (const Leaf& leaf : leaves) {
-    if (!isPrefix(leaf.movable, tip.movable)) {
-      others += ", " + leaf.link->name + " (moved by " + leaf.movable.back() + ")";
-    }
-  }
-  if (!others.empty()) {
-    throw ModelError("URDF: robot " + robot.getName(), "tip", "one leaf below '" + root->name + "'",
-                     tip.link->name + " (moved by " + tip.movable.back() + ")" + others,
-                     "name one of them as tip");
-  }
-  return tip.path;
-}
 
 // ---------------------------------------------------------------------------------------------
 // The chain
@@ -157,187 +260,161 @@ Path pathToLeaf(const urdf::ModelInterface& robot, const LinkPtr& root) {
 /// Makes joints and links of a chain from the URDF joints on its path.
 class Builder {
  public:
-  Builder(const urdf::ModelInterface& robot, const UrdfOptions& options, Path path)
-      : robot_(robot), options_(options), path_(std::move(path)) {}
+  Builder(const RobotDescription& robot, const UrdfOptions& options, Path path)
+      : robot_(robot), options_(options), path_(std::move(path)), locked_(robot, options, path_) {}
 
   Chain chain() {
-    for (std::size_t i = 0; i < path_.size(); ++i) {
-      const urdf::Joint& joint = *path_[i];
-      X_EU_ = X_EU_ * pose(joint.parent_to_joint_origin_transform);
-      if (!isFixed(joint)) {
-        addJoint(joint);
+    for (const std::size_t j : path_) {
+      X_EU_ = X_EU_ * robot_.joints[j].placement;
+      if (isMovable(robot_.joints[j])) {
+        addJoint(robot_.joints[j]);
       }
       if (!links_.empty()) {
-        links_.back() += X_EU_ * parameters(link(i));
-        lumpBranches(i);
+        const std::size_t link = robot_.joints[j].child;
+        links_.back() += X_EU_ * parameters(robot_.links[link]);
+        parts_.back().push_back(link);
+        lumpBranches(robot_.links[link]);
       }
     }
     checkMovable();
     for (LinkParameters& parameters : links_) {
       parameters = symmetric(parameters);
     }
-    return {robot_.getName(), std::move(joints_), std::move(links_), options_.gravity, X_EU_};
+    const Chain chain(robot_.name, joints_, links_, options_.gravity, X_EU_);
+    return chain.withWarnings(warnings(chain));
   }
 
  private:
-  /// The link that joint i of the path moves.
-  const urdf::Link& link(std::size_t i) const { return *robot_.getLink(path_[i]->child_link_name); }
-
-  bool onPath(const urdf::Joint& joint) const {
-    return std::any_of(path_.begin(), path_.end(),
-                       [&joint](const JointPtr& other) { return other.get() == &joint; });
-  }
-
-  static std::string where(const urdf::Joint& joint) { return "URDF: joint " + joint.name; }
-
   /// Starts a new link of the chain, whose frame E is the URDF's U turned to the joint's axis.
-  void addJoint(const urdf::Joint& joint) {
-    if (joint.type == urdf::Joint::PLANAR || joint.type == urdf::Joint::FLOATING) {
+  void addJoint(const RobotDescription::Joint& joint) {
+    if (joint.type == Type::kPlanar || joint.type == Type::kFloating) {
       throw ModelError(where(joint), "type", "revolute, continuous, prismatic or fixed",
-                       joint.type == urdf::Joint::PLANAR ? "planar" : "floating",
+                       joint.type == Type::kPlanar ? "planar" : "floating",
                        "choose root and tip so that it isn't between them");
     }
-    if (joint.mimic != nullptr) {
+    if (joint.mimic) {
       throw ModelError(where(joint), "<mimic>", "a joint that moves by itself",
-                       "one that follows joint " + joint.mimic->joint_name,
+                       "one that follows joint " + robot_.joints[joint.mimic->joint].name,
                        "choose root and tip so that it isn't between them");
     }
-    const Matrix3<double> R_UE = rotationFromZ(vector(joint.axis).stableNormalized());
+    const Matrix3<double> R_UE = rotationFromZ(joint.axis.stableNormalized());
     Joint result;
     result.name = joint.name;
-    result.type = joint.type == urdf::Joint::PRISMATIC    ? JointType::kPrismatic
-                  : joint.type == urdf::Joint::CONTINUOUS ? JointType::kContinuous
-                                                          : JointType::kRevolute;
+    result.type = joint.type == Type::kPrismatic    ? JointType::kPrismatic
+                  : joint.type == Type::kContinuous ? JointType::kContinuous
+                                                    : JointType::kRevolute;
     result.placement = {X_EU_.R * R_UE, X_EU_.p};
-    result.limits = limits(joint);
-    if (joint.dynamics != nullptr) {
-      result.damping = joint.dynamics->damping;
-      result.friction = joint.dynamics->friction;
-    }
+    result.limits = joint.limits;
+    result.damping = joint.damping;
+    result.friction = joint.friction;
     joints_.push_back(result);
     links_.push_back(LinkParameters::zero());
+    parts_.emplace_back();
     X_EU_ = {R_UE.transpose(), Eigen::Vector3d::Zero()};
   }
 
-  static JointLimits limits(const urdf::Joint& joint) {
-    JointLimits result;
-    if (joint.limits != nullptr) {
-      result.velocity = joint.limits->velocity;
-      result.effort = joint.limits->effort;
-      if (joint.type != urdf::Joint::CONTINUOUS) {
-        result.lower = joint.limits->lower;
-        result.upper = joint.limits->upper;
-      }
-    }
-    return result;
-  }
-
   /// Adds what hangs on a link of the path, beside the path or beyond its end.
-  void lumpBranches(std::size_t i) {
+  void lumpBranches(const Link& link) {
     if (!options_.lump_attached) {
       return;
     }
-    for (const auto& child : link(i).child_joints) {
-      if (!onPath(*child)) {
-        links_.back() += X_EU_ * branch(*child);
+    for (const std::size_t j : link.child_joints) {
+      if (!locked_.onPath(j)) {
+        links_.back() += X_EU_ * branch(j);
       }
     }
   }
 
   /// A branch as one rigid body, in the frame of the link it hangs on.
-  LinkParameters branch(const urdf::Joint& joint) const {
-    const urdf::Link& link = *robot_.getLink(joint.child_link_name);
-    LinkParameters body = parameters(link);
-    for (const auto& child : link.child_joints) {
-      body += branch(*child);
-    }
-    return pose(joint.parent_to_joint_origin_transform) * (lockedMotion(joint) * body);
-  }
-
-  /// Where a joint off the path has moved its link.
-  Transform<double> lockedMotion(const urdf::Joint& joint) const {
-    auto X = Transform<double>::identity();
-    if (isFixed(joint)) {
-      return X;
-    }
-    if (joint.type == urdf::Joint::PLANAR || joint.type == urdf::Joint::FLOATING) {
-      throw ModelError(where(joint), "type", "an attached joint that can be held at one position",
-                       joint.type == urdf::Joint::PLANAR ? "planar" : "floating",
-                       "ignore attached bodies, or make it fixed");
-    }
-    const double position = lockedPosition(joint, robot_.joints_.size());
-    const Eigen::Vector3d axis = vector(joint.axis).stableNormalized();
-    if (joint.type == urdf::Joint::PRISMATIC) {
-      X.p = position * axis;
-    } else {
-      X.R = Eigen::AngleAxisd(position, axis).toRotationMatrix();
-    }
-    return X;
-  }
-
-  /// @param depth  how many more joints may be followed: a mimic of a mimic may come back.
-  double lockedPosition(const urdf::Joint& joint, std::size_t depth) const {
-    if (joint.mimic != nullptr) {
-      const urdf::Joint& source = *robot_.getJoint(joint.mimic->joint_name);
-      if (onPath(source) || depth == 0) {
-        throw ModelError(where(joint), "<mimic>", "an attached joint that can be held",
-                         (depth == 0 ? "one that follows itself through joint "
-                                     : "one that moves with the chain's joint ") +
-                             source.name,
-                         "ignore attached bodies, or make it fixed");
+  LinkParameters branch(std::size_t joint) {
+    body_.resize(robot_.joints.size(), LinkParameters::zero());
+    const std::vector<std::size_t> links = robot_.linksBelow(robot_.joints[joint].child);
+    parts_.back().insert(parts_.back().end(), links.begin(), links.end());
+    for (auto link = links.rbegin(); link != links.rend(); ++link) {  // children before parents
+      LinkParameters body = parameters(robot_.links[*link]);
+      for (const std::size_t child : robot_.links[*link].child_joints) {
+        body += body_[child];
       }
-      return joint.mimic->multiplier * lockedPosition(source, depth - 1) + joint.mimic->offset;
+      const std::size_t j = robot_.links[*link].parent_joint;
+      body_[j] = robot_.joints[j].placement * (locked_.motion(j) * body);
     }
-    const double position = options_.locked_position ? options_.locked_position(joint.name) : 0.0;
-    if (!std::isfinite(position)) {
-      throw ModelError(where(joint), "locked position", "a finite number", std::to_string(position),
-                       "");
-    }
-    return position;
+    return body_[joint];
   }
 
   void checkMovable() const {
-    const std::string from_to = path_.empty()
-                                    ? "root and tip are the same link"
-                                    : "only fixed joints from " + path_.front()->parent_link_name +
-                                          " to " + path_.back()->child_link_name;
     if (joints_.empty()) {
-      throw ModelError("URDF: robot " + robot_.getName(), "chain", "at least one movable joint",
-                       from_to, "choose other root and tip");
+      const std::string from_to =
+          path_.empty()
+              ? "root and tip are the same link"
+              : "only fixed joints from " + robot_.links[robot_.joints[path_.front()].parent].name +
+                    " to " + robot_.links[robot_.joints[path_.back()].child].name;
+      throw ModelError(where(robot_), "chain", "at least one movable joint", from_to,
+                       "choose other root and tip");
     }
     for (std::size_t i = 0; i < links_.size(); ++i) {
       if (!options_.allow_massless && links_[i].toVector().isZero(0)) {
         throw ModelError("URDF: joint " + joints_[i].name, "the body it moves", "a mass",
                          "no mass and no inertia",
-                         "give link " + robot_.getJoint(joints_[i].name)->child_link_name +
-                             " an <inertial>, or allow massless bodies");
+                         "give link " + robot_.links[parts_[i].front()].name +
+                             " an <inertial>, or set allow_massless");
       }
     }
   }
 
-  const urdf::ModelInterface& robot_;
+  /// What is odd: about the description, the held joints, and the parts of each link.
+  std::vector<std::string> warnings(const Chain& chain) const {
+    std::vector<std::string> texts = robot_.warnings;
+    const std::vector<std::string> locked = locked_.warnings(options_.lump_attached);
+    texts.insert(texts.end(), locked.begin(), locked.end());
+    bool named = true;
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      named = (inertiaDefect(chain.links()[i]).empty() || addDefects(i, texts)) && named;
+    }
+    if (!named) {  // not of one part alone
+      texts.insert(texts.end(), chain.warnings().begin(), chain.warnings().end());
+    }
+    return texts;
+  }
+
+  /// Names the parts of link i that no rigid body can be; false if there are none.
+  bool addDefects(std::size_t i, std::vector<std::string>& texts) const {
+    const std::size_t before = texts.size();
+    for (const std::size_t part : parts_[i]) {
+      const Link& link = robot_.links[part];
+      const std::string defect = inertiaDefect(symmetric(parameters(link)));
+      if (!defect.empty()) {
+        texts.push_back(printable("URDF:" + std::to_string(link.inertial->line) + ": link " +
+                                  link.name + ", moved by joint " + joints_[i].name + ": " +
+                                  defect));
+      }
+    }
+    return texts.size() > before;
+  }
+
+  const RobotDescription& robot_;
   const UrdfOptions& options_;
   const Path path_;
+  LockedJoints locked_;
   std::vector<Joint> joints_;
   std::vector<LinkParameters> links_;
+  std::vector<std::vector<std::size_t>> parts_;  // links of the URDF, of each link of the chain
+  std::vector<LinkParameters> body_;             // of branches, by joint
   /// Pose of the URDF's current link frame U in the chain's current link frame E.
   Transform<double> X_EU_ = Transform<double>::identity();
 };
 
 }  // namespace
 
+Chain chainFromRobot(const RobotDescription& robot, const UrdfOptions& options) {
+  const std::size_t root =
+      options.root.empty() ? robot.root : linkNamed(robot, options.root, "root");
+  Path path = options.tip.empty() ? pathToLeaf(robot, root)
+                                  : pathBetween(robot, root, linkNamed(robot, options.tip, "tip"));
+  return Builder(robot, options, std::move(path)).chain();
+}
+
 Chain chainFromUrdf(const std::string& urdf_xml, const UrdfOptions& options) {
-  const urdf::ModelInterfaceSharedPtr robot = urdf::parseURDF(checkedUrdf(urdf_xml));
-  if (robot == nullptr) {
-    throw ModelError("URDF", "robot description", "a URDF that urdfdom reads", "one it refuses",
-                     "its reason is on standard error");
-  }
-  const LinkPtr root =
-      options.root.empty() ? robot->getRoot() : linkNamed(*robot, options.root, "root");
-  Path path = options.tip.empty()
-                  ? pathToLeaf(*robot, root)
-                  : pathBetween(*robot, root, linkNamed(*robot, options.tip, "tip"));
-  return Builder(*robot, options, std::move(path)).chain();
+  return chainFromRobot(robotFromUrdf(urdf_xml), options);
 }
 
 }  // namespace v2

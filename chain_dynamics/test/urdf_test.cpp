@@ -9,11 +9,13 @@
 #include <Eigen/Geometry>
 #include <limits>
 #include <locale>
+#include <optional>
 #include <string>
 
 #include "chain_dynamics/dynamic_components.hpp"
 #include "chain_dynamics/torques.hpp"
 #include "reference.hpp"
+#include "urdf_texts.hpp"
 
 namespace chain_dynamics {
 namespace {
@@ -21,49 +23,13 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 
 // Two ways of rounding through the same few hundred operations on figures below 100.
 constexpr double kRounding = 1e-12;
 // What is asked for: the greatest difference from another program, in kg m^2 and N m.
 constexpr double kReference = 1e-10;
-
-// --- small robots, written by hand ---
-
-const char* const kLimit = R"(<limit lower="-1" upper="2" effort="3" velocity="4"/>)";
-
-std::string inertial(const std::string& mass = "2", const std::string& ixx = "0.1",
-                     const std::string& origin = "<origin xyz='0.1 0.2 0.3'/>") {
-  return "<inertial>" + origin + "<mass value='" + mass + "'/><inertia ixx='" + ixx +
-         "' ixy='0.01' ixz='0.02' iyy='0.2' iyz='0.03' izz='0.15'/></inertial>";
-}
-
-std::string link(const std::string& name, const std::string& content = inertial()) {
-  return "<link name='" + name + "'>" + content + "</link>\n";
-}
-
-std::string joint(const std::string& name, const std::string& type, const std::string& parent,
-                  const std::string& child, const std::string& content = kLimit) {
-  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent +
-         "'/><child link='" + child + "'/>" + content + "</joint>\n";
-}
-
-std::string robot(const std::string& content) {
-  return "<?xml version='1.0'?>\n<robot name='arm'>\n" + content + "</robot>\n";
-}
-
-/// base -shoulder-> upper -elbow-> lower -weld-> tool, with axes and offsets of every kind.
-std::string arm(const std::string& elbow_axis = "<axis xyz='0.6 0 -0.8'/>",
-                const std::string& more = "") {
-  return robot(link("base") + link("upper") + link("lower") + link("tool", inertial("0.5")) +
-               joint("shoulder", "revolute", "base", "upper",
-                     "<origin xyz='0.1 0 0.4' rpy='0.3 -0.2 0.1'/><axis xyz='0 1 0'/>" +
-                         std::string(kLimit)) +
-               joint("elbow", "continuous", "upper", "lower",
-                     "<origin xyz='0 0.2 0.5' rpy='1 2 3'/>" + elbow_axis) +
-               joint("weld", "fixed", "lower", "tool", "<origin xyz='0 0 0.3' rpy='0 0.5 0'/>") +
-               more);
-}
 
 Eigen::VectorXd someTorques(const Chain& chain) {
   const Eigen::Index n = chain.jointCount();
@@ -394,6 +360,31 @@ TEST(Urdf, LockedPositionThatIsNotFiniteIsAnError) {
               AllOf(HasSubstr("joint focus: locked position"), HasSubstr("got nan")));
 }
 
+TEST(Urdf, LockedPositionsThatHaveNoInfluenceAreAWarning) {
+  const auto warnings = [](const std::string& urdf, UrdfOptions options, const std::string& joint) {
+    options.locked_position = [joint](const std::string& name) {
+      return name == joint ? std::optional<double>(0.3) : std::nullopt;
+    };
+    return chainFromUrdf(urdf, options).warnings();
+  };
+  const std::string urdf = armWithAttachments("<mimic joint='focus'/>");
+  UrdfOptions options = between("base", "tool");
+  EXPECT_THAT(warnings(urdf, options, "focus"), IsEmpty());
+  EXPECT_THAT(
+      warnings(urdf, options, "elbow"),
+      ElementsAre("URDF:8: joint elbow: its locked position isn't used: the joint is on the "
+                  "path from root to tip"));
+  EXPECT_THAT(warnings(urdf, options, "weld"), ElementsAre(HasSubstr("the joint is fixed")));
+  EXPECT_THAT(warnings(urdf, options, "grip"),
+              ElementsAre(HasSubstr("the joint follows joint focus")));
+  options.root = "upper";
+  EXPECT_THAT(warnings(urdf, options, "shoulder"),
+              ElementsAre(HasSubstr("no moving link carries the joint")));
+  options.lump_attached = false;
+  EXPECT_THAT(warnings(urdf, options, "focus"),
+              ElementsAre(HasSubstr("attached bodies are ignored")));
+}
+
 // --- root and tip ---
 
 TEST(Urdf, EmptyTipIsTheLeafFarthestOut) {
@@ -486,12 +477,13 @@ TEST(UrdfError, OtherXml) {
   EXPECT_THAT(urdfError("<robot><link name='a'/></robot>"),
               HasSubstr("robot: <robot>: expected attribute 'name', got none"));
   EXPECT_THAT(urdfError("<robot name='r' version='7'><link name='a'/></robot>"),
-              HasSubstr("expected a URDF that urdfdom reads"));
+              HasSubstr("URDF:1: robot: <robot> version: expected 1.0, 1.1 or 1.2, got '7'"));
 }
 
 TEST(UrdfError, XacroMustBeExpandedFirst) {
   EXPECT_THAT(urdfError("<robot name='r' xmlns:xacro='x'>\n<xacro:include filename='f'/></robot>"),
-              AllOf(HasSubstr("URDF:2: <xacro:include>"), HasSubstr("expand the file with xacro")));
+              AllOf(HasSubstr("expected at least one <link>, got none"),
+                    HasSubstr("expand the file with xacro")));
 }
 
 TEST(UrdfError, NamesMustBeGivenAndUnique) {
@@ -532,7 +524,7 @@ TEST(UrdfError, MovableBodyWithoutMassNamesJointAndLink) {
                                  joint("second", "continuous", "a", "b", ""));
   EXPECT_EQ(urdfError(urdf),
             "URDF: joint first: the body it moves: expected a mass, got no mass and no inertia; "
-            "give link a an <inertial>, or allow massless bodies");
+            "give link a an <inertial>, or set allow_massless");
   UrdfOptions options;
   options.allow_massless = true;
   EXPECT_EQ(urdfError(urdf, options), "no error");
@@ -627,6 +619,20 @@ TEST(UrdfError, NothingIsPrinted) {
   urdfError(arm("<axis xyz='0 0 0'/>"));
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+TEST(Urdf, LinksThatNoRigidBodyCanBeAreNamed) {
+  // the defect is the tool's, which is welded to the moved link
+  const auto with = [](const std::string& tool) {
+    return chainFromUrdf(robot(link("base", inertial("1", "-5")) + link("a") + link("tool", tool) +
+                               joint("j", "continuous", "base", "a", "") +
+                               joint("weld", "fixed", "a", "tool", "")))
+        .warnings();
+  };
+  EXPECT_THAT(with(inertial("1", "-5")),
+              ElementsAre(AllOf(HasSubstr("URDF:5: link tool, moved by joint j: "),
+                                HasSubstr("aren't positive"))));
+  EXPECT_THAT(with(inertial()), IsEmpty());
 }
 
 TEST(Urdf, TriangleInequalityBrokenIsAWarning) {

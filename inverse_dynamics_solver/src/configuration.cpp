@@ -60,14 +60,15 @@ void readBatchThreads(Configuration& configuration) {
 }
 
 /// Reader of `locked_joints.<joint>`.
-std::function<double(const std::string&)> lockedPositions(const Configuration& configuration) {
+std::function<std::optional<double>(const std::string&)> lockedPositions(
+    const Configuration& configuration) {
   return [parameters = configuration.parameters,
           prefix = configuration.fullName("locked_joints.")](const std::string& joint) {
-    const double position = parameters.get<double>(prefix + joint).value_or(0.0);
-    if (!std::isfinite(position)) {
+    const auto position = parameters.get<double>(prefix + joint);
+    if (position && !std::isfinite(*position)) {
       throw InvalidParameterValueException(
           errorText("parameter '" + prefix + joint + "'", "wrong value",
-                    "a finite position [rad; prismatic m]", std::to_string(position),
+                    "a finite position [rad; prismatic m]", std::to_string(*position),
                     "give the position at which the joint is held"));
     }
     return position;

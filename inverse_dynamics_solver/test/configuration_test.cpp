@@ -46,7 +46,7 @@ TEST(Configuration, HasDefaults) {
   EXPECT_TRUE(configuration.lump_attached);
   EXPECT_TRUE(configuration.friction);
   EXPECT_EQ(configuration.batch_threads, 1);
-  EXPECT_EQ(configuration.locked_position("finger"), 0.0);
+  EXPECT_EQ(configuration.locked_position("finger"), std::nullopt);
 }
 
 TEST(Configuration, IsReadBelowTheNamespace) {
@@ -124,6 +124,20 @@ TEST(ChainFromDescription, TakesRootTipGravityAndWhatHangsOnTheChain) {
   };
   EXPECT_NEAR(moment({{"tip", "tool"}}), 1.0, 1e-15);
   EXPECT_NEAR(moment({{"tip", "tool"}, {"locked_joints.slide", 0.5}}), 1.5, 1e-15);
+}
+
+TEST(ChainFromDescription, WarnsOfALockedJointThatIsOnThePath) {
+  const auto warnings = [](const std::string& joint) {
+    return chainFromDescription(
+               readConfiguration({{"tip", "tool"}, {"locked_joints." + joint, 0.5}}, "", kArm))
+        .warnings();
+  };
+  EXPECT_TRUE(warnings("slide").empty());
+  ASSERT_EQ(warnings("shoulder").size(), 1U);
+  EXPECT_NE(
+      warnings("shoulder")[0].find("joint shoulder: its locked position isn't used: the joint "
+                                   "is on the path from root to tip"),
+      std::string::npos);
 }
 
 TEST(ChainFromDescription, TakesMasslessBodiesOnlyWhereAllowed) {

@@ -49,12 +49,16 @@ std::vector<std::string> unusedParameters(const Configuration& configuration) {
 
 /// What is odd about a model, a sentence each.
 std::vector<std::string> warningsOf(const chain_dynamics::Model& model, bool inertia_is_physical) {
-  if (inertia_is_physical) return model.chain.warnings();
-
-  // Link by link it would be a long list, and the figures of an identified link mean nothing.
-  return {"model " + model.name +
-          ": its inertia matrix isn't that of rigid bodies; fit for torques, unfit for forward "
-          "dynamics"};
+  // Link by link, the figures of a link of an identified model mean nothing.
+  const bool from_file = !model.source.empty();
+  std::vector<std::string> warnings;
+  if (inertia_is_physical || !from_file) warnings = model.chain.warnings();
+  if (!inertia_is_physical) {
+    warnings.push_back("model " + model.name +
+                       ": its inertia matrix isn't that of rigid bodies; fit for torques, unfit "
+                       "for forward dynamics");
+  }
+  return warnings;
 }
 
 }  // namespace

@@ -175,6 +175,20 @@ TEST(RigidBody, SaysWhoseInertiaIsPhysical) {
   expectContains(solver.warnings().front(), {"joint4"});
 }
 
+TEST(RigidBody, NamesTheLinkOfADescriptionWhoseInertiaIsNotPhysical) {
+  InverseDynamicsSolverRigidBody solver;
+  solver.initialize({}, "", R"(<robot name="arm"><link name="base"/>
+    <link name="bob"><inertial><mass value="1"/>
+      <inertia ixx="0.1" iyy="-5" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <joint name="hinge" type="continuous"><parent link="base"/><child link="bob"/>
+      <axis xyz="0 1 0"/></joint></robot>)");
+  EXPECT_FALSE(solver.inertiaIsPhysical());
+  ASSERT_EQ(solver.warnings().size(), 2U);
+  expectContains(solver.warnings()[0],
+                 {"URDF:2: link bob, moved by joint hinge", "[-5, 0.1, 0.1]"});
+  expectContains(solver.warnings()[1], {"model arm", "unfit for forward dynamics"});
+}
+
 TEST(RigidBody, NeitherDescriptionNorModelIsAnErrorThatNamesBoth) {
   InverseDynamicsSolverRigidBody solver;
   const std::string error =

@@ -67,8 +67,8 @@ class Chain {
   /// A chain from root to tip: links[i] is moved by joints[i].
   ///
   /// @param name     what messages call it.
-  /// @param joints   at least one; names unique and not empty.
-  /// @param links    as many as joints, in link frames; any finite numbers with mass >= 0.
+  /// @param joints   at least one; names unique, not empty and printable.
+  /// @param links    as many as joints, in link frames; numbers up to 1e50 with mass >= 0.
   /// @param gravity  where things fall, in the root frame; m/s^2, usually (0, 0, -9.81).
   /// @param tip      pose of the tip frame in the last link's frame; no algorithm needs it.
   /// @throws ModelError  naming the joint, where the data can't be a robot. Parameters that can't
@@ -82,6 +82,9 @@ class Chain {
   /// @throws ModelError  where gravity isn't finite.
   Chain withGravity(const Eigen::Vector3d& gravity) const;
 
+  /// The same chain with other warnings(): its file's reader can say more, and where.
+  Chain withWarnings(std::vector<std::string> warnings) const;
+
   const std::string& name() const { return name_; }
   Eigen::Index jointCount() const { return static_cast<Eigen::Index>(joints_.size()); }
   const std::vector<Joint>& joints() const { return joints_; }
@@ -92,7 +95,8 @@ class Chain {
   /// Names from root to tip: the order of every vector and matrix of this package.
   std::vector<std::string> jointNames() const;
 
-  /// One line for each link whose parameters no rigid body can have; empty for a sound chain.
+  /// One line for each link whose parameters no rigid body can have, and what a reader adds; empty
+  /// for a sound chain.
   ///
   /// Inertia about the center of mass that isn't positive or breaks the triangle inequality,
   /// inertia without mass. Inverse dynamics is well defined all the same.

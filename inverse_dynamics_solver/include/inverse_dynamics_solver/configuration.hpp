@@ -61,9 +61,9 @@ struct Configuration {
   /// Up to how many threads share a large batch, the caller's one of them (1 to 4096).
   std::int64_t batch_threads = 1;
 
-  /// Position [rad or m] at which a movable joint beside or beyond the chain is held; by joint
-  /// name.
-  std::function<double(const std::string&)> locked_position;
+  /// Position [rad or m] at which a movable joint beside or beyond the chain is held, by joint
+  /// name; nothing: at zero.
+  std::function<std::optional<double>(const std::string&)> locked_position;
 
   /// All parameters, and the namespace that the ones above were read from.
   Parameters parameters;

@@ -1,0 +1,421 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/robot_description.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <ctime>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chain_dynamics/text.hpp"
+#include "chain_dynamics/torques.hpp"
+#include "chain_dynamics/urdf.hpp"
+#include "reference.hpp"
+#include "urdf_texts.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+// Rounding through a few hundred operations on figures below 100.
+constexpr double kRounding = 1e-12;
+
+std::string urdfError(const std::string& urdf) {
+  return errorOf([&] { chainFromUrdf(urdf); });
+}
+
+std::vector<std::string> warnings(const std::string& urdf) {
+  return chainFromUrdf(urdf).warnings();
+}
+
+Eigen::VectorXd someTorques(const std::string& urdf) {
+  const Chain chain = chainFromUrdf(urdf);
+  const Eigen::Index n = chain.jointCount();
+  Eigen::VectorXd tau(n);
+  torques(chain, Eigen::VectorXd::LinSpaced(n, 0.3, 1.1), Eigen::VectorXd::LinSpaced(n, -1.2, 2.0),
+          Eigen::VectorXd::LinSpaced(n, 3.0, -2.0), tau);
+  return tau;
+}
+
+/// The text with every occurrence of a part replaced; the part occurs.
+std::string replaced(std::string text, const std::string& part, const std::string& by) {
+  EXPECT_NE(text.find(part), std::string::npos) << part;
+  for (std::size_t at = text.find(part); at != std::string::npos;
+       at = text.find(part, at + by.size())) {
+    text.replace(at, part.size(), by);
+  }
+  return text;
+}
+
+/// One hinge with the given contents of its link and its joint.
+std::string hinge(const std::string& body, const std::string& joint_content = "") {
+  return robot(link("base", "") + link("bob", body) +
+               joint("j", "continuous", "base", "bob", joint_content));
+}
+
+// --- the tree ---
+
+TEST(RobotDescription, HoldsLinksAndJointsAsATree) {
+  const RobotDescription tree = robotFromUrdf(arm());
+  EXPECT_EQ(tree.name, "arm");
+  ASSERT_THAT(tree.links, SizeIs(4));
+  ASSERT_THAT(tree.joints, SizeIs(3));
+  EXPECT_EQ(tree.links[tree.root].name, "base");
+  EXPECT_EQ(tree.links[tree.root].parent_joint, RobotDescription::kNone);
+  EXPECT_EQ(tree.links[1].line, 4);
+  EXPECT_THAT(tree.warnings, IsEmpty());
+
+  const RobotDescription::Joint& elbow = tree.joints[tree.jointIndex("elbow")];
+  EXPECT_EQ(elbow.type, RobotDescription::JointType::kContinuous);
+  EXPECT_EQ(tree.links[elbow.parent].name, "upper");
+  EXPECT_EQ(tree.links[elbow.child].name, "lower");
+  EXPECT_EQ(elbow.line, 8);
+  EXPECT_EQ(elbow.axis, Eigen::Vector3d(0.6, 0, -0.8));
+  EXPECT_EQ(elbow.placement.p, Eigen::Vector3d(0, 0.2, 0.5));
+  EXPECT_TRUE(isMovable(elbow));
+  EXPECT_FALSE(isMovable(tree.joints[tree.jointIndex("weld")]));
+  EXPECT_EQ(tree.links[elbow.child].parent_joint, tree.jointIndex("elbow"));
+  EXPECT_THAT(tree.links[elbow.child].child_joints, ElementsAre(tree.jointIndex("weld")));
+  EXPECT_EQ(tree.jointIndex("knee"), RobotDescription::kNone);
+  EXPECT_EQ(tree.linkIndex("elbow"), RobotDescription::kNone);
+
+  ASSERT_TRUE(tree.links[3].inertial);
+  EXPECT_EQ(tree.links[3].inertial->mass, 0.5);
+  EXPECT_EQ(tree.links[3].inertial->inertia(1, 2), 0.03);
+  EXPECT_EQ(tree.links[3].inertial->placement.p, Eigen::Vector3d(0.1, 0.2, 0.3));
+}
+
+TEST(RobotDescription, ListsTheLinksBelowALinkParentsFirst) {
+  const RobotDescription tree = robotFromUrdf(
+      robot(link("d") + link("c") + link("b") + link("a") + joint("z", "fixed", "a", "b", "") +
+            joint("y", "fixed", "b", "c", "") + joint("x", "fixed", "b", "d", "")));
+  std::vector<std::string> names;
+  for (const std::size_t below : tree.linksBelow(tree.linkIndex("b"))) {
+    names.push_back(tree.links[below].name);
+  }
+  EXPECT_THAT(names, ElementsAre("b", "d", "c"));  // joint x, then joint y
+  EXPECT_THAT(tree.linksBelow(tree.root), SizeIs(4));
+}
+
+TEST(RobotDescription, MimicJointsReferToTheJointTheyFollow) {
+  const RobotDescription tree =
+      robotFromUrdf(robot(link("a") + link("b") + link("c") +
+                          joint("left", "continuous", "a", "b",
+                                "<mimic joint='right' multiplier='-2' offset=' 0.5 '/>") +
+                          joint("right", "continuous", "a", "c", "")));
+  ASSERT_TRUE(tree.joints[0].mimic);
+  EXPECT_EQ(tree.joints[0].mimic->joint, tree.jointIndex("right"));
+  EXPECT_EQ(tree.joints[0].mimic->multiplier, -2);
+  EXPECT_EQ(tree.joints[0].mimic->offset, 0.5);
+  EXPECT_FALSE(tree.joints[1].mimic);
+}
+
+TEST(RobotDescription, OriginsTurnByRollPitchYawOrByAQuaternion) {
+  const auto rotation = [](const std::string& origin) {
+    return robotFromUrdf(hinge(inertial(), "<origin " + origin + "/>")).joints[0].placement.R;
+  };
+  // yaw about z, after pitch about y, after roll about x
+  const Eigen::Matrix3d R = rotation("rpy='0.1 0.2 0.3'");
+  EXPECT_NEAR(R(2, 0), -std::sin(0.2), kRounding);
+  EXPECT_NEAR(R(1, 0), std::sin(0.3) * std::cos(0.2), kRounding);
+  EXPECT_NEAR(R(2, 1), std::cos(0.2) * std::sin(0.1), kRounding);
+
+  // half a turn about (0.6, 0, 0.8), of any length
+  const Eigen::Matrix3d half = rotation("quat_xyzw='6 0 8 0'");
+  EXPECT_LT((half * Eigen::Vector3d(0.6, 0, 0.8) - Eigen::Vector3d(0.6, 0, 0.8)).norm(), kRounding);
+  EXPECT_NEAR(half.trace(), -1, kRounding);
+  EXPECT_THAT(urdfError(hinge(inertial(), "<origin quat_xyzw='0 0 0 0'/>")),
+              HasSubstr("joint j: <origin> quat_xyzw: expected a rotation"));
+  EXPECT_THAT(urdfError(hinge(inertial(), "<origin quat_xyzw='0 0 1'/>")),
+              HasSubstr("expected 4 finite numbers, got 3"));
+  EXPECT_THAT(urdfError(hinge(inertial(), "<origin quat_xyzw='0 0 0 1' rpy='0 0 0'/>")),
+              HasSubstr("expected either rpy or quat_xyzw, got both"));
+}
+
+TEST(RobotDescription, VersionsOfUrdf1AreRead) {
+  for (const std::string version : {"1.0", "1", "1.1", "1.2"}) {
+    const std::string urdf = replaced(arm(), "name='arm'", "name='arm' version='" + version + "'");
+    EXPECT_EQ(urdfError(urdf), "no error") << version;
+  }
+  for (const std::string version : {"7", "2.0", "0.9", "one", "", "1.0.0"}) {
+    const std::string urdf = replaced(arm(), "name='arm'", "name='arm' version='" + version + "'");
+    EXPECT_THAT(urdfError(urdf), HasSubstr("URDF:2: robot: <robot> version: expected 1.0, 1.1 or "
+                                           "1.2, got '" +
+                                           version + "'"));
+  }
+}
+
+// --- numbers ---
+
+TEST(RobotDescription, WhiteSpaceAroundNumbersLosesNothing) {
+  // each of these lost a mass, an inertia or an origin in another reader
+  const std::vector<std::pair<std::string, std::string>> spellings{
+      {"mass value='0.5'", "mass value='0.5 '"},
+      {"mass value='2'", "mass value='\n 2\t'"},
+      {"ixx='0.1'", "ixx=' 0.1\r\n'"},
+      {"iyz='0.03'", "iyz='+0.03 '"},
+      {"xyz='0.1 0.2 0.3'", "xyz='\n  0.1\n  0.2\t0.3\n'"},
+      {"rpy='1 2 3'", "rpy=' 1\n2 3'"},
+      {"xyz='0.6 0 -0.8'", "xyz='  0.6 0\n -0.8 '"},
+      {"lower=\"-1\"", "lower=\" -1 \""}};
+  const Eigen::VectorXd tau = someTorques(arm());
+  for (const auto& [plain, spaced] : spellings) {
+    const std::string urdf = replaced(arm(), plain, spaced);
+    EXPECT_EQ(someTorques(urdf), tau) << spaced;
+    EXPECT_THAT(warnings(urdf), IsEmpty()) << spaced;
+  }
+}
+
+TEST(RobotDescription, OnlyDecimalNumbersAreNumbers) {
+  for (const std::string bad : {"0x10", "1e400", "1_0", "1:30", "1.5f", "1e", "--1", "infinity",
+                                "1\xC2\xA0", "\xEF\xBC\x91", "1 2"}) {
+    EXPECT_THAT(urdfError(hinge(inertial(bad))),
+                HasSubstr("link bob: <mass> value: expected a finite number"))
+        << bad;
+  }
+  EXPECT_THAT(urdfError(hinge(inertial("${mass}"))), HasSubstr("expand the file with xacro first"));
+}
+
+TEST(RobotDescription, FiguresBeyondARobotsSizeAreAWarningOrAnError) {
+  const auto far = [](const std::string& x) {
+    return hinge(inertial(), "<origin xyz='0 " + x + " 0'/>");
+  };
+  EXPECT_THAT(warnings(far("1000")), IsEmpty());
+  EXPECT_THAT(warnings(far("2e6")),
+              ElementsAre("URDF:5: joint j: <origin> xyz: 2e+06 m is beyond 1e+06 m; is the unit "
+                          "right?"));
+  EXPECT_EQ(urdfError(far("1e300")),
+            "URDF:5: joint j: <origin> xyz: expected a figure that can be computed with, up to "
+            "1e50, got 1e+300 m; correct it, or its unit");
+  EXPECT_THAT(warnings(hinge(inertial("1e10"))), ElementsAre(HasSubstr("1e+10 kg is beyond")));
+  EXPECT_THAT(urdfError(hinge(inertial("1e308"))), HasSubstr("link bob: <mass> value: expected"));
+  EXPECT_THAT(urdfError(hinge(inertial("1", "-1e200"))), HasSubstr("<inertia> ixx: expected"));
+  EXPECT_THAT(urdfError(hinge(inertial("1", "1", "<origin xyz='0 0 1e150'/>"))),
+              HasSubstr("link bob: <origin> xyz: expected"));
+  EXPECT_THAT(warnings(hinge(inertial(), "<origin rpy='0 90 0'/>")),
+              ElementsAre(AllOf(HasSubstr("joint j: <origin> rpy"), HasSubstr("unit"))));
+
+  // the greatest figures that are taken give finite torques
+  EXPECT_TRUE(someTorques(hinge(inertial("1e50"), "<origin xyz='1e50 1e50 1e50'/>")).allFinite());
+}
+
+TEST(RobotDescription, NegativeDampingIsAWarning) {
+  EXPECT_THAT(warnings(hinge(inertial(), "<dynamics damping='-0.1'/>")),
+              ElementsAre(HasSubstr("URDF:5: joint j: <dynamics>: negative damping")));
+}
+
+// --- names that aren't understood ---
+
+TEST(RobotDescription, MisspeltNamesAreAWarningWithTheNameThatWasMeant) {
+  const std::string offset = inertial("2", "0.1", "<orgin xyz='0.1 0.2 0.3'/>");
+  EXPECT_THAT(warnings(hinge(offset)),
+              ElementsAre("URDF:4: link bob: <orgin> isn't read; did you mean <origin>?"));
+  EXPECT_THAT(warnings(hinge(inertial() + "<inertal/>")),
+              ElementsAre("URDF:4: link bob: <inertal> isn't read; did you mean <inertial>?"));
+  EXPECT_THAT(warnings(hinge(inertial(), "<axes xyz='0 0 1'/>")),
+              ElementsAre("URDF:5: joint j: <axes> isn't read; did you mean <axis>?"));
+  EXPECT_THAT(warnings(hinge(inertial(), "<origin xzy='0 0 1'/>")),
+              ElementsAre("URDF:5: joint j: <origin> xzy isn't read; did you mean xyz?"));
+  EXPECT_THAT(warnings(hinge(inertial(), "<Origin xyz='0 0 1'/>")),
+              ElementsAre("URDF:5: joint j: <Origin> isn't read; did you mean <origin>?"));
+  EXPECT_THAT(warnings(hinge(inertial(), "<dynamics dampng='1'/>")),
+              ElementsAre("URDF:5: joint j: <dynamics> dampng isn't read; did you mean damping?"));
+  EXPECT_THAT(warnings(hinge(inertial(), "<limit effort='1' velocity='1' uper='1'/>")),
+              ElementsAre("URDF:5: joint j: <limit> uper isn't read; did you mean upper?"));
+  EXPECT_THAT(warnings(hinge(inertial(), "<mimick joint='j'/>")),
+              ElementsAre("URDF:5: joint j: <mimick> isn't read; did you mean <mimic>?"));
+  EXPECT_THAT(warnings(robot(link("base", "") + link("bob") + "<lnik name='x'/>\n" +
+                             joint("j", "continuous", "base", "bob", ""))),
+              ElementsAre("URDF:5: robot: <lnik> isn't read; did you mean <link>?"));
+}
+
+TEST(RobotDescription, UnknownNamesAreAWarningOnceEach) {
+  EXPECT_THAT(
+      warnings(hinge("<inertial><com xyz='1 0 0'/><mass value='1'/><inertia ixx='1' ixy='0' "
+                     "ixz='0' iyy='1' iyz='0' izz='1'/></inertial>")),
+      ElementsAre("URDF:4: link bob: <com> isn't read; read in <inertial>: <origin>, "
+                  "<mass>, <inertia>"));
+  EXPECT_THAT(warnings(hinge(inertial(), "<dynamics spring_stiffness='3'/>")),
+              ElementsAre("URDF:5: joint j: <dynamics> spring_stiffness isn't read; read: damping, "
+                          "friction"));
+  const std::string odd = inertial() + "<wheel/><wheel/>";
+  EXPECT_THAT(
+      warnings(robot(link("base", odd) + link("bob", odd) +
+                     joint("j", "continuous", "base", "bob", ""))),
+      ElementsAre("URDF:3: link base: <wheel> isn't read; read in <link>: <inertial> (and 3 "
+                  "more)"));
+  EXPECT_THAT(warnings(hinge(inertial() + "left over -->")),
+              ElementsAre("URDF:4: link bob: text in <link> isn't read"));
+}
+
+TEST(RobotDescription, NotTooManyWarningsAreKept) {
+  std::string many;
+  for (int i = 0; i < 1000; ++i) {
+    many += "<wheel_" + std::to_string(i) + "/>";
+  }
+  const auto texts = warnings(hinge(inertial() + many));
+  EXPECT_THAT(texts, SizeIs(101));
+  EXPECT_EQ(texts.back(), "URDF: 900 more warnings aren't listed");
+}
+
+TEST(RobotDescription, WhatOthersReadIsNoWarning) {
+  const std::string looks =
+      "<visual><geometry><mesh/></geometry><orgin/></visual><collision/><sensor/><drake:x/>";
+  const std::string urdf = robot(
+      link("base", looks) + link("bob", looks + inertial()) +
+      joint("j", "continuous", "base", "bob",
+            "<calibration rising='0'/><safety_controller k_velocity='1'/>"
+            "<limit effort='1' velocity='1' acceleration='2'/><drake:controller_gains p='1'/>") +
+      "<material name='m'/><gazebo><plugin/></gazebo><transmission/><ros2_control/>"
+      "<!-- a comment --><drake:joint/>");
+  EXPECT_THAT(warnings(replaced(urdf, "<robot ", "<robot xmlns:drake='d' xmlns='u' d:x='1' ")),
+              IsEmpty());
+}
+
+TEST(RobotDescription, WhatAFixedJointDoesNotNeedIsNotRead) {
+  const std::string urdf =
+      robot(link("a") + link("b") + link("c") + joint("j", "continuous", "a", "b", "") +
+            joint("weld", "fixed", "b", "c",
+                  "<axis xyz='0 0 0'/><limit/><mimic/><dynamics damping='x'/>"));
+  EXPECT_EQ(urdfError(urdf), "no error");
+  EXPECT_THAT(warnings(urdf), IsEmpty());
+}
+
+TEST(RobotDescription, LeftOverXacroIsAWarning) {
+  const std::string urdf = replaced(hinge(inertial()), "</robot>",
+                                    "<xacro:property name='r' value='2'/>\n<xacro:wheel/></robot>");
+  EXPECT_THAT(warnings(urdf), ElementsAre("URDF:6: robot: <xacro:property> isn't read; expand the "
+                                          "file with xacro first (and 1 more)"));
+  EXPECT_EQ(someTorques(urdf), someTorques(hinge(inertial())));
+}
+
+TEST(RobotDescription, MissingNamesAreFoundAmongTheMisspelt) {
+  EXPECT_THAT(urdfError(hinge("<inertial><mass value='1'/><inertai/></inertial>")),
+              HasSubstr("expected <inertia>, got none; is it misspelt as <inertai>?"));
+  EXPECT_THAT(urdfError(hinge("<inertial><mass vlaue='1'/></inertial>")),
+              HasSubstr("expected attribute 'value', got none; is it misspelt as 'vlaue'?"));
+  EXPECT_THAT(urdfError(robot(link("base") + joint("j", "fixed", "bsae", "base", ""))),
+              HasSubstr("expected a link of the robot, got 'bsae'; did you mean base?"));
+}
+
+TEST(RobotDescription, RepeatedAttributesAreAnError) {
+  EXPECT_THAT(urdfError(replaced(hinge(inertial()), "mass value='2'", "mass value='2' value='3'")),
+              HasSubstr("URDF:4: robot description: expected well-formed XML"));
+}
+
+// --- texts that aren't a URDF, or hostile ones ---
+
+TEST(RobotDescription, TextThatIsNoXmlIsNotQuoted) {
+  for (const std::string secret : {"root:x:0:0:root:/root:/bin/bash\n", "password.xml\nroot:x"}) {
+    EXPECT_THAT(urdfError(secret),
+                AllOf(HasSubstr("a text that doesn't start with '<'"), Not(HasSubstr("root:"))));
+  }
+}
+
+TEST(RobotDescription, NothingMayFollowTheRobot) {
+  const std::string after = arm() + "<robot name='second'/>";
+  EXPECT_THAT(urdfError(after), HasSubstr("expected nothing after </robot>, got <robot>"));
+  EXPECT_THAT(urdfError(arm() + "more"), HasSubstr("expected "));
+  EXPECT_THAT(urdfError(arm() + std::string("\0 <x/>", 6)),
+              HasSubstr("URDF:11: robot description: expected XML in UTF-8, got a byte 0"));
+  EXPECT_EQ(urdfError(arm() + "\n<!-- the end -->\n"), "no error");
+}
+
+TEST(RobotDescription, NamesWithControlCharactersAreAnError) {
+  const std::string red = "&#27;[31m";
+  EXPECT_THAT(urdfError(replaced(arm(), "elbow", "elbow" + red)),
+              HasSubstr("joint: name: expected UTF-8 text without control characters, got "
+                        "'elbow\\x1b[31m'"));
+  EXPECT_THAT(urdfError(replaced(arm(), "'tool'", "'to\nol'")), HasSubstr("got 'to\\nol'"));
+  EXPECT_THAT(urdfError(replaced(arm(), "'arm'", "'\xE4rm'")), HasSubstr("got '\\xe4rm'"));
+  EXPECT_EQ(urdfError(replaced(arm(), "elbow", "\xC3\xA4llbogen")), "no error");
+}
+
+TEST(RobotDescription, MessagesAreShortAndPrintable) {
+  const std::string name = "<b>" + std::string(100000, 'x') + "\x1b[2J";
+  for (const std::string& urdf :
+       {replaced(arm(), "revolute", "&lt;" + std::string(100000, 'x') + "&#27;[2J"),
+        replaced(arm(), "'elbow'", "'" + std::string(100000, 'x') + "' tpye='1'"),
+        replaced(arm(), "parent link='upper'", "parent link='" + std::string(100000, 'x') + "'"),
+        replaced(arm(), "rpy='1 2 3'", "rpy='" + std::string(100000, '\t') + "x'")}) {
+    std::string texts = urdfError(urdf);
+    if (texts == "no error") {
+      texts = joined(warnings(urdf));
+      EXPECT_NE(texts, "");
+    }
+    EXPECT_LT(texts.size(), 3000U);
+    EXPECT_TRUE(isPrintable(texts));
+  }
+}
+
+/// Time of this process [s], which other processes don't lengthen.
+double processorTime() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// A hinge, then `count` links, each welded to the one before; of the given mass each.
+std::string longChain(int count, const std::string& start, const std::string& prefix) {
+  std::string urdf;
+  for (int i = 0; i < count; ++i) {
+    const std::string name = prefix + std::to_string(i);
+    urdf +=
+        "<link name='" + name +
+        "'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' "
+        "izz='1'/></inertial></link>" +
+        joint("weld_" + name, "fixed", i == 0 ? start : prefix + std::to_string(i - 1), name, "");
+  }
+  return urdf;
+}
+
+// Quadratic algorithms took half a minute, recursive ones overflowed the stack.
+TEST(RobotDescription, LongChainsOfFixedJointsAreReadInLinearTime) {
+  constexpr int kCount = 20000;
+  constexpr double kSeconds = 10;  // measured: below 1
+  const std::string urdf =
+      robot(link("base", "") + link("bob") + joint("j", "continuous", "base", "bob", "") +
+            longChain(kCount, "bob", "a") + longChain(kCount, "bob", "b"));
+  const double before = processorTime();
+  const Chain chain = chainFromUrdf(urdf);
+  EXPECT_LT(processorTime() - before, kSeconds);
+  EXPECT_NEAR(chain.links()[0].mass, 2 + 2 * kCount, 1e-6);
+}
+
+TEST(RobotDescription, LongChainsOfMimicJointsAreReadInLinearTime) {
+  constexpr int kCount = 20000;
+  constexpr double kSeconds = 10;
+  std::string fingers;
+  for (int i = 0; i < kCount; ++i) {
+    const std::string name = std::to_string(i);
+    fingers += link("finger" + name) +
+               joint("follower" + name, "continuous", "bob", "finger" + name,
+                     i == 0 ? "" : "<mimic joint='follower" + std::to_string(i - 1) + "'/>");
+  }
+  UrdfOptions options;
+  options.tip = "bob";
+  const std::string urdf =
+      robot(link("base", "") + link("bob") + joint("j", "continuous", "base", "bob", "") + fingers);
+  const double before = processorTime();
+  EXPECT_NEAR(chainFromUrdf(urdf, options).links()[0].mass, 2 + 2 * kCount, 1e-6);
+  EXPECT_LT(processorTime() - before, kSeconds);
+}
+
+TEST(RobotDescription, DeeplyNestedElementsAreAnError) {
+  std::string nested;
+  for (int i = 0; i < 100000; ++i) {
+    nested += "<a>";
+  }
+  EXPECT_THAT(urdfError("<robot name='r'>" + nested), HasSubstr("expected well-formed XML"));
+}
+
+}  // namespace
+}  // namespace chain_dynamics
