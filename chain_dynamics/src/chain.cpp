@@ -137,6 +137,9 @@ Chain::Chain(std::string name, std::vector<Joint> joints, std::vector<LinkParame
       gravity_(gravity),
       tip_(tip) {
   const std::string where = "chain " + name_;
+  if (!isPrintable(name_)) {
+    throw ModelError(where, "name", "UTF-8 text without control characters", "'" + name_ + "'", "");
+  }
   checkSizes(where, joints_.size(), links_.size());
   checkNames(where, joints_);
   checkGravity(where, gravity_);
@@ -151,7 +154,7 @@ Chain::Chain(std::string name, std::vector<Joint> joints, std::vector<LinkParame
 
     const std::string defect = inertiaDefect(links_[i]);
     if (!defect.empty()) {
-      warnings_.push_back(link + ": " + defect);
+      warnings_.push_back(printable(link + ": " + defect));
     }
   }
 }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -439,7 +438,10 @@ Model modelFromFile(const std::string& path) {
     throw ModelError(path, "model file", "a file that can be read", file ? "a directory" : "none",
                      "correct the path, or its permissions");
   }
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  // a device may have no end
+  std::string text(YamlValue::kLongestText + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
   return modelFromYaml(text, path);
 }
 

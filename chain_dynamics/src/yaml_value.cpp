@@ -2,9 +2,12 @@
 
 #include "yaml_value.hpp"
 
+#include <yaml-cpp/eventhandler.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 #include "number.hpp"
 
@@ -12,24 +15,71 @@ namespace chain_dynamics {
 inline namespace v2 {
 namespace {
 
+const char* const kWholeFile = "file";
+
 // yaml-cpp counts lines from zero; a node that doesn't exist has none.
 std::string place(const std::string& file, const YAML::Mark& mark) {
   return mark.is_null() ? file : file + ":" + std::to_string(mark.line + 1);
 }
 
+/// Where documents start, and nothing of what they hold.
+class DocumentStarts : public YAML::EventHandler {
+ public:
+  const std::vector<YAML::Mark>& marks() const { return marks_; }
+
+  void OnDocumentStart(const YAML::Mark& mark) override { marks_.push_back(mark); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnScalar(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                const std::string& /*value*/) override {}
+  void OnSequenceStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/,
+                       YAML::anchor_t /*anchor*/, YAML::EmitterStyle::value /*style*/) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                  YAML::EmitterStyle::value /*style*/) override {}
+  void OnMapEnd() override {}
+
+ private:
+  std::vector<YAML::Mark> marks_;
+};
+
+/// Of a text that begins with a comma, or with a quoted table heading, yaml-cpp makes empty
+/// documents without end, and never advances; of several documents it loads the first.
+void checkOneDocument(const std::string& text, const std::string& file) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentStarts starts;
+  while (parser.HandleNextDocument(starts)) {
+    const std::vector<YAML::Mark>& marks = starts.marks();
+    if (marks.size() > 1 && marks.back().pos == marks[marks.size() - 2].pos) {
+      throw ModelError(place(file, marks.back()), kWholeFile, "one YAML document",
+                       "a text that isn't YAML from here on", "is it a table?");
+    }
+  }
+  if (starts.marks().size() > 1) {
+    throw ModelError(file, kWholeFile, "one YAML document", std::to_string(starts.marks().size()),
+                     "");
+  }
+}
+
 }  // namespace
 
 YamlValue YamlValue::ofText(const std::string& text, const std::string& file) {
+  if (text.size() > kLongestText) {
+    throw ModelError(file, kWholeFile, "at most 16 MiB", "more", "is it a model file?");
+  }
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() != 1 || documents[0].IsNull()) {
-      throw ModelError(file, "file", "one YAML document",
-                       documents.size() > 1 ? std::to_string(documents.size()) : "an empty file",
-                       "");
+    checkOneDocument(text, file);
+    const YAML::Node document = YAML::Load(text);
+    if (document.IsNull()) {
+      throw ModelError(file, kWholeFile, "one YAML document", "an empty file", "");
     }
-    return {documents[0], file, "file"};
+    return {document, file, kWholeFile};
   } catch (const YAML::Exception& error) {
-    throw ModelError(place(file, error.mark), "file", "well-formed YAML", error.msg,
+    const bool deep = error.msg == YAML::ErrorMsg::BAD_FILE;
+    throw ModelError(place(file, error.mark), kWholeFile, "well-formed YAML",
+                     deep ? "too many lists or maps inside of each other" : error.msg,
                      "look at the lines above, too");
   }
 }
@@ -43,7 +93,8 @@ ModelError YamlValue::error(const std::string& expected, const std::string& reme
 std::string YamlValue::description() const {
   switch (node_.Type()) {
     case YAML::NodeType::Scalar:
-      return "'" + node_.Scalar() + "'";
+      // a text that isn't a model may be anyone's secret
+      return what_ == kWholeFile ? "a text" : "'" + node_.Scalar() + "'";
     case YAML::NodeType::Sequence:
       return "a list of " + std::to_string(node_.size());
     case YAML::NodeType::Map:
@@ -61,9 +112,12 @@ std::string YamlValue::text() const {
 }
 
 double YamlValue::number() const {
-  constexpr const char* kQuoted = "!";  // yaml-cpp's tag of '1.5' in quotation marks
-  const auto value = node_.IsScalar() && node_.Tag() != kQuoted ? finiteNumber(node_.Scalar())
-                                                                : std::optional<double>();
+  // "?": written without quotation marks and without a tag
+  const std::string& tag = node_.Tag();
+  const bool plain = tag.empty() || tag == "?" || tag == "tag:yaml.org,2002:float" ||
+                     tag == "tag:yaml.org,2002:int";
+  const auto value =
+      node_.IsScalar() && plain ? finiteNumber(node_.Scalar()) : std::optional<double>();
   if (!value) {
     throw error("a finite number");
   }

@@ -7,7 +7,7 @@
 ///     const double mass = joint.required("mass").number();   // arm.yaml:7: mass: expected ...
 ///     joint.rejectOtherKeys();
 ///
-/// yaml-cpp takes a repeated key silently, knows no unknown one, and reads .nan as a number.
+/// yaml-cpp takes repeated and unknown keys silently, and reads .nan as a number.
 
 #pragma once
 
@@ -28,6 +28,9 @@ class YamlValue {
  public:
   YamlValue(const YAML::Node& node, std::string file, std::string what)
       : node_(node), file_(std::move(file)), what_(std::move(what)) {}
+
+  /// Bytes of a text; a large model has 100,000.
+  static constexpr std::size_t kLongestText = 16U << 20U;
 
   /// The one document of a text.
   static YamlValue ofText(const std::string& text, const std::string& file);

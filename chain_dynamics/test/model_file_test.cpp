@@ -445,6 +445,59 @@ TEST(ModelFileError, TextThatIsNotOneYamlDocument) {
             "arm.yaml:1: file: expected a map of keys and values, got a list of 2");
 }
 
+// yaml-cpp makes empty documents of these, without end.
+TEST(ModelFileError, TablesAndOtherTextsAreNotReadForEver) {
+  for (const std::string table : {",a\n", ",", "\"time\",\"q\"\n1,2\n", "'time','q'\n",
+                                  "# heading\n\"time\", 1\n", "--- ,\n"}) {
+    EXPECT_THAT(fileError(table), AllOf(StartsWith("arm.yaml:"), HasSubstr("expected one YAML "
+                                                                           "document, got a text "
+                                                                           "that isn't YAML")))
+        << table;
+  }
+  EXPECT_THAT(fileError("# heading\n\"time\", 1\n"), StartsWith("arm.yaml:2: file: "));
+}
+
+TEST(ModelFileError, HostileYaml) {
+  for (const std::string part : {"[", "{", "- ", "? ", "a: [", "[a: ", "{a: "}) {
+    std::string nested;
+    for (int i = 0; i < 100000; ++i) {
+      nested += part;
+    }
+    EXPECT_THAT(fileError(nested),
+                AllOf(StartsWith("arm.yaml:"), HasSubstr("inside of each other")))
+        << part;
+  }
+  std::string bomb = "a0: &a0 [x]\n";
+  for (int i = 1; i < 100; ++i) {
+    const std::string last = "*a" + std::to_string(i - 1);
+    bomb +=
+        "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [" + last + ", " + last + "]\n";
+  }
+  EXPECT_THAT(fileError(bomb), HasSubstr("schema: expected this key, got none"));
+  EXPECT_THAT(fileError("&a [*a]"), HasSubstr("expected a map of keys and values"));
+  EXPECT_THAT(fileError("schema: 1\nname: &n {name: *n}\n"), HasSubstr("name: expected a text"));
+}
+
+TEST(ModelFileError, FileWithoutEndIsNotReadToItsEnd) {
+  EXPECT_THAT(errorOf([] { modelFromFile("/dev/zero"); }),
+              HasSubstr("/dev/zero: file: expected at most 16 MiB, got more"));
+}
+
+TEST(ModelFileError, TextThatIsNoModelIsNotQuoted) {
+  EXPECT_EQ(fileError("root:x:0:0:root:/root:/bin/bash\ndaemon:x:1:1\n"),
+            "arm.yaml:1: file: expected a map of keys and values, got a text");
+}
+
+TEST(ModelFileError, NamesWithControlCharacters) {
+  EXPECT_THAT(fileError(replaced(documentedFile(), "- name: cart", "- name: \"cart\\e[31m\"")),
+              HasSubstr("expected UTF-8 text without control characters, got 'cart\\x1b[31m'"));
+  EXPECT_THAT(
+      fileError(replaced(file("modified_dh", joint("one", withLink("dh: {a: 0, alpha: 0, d: "
+                                                                   "0, offset: 0}\n"))),
+                         "name: arm", "name: \"a\\rm\"")),
+      HasSubstr("name: expected UTF-8 text without control characters, got 'a\\rm'"));
+}
+
 // YAML cut off between two lines is YAML still: what is missing must be noticed, or was optional.
 TEST(ModelFileError, TruncatedFileIsNeverReadAsAnotherRobot) {
   const std::string whole = documentedFile();
@@ -517,8 +570,8 @@ TEST(ModelFileError, WrongLength) {
 }
 
 TEST(ModelFileError, NumbersMustBeFiniteNumbers) {
-  for (const std::string bad :
-       {".nan", ".inf", "-.inf", "nan", "1e999", "heavy", "'3'", "1,5", "~"}) {
+  for (const std::string bad : {".nan", ".inf", "-.inf", "nan", "1e999", "heavy", "'3'", "1,5", "~",
+                                "1:30", "-9_81", "0x10", "0o17", "1e400", "!!str 3", "!mass 3"}) {
     EXPECT_THAT(
         fileError(replaced(documentedFile(), "rotor_inertia: 0.05", "rotor_inertia: " + bad)),
         HasSubstr("joint hinge: rotor_inertia: expected a finite number, got"))
