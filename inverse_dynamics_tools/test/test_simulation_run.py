@@ -260,6 +260,8 @@ def test_mistakes_in_the_run_configuration_are_pointed_at(
         ({"joint_friction": "some"}, "joint friction: expected a part of the effort limit"),
         ({"joint_friction": 1.5}, "joint friction: expected a part of the effort limit"),
         ({"duration": 0.001}, "duration: expected at least two periods"),
+        ({"duration": 1e300}, "duration: expected at most 80000 s at 125 Hz, got 1e+300 s"),
+        ({"duration": 1e9}, "duration: expected at most 80000 s at 125 Hz, got 1e+09 s"),
         (
             {"payload": Payload(20.0, (0.5, 0, 0))},
             "trajectory: joint swing: effort at 0.00 s: expected -100 to",

@@ -103,6 +103,12 @@ def test_the_seed_decides() -> None:
         ({"repeat": np.nan}, "repeat: expected a probability"),
         ({"jitter": -1.0}, "jitter: expected a time in s that isn't negative, got -1"),
         ({"epoch": 3e9}, "start stamp: expected at most 2e+09 s"),
+        ({"jitter": 1e300}, "jitter: expected at most 60 s, got 1e+300"),
+        ({"noise": Resolution(0, 1e300, 0)}, "noise: velocity: expected at most 1e+06, got 1e+300"),
+        (
+            {"quantisation": Resolution(0, 0, 1e-320)},
+            "quantisation: effort: expected 0 or at least 1",
+        ),
         ({"noise": Resolution(-1, 0, 0)}, "noise: position: expected a number that isn't negative"),
         ({"quantisation": Resolution(0, 0, np.inf)}, "quantisation: effort: expected a number"),
     ],

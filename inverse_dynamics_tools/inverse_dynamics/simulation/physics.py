@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory
 
+MOST_SAMPLES = 10_000_000  # of a simulation: some gigabytes
 RATES = (125, 500, 1000)
 """Update rates of the controller [Hz]."""
 
@@ -82,6 +83,10 @@ def follow(
 ) -> Motion:
     """Motion of a robot that starts on a trajectory and follows it for `duration` seconds."""
     check_rate(rate)
+    if not duration * rate <= MOST_SAMPLES:
+        raise SimulationError(
+            f"duration: expected at most {MOST_SAMPLES // rate} s at {rate} Hz, got {duration:g} s"
+        )
     ticks = int(np.floor(duration * rate + 1e-9))
     if ticks < 2:
         raise SimulationError(

@@ -26,6 +26,8 @@ EPOCH = 1_700_000_000.0
 """Stamp of the start of a simulation [s], so that stamps look like those of a real clock."""
 
 _LATEST_EPOCH = 2.0e9  # s
+_MOST_JITTER = 60.0  # s
+_FINEST, _COARSEST = 1e-12, 1e6  # of noise and steps
 
 
 @dataclass(frozen=True)
@@ -80,12 +82,21 @@ class Sensors:
             raise SimulationError(
                 f"start stamp: expected at most {_LATEST_EPOCH:g} s (a ROS stamp has 32 bits), got {self.epoch:g}"
             )
+        if self.jitter > _MOST_JITTER:
+            raise SimulationError(
+                f"jitter: expected at most {_MOST_JITTER:g} s, got {self.jitter:g}"
+            )
         for name, three in (("noise", self.noise), ("quantisation", self.quantisation)):
             for field, value in vars(three).items() if three else ():
                 if not (np.isfinite(value) and value >= 0):
-                    raise SimulationError(
-                        f"{name}: {field}: expected a number that isn't negative, got {value:g}"
-                    )
+                    expected = "a number that isn't negative"
+                elif value > _COARSEST:
+                    expected = f"at most {_COARSEST:g}"
+                elif 0 < value < _FINEST:
+                    expected = f"0 or at least {_FINEST:g}"
+                else:
+                    continue
+                raise SimulationError(f"{name}: {field}: expected {expected}, got {value:g}")
 
     def record(self, motion: Motion, seed: int) -> Recorded:
         """Messages of a motion; the same seed gives the same ones."""
