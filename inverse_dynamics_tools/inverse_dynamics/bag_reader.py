@@ -6,21 +6,25 @@ from __future__ import annotations
 import os
 from contextlib import closing, suppress
 from itertools import islice
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
+from urllib.parse import quote
 
 import numpy as np
 
 from inverse_dynamics.errors import BagError
+from inverse_dynamics.unpacking import UnpackError, check_packed_file, limit_chunks, unpacked
 from inverse_dynamics.wording import counted, harmless, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
     from rosbags.interfaces import Connection
     from rosbags.rosbag2 import Reader
 
     from inverse_dynamics.joint_log import Integers, Storage
+
+    _Message = tuple[Connection, int, bytes]
 
 _BLOCK = 4096  # messages read together
 
@@ -33,22 +37,38 @@ class TopicSummary(NamedTuple):
     message_count: int
 
 
+class UriPath(type(Path())):  # type: ignore[misc]
+    """A path that rosbags puts into a URI as it is: in a name, `?`, `#` and `%` mean themselves."""
+
+    def __format__(self, _: str) -> str:
+        return quote(os.fsencode(self))
+
+
 class BagReader:
     """A recording being read: finds it, opens it, and turns what can go wrong into BagError."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
         self._reader: Reader
+        self._packed = False
 
     def __enter__(self) -> BagReader:
         _check_there(self._path)
         from rosbags.rosbag2 import Reader
 
+        limit_chunks()
         try:
-            self._reader = Reader(self._path)
+            for file in self._path.iterdir() if self._path.is_dir() else ():
+                check_packed_file(file)
+            self._reader = Reader(UriPath(self._path))
             self._reader.open()
         except Exception as error:  # readers of damaged files raise more than they document
             raise self._unreadable(error) from error
+        # Packed messages are unpacked here, within limits.
+        about = self._reader.storage.metadata
+        self._packed = about.compression_mode == "message"
+        if self._packed:
+            self._reader.storage.metadata = about._replace(compression_mode=None)
         try:
             for connection in self._reader.connections:
                 self._check(connection)
@@ -130,7 +150,7 @@ class BagReader:
 
     def messages(self) -> Iterator[tuple[Connection, int, bytes]]:
         """All messages as they are: connection, time of reception [ns], serialised message."""
-        yield from self._reader.messages()
+        yield from self._unpacked(self._reader.messages())
 
     def blocks(self, connections: list[Connection]) -> Iterator[tuple[list[bytes], Integers]]:
         """Serialised messages and their times of reception [ns], thousands at a time.
@@ -156,7 +176,7 @@ class BagReader:
             )
 
     def _blocks(self, connections: list[Connection]) -> Iterator[tuple[list[bytes], Integers]]:
-        messages = self._reader.messages(connections=connections)
+        messages = self._unpacked(self._reader.messages(connections=connections))
         while True:
             try:
                 block = list(islice(messages, _BLOCK))
@@ -167,7 +187,14 @@ class BagReader:
                 return
             yield [m[2] for m in block], received
 
+    def _unpacked(self, messages: Iterator[_Message]) -> Iterator[_Message]:
+        if not self._packed:
+            return messages
+        return ((connection, received, unpacked(raw)) for connection, received, raw in messages)
+
     def _unreadable(self, error: Exception) -> BagError:
+        if isinstance(error, UnpackError):
+            return BagError(f"{self._path}: {error}")
         return BagError(
             f"{self._path}: can't be read as a rosbag2 recording ({error_text(error)}): expected "
             "sqlite3 or MCAP storage; it is damaged, cut off or of another kind; copy or record it "

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics._core import JointLogBuilder
-from inverse_dynamics.bag_reader import BagReader, TopicSummary, error_text
+from inverse_dynamics.bag_reader import BagReader, TopicSummary, UriPath, error_text
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.joint_log import CLOCKS, JointLog, no_progress
 from inverse_dynamics.joint_state_cdr import MESSAGE_TYPE, Decoder, encode
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
+    from rosbags.rosbag2 import Writer
 
     from inverse_dynamics._core import RecordedJoints
     from inverse_dynamics.joint_log import Clock, Progress, Storage
@@ -112,19 +113,15 @@ def write_joint_logs(
 
     Raises BagError if the path exists or can't be written.
     """
-    from rosbags.rosbag2 import StoragePlugin, Writer, WriterError
     from rosbags.typesys import Stores, get_typestore
 
-    plugins = {"sqlite3": StoragePlugin.SQLITE3, "mcap": StoragePlugin.MCAP}
-    if storage not in plugins:
-        raise BagError(f"storage: expected one of {', '.join(plugins)}, got '{storage}'")
+    if storage not in ("sqlite3", "mcap"):
+        raise BagError(f"storage: expected one of sqlite3, mcap, got '{storage}'")
     typestore = get_typestore(Stores.ROS2_HUMBLE)
     total = sum(len(log) for log in topics.values())
     done = 0
     try:
-        with Writer(
-            Path(path), version=Writer.VERSION_LATEST, storage_plugin=plugins[storage]
-        ) as writer:
+        with new_recording(Path(path), storage) as writer:
             connections = [
                 writer.add_connection(topic, MESSAGE_TYPE, typestore=typestore) for topic in topics
             ]
@@ -138,8 +135,26 @@ def write_joint_logs(
                             writer.write(connection, stamps[row], table[row].tobytes())
                             done += 1
                 progress("writing the bag", done, total)
-    except (WriterError, OSError) as error:
-        raise BagError(f"{path}: can't be written ({error_text(error)})") from error
+    except Exception as error:  # sqlite3 and rosbags raise more than they document
+        raise unwritable(path, error) from error
+
+
+def new_recording(path: Path, storage: Storage) -> Writer:
+    """Writer of a new recording, in the current format of rosbag2."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+
+    plugin = StoragePlugin.MCAP if storage == "mcap" else StoragePlugin.SQLITE3
+    writer = Writer(path, version=Writer.VERSION_LATEST, storage_plugin=plugin)
+    writer.path = UriPath(path)
+    return writer
+
+
+def unwritable(path: Path | str, error: Exception) -> BagError:
+    """What is told where a recording can't be written: mostly, the disk is full."""
+    return BagError(
+        f"{path}: can't be written ({error_text(error)}); free some space, or name another output "
+        "with --out"
+    )
 
 
 def _encoded(log: JointLog, rows: slice) -> tuple[list[int], NDArray[np.uint8]]:

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Compressed recordings: read, but not those of a few kilobytes that would fill memory or disk."""
+
+import subprocess
+import sys
+
+import pytest
+from conftest import JOINT_STATE, STORE, joint_state
+from lz4.frame import LZ4FrameCompressor
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+from rosbags.rosbag2.writer import zstd
+
+from inverse_dynamics import read_joint_log
+from inverse_dynamics.errors import BagError
+from inverse_dynamics.unpacking import most_unpacked, unpacked
+
+HUGE = 1_500_000_000
+KINDS = ["message sqlite3", "message mcap", "file sqlite3", "file mcap", "zstd chunk", "lz4 chunk"]
+
+
+def frame(compressor, size, begin=b""):
+    """What unpacks to that many zeros, made without having them."""
+    block = bytes(2**20)
+    parts = [begin, *(compressor.compress(block) for _ in range(size // len(block)))]
+    return b"".join([*parts, compressor.flush()])
+
+
+def bomb(kind):
+    if kind.startswith("lz4"):
+        compressor = LZ4FrameCompressor()
+        return frame(compressor, HUGE, compressor.begin())
+    return frame(zstd.ZstdCompressor(), HUGE)
+
+
+def packed_recording(path, kind, packed=None):
+    """Ten compressed joint states; packed: instead of what their compression gives."""
+    storage = StoragePlugin.SQLITE3 if "sqlite3" in kind else StoragePlugin.MCAP
+    writer = Writer(path, version=9, storage_plugin=storage)
+    mode = CompressionMode[kind.partition(" ")[0].upper()] if "chunk" not in kind else None
+    writer.set_compression(mode or CompressionMode.STORAGE, CompressionFormat.ZSTD)
+    with writer:
+        if kind == "lz4 chunk":
+            writer.storage.compression = "lz4"
+            writer.storage.compressor = lambda raw: frame_of(LZ4FrameCompressor(), raw)
+        if packed and mode is None:
+            writer.storage.compressor = lambda _: packed
+        connection = writer.add_connection("/joint_states", JOINT_STATE, typestore=STORE)
+        for k in range(10):
+            message = joint_state(["a"], [0.1 * k], [1.0], [float(k)], (k + 1) * 10**7)
+            raw = STORE.serialize_cdr(message, JOINT_STATE)
+            if packed and mode is CompressionMode.MESSAGE:
+                writer.compression_mode = CompressionMode.NONE
+                raw = packed
+            writer.write(connection, (k + 1) * 10**7, raw)
+        if mode is not None:
+            writer.compression_mode = mode
+    if packed and mode is CompressionMode.FILE:
+        (file,) = path.glob("*.zstd")
+        file.write_bytes(packed)
+    return path
+
+
+def frame_of(compressor, raw):
+    return compressor.begin() + compressor.compress(raw) + compressor.flush()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_compressed_recordings_are_read(tmp_path, kind):
+    log = read_joint_log(packed_recording(tmp_path / "bag", kind))
+    assert log.effort[:, 0].tolist() == list(range(10))
+
+
+READ = """
+import resource, sys
+from inverse_dynamics import read_joint_log
+from inverse_dynamics.errors import BagError
+try:
+    read_joint_log(sys.argv[1])
+except BagError as error:
+    print(error)
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, "kB")
+"""
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_bomb_is_refused_before_it_fills_memory_or_disk(tmp_path, kind):
+    packed = bomb(kind)
+    path = packed_recording(tmp_path / "bag", kind, packed)
+    finished = subprocess.run(
+        [sys.executable, "-c", READ, str(path)], capture_output=True, text=True, check=True
+    )
+    text, memory = finished.stdout.splitlines()
+    most = max(256, round(50 * len(packed) / 1e6))
+    assert f"{path}: " in text
+    assert f"of {len(packed)} bytes unpacks to more than {most} MB" in text
+    assert "if you trust it, raise the limit with IDS_UNPACK_LIMIT_MB" in text
+    assert int(memory.split()[0]) < 150_000 + 2.1 * most * 1000
+
+
+def test_what_follows_a_small_frame_counts_too():
+    small = zstd.compress(b"small")
+    assert unpacked(small + small) == b"smallsmall"
+    with pytest.raises(BagError, match="unpacks to more than 256 MB"):
+        unpacked(small + frame(zstd.ZstdCompressor(), HUGE))
+
+
+def test_the_limit_can_be_set(monkeypatch):
+    packed = zstd.compress(bytes(2_000_000))
+    assert len(unpacked(packed)) == 2_000_000
+    monkeypatch.setenv("IDS_UNPACK_LIMIT_MB", "1")
+    with pytest.raises(BagError, match="unpacks to more than 1 MB"):
+        unpacked(packed)
+    assert most_unpacked(10**6) == 50 * 10**6
+    for text in ("-1", "1.5", "many", "٣"):
+        monkeypatch.setenv("IDS_UNPACK_LIMIT_MB", text)
+        with pytest.raises(BagError, match="IDS_UNPACK_LIMIT_MB: expected a whole number"):
+            most_unpacked(1)
