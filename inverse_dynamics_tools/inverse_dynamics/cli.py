@@ -2,8 +2,9 @@
 """The command `ids`: verbs, errors, exit codes.
 
 A verb is a module of inverse_dynamics.verbs with `add_parser(subparsers)` and `run(arguments)`; it
-imports what is heavy inside `run`. Exit code 0: done; 2: a mistake of the user, said on stderr
-(without a verb: the help).
+imports what is heavy inside `run`. Exit code 0: done; 2: something the user can put right, named on
+stderr (without a verb: the help); 1: an unexpected error, with a report in a file; 128 + n: ended by
+signal n (141: the reader of the output has gone).
 """
 
 from __future__ import annotations
@@ -11,15 +12,20 @@ from __future__ import annotations
 import argparse
 import os
 import re
+import signal
 import sys
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from inverse_dynamics.crash import crash_report
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.wording import did_you_mean
+from inverse_dynamics.wording import message as _message
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
+    from types import FrameType
     from typing import NoReturn
 
 VERBS = (
@@ -44,6 +50,9 @@ start here:
   ids simulate --robot ur10_simulated --out BAG  record a simulated one
   ids evaluate RECORDING --robot ur10_real       computed against measured torques: table and plots
   ids VERB --help                                more on a verb, with examples
+
+An output is written whole or not at all, whatever happens. Exit status: 0 done, 2 something to put
+right, 1 an unexpected error, 128 + N ended by signal N.
 """
 
 # A list of numbers that begins with a minus looks like an option to argparse.
@@ -69,7 +78,8 @@ class _Parser(argparse.ArgumentParser):
         if wrong := _CHOICE.search(message):
             hint = did_you_mean(wrong[1], re.findall(r"[\w-]+", wrong[2]))
             message += hint and f"; {hint}"
-        self.exit(2, f"{self.prog}: error: {message}; see `{self.prog} --help`\n")
+        text = _message(f"{self.prog}: error: {message}; see `{self.prog} --help`")
+        self.exit(2, f"{text}\n")
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -90,25 +100,101 @@ def make_parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command line; give its exit code."""
-    given = _with_numbers_joined(list(sys.argv[1:] if arguments is None else arguments))
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    _write_any_character()
+    try:
+        with _stopped_by_signals():
+            return _run(given)
+    except _Stopped as stop:
+        _say(f"{stop}; {_outcome()}")
+        return 128 + stop.number
+    except KeyboardInterrupt:
+        _say(f"interrupted; {_outcome()}")
+        return 128 + signal.SIGINT
+    except BrokenPipeError:  # the reader of our output, `head` for one, has enough
+        _drop_output()
+        return 128 + signal.SIGPIPE
+    except Exception as error:
+        _say(f"error: {crash_report(error, given)}; {_outcome()}")
+        return 1
+
+
+def _run(given: list[str]) -> int:
+    from inverse_dynamics.files import start_noting_outputs, written_before
+
+    start_noting_outputs()
     parser = make_parser()
     if not given:
         parser.print_help(sys.stderr)
         return 2
-    options = parser.parse_args(given)
+    options = parser.parse_args(_with_numbers_joined(given))
     try:
         options.run(options)
-        sys.stdout.flush()
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        raise
     except UserError as error:
-        print(f"ids: error: {error}", file=sys.stderr)
+        _say("; ".join(filter(None, (f"error: {error}", written_before()))))
         return 2
-    except KeyboardInterrupt:
-        print("ids: interrupted; nothing was written", file=sys.stderr)
-        return 130
-    except BrokenPipeError:  # the reader of our output, `head` for one, has enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 141
+    except OSError as error:
+        place = error.filename or "a file, or the standard output"
+        _say(f"error: {place}: {error.strerror or error}; {_outcome()}")
+        _drop_output()
+        return 2
     return 0
+
+
+class _Stopped(BaseException):
+    """A signal that asks the program to end. Not an Exception: nobody may take it for a fault."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(f"ended by {signal.Signals(number).name}")
+        self.number = number
+
+
+@contextmanager
+def _stopped_by_signals() -> Iterator[None]:
+    """SIGTERM and SIGHUP end the program as Ctrl-C does: nothing half-written is left."""
+
+    def stop(number: int, _: FrameType | None) -> None:
+        raise _Stopped(number)
+
+    before = {}
+    try:
+        with suppress(ValueError):  # in another thread than the main one
+            for number in (signal.SIGTERM, signal.SIGHUP):
+                if signal.getsignal(number) == signal.SIG_DFL:  # nohup ignores SIGHUP
+                    before[number] = signal.signal(number, stop)
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _outcome() -> str:
+    from inverse_dynamics.files import outcome
+
+    return outcome()
+
+
+def _say(text: str) -> None:
+    """A message to the user, on stderr."""
+    with suppress(OSError):
+        print(_message(f"ids: {text}"), file=sys.stderr, flush=True)
+
+
+def _write_any_character() -> None:
+    """A terminal without a character gets its escape, instead of this program an error."""
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(AttributeError, OSError):  # closed, or somebody's own
+            stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
+
+
+def _drop_output() -> None:
+    """What is still to be printed goes nowhere: Python would fail again at its end."""
+    with suppress(AttributeError, OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _with_numbers_joined(arguments: list[str]) -> list[str]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.files import written_whole
+from inverse_dynamics.files import Contents, write_text, written_whole
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from inverse_dynamics.comparison import Comparison
 
 MARK = "comparison.json"
+CONTENTS = Contents(
+    MARK, (MARK, "comparison.png", "comparison.svg", "comparison.pdf", "report.html")
+)
 
 
 def write_comparison(
@@ -31,9 +34,10 @@ def write_comparison(
 
     first = comparison.evaluations[0]
     title = title or f"{first.bag.name}: {' against '.join(comparison.labels)}"
-    with written_whole(directory, overwrite=overwrite, mark=MARK) as target:
+    inputs = [path for e in comparison.evaluations for path in (e.bag, *e.robot.files)]
+    with written_whole(directory, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as target:
         text = json.dumps(_figures(comparison), indent=2, allow_nan=False, ensure_ascii=False)
-        (target / MARK).write_text(text + "\n", encoding="utf-8")
+        write_text(target / MARK, text + "\n")
         for suffix in PLOT_FORMATS:
             save_comparison_figure(comparison, target / f"comparison.{suffix}")
         runs = [

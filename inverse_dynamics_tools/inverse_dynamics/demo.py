@@ -25,7 +25,7 @@ from inverse_dynamics.comparison import compare
 from inverse_dynamics.descriptions import read_description
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation import evaluate
-from inverse_dynamics.files import written_whole
+from inverse_dynamics.files import Contents, write_text, written_whole
 from inverse_dynamics.joint_log import no_progress
 from inverse_dynamics.public_recordings import data_directory
 from inverse_dynamics.robots import load_robot
@@ -111,7 +111,9 @@ def run_demo(
     """
     out = Path(out)
     real = _recordings_in(recordings)
-    with written_whole(out, overwrite=overwrite, mark=MARK) as target:
+    with written_whole(
+        out, overwrite=overwrite, contents=_contents(), inputs=real.values()
+    ) as target:
         work = _Work(target, out, say, progress)
         for name in SIMULATED:
             say(f"simulating {TITLES[name].partition(',')[0]}, computing its torques")
@@ -135,6 +137,23 @@ def run_demo(
         work.write_page(comparison)
     videos = tuple(out / file.name for file in work.videos)
     return Demo(out, work.evaluations, comparison, videos, tuple(work.notes))
+
+
+def _contents() -> Contents:
+    """What a demonstration may have written."""
+    from inverse_dynamics import comparison_results, results
+    from inverse_dynamics.simulation import writer
+
+    parts = {"comparison": comparison_results.CONTENTS, "ur10_real_urdf": results.CONTENTS}
+    parts |= dict.fromkeys((*SIMULATED, *REAL), results.CONTENTS)
+    parts |= {f"{name}_bag": writer.CONTENTS for name in SIMULATED}
+    files = (
+        f"{directory}/{file.replace('{name}', directory)}"
+        for directory, contents in parts.items()
+        for file in (*contents.files, *contents.added)
+    )
+    videos = (f"{name}.gif" for name in (*SIMULATED, *REAL))
+    return Contents(MARK, (MARK, "report.html", *videos, *files))
 
 
 def _recordings_in(directory: Path | None) -> dict[str, Path]:
@@ -231,7 +250,7 @@ class _Work:
             "notes": self.notes,
         }
         text = json.dumps(summary, indent=2, allow_nan=False, ensure_ascii=False)
-        (self.target / MARK).write_text(text + "\n", encoding="utf-8")
+        write_text(self.target / MARK, text + "\n")
 
 
 def _match(run: SimulatedRun, evaluation: Evaluation) -> str:

@@ -25,6 +25,7 @@ from inverse_dynamics.accelerations import MASKS
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.files import check_output_file, file_written_whole
 from inverse_dynamics.joint_log import no_progress
+from inverse_dynamics.wording import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -120,7 +121,7 @@ def check_pyarrow() -> None:
 
 
 def _metadata(**texts: str) -> dict[str, str]:
-    return {key: text for key, text in texts.items() if text}
+    return {key: printable(text) for key, text in texts.items() if text}
 
 
 @contextmanager

@@ -11,13 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.bag_reader import BagReader, error_text
+from inverse_dynamics.bag_reader import BagReader
+from inverse_dynamics.bags import new_recording, unwritable
 from inverse_dynamics.csv_table import CsvTable, is_csv
 from inverse_dynamics.errors import BagError, OutputError
 from inverse_dynamics.files import (
+    Contents,
     check_output_directory,
     check_output_file,
     move_up,
+    write_text,
     write_text_whole,
     written_whole,
 )
@@ -32,23 +35,26 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.feed_forward import TrajectoryTorques
     from inverse_dynamics.joint_log import Floats, Progress
+    from inverse_dynamics.robots import Robot
 
 
 MARK = "torques.json"
+CONTENTS = Contents(MARK, (MARK, "metadata.yaml", "{name}.db3*", "{name}.mcap"))
 
 _SELDOM = 1000  # messages between two words on the progress
 
 
-def check_output(path: Path, out: Path, *, overwrite: bool = False) -> None:
+def check_output(path: Path, out: Path, robot: Robot, *, overwrite: bool = False) -> None:
     """Raise OutputError unless the copy of a file `path` may be made at `out`."""
+    inputs = (path, *robot.files)
     if is_csv(path):
         if not is_csv(out):
             raise OutputError(
                 f"{out}: expected a name ending in .csv or .txt, as {path.name} is a table"
             )
-        check_output_file(out, overwrite=overwrite)
+        check_output_file(out, overwrite=overwrite, inputs=inputs)
     else:
-        check_output_directory(out, overwrite=overwrite, mark=MARK)
+        check_output_directory(out, overwrite=overwrite, contents=CONTENTS, inputs=inputs)
 
 
 def write_trajectory_torques(
@@ -68,21 +74,21 @@ def write_trajectory_torques(
     Raises OutputError, BagError.
     """
     out = Path(out)
-    check_output(result.path, out, overwrite=overwrite)
+    check_output(result.path, out, result.robot, overwrite=overwrite)
     if is_csv(result.path):
         write_text_whole(out, "".join(_filled_lines(CsvTable(result.path), result)))
         return ()
-    with written_whole(out, overwrite=overwrite, mark=MARK) as directory:
+    with written_whole(out, overwrite=overwrite, contents=CONTENTS) as directory:
         bag = directory / out.name
         try:
             notes = _write_bag(result, bag, progress)
         except BagError:
             raise
         except Exception as error:  # writers raise more than they document
-            raise BagError(f"{out}: can't be written ({error_text(error)})") from error
+            raise unwritable(out, error) from error
         move_up(bag)
         text = json.dumps(_summary(result), indent=2, allow_nan=False, ensure_ascii=False)
-        (directory / MARK).write_text(text + "\n", encoding="utf-8")
+        write_text(directory / MARK, text + "\n")
     return notes
 
 
@@ -104,31 +110,27 @@ def _summary(result: TrajectoryTorques) -> dict[str, Any]:
 
 
 def _write_bag(result: TrajectoryTorques, path: Path, progress: Progress) -> tuple[str, ...]:
-    from rosbags.rosbag2 import StoragePlugin, Writer
-
     filled = iter(zip(result.trajectories, result.torques, strict=True))
     notes = []
-    with BagReader(result.path) as bag:
-        plugin = StoragePlugin.MCAP if bag.storage == "mcap" else StoragePlugin.SQLITE3
-        with Writer(path, version=Writer.VERSION_LATEST, storage_plugin=plugin) as writer:
-            copies = {c.id: _copied(writer, c) for c in bag.connections}
-            total = sum(c.msgcount for c in bag.connections)
-            for done, (connection, received, raw) in enumerate(bag.messages(), 1):
-                if done % _SELDOM == 0 or done == total:
-                    progress("writing", done, total)
-                copy = copies[connection.id]
-                if copy is None:
-                    continue
-                if connection.topic == result.topic:
-                    trajectory, torques = next(filled)
-                    columns = [result.joint_names.index(n) for n in trajectory.joint_names]
-                    raw = _with_effort(trajectory.message, torques[:, columns])
-                writer.write(copy, received, raw)
-            notes += [
-                f"topic {c.topic} left out: the recording doesn't define its type, {c.msgtype}"
-                for c in bag.connections
-                if copies[c.id] is None
-            ]
+    with BagReader(result.path) as bag, new_recording(path, bag.storage) as writer:
+        copies = {c.id: _copied(writer, c) for c in bag.connections}
+        total = sum(c.msgcount for c in bag.connections)
+        for done, (connection, received, raw) in enumerate(bag.messages(), 1):
+            if done % _SELDOM == 0 or done == total:
+                progress("writing", done, total)
+            copy = copies[connection.id]
+            if copy is None:
+                continue
+            if connection.topic == result.topic:
+                trajectory, torques = next(filled)
+                columns = [result.joint_names.index(n) for n in trajectory.joint_names]
+                raw = _with_effort(trajectory.message, torques[:, columns])
+            writer.write(copy, received, raw)
+        notes += [
+            f"topic {c.topic} left out: the recording doesn't define its type, {c.msgtype}"
+            for c in bag.connections
+            if copies[c.id] is None
+        ]
     return tuple(notes)
 
 

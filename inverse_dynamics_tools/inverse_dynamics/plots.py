@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.thinning import peaks
+from inverse_dynamics.wording import printable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -47,6 +48,7 @@ STYLE: Any = {
     "ytick.color": _MUTED,
     "svg.fonttype": "none",
     "pdf.fonttype": 42,
+    "text.parse_math": False,  # a name may hold $
     "path.simplify": True,
     "path.simplify_threshold": 0.3,
 }
@@ -68,7 +70,17 @@ def save_figure(make: Callable[[], Figure], file: Path) -> None:
 
     with mpl.rc_context({**STYLE, "svg.hashsalt": "inverse_dynamics"}):
         metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(file.suffix)
-        make().savefig(file, dpi=160, metadata=metadata)
+        figure = make()
+        make_printable(figure)
+        figure.savefig(file, dpi=160, metadata=metadata)
+
+
+def make_printable(figure: Figure) -> None:
+    """Names that no font, and no XML, can show become escapes."""
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        text.set_text(printable(text.get_text()))
 
 
 def torque_figure(evaluation: Evaluation) -> Figure:

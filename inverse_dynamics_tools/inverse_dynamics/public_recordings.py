@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 from inverse_dynamics.ament import package_share
 from inverse_dynamics.errors import OutputError, RecordingsError
-from inverse_dynamics.files import written_whole
+from inverse_dynamics.files import Contents, written_whole
 from inverse_dynamics.joint_log import no_progress
 from inverse_dynamics.located_yaml import read_mapping
 from inverse_dynamics.robots import DATA_PACKAGE
@@ -172,7 +172,9 @@ def fetch_recordings(
         say(f"fetching {size:.2f} MB ({table.license}) from {base}")
     for recording in missing:
         place = places[recording.name]
-        with written_whole(place, overwrite=overwrite, mark=METADATA) as target:
+        contents = Contents(METADATA, (METADATA, *(file.name for file in recording.files)))
+        inputs = (None if "://" in source else Path(source),)
+        with written_whole(place, overwrite=overwrite, contents=contents, inputs=inputs) as target:
             for file in recording.files:
                 _fetch(f"{base}/{file.source}", file, target, table, progress)
             shutil.copyfile(recording.metadata, target / METADATA)

@@ -15,10 +15,10 @@ from __future__ import annotations
 import json
 import math
 import time
+from contextlib import suppress
 from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from zipfile import BadZipFile
 
 import numpy as np
 
@@ -28,9 +28,11 @@ from inverse_dynamics.effort import Effort
 from inverse_dynamics.effort_verdict import Candidate, Verdict
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.evaluation import Evaluation, JointError
-from inverse_dynamics.files import written_whole
+from inverse_dynamics.files import Contents, write_text, written_whole
 from inverse_dynamics.joint_log import JointLog, no_progress
+from inverse_dynamics.replacement import restore_interrupted
 from inverse_dynamics.robots import Robot
+from inverse_dynamics.stated_types import check_types
 
 if TYPE_CHECKING:
     from inverse_dynamics.joint_log import Progress, Storage
@@ -38,6 +40,22 @@ if TYPE_CHECKING:
 SCHEMA = 2
 MARK = "evaluation.json"
 PLOT_FORMATS = ("png", "svg", "pdf")
+
+CONTENTS = Contents(
+    MARK,
+    (
+        MARK,
+        "metrics.json",
+        "series.npz",
+        "plotjuggler.xml",
+        *(f"torques.{suffix}" for suffix in PLOT_FORMATS),
+        "bag/metadata.yaml",
+        "bag/bag.db3*",
+        "bag/bag.mcap",
+    ),
+    added=("series.csv", "series.parquet", "report.html"),
+)
+"""Of a directory of results: `ids export` and `ids report` may have added theirs."""
 
 COMPUTED_TOPIC = "/torques"
 MEASURED_TOPIC = "/torques_gt"
@@ -59,16 +77,18 @@ def write_evaluation(
     from inverse_dynamics.plots import save_torque_figure
 
     start = time.perf_counter()
-    with written_whole(Path(directory), overwrite=overwrite, mark=MARK) as target:
+    inputs = (evaluation.bag, *evaluation.robot.files)
+    with written_whole(
+        Path(directory), overwrite=overwrite, contents=CONTENTS, inputs=inputs
+    ) as target:
         log = evaluation.log
         topics = {
             COMPUTED_TOPIC: replace(log, effort=evaluation.computed),
             MEASURED_TOPIC: replace(log, effort=evaluation.measured),
         }
         write_joint_logs(target / "bag", topics, storage=storage or log.storage, progress=progress)
-        (target / "plotjuggler.xml").write_text(
-            _layout(evaluation, target / "bag", storage or log.storage), encoding="utf-8"
-        )
+        layout = _layout(evaluation, target / "bag", storage or log.storage)
+        write_text(target / "plotjuggler.xml", layout)
         _write_json(target / "metrics.json", _metrics(evaluation))
         _write_json(target / MARK, _summary(evaluation))
         np.savez(target / "series.npz", allow_pickle=False, **_series(evaluation))
@@ -84,24 +104,55 @@ def read_evaluation(directory: Path | str) -> Evaluation:
     """An evaluation that write_evaluation() wrote. Raises OutputError."""
     directory = Path(directory)
     file = directory / MARK
+    if not directory.exists():
+        with suppress(OSError, OutputError):
+            restore_interrupted(directory.absolute())
     if not file.is_file():
         found = f"holds no {MARK}" if directory.is_dir() else "no such directory"
         raise OutputError(f"{directory}: {found}; expected one written by `ids evaluate`")
     try:
-        data = json.loads(file.read_text())
+        data = json.loads(file.read_text(encoding="utf-8"))
         if data["schema"] != SCHEMA:
             raise OutputError(
                 f"{file}: expected schema {SCHEMA}, got {data['schema']}; evaluate again"
             )
-        metrics = json.loads((directory / "metrics.json").read_text())
+        metrics = json.loads((directory / "metrics.json").read_text(encoding="utf-8"))
         with np.load(directory / "series.npz", allow_pickle=False) as series:
             arrays = {name: series[name] for name in series.files}
-        return _from_files(data, metrics, arrays)
-    except (OSError, ValueError, KeyError, TypeError, BadZipFile) as error:
+        evaluation = _from_files(data, metrics, arrays)
+        check_types(evaluation, "evaluation")
+        _check_sizes(evaluation)
+        return evaluation
+    except OutputError:
+        raise
+    except Exception as error:  # of files that were edited or damaged, whatever their readers raise
         raise OutputError(
             f"{directory}: isn't a complete evaluation ({type(error).__name__}: {error}); evaluate "
             "again"
         ) from error
+
+
+def _check_sizes(evaluation: Evaluation) -> None:
+    """Raise ValueError unless all series have one row per sample and one column per joint."""
+    log, effort = evaluation.log, evaluation.effort
+    samples, joints = len(log.header_stamps), len(log.joint_names)
+    stamps = ("header_stamps", "receive_stamps")
+    series = {name: getattr(log, name) for name in ("q", "qd", "effort", *stamps)}
+    series |= {name: getattr(evaluation, name) for name in ("qdd", "computed")}
+    series |= {name: getattr(evaluation.samples, name) for name in MASKS}
+    for name, array in series.items():
+        shape = (samples,) if name in (*MASKS, *stamps) else (samples, joints)
+        if array.shape != shape or not samples:
+            raise ValueError(f"{name}: expected the shape {shape}, got {array.shape}")
+    counts = {name: getattr(evaluation, name) for name in ("joint_names", "units", "errors")}
+    counts["kept"] = evaluation.errors_of_kept
+    if effort.meaning == "current":
+        counts["drive_gains"] = effort.drive_gains
+    for name, entries in counts.items():
+        if len(entries) != joints or not joints:
+            raise ValueError(f"{name}: expected {joints}, one per joint, got {len(entries)}")
+    if effort.verdict is not None and not effort.verdict.candidates:
+        raise ValueError("candidates: expected one or more, got none")
 
 
 def _layout(evaluation: Evaluation, bag: Path, storage: Storage) -> str:
@@ -231,7 +282,7 @@ def _effort(data: dict[str, Any]) -> Effort:
 
 
 def _write_json(file: Path, data: dict[str, Any]) -> None:
-    file.write_text(json.dumps(data, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
+    write_text(file, json.dumps(data, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
 
 
 def _plain(value: object) -> object:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 from inverse_dynamics.ament import PackageNotFoundError, package_share, resolve
 from inverse_dynamics.effort_meanings import EFFORT_CHOICES
 from inverse_dynamics.errors import RobotError
+from inverse_dynamics.files import is_plain_name
 from inverse_dynamics.located_yaml import read_mapping
 from inverse_dynamics.solver_parameters import solver_parameters
 from inverse_dynamics.wording import did_you_mean, shown
@@ -58,6 +59,11 @@ class Robot:
     source: str = ""  # where description and figures come from
     # What only the simulator reads: not looked into here.
     simulation: Mapping | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def files(self) -> tuple[Path | None, ...]:
+        """What is read for this robot."""
+        return (self.file, self.urdf, self.model)
 
 
 def robot_names() -> list[str]:
@@ -119,7 +125,9 @@ def _read(file: Path) -> Robot:
     schema = top.required("schema")
     if schema.integer() != SCHEMA:
         schema.fail(f"{SCHEMA}", "it was written for another version of this command")
-    name = top.required("name").text()
+    name = top.required("name")
+    if not is_plain_name(name.text()):
+        name.fail("a plain name: results are called after it", "leave out / and control characters")
     description = top.required("description").text()
     plugin = top.required("plugin")
     if plugin.text().count("/") != 1:
@@ -127,7 +135,7 @@ def _read(file: Path) -> Robot:
     method, cutoff = _accelerations(top.optional("accelerations"))
     simulation, parameters = top.optional("simulation"), top.optional("parameters")
     robot = Robot(
-        name=name,
+        name=name.text(),
         description=description.strip(),
         file=file,
         plugin=plugin.text(),

@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics.descriptions import read_description
-from inverse_dynamics.errors import OutputError, UserError
+from inverse_dynamics.errors import UserError
+from inverse_dynamics.files import file_written_whole
 from inverse_dynamics.joint_log import no_progress
 from inverse_dynamics.report.scene import scene_from_urdf
 
@@ -92,8 +93,7 @@ def _write_gif(frames: Sequence[Image], file: Path) -> None:
         sheet.paste(frame, (0, k * _HEIGHT))
     palette = sheet.quantize(_COLORS, method=Image.Quantize.MEDIANCUT)
     few = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
-    work = file.with_name(f".{file.name}.part")
-    try:
+    with file_written_whole(file) as work:
         few[0].save(
             work,
             format="GIF",
@@ -103,10 +103,6 @@ def _write_gif(frames: Sequence[Image], file: Path) -> None:
             loop=0,
             optimize=False,
         )
-        os.replace(work, file)
-    except OSError as error:
-        work.unlink(missing_ok=True)
-        raise OutputError(f"{file}: can't be written ({error.strerror or error})") from error
 
 
 # ---- torques ---------------------------------------------------------------------------------------------------------
@@ -120,10 +116,15 @@ def _plot(
     from matplotlib.figure import Figure
     from PIL import Image
 
-    from inverse_dynamics.plots import COMPUTED, MEASURED
+    from inverse_dynamics.plots import COMPUTED, MEASURED, make_printable
 
     n, dpi = len(evaluation.joint_names), 100
-    style: Any = {"font.size": 7, "axes.spines.top": False, "axes.spines.right": False}
+    style: Any = {
+        "text.parse_math": False,
+        "font.size": 7,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+    }
     with mpl.rc_context(style):
         figure = Figure(figsize=(_PLOT_WIDTH / dpi, _HEIGHT / dpi), dpi=dpi)
         all_axes = figure.subplots(n, 1, sharex=True, squeeze=False)[:, 0]
@@ -140,6 +141,7 @@ def _plot(
         figure.text(0.02, 0.917, f"shown {speed:.2g} times as fast", fontsize=7, color="#555555")
         handles, labels = all_axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="upper right", ncols=2, frameon=False, fontsize=8)
+        make_printable(figure)
         data = BytesIO()
         figure.savefig(data, format="png", dpi=dpi)
         points = all_axes[0].transData.transform([(t, 0.0) for t in times])

@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Words of texts."""
+"""Words of texts, and texts made fit for a terminal."""
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+
+_LONGEST_WORD = 1000  # characters
+_LONGEST_TEXT = 10_000
+_WORD = re.compile(rf"\S{{{_LONGEST_WORD + 1},}}")
 
 
 def counted(count: int, noun: str) -> str:
@@ -38,6 +43,24 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f"did you mean {best}?" if best and 3 * distances[best] <= max(3, len(word)) else ""
 
 
+def printable(text: str) -> str:
+    """The text without what a terminal acts on: control characters become escapes.
+
+    Lines stay lines. Lone surrogates (names of files that aren't UTF-8) become escapes too. What
+    is printable already is left as it is.
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or c in "\n " else _escape(c) for c in text)
+
+
+def message(text: str) -> str:
+    """A message for the terminal: printable, of bearable length, its further lines indented."""
+    text = _WORD.sub(lambda word: _shortened(word[0], _LONGEST_WORD), printable(text).strip())
+    first, *others = _shortened(text, _LONGEST_TEXT).splitlines() or [""]
+    return "\n".join([first, *(line if line.startswith(" ") else f"  {line}" for line in others)])
+
+
 def _distance(a: str, b: str) -> int:
     """How many letters must be put in, left out, replaced or swapped with the next to make b of a."""
     if abs(len(a) - len(b)) > len(b):
@@ -52,3 +75,16 @@ def _distance(a: str, b: str) -> int:
                 row[-1] = min(row[-1], before[j - 2] + 1)
         before, above = above, row
     return above[-1]
+
+
+def _shortened(text: str, most: int) -> str:
+    if len(text) <= most:
+        return text
+    return f"{text[: most // 2]} [... {len(text)} characters ...] {text[-most // 4 :]}"
+
+
+def _escape(character: str) -> str:
+    code = ord(character)
+    if code < 0x100:
+        return f"\\x{code:02x}"
+    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"

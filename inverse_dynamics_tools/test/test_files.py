@@ -1,16 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
 import os
+import socket
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.files import check_output_directory, written_whole
+from inverse_dynamics.files import (
+    Contents,
+    check_output_directory,
+    check_output_file,
+    is_plain_name,
+    write_text_whole,
+    written_whole,
+)
 
 MARK = "result.json"
+RESULT = Contents(MARK, (MARK, "of_old", "bag/{name}.db3", "plot.*"), added=("series.csv",))
 
 
 def write(target, text="new", **options):
-    with written_whole(target, mark=MARK, **options) as directory:
+    with written_whole(target, contents=RESULT, **options) as directory:
         (directory / MARK).write_text(text)
 
 
@@ -50,9 +62,11 @@ def test_an_older_result_is_not_overwritten_silently(tmp_path):
 def test_an_older_result_is_replaced_on_demand(tmp_path):
     write(tmp_path / "result", "old")
     (tmp_path / "result" / "of_old").touch()
+    (tmp_path / "result").chmod(0o750)
     write(tmp_path / "result", overwrite=True)
     assert os.listdir(tmp_path / "result") == [MARK]
     assert (tmp_path / "result" / MARK).read_text() == "new"
+    assert (tmp_path / "result").stat().st_mode & 0o777 == 0o750
     assert os.listdir(tmp_path) == ["result"]
 
 
@@ -60,7 +74,7 @@ def test_an_older_result_stays_when_writing_the_new_one_fails(tmp_path):
     write(tmp_path / "result", "old")
     with (
         pytest.raises(ZeroDivisionError),
-        written_whole(tmp_path / "result", mark=MARK, overwrite=True),
+        written_whole(tmp_path / "result", contents=RESULT, overwrite=True),
     ):
         raise ZeroDivisionError
     assert (tmp_path / "result" / MARK).read_text() == "old"
@@ -76,10 +90,48 @@ def test_what_is_not_a_result_is_never_overwritten(tmp_path):
     assert (tmp_path / "thesis" / "chapter").read_text() == "years of work"
 
 
-def test_a_file_is_never_overwritten(tmp_path):
+def test_a_result_with_files_of_the_user_is_never_overwritten(tmp_path):
+    write(tmp_path / "result", "old")
+    for name in ("bag/result.db3", "plot.png", "series.csv"):
+        file = tmp_path / "result" / name
+        file.parent.mkdir(exist_ok=True)
+        file.touch()
+    write(tmp_path / "result", "newer", overwrite=True)
+    for k in range(7):
+        (tmp_path / "result" / f"note_{k}").write_text("mine")
+    (tmp_path / "result" / "link").symlink_to(tmp_path)
+    expected = (
+        r"it holds 8 files .*\(link, note_0, note_1, note_2, note_3 and 3 others\); move what"
+    )
+    with pytest.raises(OutputError, match=expected):
+        write(tmp_path / "result", overwrite=True)
+    assert (tmp_path / "result" / "note_3").read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    "name", ["bag/other.db3", "plots/plot.png", "bag/plot.png", "a/series.csv"]
+)
+def test_files_of_a_result_are_known_by_their_whole_path(tmp_path, name):
+    write(tmp_path / "result")
+    file = tmp_path / "result" / name
+    file.parent.mkdir()
+    file.touch()
+    assert RESULT.foreign(tmp_path / "result") == [name]
+
+
+def test_a_file_is_never_overwritten_by_a_directory(tmp_path):
     (tmp_path / "notes").write_text("mine")
     with pytest.raises(OutputError, match=r"notes: exists and isn't a directory"):
-        check_output_directory(tmp_path / "notes", overwrite=True, mark=MARK)
+        check_output_directory(tmp_path / "notes", overwrite=True, contents=RESULT)
+
+
+def test_the_working_directory_is_not_replaced(tmp_path, monkeypatch):
+    write(tmp_path / "result")
+    (tmp_path / "result" / "bag").mkdir()
+    monkeypatch.chdir(tmp_path / "result" / "bag")
+    for out in (".", "..", tmp_path / "result"):
+        with pytest.raises(OutputError, match="is the working directory, or holds it"):
+            check_output_directory(Path(out), overwrite=True, contents=RESULT)
 
 
 def test_a_place_that_can_not_be_written_is_an_error(tmp_path):
@@ -91,7 +143,7 @@ def test_a_place_that_can_not_be_written_is_an_error(tmp_path):
 @pytest.mark.skipif(os.geteuid() == 0, reason="the super-user may write everywhere")
 def test_a_directory_without_permission_is_an_error(tmp_path):
     tmp_path.chmod(0o500)
-    with pytest.raises(OutputError, match=r"can't be written \(Permission denied\)"):
+    with pytest.raises(OutputError, match=r"can't be written \(.* may not be written to\)"):
         write(tmp_path / "result")
 
 
@@ -104,3 +156,211 @@ def test_what_appears_meanwhile_is_not_overwritten(tmp_path):
     with pytest.raises(OutputError, match="exists already"):
         write_too_late()
     assert os.listdir(tmp_path / "result") == ["of_another_process"]
+
+
+# ---- what is read and what is written --------------------------------------------------------------------------------
+
+
+def places(tmp_path):
+    """An older result with a recording in it, and other names for both."""
+    write(tmp_path / "result")
+    (tmp_path / "result" / "bag").mkdir()
+    (tmp_path / "result" / "bag" / "result.db3").write_text("recorded once")
+    (tmp_path / "link_to_bag").symlink_to("result/bag")
+    (tmp_path / "link_to_all").symlink_to(".")
+
+
+@pytest.mark.parametrize(
+    ("source", "out", "relation"),
+    [
+        ("result/bag", "result", "holds"),
+        ("result/bag/result.db3", "result", "holds"),
+        ("result", "result", "is"),
+        ("link_to_bag", "result", "holds"),
+        ("result/bag", "link_to_all/result", "holds"),
+        ("result/bag", "result/bag/../../result", "holds"),
+        ("result/bag", "result/bag/deep/out", "lies in"),
+        ("link_to_bag", "result/bag/out", "lies in"),
+        ("result/bag", "link_to_bag/out", "lies in"),
+    ],
+)
+def test_a_directory_that_is_read_from_is_neither_replaced_nor_added_to(
+    tmp_path, monkeypatch, source, out, relation
+):
+    places(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(OutputError, match=f"{out}: {relation} {source}, which is read.*--out"):
+        check_output_directory(Path(out), overwrite=True, contents=RESULT, inputs=[Path(source)])
+
+
+@pytest.mark.parametrize(
+    ("source", "out"),
+    [("result/bag", "other"), ("result/bag", "result_2"), ("missing", "other"), (None, "other")],
+)
+def test_other_places_may_be_written(tmp_path, monkeypatch, source, out):
+    places(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    check_output_directory(Path(out), inputs=[source and Path(source)])
+
+
+def test_a_file_that_is_read_is_not_replaced(tmp_path):
+    places(tmp_path)
+    file = tmp_path / "result/bag/result.db3"
+    os.link(file, tmp_path / "another_name")
+    for out in (file, tmp_path / "link_to_bag/result.db3", tmp_path / "another_name"):
+        with pytest.raises(OutputError, match=r"is .*result\.db3, which is read"):
+            check_output_file(out, overwrite=True, inputs=[file])
+
+
+def test_a_file_may_be_put_beside_those_of_a_result_but_not_over_them(tmp_path):
+    places(tmp_path)
+    options = {"overwrite": True, "inputs": [tmp_path / "result"], "results": RESULT}
+    check_output_file(tmp_path / "result" / "report.html", **options)
+    check_output_file(tmp_path / "result" / "series.csv", **options)
+    for name in (MARK, "bag/result.db3"):
+        with pytest.raises(OutputError, match=f"{name}: lies in .*result, which is read"):
+            check_output_file(tmp_path / "result" / name, **options)
+
+
+# ---- files -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", ["fifo", "socket", "device", "link to a device"])
+def test_a_device_or_pipe_is_left_alone(tmp_path, kind):
+    node = tmp_path / "node"
+    if kind == "fifo":
+        os.mkfifo(node)
+    elif kind == "socket":
+        with socket.socket(socket.AF_UNIX) as server:
+            server.bind(os.path.relpath(node))
+    elif kind == "device":
+        node = Path("/dev/null")
+    else:
+        node.symlink_to("/dev/full")
+    before = node.lstat()
+    for write_it in (
+        lambda: check_output_file(node, overwrite=True),
+        lambda: write_text_whole(node, ""),
+    ):
+        with pytest.raises(OutputError, match=f"{node}: is a device, pipe or socket, not a file"):
+            write_it()
+    assert node.lstat().st_ino == before.st_ino
+    assert node.lstat().st_mode == before.st_mode
+
+
+def test_a_link_stays_a_link_to_the_new_file(tmp_path):
+    (tmp_path / "file").write_text("old")
+    (tmp_path / "link").symlink_to("file")
+    write_text_whole(tmp_path / "link", "new")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "file").read_text() == "new"
+
+
+def test_a_file_keeps_its_permissions(tmp_path):
+    (tmp_path / "file").touch(mode=0o600)
+    write_text_whole(tmp_path / "file", "new")
+    assert (tmp_path / "file").stat().st_mode & 0o777 == 0o600
+
+
+@pytest.mark.parametrize("length", [255, 240])
+def test_long_names_are_written(tmp_path, length):
+    write_text_whole(tmp_path / ("n" * length), "new")
+    write(tmp_path / ("d" * length))
+    assert {len(name) for name in os.listdir(tmp_path)} == {length}
+
+
+@pytest.mark.parametrize("path", ["n" * 256, "/".join(["n" * 200] * 25)])
+def test_too_long_names_are_told(tmp_path, path):
+    for check in (check_output_directory, check_output_file, write_text_whole_of_path, write):
+        with pytest.raises(OutputError, match=r"can't be written \(File name too long\)"):
+            check(tmp_path / path)
+
+
+def write_text_whole_of_path(path):
+    write_text_whole(path, "")
+
+
+@pytest.mark.parametrize("name", [b"caf\xe9", b"two\nlines", b"\x1b[31mred", b"/"])
+def test_names_that_no_text_can_hold_are_refused(tmp_path, name):
+    for check in (check_output_directory, check_output_file):
+        with pytest.raises(
+            OutputError, match="expected a name in UTF-8 without control characters"
+        ):
+            check(tmp_path / os.fsdecode(name))
+
+
+@pytest.mark.parametrize(
+    "text", ["", ".", "..", "a/b", "../x", "/etc/x", "a\nb", "\x1b[2J", "a\0b"]
+)
+def test_a_path_is_not_a_plain_name(text):
+    assert not is_plain_name(text)
+    assert is_plain_name(f"ü {len(text)}.b")
+
+
+# ---- runs at the same time, and killed ones --------------------------------------------------------------------------
+
+CHILD = """
+import os, sys, signal
+from pathlib import Path
+from inverse_dynamics.files import Contents, written_whole
+with written_whole(Path(sys.argv[1]), contents=Contents("result.json", ("result.json",)), overwrite=True) as d:
+    (d / "result.json").write_text("of the child")
+    print("at work", flush=True)
+    sys.stdin.readline()
+"""
+
+
+def child_at_work(target):
+    child = subprocess.Popen(
+        [sys.executable, "-c", CHILD, str(target)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert child.stdout.readline() == "at work\n"
+    return child
+
+
+def test_a_second_run_into_the_same_output_is_refused(tmp_path):
+    target = tmp_path / "result"
+    with child_at_work(target) as child:
+        for attempt in (write, check_output_directory, lambda t: write_text_whole(t, "")):
+            with pytest.raises(OutputError, match="another run is writing it now"):
+                attempt(target)
+        child.communicate("\n")
+    assert (target / MARK).read_text() == "of the child"
+    write(target, overwrite=True)
+    assert (target / MARK).read_text() == "new"
+    assert os.listdir(tmp_path) == ["result"]
+
+
+def test_what_a_killed_run_left_is_removed_by_the_next(tmp_path):
+    target = tmp_path / "result"
+    write(target, "old")
+    with child_at_work(target) as child:
+        child.kill()
+    assert sorted(os.listdir(tmp_path)) == [".result.part", "result"]
+    check_output_directory(target, overwrite=True, contents=RESULT)
+    assert os.listdir(tmp_path) == ["result"]
+    assert (target / MARK).read_text() == "old"
+
+
+def test_an_older_result_that_a_killed_run_had_moved_is_put_back(tmp_path):
+    target = tmp_path / "result"
+    write(target, "old")
+    (tmp_path / ".result.part").mkdir()
+    target.rename(tmp_path / ".result.part" / "old")
+    with pytest.raises(OutputError, match="exists already"):
+        write(target)
+    assert (target / MARK).read_text() == "old"
+    assert os.listdir(tmp_path) == ["result"]
+
+
+def test_a_folder_of_somebody_else_is_not_taken_for_a_leftover(tmp_path):
+    (tmp_path / ".result.part").mkdir()
+    (tmp_path / ".result.part" / "film.mkv").touch()
+    with pytest.raises(
+        OutputError, match=r"\.result\.part is in the way, and isn't of this command"
+    ):
+        write(tmp_path / "result")
+    assert os.listdir(tmp_path / ".result.part") == ["film.mkv"]

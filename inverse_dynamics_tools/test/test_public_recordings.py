@@ -204,7 +204,7 @@ def test_a_place_that_can_not_be_written_is_said(ids, tmp_path):
     (tmp_path / "out").write_text("a file")
     code, _, err = ids()
     assert code == 2
-    assert "can't be written (Not a directory)" in err
+    assert "out is not a directory); name another directory with --out" in err
 
 
 def test_a_recording_that_is_not_as_published_is_replaced_only_on_demand(ids, tmp_path):

@@ -12,7 +12,7 @@ from inverse_dynamics import read_evaluation, read_joint_log, write_evaluation
 from inverse_dynamics.accelerations import Accelerations, Samples
 from inverse_dynamics.effort import DATA, Effort
 from inverse_dynamics.effort_verdict import Candidate, Verdict
-from inverse_dynamics.errors import BagError, OutputError
+from inverse_dynamics.errors import BagError, OutputError, UserError
 from inverse_dynamics.evaluation import Evaluation, joint_errors
 from inverse_dynamics.robots import Robot
 
@@ -211,3 +211,110 @@ def test_a_result_of_another_version_is_an_error(tmp_path, evaluation):
     file.write_text(file.read_text().replace('"schema": 2', '"schema": 7'))
     with pytest.raises(OutputError, match="expected schema 2, got 7; evaluate again"):
         read_evaluation(tmp_path / "result")
+
+
+def edited(kind):
+    """What somebody may have put in place of a value of JSON by hand."""
+    return {
+        "null": None,
+        "text": "x",
+        "list": [],
+        "mapping": {},
+    }[kind]
+
+
+def paths_of(data, path=()):
+    """Paths of all values in JSON; of a list, its first."""
+    yield path
+    if isinstance(data, dict):
+        for key, value in data.items():
+            yield from paths_of(value, (*path, key))
+    elif isinstance(data, list) and data:
+        yield from paths_of(data[0], (*path, 0))
+
+
+def use(directory, *, page=True):
+    """What report, compare and export do with a result. page: the slow part too."""
+    from inverse_dynamics.comparison import compare
+    from inverse_dynamics.exports import series_columns
+    from inverse_dynamics.report import report_run
+    from inverse_dynamics.report.page import render_page
+    from inverse_dynamics.tables import error_table
+
+    read = read_evaluation(directory)
+    error_table(read)
+    series_columns(read)
+    compare([read, read], ("a", "b"))
+    if page:
+        render_page("title", [report_run(read)])
+
+
+@pytest.fixture(scope="module")
+def plain_result(tmp_path_factory):
+    """A result without a description, and with a verdict: it can be shown, and has every kind of entry."""
+    candidates = (Candidate("current", 0.01, 1.0, 0), Candidate("torque", 0.9, 30.0, 20))
+    effort = Effort("current", DATA, (2.0, 3.0, 4.0), Verdict(candidates, sure=True, stretches=20))
+    plain = make_evaluation(samples=60, effort=effort)
+    plain = replace(plain, robot=replace(plain.robot, urdf=None))
+    target = tmp_path_factory.mktemp("plain") / "result"
+    write_evaluation(plain, target)
+    use(target)
+    return target
+
+
+@pytest.mark.parametrize("kind", ["null", "text", "list", "mapping"])
+@pytest.mark.parametrize("file", ["evaluation.json", "metrics.json"])
+def test_any_entry_that_was_edited_is_an_error_or_does_no_harm(plain_result, file, kind):
+    target = plain_result / file
+    text = target.read_text()
+    refused = 0
+    try:
+        for k, path in enumerate(paths_of(json.loads(text))):
+            data = json.loads(text)
+            if not path:
+                data = edited(kind)
+            else:
+                *above, last = path
+                place = data
+                for key in above:
+                    place = place[key]
+                place[last] = edited(kind)
+            target.write_text(json.dumps(data))
+            try:
+                use(plain_result, page=k % 10 == 0)
+            except UserError:
+                refused += 1
+    finally:
+        target.write_text(text)
+    assert refused >= 10
+
+
+SERIES = ["q", "effort", "computed", "header_stamps", "kept"]
+
+
+@pytest.mark.parametrize("name", SERIES)
+def test_series_that_were_edited_are_an_error(plain_result, name):
+    target = plain_result / "series.npz"
+    content = target.read_bytes()
+    with np.load(target) as series:
+        arrays = dict(series)
+    wrong = (arrays[name][:-1], arrays[name][..., None], arrays[name].astype(str), np.float64(1.0))
+    try:
+        for changed in wrong:
+            np.savez(target, **{**arrays, name: changed})
+            with pytest.raises(OutputError, match="isn't a complete evaluation .*; evaluate again"):
+                read_evaluation(plain_result)
+        del arrays[name]
+        np.savez(target, **arrays)
+        with pytest.raises(OutputError, match="isn't a complete evaluation .*; evaluate again"):
+            read_evaluation(plain_result)
+    finally:
+        target.write_bytes(content)
+
+
+def test_a_result_that_a_killed_run_had_moved_is_found_again(tmp_path, evaluation):
+    write_evaluation(evaluation, tmp_path / "result")
+    (tmp_path / ".result.part").mkdir()
+    (tmp_path / "result").rename(tmp_path / ".result.part" / "old")
+    assert read_evaluation(tmp_path / "result").robot == evaluation.robot
+    assert os.listdir(tmp_path) == ["result"]

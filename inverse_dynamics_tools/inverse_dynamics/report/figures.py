@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.plots import make_printable
+from inverse_dynamics.wording import printable
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -24,18 +27,20 @@ def error_figure(evaluation: Evaluation) -> str:
     from matplotlib.figure import Figure
 
     style = {
+        "text.parse_math": False,  # a name may hold $
         "font.size": 9,
         "axes.spines.top": False,
         "axes.spines.right": False,
         "svg.fonttype": "none",
-        "svg.hashsalt": evaluation.robot.name,
+        "svg.hashsalt": printable(evaluation.robot.name),
     }
     with mpl.rc_context(style):  # type: ignore[arg-type]
         figure = Figure(figsize=(11, 2.9), layout="constrained")
         left, right = figure.subplots(1, 2)
         measured, error = _shares(evaluation)
-        _draw_distribution(left, evaluation.joint_names, error)
+        _draw_distribution(left, tuple(map(printable, evaluation.joint_names)), error)
         _draw_spectra(right, evaluation, measured, error)
+        make_printable(figure)
         text = StringIO()
         figure.savefig(text, format="svg", metadata={"Date": None})
     return text.getvalue()

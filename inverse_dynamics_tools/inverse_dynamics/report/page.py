@@ -19,6 +19,7 @@ import numpy as np
 
 from inverse_dynamics.files import write_text_whole
 from inverse_dynamics.thinning import peaks
+from inverse_dynamics.wording import printable
 
 if TYPE_CHECKING:
     from inverse_dynamics.evaluation import JointError
@@ -93,7 +94,9 @@ def render_page(
     """The page as text."""
     from jinja2 import Environment, StrictUndefined
 
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, finalize=_printable
+    )
     environment.filters["figure"] = _figure
     environment.filters["percent"] = lambda share: _figure(100.0 * share)
     script = "\n".join(_asset(name) for name in ("scene.js", "plots.js", "viewer.js"))
@@ -106,6 +109,11 @@ def render_page(
         comparisons=[_comparison_view(comparison, i) for i, comparison in enumerate(comparisons)],
         notes=notes,
     )
+
+
+def _printable(value: object) -> object:
+    """Names without control characters; what is markup already stays."""
+    return printable(value) if type(value) is str else value
 
 
 def _asset(name: str) -> str:

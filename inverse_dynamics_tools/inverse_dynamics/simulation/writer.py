@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.bags import write_joint_logs
-from inverse_dynamics.files import move_up, written_whole
+from inverse_dynamics.files import Contents, move_up, write_text, written_whole
 from inverse_dynamics.joint_log import no_progress
 from inverse_dynamics.simulation.trajectory_file import trajectory_text
 
@@ -28,6 +28,11 @@ if TYPE_CHECKING:
 
 MARK = "simulation.yaml"
 """The file by which a directory is known as a simulated recording."""
+
+CONTENTS = Contents(
+    MARK,
+    (MARK, "metadata.yaml", "{name}.db3*", "{name}.mcap", "trajectory.yaml", "truth.npz"),
+)
 
 
 def write_run(
@@ -44,14 +49,12 @@ def write_run(
     """
     import yaml
 
-    with written_whole(out, overwrite=overwrite, mark=MARK) as directory:
+    with written_whole(out, overwrite=overwrite, contents=CONTENTS) as directory:
         _write_bag(run, directory, out.name, storage, progress)
-        (directory / MARK).write_text(
-            yaml.safe_dump({**run.settings, "storage": storage}, sort_keys=False)
-        )
-        (directory / "trajectory.yaml").write_text(
-            trajectory_text(run.trajectory, run.trajectory_source)
-        )
+        settings = {**run.settings, "storage": storage}
+        write_text(directory / MARK, yaml.safe_dump(settings, sort_keys=False))
+        trajectory = trajectory_text(run.trajectory, run.trajectory_source)
+        write_text(directory / "trajectory.yaml", trajectory)
         motion, rows = run.motion, run.recorded.rows
         np.savez(
             directory / "truth.npz",

@@ -103,12 +103,11 @@ def _add_measuring(group: argparse._ArgumentGroup) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from rich.console import Console
-
     from inverse_dynamics.bench import measure, page, read_measurement, write_measurement
     from inverse_dynamics.bench.pages import check_pages, update_pages
     from inverse_dynamics.bench.plot import check_figure_name, save_speed_figure
     from inverse_dynamics.files import write_text_whole
+    from inverse_dynamics.screen import Screen
 
     # Before anything is measured: that may take ten minutes.
     _check_outputs(arguments)
@@ -120,7 +119,7 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.source is not None:
         result = read_measurement(arguments.source)
     else:
-        with Console(stderr=True).status("measuring; keep the machine quiet"):
+        with Screen(stderr=True).status("measuring; keep the machine quiet"):
             result = measure(
                 repetitions=arguments.repetitions or _REPETITIONS,
                 seconds=arguments.seconds or _SECONDS,
@@ -146,7 +145,9 @@ def _check_outputs(arguments: argparse.Namespace) -> None:
         file: Path | None = getattr(arguments, option.removeprefix("--"))
         if file is None:
             continue
-        check_output_file(file, overwrite=arguments.overwrite, option=option)
+        # --json writes again what --from has read: the same file may be meant.
+        inputs = [arguments.source] if option != "--json" else []
+        check_output_file(file, overwrite=arguments.overwrite, option=option, inputs=inputs)
         other = others.setdefault(file.resolve(), option)
         if other != option:
             raise OutputError(
@@ -171,13 +172,13 @@ def _check_measuring(arguments: argparse.Namespace) -> None:
 
 
 def _print(result: Measurement) -> None:
-    from rich.console import Console
     from rich.markdown import Markdown
 
     from inverse_dynamics.bench import page
+    from inverse_dynamics.screen import Screen
 
     # Whole figures on a narrow screen too, if need be by scrolling.
-    Console(highlight=False, width=max(120, Console().width)).print(Markdown(page(result)))
+    Screen(soft_wrap=False, width=max(120, Screen().width)).print(Markdown(page(result)))
 
 
 def _count(text: str) -> int:

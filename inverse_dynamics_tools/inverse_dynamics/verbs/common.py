@@ -89,10 +89,11 @@ def parameter(text: str) -> tuple[str, Parameter]:
 @contextmanager
 def progress_bar() -> Iterator[Progress]:
     """A bar per kind of work, on stderr, gone at the end; none where stderr isn't a terminal."""
-    from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-    console = Console(stderr=True)
+    from inverse_dynamics.screen import Screen
+
+    console = Screen(stderr=True)
     with Progress(
         TextColumn("{task.description:<16}"),
         BarColumn(),

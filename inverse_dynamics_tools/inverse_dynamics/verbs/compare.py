@@ -51,7 +51,9 @@ def add_parser(
         "--out", metavar="DIR", type=Path, help="where figure and page go (default: only the table)"
     )
     parser.add_argument(
-        "--overwrite", action="store_true", help="replace an older result in that directory"
+        "--overwrite",
+        action="store_true",
+        help="replace an older result in that directory, unless it holds other files too",
     )
     return parser
 
@@ -59,12 +61,17 @@ def add_parser(
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.comparison import compare
-    from inverse_dynamics.comparison_results import MARK, write_comparison
+    from inverse_dynamics.comparison_results import CONTENTS, write_comparison
     from inverse_dynamics.files import check_output_directory
     from inverse_dynamics.results import read_evaluation
 
     if arguments.out is not None:
-        check_output_directory(arguments.out, overwrite=arguments.overwrite, mark=MARK)
+        check_output_directory(
+            arguments.out,
+            overwrite=arguments.overwrite,
+            contents=CONTENTS,
+            inputs=arguments.runs,
+        )
     comparison = compare([read_evaluation(run) for run in arguments.runs], arguments.labels)
     if arguments.out is not None:
         write_comparison(comparison, arguments.out, overwrite=arguments.overwrite)
@@ -72,11 +79,10 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _print(comparison: Comparison, out: Path | None) -> None:
-    from rich.console import Console
-
+    from inverse_dynamics.screen import Screen
     from inverse_dynamics.tables import comparison_table
 
-    console = Console(highlight=False, markup=False, soft_wrap=True)
+    console = Screen()
     console.print(comparison_table(comparison))
     if out is not None:
         console.print(f"figure         {out / 'comparison.png'} (.svg, .pdf)")

@@ -58,6 +58,7 @@ def add_parser(
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.public_recordings import data_directory, fetch_recordings
+    from inverse_dynamics.screen import Screen
 
     directory = arguments.out or data_directory()
     if arguments.dry_run:
@@ -68,22 +69,26 @@ def run(arguments: argparse.Namespace) -> None:
             directory,
             source=arguments.source,
             overwrite=arguments.overwrite,
-            say=lambda text: print(text, flush=True),
+            say=Screen().print,
             progress=progress,
         )
 
 
 def _print_plan(directory: Path) -> None:
     from inverse_dynamics.public_recordings import is_intact, public_recordings
+    from inverse_dynamics.screen import Screen
 
+    screen = Screen()
     table = public_recordings()
-    print(f"{table.repository}, commit {table.commit}, license {table.license}")
+    screen.print(f"{table.repository}, commit {table.commit}, license {table.license}")
     missing = 0
     for recording in table.recordings:
         place = directory / "bags" / recording.name
         there = is_intact(recording, place)
         missing += 0 if there else recording.size
-        print(f"{place}: {'already there and intact' if there else 'to be fetched'}")
+        screen.print(f"{place}: {'already there and intact' if there else 'to be fetched'}")
         for file in recording.files:
-            print(f"  {file.size:>9} bytes  {file.source}\n             SHA-256 {file.sha256}")
-    print(f"to fetch: {missing / 1e6:.2f} MB; nothing was fetched")
+            screen.print(
+                f"  {file.size:>9} bytes  {file.source}\n             SHA-256 {file.sha256}"
+            )
+    screen.print(f"to fetch: {missing / 1e6:.2f} MB; nothing was fetched")

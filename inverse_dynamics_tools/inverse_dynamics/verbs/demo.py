@@ -11,9 +11,8 @@ from inverse_dynamics.verbs.common import progress_bar
 from inverse_dynamics.verbs.options import add_verb
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from inverse_dynamics.demo import Demo
+    from inverse_dynamics.screen import Screen
 
 _EPILOG = """\
 examples:
@@ -61,11 +60,10 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from rich.console import Console
-
     from inverse_dynamics.demo import find_recordings, run_demo
+    from inverse_dynamics.screen import Screen
 
-    console = Console(highlight=False, markup=False, soft_wrap=True)
+    console = Screen()
     with progress_bar() as progress:
         demo = run_demo(
             arguments.out,
@@ -79,7 +77,7 @@ def run(arguments: argparse.Namespace) -> None:
     _print(demo, console)
 
 
-def _print(demo: Demo, console: Console) -> None:
+def _print(demo: Demo, console: Screen) -> None:
     from inverse_dynamics.demo import TITLES
     from inverse_dynamics.tables import comparison_table, mean_table
 

@@ -48,6 +48,9 @@ results, written whole or not at all:
   plotjuggler.xml         layout for PlotJuggler: `plotjuggler --layout plotjuggler.xml`
   series.npz              time, q, qd, qdd, effort (as recorded), measured, computed, for numpy.load()
   evaluation.json         what was assumed: filter, messages left out, model, what effort means
+
+A piece of a compressed recording may unpack to 256 MB, or to 50 times its size; the environment
+variable IDS_UNPACK_LIMIT_MB sets another limit.
 """
 
 
@@ -80,7 +83,9 @@ def add_parser(
         help="where results go (default: BAG_ROBOT in the working directory)",
     )
     parser.add_argument(
-        "--overwrite", action="store_true", help="replace an older result in that directory"
+        "--overwrite",
+        action="store_true",
+        help="replace an older result in that directory, unless it holds other files too",
     )
     parser.add_argument(
         "--storage",
@@ -131,16 +136,16 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
+    from inverse_dynamics.evaluation import evaluate
     from inverse_dynamics.files import check_output_directory
+    from inverse_dynamics.results import CONTENTS, write_evaluation
     from inverse_dynamics.robots import load_robot
 
     robot = load_robot(arguments.robot)
     out = arguments.out or Path(f"{arguments.bag.absolute().stem}_{robot.name}")
-    mark = "evaluation.json"
-    check_output_directory(out, overwrite=arguments.overwrite, mark=mark)  # before the work
-
-    from inverse_dynamics.evaluation import evaluate
-    from inverse_dynamics.results import write_evaluation
+    inputs = (arguments.bag, arguments.urdf, *robot.files)
+    # Before the work.
+    check_output_directory(out, overwrite=arguments.overwrite, contents=CONTENTS, inputs=inputs)
 
     with progress_bar() as progress:
         evaluation = evaluate(
@@ -166,11 +171,10 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _print(evaluation: Evaluation, out: Path, seconds: dict[str, float]) -> None:
-    from rich.console import Console
-
+    from inverse_dynamics.screen import Screen
     from inverse_dynamics.tables import error_table
 
-    console = Console(highlight=False, markup=False, soft_wrap=True)
+    console = Screen()
     robot, log = evaluation.robot, evaluation.log
     console.print(robot.description or robot.name, style="bold")
     friction = "" if robot.friction else ", friction left out"

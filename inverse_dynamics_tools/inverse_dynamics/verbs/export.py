@@ -59,18 +59,21 @@ def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.exports import check_pyarrow, export_series
     from inverse_dynamics.files import check_output_file
-    from inverse_dynamics.results import read_evaluation
+    from inverse_dynamics.results import CONTENTS, read_evaluation
+    from inverse_dynamics.screen import Screen
 
     check_pyarrow()
     files = _files(arguments)
     for file in files:  # before the work
-        check_output_file(file, overwrite=arguments.overwrite)
+        check_output_file(
+            file, overwrite=arguments.overwrite, inputs=arguments.runs, results=CONTENTS
+        )
     with progress_bar() as progress:
         for directory, file in zip(arguments.runs, files, strict=True):
             evaluation = read_evaluation(directory)
             export_series(evaluation, file, overwrite=arguments.overwrite, progress=progress)
     for file in files:
-        print(file)
+        Screen().print(str(file))
 
 
 def _files(arguments: argparse.Namespace) -> list[Path]:

@@ -50,9 +50,12 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.errors import UserError
     from inverse_dynamics.files import check_output_file
     from inverse_dynamics.report import report_run, write_page
-    from inverse_dynamics.results import read_evaluation
+    from inverse_dynamics.results import CONTENTS, read_evaluation
+    from inverse_dynamics.screen import Screen
 
-    check_output_file(arguments.out, overwrite=arguments.overwrite)
+    check_output_file(
+        arguments.out, overwrite=arguments.overwrite, inputs=arguments.runs, results=CONTENTS
+    )
     labels = arguments.labels or [""] * len(arguments.runs)
     if len(labels) != len(arguments.runs):
         raise UserError(f"--labels: expected {len(arguments.runs)} names, got {len(labels)}")
@@ -62,4 +65,4 @@ def run(arguments: argparse.Namespace) -> None:
     ]
     title = arguments.title or f"Measured and computed torques: {', '.join(r.title for r in runs)}"
     write_page(arguments.out, title, runs)
-    print(arguments.out)
+    Screen().print(str(arguments.out))

@@ -45,8 +45,9 @@ def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     if arguments.plugins:
         from inverse_dynamics import _core
+        from inverse_dynamics.screen import Screen
 
-        print("\n".join(_core.available_solvers()))
+        Screen().print("\n".join(_core.available_solvers()))
     elif arguments.robot:
         _show(arguments.robot)
     else:
@@ -61,10 +62,11 @@ def _list() -> None:
 
 def _print_rows(rows: dict[str, str]) -> None:
     """A key and a text a line; lines stay whole, so that paths can be copied. No text: no line."""
-    from rich.console import Console
     from rich.text import Text
 
-    console = Console(highlight=False, soft_wrap=True)
+    from inverse_dynamics.screen import Screen
+
+    console = Screen()
     width = max(map(len, rows), default=0) + 2
     for key, text in rows.items():
         if text:

@@ -172,9 +172,13 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.robots import load_robot
 
     robot = load_robot(arguments.robot)
+    from inverse_dynamics.simulation.writer import CONTENTS
+
+    # Before the work.
+    inputs = (arguments.trajectory, *robot.files)
     check_output_directory(
-        arguments.out, overwrite=arguments.overwrite, mark="simulation.yaml"
-    )  # before the work
+        arguments.out, overwrite=arguments.overwrite, contents=CONTENTS, inputs=inputs
+    )
 
     from inverse_dynamics.simulation import MOUNTS, NOISE, QUANTISATION, simulate, write_run
     from inverse_dynamics.simulation.sensors import EPOCH, Sensors
@@ -216,9 +220,9 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _print(result: SimulatedRun, out: Path) -> None:
-    from rich.console import Console
+    from inverse_dynamics.screen import Screen
 
-    console = Console(highlight=False, markup=False, soft_wrap=True)
+    console = Screen()
     settings, log = result.settings, result.log
     excitation = (
         ""

@@ -72,12 +72,11 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.robots import load_robot, with_changes
 
     robot = with_changes(load_robot(arguments.robot), **robot_changes(arguments))
-    check_output(arguments.trajectory, arguments.out, overwrite=arguments.overwrite)
-
-    from rich.console import Console
+    check_output(arguments.trajectory, arguments.out, robot, overwrite=arguments.overwrite)
 
     from inverse_dynamics.feed_forward import trajectory_torques
     from inverse_dynamics.feed_forward_files import write_trajectory_torques
+    from inverse_dynamics.screen import Screen
     from inverse_dynamics.solvers import description_notes
     from inverse_dynamics.tables import load_table
 
@@ -91,7 +90,7 @@ def run(arguments: argparse.Namespace) -> None:
 
     if arguments.urdf is not None:
         notes = (*notes, *description_notes(robot, "where limits are from"))
-    console = Console(highlight=False, markup=False, soft_wrap=True)
+    console = Screen()
     console.print(robot.description or robot.name, style="bold")
     console.print(f"solver        {robot.plugin}{'' if robot.friction else ', friction left out'}")
     console.print(

@@ -47,11 +47,14 @@ def add_parser(
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.files import check_output_file
-    from inverse_dynamics.results import read_evaluation
+    from inverse_dynamics.results import CONTENTS, read_evaluation
+    from inverse_dynamics.screen import Screen
     from inverse_dynamics.video import write_video
 
     out = arguments.out or Path(f"{arguments.evaluation.absolute().name}.gif")
-    check_output_file(out, overwrite=arguments.overwrite)
+    check_output_file(
+        out, overwrite=arguments.overwrite, inputs=[arguments.evaluation], results=CONTENTS
+    )
     with progress_bar() as progress:
         write_video(
             read_evaluation(arguments.evaluation),
@@ -60,4 +63,4 @@ def run(arguments: argparse.Namespace) -> None:
             seconds=arguments.seconds,
             progress=progress,
         )
-    print(out)
+    Screen().print(str(out))

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A signal before and after each step by which a result is written: the old or the new one is there.
+
+A program of its own forks a run for each step, so that SIGKILL is as real as Ctrl-C.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from inverse_dynamics import replacement
+
+# Writes a result again and again, with a signal before (even) or after (odd) the k-th system call that
+# changes the file system, until no step is left; a line of JSON for each.
+PROGRAM = """
+import json, os, shutil, signal, sys
+from pathlib import Path
+from inverse_dynamics import cli, files, replacement
+from inverse_dynamics.verbs import robots
+
+number, exchange, kind = int(sys.argv[1]), sys.argv[2] == "exchange", sys.argv[3]
+RESULT = files.Contents("mark", ("mark", "data"))
+target = Path("result")
+step, signalled = 0, False
+
+def injected(function, at):
+    def call(*arguments, **options):
+        global step, signalled
+        for when in (0, 1):
+            if when:
+                result = function(*arguments, **options)
+            if step == at:
+                signalled = True
+                os.kill(os.getpid(), number)
+            step += 1
+        return result
+    return call
+
+def write(text):
+    if kind == "file":
+        with files.file_written_whole(target) as file:
+            file.write_text(text)
+        return
+    with files.written_whole(target, contents=RESULT, overwrite=True) as directory:
+        (directory / "data").write_text(text)
+        (directory / "mark").write_text(text)
+
+def run(at):
+    for name in ("mkdir", "rename", "replace", "rmdir", "unlink", "fsync", "open"):
+        setattr(os, name, injected(getattr(os, name), at))
+    if hasattr(replacement, "_exchange"):
+        real = replacement._exchange
+        replacement._exchange = injected(real if exchange else (lambda *_: False), at)
+    robots.run = lambda _: write("new")
+    code = cli.main(["robots"])
+    os._exit(code if signalled else 99)
+
+def found():
+    if not target.exists():
+        return None
+    if kind == "file":
+        return [target.read_text()]
+    return sorted(file.read_text() for file in target.iterdir())
+
+cli.make_parser()  # imports its modules once
+for at in range(1000):
+    write("old")
+    read, written = os.pipe()
+    child = os.fork()
+    if child == 0:
+        os.dup2(written, 2)
+        run(at)
+    os.close(written)
+    text = os.fdopen(read).read()
+    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    if code == 99:
+        break
+    state = {"at": at, "code": code, "text": text, "found": found(), "left": sorted(os.listdir("."))}
+    replacement.restore_interrupted(target.absolute())
+    state["next"], state["left_next"] = found(), sorted(os.listdir("."))
+    print(json.dumps(state), flush=True)
+"""
+
+
+def interrupted_runs(directory, number, exchange, kind):
+    result = subprocess.run(
+        [sys.executable, "-c", PROGRAM, str(int(number)), exchange, kind],
+        cwd=directory,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+    )
+    assert result.returncode == 0, result.stderr
+    return [json.loads(line) for line in result.stdout.splitlines()]
+
+
+def is_whole(content, kind):
+    return content in ([["old"], ["new"]] if kind == "file" else [["old"] * 2, ["new"] * 2])
+
+
+WAYS = [("exchange", "directory"), ("two renames", "directory"), ("exchange", "file")]
+
+
+@pytest.mark.parametrize(("exchange", "kind"), WAYS)
+@pytest.mark.parametrize("number", replacement.STOPPING)
+def test_a_signal_at_any_step_leaves_the_old_or_the_new_result(tmp_path, number, exchange, kind):
+    runs = interrupted_runs(tmp_path, number, exchange, kind)
+    assert len(runs) >= 20
+    for run in runs:
+        assert is_whole(run["found"], kind), run
+        assert run["code"] == 128 + number, run
+        if "new" in run["found"]:
+            assert run["text"].endswith("; written, whole: result\n"), run
+        else:
+            assert run["text"].endswith("; nothing was written; as it was before: result\n"), run
+        assert run["left"] == ["result"], run
+    assert {run["found"][0] for run in runs} == {"old", "new"}
+
+
+@pytest.mark.parametrize(("exchange", "kind"), WAYS)
+def test_a_run_killed_at_any_step_is_tidied_up_by_the_next(tmp_path, exchange, kind):
+    runs = interrupted_runs(tmp_path, signal.SIGKILL, exchange, kind)
+    assert len(runs) >= 20
+    missing = [run for run in runs if not is_whole(run["found"], kind)]
+    # Between two renames only, where directories can't be exchanged.
+    assert bool(missing) == (exchange == "two renames")
+    for run in runs:
+        assert run["code"] == -signal.SIGKILL
+        assert run["found"] is None or is_whole(run["found"], kind), run
+        assert is_whole(run["next"], kind), run
+        assert run["left_next"] == ["result"], run
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="renameat2 is Linux's")
+def test_two_directories_are_exchanged_in_one_step(tmp_path):
+    for name in ("one", "other"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / name).touch()
+    if not replacement._exchange(tmp_path / "one", tmp_path / "other"):
+        pytest.skip("this file system can't")
+    assert os.listdir(tmp_path / "one") == ["other"]
+    assert os.listdir(tmp_path / "other") == ["one"]
+
+
+def test_an_exchange_that_fails_is_an_error(tmp_path):
+    (tmp_path / "one").mkdir()
+    with pytest.raises(FileNotFoundError):
+        replacement._exchange(tmp_path / "one", tmp_path / "missing")
+
+
+def test_a_failure_between_two_renames_puts_the_old_result_back(tmp_path, monkeypatch):
+    for name in ("new", "target"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / name).touch()
+    rename = os.rename
+
+    def fail_for_new(one, other):
+        if str(one).endswith("new"):
+            raise OSError(28 if calls else 39, "no")
+        calls.append(1)
+        rename(one, other)
+
+    calls = []
+    monkeypatch.setattr(replacement, "_exchange", lambda *_: False)
+    monkeypatch.setattr(os, "rename", fail_for_new)
+    with pytest.raises(OSError, match="no"):
+        replacement.put_directory(
+            tmp_path / "new", tmp_path / "target", tmp_path / "old", overwrite=True
+        )
+    assert os.listdir(tmp_path / "target") == ["target"]
