@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -64,6 +65,23 @@ def write_messages(
             raw = STORE.serialize_cdr(message, message_type)
             writer.write(connection, (k + 1) * 1_000_000, raw)
     return path
+
+
+def damaged(content: bytes, count: int, seed: int = 0) -> Iterator[bytes]:
+    """The content with bytes replaced, left out or put in a second time; the same for the same seed."""
+    random = np.random.default_rng(seed)
+    for _ in range(count):
+        changed = bytearray(content)
+        for _ in range(random.integers(1, 8)):
+            place, end = (int(k) for k in np.sort(random.integers(0, len(changed), 2)))
+            kind = random.integers(3)
+            if kind == 0:
+                changed[place] = random.integers(256)
+            elif kind == 1:
+                del changed[place : min(end, place + 20)]
+            else:
+                changed[place:place] = changed[place : min(end, place + 50)]
+        yield bytes(changed)
 
 
 @pytest.fixture(scope="session")

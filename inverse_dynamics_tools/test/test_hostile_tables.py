@@ -6,7 +6,9 @@ from __future__ import annotations
 import re
 import time
 
+import numpy as np
 import pytest
+from conftest import damaged
 
 from inverse_dynamics import read_recording
 from inverse_dynamics.errors import BagError
@@ -96,6 +98,22 @@ def test_hostile_table_is_one_line_with_its_place(tmp_path, name):
     assert text.startswith(f"{file}{expected}")
     assert re.fullmatch(r"[^\x00-\x1f\x7f-\x9f]{1,800}", text)
     assert time.process_time() - start < 10.0  # quadratic work would take hours
+
+
+def test_a_damaged_table_is_read_or_refused_but_never_crashes(tmp_path):
+    file = tmp_path / "motion.csv"
+    rows = "".join(f"{0.01 * k},{0.1 * k},{-1e-3 * k},{k}e2\n" for k in range(30))
+    refused = []
+    for content in damaged((HEADER + rows).encode(), 400):
+        file.write_bytes(content)
+        try:
+            log = read_recording(file, ["a"])
+        except BagError as error:
+            refused.append(str(error))
+        else:
+            assert np.isfinite([log.q, log.qd, log.effort]).all()
+    assert len(refused) > 200
+    assert all(str(file) in text and len(text) < 1000 for text in refused)
 
 
 def test_numbers_in_any_plain_notation_are_read(tmp_path):

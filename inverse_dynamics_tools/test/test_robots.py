@@ -2,6 +2,7 @@
 from pathlib import Path
 
 import pytest
+from conftest import damaged
 
 from inverse_dynamics.ament import PackageNotFoundError
 from inverse_dynamics.errors import RobotError
@@ -178,6 +179,19 @@ def test_four_keys_are_enough(write):
 def test_mistakes_are_found_with_line_and_key(write, line, changed, expected):
     assert line in COMPLETE
     fails(write(COMPLETE.replace(line, changed)), expected)
+
+
+def test_a_damaged_file_is_read_or_refused_but_never_crashes(write):
+    file = write(COMPLETE)
+    refused = []
+    for content in damaged(COMPLETE.encode(), 400):
+        file.write_bytes(content)
+        try:
+            load_robot(file)
+        except RobotError as error:
+            refused.append(str(error))
+    assert len(refused) > 200
+    assert all(str(file) in text and len(text) < 1000 for text in refused)
 
 
 @pytest.mark.parametrize("key", ["schema", "name", "description", "plugin"])
