@@ -437,11 +437,11 @@ const XMLElement& rootElement(tinyxml2::XMLDocument& document, const std::string
                      "well-formed XML", document.ErrorName(), "is the text cut off?");
   }
   const XMLElement& root = *document.RootElement();
-  checkNothingAfter(root);
   if (std::string(root.Name()) != "robot") {
     throw ModelError("URDF:" + std::to_string(root.GetLineNum()), "robot description", "<robot>",
                      "<" + std::string(root.Name()) + ">", "give a URDF");
   }
+  checkNothingAfter(root);
   return root;
 }
 

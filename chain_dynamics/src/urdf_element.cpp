@@ -238,6 +238,10 @@ void UrdfElement::reportName(const std::string& at, const std::string& name, boo
   if (contains(read, name) || contains(others, name) || isOfNamespace(name)) {
     return;
   }
+  if (findings_->isFull()) {  // hostile: don't compare with each known name any more
+    findings_->add(name);
+    return;
+  }
   std::vector<std::string> known = read;
   known.insert(known.end(), others.begin(), others.end());
   const std::string unread =

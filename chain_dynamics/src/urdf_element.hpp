@@ -33,6 +33,9 @@ class Findings {
 
   std::vector<std::string> texts() const;
 
+  /// Whether what is added is only counted.
+  bool isFull() const { return left_out_ > 0; }
+
   /// Whether an element of xacro is among them.
   bool hasXacro() const { return once_.count(kXacro) != 0; }
   static constexpr const char* kXacro = "xacro";
