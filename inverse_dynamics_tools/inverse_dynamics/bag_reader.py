@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     _Message = tuple[Connection, int, bytes]
 
 _BLOCK = 4096  # messages read together
+_LATEST = 2**62  # ns: differences of stamps fit 64 bits
 
 
 class TopicSummary(NamedTuple):
@@ -160,6 +161,13 @@ class BagReader:
         topic, expected = connections[0].topic, sum(c.msgcount for c in connections)
         done = 0
         for messages, received in self._blocks(connections):
+            wrong = (received < 0) | (received > _LATEST)
+            if wrong.any():
+                k = int(wrong.argmax())
+                raise BagError(
+                    f"{self._path}: {topic}, message {done + k + 1}: time of reception: expected 0 to "
+                    f"{_LATEST:.2g} ns, got {received[k]}; was the recording edited? Record it again"
+                )
             done += len(messages)
             if done > expected:
                 break

@@ -163,6 +163,14 @@ SQL = {
     "messages of no topic": ("UPDATE messages SET topic_id = 99", "expected 300 messages, as its"),
     "stamps of words": ("UPDATE messages SET timestamp = 'now'", ""),
     "stamps beyond 64 bits": ("UPDATE messages SET timestamp = 1e30", ""),
+    "a stamp at the end of time": (
+        "UPDATE messages SET timestamp = 9223372036854775807 WHERE id = 7",
+        "message 300: time of reception: expected 0 to 4.6e+18 ns, got 9223372036854775807",
+    ),
+    "a stamp at the beginning of time": (
+        "UPDATE messages SET timestamp = -9223372036854775808 WHERE id = 7",
+        "message 1: time of reception: expected 0 to 4.6e+18 ns, got -9223372036854775808",
+    ),
     "data of words": ("UPDATE messages SET data = 'hello' WHERE id = 7", "messages 1 to 300 can't"),
     "data of numbers": ("UPDATE messages SET data = 7 WHERE id = 7", "messages"),
     "empty data": ("UPDATE messages SET data = x'' WHERE id = 7", "messages 1 to 300 can't be dec"),
