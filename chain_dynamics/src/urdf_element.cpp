@@ -49,7 +49,7 @@ std::string remedyFor(const std::string& text, const std::string& otherwise) {
 // ---------------------------------------------------------------------------------------------
 // Findings
 
-void Findings::add(std::string text) {
+void Findings::add(const std::string& text) {
   if (findings_.size() == kMostFindings) {
     ++left_out_;
     return;
@@ -57,13 +57,13 @@ void Findings::add(std::string text) {
   findings_.push_back({printable(text), 0});
 }
 
-void Findings::addOnce(const std::string& key, std::string text) {
+void Findings::addOnce(const std::string& key, const std::string& text) {
   const auto [found, inserted] = once_.emplace(key, findings_.size());
   if (!inserted && found->second < findings_.size()) {
     ++findings_[found->second].more;
     return;
   }
-  add(std::move(text));
+  add(text);
 }
 
 std::vector<std::string> Findings::texts() const {
@@ -251,6 +251,7 @@ void UrdfElement::reportName(const std::string& at, const std::string& name, boo
     findings_->add(unread + "; did you mean " + quoted(similar, is_element) + "?");
   } else {
     std::vector<std::string> list;
+    list.reserve(read.size());
     for (const std::string& one : read) {
       list.push_back(quoted(one, is_element));
     }

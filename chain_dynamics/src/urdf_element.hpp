@@ -26,10 +26,10 @@ inline namespace v2 {
 /// Warnings in the order in which they came up, and not too many of them.
 class Findings {
  public:
-  void add(std::string text);
+  void add(const std::string& text);
 
   /// Only the first of a key is kept, with the number of those that follow.
-  void addOnce(const std::string& key, std::string text);
+  void addOnce(const std::string& key, const std::string& text);
 
   std::vector<std::string> texts() const;
 
