@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// The joints of a model file, each with the link that it moves.
+///
+///     const std::vector<JointEntry> joints = readJoints(file.required("joints"), conventions);
+
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/friction.hpp"
+#include "model_file_geometry.hpp"
+#include "yaml_value.hpp"
+
+namespace chain_dynamics {
+inline namespace v2 {
+
+enum class Parameters { kAboutOrigin, kAboutCenterOfMass };
+enum class Level { kTorque, kCurrent };
+
+/// What the head of a file says about its joints.
+struct Conventions {
+  Geometry geometry;
+  Parameters parameters;
+  bool gains = false;  // whether `levels` is there, and so every joint has a drive gain
+  Level parameters_level = Level::kTorque;
+  Level friction_level = Level::kTorque;
+};
+
+/// One joint of a file, with the link it moves. The file's link frame is U, the chain's is E.
+struct JointEntry {
+  std::string where;
+  Joint joint;                                             // placement: E in the previous link's U
+  Transform<double> X_EU = Transform<double>::identity();  // differs from link to link
+  std::vector<LinkParameters> own;                         // in U: one set, or none
+  std::vector<LinkParameters> row;                         // in U: n links, or none
+  std::vector<Eigen::Vector3d> gravity_first_moment;       // in U: one, or none
+  std::vector<FrictionLaw> friction;                       // one, or none
+  std::vector<double> drive_gain;                          // one, or none
+};
+
+/// The joints from root to tip; what one has of row, friction and gravity, all have.
+std::vector<JointEntry> readJoints(const YamlValue& value, const Conventions& conventions);
+
+}  // namespace v2
+}  // namespace chain_dynamics
