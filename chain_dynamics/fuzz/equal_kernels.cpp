@@ -31,25 +31,35 @@ double largestTerm(const Chain& chain, const std::vector<LinkParameters>& links,
                    double linear) {
   const Index n = chain.jointCount();
   std::vector<double> force(static_cast<std::size_t>(n)), moment(force), arm(force);
-  double w = 0, angular = 0;
+  double w = 0, v = 0, angular = 0;
   for (Index i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const Joint& joint = chain.joints()[k];
-    const bool slides = isPrismatic(joint);
-    arm[k] = joint.placement.p.norm() + (slides ? std::abs(x.q[i]) : 0.0);
-    linear += (angular + w * w) * arm[k];
     const double speed = std::abs(x.qd[i]), change = std::abs(x.qdd[i]);
-    (slides ? linear : angular) += change + 2 * w * speed;
-    if (!slides) w += speed;
-    const double turning = angular + w * w;
-    force[k] = links[k].mass * linear + links[k].first_moment.norm() * turning;
-    moment[k] = links[k].first_moment.norm() * linear + links[k].inertia.norm() * turning +
-                joint.rotor_inertia * change;
+    arm[k] = joint.placement.p.norm();
+    if (isPrismatic(joint)) arm[k] += std::abs(x.q[i]);
+    linear += angular * arm[k];
+    v += w * arm[k];
+    if (isPrismatic(joint)) {
+      linear += change + w * speed;
+      v += speed;
+    } else {
+      linear += v * speed;
+      angular += change + w * speed;
+      w += speed;
+    }
+    // f = I a + v x* (I v)
+    const double m = std::abs(links[k].mass), mc = links[k].first_moment.norm(),
+                 I = links[k].inertia.norm();
+    const double momentum = m * v + mc * w;
+    force[k] = m * linear + mc * angular + w * momentum;
+    moment[k] = mc * linear + I * angular + w * (mc * v + I * w) + v * momentum;
+    moment[k] += joint.rotor_inertia * change;
   }
   double largest = 0, outer_force = 0, outer_moment = 0;
   for (Index i = n; i-- > 0;) {
     const auto k = static_cast<std::size_t>(i);
-    outer_force += std::abs(force[k]);
+    outer_force += force[k];
     outer_moment += moment[k];
     largest = std::max({largest, outer_force, outer_moment});
     outer_moment += arm[k] * outer_force;

@@ -4,11 +4,13 @@
 /// Any text as a robot description: a chain that has the torques that Pinocchio computes from the
 /// same text, or an error that says why.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <iostream>
 #include <optional>
+#include <sstream>
 #include <string>
 
 #include "chain_dynamics/urdf.hpp"
@@ -29,14 +31,17 @@ std::optional<Model> read(const std::string& urdf, const UrdfOptions& options) {
 }
 
 /// Whether both readers mean the same: no joint that follows another, which Pinocchio leaves at
-/// zero, and no long way there and back by fixed joints, where much is lost by rounding.
+/// zero, and no origin (`xyz="..."`) far away, where much is lost by rounding on the way there and
+/// back by fixed joints.
 bool isComparable(const std::string& urdf) {
-  constexpr double kLong = 100;
+  constexpr double kFar = 100;
   if (urdf.find("mimic") != std::string::npos) return false;
-  for (const char* at = urdf.c_str(); *at != 0; ++at) {
-    char* end = nullptr;
-    if (std::abs(std::strtod(at, &end)) > kLong) return false;
-    if (end != at) at = end - 1;
+  for (std::size_t at = urdf.find("xyz"); at != std::string::npos; at = urdf.find("xyz", at + 1)) {
+    const std::size_t begin = std::min(urdf.find_first_of("\"'", at), urdf.size() - 1) + 1;
+    std::istringstream numbers(urdf.substr(begin, urdf.find_first_of("\"'", begin) - begin));
+    for (double number = 0; numbers >> number;) {
+      if (std::abs(number) > kFar) return false;
+    }
   }
   return true;
 }
