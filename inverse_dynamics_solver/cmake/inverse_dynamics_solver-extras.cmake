@@ -1,5 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 
+# Keeps a plugin library open once it has been: pluginlib's loader closes libraries when it is destroyed, and an exception
+# that the plugin has thrown needs the plugin's code until it has been handled.
+function(inverse_dynamics_solver_keep_open plugin_library)
+  target_link_options(${plugin_library} PRIVATE LINKER:-z,nodelete)
+endfunction()
+
 # inverse_dynamics_solver_add_plugin([DEPENDENCIES <package>...])
 #
 # Makes the solver library ${PROJECT_NAME} a plugin, and installs and exports it with the headers below include/. The
@@ -18,6 +24,7 @@ macro(inverse_dynamics_solver_add_plugin)
   find_package(pluginlib REQUIRED)
   add_library(${PROJECT_NAME}_plugin SHARED src/plugin.cpp)
   target_link_libraries(${PROJECT_NAME}_plugin PRIVATE ${PROJECT_NAME} pluginlib::pluginlib)
+  inverse_dynamics_solver_keep_open(${PROJECT_NAME}_plugin)
   pluginlib_export_plugin_description_file(inverse_dynamics_solver ${PROJECT_NAME}.xml)
 
   install(DIRECTORY include/ DESTINATION include/${PROJECT_NAME})

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <ament_index_cpp/get_resources.hpp>
-#include <atomic>
+#include <map>
+#include <memory>
 #include <mutex>
 #include <pluginlib/class_loader.hpp>
 #include <utility>
@@ -20,45 +21,28 @@ using PluginLoader = pluginlib::ClassLoader<InverseDynamicsSolver>;
 
 const char* const kSource = "source the workspace that has it: source install/local_setup.bash";
 
-/// True from the moment when static objects are being destroyed.
-std::atomic<bool> exiting{false};
+/// What is installed: package and prefix of each plugin description.
+using Index = std::map<std::string, std::string>;
 
-/// Call it after class_loader was used: what tells of the exit is made after class_loader's static
-/// objects, and hence destroyed before them.
-void watchForExit() {
-  struct Notice {
-    ~Notice() { exiting = true; }
-  };
-  static const Notice kNotice;
+/// pluginlib's loader isn't thread-safe.
+std::mutex& pluginlibMutex() {
+  static std::mutex mutex;
+  return mutex;
 }
 
-/// Owner of an object of class_loader, or of one whose code is in a plugin library.
+/// The process's one loader of the plugins in an index; call it with the mutex locked.
 ///
-/// What lives until the end of the program (in a static variable) isn't destroyed: class_loader's
-/// static objects are gone by then, and with them the plugin libraries.
-template <class T>
-std::shared_ptr<T> ownUnlessExiting(std::unique_ptr<T> object) {
-  return {object.release(), [](T* owned) {
-            if (!exiting) delete owned;
-          }};
-}
-
-/// Loader of the plugins in the index; null if there are none.
-std::shared_ptr<PluginLoader> makePluginLoader() {
-  // Asked first: with an empty index Debian's pluginlib would search for ROS 1 packages, slowly and
-  // loudly.
-  if (ament_index_cpp::get_resources("inverse_dynamics_solver__pluginlib__plugin").empty()) {
-    return nullptr;
+/// Never destroyed, and so its libraries stay open: an exception that a plugin has thrown needs the
+/// plugin's code until it has been handled, and a solver may live until the end of the program.
+PluginLoader& pluginLoader(const Index& index) {
+  static auto& loaders = *new std::map<Index, std::unique_ptr<PluginLoader>>;
+  std::unique_ptr<PluginLoader>& loader = loaders[index];
+  if (loader == nullptr) {
+    loader = std::make_unique<PluginLoader>("inverse_dynamics_solver",
+                                            "inverse_dynamics_solver::InverseDynamicsSolver");
   }
-  return ownUnlessExiting(std::make_unique<PluginLoader>(
-      "inverse_dynamics_solver", "inverse_dynamics_solver::InverseDynamicsSolver"));
+  return *loader;
 }
-
-/// A solver, and the loader that must stay as long as the solver's code is needed.
-struct LoadedSolver {
-  std::shared_ptr<PluginLoader> loader;
-  pluginlib::UniquePtr<InverseDynamicsSolver> solver;  // destroyed before the loader
-};
 
 /// "; did you mean NAME?" with the name nearest to the given one; empty if none is near.
 std::string suggestion(const std::string& name, const std::vector<std::string>& available) {
@@ -80,16 +64,20 @@ std::string suggestion(const std::string& name, const std::vector<std::string>& 
 }  // namespace
 
 struct SolverLoader::Implementation {
-  // Null if no workspace is sourced, or none has a plugin.
-  std::shared_ptr<PluginLoader> loader;
+  PluginLoader* loader = nullptr;  // null: no workspace is sourced, or none has a plugin
   std::vector<std::string> names;
   std::string index_error;
-  std::mutex mutex;  // pluginlib's loader isn't thread-safe
 
   Implementation() {
+    const std::lock_guard<std::mutex> lock(pluginlibMutex());
     try {
-      loader = makePluginLoader();
-      if (loader != nullptr) names = loader->getDeclaredClasses();
+      // Asked first: with an empty index Debian's pluginlib would search for ROS 1 packages, slowly
+      // and loudly.
+      const Index index =
+          ament_index_cpp::get_resources("inverse_dynamics_solver__pluginlib__plugin");
+      if (index.empty()) return;
+      loader = &pluginLoader(index);
+      names = loader->getDeclaredClasses();
       std::sort(names.begin(), names.end());
     } catch (const std::exception& e) {
       index_error = e.what();
@@ -121,34 +109,27 @@ std::vector<std::string> SolverLoader::availableSolvers() const { return impleme
 
 std::string SolverLoader::description(const std::string& name) const {
   implementation_->requireAvailable(name);
-  const std::lock_guard<std::mutex> lock(implementation_->mutex);
+  const std::lock_guard<std::mutex> lock(pluginlibMutex());
   return implementation_->loader->getClassDescription(name);
 }
 
 std::shared_ptr<InverseDynamicsSolver> SolverLoader::load(const std::string& name) const {
   implementation_->requireAvailable(name);
-  const std::lock_guard<std::mutex> lock(implementation_->mutex);
-  const std::shared_ptr<PluginLoader>& loader = implementation_->loader;
+  const std::lock_guard<std::mutex> lock(pluginlibMutex());
+  PluginLoader& loader = *implementation_->loader;
   const std::string where = "solver plugin '" + name + "'";
-  std::string why;
   try {
-    std::unique_ptr<LoadedSolver> made(
-        new LoadedSolver{loader, loader->createUniqueInstance(name)});
-    watchForExit();
-    const std::shared_ptr<LoadedSolver> loaded = ownUnlessExiting(std::move(made));
-    return {loaded, loaded->solver.get()};
+    return loader.createUniqueInstance(name);
   } catch (const pluginlib::CreateClassException&) {
-    why = errorText(
-        where, "its library has no such solver",
-        "class " + loader->getClassType(name) + " made with this version of the interface",
-        "none, or one made with another version",
-        "rebuild package " + loader->getClassPackage(name) + " against this workspace");
+    throw PluginNotFoundException(
+        errorText(where, "its library has no such solver",
+                  "class " + loader.getClassType(name) + " made with this version of the interface",
+                  "none, or one made with another version",
+                  "rebuild package " + loader.getClassPackage(name) + " against this workspace"));
   } catch (const pluginlib::PluginlibException& e) {
-    why = errorText(where, "its library can't be opened", "", e.what(),
-                    "rebuild package " + loader->getClassPackage(name));
+    throw PluginNotFoundException(errorText(where, "its library can't be opened", "", e.what(),
+                                            "rebuild package " + loader.getClassPackage(name)));
   }
-  watchForExit();
-  throw PluginNotFoundException(why);
 }
 
 }  // namespace v2

@@ -83,7 +83,7 @@ TEST(SolverLoader, SolverOutlivesItsLoader) {
   EXPECT_DOUBLE_EQ(second->getGravityVector(kHorizontal)[0], kTorque);
   second.reset();
 
-  // The library can be opened again after it was closed.
+  // And another loader makes another solver.
   const auto third = SolverLoader().load(kPendulum);
   third->initialize(kPendulumParameters);
   EXPECT_DOUBLE_EQ(third->getGravityVector(kHorizontal)[0], kTorque);
@@ -177,6 +177,45 @@ TEST(Pluginlib, LoadsSolversByTheNamesThatUsersKnow) {
   }
   EXPECT_THROW(loader.createUniqueInstance("foreign_solver/OtherInterface"),
                pluginlib::CreateClassException);
+}
+
+/// In a process of its own, where nothing else keeps the plugin open. The loader is gone before the
+/// error is handled.
+TEST(PluginlibDeathTest, ErrorOfASolverOutlivesItsLoaderWhichMayBeMadeAgain) {
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const auto text_of_error = [] {
+    try {
+      pluginlib::ClassLoader<InverseDynamicsSolver> loader(
+          "inverse_dynamics_solver", "inverse_dynamics_solver::InverseDynamicsSolver");
+      loader.createUniqueInstance(kPendulum)->initialize({{"mass", -2.0}, {"length", 0.5}});
+    } catch (const InvalidParameterValueException& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EXIT(
+      {
+        const std::string first = text_of_error();
+        const std::string second = text_of_error();
+        std::exit(!first.empty() && first == second ? 0 : 1);
+      },
+      ::testing::ExitedWithCode(0), "");
+}
+
+TEST(SolverLoader, PluginsOfEachIndexAreTheirOwn) {
+  const SolverLoader here;
+  const char* const prefixes = std::getenv("AMENT_PREFIX_PATH");
+  ASSERT_NE(prefixes, nullptr);
+  const std::string all = prefixes, first = all.substr(0, all.find(':'));  // the pendulum's
+  {
+    const Environment environment("AMENT_PREFIX_PATH",
+                                  (first + all.substr(all.rfind(':'))).c_str());
+    const SolverLoader there;
+    EXPECT_EQ(there.availableSolvers(), std::vector<std::string>{kPendulum});
+    EXPECT_NE(there.load(kPendulum), nullptr);
+    EXPECT_THROW(there.load("two_link_solver/TwoLinkSolver"), PluginNotFoundException);
+  }
+  EXPECT_NE(here.load("two_link_solver/TwoLinkSolver"), nullptr);
 }
 
 }  // namespace

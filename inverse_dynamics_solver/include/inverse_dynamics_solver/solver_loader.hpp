@@ -18,8 +18,9 @@ inline namespace v2 {
 
 /// Finds the solver plugins of the sourced workspaces and makes solvers of them.
 ///
-/// What is installed is looked up once, on construction. A solver keeps its plugin's library open,
-/// so it may outlive the loader. Threads: safe.
+/// What is installed is looked up once, on construction. A plugin's library stays open until the
+/// end of the program, so solvers and the exceptions that they throw may outlive the loader.
+/// Threads: safe.
 ///
 /// pluginlib's own loader works too, with package `inverse_dynamics_solver` and base class
 /// `inverse_dynamics_solver::InverseDynamicsSolver`; then the solver must not outlive it.

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Each error of each plugin as the first thing that a process asks of it: reported, not a crash.
+
+Nothing else keeps the plugin's library open while its exception is on the way to Python.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from inverse_dynamics import available_solvers
+from inverse_dynamics.ament import package_share
+
+KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
+PINOCCHIO = "pinocchio_inverse_dynamics_solver/InverseDynamicsSolverPinocchio"
+RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
+UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
+PANDA = "franka_inria_inverse_dynamics_solver/InverseDynamicsSolverFrankaInria"
+
+ROBOTS = package_share("inverse_dynamics_robots")
+URDF = (ROBOTS / "urdf" / "ur10.urdf").read_text()
+MODEL = (ROBOTS / "models" / "franka_gaz2019_feasible.yaml").read_text()
+
+OF_ALL = {
+    "an unknown parameter": ({"parameters": {"gravty": 1.0}}, "did you mean 'gravity'"),
+    "gravity of the wrong size": (
+        {"parameters": {"gravity": [1.0, 2.0]}},
+        "'gravity': wrong value",
+    ),
+    "a parameter of the wrong type": ({"parameters": {"root": 1.0}}, "'root': wrong type"),
+    "a value that there isn't": ({"attached": "glued"}, "'attached': wrong value"),
+}
+OF_DESCRIPTIONS = {
+    "no description": ({"urdf": ""}, "robot description: missing"),
+    "not XML": ({"urdf": "<robot"}, "robot description"),
+    "not a robot": ({"urdf": "<robot name='x'/>"}, "robot description"),
+    "a negative mass": ({"urdf": URDF.replace('<mass value="', '<mass value="-')}, "mass"),
+    "an unknown tip": ({"tip": "tool9"}, "tool9"),
+    "an unknown root": ({"root": "world9"}, "world9"),
+}
+OF_POOLS = {"no thread": ({"parameters": {"max_threads": 0}}, "'max_threads': wrong value")}
+OF_MODELS = {
+    "an unknown model": ({"model": "ur100"}, "ur100"),
+    "no file": ({"model": "no_such.yaml"}, "no_such.yaml"),
+}
+MODEL_FILES = {
+    "not YAML": "a: [",
+    "empty": "",
+    "not a map": "- 1",
+    "another schema": MODEL.replace("schema: 1", "schema: 99"),
+    "an unknown key": MODEL.replace("\nunits: SI", "\nunites: SI\nunits: SI"),
+    "a missing key": MODEL.replace("\nunits: SI", ""),
+    "a list that is too short": MODEL.replace("gravity: [0, 0, -9.81]", "gravity: [0, 0]"),
+    "text for a number": MODEL.replace("gravity: [0, 0, -9.81]", "gravity: [0, 0, down]"),
+    "a number that isn't finite": MODEL.replace("gravity: [0, 0, -9.81]", "gravity: [0, 0, .inf]"),
+    "an unknown law": MODEL.replace("law: centered_sigmoid", "law: stiction", 1),
+    "other check rows": MODEL.replace("gravity: [0, 0, -9.81]", "gravity: [0, 0, -9.82]"),
+}
+
+
+def cases():
+    for plugin in (KDL, PINOCCHIO, RIGID_BODY):
+        own = OF_POOLS if plugin != RIGID_BODY else OF_MODELS
+        for name, (changed, text) in {**OF_ALL, **OF_DESCRIPTIONS, **own}.items():
+            yield plugin, name, {"urdf": URDF, **changed}, text
+    for plugin in (UR10, PANDA):
+        for name, (changed, text) in OF_ALL.items():
+            yield plugin, name, changed, text
+        yield plugin, "a model", {"model": "ur10_identified"}, "parameter 'model'"
+    yield "no_such/Solver", "an unknown plugin", {}, "not found"
+
+
+def first_error(arguments):
+    """Class and text of the error, raised in a process of its own."""
+    program = (
+        "import json, sys; from inverse_dynamics import Solver, UserError\n"
+        "try:\n    Solver(**json.load(sys.stdin))\n"
+        "except UserError as error:\n    print(type(error).__name__, error)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        input=json.dumps(arguments),
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
+@pytest.mark.parametrize(
+    ("plugin", "arguments", "text"),
+    [pytest.param(p, a, t, id=f"{p.split('/')[0]}: {name}") for p, name, a, t in cases()],
+)
+def test_first_error_is_reported(plugin, arguments, text):
+    if plugin == PINOCCHIO and plugin not in available_solvers():
+        pytest.skip("Pinocchio isn't installed")
+    error = first_error({"plugin": plugin, **arguments})
+    assert error.split(" ", 1)[0].endswith("Error")
+    assert text in error
+
+
+@pytest.mark.parametrize("fault", MODEL_FILES)
+def test_first_error_in_a_model_file_is_reported(fault, tmp_path):
+    file = tmp_path / "model.yaml"
+    file.write_text(MODEL_FILES[fault])
+    assert MODEL_FILES[fault] != MODEL
+    error = first_error({"plugin": RIGID_BODY, "model": str(file)})
+    assert error.startswith(f"InvalidParameterError parameter 'model': {file}")
