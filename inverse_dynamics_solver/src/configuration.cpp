@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "chain_dynamics/error.hpp"
+#include "chain_dynamics/text.hpp"
 #include "chain_dynamics/urdf.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 
@@ -80,8 +81,12 @@ std::function<std::optional<double>(const std::string&)> lockedPositions(
 Configuration readConfiguration(const Parameters& parameters, const std::string& param_namespace,
                                 const std::string& robot_description) {
   Configuration configuration;
-  configuration.parameters = parameters;
+  const auto asked = std::make_shared<std::set<std::string>>();
+  configuration.asked = asked;
+  configuration.parameters =
+      parameters.watched([asked](const std::string& name) { asked->insert(name); });
   configuration.param_namespace = param_namespace;
+  asked->insert("robot_description");  // known, where the argument is given too
   configuration.robot_description =
       robot_description.empty() ? parameters.get<std::string>("robot_description").value_or("")
                                 : robot_description;
@@ -90,6 +95,7 @@ Configuration readConfiguration(const Parameters& parameters, const std::string&
   configuration.tip = configuration.get<std::string>("tip").value_or("");
   configuration.allow_massless = configuration.get<bool>("allow_massless").value_or(false);
   configuration.friction = configuration.get<bool>("friction").value_or(true);
+  configuration.urdf_friction = configuration.get<bool>("urdf_friction").value_or(false);
   readGravity(configuration);
   readAttached(configuration);
   readBatchThreads(configuration);
@@ -116,6 +122,30 @@ chain_dynamics::Chain chainFromDescription(const Configuration& configuration) {
   } catch (const chain_dynamics::ModelError& e) {
     throw InvalidRobotDescriptionException(std::string("robot description: ") + e.what());
   }
+}
+
+DescriptionFriction descriptionFriction(const Configuration& configuration,
+                                        const chain_dynamics::Chain& chain) {
+  DescriptionFriction result;
+  if (!configuration.friction) return result;
+
+  std::vector<std::string> stated;  // joints
+  for (const chain_dynamics::Joint& joint : chain.joints()) {
+    if (joint.damping != 0.0 || joint.friction != 0.0) stated.push_back(joint.name);
+    result.laws.emplace_back(
+        chain_dynamics::ViscousCoulombOffset{joint.damping, joint.friction, 0.0});
+  }
+  if (!configuration.urdf_friction) result.laws.clear();
+  if (configuration.urdf_friction == !stated.empty()) return result;
+
+  const std::string parameter = "'" + configuration.fullName("urdf_friction") + "'";
+  result.warnings.push_back(
+      stated.empty()
+          ? "parameter " + parameter +
+                " has no effect: the robot description states no <dynamics> of a joint"
+          : "<dynamics> of the robot description (joints " + chain_dynamics::joined(stated) +
+                ") isn't used; set parameter " + parameter + " to add its damping and friction");
+  return result;
 }
 
 }  // namespace v2

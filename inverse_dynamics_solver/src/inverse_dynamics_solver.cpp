@@ -60,6 +60,13 @@ void InverseDynamicsSolver::initialize(const Parameters& parameters,
       readConfiguration(parameters, param_namespace, robot_description);
   JointInfo info = configure(configuration);
 
+  // The solver has changed; one that hasn't refused unknown parameters itself can't go back.
+  initialized_ = false;
+  configuration.rejectOthers();
+  for (std::string& warning : configuration.unknownParameters()) {
+    info.warnings.push_back(std::move(warning));
+  }
+
   // Nothing below can fail.
   info_ = std::move(info);
   batch_threads_ = configuration.batch_threads;

@@ -57,24 +57,50 @@ std::optional<T> convert(const ParameterValue& value) {
 
 std::string typeName(const ParameterValue& value) { return kTypeNames[value.index()]; }
 
-Parameters::Parameters(std::map<std::string, ParameterValue> values)
-    : find_([shared = std::make_shared<const std::map<std::string, ParameterValue>>(
-                 std::move(values))](const std::string& name) -> std::optional<ParameterValue> {
-        const auto found = shared->find(name);
-        if (found == shared->end()) return std::nullopt;
-        return found->second;
-      }) {}
+Parameters::Parameters(std::map<std::string, ParameterValue> values) {
+  const auto shared =
+      std::make_shared<const std::map<std::string, ParameterValue>>(std::move(values));
+  find_ = [shared](const std::string& name) -> std::optional<ParameterValue> {
+    const auto found = shared->find(name);
+    if (found == shared->end()) return std::nullopt;
+    return found->second;
+  };
+  names_ = [shared] {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : *shared) names.push_back(name);
+    return names;
+  };
+}
 
 Parameters::Parameters(std::initializer_list<std::pair<const std::string, ParameterValue>> values)
     : Parameters(std::map<std::string, ParameterValue>(values)) {}
 
 Parameters Parameters::watched(std::function<void(const std::string& name)> asked) const {
-  Parameters result;
+  Parameters result = *this;
   result.find_ = [all = *this, asked = std::move(asked)](const std::string& name) {
     asked(name);
     return all.find(name);
   };
   return result;
+}
+
+Parameters Parameters::strict() const {
+  if (!names_) {
+    throw InvalidParameterValueException(errorText(
+        "parameters", "unknown names can't be refused", "a source that can list its parameters",
+        "one that only answers by name",
+        "give a node's parameters interface, a map or YAML, or initialize without strict()"));
+  }
+  Parameters result = *this;
+  result.strict_ = true;
+  return result;
+}
+
+std::vector<std::string> Parameters::names() const {
+  std::vector<std::string> names = names_ ? names_() : std::vector<std::string>();
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
 }
 
 std::optional<ParameterValue> Parameters::find(const std::string& name) const {

@@ -15,9 +15,13 @@ auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
                                                          workspaceMaker(chain));
   const bool inertia_is_physical = chain_dynamics::Model(chain).inertiaIsPhysical();
   JointInfo info{chain.jointNames(), chain.warnings()};
+  DescriptionFriction friction = descriptionFriction(configuration, chain);
+  info.warnings.insert(info.warnings.end(), friction.warnings.begin(), friction.warnings.end());
+  configuration.rejectOthers();
 
   // Nothing below can fail.
   pool_ = std::move(pool);
+  friction_ = std::move(friction.laws);
   inertia_is_physical_ = inertia_is_physical;
   return info;
 }
@@ -35,6 +39,15 @@ void PooledSolver::computeGravityVector(const ConstVectorRef& q, VectorRef g) co
   pool_->acquire()->gravityVector(q, g);
 }
 
+void PooledSolver::computeFriction(const ConstVectorRef&, const ConstVectorRef& qd,
+                                   VectorRef f) const {
+  if (friction_.empty()) {
+    f.setZero();
+  } else {
+    chain_dynamics::frictionVector(friction_, qd, f);
+  }
+}
+
 void PooledSolver::computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd,
                                             MatrixRef H, VectorRef c, VectorRef g) const {
   const auto workspace = pool_->acquire();
@@ -46,6 +59,10 @@ void PooledSolver::computeDynamicComponents(const ConstVectorRef& q, const Const
 void PooledSolver::computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
                                   const ConstVectorRef& qdd, VectorRef tau) const {
   pool_->acquire()->torques(q, qd, qdd, tau);
+  for (std::size_t j = 0; j < friction_.size(); ++j) {
+    const auto i = static_cast<Eigen::Index>(j);
+    tau[i] += chain_dynamics::friction(friction_[j], qd[i]);
+  }
 }
 
 }  // namespace v2

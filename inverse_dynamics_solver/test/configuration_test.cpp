@@ -45,6 +45,7 @@ TEST(Configuration, HasDefaults) {
   EXPECT_FALSE(configuration.gravity_given);
   EXPECT_TRUE(configuration.lump_attached);
   EXPECT_TRUE(configuration.friction);
+  EXPECT_FALSE(configuration.urdf_friction);
   EXPECT_EQ(configuration.batch_threads, 1);
   EXPECT_EQ(configuration.locked_position("finger"), std::nullopt);
 }

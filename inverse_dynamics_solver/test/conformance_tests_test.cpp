@@ -51,6 +51,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"state is shared", "ManyThreadsGetTheNumbersOfOne"},
         Fault{"NaN is swallowed", "NanGoesToEveryEntryThatDependsOnIt"},
         Fault{"members set before checks", "FailedInitializeLeavesTheSolverAsItWas"},
+        Fault{"unknown parameters are refused too late", "UnknownParameterIsAWarningOrARefusal"},
         Fault{"first gravity is kept", "InitializingAgainTakesEffect"},
         Fault{"namespace is ignored", "ParametersAreReadBelowTheNamespace"},
         Fault{"any description will do", "RobotDescriptionComesFromArgumentOrParameter"},

@@ -28,16 +28,22 @@ enum class ParameterType : std::uint8_t {
   PARAMETER_STRING_ARRAY = 9
 };
 
+// In the order of ParameterType.
+using Value = std::variant<std::monostate, bool, std::int64_t, double, std::string,
+                           std::vector<std::uint8_t>, std::vector<bool>, std::vector<std::int64_t>,
+                           std::vector<double>, std::vector<std::string>>;
+
+struct ParameterValue {
+  Value value;
+};
+
 class Parameter {
  public:
-  // In the order of ParameterType.
-  using Value =
-      std::variant<std::monostate, bool, std::int64_t, double, std::string,
-                   std::vector<std::uint8_t>, std::vector<bool>, std::vector<std::int64_t>,
-                   std::vector<double>, std::vector<std::string>>;
+  using Value = stand_in::Value;
 
   Parameter() = default;
   explicit Parameter(Value value) : value_(std::move(value)) {}
+  Parameter(const std::string&, const ParameterValue& value) : value_(value.value) {}
   ParameterType get_type() const { return static_cast<ParameterType>(value_.index()); }
   bool as_bool() const { return std::get<bool>(value_); }
   std::int64_t as_int() const { return std::get<std::int64_t>(value_); }
@@ -58,6 +64,10 @@ class Parameter {
   Value value_;
 };
 
+struct ListParametersResult {
+  std::vector<std::string> names;
+};
+
 class NodeParametersInterface {
  public:
   using SharedPtr = std::shared_ptr<NodeParametersInterface>;
@@ -66,11 +76,15 @@ class NodeParametersInterface {
   virtual bool has_parameter(const std::string& name) const = 0;
   virtual Parameter get_parameter(const std::string& name) const = 0;
   virtual bool get_parameter(const std::string& name, Parameter& parameter) const = 0;
+  virtual ListParametersResult list_parameters(const std::vector<std::string>& prefixes,
+                                               std::uint64_t depth) const = 0;
+  virtual const std::map<std::string, ParameterValue>& get_parameter_overrides() const = 0;
 };
 
 class NodeParameters : public NodeParametersInterface {
  public:
-  std::map<std::string, Parameter::Value> values;
+  std::map<std::string, Parameter::Value> values;   // declared; the monostate: not set
+  std::map<std::string, ParameterValue> overrides;  // set from outside, declared or not
 
   bool has_parameter(const std::string& name) const override { return values.count(name) > 0; }
   Parameter get_parameter(const std::string& name) const override {
@@ -85,17 +99,15 @@ class NodeParameters : public NodeParametersInterface {
     return true;
   }
 
-  struct ListParametersResult {
-    std::vector<std::string> names;
-  };
-  /// Of all depths, and one prefix.
-  ListParametersResult list_parameters(const std::vector<std::string>& prefixes,
-                                       std::uint64_t) const {
+  /// Of all depths and prefixes.
+  ListParametersResult list_parameters(const std::vector<std::string>&,
+                                       std::uint64_t) const override {
     ListParametersResult result;
-    for (const auto& [name, value] : values) {
-      if (name.rfind(prefixes.at(0) + ".", 0) == 0) result.names.push_back(name);
-    }
+    for (const auto& [name, value] : values) result.names.push_back(name);
     return result;
+  }
+  const std::map<std::string, ParameterValue>& get_parameter_overrides() const override {
+    return overrides;
   }
 };
 

@@ -102,6 +102,45 @@ TEST(Parameters, AreReadAtTheMomentOfAskingAndKeepTheNodeAlive) {
   EXPECT_EQ(parameters.get<std::string>("tip"), "tool0");
 }
 
+TEST(Parameters, AreFoundWhereTheyAreSetFromOutsideDeclaredOrNot) {
+  const auto node = std::make_shared<NodeParameters>();
+  node->overrides = {{"ids.tip", {std::string("tool0")}}, {"ids.root", {std::string("world")}}};
+  node->values = {{"ids.root", std::string("base_link")}, {"ids.gravity", std::monostate()}};
+  const NodeParametersInterface::ConstSharedPtr interface = node;
+  const Parameters parameters = interface;
+  EXPECT_EQ(parameters.get<std::string>("ids.tip"), "tool0");
+  EXPECT_EQ(parameters.get<std::string>("ids.root"), "base_link");
+  EXPECT_EQ(parameters.names(), (std::vector<std::string>{"ids.root", "ids.tip"}));
+  EXPECT_TRUE(parameters.isShared());
+}
+
+TEST(Parameters, NameWhatTheyHold) {
+  const Parameters parameters = {{"tip", "tool0"}, {"ids.root", "base_link"}};
+  EXPECT_EQ(parameters.names(), (std::vector<std::string>{"ids.root", "tip"}));
+  EXPECT_FALSE(parameters.isShared());
+  EXPECT_EQ(Parameters::fromYaml("ids: {tip: a, unset: }").names(),
+            std::vector<std::string>{"ids.tip"});
+  EXPECT_TRUE(Parameters().names().empty());
+  EXPECT_TRUE(implicitly(NodeParametersInterface::SharedPtr()).strict().names().empty());
+}
+
+TEST(Parameters, StrictOnesMustBeListed) {
+  EXPECT_FALSE(Parameters({{"tip", "tool0"}}).isStrict());
+  const Parameters strict = Parameters({{"tip", "tool0"}}).strict().watched([](const auto&) {});
+  EXPECT_TRUE(strict.isStrict());
+  EXPECT_EQ(strict.names(), std::vector<std::string>{"tip"});
+
+  const auto node = std::make_shared<MinimalParameters>();
+  node->values = {{"tip", std::string("tool0")}};
+  EXPECT_TRUE(Parameters(node).names().empty());
+  const std::string error =
+      errorOf<InvalidParameterValueException>([&] { Parameters(node).strict(); });
+  EXPECT_EQ(error,
+            "parameters: unknown names can't be refused: expected a source that can list its "
+            "parameters, got one that only answers by name; give a node's parameters interface, a "
+            "map or YAML, or initialize without strict()");
+}
+
 TEST(Parameters, ListOfBytesIsRefused) {
   const auto node = std::make_shared<NodeParameters>();
   node->values = {{"ids.tip", std::vector<std::uint8_t>{1}}};

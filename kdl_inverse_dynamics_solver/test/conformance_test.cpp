@@ -24,7 +24,13 @@ struct KdlUr10 : Kdl {
   static std::string robotDescription() { return textOf(robotsFile("urdf/ur10.urdf")); }
 };
 
+struct KdlPandaWithFriction : Kdl {
+  static std::string robotDescription() { return textOf(robotsFile("urdf/panda.urdf")); }
+  static ParameterMap parameters() { return {{"urdf_friction", true}}; }
+};
+
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Oblique, KdlOblique);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Ur10, KdlUr10);
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaWithFriction, KdlPandaWithFriction);
 
 }  // namespace

@@ -27,7 +27,12 @@ struct PinocchioPanda : Pinocchio {
   static std::string robotDescription() { return description("panda"); }
 };
 
+struct PinocchioPandaWithFriction : PinocchioPanda {
+  static ParameterMap parameters() { return {{"urdf_friction", true}}; }
+};
+
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Oblique, PinocchioOblique);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Panda, PinocchioPanda);
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaWithFriction, PinocchioPandaWithFriction);
 
 }  // namespace

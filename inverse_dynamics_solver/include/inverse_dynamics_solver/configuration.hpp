@@ -5,16 +5,22 @@
 ///     JointInfo MySolver::configure(const Configuration& configuration) {
 ///       auto chain = chainFromDescription(configuration);   // URDF, root, tip, gravity, attached
 ///       auto threads = configuration.get<std::int64_t>("max_threads");   // a parameter of its own
+///       configuration.rejectOthers();                       // all is read, nothing has changed
+///       yet
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/friction.hpp"
 #include "inverse_dynamics_solver/parameters.hpp"
 
 namespace inverse_dynamics_solver {
@@ -32,6 +38,7 @@ inline namespace v2 {
 /// | locked_joints.<joint>         | double    | 0                                           |
 /// | allow_massless                | bool      | false                                       |
 /// | friction                      | bool      | true                                        |
+/// | urdf_friction                 | bool      | false: `<dynamics>` of the URDF isn't used  |
 /// | batch_threads                 | integer   | 1: the library starts no thread             |
 // clang-format on
 struct Configuration {
@@ -58,6 +65,9 @@ struct Configuration {
   /// friction.
   bool friction = true;
 
+  /// Whether `<dynamics damping friction>` of a robot description is used: descriptionFriction().
+  bool urdf_friction = false;
+
   /// Up to how many threads share a large batch, the caller's one of them (1 to 4096).
   std::int64_t batch_threads = 1;
 
@@ -68,6 +78,9 @@ struct Configuration {
   /// All parameters, and the namespace that the ones above were read from.
   Parameters parameters;
   std::string param_namespace;
+
+  /// Names that have been asked for since readConfiguration(): those that the solver knows.
+  std::shared_ptr<const std::set<std::string>> asked = std::make_shared<std::set<std::string>>();
 
   /// Name of a parameter with the namespace, as find() and error texts want it: `ids.max_threads`.
   std::string fullName(const std::string& name) const {
@@ -85,6 +98,19 @@ struct Configuration {
   T require(const std::string& name) const {
     return parameters.require<T>(fullName(name));
   }
+
+  /// A sentence for each parameter below the namespace that is set, but hasn't been asked for.
+  ///
+  /// Without a namespace, a node's own parameters are beside the solver's: there only a name that
+  /// is near to one of the solver's counts.
+  std::vector<std::string> unknownParameters() const;
+
+  /// Where the parameters are strict [Parameters::strict()]: throws InvalidParameterValueException
+  /// if there are unknown ones.
+  ///
+  /// A solver calls it when it has read all of its parameters and changed nothing yet. Otherwise
+  /// such an error leaves it uninitialized, instead of as it was.
+  void rejectOthers() const;
 };
 
 /// Reads and checks the parameters of the table above.
@@ -99,6 +125,19 @@ Configuration readConfiguration(const Parameters& parameters, const std::string&
 /// Throws ParameterUninitializedException: no robot description. InvalidRobotDescriptionException:
 /// not a URDF, no such link, no chain, a joint or link that can't be computed with.
 chain_dynamics::Chain chainFromDescription(const Configuration& configuration);
+
+/// Friction that a robot description states.
+struct DescriptionFriction {
+  /// One law per joint, `f = damping qd + friction sign(qd)`; empty: no friction.
+  std::vector<chain_dynamics::FrictionLaw> laws;
+  /// A sentence if what the description states isn't used, or if it states nothing to use.
+  std::vector<std::string> warnings;
+};
+
+/// The friction of a chain from chainFromDescription(): `<dynamics damping friction>` of its joints
+/// where `urdf_friction` and `friction` are true.
+DescriptionFriction descriptionFriction(const Configuration& configuration,
+                                        const chain_dynamics::Chain& chain);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_solver

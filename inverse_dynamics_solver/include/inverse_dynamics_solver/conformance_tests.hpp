@@ -15,8 +15,9 @@
 /// test/my_solver_conformance_test.cpp PLUGIN my_solver_plugin)`.
 ///
 /// Parts one to four, initialization_tests.hpp, contract_tests.hpp, batch_tests.hpp and
-/// real_time_tests.hpp, are what callers are promised; part five, law_tests.hpp, is physics. A test
-/// that doesn't apply to a solver is skipped and says why.
+/// real_time_tests.hpp, are what callers are promised; part five, law_tests.hpp, is physics; part
+/// six, first_error_tests.hpp, has a process for each error. A test that doesn't apply to a solver
+/// is skipped and says why.
 ///
 /// The plugin is loaded by name, as users do. Random states have a fixed seed, and a failure prints
 /// its state as C++ to be pasted. Tolerances and their reasons stand in solver_fixture.hpp.
@@ -24,6 +25,7 @@
 
 #include "inverse_dynamics_solver/conformance/batch_tests.hpp"
 #include "inverse_dynamics_solver/conformance/contract_tests.hpp"
+#include "inverse_dynamics_solver/conformance/first_error_tests.hpp"
 #include "inverse_dynamics_solver/conformance/initialization_tests.hpp"
 #include "inverse_dynamics_solver/conformance/law_tests.hpp"
 #include "inverse_dynamics_solver/conformance/real_time_tests.hpp"
@@ -33,8 +35,9 @@ namespace inverse_dynamics_solver::conformance {
 REGISTER_TYPED_TEST_SUITE_P(
     SolverConformance,
     // Initialization.
-    FailedInitializeLeavesTheSolverAsItWas, InitializingAgainTakesEffect,
-    ParametersAreReadBelowTheNamespace, RobotDescriptionComesFromArgumentOrParameter,
+    FailedInitializeLeavesTheSolverAsItWas, UnknownParameterIsAWarningOrARefusal,
+    InitializingAgainTakesEffect, ParametersAreReadBelowTheNamespace,
+    RobotDescriptionComesFromArgumentOrParameter,
     // Contract.
     JointNamesAreDistinctAndCounted, ResultsHaveTheSizesOfTheRobotAndAreFinite,
     UninitializedSolverRefusesEveryMethod, WrongSizeIsRefusedNamingArgumentExpectedAndGot,
@@ -53,9 +56,13 @@ REGISTER_TYPED_TEST_SUITE_P(
     FrictionCanBeSwitchedOff, FrictionIsFiniteAtAnyVelocity,
     MotorCurrentsTimesDriveGainsAreTorques);
 
+REGISTER_TYPED_TEST_SUITE_P(SolverAlone, FirstErrorOfAProcessIsReported);
+
 }  // namespace inverse_dynamics_solver::conformance
 
 /// Runs all tests for the solver that `traits` describes, under the name `prefix`.
-#define INVERSE_DYNAMICS_SOLVER_CONFORMANCE(prefix, traits)      \
-  using inverse_dynamics_solver::conformance::SolverConformance; \
-  INSTANTIATE_TYPED_TEST_SUITE_P(prefix, SolverConformance, traits)
+#define INVERSE_DYNAMICS_SOLVER_CONFORMANCE(prefix, traits)          \
+  using inverse_dynamics_solver::conformance::SolverAlone;           \
+  using inverse_dynamics_solver::conformance::SolverConformance;     \
+  INSTANTIATE_TYPED_TEST_SUITE_P(prefix, SolverConformance, traits); \
+  INSTANTIATE_TYPED_TEST_SUITE_P(prefix, SolverAlone, traits)

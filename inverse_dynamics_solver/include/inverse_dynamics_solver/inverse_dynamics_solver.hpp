@@ -58,7 +58,8 @@ class InverseDynamicsSolver {
   InverseDynamicsSolver(const InverseDynamicsSolver&) = delete;
   InverseDynamicsSolver& operator=(const InverseDynamicsSolver&) = delete;
 
-  /// Makes the solver ready, or leaves it as it was.
+  /// Makes the solver ready, or leaves it as it was. A parameter of the namespace that the solver
+  /// doesn't know gives one of warnings(), or is an error [Parameters::strict()].
   ///
   /// @param parameters         a node's parameters interface, a map, or YAML: see parameters.hpp.
   /// @param param_namespace    where the parameters of Configuration stand, for example "ids".
@@ -212,7 +213,8 @@ class InverseDynamicsSolver {
   /// Makes the solver ready for the robot that the configuration names.
   ///
   /// All or nothing: if it throws, the solver must compute as before. Build everything in local
-  /// variables, the result too, and move them into members as the last statements.
+  /// variables, the result too, call configuration.rejectOthers(), and move them into members as
+  /// the last statements.
   virtual JointInfo configure(const Configuration& configuration) = 0;
 
   /// @name What a solver computes

@@ -40,13 +40,22 @@ struct IsParametersInterface<
                    decltype(std::declval<T&>().get_parameter(std::string()).get_type())>>
     : std::true_type {};
 
-/// The value of an object with the methods of rclcpp::Parameter; absent if its type is "not set".
-template <class Parameter>
-std::optional<ParameterValue> valueOf(const std::string& name, const Parameter& parameter);
-
-/// Value of the parameter `name` of such an interface; absent if undeclared or not set.
+/// Value of the parameter `name` of such an interface; absent if not set.
 template <class Interface>
 std::optional<ParameterValue> readParameter(Interface& interface, const std::string& name);
+
+/// Names of all parameters that are set in such an interface.
+template <class Interface>
+std::vector<std::string> setParameters(Interface& interface);
+
+/// True if such an interface has list_parameters(), so that setParameters() can be called.
+template <class T, class = void>
+struct CanList : std::false_type {};
+template <class T>
+struct CanList<
+    T, std::void_t<decltype(std::declval<T&>()
+                                .list_parameters(std::vector<std::string>(), std::uint64_t{0})
+                                .names.begin())>> : std::true_type {};
 
 }  // namespace detail
 
@@ -63,8 +72,10 @@ class Parameters {
   /// The parameters of a ROS 2 node.
   ///
   /// @param interface  any shared_ptr, to const or not, to an object with has_parameter(name) and
-  ///     get_parameter(name) of rclcpp's NodeParametersInterface. A null pointer is no parameter at
-  ///     all.
+  ///     get_parameter(name) of rclcpp's NodeParametersInterface. Where it has list_parameters()
+  ///     and get_parameter_overrides() as well, names() lists what is set, and a parameter that was
+  ///     set from outside (launch file, command line) is found whether the node has declared it or
+  ///     not. A null pointer is no parameter at all.
   template <class Interface,
             class = std::enable_if_t<detail::IsParametersInterface<Interface>::value>>
   Parameters(std::shared_ptr<Interface> interface) {  // NOLINT(google-explicit-constructor)
@@ -72,6 +83,11 @@ class Parameters {
     find_ = [interface](const std::string& name) {
       return detail::readParameter(*interface, name);
     };
+    shared_ = true;
+    names_ = nullptr;
+    if constexpr (detail::CanList<Interface>::value) {
+      names_ = [interface] { return detail::setParameters(*interface); };
+    }
   }
 
   /// The parameters of a map from dotted name to value.
@@ -107,8 +123,25 @@ class Parameters {
   /// The same parameters, which tell each name that is asked for.
   Parameters watched(std::function<void(const std::string& name)> asked) const;
 
+  /// The same parameters, of which a solver must know all: initialize() throws
+  /// InvalidParameterValueException for an unknown name instead of adding a warning.
+  ///
+  /// Throws InvalidParameterValueException: a source that can't list its parameters.
+  Parameters strict() const;
+  bool isStrict() const { return strict_; }
+
+  /// Names of the parameters that are set, sorted; empty if the source can't list them.
+  std::vector<std::string> names() const;
+
+  /// Whether others keep their parameters in the same place: true for a node, which has some of its
+  /// own; false for a map or YAML, which was made for the reader.
+  bool isShared() const { return shared_; }
+
  private:
   std::function<std::optional<ParameterValue>(const std::string&)> find_;
+  std::function<std::vector<std::string>()> names_ = [] { return std::vector<std::string>(); };
+  bool shared_ = false;
+  bool strict_ = false;
 };
 
 /// For error texts: `bool`, `integer`, `double`, `string`, `list of bools`, ...
@@ -132,6 +165,7 @@ enum class ParameterType {
 
 [[noreturn]] void throwUnsupportedType(const std::string& name, int type);
 
+/// The value of an object with the methods of rclcpp::Parameter; absent if its type is "not set".
 template <class Parameter>
 std::optional<ParameterValue> valueOf(const std::string& name, const Parameter& parameter) {
   const int type = static_cast<int>(parameter.get_type());
@@ -170,17 +204,62 @@ struct HasGetInto<T, Parameter,
                                                       std::string(), std::declval<Parameter&>())),
                                                   bool>>> : std::true_type {};
 
+/// True where `get_parameter_overrides()` exists, whose values make a parameter.
+template <class T, class Parameter, class = void>
+struct HasOverrides : std::false_type {};
+template <class T, class Parameter>
+struct HasOverrides<
+    T, Parameter,
+    std::void_t<decltype(Parameter(std::string(),
+                                   std::declval<T&>().get_parameter_overrides().begin()->second))>>
+    : std::true_type {};
+
+/// The parameter `name`; absent if undeclared and not set from outside.
 template <class Interface>
-std::optional<ParameterValue> readParameter(Interface& interface, const std::string& name) {
+auto findParameter(Interface& interface, const std::string& name) {
   using Parameter = std::decay_t<decltype(interface.get_parameter(name))>;
-  if (!interface.has_parameter(name)) return std::nullopt;
+  if (!interface.has_parameter(name)) {
+    if constexpr (HasOverrides<Interface, Parameter>::value) {
+      const auto& overrides = interface.get_parameter_overrides();
+      const auto found = overrides.find(name);
+      if (found != overrides.end()) return std::optional(Parameter(name, found->second));
+    }
+    return std::optional<Parameter>();
+  }
   if constexpr (HasGetInto<Interface, Parameter>::value) {
     Parameter parameter;
-    if (!interface.get_parameter(name, parameter)) return std::nullopt;
-    return valueOf(name, parameter);
+    return interface.get_parameter(name, parameter) ? std::optional<Parameter>(parameter)
+                                                    : std::optional<Parameter>();
   } else {
-    return valueOf(name, interface.get_parameter(name));
+    return std::optional<Parameter>(interface.get_parameter(name));
   }
+}
+
+template <class Interface>
+std::optional<ParameterValue> readParameter(Interface& interface, const std::string& name) {
+  const auto parameter = findParameter(interface, name);
+  return parameter ? valueOf(name, *parameter) : std::nullopt;
+}
+
+template <class Interface>
+std::vector<std::string> setParameters(Interface& interface) {
+  using Parameter = std::decay_t<decltype(interface.get_parameter(std::string()))>;
+  constexpr std::uint64_t kAllDepths = 0;
+  std::vector<std::string> names = interface.list_parameters({}, kAllDepths).names;
+  if constexpr (HasOverrides<Interface, Parameter>::value) {
+    for (const auto& [name, value] : interface.get_parameter_overrides()) names.push_back(name);
+  }
+
+  // A node may have declared a parameter that nobody has set.
+  std::vector<std::string> result;
+  for (const std::string& name : names) {
+    const auto parameter = findParameter(interface, name);
+    const bool is_set =
+        parameter && static_cast<ParameterType>(static_cast<int>(parameter->get_type())) !=
+                         ParameterType::kNotSet;
+    if (is_set) result.push_back(name);
+  }
+  return result;
 }
 
 }  // namespace detail

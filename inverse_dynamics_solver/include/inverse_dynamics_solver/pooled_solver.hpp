@@ -11,6 +11,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "inverse_dynamics_solver/workspace_pool.hpp"
@@ -42,7 +43,7 @@ class Workspace {
 /// Solver of the rigid-body dynamics of the chain between `root` and `tip` of a robot description,
 /// by a library that keeps state: each call borrows a workspace of its own.
 ///
-/// No friction: getFrictionVector() is zero.
+/// Friction: that of the robot description, where the parameter `urdf_friction` is true.
 ///
 /// Parameters: those of Configuration, and below the same namespace `max_threads`: how many threads
 /// may compute at the same time without allocating (see readMaxThreads()). Calls beyond it at the
@@ -62,6 +63,7 @@ class PooledSolver : public InverseDynamicsSolver {
   void computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
                              VectorRef c) const final;
   void computeGravityVector(const ConstVectorRef& q, VectorRef g) const final;
+  void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef f) const final;
   void computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
                                 VectorRef c, VectorRef g) const final;
   void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
@@ -69,6 +71,7 @@ class PooledSolver : public InverseDynamicsSolver {
   bool inertiaIsPhysicalImpl() const final { return inertia_is_physical_; }
 
   std::unique_ptr<WorkspacePool<Workspace>> pool_;
+  std::vector<chain_dynamics::FrictionLaw> friction_;  // empty: none
   bool inertia_is_physical_ = false;
 };
 

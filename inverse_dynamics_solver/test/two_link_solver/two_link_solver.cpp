@@ -32,6 +32,7 @@ auto TwoLinkSolver::configure(const Configuration& configuration) -> JointInfo {
   JointInfo info;
   info.joint_names = {"shoulder", fault == "two joints of one name" ? "shoulder" : "elbow"};
 
+  if (fault != "unknown parameters are refused too late") configuration.rejectOthers();
   friction_ = configuration.friction || fault == "friction can't be switched off";
   if (fault != "first gravity is kept" || !isInitialized()) gravity_ = configuration.gravity;
   if (fault == "another default gravity" && !configuration.gravity_given) gravity_ *= -1.0;

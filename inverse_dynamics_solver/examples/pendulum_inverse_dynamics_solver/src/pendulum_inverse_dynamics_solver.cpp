@@ -17,6 +17,7 @@ auto InverseDynamicsSolverPendulum::configure(const Configuration& configuration
         configuration.fullName("mass") + ", " + configuration.fullName("length"), "wrong value",
         "positive numbers [kg, m]", std::to_string(mass) + ", " + std::to_string(length)));
   }
+  configuration.rejectOthers();
   JointInfo info;
   info.joint_names = {"pivot"};
 

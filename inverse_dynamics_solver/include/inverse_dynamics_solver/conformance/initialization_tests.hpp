@@ -4,6 +4,8 @@
 /// Include conformance_tests.hpp, not this.
 #pragma once
 
+#include <algorithm>
+
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
 
 namespace inverse_dynamics_solver::conformance {
@@ -18,23 +20,31 @@ inline std::vector<Eigen::VectorXd> fingerprint(const InverseDynamicsSolver& sol
   return values;
 }
 
+/// Arguments with which initialize() must throw: what differs from the traits' parameters, and the
+/// robot description.
+template <class Traits>
+std::vector<std::pair<ParameterMap, std::string>> mistakes() {
+  const std::string description = Traits::robotDescription();
+  auto result = Traits::badInitializations();
+  result.push_back({{{"gravity", std::vector<double>{1.0, 2.0}}}, description});
+  result.push_back({{{"gravity", std::string("down")}}, description});
+  result.push_back({{{"friction", std::string("maybe")}}, description});
+  if (!description.empty()) {
+    result.push_back({{}, ""});
+    result.push_back({{}, "<robot name='broken'"});
+    result.push_back({{{"tip", std::string("no_such_link")}}, description});
+    result.push_back({{{"root", std::string("no_such_link")}}, description});
+  }
+  return result;
+}
+
 TYPED_TEST_P(SolverConformance, FailedInitializeLeavesTheSolverAsItWas) {
   const std::vector<State> states = this->randomStates(kStates);
   const std::vector<Eigen::VectorXd> before = fingerprint(*this->solver_, states);
   const std::vector<std::string> names = this->solver_->jointNames();
 
-  // The mistakes, each with other parameters that would change the numbers.
-  const std::string description = TypeParam::robotDescription();
-  auto mistakes = TypeParam::badInitializations();
-  mistakes.push_back({{{"gravity", std::vector<double>{1.0, 2.0}}}, description});
-  mistakes.push_back({{{"gravity", std::string("down")}}, description});
-  mistakes.push_back({{{"friction", std::string("maybe")}}, description});
-  if (!description.empty()) {
-    mistakes.push_back({{}, "<robot name='broken'"});
-    mistakes.push_back({{{"tip", std::string("no_such_link")}}, description});
-    mistakes.push_back({{{"root", std::string("no_such_link")}}, description});
-  }
-  for (const auto& [changed, text] : mistakes) {
+  // Each mistake with other parameters that would change the numbers.
+  for (const auto& [changed, text] : mistakes<TypeParam>()) {
     ParameterMap parameters = TypeParam::parameters();
     parameters["gravity"] = std::vector<double>{1.0, -2.0, 3.0};
     for (const auto& [name, value] : changed) parameters[name] = value;
@@ -50,6 +60,38 @@ TYPED_TEST_P(SolverConformance, FailedInitializeLeavesTheSolverAsItWas) {
     EXPECT_THROW(fresh->initialize(parameters, "", text), Exception);
     EXPECT_FALSE(fresh->isInitialized());
   }
+}
+
+TYPED_TEST_P(SolverConformance, UnknownParameterIsAWarningOrARefusal) {
+  const std::string description = TypeParam::robotDescription();
+  const std::vector<State> states = this->randomStates(kStates);
+  const std::vector<Eigen::VectorXd> before = fingerprint(*this->solver_, states);
+  ParameterMap parameters = TypeParam::parameters();
+  parameters["gravty"] = std::vector<double>{1.0, -2.0, 3.0};
+  const auto warned = this->make(), fresh = this->make();
+  warned->initialize(parameters, "", description);
+  const std::vector<std::string>& warnings = warned->warnings();
+  EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(),
+                          [](const std::string& w) {
+                            return bool(contains(w, {"'gravty'", "'gravity'"}));
+                          }),
+            1);
+
+  // Refused, with other parameters that would change the numbers: nothing has changed.
+  parameters["gravity"] = std::vector<double>{1.0, -2.0, 3.0};
+  for (InverseDynamicsSolver* solver : {this->solver_.get(), fresh.get()}) {
+    const std::string error = errorOf<InvalidParameterValueException>(
+        [&] { solver->initialize(Parameters(parameters).strict(), "", description); });
+    EXPECT_TRUE(contains(error, {"'gravty'", "did you mean 'gravity'?"}));
+  }
+  EXPECT_FALSE(fresh->isInitialized());
+  ASSERT_TRUE(this->solver_->isInitialized());
+  const std::vector<Eigen::VectorXd> after = fingerprint(*this->solver_, states);
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_TRUE(identical(before[i], after[i]));
+
+  // What the solver knows it takes.
+  parameters.erase("gravty");
+  EXPECT_NO_THROW(fresh->initialize(Parameters(parameters).strict(), "", description));
 }
 
 TYPED_TEST_P(SolverConformance, InitializingAgainTakesEffect) {

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Conformance, part six: an error of a plugin that nothing else keeps open. Include
+/// conformance_tests.hpp, not this.
+#pragma once
+
+#include <cstdlib>
+#include <iostream>
+
+#include "inverse_dynamics_solver/conformance/initialization_tests.hpp"
+
+namespace inverse_dynamics_solver::conformance {
+
+/// No fixture: the first solver of the process is that of the test.
+template <class Traits>
+class SolverAlone : public ::testing::Test {};
+TYPED_TEST_SUITE_P(SolverAlone);
+
+/// Ends the process: status 0 if initialize() throws an error with a text, whole.
+///
+/// The solver and its loader are gone before the error is handled.
+[[noreturn]] inline void exitWithFirstError(const char* plugin, const Parameters& parameters,
+                                            const std::string& description) {
+  std::string text;
+  try {
+    SolverLoader().load(plugin)->initialize(parameters, "", description);
+  } catch (const Exception& error) {
+    text = error.what();
+  }
+  std::cerr << text << "\n";
+  std::exit(text.empty() ? 1 : 0);
+}
+
+TYPED_TEST_P(SolverAlone, FirstErrorOfAProcessIsReported) {
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";  // each in a process of its own
+  for (const auto& [changed, description] : mistakes<TypeParam>()) {
+    ParameterMap parameters = TypeParam::parameters();
+    for (const auto& [name, value] : changed) parameters[name] = value;
+    EXPECT_EXIT(exitWithFirstError(TypeParam::kPlugin, parameters, description),
+                ::testing::ExitedWithCode(0), ".");
+  }
+}
+
+}  // namespace inverse_dynamics_solver::conformance

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chain_dynamics/text.hpp"
+#include "inverse_dynamics_solver/configuration.hpp"
+#include "inverse_dynamics_solver/exceptions.hpp"
+
+namespace inverse_dynamics_solver {
+inline namespace v2 {
+namespace {
+
+using chain_dynamics::joined;
+using chain_dynamics::nearestName;
+using Names = std::vector<std::string>;
+
+/// Names below the namespace, without it.
+template <class Container>
+Names below(const Configuration& configuration, const Container& full_names) {
+  const std::string prefix = configuration.fullName("");
+  Names result;
+  for (const std::string& name : full_names) {
+    if (name.rfind(prefix, 0) == 0) result.push_back(name.substr(prefix.size()));
+  }
+  return result;
+}
+
+struct Unknown {
+  Names known, unknown;  // full names
+  Names remedies;        // one per unknown name
+};
+
+Unknown unknownNames(const Configuration& configuration) {
+  const Names known = below(configuration, *configuration.asked);
+  const bool own_only =
+      configuration.param_namespace.empty() && configuration.parameters.isShared();
+  Unknown result;
+  for (const std::string& name : known) result.known.push_back(configuration.fullName(name));
+  for (const std::string& name : below(configuration, configuration.parameters.names())) {
+    const std::string full_name = configuration.fullName(name);
+    const std::string nearest = nearestName(name, known);
+    if (configuration.asked->count(full_name) > 0 || (own_only && nearest.empty())) continue;
+    result.unknown.push_back(full_name);
+    result.remedies.push_back(nearest.empty()
+                                  ? "correct or remove it"
+                                  : "did you mean '" + configuration.fullName(nearest) + "'?");
+  }
+  return result;
+}
+
+}  // namespace
+
+Names Configuration::unknownParameters() const {
+  const Unknown names = unknownNames(*this);
+  Names sentences;
+  for (std::size_t i = 0; i < names.unknown.size(); ++i) {
+    sentences.push_back("parameter '" + names.unknown[i] +
+                        "' isn't used, the solver doesn't know it; " + names.remedies[i]);
+  }
+  return sentences;
+}
+
+void Configuration::rejectOthers() const {
+  if (!parameters.isStrict()) return;
+  const Unknown names = unknownNames(*this);
+  if (names.unknown.empty()) return;
+  throw InvalidParameterValueException(
+      errorText("parameter '" + names.unknown.front() + "'", "the solver doesn't know it",
+                "one of " + joined(names.known), "", names.remedies.front()));
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_solver
