@@ -11,6 +11,8 @@ using chain_dynamics::joined;
 using chain_dynamics::nearestName;
 using Names = std::vector<std::string>;
 
+const std::string kLocked = "locked_joints.";
+
 /// Names below the namespace, without it.
 template <class Container>
 Names below(const Configuration& configuration, const Container& full_names) {
@@ -32,7 +34,12 @@ Unknown unknownNames(const Configuration& configuration) {
   const bool own_only =
       configuration.param_namespace.empty() && configuration.parameters.isShared();
   Unknown result;
-  for (const std::string& name : known) result.known.push_back(configuration.fullName(name));
+  for (const std::string& name : known) {
+    // One entry for all joints that may be locked, which are next to each other in a sorted list.
+    const bool locks = name.rfind(kLocked, 0) == 0;
+    const std::string full_name = configuration.fullName(locks ? kLocked + "JOINT" : name);
+    if (result.known.empty() || result.known.back() != full_name) result.known.push_back(full_name);
+  }
   for (const std::string& name : below(configuration, configuration.parameters.names())) {
     const std::string full_name = configuration.fullName(name);
     const std::string nearest = nearestName(name, known);

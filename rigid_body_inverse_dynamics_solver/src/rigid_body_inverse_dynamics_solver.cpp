@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 
+#include <set>
+#include <sstream>
 #include <string>
 #include <utility>
 
+#include "chain_dynamics/robot_description.hpp"
+#include "chain_dynamics/text.hpp"
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
 inline namespace v2 {
 namespace {
 
+using chain_dynamics::Chain;
 using chain_dynamics::FastModel;
+using chain_dynamics::joined;
+using inverse_dynamics_solver::DescriptionFriction;
 using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::Exception;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::ParameterUninitializedException;
+using inverse_dynamics_solver::ParameterValue;
+using Sentences = std::vector<std::string>;
 
 chain_dynamics::Model modelOfFile(const Configuration& configuration, const std::string& name) {
   try {
@@ -25,7 +34,7 @@ chain_dynamics::Model modelOfFile(const Configuration& configuration, const std:
   }
 }
 
-chain_dynamics::Model modelOfDescription(const Configuration& configuration) {
+Chain chainOfDescription(const Configuration& configuration) {
   if (configuration.robot_description.empty()) {
     throw ParameterUninitializedException(
         errorText("robot description", "missing", "the text of a URDF, or a model file", "neither",
@@ -33,18 +42,81 @@ chain_dynamics::Model modelOfDescription(const Configuration& configuration) {
                   "'robot_description' (without namespace) or '" +
                       configuration.fullName("model") + "'"));
   }
-  return chain_dynamics::Model(chainFromDescription(configuration));
+  return chainFromDescription(configuration);
 }
 
-/// A sentence for each parameter that a model file leaves without meaning.
-std::vector<std::string> unusedParameters(const Configuration& configuration) {
-  std::vector<std::string> warnings;
-  for (const char* const name : {"root", "tip", "attached"}) {
-    if (configuration.get<std::string>(name).value_or("").empty()) continue;
-    warnings.push_back("parameter '" + configuration.fullName(name) +
-                       "' isn't used: a model file states its chain itself");
+/// A sentence for each parameter that only a robot description gives a meaning.
+Sentences unusedParameters(const Configuration& configuration) {
+  std::vector<std::string> names = {"allow_massless", "urdf_friction"};
+  if (configuration.robot_description.empty()) {
+    names.insert(names.end(), {"root", "tip", "attached"});  // else: differences()
   }
-  return warnings;
+  const std::string locked = configuration.fullName("locked_joints.");
+  for (const std::string& name : configuration.parameters.names()) {
+    if (name.rfind(locked, 0) == 0) names.push_back(name.substr(configuration.fullName("").size()));
+  }
+
+  Sentences sentences;
+  for (const std::string& name : names) {
+    const auto value = configuration.parameters.find(configuration.fullName(name));
+    if (!value || *value == ParameterValue(std::string()) || *value == ParameterValue(false)) {
+      continue;
+    }
+    sentences.push_back("parameter '" + configuration.fullName(name) +
+                        "' isn't used: the model states its chain itself");
+  }
+  return sentences;
+}
+
+/// Links with mass that a robot description attaches to the links of a model: tools, payloads.
+Sentences attachedLinks(const Configuration& configuration, const chain_dynamics::Model& model) {
+  const chain_dynamics::RobotDescription robot =
+      chain_dynamics::robotFromUrdf(configuration.robot_description);
+  const std::vector<std::string> joints = model.chain.jointNames();
+  std::set<std::size_t> links_of_model;
+  for (const std::string& name : joints) {
+    const std::size_t joint = robot.jointIndex(name);
+    if (joint == robot.kNone)
+      throw Exception("robot " + robot.name + " has no joint '" + name + "'");
+    links_of_model.insert(robot.joints[joint].child);
+  }
+
+  std::string bodies;
+  for (const std::size_t i : robot.linksBelow(robot.joints[robot.jointIndex(joints[0])].child)) {
+    const auto& link = robot.links[i];
+    if (links_of_model.count(i) > 0 || !link.inertial || link.inertial->mass == 0.0) continue;
+    std::ostringstream mass;
+    mass << link.inertial->mass;
+    bodies += (bodies.empty() ? "" : ", ") + link.name + " (" + mass.str() + " kg)";
+  }
+  if (bodies.empty()) return {};
+  return {"the robot description attaches bodies that model " + model.name +
+          " doesn't include in its torques: " + bodies + "; if it was identified with them, set '" +
+          configuration.fullName("attached") + "' to ignore"};
+}
+
+/// A sentence for each way in which a robot description, from which nothing is computed, is that
+/// of another robot than the model.
+Sentences differences(const Configuration& configuration, const chain_dynamics::Model& model) {
+  if (configuration.robot_description.empty()) return {};
+  Sentences sentences;
+  try {
+    if (configuration.lump_attached) sentences = attachedLinks(configuration, model);
+    if (configuration.root.empty() && configuration.tip.empty()) return sentences;
+    const auto joints = chainFromDescription(configuration).jointNames();
+    if (joints != model.chain.jointNames()) {
+      sentences.push_back(
+          "root and tip have no effect: between them, the robot description has "
+          "joints " +
+          joined(joints) + ", and model " + model.name + " has " +
+          joined(model.chain.jointNames()));
+    }
+  } catch (const std::exception& e) {
+    sentences.push_back(std::string("the robot description isn't used, and can't be compared with "
+                                    "the model: ") +
+                        e.what());
+  }
+  return sentences;
 }
 
 /// What is odd about a model, a sentence each.
@@ -65,26 +137,37 @@ std::vector<std::string> warningsOf(const chain_dynamics::Model& model, bool ine
 
 auto InverseDynamicsSolverRigidBody::configure(const Configuration& configuration) -> JointInfo {
   const std::string name = configuration.get<std::string>("model").value_or("");
-  if (name.empty()) return use(modelOfDescription(configuration), configuration);
+  if (!name.empty()) return use(modelOfFile(configuration, name), configuration);
 
-  std::vector<std::string> unused = unusedParameters(configuration);
-  JointInfo info = use(modelOfFile(configuration, name), configuration);
-  info.warnings.swap(unused);
-  info.warnings.insert(info.warnings.end(), unused.begin(), unused.end());
-  return info;
+  chain_dynamics::Model model(chainOfDescription(configuration));
+  DescriptionFriction friction = descriptionFriction(configuration, model.chain);
+  model.friction = std::move(friction.laws);
+  return keep(std::move(model), configuration, std::move(friction.warnings));
 }
 
 auto InverseDynamicsSolverRigidBody::use(chain_dynamics::Model model,
                                          const Configuration& configuration) -> JointInfo {
+  Sentences warnings = unusedParameters(configuration);
+  for (std::string& sentence : differences(configuration, model)) {
+    warnings.push_back(std::move(sentence));
+  }
   if (configuration.gravity_given) model.chain = model.chain.withGravity(configuration.gravity);
   if (!configuration.friction) model.friction.clear();
+  return keep(std::move(model), configuration, std::move(warnings));
+}
+
+auto InverseDynamicsSolverRigidBody::keep(chain_dynamics::Model model,
+                                          const Configuration& configuration, Sentences warnings)
+    -> JointInfo {
   const bool inertia_is_physical = model.inertiaIsPhysical();
   JointInfo info{model.chain.jointNames(), warningsOf(model, inertia_is_physical)};
+  for (std::string& warning : warnings) info.warnings.push_back(std::move(warning));
   std::unique_ptr<const FastModel> fast;
   if (model.chain.jointCount() <= FastModel::kMaxJoints) {
     fast = std::make_unique<const FastModel>(model);
   }
   auto complete = std::make_unique<const chain_dynamics::Model>(std::move(model));
+  configuration.rejectOthers();
 
   // Keep; nothing below can throw.
   model_ = std::move(complete);

@@ -29,6 +29,10 @@ struct PandaDescription : RigidBody {
   static std::string robotDescription() { return textOf(robotsFile("urdf/panda.urdf")); }
 };
 
+struct PandaDescriptionWithFriction : PandaDescription {
+  static ParameterMap parameters() { return {{"urdf_friction", true}}; }
+};
+
 struct FeasiblePandaModel : RigidBody {
   static ParameterMap parameters() { return {{"model", std::string("franka_gaz2019_feasible")}}; }
 };
@@ -41,6 +45,7 @@ struct IdentifiedUr10Model : RigidBody {
 
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Ur10Description, Ur10Description);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaDescription, PandaDescription);
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaDescriptionWithFriction, PandaDescriptionWithFriction);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(FeasiblePandaModel, FeasiblePandaModel);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(IdentifiedUr10Model, IdentifiedUr10Model);
 

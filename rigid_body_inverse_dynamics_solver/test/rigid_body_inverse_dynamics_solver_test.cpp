@@ -117,11 +117,52 @@ TEST(RigidBody, ModelFileGoesBeforeTheRobotDescription) {
 
 TEST(RigidBody, ParametersWithoutMeaningBesideAModelFileAreMentioned) {
   InverseDynamicsSolverRigidBody solver;
-  solver.initialize({{"ids.model", kFeasible}, {"ids.tip", std::string("fer_link8")}}, "ids");
-  ASSERT_EQ(solver.warnings().size(), 1U);
-  expectContains(solver.warnings().front(), {"'ids.tip'", "isn't used"});
+  const inverse_dynamics_solver::Parameters parameters = {
+      {"ids.model", kFeasible},     {"ids.tip", "fer_link8"}, {"ids.locked_joints.finger", 0.0},
+      {"ids.allow_massless", true}, {"ids.attached", "lump"}, {"ids.urdf_friction", true}};
+  solver.initialize(parameters.strict(), "ids");
+  const std::vector<std::string> names = {"allow_massless", "urdf_friction", "tip", "attached",
+                                          "locked_joints.finger"};
+  ASSERT_EQ(solver.warnings().size(), names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    EXPECT_EQ(solver.warnings()[i],
+              "parameter 'ids." + names[i] + "' isn't used: the model states its chain itself");
+  }
   solver.initialize({{"model", kFeasible}});
   EXPECT_TRUE(solver.warnings().empty());
+}
+
+/// The arm without hand is that of the model; the hand adds a body beyond its last joint.
+TEST(RigidBody, BodiesThatADescriptionAttachesToAModelAreMentioned) {
+  const std::string arm = textOf(robotsFile("urdf/panda.urdf"));
+  const std::string with_hand =
+      replaced(arm, "</robot>",
+               "<link name='hand'><inertial><mass value='0.73'/><inertia ixx='0.001' iyy='0.001' "
+               "izz='0.001' ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='hand_joint' "
+               "type='fixed'><parent link='fer_link8'/><child link='hand'/></joint></robot>");
+  InverseDynamicsSolverRigidBody solver;
+  solver.initialize({{"model", kFeasible}, {"tip", "fer_link8"}}, "", arm);
+  EXPECT_TRUE(solver.warnings().empty()) << solver.warnings().front();
+
+  solver.initialize({{"model", kFeasible}}, "", with_hand);
+  ASSERT_EQ(solver.warnings().size(), 1U);
+  EXPECT_EQ(solver.warnings().front(),
+            "the robot description attaches bodies that model franka_gaz2019_feasible doesn't "
+            "include in its torques: hand (0.73 kg); if it was identified with them, set "
+            "'attached' to ignore");
+  solver.initialize({{"model", kFeasible}, {"attached", "ignore"}}, "", with_hand);
+  EXPECT_TRUE(solver.warnings().empty());
+
+  // Another robot's, or a tip that there isn't.
+  solver.initialize({{"model", kFeasible}}, "", textOf(robotsFile("urdf/ur10.urdf")));
+  ASSERT_EQ(solver.warnings().size(), 1U);
+  expectContains(solver.warnings().front(), {"can't be compared with the model", "'fer_joint1'"});
+  solver.initialize({{"model", kFeasible}, {"tip", "fer_link9"}}, "", arm);
+  ASSERT_EQ(solver.warnings().size(), 1U);
+  expectContains(solver.warnings().front(), {"can't be compared with the model", "'fer_link9'"});
+  solver.initialize({{"model", kFeasible}, {"tip", "fer_link4"}}, "", arm);
+  ASSERT_EQ(solver.warnings().size(), 1U);
+  expectContains(solver.warnings().front(), {"root and tip have no effect", "fer_joint4, and"});
 }
 
 TEST(RigidBody, GravityOfTheModelFileIsReplacedOnlyWhereAnotherIsGiven) {
@@ -155,8 +196,45 @@ TEST(RigidBody, FrictionIsTheModelFilesAndCanBeSwitchedOff) {
   EXPECT_EQ(without.getFrictionVector(qd), Eigen::VectorXd::Zero(6));
   EXPECT_TRUE((without.getTorques(q, qd, qdd) + f).isApprox(with.getTorques(q, qd, qdd), 1e-14));
 
-  // A URDF's <dynamics damping friction> isn't a friction model.
+  // A URDF's <dynamics damping friction> isn't used unless it is asked for.
   EXPECT_EQ(described.getFrictionVector(ramp(7, 0.5, -0.2)), Eigen::VectorXd::Zero(7));
+}
+
+TEST(RigidBody, FrictionOfADescriptionCanBeAskedFor) {
+  const std::string urdf = textOf(robotsFile("urdf/panda.urdf"));  // 0.003 N m s/rad, 0.2 N m each
+  InverseDynamicsSolverRigidBody without, with, off;
+  without.initialize({}, "", urdf);
+  with.initialize({{"urdf_friction", true}}, "", urdf);
+  off.initialize({{"urdf_friction", true}, {"friction", false}}, "", urdf);
+  const Eigen::VectorXd q = ramp(7, -1.0, 0.4), qd = ramp(7, 0.5, -0.25), qdd = ramp(7, 2.0, 0.1);
+  ASSERT_EQ(qd[2], 0.0);
+  Eigen::VectorXd f = 0.003 * qd;
+  for (const int joint : {0, 1}) f[joint] += 0.2;
+  for (const int joint : {3, 4, 5, 6}) f[joint] -= 0.2;
+  EXPECT_TRUE(with.getFrictionVector(qd).isApprox(f, 1e-15)) << with.getFrictionVector(qd);
+  EXPECT_TRUE(with.getTorques(q, qd, qdd).isApprox(without.getTorques(q, qd, qdd) + f, 1e-14));
+  EXPECT_EQ(off.getFrictionVector(qd), Eigen::VectorXd::Zero(7));
+
+  // Said where it is left out, and only there.
+  const auto mentions = [](const InverseDynamicsSolverRigidBody& solver) {
+    int count = 0;
+    for (const std::string& warning : solver.warnings()) {
+      count += warning.find("urdf_friction") != std::string::npos ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(mentions(without), 1);
+  expectContains(without.warnings().back(),
+                 {"(joints fer_joint1, fer_joint2, ", "isn't used; set parameter 'urdf_friction'"});
+  EXPECT_EQ(mentions(with), 0);
+  EXPECT_EQ(mentions(off), 0);
+
+  // Zero damping and friction is what the description of the UR10 states.
+  InverseDynamicsSolverRigidBody ur10;
+  ur10.initialize({}, "", textOf(robotsFile("urdf/ur10.urdf")));
+  EXPECT_EQ(mentions(ur10), 0);
+  ur10.initialize({{"urdf_friction", true}}, "", textOf(robotsFile("urdf/ur10.urdf")));
+  EXPECT_EQ(mentions(ur10), 1);
 }
 
 TEST(RigidBody, SaysWhoseInertiaIsPhysical) {
@@ -171,8 +249,9 @@ TEST(RigidBody, SaysWhoseInertiaIsPhysical) {
   // fer_link4 breaks the triangle inequality: odd, but H stays positive definite.
   solver.initialize({}, "", textOf(robotsFile("urdf/panda.urdf")));
   EXPECT_TRUE(solver.inertiaIsPhysical());
-  ASSERT_EQ(solver.warnings().size(), 1U);
-  expectContains(solver.warnings().front(), {"joint4"});
+  ASSERT_EQ(solver.warnings().size(), 2U);
+  expectContains(solver.warnings()[0], {"joint4"});
+  expectContains(solver.warnings()[1], {"<dynamics>"});
 }
 
 TEST(RigidBody, NamesTheLinkOfADescriptionWhoseInertiaIsNotPhysical) {

@@ -10,6 +10,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "chain_dynamics/fast_model.hpp"
 #include "chain_dynamics/model.hpp"
@@ -28,19 +30,18 @@ using inverse_dynamics_solver::VectorRef;
 
 /// The engine as a solver.
 ///
-/// Parameters beside those of every solver [configuration.hpp]:
+/// Parameter in addition to those of every solver [configuration.hpp]: `model`, a string, the path
+/// of a model file or the name of one in the package inverse_dynamics_robots; empty by default: the
+/// robot description (URDF).
 ///
-/// | parameter | type   | default | meaning |
-/// |-----------|--------|---------|-----------------------------------------------------------------|
-/// | model     | string | ""      | model file: its path, or the name of one in the package | | |
-/// |         | inverse_dynamics_robots; empty: the robot description (URDF)    |
+/// A model file takes precedence over a robot description, which a node often carries for other
+/// programs. It states geometry, inertia, gravity, friction and drive gains itself; then `gravity`
+/// replaces the file's only where it is given. `root`, `tip`, `attached`, `locked_joints`,
+/// `allow_massless` and `urdf_friction` have no meaning, and bodies that the description attaches
+/// to the model's joints aren't included: warnings() lists what was given in vain.
 ///
-/// A model file goes before a robot description, which a node often carries for other programs. It
-/// states geometry, inertia, gravity, friction and drive gains itself; then `gravity` replaces the
-/// file's only where it is given, and `root`, `tip`, `attached`, `locked_joints` have no meaning:
-/// warnings() says so.
-///
-/// A URDF's friction isn't used [chain_dynamics/urdf.hpp]: friction is zero there.
+/// Without a model file, friction is that of the description where `urdf_friction` is true, else
+/// zero.
 ///
 /// Real time and threads: as the base class promises, for up to 64 joints. There is no state but
 /// the model.
@@ -49,7 +50,8 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
   JointInfo configure(const Configuration& configuration) override;
 
   /// For solvers of one particular robot: computes with this model from now on, with gravity and
-  /// friction as the configuration says. All or nothing, as configure().
+  /// friction as the configuration says. Warns of parameters without meaning, and of bodies in the
+  /// robot description that the model doesn't include. All or nothing, as configure().
   JointInfo use(chain_dynamics::Model model, const Configuration& configuration);
 
   /// The model in use; only after a successful initialize().
@@ -78,6 +80,9 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
   bool inertiaIsPhysicalImpl() const override { return inertia_is_physical_; }
 
  private:
+  JointInfo keep(chain_dynamics::Model model, const Configuration& configuration,
+                 std::vector<std::string> warnings);
+
   std::unique_ptr<const chain_dynamics::Model> model_;
   std::unique_ptr<const chain_dynamics::FastModel> fast_;  // null: a chain too long for it
   bool inertia_is_physical_ = false;  // known once for all: model_ doesn't change
