@@ -74,8 +74,9 @@ def description_notes(robot: Robot, use: str) -> list[str]:
     if not brings_own_model(robot):
         return []
     return [
-        f"{robot.urdf} is {use}, not computed from: {robot.plugin} brings its own model; another "
-        "--plugin computes from a description"
+        f"{robot.urdf} is {use}, not computed from: {robot.plugin} brings its own model, so a tool or "
+        "payload in the description isn't included in the torques; another --plugin computes from a "
+        "description"
     ]
 
 

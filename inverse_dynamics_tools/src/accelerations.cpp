@@ -11,6 +11,12 @@
 #include <utility>
 
 #include "arrays.hpp"
+#include "initialized.hpp"
+
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::SampleRules)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::SampleReport)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::CutoffChoice)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::FilterChoice)
 
 namespace inverse_dynamics_tools {
 namespace {

@@ -10,7 +10,18 @@
 #include <utility>
 #include <vector>
 
+#include "initialized.hpp"
 #include "solver.hpp"
+
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::Compensated)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::FrictionOptions)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::LawOptions)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::Gains)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::ControlLaw)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::ComputedTorque)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::GravityCompensation)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::FeedForward)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::SafeStop)
 
 namespace inverse_dynamics_tools {
 namespace {

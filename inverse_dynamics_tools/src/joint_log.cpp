@@ -13,6 +13,10 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "initialized.hpp"
+
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::JointLog)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::JointLogBuilder)
 
 namespace inverse_dynamics_tools {
 namespace {

@@ -8,6 +8,9 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "initialized.hpp"
+
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::JointMetrics)
 
 namespace inverse_dynamics_tools {
 namespace {

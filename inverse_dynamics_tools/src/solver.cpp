@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "initialized.hpp"
 #include "solver_call.hpp"
 #include "solver_origin.hpp"
 
@@ -27,7 +28,7 @@ class Solver {
   explicit Solver(Origin origin) : origin_(std::move(origin)) {
     const py::gil_scoped_release release;
     solver_ = ids::SolverLoader().load(origin_.plugin);
-    solver_->initialize(parametersOf(origin_), "", origin_.urdf);
+    solver_->initialize(ids::Parameters(parametersOf(origin_)).strict(), "", origin_.urdf);
   }
 
   const Origin& origin() const { return origin_; }
@@ -113,6 +114,14 @@ class Solver {
   Origin origin_;
   std::shared_ptr<ids::InverseDynamicsSolver> solver_;
 };
+
+}  // namespace
+}  // namespace inverse_dynamics_tools
+
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::Solver)
+
+namespace inverse_dynamics_tools {
+namespace {
 
 std::unique_ptr<Solver> makeSolver(const std::string& plugin, const std::string& urdf,
                                    const std::string& root, const std::string& tip,

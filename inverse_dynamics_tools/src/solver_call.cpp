@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver_call.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -15,6 +17,10 @@ using Eigen::Index;
 using Shape = std::vector<py::ssize_t>;
 
 Shape shapeOf(const py::array& array) { return {array.shape(), array.shape() + array.ndim()}; }
+
+Shape stridesOf(const py::array& array) {
+  return {array.strides(), array.strides() + array.ndim()};
+}
 
 /// As Python writes it: (4, 6), (6,).
 std::string text(const Shape& shape) {
@@ -68,6 +74,34 @@ bool overlap(const py::array& a, const py::array& b) {
   const auto [b_first, b_last] = extent(b);
   if (a_first >= b_last || b_first >= a_last) return false;
   return py::module_::import("numpy").attr("shares_memory")(a, b).cast<bool>();
+}
+
+/// Whether two numbers of an array of doubles stand at one place: a zero step, or rows that
+/// overlap.
+bool overlapsItself(const py::array& array) {
+  if (array.size() < 2) return false;
+
+  // Differences of two numbers' places along all axes but the first; zero is the number itself.
+  std::vector<std::ptrdiff_t> offsets = {0};
+  for (py::ssize_t axis = 1; axis < array.ndim(); ++axis) {
+    const std::size_t count = offsets.size();
+    for (py::ssize_t i = 1; i < array.shape(axis); ++i) {
+      for (const std::ptrdiff_t sign : {-1, 1}) {
+        for (std::size_t k = 0; k < count; ++k) {
+          offsets.push_back(offsets[k] + sign * i * array.strides(axis));
+        }
+      }
+    }
+  }
+  if (std::count(offsets.begin(), offsets.end(), 0) > 1) return true;
+
+  // The first axis may be long: whether it reaches one of them.
+  const py::ssize_t step = array.strides(0), last = array.shape(0) - 1;
+  if (last == 0) return false;
+  return std::any_of(offsets.begin(), offsets.end(), [&](std::ptrdiff_t offset) {
+    if (offset == 0 || step == 0) return step == 0;
+    return offset % step == 0 && std::abs(offset / step) <= last;
+  });
 }
 
 }  // namespace
@@ -131,6 +165,10 @@ py::array SolverCall::outOf(const std::string& name, const py::object& out,
   if (!array.writeable()) refuse(name, "an array that may be written to", "a read-only one");
   if (!standsAsDoubles(array)) {
     refuse(name, "an array at addresses of doubles", "fields of a packed record");
+  }
+  if (overlapsItself(array)) {
+    refuse(name, "a place in memory for each number",
+           "an array whose entries overlap, with strides " + text(stridesOf(array)) + " bytes");
   }
   return array;
 }

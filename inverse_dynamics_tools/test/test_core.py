@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+import copy
 import json
 import threading
 
@@ -185,6 +186,47 @@ def test_parameter_of_the_wrong_type_is_an_error():
         Solver(RIGID_BODY, urdf=PENDULUM, parameters={"attached": 3})
     with pytest.raises(TypeError, match=r"parameter 'x': expected bool, int, .* got complex"):
         Solver(RIGID_BODY, urdf=PENDULUM, parameters={"x": 1j})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "unknown", "remedy"),
+    [
+        ({"gravty": [0.0, 0.0, 1.0]}, "gravty", "did you mean 'gravity'?"),
+        ({"x": True}, "x", "correct or remove it"),
+        ({"locked_joints.wrist": 1.0}, "locked_joints.wrist", "correct or remove it"),
+    ],
+)
+def test_unknown_parameter_is_an_error(arguments, unknown, remedy):
+    with pytest.raises(errors.InvalidParameterError) as caught:
+        Solver(RIGID_BODY, urdf=PENDULUM, parameters=arguments)
+    text = str(caught.value)
+    assert text.startswith(f"parameter '{unknown}': the solver doesn't know it: expected one of ")
+    assert "batch_threads, friction, gravity, " in text
+    assert text.endswith(f"; {remedy}")
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda solver: solver.torques(*3 * [np.zeros(6)]),
+        lambda solver: Solver.gravity_vector(solver, np.zeros(6)),
+        lambda solver: solver.joint_names,
+        lambda solver: solver.drive_gains,
+        repr,
+        copy.copy,
+    ],
+)
+def test_object_without_init_is_an_error(call):
+    solver = Solver.__new__(Solver)
+    message = "^Solver: an object without __init__; make it by calling Solver$"
+    with pytest.raises(TypeError, match=message):
+        call(solver)
+
+
+def test_argument_without_init_is_an_error():
+    none = _core.Compensated.__new__(_core.Compensated)
+    with pytest.raises(TypeError, match="^Compensated: an object without __init__"):
+        _core.LawOptions(effort_limit=np.ones(6), damping=np.ones(6), compensated=none)
 
 
 def test_errors_of_solvers_are_user_errors():

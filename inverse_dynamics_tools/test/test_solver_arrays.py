@@ -203,6 +203,38 @@ def test_a_wrong_number_of_threads_is_an_error():
         Solver(UR10, parameters={"batch_threads": 0})
 
 
+def strided(shape, strides):
+    return np.lib.stride_tricks.as_strided(
+        np.zeros(100_000)[50_000:], shape, [8 * s for s in strides]
+    )
+
+
+@pytest.mark.parametrize("strides", [(0, 1), (1, 0), (3, 1), (-5, 1), (2, 4), (6, 9), (0, 0)])
+def test_a_place_whose_numbers_overlap_is_an_error(ur10, strides):
+    out = strided((100, 6), strides)
+    message = (
+        r"^gravity_vector: argument out: expected a place in memory for each number, got an array "
+        rf"whose entries overlap, with strides \({8 * strides[0]}, {8 * strides[1]}\) bytes$"
+    )
+    with pytest.raises(errors.InvalidParameterError, match=message):
+        ur10.gravity_vector(np.zeros((100, 6)), out=out)
+
+
+@pytest.mark.parametrize("strides", [(30, 6, 1), (36, 1, 1), (36, 6, 0), (0, 6, 1), (1, 6, 600)])
+def test_a_place_whose_matrices_overlap_is_an_error(ur10, strides):
+    with pytest.raises(errors.InvalidParameterError, match="whose entries overlap"):
+        ur10.inertia_matrix(np.zeros((100, 6)), out=strided((100, 6, 6), strides))
+
+
+@pytest.mark.parametrize("strides", [(6, 1), (1, 100), (-6, 1), (6, -1), (7, 100), (5, 7)])
+def test_a_place_with_interleaved_rows_takes_the_result(ur10, strides):
+    q = np.random.default_rng(3).uniform(-2, 2, size=(5, 6))
+    memory = np.zeros(2000)
+    out = np.lib.stride_tricks.as_strided(memory[1000:], (5, 6), [8 * s for s in strides])
+    ur10.gravity_vector(q, out=out)
+    np.testing.assert_array_equal(out, ur10.gravity_vector(q))
+
+
 @pytest.mark.parametrize("quantity", ARGUMENTS)
 def test_other_threads_run_while_a_solver_computes(ur10, quantity):
     """Python would take the GIL from a thread every 1000 s only: what runs, was let run."""
