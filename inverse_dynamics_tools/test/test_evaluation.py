@@ -184,7 +184,10 @@ def test_another_description_root_and_tip(tmp_path, robot, bag):
 
 
 def test_a_description_that_a_solver_has_no_use_for_is_said_to_be_drawn_only(bag, robot):
-    said = f"{URDF} is drawn, not computed from: {UR10} brings its own model"
+    said = (
+        f"{URDF} is drawn, not computed from: {UR10} brings its own model, so a tool or payload in the "
+        "description isn't included in the torques"
+    )
     assert said in " ".join(evaluate(bag, robot, plugin=UR10, urdf=URDF).notes)
     assert said not in " ".join(evaluate(bag, robot, plugin=UR10).notes)
     assert evaluate(bag, robot, urdf=URDF).notes == ()

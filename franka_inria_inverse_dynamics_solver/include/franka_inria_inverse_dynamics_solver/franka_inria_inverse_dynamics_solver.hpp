@@ -22,7 +22,7 @@ inline namespace v2 {
 /// rigid_body_inverse_dynamics_solver.
 ///
 /// Parameters: `gravity` and `friction` [configuration.hpp]. Others have no meaning here, and a
-/// robot description isn't read.
+/// robot description is only compared with the model: warnings() names what isn't included.
 class InverseDynamicsSolverFrankaInria
     : public rigid_body_inverse_dynamics_solver::InverseDynamicsSolverRigidBody {
  protected:
