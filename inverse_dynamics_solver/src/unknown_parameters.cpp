@@ -24,6 +24,20 @@ Names below(const Configuration& configuration, const Container& full_names) {
   return result;
 }
 
+/// The known name that is most like another; of joints, their names alone are compared.
+std::string nearest(const std::string& name, const Names& known) {
+  const auto locks = [](const std::string& other) { return other.rfind(kLocked, 0) == 0; };
+  const auto compared = [&](const std::string& other) {
+    return locks(name) ? other.substr(kLocked.size()) : other;
+  };
+  Names others;
+  for (const std::string& other : known) {
+    if (locks(other) == locks(name)) others.push_back(compared(other));
+  }
+  const std::string found = nearestName(compared(name), others);
+  return locks(name) && !found.empty() ? kLocked + found : found;
+}
+
 struct Unknown {
   Names known, unknown;  // full names
   Names remedies;        // one per unknown name
@@ -42,12 +56,12 @@ Unknown unknownNames(const Configuration& configuration) {
   }
   for (const std::string& name : below(configuration, configuration.parameters.names())) {
     const std::string full_name = configuration.fullName(name);
-    const std::string nearest = nearestName(name, known);
-    if (configuration.asked->count(full_name) > 0 || (own_only && nearest.empty())) continue;
+    const std::string meant = nearest(name, known);
+    if (configuration.asked->count(full_name) > 0 || (own_only && meant.empty())) continue;
     result.unknown.push_back(full_name);
-    result.remedies.push_back(nearest.empty()
+    result.remedies.push_back(meant.empty()
                                   ? "correct or remove it"
-                                  : "did you mean '" + configuration.fullName(nearest) + "'?");
+                                  : "did you mean '" + configuration.fullName(meant) + "'?");
   }
   return result;
 }
