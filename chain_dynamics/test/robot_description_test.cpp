@@ -315,6 +315,138 @@ TEST(RobotDescription, RepeatedAttributesAreAnError) {
               HasSubstr("URDF:4: robot description: expected well-formed XML"));
 }
 
+// --- what is missing or malformed ---
+
+TEST(RobotDescriptionError, NoUrdf) {
+  EXPECT_EQ(urdfError(""),
+            "URDF: robot description: expected the text of a URDF, got an empty text; give the "
+            "robot's URDF");
+  EXPECT_THAT(urdfError(" \n\t"), HasSubstr("got an empty text"));
+  EXPECT_THAT(urdfError("/robots/ur10.urdf"),
+              AllOf(HasSubstr("'/robots/ur10.urdf'"), HasSubstr("not its file name")));
+}
+
+TEST(RobotDescriptionError, BrokenXmlNamesTheLine) {
+  EXPECT_THAT(urdfError("<robot name='r'>\n<link name='a'>\n"),
+              AllOf(HasSubstr("URDF:2: "), HasSubstr("expected well-formed XML")));
+  EXPECT_THAT(urdfError(arm().substr(0, 400)), HasSubstr("expected well-formed XML"));
+}
+
+TEST(RobotDescriptionError, TruncatedDescriptionIsNeverRead) {
+  const std::string whole = arm();
+  const std::size_t end = whole.rfind("</robot>");
+  for (std::size_t size = 0; size < end + 7; size += 3) {
+    EXPECT_THAT(urdfError(whole.substr(0, size)), HasSubstr("robot description: expected"))
+        << "first " << size << " characters";
+  }
+}
+
+TEST(RobotDescriptionError, OtherXml) {
+  EXPECT_THAT(urdfError("<?xml version='1.0'?>\n<sdf version='1.6'/>"),
+              HasSubstr("URDF:2: robot description: expected <robot>, got <sdf>"));
+  EXPECT_THAT(urdfError("<robot name='r'/>"), HasSubstr("expected at least one <link>, got none"));
+  EXPECT_THAT(urdfError("<robot><link name='a'/></robot>"),
+              HasSubstr("robot: <robot>: expected attribute 'name', got none"));
+  EXPECT_THAT(urdfError("<robot name='r' version='7'><link name='a'/></robot>"),
+              HasSubstr("URDF:1: robot: <robot> version: expected 1.0, 1.1 or 1.2, got '7'"));
+}
+
+TEST(RobotDescriptionError, XacroMustBeExpandedFirst) {
+  EXPECT_THAT(urdfError("<robot name='r' xmlns:xacro='x'>\n<xacro:include filename='f'/></robot>"),
+              AllOf(HasSubstr("expected at least one <link>, got none"),
+                    HasSubstr("expand the file with xacro")));
+}
+
+TEST(RobotDescriptionError, NamesMustBeGivenAndUnique) {
+  EXPECT_THAT(urdfError(robot(link(""))), HasSubstr("URDF:3: <link> name: expected a name"));
+  EXPECT_THAT(urdfError(robot("<link/>")), HasSubstr("<link>: expected attribute 'name'"));
+  EXPECT_THAT(urdfError(robot(link("a") + link("a"))),
+              HasSubstr("URDF:4: link a: name: expected a name of its own, got the one of line 3"));
+  EXPECT_THAT(urdfError(arm("", link("c") + joint("elbow", "fixed", "tool", "c", ""))),
+              HasSubstr("joint elbow: name: expected a name of its own"));
+}
+
+TEST(RobotDescriptionError, LinksMustBeATree) {
+  const std::string two = link("a") + link("b") + joint("ab", "fixed", "a", "b", "");
+  EXPECT_THAT(urdfError(robot(two + link("c"))),
+              AllOf(HasSubstr("root: expected one link"), HasSubstr("got 2: a, c")));
+  EXPECT_THAT(urdfError(robot(two + joint("ba", "fixed", "b", "a", ""))), HasSubstr("got 0"));
+  EXPECT_THAT(urdfError(robot(two + link("c") + joint("ba", "fixed", "b", "a", ""))),
+              AllOf(HasSubstr("link a: place in the tree"), HasSubstr("got a loop of joints")));
+  EXPECT_THAT(urdfError(robot(two + link("c") + joint("cb", "fixed", "c", "b", ""))),
+              AllOf(HasSubstr("joint cb: <child>"), HasSubstr("'b', which has one")));
+  EXPECT_THAT(urdfError(robot(two + joint("bx", "fixed", "b", "x", ""))),
+              HasSubstr("joint bx: <child>: expected a link of the robot, got 'x'"));
+  EXPECT_THAT(urdfError(robot(two + "<joint name='j' type='fixed'/>")),
+              HasSubstr("joint j: <joint>: expected <parent>, got none"));
+}
+
+TEST(RobotDescriptionError, ZeroAxisNamesTheJoint) {
+  EXPECT_THAT(urdfError(arm("<axis xyz='0 0 0'/>")),
+              AllOf(HasSubstr("joint elbow: <axis> xyz: expected a direction, got the zero vector"),
+                    HasSubstr("for example 0 0 1")));
+  EXPECT_THAT(urdfError(arm("<axis/>")),
+              HasSubstr("joint elbow: <axis>: expected attribute 'xyz', got none"));
+}
+
+TEST(RobotDescriptionError, NegativeMassNamesTheLink) {
+  EXPECT_THAT(urdfError(robot(link("base") + link("a", inertial("-1.5")) +
+                              joint("j", "continuous", "base", "a", ""))),
+              HasSubstr("URDF:4: link a: mass: expected a number >= 0 [kg], got -1.5"));
+}
+
+TEST(RobotDescriptionError, NumbersMustBeFinite) {
+  const auto with = [](const std::string& body, const std::string& joint_content) {
+    return urdfError(
+        robot(link("base") + link("a", body) + joint("j", "revolute", "base", "a", joint_content)));
+  };
+  for (const std::string bad : {"nan", "inf", "-inf", "1e999", "heavy", "1,5", "1.5kg", ""}) {
+    EXPECT_THAT(with(inertial(bad), kLimit),
+                HasSubstr("link a: <mass> value: expected a finite number, got '" + bad + "'"));
+    EXPECT_THAT(with(inertial("1", bad), kLimit), HasSubstr("link a: <inertia> ixx: expected"));
+    EXPECT_THAT(with(inertial("1", "1", "<origin xyz='0 0 " + bad + "'/>"), kLimit),
+                HasSubstr("link a: <origin> xyz: expected three finite numbers"));
+    EXPECT_THAT(with(inertial(), kLimit + ("<origin rpy='0 " + bad + " 0 '/>")),
+                HasSubstr("joint j: <origin> rpy: expected three finite numbers"));
+    EXPECT_THAT(with(inertial(), kLimit + ("<axis xyz='" + bad + " 0 1'/>")),
+                HasSubstr("joint j: <axis> xyz: expected three finite numbers"));
+    EXPECT_THAT(with(inertial(), "<limit lower='" + bad + "' upper='1' effort='1' velocity='1'/>"),
+                HasSubstr("joint j: <limit> lower: expected a finite number"));
+  }
+  EXPECT_THAT(with(inertial(), kLimit + std::string("<origin xyz='1 2 3 4'/>")),
+              HasSubstr("expected three finite numbers, got 4 in '1 2 3 4'"));
+}
+
+TEST(RobotDescriptionError, NumbersMustNotBeMissing) {
+  const auto with = [](const std::string& body) {
+    return urdfError(
+        robot(link("base") + link("a", body) + joint("j", "continuous", "base", "a", "")));
+  };
+  EXPECT_THAT(with("<inertial><mass value='1'/></inertial>"),
+              HasSubstr("link a: <inertial>: expected <inertia>, got none"));
+  EXPECT_THAT(with("<inertial><inertia ixx='1'/></inertial>"),
+              HasSubstr("link a: <inertial>: expected <mass>, got none"));
+  EXPECT_THAT(with("<inertial><mass/></inertial>"),
+              HasSubstr("link a: <mass>: expected attribute 'value', got none"));
+  EXPECT_THAT(with("<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial>"),
+              HasSubstr("link a: <inertia>: expected attribute 'ixy', got none"));
+  EXPECT_THAT(with(inertial() + inertial()),
+              HasSubstr("link a: <inertial>: expected at most one, got 2"));
+}
+
+TEST(RobotDescriptionError, LimitsOfRevoluteAndPrismaticJointsAreNeeded) {
+  const auto with = [](const std::string& content) {
+    return urdfError(
+        robot(link("base") + link("a") + joint("j", "revolute", "base", "a", content)));
+  };
+  EXPECT_THAT(with(""), AllOf(HasSubstr("joint j: <joint>: expected <limit>, got none"),
+                              HasSubstr("continuous")));
+  EXPECT_THAT(with("<limit lower='0' upper='1' effort='1'/>"),
+              HasSubstr("joint j: <limit>: expected attribute 'velocity', got none"));
+  EXPECT_THAT(with("<limit lower='3' upper='1' effort='1' velocity='1'/>"),
+              HasSubstr("joint j: position limits: expected lower <= upper"));
+}
+
 // --- texts that aren't a URDF, or hostile ones ---
 
 TEST(RobotDescription, TextThatIsNoXmlIsNotQuoted) {
