@@ -46,9 +46,10 @@ class WorkFolder:
         self._lock: int | None = None
         while self._lock is None:
             restore_interrupted(target)
-            with suppress(FileExistsError, FileNotFoundError):  # another run was faster
+            with suppress(FileExistsError):  # another run was faster
                 self.path.mkdir(mode=0o700)
-                self._lock = _lock(self.path, target, fresh=True)
+                with suppress(FileNotFoundError):  # and took this one for a leftover
+                    self._lock = _lock(self.path, target, fresh=True)
         self.new = self.path / "new"
         self.old = self.path / "old"
         self.new.mkdir()

@@ -158,6 +158,15 @@ def test_what_appears_meanwhile_is_not_overwritten(tmp_path):
     assert os.listdir(tmp_path / "result") == ["of_another_process"]
 
 
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="there is no /proc here")
+def test_a_place_where_nothing_can_be_made_is_an_error():
+    for write_it in (write, lambda target: write_text_whole(target, "")):
+        with pytest.raises(
+            OutputError, match=r"/proc/result: can't be written \(.+\); name another"
+        ):
+            write_it(Path("/proc/result"))
+
+
 # ---- what is read and what is written --------------------------------------------------------------------------------
 
 
