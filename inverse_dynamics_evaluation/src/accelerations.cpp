@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "checks.hpp"
+#include "ends.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -14,6 +15,9 @@ namespace {
 using Eigen::Index;
 using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
 using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
+
+constexpr double kFitPeriods = 1.2;     // of the cut-off, to which the ends' cubics are fitted
+constexpr double kBeyondPeriods = 2.0;  // of the cut-off, by which they continue the ends
 
 // Used samples between two gaps.
 struct Piece {
@@ -111,9 +115,8 @@ std::vector<Eigen::MatrixXd> filterPieces(const std::vector<Piece>& pieces,
   std::vector<Eigen::MatrixXd> qdd;
   qdd.reserve(pieces.size());
   for (std::size_t p = 0; p < pieces.size(); ++p) {
-    const double period = pieces[p].period;
     qdd.push_back(
-        derivative(lowPass(stretches[p].qd, 1.0 / period, filter.cutoff, filter.order), period));
+        lowPassDerivative(stretches[p].qd, 1.0 / pieces[p].period, filter.cutoff, filter.order));
   }
   return qdd;
 }
@@ -157,6 +160,24 @@ Eigen::MatrixXd derivative(const Eigen::Ref<const Eigen::MatrixXd>& samples, dou
     }
   }
   return result;
+}
+
+Eigen::MatrixXd lowPassDerivative(const Eigen::Ref<const Eigen::MatrixXd>& samples,
+                                  double sampling_frequency, double cutoff, int order) {
+  requireSamples("low-pass derivative", "samples", samples, 3 * (order + 1) + 1);
+  requireFinite("low-pass derivative", "samples", samples);
+  const double period = sampling_frequency / cutoff;  // of the cut-off, in samples
+  if (!(period > 2.0) || !std::isfinite(period)) {
+    lowPass(samples, sampling_frequency, cutoff, order);  // says what is wrong
+  }
+  const auto fit = static_cast<Index>(std::min(kFitPeriods * period, 1.0 * samples.cols()));
+  // not further than the cubic may be trusted: as far as the samples that it is fitted to
+  const auto beyond = static_cast<Index>(
+      std::min(kBeyondPeriods * period, kBeyondPeriods / kFitPeriods * samples.cols()));
+  const Index count = std::max<Index>(beyond, 3 * (order + 1));
+  const Eigen::MatrixXd longer =
+      lowPass(continued(samples, fit, count), sampling_frequency, cutoff, order);
+  return derivative(longer, 1.0 / sampling_frequency).middleCols(count, samples.cols());
 }
 
 AccelerationEstimate lowPassAccelerations(const Eigen::Ref<const Eigen::VectorXd>& time,

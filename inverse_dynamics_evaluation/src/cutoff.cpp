@@ -8,29 +8,29 @@
 #include <string>
 
 #include "checks.hpp"
-#include "inverse_dynamics_evaluation/low_pass.hpp"
 #include "spectrum.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
 
-constexpr Eigen::Index kLeastSamples = 16;
-constexpr int kCandidates = 100;    // cut-offs tried, in equal ratios
-constexpr int kLinePoints = 15;     // of the straight line of the residual
-constexpr double kLineBegin = 0.3;  // of the sampling frequency
-constexpr double kLineEnd = 0.4;    // of the sampling frequency: also the highest cut-off
-constexpr double kLowest = 0.25;    // Hz
-constexpr double kPeriods = 2.0;    // of the lowest cut-off, in the recording
+constexpr double kPi = 3.14159265358979323846;
+constexpr int kCandidates = 100;        // cut-offs tried, in equal ratios
+constexpr double kHighest = 0.4;        // of the sampling frequency
+constexpr double kLowest = 0.25;        // Hz
+constexpr double kPeriods = 2.0;        // of the lowest cut-off, in the recording
+constexpr double kMostOfMotion = 0.9;   // of the power: the plateau is looked for above it
+constexpr double kPlateauBegin = 1.25;  // of a cut-off: the noise right above it
+constexpr double kPlateauEnd = 2.5;     // of a cut-off
+constexpr double kSlowFall = 0.25;      // in an octave: noise behind a filter of first order
 constexpr double kLeastNoise =
     1e-4;  // of the noisiest joint's power: what a joint may be weighed by
 
-// Spectra of all joints in one: each divided by its level in the upper half of the frequencies.
+// Spectra of all joints in one.
 struct JointSum {
   Eigen::ArrayXd frequency;
   Eigen::ArrayXd total;   // power of qd
   Eigen::ArrayXd common;  // the share of it that q confirms: motion
-  bool moves = false;     // whether there is any power at all
 };
 
 double median(Eigen::ArrayXd values) {
@@ -39,42 +39,58 @@ double median(Eigen::ArrayXd values) {
   return *middle;
 }
 
-JointSum sumOfJoints(const VelocitySpectra& spectra) {
+// What each joint's spectra are multiplied by: one over its level in the upper half of the
+// frequencies; 0 for a joint that never moves.
+Eigen::ArrayXd jointWeights(const VelocitySpectra& spectra) {
   const Eigen::Index upper = spectra.frequency.size() / 2;
   Eigen::ArrayXd level(spectra.total.cols());
   for (Eigen::Index j = 0; j < level.size(); ++j) {
     level[j] = median(spectra.total.col(j).tail(upper));
   }
   const double least = kLeastNoise * level.maxCoeff();
+  return (level > 0).select(1.0 / level.max(least), 0.0);
+}
 
-  JointSum sum{spectra.frequency, Eigen::ArrayXd::Zero(spectra.frequency.size()),
-               Eigen::ArrayXd::Zero(spectra.frequency.size()), false};
-  for (Eigen::Index j = 0; j < level.size(); ++j) {
-    if (level[j] > 0) {
-      sum.total += spectra.total.col(j) / std::max(level[j], least);
-      sum.common += spectra.common.col(j) / std::max(level[j], least);
-      sum.moves = true;
+JointSum sumOfJoints(const VelocitySpectra& spectra, const Eigen::ArrayXd& weights) {
+  return {spectra.frequency, (spectra.total.matrix() * weights.matrix()).array(),
+          (spectra.common.matrix() * weights.matrix()).array()};
+}
+
+// lowPassGain() at all frequencies of the spectra.
+class Gains {
+ public:
+  Gains(const Eigen::ArrayXd& frequency, double sampling_frequency, int order)
+      : sampling_frequency_(sampling_frequency),
+        order_(order),
+        square_((kPi / sampling_frequency * frequency).tan().square()) {}
+
+  /// At the first `count` frequencies.
+  Eigen::ArrayXd operator()(double cutoff, Eigen::Index count) const {
+    const double square = std::pow(std::tan(kPi * cutoff / sampling_frequency_), 2);
+    const Eigen::ArrayXd ratio = square_.head(count) / square;
+    Eigen::ArrayXd power = ratio;
+    for (int i = 1; i < order_; ++i) {
+      power *= ratio;
     }
+    return 1.0 / (1.0 + power);
   }
-  return sum;
-}
+  Eigen::ArrayXd operator()(double cutoff) const { return (*this)(cutoff, square_.size()); }
 
-Eigen::ArrayXd gains(const Eigen::ArrayXd& frequency, double cutoff, double sampling_frequency,
-                     int order) {
-  return frequency.unaryExpr(
-      [&](double f) { return lowPassGain(f, cutoff, sampling_frequency, order); });
-}
+ private:
+  double sampling_frequency_;
+  int order_;
+  Eigen::ArrayXd square_;  // of tan(pi f / f_s)
+};
 
 // The candidate with the least expected squared error of acceleration.
-double byAgreement(const JointSum& sum, const Eigen::ArrayXd& candidates, double sampling_frequency,
-                   int order) {
+double byAgreement(const JointSum& sum, const Eigen::ArrayXd& candidates, const Gains& gains) {
   const Eigen::ArrayXd motion = sum.frequency.square() * sum.common;
   const Eigen::ArrayXd noise = sum.frequency.square() * (sum.total - sum.common);
   double best = candidates[0];
   double least = std::numeric_limits<double>::infinity();
   for (const double cutoff : candidates) {
     // motion lost plus noise let through
-    const Eigen::ArrayXd h = gains(sum.frequency, cutoff, sampling_frequency, order);
+    const Eigen::ArrayXd h = gains(cutoff);
     const double expected = ((1.0 - h).square() * motion + h.square() * noise).sum();
     if (expected < least) {
       least = expected;
@@ -84,21 +100,40 @@ double byAgreement(const JointSum& sum, const Eigen::ArrayXd& candidates, double
   return best;
 }
 
-// The lowest candidate at which the residual is down to the level of the noise.
-double byResidual(const JointSum& sum, const Eigen::ArrayXd& candidates, double sampling_frequency,
-                  int order) {
-  const auto residual = [&](double cutoff) {
-    const Eigen::ArrayXd h = gains(sum.frequency, cutoff, sampling_frequency, order);
-    return std::sqrt(((1.0 - h).square() * sum.total).sum());
+// The lowest candidate, above most of the motion, at which noise as strong as right above it
+// outweighs the motion lost.
+double byPlateau(const JointSum& sum, const Eigen::ArrayXd& candidates, double sampling_frequency,
+                 const Gains& gains) {
+  const Eigen::Index last = sum.frequency.size() - 1;
+  const double step = sum.frequency[last] / static_cast<double>(last);
+  const auto at = [&](double frequency) {
+    return std::min(static_cast<Eigen::Index>(std::ceil(frequency / step)), last);
   };
-  // straight line of least squares, extended to a cut-off of zero
-  const Eigen::ArrayXd x = Eigen::ArrayXd::LinSpaced(kLinePoints, kLineBegin, kLineEnd);
-  const Eigen::ArrayXd y =
-      x.unaryExpr([&](double share) { return residual(share * sampling_frequency); });
-  const double slope = ((x - x.mean()) * y).sum() / (x - x.mean()).square().sum();
-  const double level = y.mean() - slope * x.mean();
+  Eigen::Index most = 0;  // below it lies most of the power
+  for (double below = 0.0; below < kMostOfMotion * sum.total.sum() && most < last; ++most) {
+    below += sum.total[most];
+  }
+  // mean power of some multiples of a cut-off
+  const auto power = [&](double cutoff, double from, double to) {
+    const Eigen::Index begin = std::min(at(from * cutoff), last);
+    return sum.total.segment(begin, std::max<Eigen::Index>(at(to * cutoff) - begin, 1)).mean();
+  };
   for (const double cutoff : candidates) {
-    if (residual(cutoff) <= level) {
+    if (cutoff < sum.frequency[std::max<Eigen::Index>(most - 1, 0)]) {
+      continue;
+    }
+    if (kPlateauEnd * cutoff > sampling_frequency / 2) {
+      break;
+    }
+    const double noise = power(cutoff, kPlateauBegin, kPlateauEnd);
+    if (power(cutoff, kPlateauEnd, 2.0 * kPlateauEnd) < kSlowFall * noise) {
+      continue;  // still motion
+    }
+    const Eigen::Index count = at(kPlateauBegin * cutoff);
+    const Eigen::ArrayXd f2 = sum.frequency.head(count).square();
+    const Eigen::ArrayXd h = gains(cutoff, count);
+    const Eigen::ArrayXd motion = (sum.total.head(count) - noise).max(0.0);
+    if ((f2 * (1.0 - h).square() * motion).sum() < (f2 * h.square()).sum() * noise) {
       return cutoff;
     }
   }
@@ -117,9 +152,9 @@ void checkStretches(const std::vector<Stretch>& stretches) {
     }
     longest = std::max(longest, stretch.qd.cols());
   }
-  if (longest < kLeastSamples) {
+  if (longest < kLeastStretch) {
     throw EvaluationError("cut-off", "samples",
-                          std::to_string(kLeastSamples) + " or more without a gap",
+                          std::to_string(kLeastStretch) + " or more without a gap",
                           std::to_string(longest), "give a cut-off, or take raw differences");
   }
 }
@@ -137,20 +172,24 @@ CutoffChoice chooseCutoff(const std::vector<Stretch>& stretches, double sampling
   // cut-offs to choose from, in equal ratios
   CutoffChoice choice;
   const double duration = static_cast<double>(longest - 1) / sampling_frequency;
-  choice.highest = kLineEnd * sampling_frequency;
+  choice.highest = kHighest * sampling_frequency;
   choice.lowest = std::min(std::max(kLowest, kPeriods / duration), choice.highest);
   const Eigen::ArrayXd candidates =
       Eigen::ArrayXd::LinSpaced(kCandidates, std::log(choice.lowest), std::log(choice.highest))
           .exp();
 
-  const JointSum sum = sumOfJoints(velocitySpectra(stretches, sampling_frequency));
-  if (!sum.moves) {  // no velocity ever changes: nothing to take away
-    choice.agreement = choice.residual = choice.highest;
-  } else {
-    choice.agreement = byAgreement(sum, candidates, sampling_frequency, order);
-    choice.residual = byResidual(sum, candidates, sampling_frequency, order);
+  const VelocitySpectra spectra = velocitySpectra(stretches, sampling_frequency);
+  choice.moving = spectra.moving;
+  const Eigen::ArrayXd weights = jointWeights(spectra);
+  if (weights.isZero(0)) {  // no velocity ever changes: nothing to take away
+    choice.agreement = choice.plateau = choice.cutoff = choice.highest;
+    return choice;
   }
-  choice.cutoff = std::min(choice.agreement, choice.residual);
+  const JointSum sum = sumOfJoints(spectra, weights);
+  const Gains gains(spectra.frequency, sampling_frequency, order);
+  choice.agreement = byAgreement(sum, candidates, gains);
+  choice.plateau = byPlateau(sum, candidates, sampling_frequency, gains);
+  choice.cutoff = std::min(choice.agreement, choice.plateau);
   return choice;
 }
 

@@ -14,6 +14,8 @@ namespace {
 
 using Eigen::Index;
 
+constexpr double kMostlyAtRest = 0.5;  // share of motion below which the rest is reported
+
 // A number as `format` writes it.
 std::string formatted(const char* format, double number) {
   char text[64];
@@ -26,46 +28,52 @@ std::string summaryOf(const FilterChoice& filter) {
          (filter.chosen ? "chosen from the data" : "given") + "), then derivative";
 }
 
+std::string seconds(std::int64_t stamp) {
+  return formatted("%.9f", static_cast<double>(stamp) * 1e-9) + " s";
+}
+
 // The first of the samples whose stamps don't increase, and the latest stamp before it.
-std::string firstBackwardStamp(const JointLog& log, const SampleReport& samples) {
+std::string firstBackwardStamp(const Stamps& stamps, const SampleReport& samples) {
   Index first = 0;
   while (!samples.non_increasing[first]) {
     ++first;
   }
-  const Stamps& stamps = log.stamps();
-  const auto seconds = [](std::int64_t stamp) {
-    return formatted("%.9f", static_cast<double>(stamp) * 1e-9) + " s";
-  };
   return "sample " + std::to_string(first + 1) + " at " + seconds(stamps[first]) + " after " +
          seconds(stamps.head(first).maxCoeff());
 }
 
-std::vector<std::string> findingsOf(const JointLog& log, const SampleReport& samples,
-                                    bool filtered) {
-  const std::string of_all = " of " + std::to_string(log.q.cols()) + " samples ";
-  const std::string left_out = filtered ? " (left out of the differentiation)" : "";
-  std::vector<std::string> said;
-  if (const Index count = samples.repeated.count(); count > 0) {
-    said.push_back(std::to_string(count) + of_all + "repeat the one before" + left_out);
+// How many gaps there are, and the longest.
+std::string gapFinding(const Stamps& stamps, const SampleReport& samples, bool filtered) {
+  Index behind = samples.gaps.front();
+  const auto length = [&](Index k) { return samples.time[k] - samples.time[k - 1]; };
+  for (const Index k : samples.gaps) {
+    behind = length(k) > length(behind) ? k : behind;
   }
-  if (const Index count = samples.non_increasing.count(); count > 0) {
-    said.push_back(std::to_string(count) + of_all + "have an equal or backward " + name(log.clock) +
-                   " stamp" + left_out + ": the first is " + firstBackwardStamp(log, samples));
+  const std::string count = std::to_string(samples.gaps.size());
+  return count + (samples.gaps.size() == 1 ? " gap" : " gaps") +
+         " in the recording: no sample for " + formatted("%.3g", length(behind)) +
+         " s after sample " + std::to_string(behind) + " at " + seconds(stamps[behind - 1]) +
+         (samples.gaps.size() == 1 ? "" : " (the longest)") +
+         (filtered ? "; each side is filtered by itself" : "");
+}
+
+// What the data couldn't tell about the cut-off.
+void addFilterFindings(const FilterChoice& filter, std::vector<std::string>& found) {
+  if (!filter.chosen) {
+    return;
   }
-  if (filtered && samples.time_base != TimeBase::kStamps) {
-    said.emplace_back(
-        "positions and velocities contradict the stamps: samples taken at equal distances "
-        "fit them better");
+  const CutoffChoice& choice = filter.choice;
+  if (choice.moving < kMostlyAtRest) {
+    found.push_back("the arm rests for " + formatted("%.3g", 100.0 * (1.0 - choice.moving)) +
+                    " % of the time: the cut-off was chosen from the motion alone");
   }
-  if (const Index count = samples.isolated.count(); count > 0) {
-    said.push_back(std::to_string(count) + of_all +
-                   "lie between gaps, in pieces too short to be filtered");
+  if (choice.cutoff <= choice.lowest) {
+    found.push_back("the chosen cut-off, " + formatted("%.3g", choice.cutoff) +
+                    " Hz, is the lowest possible: the data don't tell motion from noise");
+  } else if (choice.cutoff >= choice.highest) {
+    found.push_back("the chosen cut-off, " + formatted("%.3g", choice.cutoff) +
+                    " Hz, is the highest possible: the data don't tell noise from motion");
   }
-  if (const Index count = samples.start_transient.count(); count > 0) {
-    said.push_back("the first " + std::to_string(count) + of_all +
-                   "are a start transient: efforts jump");
-  }
-  return said;
 }
 
 }  // namespace
@@ -98,6 +106,40 @@ AccelerationMethod accelerationMethod(const std::string& text) {
                         "auto is right for most recordings");
 }
 
+std::vector<std::string> sampleFindings(const Stamps& stamps, const std::string& clock,
+                                        const SampleReport& samples, const FilterChoice* filter) {
+  const std::string of_all = " of " + std::to_string(stamps.size()) + " samples ";
+  const std::string left_out = filter != nullptr ? " (left out of the differentiation)" : "";
+  std::vector<std::string> found;
+  if (const Index count = samples.repeated.count(); count > 0) {
+    found.push_back(std::to_string(count) + of_all + "repeat the one before" + left_out);
+  }
+  if (const Index count = samples.non_increasing.count(); count > 0) {
+    found.push_back(std::to_string(count) + of_all + "have an equal or backward " + clock +
+                    " stamp" + left_out + ": the first is " + firstBackwardStamp(stamps, samples));
+  }
+  if (filter != nullptr && samples.time_base != TimeBase::kStamps) {
+    found.emplace_back(
+        "positions and velocities contradict the stamps: samples taken at equal distances "
+        "fit them better");
+  }
+  if (!samples.gaps.empty()) {
+    found.push_back(gapFinding(stamps, samples, filter != nullptr));
+  }
+  if (const Index count = samples.isolated.count(); count > 0) {
+    found.push_back(std::to_string(count) + of_all +
+                    "lie between gaps, in pieces too short to be filtered");
+  }
+  if (const Index count = samples.start_transient.count(); count > 0) {
+    found.push_back("the first " + std::to_string(count) + of_all +
+                    "are a start transient: efforts jump");
+  }
+  if (filter != nullptr) {
+    addFilterFindings(*filter, found);
+  }
+  return found;
+}
+
 LogAccelerations logAccelerations(const JointLog& log, AccelerationMethod method, double cutoff,
                                   const SampleRules& rules) {
   if (method == AccelerationMethod::kAuto) {
@@ -111,12 +153,14 @@ LogAccelerations logAccelerations(const JointLog& log, AccelerationMethod method
   }
   const Eigen::VectorXd time = log.time();
   LogAccelerations result;
+  FilterChoice filter;
   if (filtered) {
     AccelerationEstimate estimate = lowPassAccelerations(time, log.q, log.qd, log.effort,
                                                          {cutoff, LowPassOptions().order, rules});
     result.qdd = std::move(estimate.qdd);
     result.samples = std::move(estimate.samples);
-    result.summary = summaryOf(estimate.filter);
+    filter = std::move(estimate.filter);
+    result.summary = summaryOf(filter);
   } else if (method == AccelerationMethod::kGiven) {
     if (log.qdd.size() == 0) {
       throw EvaluationError("accelerations", "recorded ones", "some", "none",
@@ -130,7 +174,8 @@ LogAccelerations logAccelerations(const JointLog& log, AccelerationMethod method
     result.qdd = backwardDifference(time, log.qd);
     result.summary = name(method) + ", no filter";
   }
-  result.findings = findingsOf(log, result.samples, filtered);
+  result.findings =
+      sampleFindings(log.stamps(), name(log.clock), result.samples, filtered ? &filter : nullptr);
   return result;
 }
 

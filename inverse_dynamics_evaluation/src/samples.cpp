@@ -48,6 +48,9 @@ void cutAtGaps(const TimedSamples& used, const SampleRules& rules, SampleReport&
     while (end < count && used.time[end] - used.time[end - 1] <= gap) {
       ++end;
     }
+    if (end < count) {
+      report.gaps.push_back(used.sample[end]);
+    }
     // the last piece goes on to the last sample, repeats and all
     const Index first = used.sample[begin];
     const Index behind = end < count ? used.sample[end] : report.isolated.size();

@@ -7,13 +7,17 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
+#include "activity.hpp"
+
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
 
+using Eigen::Index;
+
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kSegmentSeconds = 20.0;
-constexpr Eigen::Index kMostSegments = 40;  // of a stretch: spread evenly over a long one
+constexpr double kEndSeconds = 0.05;  // over which the value at an end is averaged
 // a central difference hardly sees frequencies near half the sampling frequency: no more than this
 // is divided out
 constexpr double kLeastDifferenceGain = 0.05;
@@ -21,116 +25,169 @@ constexpr double kLeastDifferenceGain = 0.05;
 using Complex = std::complex<double>;
 
 // Hann window, periodic.
-Eigen::ArrayXd hann(Eigen::Index length) {
+Eigen::ArrayXd hann(Index length) {
   const Eigen::ArrayXd angle =
       Eigen::ArrayXd::LinSpaced(length, 0.0, static_cast<double>(length - 1)) * 2.0 * kPi /
       static_cast<double>(length);
   return 0.5 - 0.5 * angle.cos();
 }
 
-// The straight line of least squares taken away.
-void removeTrend(Eigen::ArrayXd& x) {
+// x times the window, less the straight line of least squares under it.
+void applyWindow(const Eigen::ArrayXd& window, Eigen::ArrayXd& x) {
+  const auto count = static_cast<double>(x.size());
+  const double sum = window.sum();
+  if (!(sum > 0)) {
+    x.setZero();
+    return;
+  }
+  Eigen::ArrayXd k = Eigen::ArrayXd::LinSpaced(x.size(), 0.0, count - 1.0);
+  k -= (window * k).sum() / sum;
+  const double mean = (window * x).sum() / sum;
+  const double squares = (window * k.square()).sum();
+  const double slope = squares > 0 ? (window * k * x).sum() / squares : 0.0;
+  x = window * (x - mean - slope * k);
+}
+
+// Value at the first of some samples: that of the straight line of least squares through them.
+double valueAtFirst(const Eigen::ArrayXd& x) {
   const auto count = static_cast<double>(x.size());
   const Eigen::ArrayXd k =
       Eigen::ArrayXd::LinSpaced(x.size(), -(count - 1.0) / 2.0, (count - 1.0) / 2.0);
-  const double slope = (k * x).sum() / k.square().sum();
-  x -= x.mean() + slope * k;
+  return x.mean() + (k * x).sum() / k.square().sum() * k[0];
 }
 
-// Sample k of the derivative of q: central differences, one-sided at the ends; per sample, not per
-// s.
-double positionStep(const Stretch& stretch, Eigen::Index j, Eigen::Index k) {
-  const Eigen::Index before = std::max<Eigen::Index>(k - 1, 0);
-  const Eigen::Index after = std::min(k + 1, stretch.q.cols() - 1);
-  return (stretch.q(j, after) - stretch.q(j, before)) / static_cast<double>(after - before);
+// One joint of a stretch: qd and the derivative of q, both ends continued by their reflection.
+struct Signal {
+  Eigen::ArrayXd velocity;
+  Eigen::ArrayXd position_rate;
+};
+
+// `x` with `count` samples more at each end: 2 x(end) - x(mirrored).
+Eigen::ArrayXd reflected(const Eigen::ArrayXd& x, Index count, Index end) {
+  const double first = 2.0 * valueAtFirst(x.head(end));
+  const double last = 2.0 * valueAtFirst(x.tail(end).reverse());
+  Eigen::ArrayXd result(x.size() + 2 * count);
+  result << first - x.segment(1, count).reverse(), x,
+      last - x.segment(x.size() - 1 - count, count).reverse();
+  return result;
 }
 
-// Adds the periodograms of one segment of one joint. Both signals are real, so one transform of
-// `qd + i dq` holds both: qd is its conjugate-symmetric part, i dq the rest.
-void addSegment(const Stretch& stretch, Eigen::Index j, Eigen::Index begin,
-                double sampling_frequency, const Eigen::ArrayXd& window, Eigen::FFT<double>& fft,
-                std::vector<Complex>& signal, std::vector<Complex>& transform,
-                VelocitySpectra& spectra) {
-  const Eigen::Index length = window.size();
-  Eigen::ArrayXd velocity = stretch.qd.row(j).segment(begin, length).transpose().array();
-  Eigen::ArrayXd position_rate(length);
-  for (Eigen::Index k = 0; k < length; ++k) {
-    position_rate[k] = positionStep(stretch, j, begin + k) * sampling_frequency;
-  }
-  removeTrend(velocity);
-  removeTrend(position_rate);
-  for (Eigen::Index k = 0; k < length; ++k) {
-    signal[static_cast<std::size_t>(k)] = window[k] * Complex(velocity[k], position_rate[k]);
-  }
-  fft.fwd(transform, signal);
-
-  const std::size_t size = transform.size();
-  for (Eigen::Index i = 0; i < spectra.frequency.size(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const Complex here = transform[k];
-    const Complex mirrored = std::conj(transform[(size - k) % size]);
-    const Complex velocity_part = 0.5 * (here + mirrored);
-    const Complex position_part = Complex(0.0, -0.5) * (here - mirrored);
-    spectra.total(i, j) += std::norm(velocity_part);
-    spectra.common(i, j) += (velocity_part * std::conj(position_part)).real();
-  }
+// Derivative of q: central differences, one-sided at the ends.
+Eigen::ArrayXd positionRate(const Eigen::ArrayXd& q, double sampling_frequency) {
+  const Index last = q.size() - 1;
+  Eigen::ArrayXd rate(q.size());
+  rate.segment(1, last - 1) = 0.5 * (q.tail(last - 1) - q.head(last - 1));
+  rate[0] = q[1] - q[0];
+  rate[last] = q[last] - q[last - 1];
+  return sampling_frequency * rate;
 }
 
-// Samples of a segment: as many as the longest stretch allows, up to 20 s.
-Eigen::Index segmentLength(const std::vector<Stretch>& stretches, double sampling_frequency) {
-  Eigen::Index longest = 0;
-  for (const Stretch& stretch : stretches) {
-    longest = std::max(longest, stretch.qd.cols());
-  }
-  return std::min(longest,
-                  static_cast<Eigen::Index>(std::ceil(kSegmentSeconds * sampling_frequency)));
-}
+// Adds the periodograms of segments, one at a time.
+class Sums {
+ public:
+  Sums(VelocitySpectra& spectra, Index padded)
+      : spectra_(spectra), signal_(static_cast<std::size_t>(padded), Complex(0.0, 0.0)) {}
 
-// Where the segments of a stretch begin; the last one ends where the stretch ends.
-std::vector<Eigen::Index> segmentBegins(Eigen::Index samples, Eigen::Index length) {
-  const Eigen::Index spare = samples - length;
-  if (spare < 0) {
-    return {};
+  // Both signals are real, so one transform of `qd + i dq` holds both: qd is its
+  // conjugate-symmetric part, i dq the rest.
+  void add(const Signal& signal, Index j, Index begin, const Eigen::ArrayXd& window) {
+    const Index length = window.size();
+    Eigen::ArrayXd velocity = signal.velocity.segment(begin, length);
+    Eigen::ArrayXd position_rate = signal.position_rate.segment(begin, length);
+    applyWindow(window, velocity);
+    applyWindow(window, position_rate);
+    std::fill(signal_.begin(), signal_.end(), Complex(0.0, 0.0));
+    for (Index k = 0; k < length; ++k) {
+      signal_[static_cast<std::size_t>(k)] = Complex(velocity[k], position_rate[k]);
+    }
+    fft_.fwd(transform_, signal_);
+
+    const std::size_t size = transform_.size();
+    for (Index i = 0; i < spectra_.frequency.size(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const Complex here = transform_[k];
+      const Complex mirrored = std::conj(transform_[(size - k) % size]);
+      const Complex velocity_part = 0.5 * (here + mirrored);
+      const Complex position_part = Complex(0.0, -0.5) * (here - mirrored);
+      spectra_.total(i, j) += std::norm(velocity_part);
+      spectra_.common(i, j) += (velocity_part * std::conj(position_part)).real();
+    }
   }
-  const Eigen::Index half = std::max<Eigen::Index>(length / 2, 1);
-  const Eigen::Index steps = std::min((spare + half - 1) / half, kMostSegments - 1);
-  std::vector<Eigen::Index> begins = {0};
-  for (Eigen::Index s = 1; s <= steps; ++s) {
+
+ private:
+  VelocitySpectra& spectra_;
+  Eigen::FFT<double> fft_;
+  std::vector<Complex> signal_;
+  std::vector<Complex> transform_;
+};
+
+// Where the segments of a signal begin; the last one ends where the signal ends.
+std::vector<Index> segmentBegins(Index samples, Index length) {
+  const Index spare = samples - length;
+  const Index half = std::max<Index>(length / 2, 1);
+  const Index steps = std::max<Index>((spare + half - 1) / half, 1);
+  std::vector<Index> begins = {0};
+  for (Index s = 1; s <= steps; ++s) {
     begins.push_back(s * spare / steps);
   }
   return begins;
 }
 
+void addStretch(const Stretch& stretch, const Eigen::ArrayXd& weight, double sampling_frequency,
+                Index longest_segment, Sums& sums) {
+  const Index samples = stretch.qd.cols();
+  const Index length = std::min(longest_segment, samples);
+  const Index more = length / 2 - 1;
+  const Index end = std::clamp<Index>(std::llround(kEndSeconds * sampling_frequency), 3,
+                                      std::max<Index>(samples / 4, 3));
+  const Eigen::ArrayXd shape = hann(length);
+  Eigen::ArrayXd mirrored(samples + 2 * more);
+  mirrored << weight.segment(1, more).reverse(), weight,
+      weight.segment(samples - 1 - more, more).reverse();
+  const std::vector<Index> begins = segmentBegins(mirrored.size(), length);
+  for (Index j = 0; j < stretch.qd.rows(); ++j) {
+    const Signal signal = {
+        reflected(stretch.qd.row(j).transpose().array(), more, end),
+        reflected(positionRate(stretch.q.row(j).transpose().array(), sampling_frequency), more,
+                  end)};
+    for (const Index begin : begins) {
+      sums.add(signal, j, begin, shape * mirrored.segment(begin, length));
+    }
+  }
+}
+
 }  // namespace
 
 VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sampling_frequency) {
-  const Eigen::Index length = segmentLength(stretches, sampling_frequency);
-  Eigen::Index padded = 1;
-  while (padded < length) {
-    padded *= 2;
+  Index longest = 0;
+  Index samples = 0;
+  for (const Stretch& stretch : stretches) {
+    longest = std::max(longest, stretch.qd.cols());
+    samples += stretch.qd.cols();
+  }
+  Index length = 1;
+  while (static_cast<double>(2 * length) <= kSegmentSeconds * sampling_frequency &&
+         length < longest) {
+    length *= 2;
   }
 
-  const Eigen::Index joints = stretches.front().qd.rows();
-  const Eigen::Index frequencies = padded / 2 + 1;
+  const Index joints = stretches.front().qd.rows();
+  const Index frequencies = length / 2 + 1;
   VelocitySpectra spectra;
   spectra.frequency = Eigen::ArrayXd::LinSpaced(frequencies, 0.0, sampling_frequency / 2.0);
   spectra.total = Eigen::ArrayXXd::Zero(frequencies, joints);
   spectra.common = Eigen::ArrayXXd::Zero(frequencies, joints);
-
-  const Eigen::ArrayXd window = hann(length);
-  Eigen::FFT<double> fft;
-  std::vector<Complex> signal(static_cast<std::size_t>(padded), Complex(0.0, 0.0));
-  std::vector<Complex> transform;
+  Sums sums(spectra, length);
   for (const Stretch& stretch : stretches) {
-    for (const Eigen::Index begin : segmentBegins(stretch.qd.cols(), length)) {
-      for (Eigen::Index j = 0; j < joints; ++j) {
-        addSegment(stretch, j, begin, sampling_frequency, window, fft, signal, transform, spectra);
-      }
+    if (stretch.qd.cols() >= kLeastStretch) {
+      const Eigen::ArrayXd weight = activity(stretch, sampling_frequency);
+      spectra.moving += weight.sum() / static_cast<double>(samples);
+      addStretch(stretch, weight, sampling_frequency, length, sums);
     }
   }
 
   // a central difference passes frequency w with the gain sin(w) / w
-  for (Eigen::Index i = 1; i < frequencies; ++i) {
+  for (Index i = 1; i < frequencies; ++i) {
     const double w = kPi * static_cast<double>(i) / static_cast<double>(frequencies - 1);
     spectra.common.row(i) /= std::max(std::sin(w) / w, kLeastDifferenceGain);
   }

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <random>
 
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/accelerations.hpp"
@@ -14,6 +15,7 @@ namespace inverse_dynamics_evaluation {
 namespace {
 
 using ::testing::Contains;
+using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -88,6 +90,44 @@ TEST(LogAccelerations, SayWhatIsOddAboutTheSamples) {
                        "6.990000000 s"));
   EXPECT_THAT(logAccelerations(log, AccelerationMethod::kBackwardDifference).findings,
               Contains("1 of 1000 samples repeat the one before"));
+}
+
+TEST(LogAccelerations, SayThatThereIsAGap) {
+  JointLog log = sine();
+  log.header_stamps.tail(300).array() += 10'000'000'000;
+  EXPECT_THAT(logAccelerations(log).findings,
+              Contains("1 gap in the recording: no sample for 10 s after sample 700 at 6.990000000 "
+                       "s; each side is filtered by itself"));
+  log.header_stamps.tail(100).array() += 2'000'000'000;
+  EXPECT_THAT(logAccelerations(log, AccelerationMethod::kBackwardDifference).findings,
+              Contains("2 gaps in the recording: no sample for 10 s after sample 700 at "
+                       "6.990000000 s (the longest)"));
+}
+
+TEST(LogAccelerations, SayWhatTheDataCannotTell) {
+  // one half of a sine of 0.5 Hz in a minute of rest
+  JointLog log = sine();
+  constexpr Eigen::Index kCount = 6000;
+  log.header_stamps = log.receive_stamps = Stamps::LinSpaced(kCount, 0, 10'000'000 * (kCount - 1));
+  std::mt19937 generator(1);
+  std::normal_distribution<double> noise(0.0, 0.002);
+  const double w = 3.14159265358979323846;
+  const Eigen::RowVectorXd t = log.time().transpose();
+  const Eigen::ArrayXXd phase = (w * (t.array() - 30.0)).max(0.0).min(w);
+  log.q = 1.0 - phase.cos();
+  log.qd = (w * phase.sin()).unaryExpr([&](double x) { return x + noise(generator); });
+  log.effort = log.qd;
+  EXPECT_THAT(
+      logAccelerations(log).findings,
+      Contains(ContainsRegex("the arm rests for 9[0-9](\\.[0-9])? % of the time: the cut-off "
+                             "was chosen from the motion alone")));
+  EXPECT_TRUE(logAccelerations(log, AccelerationMethod::kLowPass, 5.0).findings.empty());
+
+  log.qd.setZero();
+  log.q.setZero();
+  EXPECT_THAT(logAccelerations(log).findings,
+              Contains("the chosen cut-off, 40 Hz, is the highest possible: the data don't tell "
+                       "noise from motion"));
 }
 
 TEST(LogAccelerations, RefuseAnUnknownMethodAndACutOffWithoutAFilter) {

@@ -50,6 +50,25 @@ inline Motion sines(double sampling_frequency, double duration,
   return motion;
 }
 
+/// One quintic motion of all joints from rest to rest, within a longer time of rest [s]; its
+/// velocities peak at up to 0.5 rad/s.
+inline Motion restingBut(double sampling_frequency, double duration, double begin, double length) {
+  const auto count = static_cast<Eigen::Index>(std::lround(duration * sampling_frequency)) + 1;
+  Motion motion;
+  motion.time =
+      Eigen::VectorXd::LinSpaced(count, 0.0, static_cast<double>(count - 1) / sampling_frequency);
+  motion.q = motion.qd = motion.qdd = motion.effort = Eigen::MatrixXd::Zero(3, count);
+  const Eigen::ArrayXd x = ((motion.time.array() - begin) / length).max(0.0).min(1.0);
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    const double way = 0.25 * length * (j == 1 ? -1.0 : 1.0) / static_cast<double>(j + 1);
+    motion.q.row(j) = way * (x.cube() * (10.0 - 15.0 * x + 6.0 * x.square())).matrix().transpose();
+    motion.qd.row(j) = way / length * (30.0 * x.square() * (1.0 - x).square()).matrix().transpose();
+    motion.qdd.row(j) =
+        way / (length * length) * (60.0 * x * (1.0 - x) * (1.0 - 2.0 * x)).matrix().transpose();
+  }
+  return motion;
+}
+
 /// White noise of a standard deviation [rad/s] on the velocities.
 inline void addVelocityNoise(Motion& motion, double deviation, std::uint32_t seed) {
   std::mt19937 generator(seed);

@@ -132,11 +132,14 @@ class CutoffChoice:
     @property
     def agreement(self) -> float: ...
     @property
-    def residual(self) -> float: ...
+    def plateau(self) -> float: ...
     @property
     def lowest(self) -> float: ...
     @property
     def highest(self) -> float: ...
+    @property
+    def moving(self) -> float:
+        """Share of the samples in motion, 0 to 1."""
 
 class FilterChoice:
     """What a filter did: inverse_dynamics_evaluation/accelerations.hpp."""
@@ -249,6 +252,15 @@ def low_pass(
     order: int = 2,
     padding: int = -1,
 ) -> Floats: ...
+def low_pass_derivative(
+    samples: ArrayLike, sampling_frequency: float, cutoff: float, order: int = 2
+) -> Floats: ...
+def sample_findings(
+    stamps: Integers,
+    clock: str,
+    samples: SampleReport,
+    filter: FilterChoice | None = None,
+) -> list[str]: ...
 def low_pass_gain(
     frequency: float, cutoff: float, sampling_frequency: float, order: int = 2
 ) -> float: ...

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from inverse_dynamics._core import SampleReport
+    from inverse_dynamics._core import FilterChoice, SampleReport
     from inverse_dynamics.joint_log import Floats, JointLog, Mask
 
 # What each method does, as --help says it.
@@ -81,8 +81,8 @@ def estimate_accelerations(
     method: str = "auto",
     cutoff: float | None = None,
     without_rules: Collection[str] = (),
-) -> tuple[Floats, Accelerations, Samples]:
-    """Accelerations (N, n) of a recorded motion, how they came about, and what was found.
+) -> tuple[Floats, Accelerations, Samples, list[str]]:
+    """Accelerations (N, n) of a recorded motion, how they came about, what was found, in words too.
 
     method: one of METHODS. cutoff: Hz, of a low-pass; None: chosen from the data. without_rules:
     those of RULES that aren't to be acted upon.
@@ -116,39 +116,19 @@ def estimate_accelerations(
             raise EvaluationError(
                 "accelerations: the recording gives none; expected another method, such as auto"
             )
-        return qdd, Accelerations(method), _samples(report)
+        return qdd, Accelerations(method), _samples(report), _findings(log, report, None)
     qdd, choice, report = _core.low_pass_accelerations(
         time, log.q, log.qd, log.effort, cutoff or 0.0, rules
     )
     how = Accelerations("low-pass", choice.cutoff, choice.chosen, choice.order, choice.time_base)
-    return qdd, how, _samples(report)
+    return qdd, how, _samples(report), _findings(log, report, choice)
 
 
-def findings(log: JointLog, how: Accelerations, samples: Samples) -> list[str]:
-    """What is odd about the samples and what follows, a sentence each."""
-    n = len(log)
-    left_out = " (left out of the differentiation)" if how.method == "low-pass" else ""
-    said = []
-    if count := int(samples.repeated.sum()):
-        said.append(f"{count} of {n} samples repeat the one before{left_out}")
-    if count := int(samples.non_increasing.sum()):
-        first = int(samples.non_increasing.argmax())
-        stamps = log.stamps
-        latest = stamps[:first].max()
-        said.append(
-            f"{count} of {n} samples have an equal or backward {log.clock} stamp{left_out}: the "
-            f"first is sample {first + 1} at {stamps[first] * 1e-9:.9f} s after {latest * 1e-9:.9f} s"
-        )
-    if how.time_base != "stamps":
-        said.append(
-            "positions and velocities contradict the stamps: samples taken at equal distances "
-            "fit them better"
-        )
-    if count := int(samples.isolated.sum()):
-        said.append(f"{count} of {n} samples lie between gaps, in pieces too short to be filtered")
-    if count := int(samples.start_transient.sum()):
-        said.append(f"the first {count} of {n} samples are a start transient: efforts jump")
-    return said
+def _findings(log: JointLog, report: SampleReport, choice: FilterChoice | None) -> list[str]:
+    """What is odd about the samples and what follows, one sentence each."""
+    from inverse_dynamics import _core
+
+    return _core.sample_findings(log.stamps, log.clock, report, choice)
 
 
 def _samples(report: SampleReport) -> Samples:

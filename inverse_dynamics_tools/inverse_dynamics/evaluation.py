@@ -19,7 +19,6 @@ from inverse_dynamics.accelerations import (
     Accelerations,
     Samples,
     estimate_accelerations,
-    findings,
 )
 from inverse_dynamics.decimals import LARGEST
 from inverse_dynamics.descriptions import joint_units, read_description
@@ -193,7 +192,7 @@ def _compare(
     """Computed torques of a log against its measured ones. Raises EvaluationError, RobotError."""
     start = time.perf_counter()
     try:
-        qdd, how, samples = estimate_accelerations(
+        qdd, how, samples, findings = estimate_accelerations(
             log, robot.accelerations, robot.cutoff, without_rules
         )
     except EvaluationError as error:
@@ -225,7 +224,7 @@ def _compare(
         errors=errors,
         errors_of_kept=errors_of_kept,
         effort=effort,
-        notes=(*notes, *findings(log, how, samples)),
+        notes=(*notes, *findings),
         seconds={"accelerations": filtered - start, "torques": done - filtered},
     )
 

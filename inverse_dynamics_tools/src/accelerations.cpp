@@ -5,10 +5,13 @@
 #include <pybind11/stl.h>
 
 #include <inverse_dynamics_evaluation/accelerations.hpp>
+#include <inverse_dynamics_evaluation/log_accelerations.hpp>
 #include <inverse_dynamics_evaluation/low_pass.hpp>
 #include <inverse_dynamics_evaluation/samples.hpp>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "arrays.hpp"
 #include "initialized.hpp"
@@ -84,6 +87,23 @@ py::array lowPass(const Array& samples, double sampling_frequency, double cutoff
   return rowsOf(std::move(result));
 }
 
+py::array lowPassDerivative(const Array& samples, double sampling_frequency, double cutoff,
+                            int order) {
+  const ConstMap in = states(samples, "samples");
+  Eigen::MatrixXd result;
+  {
+    const py::gil_scoped_release release;
+    result = evaluation::lowPassDerivative(in, sampling_frequency, cutoff, order);
+  }
+  return rowsOf(std::move(result));
+}
+
+std::vector<std::string> sampleFindings(const evaluation::Stamps& stamps, const std::string& clock,
+                                        const SampleReport& samples,
+                                        const std::optional<FilterChoice>& filter) {
+  return evaluation::sampleFindings(stamps, clock, samples, filter ? &*filter : nullptr);
+}
+
 void bindSampleReport(py::module_& module) {
   py::class_<SampleRules>(module, "SampleRules",
                           "Which rules on faults of samples are acted upon: see\n"
@@ -126,9 +146,10 @@ void bindAccelerations(py::module_& module) {
   py::class_<CutoffChoice>(module, "CutoffChoice", "How a cut-off was chosen [Hz].")
       .def_readonly("cutoff", &CutoffChoice::cutoff)
       .def_readonly("agreement", &CutoffChoice::agreement)
-      .def_readonly("residual", &CutoffChoice::residual)
+      .def_readonly("plateau", &CutoffChoice::plateau)
       .def_readonly("lowest", &CutoffChoice::lowest)
-      .def_readonly("highest", &CutoffChoice::highest);
+      .def_readonly("highest", &CutoffChoice::highest)
+      .def_readonly("moving", &CutoffChoice::moving);
   py::class_<FilterChoice>(module, "FilterChoice", "What a filter did.")
       .def_readonly("method", &FilterChoice::method)
       .def_readonly("cutoff", &FilterChoice::cutoff)
@@ -151,6 +172,13 @@ void bindAccelerations(py::module_& module) {
   module.def("low_pass", &lowPass, py::arg("samples"), py::arg("sampling_frequency"),
              py::arg("cutoff"), py::arg("order") = 2, py::arg("padding") = -1,
              "Zero-phase Butterworth low-pass of equidistant samples (N, n).");
+  module.def("low_pass_derivative", &lowPassDerivative, py::arg("samples"),
+             py::arg("sampling_frequency"), py::arg("cutoff"), py::arg("order") = 2,
+             "Derivative of low_pass() of equidistant samples (N, n), good at both ends too.");
+  module.def(
+      "sample_findings", &sampleFindings, py::arg("stamps"), py::arg("clock"), py::arg("samples"),
+      py::arg("filter") = std::nullopt,
+      "What is odd about the samples, and what follows, one sentence each. stamps: (N,) ns.");
   module.def("low_pass_gain", &evaluation::lowPassGain, py::arg("frequency"), py::arg("cutoff"),
              py::arg("sampling_frequency"), py::arg("order") = 2,
              "Gain of low_pass() at a frequency.");

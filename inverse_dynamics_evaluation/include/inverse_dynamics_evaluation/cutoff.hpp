@@ -20,14 +20,19 @@
 ///    have in common, the real part of their cross-spectrum, is motion: S. What the spectrum of qd
 ///    has beyond that is its noise: N. Nothing is assumed of the colour of the noise. Then E above
 ///    gives the cut-off. This look is blind where a driver made qd from q: they share their noise.
-/// 2. **Residual.** [Winter, Biomechanics and Motor Control of Human Movement, 4th ed. 2009, ch. 3]
-///    The root mean square r(f_c) of what the filter takes away falls along a straight line while
-///    it is noise alone. That line, fitted between 0.3 and 0.4 f_s and extended to f_c = 0, is the
-///    level of the noise; the cut-off is where r reaches it. This look is misled by noise that
-///    isn't white, upwards.
+/// 2. **Plateau.** With rising frequency motion fades fast and noise slowly. For each f_c above
+///    most of the motion, N is taken to be as strong below f_c as right above it, from 1.25 to
+///    2.5 f_c, where the spectrum of qd must not fall faster than behind a filter of first order; S
+///    is the rest. The cut-off is the lowest one at which E has more of noise than of motion. This
+///    look needs no q; noise that rises with frequency misleads it, downwards.
+///
+/// Rests are left out. In 20 minutes with one motion of half a second, noise of all 20 minutes
+/// would outweigh what the filter takes from the motion. So each look sees the samples in motion
+/// and half a second around them: those where q and qd agree on a velocity above the noise.
 ///
 /// One cut-off serves all joints: each joint's spectra are divided by its own level of qd above
-/// f_s / 4 and added. docs/accuracy.md has the comparison with other methods.
+/// f_s / 4 and added. All of this is sums over segments of at most 20 s, gathered in one pass.
+/// docs/accuracy.md has the comparison with other methods.
 
 #pragma once
 
@@ -41,9 +46,10 @@ inline namespace v2 {
 struct CutoffChoice {
   double cutoff = 0;     ///< the lower of the two
   double agreement = 0;  ///< where E is least, noise being what q doesn't confirm
-  double residual = 0;   ///< by residual analysis of qd
+  double plateau = 0;    ///< where noise as strong as right above it outweighs the motion
   double lowest = 0;     ///< least that could be chosen: two periods in the recording, or 0.25 Hz
   double highest = 0;    ///< greatest that could be chosen: 0.4 of the sampling frequency
+  double moving = 0;  ///< share of the samples in motion, 0 to 1; the cut-off is chosen from them
 };
 
 /// A stretch of equidistant samples.
@@ -52,8 +58,7 @@ struct Stretch {
   Eigen::MatrixXd qd;  ///< n x N; rad/s (prismatic m/s)
 };
 
-/// Cut-off for the zero-phase low-pass of qd before differentiation. O(N log N), at most 20 s of
-/// samples at a time.
+/// Cut-off for the zero-phase low-pass of qd before differentiation. O(N).
 ///
 /// @param stretches           one or more, of the same n; joints that never move don't matter.
 /// @param sampling_frequency  Hz.

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "inverse_dynamics_evaluation/joint_log.hpp"
 #include "inverse_dynamics_evaluation/samples.hpp"
 
@@ -50,6 +51,15 @@ struct LogAccelerations {
 LogAccelerations logAccelerations(const JointLog& log,
                                   AccelerationMethod method = AccelerationMethod::kAuto,
                                   double cutoff = 0, const SampleRules& rules = {});
+
+/// What is odd about the samples of a recording, and what follows from it; one sentence each.
+///
+/// @param stamps   N; ns; of the samples that were examined.
+/// @param clock    whose stamps they are: `header` or `receive`.
+/// @param samples  what examineSamples() found.
+/// @param filter   what the low-pass did; nullptr where there was none.
+std::vector<std::string> sampleFindings(const Stamps& stamps, const std::string& clock,
+                                        const SampleReport& samples, const FilterChoice* filter);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_evaluation

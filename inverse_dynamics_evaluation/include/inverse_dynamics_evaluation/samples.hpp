@@ -83,6 +83,7 @@ struct SampleReport {
   Eigen::VectorXd time;              ///< N; s; instant of each sample in it; a repeat has that
                                      ///< of the sample it repeats
   std::vector<Eigen::Index> pieces;  ///< first sample of each piece (rule 5)
+  std::vector<Eigen::Index> gaps;    ///< first used sample behind each gap (rule 5)
 
   double period = 0;          ///< s; mean distance of the used samples, gaps aside
   double stamped_period = 0;  ///< s; median distance of the stamps

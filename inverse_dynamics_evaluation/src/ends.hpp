@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// What a velocity may have been before the first sample and after the last one.
+///
+///     Eigen::MatrixXd longer = continued(qd, 60, 100);   // 100 samples more at each end
+///
+/// A filter that runs forwards and backwards needs samples beyond both ends. The point reflection,
+/// 2 x_0 - x_k, is what lowPass() takes: it keeps value and slope, but its value at the end is that
+/// of one noisy sample, so the noise of that sample becomes a step of twice its size, and the
+/// curvature changes its sign there. A cubic through the last samples averages their noise and goes
+/// on with slope and curvature. Its fit sees one to two periods of the cut-off, so it follows what
+/// the filter lets through. At the ends the acceleration is then about as good as one from samples
+/// of one side can be; docs/accuracy.md has the figures.
+
+#pragma once
+
+#include <Eigen/Core>
+
+namespace inverse_dynamics_evaluation {
+inline namespace v2 {
+
+/// Each row of `samples`, continued at both ends by the cubic that fits them best there.
+///
+/// @param samples  n x N, equidistant, N >= 4.
+/// @param fit      samples that the cubic is fitted to, at least 6 or all there are; weights fall
+///                 from one at the end to zero (cos^2 of the amplitude).
+/// @param count    samples by which each end is continued.
+/// @return n x (N + 2 count).
+Eigen::MatrixXd continued(const Eigen::Ref<const Eigen::MatrixXd>& samples, Eigen::Index fit,
+                          Eigen::Index count);
+
+}  // namespace v2
+}  // namespace inverse_dynamics_evaluation
