@@ -163,6 +163,10 @@ def comparison_figure(comparison: Comparison) -> Figure:
             f"error: RMSE {rmse} {first.units[j]}", loc="left", fontsize=9, color=_MUTED
         )
         right.axhline(0, color="#999999", linewidth=0.6)
+        largest = max(
+            _error_limit(e.computed[:, j] - e.measured[:, j]) for e in comparison.evaluations
+        )
+        right.set_ylim(-1.1 * (largest or 1.0), 1.1 * (largest or 1.0))
     for axis in axes[-1]:
         axis.set_xlabel("time [s]", color=_MUTED)
         axis.set_xlim(first.time[0], first.time[-1])
@@ -184,11 +188,11 @@ def _draw_error(axes: Axes, evaluation: Evaluation, time: Floats, j: int) -> Non
     from matplotlib.ticker import EngFormatter
 
     error = evaluation.errors[j]
+    largest = _error_limit(evaluation.computed[:, j] - evaluation.measured[:, j]) or 1.0
     t, difference = _thinned(time, evaluation.computed[:, j] - evaluation.measured[:, j])
     axes.axhline(0, color="#999999", linewidth=0.6)
     axes.fill_between(t, 0, difference, color=ERROR["color"], alpha=0.15, linewidth=0)
     axes.plot(t, difference, **ERROR)
-    largest = float(np.max(np.abs(difference))) or 1.0
     axes.set_ylim(-1.1 * largest, 1.1 * largest)
     if largest < 0.01:
         axes.yaxis.set_major_formatter(EngFormatter(sep=""))  # 200µ instead of 0.0002
@@ -196,6 +200,15 @@ def _draw_error(axes: Axes, evaluation: Evaluation, time: Floats, j: int) -> Non
     axes.set_title(
         f"RMSE {error.rmse:.3g} {error.unit}{share}", loc="left", fontsize=9, pad=3, color=_MUTED
     )
+
+
+def _error_limit(error: Floats) -> float:
+    """What an axis of errors (N,) must show: all of them, but for spikes that would flatten the rest.
+
+    A spike is beyond one and a half times the 99.5 % quantile of the magnitudes.
+    """
+    magnitude = np.abs(error)
+    return float(min(magnitude.max(), 1.5 * np.quantile(magnitude, 0.995) or np.inf))
 
 
 def _subtitle(evaluation: Evaluation) -> str:

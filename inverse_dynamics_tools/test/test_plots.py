@@ -7,6 +7,8 @@ from test_results import make_evaluation
 
 from inverse_dynamics import save_torque_figure, torque_figure
 from inverse_dynamics.accelerations import Accelerations
+from inverse_dynamics.comparison import compare
+from inverse_dynamics.plots import comparison_figure
 
 
 def texts(figure):
@@ -37,6 +39,19 @@ def test_every_joint_has_a_row_with_torques_and_error():
         )
         low, high = right.get_ylim()
         assert low == -high
+
+
+def test_a_spike_does_not_flatten_the_error():
+    evaluation = make_evaluation()
+    computed = evaluation.computed.copy()
+    usual = np.abs(computed[:, 0] - evaluation.measured[:, 0]).max()
+    computed[0, 0] += 1000.0
+    spiked = replace(evaluation, computed=computed)
+    _, high = torque_figure(spiked).axes[1].get_ylim()
+    assert usual <= high < 2.0 * usual
+    comparison = compare([spiked, evaluation])
+    _, high = comparison_figure(comparison).axes[1].get_ylim()
+    assert usual <= high < 2.0 * usual
 
 
 def test_the_figure_says_robot_solver_filter_and_units():

@@ -288,6 +288,16 @@ def test_browser_shows_robot_and_plots_without_complaints(opened, section):
     assert complaints(opened) == []
 
 
+def test_a_spike_does_not_flatten_the_plot_of_errors(opened):
+    values = [((-1) ** i) * 0.5 for i in range(1000)]
+    ask = "return range([{style: arguments[0], values: arguments[1]}]);"
+    _, usual = opened.execute_script(ask, "error", values)
+    _, spiked = opened.execute_script(ask, "error", [200.0, *values])
+    assert usual <= spiked < 2.0 * usual
+    # but a torque's peak is shown
+    assert opened.execute_script(ask, "measured", [200.0, *values])[1] > 200.0
+
+
 @pytest.mark.parametrize("how", ["click", "space key"])
 def test_playing_moves_the_time_and_the_robot(opened, section, how):
     play, robot = child(section, ".play"), child(section, ".robot canvas")

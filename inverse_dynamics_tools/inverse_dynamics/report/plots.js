@@ -48,6 +48,12 @@ function indexAt(time, t) {
   return low;
 }
 
+// Magnitude beyond which an error is a spike that would flatten the rest: 1.5 times the 99.5 % quantile.
+function spikeLimit(all_series) {
+  const magnitudes = all_series.flatMap((series) => Array.from(series.values, Math.abs)).sort((a, b) => a - b);
+  return 1.5 * magnitudes[Math.floor(0.995 * (magnitudes.length - 1))] || Infinity;
+}
+
 function range(all_series) {
   let low = Infinity, high = -Infinity;
   for (const series of all_series) {
@@ -55,6 +61,11 @@ function range(all_series) {
       if (value < low) low = value;
       if (value > high) high = value;
     }
+  }
+  if (all_series.every((series) => series.style === "error")) {
+    const limit = spikeLimit(all_series);
+    low = Math.max(low, -limit);
+    high = Math.min(high, limit);
   }
   if (!(high > low)) {
     const middle = Number.isFinite(low) ? low : 0;
