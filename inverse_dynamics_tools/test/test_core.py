@@ -292,6 +292,28 @@ def test_backward_difference_is_that_of_numpy():
     np.testing.assert_allclose(qdd[1:], np.diff(qd, axis=0) / np.diff(time)[:, None], rtol=1e-12)
 
 
+def test_findings_name_a_gap():
+    time = np.concatenate([np.arange(0, 4, 0.01), np.arange(14, 18, 0.01)])
+    q = np.sin(time)[:, None]
+    qd = np.cos(time)[:, None]
+    _, choice, report = _core.low_pass_accelerations(time, q, qd, q, cutoff=5.0)
+    stamps = np.round(time * 1e9).astype(np.int64)
+    found = _core.sample_findings(stamps, "header", report, choice)
+    assert found == [
+        "1 gap in the recording: no sample for 10 s after sample 400 at 3.990000000 s; "
+        "each side is filtered by itself"
+    ]
+    (raw,) = _core.sample_findings(stamps, "header", report)
+    assert raw.endswith("at 3.990000000 s")
+
+
+def test_low_pass_derivative_is_good_at_the_ends():
+    time = np.arange(0, 5, 0.01)
+    qd = np.sin(time)[:, None]
+    qdd = _core.low_pass_derivative(qd, 100.0, 5.0)
+    np.testing.assert_allclose(qdd, np.cos(time)[:, None], atol=2e-3)
+
+
 def test_low_pass_accelerations_of_a_sine_are_its_derivative():
     time = np.arange(4000) * 0.002
     phase = 2 * np.pi * 0.5 * time[:, None] + [0.0, 1.0]
