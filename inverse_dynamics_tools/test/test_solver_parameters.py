@@ -119,6 +119,16 @@ def test_wrong_type_is_told_with_the_robot(ids, tmp_path):
     fails(result, "robot arm: parameter 'batch_threads'", "expected integer")
 
 
+def test_a_parameter_that_the_solver_does_not_know_is_told_with_the_robot(ids, tmp_path):
+    arm = write(tmp_path, pendulum(), "parameters: {batch_thread: 2}\n")
+    command = ("torques", planned(tmp_path, ("swing",)), "--out", "a.csv", "--robot")
+    fails(ids(*command, arm), "robot arm: parameter 'batch_thread'", "batch_threads")
+    fails(ids("robots", arm), "robot arm: parameter 'batch_thread'", "batch_threads")
+    arm = write(tmp_path, pendulum())
+    result = ids(*command, arm, "--parameter", "locked_joint.a=1")
+    fails(result, "robot arm: parameter 'locked_joint.a'")
+
+
 def test_simulation_says_that_it_does_not_use_them(tmp_path):
     arm = load_robot(
         write(tmp_path, two_links(), "tip: tip\nparameters: {locked_joints: {a: 1}}\n")
