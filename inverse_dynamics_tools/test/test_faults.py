@@ -216,6 +216,25 @@ def test_a_full_disk_is_told_in_one_line(bag, small_disk, storage, room):
     assert os.listdir(small_disk) == ["others"]
 
 
+def test_a_read_only_place_is_told_before_the_work(ids, bag, result, small_disk):
+    subprocess.run(["mount", "-o", "remount,ro", str(small_disk)], check=True)
+    for command in (
+        ("evaluate", bag, "--robot", "ur10_simulated", "--out", small_disk / "out"),
+        ("report", result, "--out", small_disk / "page.html"),
+    ):
+        fails(ids(*command), f"can't be written ({small_disk} may not be written to); name another")
+
+
+def test_a_comparison_is_replaced_as_a_whole(ids, result, tmp_path):
+    command = ("compare", result, result, "--labels", "a,b", "--out", "out")
+    assert ids(*command)[0] == 0
+    first = (tmp_path / "out").stat().st_ino
+    assert ids(*command, "--overwrite")[::2] == (0, "")
+    assert (tmp_path / "out").stat().st_ino != first
+    (tmp_path / "out" / "notes.txt").touch()
+    fails(ids(*command, "--overwrite"), "1 file that this command doesn't write (notes.txt)")
+
+
 def test_an_output_that_takes_nothing_is_told_with_what_was_written(result, tmp_path):
     with open("/dev/full", "w") as full:
         finished = subprocess.run(
