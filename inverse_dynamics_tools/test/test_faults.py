@@ -383,7 +383,9 @@ def test_a_report_that_can_not_be_written_does_not_matter(ids, monkeypatch):
 
 
 @pytest.mark.parametrize("error", [MemoryError(), RecursionError("too deep"), OSError("odd")])
-def test_no_error_ends_in_a_traceback(ids, monkeypatch, error):
+def test_no_error_ends_in_a_traceback(ids, tmp_path, monkeypatch, error):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+
     def fail(_):
         raise error
 
