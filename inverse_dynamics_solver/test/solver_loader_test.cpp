@@ -179,25 +179,42 @@ TEST(Pluginlib, LoadsSolversByTheNamesThatUsersKnow) {
                pluginlib::CreateClassException);
 }
 
-/// In a process of its own, where nothing else keeps the plugin open. The loader is gone before the
-/// error is handled.
+const char* const kTwoLink = "two_link_solver/TwoLinkSolver";
+const Parameters kErrorOfItsOwnClass = {{"fault", "error of its own class"}};
+
+/// In a process of its own, where nothing else keeps the plugin open. Solver and loader are gone
+/// before the error, whose class is in the plugin, is handled.
+TEST(SolverLoaderDeathTest, ErrorOfASolverOutlivesItsLoader) {
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const auto text_of_error = []() -> std::string {
+    try {
+      SolverLoader().load(kTwoLink)->initialize(kErrorOfItsOwnClass);
+    } catch (const InvalidParameterValueException& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EXIT(std::exit(text_of_error() == "error of its own class" ? 0 : 1),
+              ::testing::ExitedWithCode(0), "");
+}
+
 TEST(PluginlibDeathTest, ErrorOfASolverOutlivesItsLoaderWhichMayBeMadeAgain) {
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";
-  const auto text_of_error = [] {
+  const auto text_of_error = []() -> std::string {
     try {
       pluginlib::ClassLoader<InverseDynamicsSolver> loader(
           "inverse_dynamics_solver", "inverse_dynamics_solver::InverseDynamicsSolver");
-      loader.createUniqueInstance(kPendulum)->initialize({{"mass", -2.0}, {"length", 0.5}});
+      loader.createUniqueInstance(kTwoLink)->initialize(kErrorOfItsOwnClass);
     } catch (const InvalidParameterValueException& error) {
-      return std::string(error.what());
+      return error.what();
     }
-    return std::string();
+    return "";
   };
   EXPECT_EXIT(
       {
         const std::string first = text_of_error();
         const std::string second = text_of_error();
-        std::exit(!first.empty() && first == second ? 0 : 1);
+        std::exit(first == "error of its own class" && first == second ? 0 : 1);
       },
       ::testing::ExitedWithCode(0), "");
 }

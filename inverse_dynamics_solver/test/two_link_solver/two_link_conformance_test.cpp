@@ -16,6 +16,9 @@ struct TwoLink : SolverTraits {
     const char* const fault = std::getenv("FAULT");
     return {{"fault", std::string(fault == nullptr ? "" : fault)}};
   }
+  static std::vector<std::pair<ParameterMap, std::string>> badInitializations() {
+    return {{{{"fault", "error of its own class"}}, robotDescription()}};
+  }
 };
 
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(TwoLink, TwoLink);

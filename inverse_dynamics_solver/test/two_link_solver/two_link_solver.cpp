@@ -12,6 +12,12 @@ namespace {
 // Masses [kg] and lengths [m] of the two links.
 constexpr double m1 = 3.0, m2 = 2.0, l1 = 0.7, l2 = 0.5;
 
+/// An error whose class is this library's alone.
+class OwnError : public InvalidParameterValueException {
+ public:
+  using InvalidParameterValueException::InvalidParameterValueException;
+};
+
 bool known(const std::string& link) { return link.empty() || link == "base" || link == "tip"; }
 
 }  // namespace
@@ -19,6 +25,8 @@ bool known(const std::string& link) { return link.empty() || link == "base" || l
 auto TwoLinkSolver::configure(const Configuration& configuration) -> JointInfo {
   const std::string fault = configuration.get<std::string>("fault").value_or("");
   if (fault == "members set before checks") gravity_ = configuration.gravity;
+
+  if (fault == "error of its own class") throw OwnError(fault);
 
   // Enough of a reader of robot descriptions to refuse what isn't one.
   const std::string& text = configuration.robot_description;
