@@ -181,6 +181,12 @@ std::vector<std::string> Chain::jointNames() const {
   return names;
 }
 
+Matrix3<double> inertiaAboutCenter(const LinkParameters& link) {
+  if (link.mass == 0) return link.inertia;
+  const Matrix3<double> mc_x = skew<double>(link.first_moment);
+  return link.inertia + mc_x * mc_x / link.mass;
+}
+
 std::string inertiaDefect(const LinkParameters& link) {
   if (link.mass < 0) {
     return "negative mass " + text(link.mass);
@@ -190,10 +196,9 @@ std::string inertiaDefect(const LinkParameters& link) {
     return empty ? "" : "inertia without mass";
   }
 
-  // I_c = I + m [c]x [c]x, principal moments in rising order
-  const Eigen::Matrix3d c_x = skew<double>(link.first_moment / link.mass);
-  const Eigen::Matrix3d about_center = link.inertia + link.mass * c_x * c_x;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(about_center, Eigen::EigenvaluesOnly);
+  // principal moments in rising order
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertiaAboutCenter(link),
+                                                              Eigen::EigenvaluesOnly);
   const Eigen::Vector3d moments = solver.eigenvalues();
 
   // what rounding of the given entries, about the frame's origin, may cause is no defect

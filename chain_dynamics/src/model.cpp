@@ -2,68 +2,25 @@
 
 #include "chain_dynamics/model.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cassert>
 #include <cmath>
 #include <string>
 
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/parameter_sets.hpp"
+#include "definite_inertia.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
 namespace {
 
-// Of the greatest entry: what moving an inertia to its center of mass leaves of a zero moment.
-constexpr double kRounding = 1e-12;
-
 ParameterSets setsOf(const Model& model) {
   return {model.row_parameters, model.gravity_parameters};
 }
 
-// No principal moment is negative. For mere masses, each two of them are no less than the third;
-// a body that breaks only this can't exist, but its kinetic energy is never negative.
-bool isNotNegative(const Matrix3<double>& inertia) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3<double>> solver(inertia, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[0] >= -kRounding * inertia.cwiseAbs().maxCoeff();
-}
-
-bool kineticEnergyIsNotNegative(const LinkParameters& link) {
-  if (link.mass > 0) {
-    // I_c = I + m [c]x [c]x
-    const Matrix3<double> mc_x = skew<double>(link.first_moment);
-    return isNotNegative(link.inertia + mc_x * mc_x / link.mass);
-  }
-  return link.mass == 0 && link.first_moment.isZero(0) && isNotNegative(link.inertia);
-}
-
-// Whether H is positive definite at a position without symmetry, where no lever arm vanishes by
-// chance.
-bool inertiaIsDefinite(const Chain& chain) {
-  const Eigen::Index n = chain.jointCount();
-  Eigen::VectorXd q(n);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    q[j] = std::sin(1.0 + 2.0 * static_cast<double>(j));
-  }
-  Eigen::MatrixXd H(n, n);
-  inertiaMatrix(chain, q, H);
-  return Eigen::LLT<Eigen::MatrixXd>(H).info() == Eigen::Success;
-}
-
 }  // namespace
 
-bool Model::inertiaIsPhysical() const {
-  if (!row_parameters.empty()) {
-    return false;
-  }
-  for (const LinkParameters& link : chain.links()) {
-    if (!kineticEnergyIsNotNegative(link)) {
-      return false;
-    }
-  }
-  return inertiaIsDefinite(chain);
-}
+bool Model::inertiaIsPhysical() const { return row_parameters.empty() && inertiaIsDefinite(chain); }
 
 void checkModel(const Model& model) {
   const std::string where = "model " + model.name;

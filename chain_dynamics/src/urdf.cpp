@@ -12,6 +12,7 @@
 
 #include "chain_dynamics/robot_description.hpp"
 #include "chain_dynamics/text.hpp"
+#include "definite_inertia.hpp"
 #include "joint_frame.hpp"
 
 namespace chain_dynamics {
@@ -281,6 +282,7 @@ class Builder {
       parameters = symmetric(parameters);
     }
     const Chain chain(robot_.name, joints_, links_, options_.gravity, X_EU_);
+    if (!options_.allow_massless) checkMassless(chain);
     return chain.withWarnings(warnings(chain));
   }
 
@@ -351,14 +353,20 @@ class Builder {
       throw ModelError(where(robot_), "chain", "at least one movable joint", from_to,
                        "choose other root and tip");
     }
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      if (!options_.allow_massless && links_[i].toVector().isZero(0)) {
-        throw ModelError("URDF: joint " + joints_[i].name, "the body it moves", "a mass",
-                         "no mass and no inertia",
-                         "give link " + robot_.links[parts_[i].front()].name +
-                             " an <inertial>, or set allow_massless");
-      }
-    }
+  }
+
+  /// Massless bodies are right within a joint of several axes, where H is definite all the same.
+  void checkMassless(const Chain& chain) const {
+    const auto massless =
+        std::find_if(links_.begin(), links_.end(),
+                     [](const LinkParameters& link) { return link.toVector().isZero(0); });
+    if (massless == links_.end() || inertiaIsDefinite(chain)) return;
+    const auto i = static_cast<std::size_t>(massless - links_.begin());
+    throw ModelError("URDF: joint " + joints_[i].name, "the body it moves",
+                     "a mass, or an inertia matrix that is positive definite at every position",
+                     "no mass and no inertia",
+                     "give link " + robot_.links[parts_[i].front()].name +
+                         " an <inertial>, or set allow_massless to true");
   }
 
   /// What is odd: about the description, the held joints, and the parts of each link.

@@ -451,11 +451,28 @@ TEST(UrdfError, MovableBodyWithoutMassNamesJointAndLink) {
                                  joint("first", "continuous", "base", "a", "") +
                                  joint("second", "continuous", "a", "b", ""));
   EXPECT_EQ(urdfError(urdf),
-            "URDF: joint first: the body it moves: expected a mass, got no mass and no inertia; "
-            "give link a an <inertial>, or set allow_massless");
+            "URDF: joint first: the body it moves: expected a mass, or an inertia matrix that is "
+            "positive definite at every position, got no mass and no inertia; "
+            "give link a an <inertial>, or set allow_massless to true");
   UrdfOptions options;
   options.allow_massless = true;
   EXPECT_EQ(urdfError(urdf, options), "no error");
+}
+
+TEST(Urdf, MasslessBodiesWithinAJointOfTwoAxesAreAccepted) {
+  // the axes cross: wherever the body is, it can't be moved without energy
+  const std::string links = robot(link("base") + link("a", "") + link("b") +
+                                  joint("first", "continuous", "base", "a", "<axis xyz='0 0 1'/>") +
+                                  joint("second", "continuous", "a", "b", "<axis xyz='0 1 0'/>"));
+  EXPECT_EQ(urdfError(links), "no error");
+}
+
+TEST(UrdfError, MasslessBodiesWithinAWristOfThreeAxesAreRefused) {
+  const std::string links = robot(link("base") + link("a", "") + link("b", "") + link("c") +
+                                  joint("first", "continuous", "base", "a", "<axis xyz='0 0 1'/>") +
+                                  joint("second", "continuous", "a", "b", "<axis xyz='0 1 0'/>") +
+                                  joint("third", "continuous", "b", "c", "<axis xyz='0 0 1'/>"));
+  EXPECT_THAT(urdfError(links), HasSubstr("joint first: the body it moves"));
 }
 
 TEST(UrdfError, UnsupportedJointsAreNamed) {

@@ -111,6 +111,10 @@ class Chain {
   std::vector<std::string> warnings_;
 };
 
+/// Moment of inertia about the center of mass, in parallel axes: `I_c = I + m [c]x [c]x`
+/// [Featherstone 2008, sec. 2.13]. Without mass, the moment of inertia as it is.
+Matrix3<double> inertiaAboutCenter(const LinkParameters& link);
+
 /// Why a rigid body can't have these parameters, in words; empty if one can.
 ///
 /// Mass >= 0 and, about the center of mass, principal moments that are positive and of which each

@@ -53,11 +53,14 @@ struct Model {
   std::string source = {};    ///< where the figures come from
   std::string validity = {};  ///< what they are good for
 
-  /// Whether H is symmetric positive definite for every q, because of what it is made of.
+  /// Whether H is proved to be symmetric positive definite for every q.
   ///
-  /// So it is where H has one parameter set, each link could be a cloud of mass (mass >= 0, inertia
-  /// about the center of mass that isn't negative) and no joint moves nothing. Where this is false,
-  /// torques are still those of the model, but nobody should invert H or feed back through it.
+  /// It is where H has one parameter set, no link's kinetic energy can be negative (mass >= 0, no
+  /// negative moment about the center of mass), and each joint, or each group of joints with
+  /// massless links between them, has inertia of its own at every position: a shoulder of two
+  /// crossing axes has, a wrist of three that meet in one point hasn't unless its links have mass.
+  /// The proof is in src/definite_inertia.hpp. Where this is false, torques are still those of the
+  /// model, but nobody should invert H or feed back through it.
   bool inertiaIsPhysical() const;
 };
 

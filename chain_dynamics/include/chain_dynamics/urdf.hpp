@@ -48,8 +48,9 @@ struct UrdfOptions {
   Eigen::Vector3d gravity = {0, 0, -9.81};
   /// Whether what hangs on the chain beside the path or beyond the tip counts.
   bool lump_attached = true;
-  /// Whether a movable body may be without mass and inertia (H is singular if nothing heavy is
-  /// farther out).
+  /// Whether a movable body may be without mass and inertia even where H isn't proved to be
+  /// positive definite at every position. (Where it is, as within a joint of two crossing axes, it
+  /// may be.)
   bool allow_massless = false;
   /// Position at which a movable joint beside the path or beyond the tip is held; rad, prismatic m.
   /// It is asked for every joint of the robot; nothing: held at zero. A position for a joint that

@@ -58,7 +58,7 @@ struct Configuration {
   /// "ignore").
   bool lump_attached = true;
 
-  /// Whether a movable body without any mass is taken as it is, instead of being an error.
+  /// Whether a movable body without any mass is taken even where H isn't proved positive definite.
   bool allow_massless = false;
 
   /// Whether a solver adds its friction model: false where the robot's controller compensates
