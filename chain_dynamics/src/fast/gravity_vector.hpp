@@ -41,12 +41,9 @@ FAST_INLINE void forEachGravity(const Robot& robot, const State<V>& state, First
     mc.x += body.mcx;
     mc.y += body.mcy;
     if (S::kMixed) mc.z += body.mcz;
-    if (prismatic) {
-      each(i, body.mass_beyond * a[i].z);
-    } else {
-      each(i, mc.x * a[i].y - mc.y * a[i].x);
-    }
+    const P force = prismatic ? body.mass_beyond * a[i].z : mc.x * a[i].y - mc.y * a[i].x;
     if (i != first) carryPoint<S>(i, robot, state, body.mass_beyond, mc);
+    each(i, force);  // last: what it writes may stand where the state does
   });
 }
 

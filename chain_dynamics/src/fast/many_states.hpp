@@ -18,12 +18,6 @@ inline namespace v2 {
 namespace fast {
 namespace {
 
-/// Whether gravity torques depend on the first joint's angle: not if its axis is vertical. Inertia
-/// and Coriolis' forces never do.
-FAST_INLINE bool gravityTurns(const Robot& robot) {
-  return robot.root[0] != 0 || robot.root[1] != 0;
-}
-
 /// Memory of one pack of states.
 struct PackOfStates {
   Pack q[kMaxJoints], c[kMaxJoints], s[kMaxJoints], qd[kMaxJoints], qdd[kMaxJoints];
@@ -31,9 +25,9 @@ struct PackOfStates {
 
   template <int N>
   FAST_INLINE void readPositions(const Robot& robot, const Samples& from, const Lanes& lanes,
-                                 bool first_matters) {
+                                 bool gravity) {
     gather<N>(robot, from, lanes, q);
-    turnsOfPack(robot, q, first_matters, c, s);
+    turnsOfPack(robot, q, gravity, c, s);
   }
   template <int N>
   FAST_INLINE void readAtRest(const Robot& robot, const Samples& from, const Lanes& lanes) {
@@ -88,7 +82,7 @@ void torquesBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
     Pack result[kMaxJoints];
     gather<N>(robot, qd, lanes, x.qd);
     gather<N>(robot, qdd, lanes, x.qdd);
-    x.readPositions<N>(robot, q, lanes, gravityTurns(robot));
+    x.readPositions<N>(robot, q, lanes, true);
     torquesOf(robot, structure, x.state(), result);
     if (robot.friction != nullptr) {
       for (int i = 0; i < jointsOf<N>(robot); ++i) result[i] += frictionOfPack(robot, i, x.qd[i]);
@@ -115,7 +109,7 @@ void gravityBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates x;
     Pack result[kMaxJoints];
-    x.readPositions<N>(robot, q, lanes, gravityTurns(robot));
+    x.readPositions<N>(robot, q, lanes, true);
     gravityOf(robot, structure, x.state(), result);
     scatter<N>(robot, result, lanes, g);
   });
@@ -140,12 +134,13 @@ void componentsBatch(const Robot& robot, int structure, std::ptrdiff_t states, S
     PackOfStates x;
     Pack result[kMaxJoints];
     x.readAtRest<N>(robot, qd, lanes);
-    x.readPositions<N>(robot, q, lanes, gravityTurns(robot));
+    x.readPositions<N>(robot, q, lanes, true);
     if (packed) inertiaOfPack<N>(robot, structure, x.state(), lanes, H);
-    coriolisOf(robot, structure, x.state(), result);
-    scatter<N>(robot, result, lanes, c);
     gravityOf(robot, structure, x.state(), result);
     scatter<N>(robot, result, lanes, g);
+    leaveOutFirst(x.c, x.s);
+    coriolisOf(robot, structure, x.state(), result);
+    scatter<N>(robot, result, lanes, c);
   });
 }
 

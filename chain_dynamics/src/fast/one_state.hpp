@@ -38,6 +38,7 @@ void coriolisOfState(const Robot& robot, int structure, const double* q, const d
   JointNumbers c;
   JointNumbers s;
   turnsOfState(robot, q, c.values, s.values);
+  leaveOutFirst(c.values, s.values);
   const State<double> state{c.values, s.values, q, qd, kAtRest};
   coriolisOf(robot, structure, state, coriolis);
 }
@@ -62,12 +63,15 @@ void componentsOfState(const Robot& robot, int structure, const double* q, const
                        Matrices H, double* coriolis, double* g) {
   JointNumbers c;
   JointNumbers s;
+  JointNumbers gravity;  // may stand where the state does
   turnsOfState(robot, q, c.values, s.values);
   const State<double> state{c.values, s.values, q, qd, kAtRest};
   recursionsOf<double>(robot, structure)
       .inertia(robot, state, Entries<double>{H.data, H.row_step, H.column_step});
+  gravityOf(robot, structure, state, gravity.values);
+  leaveOutFirst(c.values, s.values);
   coriolisOf(robot, structure, state, coriolis);
-  gravityOf(robot, structure, state, g);
+  for (int i = 0; i < robot.joints; ++i) g[i] = gravity.values[i];
 }
 
 void forwardDynamicsOfState(const Robot& robot, int structure, const double* q, const double* qd,

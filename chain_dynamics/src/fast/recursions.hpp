@@ -103,9 +103,9 @@ FAST_INLINE void torquesOf(const Robot& robot, int structure, const State<V>& st
     recursions.torques(robot, state, robot.root, tau);
     return;
   }
-  V g[kMaxJoints];
-  recursions.torques(robot, state, kNoGravity, tau);
+  V g[kMaxJoints];  // first: tau may stand where the state does
   gravityOf(robot, structure, state, g);
+  recursions.torques(robot, state, kNoGravity, tau);
   for (int i = 0; i < robot.joints; ++i) tau[i] += g[i];
 }
 

@@ -86,8 +86,8 @@ struct Matrices {
   std::ptrdiff_t row_step, column_step, state_step;
 };
 
-/// The functions of one instruction set. Outputs overlap no input; inputs of Samples aren't
-/// written.
+/// The functions of one instruction set. Vectors are written where nothing is read any more: they
+/// may stand where an input does, as matrices may not. Inputs of Samples aren't written.
 struct Kernels {
   const char* name;
 

@@ -117,23 +117,37 @@ struct Flow {
   }
 };
 
-/// I_c (w, v)
+/// I_c (w, v), w and v without z: perpendicular to the joint's axis. Mass counts if Massive.
+template <bool Massive>
+FAST_INLINE Wrench<double> timesAcross(const Composite<double>& I, double m, const Vec<double>& w,
+                                       const Vec<double>& v) {
+  Wrench<double> F{{w.y * I.mc.z, -(w.x * I.mc.z), w.x * I.mc.y - w.y * I.mc.x},
+                   {(I.yy + I.zz) * w.x - I.xy * w.y - I.mc.z * v.y,
+                    (I.xx + I.zz) * w.y - I.xy * w.x + I.mc.z * v.x,
+                    (I.mc.x * v.y - I.mc.y * v.x) - I.xz * w.x - I.yz * w.y}};
+  if constexpr (Massive) addTo(F.f, {m * v.x, m * v.y, 0.0});
+  return F;
+}
+
+/// I_c (w, v). Mass counts if Massive.
+template <bool Massive>
 FAST_INLINE Wrench<double> timesMotion(const Composite<double>& I, double m, const Vec<double>& w,
                                        const Vec<double>& v) {
-  return {{m * v.x + (w.y * I.mc.z - w.z * I.mc.y), m * v.y + (w.z * I.mc.x - w.x * I.mc.z),
-           m * v.z + (w.x * I.mc.y - w.y * I.mc.x)},
-          {(I.yy + I.zz) * w.x - I.xy * w.y - I.xz * w.z + (I.mc.y * v.z - I.mc.z * v.y),
-           (I.xx + I.zz) * w.y - I.xy * w.x - I.yz * w.z + (I.mc.z * v.x - I.mc.x * v.z),
-           (I.xx + I.yy) * w.z - I.xz * w.x - I.yz * w.y + (I.mc.x * v.y - I.mc.y * v.x)}};
+  Wrench<double> F = timesAcross<Massive>(I, m, w, v);
+  addTo(F.f, {-(w.z * I.mc.y), w.z * I.mc.x, 0.0});
+  if constexpr (Massive) F.f.z += m * v.z;
+  addTo(F.n, {I.mc.y * v.z - I.xz * w.z, -(I.mc.x * v.z) - I.yz * w.z, (I.xx + I.yy) * w.z});
+  return F;
 }
 
 /// The forces of joint i, side by side. `force` is what goes through it, `m` the mass of what it
-/// moves.
+/// moves, if Massive.
+template <bool Massive>
 FAST_INLINE Wrench<Four> forceRates(bool prismatic, const Composite<double>& I, double m,
                                     const Flow& flow, const Wrench<double>& force,
                                     const AxisRates& r) {
-  const Wrench<double> first = timesMotion(I, m, twice(r.w), twice(r.v));
-  const Wrench<double> second = timesMotion(I, m, r.dw, r.dv);
+  const Wrench<double> first = timesAcross<Massive>(I, m, twice(r.w), twice(r.v));
+  const Wrench<double> second = timesMotion<Massive>(I, m, r.dw, r.dv);
   const Vec<double>& f = force.f;
   const Vec<double>& n = force.n;
   if (prismatic) {
@@ -204,7 +218,7 @@ FAST_INLINE void derivativesOfMotion(const Robot& robot, const State<double>& st
     I.add(body);
     flow.add(prismatic, body, links[i]);
 
-    Wrench<Four> F = forceRates(prismatic, I, m, flow, W, links[i].rates);
+    Wrench<Four> F = forceRates<S::kMixed>(prismatic, I, m, flow, W, links[i].rates);
     const Four& along = prismatic ? F.f.z : F.n.z;
     out.set(i, i, along[0], along[1], along[2] + X.rotor_inertia);
     S::backwardsFrom(i, [&](auto j) FAST_LAMBDA {

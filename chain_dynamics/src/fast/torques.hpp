@@ -26,8 +26,9 @@ FAST_INLINE void forEachJointForce(const Robot& robot, const State<V>& state, Fi
     addTo(W.n, link.n);
     const Placement& X = robot.placements[i];
     const bool prismatic = S::kMixed && X.prismatic;
-    each(i, prismatic ? W.f.z : W.n.z);
+    const P force = prismatic ? W.f.z : W.n.z;
     if (i != first) carry<S>(i, robot, state, W);
+    each(i, force);  // last: what it writes may stand where the state does
   });
 }
 

@@ -65,20 +65,35 @@ void turnsOfState(const Robot& robot, const double* q, double* c, double* s) {
   }
 }
 
-// Cosine and sine of all joints, a state in each lane; if the angle of the first joint makes no
-// difference, without its own: one, zero.
-FAST_INLINE void turnsOfPack(const Robot& robot, const Pack* q, bool first_matters, Pack* c,
-                             Pack* s) {
+/// Inertia and Coriolis' forces don't depend on the first joint's position; nor do they on its NaN.
+template <typename V>
+FAST_INLINE void leaveOutFirst(V* c, V* s) {
+  c[0] = all<V>(1.0);
+  s[0] = V{};
+}
+
+/// Whether gravity turns as the first joint does: not if that joint's axis is vertical.
+FAST_INLINE bool gravityTurns(const Robot& robot) {
+  return robot.root[0] != 0 || robot.root[1] != 0;
+}
+
+// Cosine and sine of all joints, a state in each lane. Of the first joint only where gravity is
+// asked for; one and zero, or NaN, where gravity doesn't turn.
+FAST_INLINE void turnsOfPack(const Robot& robot, const Pack* q, bool gravity, Pack* c, Pack* s) {
   const int n = robot.joints;
+  const int first = gravity && gravityTurns(robot) ? 0 : 1;
   BitsOf<Pack> beyond{};
-  c[0] = all<Pack>(1.0);
-  s[0] = Pack{};
-  for (int i = first_matters ? 0 : 1; i < n; ++i) {
+  leaveOutFirst(c, s);
+  for (int i = gravity ? 0 : 1; i < first && i < n; ++i) {
+    s[i] = 0.0 * q[i];
+    c[i] += s[i];
+  }
+  for (int i = first; i < n; ++i) {
     sineCosine<Scheme::kHorner>(q[i], all<Pack>(robot.quarter_turns[i]), s[i], c[i], beyond);
   }
   if (anyBeyond<Pack>(beyond)) {
-    sineCosineBeyond(n * kWidth, numbersOf(q), robot.quarter_turns, kWidth, numbersOf(s),
-                     numbersOf(c));
+    sineCosineBeyond((n - first) * kWidth, numbersOf(q + first), robot.quarter_turns + first,
+                     kWidth, numbersOf(s + first), numbersOf(c + first));
   }
   if (!robot.general_offsets && !robot.mixed) return;
   for (int i = 0; i < n; ++i) {
