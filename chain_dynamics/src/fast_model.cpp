@@ -163,6 +163,7 @@ std::vector<std::string> FastModel::instructionSets() {
 }
 
 FastModel::FastModel(const Model& model, const std::string& instruction_set) {
+  checkModel(model);
   const Eigen::Index n = model.chain.jointCount();
   if (n > kMaxJoints) {
     throw ModelError("fast model of " + model.name, "joints",
@@ -178,12 +179,12 @@ FastModel::FastModel(const Model& model, const std::string& instruction_set) {
 }
 
 void FastModel::useBest(const Model& model) {
-  std::vector<const Kernels*> kernels = usableKernels(robot().joints);
-  use(*kernels.back());
-  while (kernels.size() > 1 && !equalsPlain(*this, model)) {
-    kernels.pop_back();
-    use(*kernels.back());
-  }
+  const std::vector<const Kernels*> kernels = usableKernels(robot().joints);
+  const auto equals = [&](std::size_t k) {
+    use(*kernels[k]);
+    return equalsPlain(*this, model);
+  };
+  warnings_ = bestEqual(model.name, instructionSets(), equals).warnings;
 }
 
 void FastModel::use(const Kernels& kernels) {

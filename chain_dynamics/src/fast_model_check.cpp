@@ -2,82 +2,194 @@
 
 #include "fast_model_check.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include "chain_dynamics/error.hpp"
 #include "chain_dynamics/regressor.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
 namespace {
 
-// Entry by entry: the largest of numbers of which one is NaN may be any of them.
-bool near(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return ((a - b).array().abs() <= 1e-9 * (1 + b.cwiseAbs().maxCoeff())).all();
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// What the terms of an entry may amount to, in units that a robot of any size has: its length and
+/// its greatest moment of inertia, as if everything were at that length from everything.
+class Scale {
+ public:
+  explicit Scale(const Model& model) : Scale(model, setsOf(model)) {}
+
+  /// Of H; per unit of acceleration.
+  MatrixXd inertia() const { return moment_ * per_radian_ * per_radian_.transpose(); }
+  /// Of all that moves the links but friction and rotors, at q = qd = qdd.
+  VectorXd torques(const VectorXd& q) const { return moment_ * rate(q) * per_radian_; }
+  /// Of the same by q; by qd.
+  MatrixXd byPosition(const VectorXd& q) const { return rate(q) * inertia(); }
+  MatrixXd byVelocity(const VectorXd& q) const { return speed(q) * inertia(); }
+  /// Of the regressor: ten columns per link.
+  MatrixXd regressor(const VectorXd& q) const {
+    Vector10<double> column;
+    column << length_ * length_, Eigen::Vector3d::Constant(length_), Vector6::Ones();
+    return rate(q) * per_radian_ * column.replicate(q.size(), 1).transpose();
+  }
+
+ private:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Set = const std::vector<LinkParameters>*;
+
+  static std::vector<Set> setsOf(const Model& model) {
+    std::vector<Set> sets = {&model.chain.links()};
+    for (const auto& row : model.row_parameters) sets.push_back(&row);
+    if (!model.gravity_parameters.empty()) sets.push_back(&model.gravity_parameters);
+    return sets;
+  }
+
+  Scale(const Model& model, const std::vector<Set>& sets)
+      : gravity_(model.chain.gravity().norm()), per_radian_(model.chain.jointCount()) {
+    double mass = 0;
+    double first_moment = 0;
+    double inertia = 0;
+    for (Set set : sets) {
+      for (const LinkParameters& link : *set) {
+        mass += std::abs(link.mass);
+        first_moment += link.first_moment.norm();
+        inertia += link.inertia.norm();
+      }
+    }
+    const std::vector<Joint>& joints = model.chain.joints();
+    for (std::size_t i = 1; i < joints.size(); ++i) length_ += joints[i].placement.p.norm();
+    if (mass > 0) length_ += first_moment / mass + std::sqrt(inertia / mass);
+    if (!(length_ > 0)) length_ = 1;
+    moment_ = inertia + length_ * (first_moment + length_ * mass);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      per_radian_[static_cast<Index>(i)] = isPrismatic(joints[i]) ? 1 / length_ : 1;
+    }
+  }
+
+  double speed(const VectorXd& qd) const { return per_radian_.dot(qd.cwiseAbs()); }
+  double rate(const VectorXd& q) const {
+    return gravity_ / length_ + speed(q) + speed(q) * speed(q);
+  }
+
+  double length_ = 0;
+  double moment_ = 0;
+  double gravity_;
+  VectorXd per_radian_;  ///< 1, prismatic 1 / length: a slide by so much counts as a turn
+};
+
+// Entry by entry; a NaN isn't near.
+bool near(const MatrixXd& a, const MatrixXd& b, const MatrixXd& scale) {
+  return ((a - b).array().abs() <= 1e-9 * (scale + b.cwiseAbs()).array()).all();
 }
 
+/// What the functions of model.hpp give at one state q = qd = qdd.
+struct Plain {
+  Plain(const Model& model, const VectorXd& q)
+      : H(q.size(), q.size()), c(q.size()), g(q.size()), f(q.size()), backwards(q.size()) {
+    dynamicComponents(model, q, q, H, c, g);
+    frictionVector(model, q, f);
+    frictionVector(model, -q, backwards);
+  }
+  /// What friction is made of: the parts of a law may cancel at one velocity.
+  VectorXd frictionScale() const { return f.cwiseAbs() + backwards.cwiseAbs(); }
+  /// And torques, with rotors.
+  VectorXd torqueScale(const Scale& scale, const VectorXd& q) const {
+    return scale.torques(q) + frictionScale() + H.cwiseAbs() * q.cwiseAbs();
+  }
+  MatrixXd H;
+  VectorXd c, g, f, backwards;
+};
+
 // One state.
-bool torquesEqual(const FastModel& fast, const Model& model, const Eigen::VectorXd& q) {
-  const Eigen::Index n = q.size();
-  Eigen::MatrixXd H(n, n), fast_H(n, n);
-  Eigen::VectorXd c(n), g(n), f(n), fast_tau(n);
-  dynamicComponents(model, q, q, H, c, g);
-  frictionVector(model, q, f);
-  fast.inertiaMatrix(q.data(), fast_H.data(), n);
-  fast.torques(q.data(), q.data(), q.data(), fast_tau.data());
-  return near(fast_H, H) && near(fast_tau, H * q + c + g + f);
+bool torquesEqual(const FastModel& fast, const Model& model, const Scale& scale,
+                  const VectorXd& q) {
+  const Index n = q.size();
+  const Plain plain(model, q);
+  MatrixXd H(n, n);
+  VectorXd tau(n);
+  fast.inertiaMatrix(q.data(), H.data(), n);
+  fast.torques(q.data(), q.data(), q.data(), tau.data());
+  return near(H, plain.H, scale.inertia()) &&
+         near(tau, plain.H * q + plain.c + plain.g + plain.f, plain.torqueScale(scale, q));
 }
 
 // More states than the widest pack has lanes, each another one: none may get a neighbour's numbers.
-bool batchesEqual(const FastModel& fast, const Model& model, const Eigen::VectorXd& q) {
-  constexpr Eigen::Index kStates = 11;
-  const Eigen::Index n = q.size();
-  Eigen::MatrixXd states = q.replicate(1, kStates);
+bool batchesEqual(const FastModel& fast, const Model& model, const Scale& scale,
+                  const VectorXd& q) {
+  constexpr Index kStates = 11;
+  const Index n = q.size();
+  MatrixXd states = q.replicate(1, kStates);
   states.rowwise() += Eigen::RowVectorXd::LinSpaced(kStates, 0.0, 1.0);
-  Eigen::MatrixXd fast_H(n, n * kStates);
-  Eigen::MatrixXd fast_tau(n, kStates), fast_c(n, kStates), fast_g(n, kStates);
-  fast.torquesBatch(states, states, states, fast_tau);
-  fast.dynamicComponentsBatch(states, states, fast_H, fast_c, fast_g);
+  MatrixXd H(n, n * kStates);
+  MatrixXd tau(n, kStates), c(n, kStates), g(n, kStates);
+  fast.torquesBatch(states, states, states, tau);
+  fast.dynamicComponentsBatch(states, states, H, c, g);
 
-  Eigen::MatrixXd H(n, n);
-  Eigen::VectorXd c(n), g(n), f(n);
-  for (Eigen::Index k = 0; k < kStates; ++k) {
-    const Eigen::VectorXd state = states.col(k);
-    dynamicComponents(model, state, state, H, c, g);
-    frictionVector(model, state, f);
-    if (!near(fast_tau.col(k), H * state + c + g + f) || !near(fast_c.col(k), c) ||
-        !near(fast_g.col(k), g) || !near(fast_H.middleCols(k * n, n), H)) {
+  for (Index k = 0; k < kStates; ++k) {
+    const VectorXd state = states.col(k);
+    const Plain plain(model, state);
+    const VectorXd torques = plain.H * state + plain.c + plain.g + plain.f;
+    const VectorXd size = scale.torques(state);
+    if (!near(tau.col(k), torques, plain.torqueScale(scale, state)) ||
+        !near(c.col(k), plain.c, size) || !near(g.col(k), plain.g, size) ||
+        !near(H.middleCols(k * n, n), plain.H, scale.inertia())) {
       return false;
     }
   }
   return true;
 }
 
-bool derivativesEqual(const FastModel& fast, const Model& model, const Eigen::VectorXd& q) {
-  const Eigen::Index n = q.size();
-  Eigen::MatrixXd by_q(n, n), by_qd(n, n), by_qdd(n, n);
-  Eigen::VectorXd slope(n);
+bool derivativesEqual(const FastModel& fast, const Model& model, const Scale& scale,
+                      const VectorXd& q) {
+  const Index n = q.size();
+  MatrixXd by_q(n, n), by_qd(n, n), by_qdd(n, n);
+  VectorXd slope(n);
   torqueDerivatives(model, q, q, q, by_q, by_qd, by_qdd);
   frictionSlopes(model, q, slope);
   by_qd.diagonal() += slope;
 
-  Eigen::MatrixXd fast_by_q(n, n), fast_by_qd(n, n), fast_by_qdd(n, n);
+  MatrixXd fast_by_q(n, n), fast_by_qd(n, n), fast_by_qdd(n, n);
   fast.torqueDerivatives(q.data(), q.data(), q.data(), fast_by_q.data(), fast_by_qd.data(),
                          fast_by_qdd.data(), n);
-  return near(fast_by_q, by_q) && near(fast_by_qd, by_qd) && near(fast_by_qdd, by_qdd);
+  MatrixXd velocity_scale = scale.byVelocity(q);
+  velocity_scale.diagonal() += slope.cwiseAbs() + Plain(model, q).frictionScale();
+  return near(fast_by_q, by_q, scale.byPosition(q)) && near(fast_by_qd, by_qd, velocity_scale) &&
+         near(fast_by_qdd, by_qdd, scale.inertia());
 }
 
-bool regressorsEqual(const FastModel& fast, const Chain& chain, const Eigen::VectorXd& q) {
-  const Eigen::Index n = q.size();
-  Eigen::MatrixXd Y(n, 10 * n), fast_Y(n, 10 * n);
+bool regressorsEqual(const FastModel& fast, const Chain& chain, const Scale& scale,
+                     const VectorXd& q) {
+  const Index n = q.size();
+  MatrixXd Y(n, 10 * n), fast_Y(n, 10 * n);
   regressor(chain, q, q, q, Y);
   fast.regressor(q.data(), q.data(), q.data(), fast_Y.data(), n);
-  return near(fast_Y, Y);
+  return near(fast_Y, Y, scale.regressor(q));
 }
 
 }  // namespace
 
 bool equalsPlain(const FastModel& fast, const Model& model) {
-  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(model.chain.jointCount(), 0.3, 2.9);
-  return torquesEqual(fast, model, q) && batchesEqual(fast, model, q) &&
-         derivativesEqual(fast, model, q) && regressorsEqual(fast, model.chain, q);
+  const VectorXd q = VectorXd::LinSpaced(model.chain.jointCount(), 0.3, 2.9);
+  const Scale scale(model);
+  return torquesEqual(fast, model, scale, q) && batchesEqual(fast, model, scale, q) &&
+         derivativesEqual(fast, model, scale, q) && regressorsEqual(fast, model.chain, scale, q);
+}
+
+Choice bestEqual(const std::string& model, const std::vector<std::string>& sets,
+                 const std::function<bool(std::size_t)>& equals) {
+  Choice choice{sets.size(), {}};
+  while (choice.index-- > 0) {
+    if (equals(choice.index)) return choice;
+    choice.warnings.push_back("fast model of " + model + ": instruction set " + sets[choice.index] +
+                              " isn't used: its numbers differ from those of the plain functions");
+  }
+  throw ModelError("fast model of " + model, "numbers",
+                   "finite ones, equal to those of the plain functions",
+                   "others, or none, on each of " + joined(sets),
+                   "look for lengths, masses and gains that are too large");
 }
 
 }  // namespace v2

@@ -1,20 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// Whether fast kernels can be trusted on this processor: asked once, when a model is loaded.
+/// Whether fast kernels can be trusted on this processor: checked once, when a model is loaded.
 ///
-///     if (!equalsPlain(fast, model)) { ... }   // other kernels, then
+///     const Choice choice = bestEqual("arm", {"portable", "v3"}, [&](std::size_t k) {
+///       return equalsPlain(FastModel(model, names[k]), model);
+///     });
 
 #pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
 
 #include "chain_dynamics/fast_model.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
 
-/// Whether the fast kernels give what the functions of model.hpp give, at a few states: to nine
-/// digits of the largest number, far above rounding, far below a mistake.
+/// Whether the fast kernels give what the functions of model.hpp give, at a few states.
+///
+/// To 1e-9 of what the terms of each entry may amount to, far above rounding, far below a mistake:
+/// that is made of masses and lengths, since entries may cancel. Not for NaN or infinity.
 bool equalsPlain(const FastModel& fast, const Model& model);
+
+/// One of several instruction sets.
+struct Choice {
+  std::size_t index;
+  std::vector<std::string> warnings;  ///< one for each better one that can't be used
+};
+
+/// The last of the sets that equals the plain functions.
+///
+/// @param model  what messages call it.
+/// @param sets   names, the best last.
+/// @throws ModelError  if none does.
+Choice bestEqual(const std::string& model, const std::vector<std::string>& sets,
+                 const std::function<bool(std::size_t)>& equals);
 
 }  // namespace v2
 }  // namespace chain_dynamics

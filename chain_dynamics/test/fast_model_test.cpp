@@ -13,6 +13,7 @@
 #include "allocation_guard.hpp"
 #include "chain_dynamics/error.hpp"
 #include "example_models.hpp"
+#include "fast_model_check.hpp"
 #include "robot.hpp"
 
 namespace chain_dynamics {
@@ -242,6 +243,71 @@ TEST_P(FastModelOn, FrictionOfNanIsNanAndThatOfAnyVelocityIsFinite) {
   EXPECT_TRUE(f.array().isNaN().all()) << f.transpose();
 }
 
+// What is known of the state has been read before anything is written.
+TEST_P(FastModelOn, VectorsMayBeWrittenWhereAnInputStands) {
+  for (const auto& [name, model] : models()) {
+    const Index n = model.chain.jointCount();
+    const FastModel fast(model, GetParam());
+    const State<double> x = randomState<double>(model.chain, 1);
+    const Terms alone = termsOf(fast, x);
+    SCOPED_TRACE(name);
+    for (VectorXd State<double>::*argument :
+         {&State<double>::q, &State<double>::qd, &State<double>::qdd}) {
+      State<double> y = x;
+      double* const out = (y.*argument).data();
+      fast.torques(y.q.data(), y.qd.data(), y.qdd.data(), out);
+      EXPECT_EQ(y.*argument, alone.tau);
+      y = x;
+      fast.coriolisVector(y.q.data(), y.qd.data(), out);
+      EXPECT_EQ(y.*argument, alone.c);
+      y = x;
+      fast.gravityVector(y.q.data(), out);
+      EXPECT_EQ(y.*argument, alone.g);
+    }
+    for (const bool swapped : {false, true}) {
+      State<double> y = x;
+      VectorXd& c = swapped ? y.qd : y.q;
+      VectorXd& g = swapped ? y.q : y.qd;
+      MatrixXd H(n, n);
+      fast.dynamicComponents(y.q.data(), y.qd.data(), H.data(), n, c.data(), g.data());
+      EXPECT_TRUE(agree(c, alone.c, 1 + largest(alone.c) + largest(alone.H), 1e-13 * n));
+      EXPECT_TRUE(agree(g, alone.g, 1 + largest(alone.g), 1e-13 * n));
+    }
+    if (HasFailure()) return;
+  }
+}
+
+TEST_P(FastModelOn, VectorsOfABatchMayBeWrittenWhereAnInputStands) {
+  for (const auto& [name, model] : models()) {
+    const Index n = model.chain.jointCount();
+    const FastModel fast(model, GetParam());
+    Random random(3);
+    const MatrixXd q = random.vector(n * 19).reshaped(n, 19);
+    MatrixXd tau(n, 19);
+    fast.torquesBatch(q, q, q, tau);
+    MatrixXd in_place = q;
+    fast.torquesBatch(in_place, in_place, in_place, in_place);
+    ASSERT_EQ(in_place, tau) << name;
+  }
+}
+
+// Only its direction counts: where the root stands is nothing to the torques.
+TEST_P(FastModelOn, PlaceOfTheFirstJointMakesNoDifference) {
+  for (const Index n : {1, 6, 7, 9}) {
+    const Chain chain = rightAngled(n, 2, true);
+    const State<double> x = randomState<double>(chain, 1);
+    const Terms here = termsOf(FastModel(Model(chain), GetParam()), x);
+    for (const double away : {1e3, 1e14, 1e50}) {
+      std::vector<Joint> joints = chain.joints();
+      joints[0].placement.p << away, -away, away;
+      const Model moved(Chain("moved", joints, chain.links(), chain.gravity()));
+      const Terms there = termsOf(FastModel(moved, GetParam()), x);
+      EXPECT_EQ(there.tau, here.tau) << n << " joints, " << away << " m";
+      EXPECT_EQ(there.H, here.H) << n << " joints, " << away << " m";
+    }
+  }
+}
+
 // |error| of sine and cosine: half a unit in the last place of numbers below one is 5.6e-17, once
 // for the angle within a quarter turn and, with the term before the last, twice for the result.
 constexpr double kTurnError = 1.7e-16;
@@ -306,12 +372,75 @@ TEST(FastModel, UsesTheBestInstructionSetAsItEqualsThePlainFunctions) {
   }
 }
 
-// The check that chooses kernels must see a number that is none: friction of the second joint here.
-TEST(FastModel, DoesNotTakeNanForEqualWhenItChecksInstructionSets) {
+// --- which kernels are chosen ---
+
+// The same chain with all lengths and masses multiplied.
+Chain scaledChain(const Chain& chain, double length, double mass) {
+  std::vector<Joint> joints = chain.joints();
+  std::vector<LinkParameters> links = chain.links();
+  for (Joint& joint : joints) {
+    joint.placement.p *= length;
+    joint.rotor_inertia *= mass * length * length;
+  }
+  for (LinkParameters& link : links) {
+    link.mass *= mass;
+    link.first_moment *= mass * length;
+    link.inertia *= mass * length * length;
+  }
+  return Chain("scaled", joints, links, chain.gravity());
+}
+
+TEST(FastModelCheck, SeesAMillionthOfAMassInARobotOfAnySize) {
+  for (const double length : {1e-3, 1.0, 1e3}) {
+    for (const double mass : {1e-6, 1.0, 1e6}) {
+      const Chain chain = scaledChain(randomChain(5), length, mass);
+      std::vector<LinkParameters> links = chain.links();
+      links[4].mass *= 1 + 1e-6;
+      const Model other(Chain("other", chain.joints(), links, chain.gravity()));
+      const FastModel fast{Model(chain)};
+      EXPECT_TRUE(equalsPlain(fast, Model(chain))) << length << " m " << mass << " kg";
+      EXPECT_FALSE(equalsPlain(fast, other)) << length << " m " << mass << " kg";
+    }
+  }
+}
+
+TEST(FastModelCheck, SeesNan) {
   Model model(randomChain(3));
   model.friction.resize(3, ViscousCoulombOffset{0, 0, 0});
+  const FastModel fast(model);
   model.friction[1] = ViscousCoulombOffset{std::numeric_limits<double>::quiet_NaN(), 0, 0};
-  EXPECT_EQ(FastModel(model).instructionSet(), FastModel::instructionSets().front());
+  EXPECT_FALSE(equalsPlain(fast, model));
+}
+
+TEST(FastModelCheck, BetterInstructionSetThatDiffersIsPassedOverWithAWarning) {
+  const std::vector<std::string> sets = {"portable", "v3", "v4"};
+  const Choice best = bestEqual("arm", sets, [](std::size_t) { return true; });
+  EXPECT_EQ(best.index, 2U);
+  EXPECT_TRUE(best.warnings.empty());
+  const Choice second = bestEqual("arm", sets, [](std::size_t k) { return k < 2; });
+  EXPECT_EQ(second.index, 1U);
+  ASSERT_EQ(second.warnings.size(), 1U);
+  EXPECT_THAT(second.warnings[0], ::testing::HasSubstr("fast model of arm: instruction set v4"));
+  EXPECT_THAT(errorOf([&] { bestEqual("arm", sets, [](std::size_t) { return false; }); }),
+              ::testing::AllOf(::testing::HasSubstr("fast model of arm: numbers"),
+                               ::testing::HasSubstr("portable, v3, v4")));
+}
+
+TEST(FastModel, RefusesNumbersThatOverflow) {
+  Model model(randomChain(3));
+  model.friction.resize(3, ViscousCoulombOffset{1e308, 0, 0});
+  EXPECT_THAT(errorOf([&] { const FastModel fast(model); }),
+              ::testing::HasSubstr("fast model of random3: numbers: expected finite ones"));
+}
+
+TEST(FastModel, RefusesAModelWhosePartsDontFit) {
+  Model model(randomChain(3));
+  model.friction.resize(2, ViscousCoulombOffset{0, 0, 0});
+  EXPECT_THAT(errorOf([&] { const FastModel fast(model); }), ::testing::HasSubstr("friction"));
+  model.friction.clear();
+  model.row_parameters.resize(3);
+  EXPECT_THAT(errorOf([&] { const FastModel fast(model, "portable"); }),
+              ::testing::HasSubstr("links: expected one per joint (3), got 0"));
 }
 
 TEST(FastModel, RefusesAChainThatIsTooLong) {

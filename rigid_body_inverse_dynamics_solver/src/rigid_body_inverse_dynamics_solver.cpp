@@ -165,6 +165,7 @@ auto InverseDynamicsSolverRigidBody::keep(chain_dynamics::Model model,
   std::unique_ptr<const FastModel> fast;
   if (model.chain.jointCount() <= FastModel::kMaxJoints) {
     fast = std::make_unique<const FastModel>(model);
+    info.warnings.insert(info.warnings.end(), fast->warnings().begin(), fast->warnings().end());
   }
   auto complete = std::make_unique<const chain_dynamics::Model>(std::move(model));
   configuration.rejectOthers();

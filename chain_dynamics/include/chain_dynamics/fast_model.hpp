@@ -33,8 +33,11 @@ struct Robot;
 
 /// A model made ready for the fast kernels.
 ///
-/// Up to kMaxJoints joints. Real time: no method but the constructor allocates, locks or throws.
-/// Threads: safe. NaN gives NaN in every entry that depends on it. Outputs overlap no input.
+/// Up to kMaxJoints joints. Real time: no method but the constructor allocates, locks or throws;
+/// one state needs up to 48 KiB of stack, many states up to 112 KiB [docs/real_time.md]. Threads:
+/// safe. NaN gives NaN in every entry that depends on it. A vector may be written where one of the
+/// inputs stands (tau where q does, of many states in the same layout); otherwise outputs overlap
+/// no input.
 class FastModel {
  public:
   /// Longest chain.
@@ -44,10 +47,11 @@ class FastModel {
   /// on x86-64 "v3" (AVX2, FMA) and "v4" (AVX-512).
   static std::vector<std::string> instructionSets();
 
-  /// @param model            at most kMaxJoints joints.
+  /// @param model            at most kMaxJoints joints; checkModel() is called.
   /// @param instruction_set  one of instructionSets(); empty: the best of those that give what
   ///     the functions of model.hpp give, to nine digits, at a few states.
-  /// @throws ModelError  longer chain, or unknown instruction set.
+  /// @throws ModelError  longer chain, unknown instruction set, parts that don't fit together, or
+  ///     no instruction set that gives these numbers (because they overflow).
   explicit FastModel(const Model& model, const std::string& instruction_set = "");
   ~FastModel();
   FastModel(const FastModel&) = delete;
@@ -55,6 +59,9 @@ class FastModel {
 
   /// The instruction set in use.
   std::string instructionSet() const;
+
+  /// A sentence for each better instruction set that isn't used, as its numbers differ.
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
   /// @name One state
   /// n numbers each; H: entry (i, j) at H[i + j * outer_step].
@@ -112,6 +119,7 @@ class FastModel {
   std::unique_ptr<const Data> data_;
   const fast::Kernels* kernels_ = nullptr;
   int structure_ = 0;  // of the kernels for joints of this kind
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace v2

@@ -11,7 +11,7 @@ namespace fast {
 namespace {
 
 constexpr double kRounding = 1e-13;  // rad: what products of rotations leave of a right angle
-constexpr double kNoLength = 1e-14;  // of the robot's size: likewise of a zero
+constexpr double kNoLength = 1e-14;  // of the lengths from the joint to the tip: likewise of a zero
 constexpr double kSmall = 1e-8;      // rad: the square isn't seen in double precision
 constexpr double kWellPosed = 0.1;   // sine by which a length may be divided
 
@@ -46,11 +46,12 @@ Matrix3<double> rotationAboutZ(const Angle& angle) {
 /// One joint on the way from the chain's own frames to those of robot.hpp, which are turned about
 /// and moved along the same axes.
 struct Step {
-  Angle twist;        ///< from the axis before to this one, about their common normal
-  Angle own_offset;   ///< angle at q = 0 from the new frame before to the own frame
-  Vector3<double> p;  ///< origin of the own frame from that of the one before, in new axes
-  Angle turn;         ///< of the new frame against the own
-  double slide = 0;   ///< of the new frame's origin along the axis
+  Angle twist;           ///< from the axis before to this one, about their common normal
+  Angle own_offset;      ///< angle at q = 0 from the new frame before to the own frame
+  Vector3<double> p;     ///< origin of the own frame from that of the one before, in new axes
+  Angle turn;            ///< of the new frame against the own
+  double slide = 0;      ///< of the new frame's origin along the axis
+  double no_length = 0;  ///< a length up to this counts as zero
 };
 
 /// How the frame before this joint turns: x along the common normal of the two axes.
@@ -64,13 +65,18 @@ Angle turnBefore(const Transform<double>& placement, const Step& before, const A
 }
 
 /// From root to tip: how the frames turn.
-std::vector<Step> turned(const std::vector<Joint>& joints, double no_length) {
+std::vector<Step> turned(const std::vector<Joint>& joints) {
   std::vector<Step> steps(joints.size());
   steps[0].p.setZero();  // frame 0 is the first joint's own at q = 0
+  double length = 0;
+  for (std::size_t i = joints.size() - 1; i > 0; --i) {
+    length += joints[i].placement.p.cwiseAbs().sum();
+    steps[i].no_length = kNoLength * length;
+  }
   for (std::size_t i = 1; i < joints.size(); ++i) {
     const Transform<double>& X = joints[i].placement;
     steps[i].twist = Angle::of(X.R(2, 2), std::hypot(X.R(0, 2), X.R(1, 2)));
-    steps[i - 1].turn = turnBefore(X, steps[i - 1], steps[i].twist, no_length);
+    steps[i - 1].turn = turnBefore(X, steps[i - 1], steps[i].twist, steps[i].no_length);
 
     // RotZ(turn)' R = RotX(twist) RotZ(offset)
     const Matrix3<double> back = rotationAboutZ(-steps[i - 1].turn);
@@ -103,12 +109,6 @@ double splitOffset(const Angle& offset, Placement& X) {
   X.offset_sin = 0;
   if (offset.s == 0) return offset.c > 0 ? 0 : 2;
   return offset.s > 0 ? 1 : 3;
-}
-
-double sizeOf(const Chain& chain) {
-  double size = 0;
-  for (const Joint& joint : chain.joints()) size += joint.placement.p.cwiseAbs().sum();
-  return size;
 }
 
 /// Ten parameters with the second moment of mass in place of the inertia.
@@ -151,15 +151,14 @@ Matter moved(const Placement& X, const Matter& part) {
 }  // namespace
 
 Frames framesOf(const Chain& chain) {
-  const double no_length = kNoLength * sizeOf(chain);
-  const auto length = [&](double value) { return std::abs(value) <= no_length ? 0 : value; };
-  std::vector<Step> steps = turned(chain.joints(), no_length);
+  std::vector<Step> steps = turned(chain.joints());
   slide(steps);
 
   Frames frames;
   frames.root = -(chain.joints().front().placement.R.transpose() * chain.gravity());
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const Step& step = steps[i];
+    const auto length = [&](double value) { return std::abs(value) <= step.no_length ? 0 : value; };
     Placement X{};
     X.sin_twist = step.twist.s;
     X.cos_twist = step.twist.c;

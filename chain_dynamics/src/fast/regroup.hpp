@@ -28,7 +28,8 @@ struct Frames {
 };
 
 /// Frames with x along the common normals. Angles within 1e-13 of a quarter turn and lengths below
-/// 1e-14 of the robot's are rounded: more would be seen in the tenth digit of a torque.
+/// 1e-14 of those from there to the tip are rounded: more would be seen in the tenth digit of a
+/// torque. Where the root's own placement is makes no difference.
 Frames framesOf(const Chain& chain);
 
 /// The parameters that torques depend on, from those of the links in the chain's own frames.
