@@ -23,7 +23,7 @@ constexpr Eigen::Index kStackJoints = 64;
 /// Array of a size known at run time: on the stack up to kStackJoints elements, else on the heap.
 ///
 /// This is why the algorithms promise no allocation up to 64 joints. An algorithm on double keeps
-/// at most 20 KiB on the stack, one on a dual number with N directions N + 1 times as much. A
+/// at most 24 KiB on the stack, one on a dual number with N directions N + 1 times as much. A
 /// longer chain allocates, and may throw std::bad_alloc.
 ///
 /// @tparam T  elements are default-constructed: structs of Eigen vectors of double stay as they
