@@ -24,6 +24,7 @@
 
 #include "chain_dynamics/chain.hpp"
 #include "chain_dynamics/friction.hpp"
+#include "chain_dynamics/owned.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -47,7 +48,7 @@ struct Model {
   std::vector<FrictionLaw> friction = {};
 
   /// Empty: nothing is known about motors. Otherwise torque per motor current of each joint; N m/A.
-  Eigen::VectorXd drive_gains = {};
+  OwnedVector drive_gains = {};
 
   std::string name;           ///< what messages call it
   std::string source = {};    ///< where the figures come from

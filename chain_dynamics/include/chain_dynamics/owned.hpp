@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Vectors and matrices that may be made in one library and freed in another.
+///
+///     OwnedVector damping = Eigen::VectorXd::Constant(6, 5.0);    // from any Eigen expression
+///     tau -= damping.cwiseProduct(qd);                       // in any Eigen expression
+///     const Eigen::VectorXd copy = damping;
+///
+/// Eigen takes memory from another allocator where a program is compiled with -mavx2, -march=native
+/// or AddressSanitizer, and frees it by another function. So an Eigen::VectorXd that a library made
+/// and such a program resizes, moves or destroys crashes it, and the other way round. These types
+/// take their memory from malloc, whatever the flags are, and their layout doesn't depend on them
+/// either. Public structs and results of this workspace hold them instead.
+
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace chain_dynamics {
+inline namespace v2 {
+
+/// An Eigen::Map of memory of its own: a vector, matrix or array of dynamic size.
+///
+/// Assigning an expression of the same size allocates nothing; another size resizes. In functions'
+/// arguments it is an expression like others: take Eigen::Ref, as a `const Eigen::VectorXd&` would
+/// be a copy.
+///
+/// @tparam Plain  what it behaves like: Eigen::VectorXd, Eigen::MatrixXd, ...
+template <class Plain>
+class Owned : public Eigen::Map<Plain> {
+  using View = Eigen::Map<Plain>;
+  using Number = typename Plain::Scalar;
+  static constexpr bool kIsVector = Plain::IsVectorAtCompileTime;
+  static_assert(std::is_arithmetic_v<Number>);
+
+ public:
+  /// Empty.
+  Owned() : View(nullptr, 0, kIsVector ? 1 : 0) {}
+
+  /// A vector of `size` numbers, not initialised.
+  explicit Owned(Eigen::Index size) : Owned(size, 1) {}
+
+  /// A matrix, not initialised.
+  explicit Owned(Eigen::Index rows, Eigen::Index cols) : Owned() { resize(rows, cols); }
+
+  /// The values of an expression.
+  template <class Expression>
+  Owned(const Eigen::EigenBase<Expression>& values)  // NOLINT(google-explicit-constructor)
+      : Owned() {
+    *this = values;
+  }
+
+  Owned(const Owned& other) : Owned() { *this = other; }
+  Owned(Owned&& other) noexcept : Owned() { exchange(other); }
+  ~Owned() = default;
+
+  Owned& operator=(const Owned& other) {
+    return *this = static_cast<const Eigen::EigenBase<View>&>(other);
+  }
+  Owned& operator=(Owned&& other) noexcept {
+    exchange(other);
+    return *this;
+  }
+
+  template <class Expression>
+  Owned& operator=(const Eigen::EigenBase<Expression>& values) {
+    const Eigen::Index rows = kIsVector ? values.size() : values.rows();
+    const Eigen::Index cols = kIsVector ? 1 : values.cols();
+    if (rows == this->rows() && cols == this->cols()) {
+      View::operator=(values.derived());
+    } else {
+      Owned resized(rows, cols);  // the values may be made of this object's
+      resized.View::operator=(values.derived());
+      exchange(resized);
+    }
+    return *this;
+  }
+
+  /// Another size; the numbers are lost unless it is the same.
+  void resize(Eigen::Index rows, Eigen::Index cols = 1) {
+    if (rows == this->rows() && cols == this->cols()) return;
+    *this = Owned();  // so that nothing is copied
+    reallocate(rows, cols);
+  }
+
+  /// @name As of Eigen::VectorXd, for vectors
+  /// @{
+  using View::setConstant;
+  using View::setZero;
+  Owned& setConstant(Eigen::Index size, Number value) {
+    return *this = Plain::Constant(size, value);
+  }
+  Owned& setZero(Eigen::Index size) { return setConstant(size, Number(0)); }
+  /// @}
+
+  /// Another number of columns; those that stay keep their numbers. A large matrix isn't copied.
+  void conservativeResize(Eigen::NoChange_t, Eigen::Index cols) { reallocate(this->rows(), cols); }
+
+  /// A temporary isn't an output, nor a const one [states.hpp].
+  friend std::true_type ownsMemory(const Owned*) { return {}; }
+
+ private:
+  struct Free {
+    void operator()(void* memory) const noexcept { std::free(memory); }
+  };
+
+  void reallocate(Eigen::Index rows, Eigen::Index cols) {
+    const auto bytes = static_cast<std::size_t>(rows * cols) * sizeof(Number);
+    void* const memory = std::realloc(memory_.get(), bytes > 0 ? bytes : 1);
+    if (memory == nullptr) throw std::bad_alloc();
+    static_cast<void>(memory_.release());
+    memory_.reset(static_cast<Number*>(memory));
+    view(rows, cols);
+  }
+
+  // How Eigen lets a Map look elsewhere.
+  void view(Eigen::Index rows, Eigen::Index cols) {
+    new (viewed()) View(memory_.get(), rows, cols);
+  }
+  void* viewed() { return static_cast<View*>(this); }
+
+  void exchange(Owned& other) noexcept {
+    const Eigen::Index rows = this->rows(), cols = this->cols();
+    memory_.swap(other.memory_);
+    view(other.rows(), other.cols());
+    other.view(rows, cols);
+  }
+
+  std::unique_ptr<Number[], Free> memory_;
+};
+
+using OwnedVector = Owned<Eigen::VectorXd>;
+using OwnedMatrix = Owned<Eigen::MatrixXd>;
+
+}  // namespace v2
+}  // namespace chain_dynamics
