@@ -61,6 +61,15 @@ std::string suggestion(const std::string& name, const std::vector<std::string>& 
   return nearest.empty() ? "" : "did you mean " + nearest + "?";
 }
 
+/// Whether the dynamic linker looked for a name of ours in vain: the number of the ABI namespace is
+/// part of each.
+bool missesOurSymbol(const std::string& error) {
+  const auto symbol = error.find("undefined symbol: ");
+  return symbol != std::string::npos &&
+         (error.find("23inverse_dynamics_solver", symbol) != std::string::npos ||
+          error.find("14chain_dynamics", symbol) != std::string::npos);
+}
+
 }  // namespace
 
 struct SolverLoader::Implementation {
@@ -127,8 +136,12 @@ std::shared_ptr<InverseDynamicsSolver> SolverLoader::load(const std::string& nam
                   "none, or one made with another version",
                   "rebuild package " + loader.getClassPackage(name) + " against this workspace"));
   } catch (const pluginlib::PluginlibException& e) {
-    throw PluginNotFoundException(errorText(where, "its library can't be opened", "", e.what(),
-                                            "rebuild package " + loader.getClassPackage(name)));
+    throw PluginNotFoundException(errorText(
+        where,
+        missesOurSymbol(e.what()) ? "its library was built against another version of the interface"
+                                  : "its library can't be opened",
+        "", e.what(),
+        "rebuild package " + loader.getClassPackage(name) + " against this workspace"));
   }
 }
 

@@ -35,44 +35,36 @@ auto InverseDynamicsSolverUR10::configure(
 // The current of each term is its torque divided by the gain of its joint, i = K^-1 tau. The
 // methods of the base class check their arguments.
 
-Eigen::VectorXd InverseDynamicsSolverUR10::getCurrents(const ConstVectorRef& q,
-                                                       const ConstVectorRef& qd,
-                                                       const ConstVectorRef& qdd) const {
-  Eigen::VectorXd i = getTorques(q, qd, qdd);
-  i.array() /= model().drive_gains.array();
-  return i;
+void InverseDynamicsSolverUR10::computeCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                                const ConstVectorRef& qdd,
+                                                VectorRef currents) const {
+  getTorques(q, qd, qdd, currents);
+  currents.array() /= model().drive_gains.array();
 }
 
-Eigen::MatrixXd InverseDynamicsSolverUR10::getInertiaCurrents(const ConstVectorRef& q) const {
-  Eigen::MatrixXd B = getInertiaMatrix(q);
-  B.array().colwise() /= model().drive_gains.array();
-  return B;
+void InverseDynamicsSolverUR10::computeInertiaCurrents(const ConstVectorRef& q,
+                                                       MatrixRef currents) const {
+  getInertiaMatrix(q, currents);
+  currents.array().colwise() /= model().drive_gains.array();
 }
 
-Eigen::VectorXd InverseDynamicsSolverUR10::getCoriolisCurrents(const ConstVectorRef& q,
-                                                               const ConstVectorRef& qd) const {
-  Eigen::VectorXd i = getCoriolisVector(q, qd);
-  i.array() /= model().drive_gains.array();
-  return i;
+void InverseDynamicsSolverUR10::computeCoriolisCurrents(const ConstVectorRef& q,
+                                                        const ConstVectorRef& qd,
+                                                        VectorRef currents) const {
+  getCoriolisVector(q, qd, currents);
+  currents.array() /= model().drive_gains.array();
 }
 
-Eigen::VectorXd InverseDynamicsSolverUR10::getGravityCurrents(const ConstVectorRef& q) const {
-  Eigen::VectorXd i = getGravityVector(q);
-  i.array() /= model().drive_gains.array();
-  return i;
+void InverseDynamicsSolverUR10::computeGravityCurrents(const ConstVectorRef& q,
+                                                       VectorRef currents) const {
+  getGravityVector(q, currents);
+  currents.array() /= model().drive_gains.array();
 }
 
-Eigen::VectorXd InverseDynamicsSolverUR10::getFrictionCurrents(const ConstVectorRef& qd) const {
-  Eigen::VectorXd i = getFrictionVector(qd);
-  i.array() /= model().drive_gains.array();
-  return i;
-}
-
-Eigen::MatrixXd InverseDynamicsSolverUR10::getDriveGainsMatrix() const {
-  if (!isInitialized()) {
-    throw inverse_dynamics_solver::UninitializedException("getDriveGainsMatrix");
-  }
-  return model().drive_gains.asDiagonal();
+void InverseDynamicsSolverUR10::computeFrictionCurrents(const ConstVectorRef& qd,
+                                                        VectorRef currents) const {
+  getFrictionVector(qd, currents);
+  currents.array() /= model().drive_gains.array();
 }
 
 }  // namespace v2

@@ -124,31 +124,30 @@ void TwoLinkSolver::computeTorquesBatch(const ConstStates& q, const ConstStates&
 }
 
 // Drive gains 2 and 4 N m/A.
-Eigen::MatrixXd TwoLinkSolver::getDriveGainsMatrix() const {
-  jointCount();  // throws if not initialized
-  return Eigen::Vector2d(2.0, has("wrong drive gain") ? 5.0 : 4.0).asDiagonal();
+void TwoLinkSolver::computeDriveGains(VectorRef gains) const {
+  gains << 2.0, has("wrong drive gain") ? 5.0 : 4.0;
 }
 
-Eigen::VectorXd TwoLinkSolver::getCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
-                                           const ConstVectorRef& qdd) const {
-  return Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getTorques(q, qd, qdd);
+void TwoLinkSolver::computeCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                    const ConstVectorRef& qdd, VectorRef currents) const {
+  currents = Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getTorques(q, qd, qdd);
 }
 
-Eigen::MatrixXd TwoLinkSolver::getInertiaCurrents(const ConstVectorRef& q) const {
-  return Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getInertiaMatrix(q);
+void TwoLinkSolver::computeInertiaCurrents(const ConstVectorRef& q, MatrixRef currents) const {
+  currents = Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getInertiaMatrix(q);
 }
 
-Eigen::VectorXd TwoLinkSolver::getCoriolisCurrents(const ConstVectorRef& q,
-                                                   const ConstVectorRef& qd) const {
-  return Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getCoriolisVector(q, qd);
+void TwoLinkSolver::computeCoriolisCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                            VectorRef currents) const {
+  currents = Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getCoriolisVector(q, qd);
 }
 
-Eigen::VectorXd TwoLinkSolver::getGravityCurrents(const ConstVectorRef& q) const {
-  return Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getGravityVector(q);
+void TwoLinkSolver::computeGravityCurrents(const ConstVectorRef& q, VectorRef currents) const {
+  currents = Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getGravityVector(q);
 }
 
-Eigen::VectorXd TwoLinkSolver::getFrictionCurrents(const ConstVectorRef& qd) const {
-  return Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getFrictionVector(qd);
+void TwoLinkSolver::computeFrictionCurrents(const ConstVectorRef& qd, VectorRef currents) const {
+  currents = Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getFrictionVector(qd);
 }
 
 }  // namespace two_link_solver

@@ -16,16 +16,6 @@ namespace two_link_solver {
 using namespace inverse_dynamics_solver;
 
 class TwoLinkSolver : public InverseDynamicsSolver, public MotorCurrents {
- public:
-  Eigen::VectorXd getCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
-                              const ConstVectorRef& qdd) const override;
-  Eigen::MatrixXd getInertiaCurrents(const ConstVectorRef& q) const override;
-  Eigen::VectorXd getCoriolisCurrents(const ConstVectorRef& q,
-                                      const ConstVectorRef& qd) const override;
-  Eigen::VectorXd getGravityCurrents(const ConstVectorRef& q) const override;
-  Eigen::VectorXd getFrictionCurrents(const ConstVectorRef& qd) const override;
-  Eigen::MatrixXd getDriveGainsMatrix() const override;
-
  protected:
   JointInfo configure(const Configuration& configuration) override;
   void computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const override;
@@ -41,6 +31,16 @@ class TwoLinkSolver : public InverseDynamicsSolver, public MotorCurrents {
   void computeTorquesBatch(const ConstStates& q, const ConstStates& qd, const ConstStates& qdd,
                            const States& tau) const override;
   bool inertiaIsPhysicalImpl() const override { return true; }
+
+  Eigen::Index motorCount() const override { return jointCount(); }
+  void computeCurrents(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
+                       VectorRef currents) const override;
+  void computeInertiaCurrents(const ConstVectorRef& q, MatrixRef currents) const override;
+  void computeCoriolisCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                               VectorRef currents) const override;
+  void computeGravityCurrents(const ConstVectorRef& q, VectorRef currents) const override;
+  void computeFrictionCurrents(const ConstVectorRef& qd, VectorRef currents) const override;
+  void computeDriveGains(VectorRef gains) const override;
 
  private:
   bool has(const char* fault) const { return fault_ == fault; }

@@ -41,18 +41,20 @@ class InverseDynamicsSolverUR10
       public inverse_dynamics_solver::MotorCurrents {
  public:
   using ConstVectorRef = inverse_dynamics_solver::ConstVectorRef;
-
-  Eigen::VectorXd getCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
-                              const ConstVectorRef& qdd) const override;
-  Eigen::MatrixXd getInertiaCurrents(const ConstVectorRef& q) const override;
-  Eigen::VectorXd getCoriolisCurrents(const ConstVectorRef& q,
-                                      const ConstVectorRef& qd) const override;
-  Eigen::VectorXd getGravityCurrents(const ConstVectorRef& q) const override;
-  Eigen::VectorXd getFrictionCurrents(const ConstVectorRef& qd) const override;
-  Eigen::MatrixXd getDriveGainsMatrix() const override;
+  using VectorRef = inverse_dynamics_solver::VectorRef;
+  using MatrixRef = inverse_dynamics_solver::MatrixRef;
 
  protected:
   JointInfo configure(const inverse_dynamics_solver::Configuration& configuration) override;
+  Eigen::Index motorCount() const override { return jointCount(); }
+  void computeCurrents(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
+                       VectorRef currents) const override;
+  void computeInertiaCurrents(const ConstVectorRef& q, MatrixRef currents) const override;
+  void computeCoriolisCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                               VectorRef currents) const override;
+  void computeGravityCurrents(const ConstVectorRef& q, VectorRef currents) const override;
+  void computeFrictionCurrents(const ConstVectorRef& qd, VectorRef currents) const override;
+  void computeDriveGains(VectorRef gains) const override { gains = model().drive_gains; }
 };
 
 }  // namespace v2
