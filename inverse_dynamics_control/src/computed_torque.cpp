@@ -13,7 +13,7 @@ const char* const kLaw = "computed torque";
 
 }  // namespace
 
-Gains Gains::of(const Eigen::VectorXd& natural_frequency, const Eigen::VectorXd& damping_ratio) {
+Gains Gains::of(const ConstVectorRef& natural_frequency, const ConstVectorRef& damping_ratio) {
   if (natural_frequency.size() != damping_ratio.size()) {
     throw inverse_dynamics_solver::InvalidParameterValueException(
         inverse_dynamics_solver::errorText(
@@ -43,7 +43,7 @@ ComputedTorque::ComputedTorque(std::shared_ptr<const InverseDynamicsSolver> solv
   }
   requireJointNumbers(law + ": Kp", gains_.Kp, Range::kNotNegative, "1/s^2", model().jointNames());
   requireJointNumbers(law + ": Kd", gains_.Kd, Range::kNotNegative, "1/s", model().jointNames());
-  acceleration_.setZero(jointCount());
+  acceleration_ = Eigen::VectorXd::Zero(jointCount());
 }
 
 Status ComputedTorque::update(const JointState& state, const Reference& reference, double period,
@@ -52,7 +52,7 @@ Status ComputedTorque::update(const JointState& state, const Reference& referenc
        {check(state, tau), check(reference.q), check(reference.qd), check(reference.qdd)}) {
     if (status != Status::kOk) return refuse(status, state, period, tau);
   }
-  return output(state, period, tau, [&](Eigen::VectorXd& wished) {
+  return output(state, period, tau, [&](VectorRef wished) {
     // a = qdd_ref + Kp e + Kd ed,  tau = H a + C qd + g + f
     acceleration_ = reference.qdd + gains_.Kp.cwiseProduct(reference.q - state.q) +
                     gains_.Kd.cwiseProduct(reference.qd - state.qd);

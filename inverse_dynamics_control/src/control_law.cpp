@@ -16,8 +16,8 @@ ControlLaw::ControlLaw(std::shared_ptr<const InverseDynamicsSolver> solver,
       damping_(options.damping) {
   requireJointNumbers(law + ": damping", damping_, Range::kNotNegative, "N m s/rad",
                       model_.jointNames());
-  for (Eigen::VectorXd* vector : {&wished_, &f_, &gravity_, &gravity_candidate_}) {
-    vector->setZero(model_.jointCount());
+  for (OwnedVector* vector : {&wished_, &f_, &gravity_, &gravity_candidate_}) {
+    *vector = Eigen::VectorXd::Zero(model_.jointCount());
   }
 }
 
@@ -38,11 +38,11 @@ Status ControlLaw::check(const ConstVectorRef& reference) const noexcept {
   return reference.allFinite() ? Status::kOk : Status::kReferenceNotFinite;
 }
 
-void ControlLaw::addFriction(const Eigen::VectorXd& qd, const Eigen::VectorXd& qd_reference,
-                             Eigen::VectorXd& tau) {
+void ControlLaw::addFriction(const ConstVectorRef& qd, const ConstVectorRef& qd_reference,
+                             VectorRef tau) {
   if (friction_.source() == FrictionSource::kNone) return;
   const bool measured = friction_.source() == FrictionSource::kMeasuredVelocity;
-  const Eigen::VectorXd& v = measured ? qd : qd_reference;
+  const ConstVectorRef& v = measured ? qd : qd_reference;
   model_.friction(v, f_);
   friction_.weigh(v, f_);
   tau += f_;
@@ -63,7 +63,7 @@ Status ControlLaw::refuse(Status why, const JointState& state, double period,
   return why == Status::kOk ? limited : why;
 }
 
-void ControlLaw::updateGravity(const Eigen::VectorXd& q) noexcept {
+void ControlLaw::updateGravity(const ConstVectorRef& q) noexcept {
   try {
     model_.gravity(q, gravity_candidate_);
     if (gravity_candidate_.allFinite()) gravity_ = gravity_candidate_;

@@ -30,8 +30,8 @@ std::string number(double value) {
 
 }  // namespace
 
-Eigen::VectorXd dampingFor(const InverseDynamicsSolver& solver, const Eigen::VectorXd& q,
-                           double rate, double period) {
+OwnedVector dampingFor(const InverseDynamicsSolver& solver, const ConstVectorRef& q, double rate,
+                       double period) {
   require(solver.inertiaIsPhysical(), "solver", "a symmetric, positive definite H(q)",
           "inertiaIsPhysical() is false",
           "take a solver made from the robot's URDF, or choose the damping of each joint");
@@ -42,7 +42,7 @@ Eigen::VectorXd dampingFor(const InverseDynamicsSolver& solver, const Eigen::Vec
   require(q.allFinite(), "q", "finite positions", "NaN or infinity", "take a common posture");
 
   const Eigen::MatrixXd H = solver.getInertiaMatrix(q);
-  Eigen::VectorXd damping = rate * H.diagonal();
+  OwnedVector damping = rate * H.diagonal();
   // D v = s H v
   const Eigen::MatrixXd D = damping.asDiagonal();
   const double fastest =

@@ -11,12 +11,12 @@ FeedForward::FeedForward(std::shared_ptr<const InverseDynamicsSolver> solver, Mo
     : ControlLaw(std::move(solver), options, "feed-forward"), at_(at) {}
 
 Status FeedForward::update(const JointState& state, const Reference& reference,
-                           const Eigen::VectorXd& effort, double period, VectorRef tau) noexcept {
+                           const ConstVectorRef& effort, double period, VectorRef tau) noexcept {
   for (const Status status : {check(state, tau), check(reference.q), check(reference.qd),
                               check(reference.qdd), check(effort)}) {
     if (status != Status::kOk) return refuse(status, state, period, tau);
   }
-  return output(state, period, tau, [&](Eigen::VectorXd& wished) {
+  return output(state, period, tau, [&](VectorRef wished) {
     // tau = effort + H qdd_ref + C qd + g + f
     const bool measured = at_ == ModelState::kMeasured;
     model().torques(measured ? state.q : reference.q, measured ? state.qd : reference.qd,

@@ -15,12 +15,12 @@ Status GravityCompensation::update(const JointState& state, double period, Vecto
   return update(state, rest_, period, tau);
 }
 
-Status GravityCompensation::update(const JointState& state, const Eigen::VectorXd& qd_reference,
+Status GravityCompensation::update(const JointState& state, const ConstVectorRef& qd_reference,
                                    double period, VectorRef tau) noexcept {
   for (const Status status : {check(state, tau), check(qd_reference)}) {
     if (status != Status::kOk) return refuse(status, state, period, tau);
   }
-  return output(state, period, tau, [&](Eigen::VectorXd& wished) {
+  return output(state, period, tau, [&](VectorRef wished) {
     model().gravity(state.q, wished);
     wished -= damping().cwiseProduct(state.qd);
     addFriction(state.qd, qd_reference, wished);

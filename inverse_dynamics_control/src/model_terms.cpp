@@ -15,20 +15,20 @@ ModelTerms::ModelTerms(std::shared_ptr<const InverseDynamicsSolver> solver,
                                            "none", "load one with SolverLoader"));
   }
   const Eigen::Index n = solver_->jointCount();
-  H_.setZero(n, n);
-  c_.setZero(n);
-  g_.setZero(n);
+  H_ = Eigen::MatrixXd::Zero(n, n);
+  c_ = Eigen::VectorXd::Zero(n);
+  g_ = Eigen::VectorXd::Zero(n);
 }
 
-void ModelTerms::torques(const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
-                         const Eigen::VectorXd& a, Eigen::VectorXd& tau) {
+void ModelTerms::torques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& a,
+                         VectorRef tau) {
   solver_->getDynamicComponents(q, qd, H_, c_, g_);
   tau.noalias() = H_.lazyProduct(a);
   if (!compensated_.coriolis) tau += c_;
   if (!compensated_.gravity) tau += g_;
 }
 
-void ModelTerms::gravity(const Eigen::VectorXd& q, Eigen::VectorXd& g) const {
+void ModelTerms::gravity(const ConstVectorRef& q, VectorRef g) const {
   if (compensated_.gravity) {
     g.setZero();
   } else {
@@ -36,7 +36,7 @@ void ModelTerms::gravity(const Eigen::VectorXd& q, Eigen::VectorXd& g) const {
   }
 }
 
-void ModelTerms::friction(const Eigen::VectorXd& v, Eigen::VectorXd& f) const {
+void ModelTerms::friction(const ConstVectorRef& v, VectorRef f) const {
   if (compensated_.friction) {
     f.setZero();
   } else {

@@ -45,8 +45,9 @@ std::string number(double value) {
 
 }  // namespace
 
-void requireJointNumbers(const std::string& where, const Eigen::VectorXd& values, Range range,
-                         const std::string& unit, const std::vector<std::string>& joint_names) {
+void requireJointNumbers(const std::string& where, const Eigen::Ref<const Eigen::VectorXd>& values,
+                         Range range, const std::string& unit,
+                         const std::vector<std::string>& joint_names) {
   using inverse_dynamics_solver::errorText;
   using inverse_dynamics_solver::InvalidParameterValueException;
 

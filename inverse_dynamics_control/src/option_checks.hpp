@@ -23,8 +23,9 @@ enum class Range {
 ///
 /// @param where  law and option: "computed torque: damping".
 /// @param unit   of the numbers, for the text.
-void requireJointNumbers(const std::string& where, const Eigen::VectorXd& values, Range range,
-                         const std::string& unit, const std::vector<std::string>& joint_names);
+void requireJointNumbers(const std::string& where, const Eigen::Ref<const Eigen::VectorXd>& values,
+                         Range range, const std::string& unit,
+                         const std::vector<std::string>& joint_names);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_control

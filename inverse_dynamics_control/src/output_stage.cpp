@@ -17,14 +17,13 @@ OutputStage::OutputStage(const OutputLimits& limits, const std::vector<std::stri
                       joint_names);
   const Eigen::Index n = limits.effort.size();
   if (limits.rate.size() == 0) {
-    limits_.rate.setConstant(n, std::numeric_limits<double>::infinity());
+    limits_.rate = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
   } else {
     requireJointNumbers(law + ": limits: rate", limits.rate, Range::kPositiveOrAbsent, "N m/s",
                         joint_names);
   }
-  last_.setZero(n);
-  saturated_.setConstant(n, false);
-  rate_limited_.setConstant(n, false);
+  last_ = Eigen::VectorXd::Zero(n);
+  saturated_ = rate_limited_ = Joints::Constant(n, false);
 }
 
 void OutputStage::start(const Eigen::Ref<const Eigen::VectorXd>& effort) noexcept {
@@ -32,7 +31,7 @@ void OutputStage::start(const Eigen::Ref<const Eigen::VectorXd>& effort) noexcep
   if (started_) last_ = effort;
 }
 
-Status OutputStage::apply(const Eigen::VectorXd& wished, double period,
+Status OutputStage::apply(const Eigen::Ref<const Eigen::VectorXd>& wished, double period,
                           Eigen::Ref<Eigen::VectorXd> tau) noexcept {
   for (Eigen::Index j = 0; j < last_.size(); ++j) {
     // Infinity times zero is NaN, so joints without a rate limit are left out.

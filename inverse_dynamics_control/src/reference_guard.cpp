@@ -65,7 +65,8 @@ const char* text(StopReason reason) noexcept {
   return "unknown reason";
 }
 
-ReferenceGuard::ReferenceGuard(ReferenceLimits limits, const Eigen::VectorXd& deceleration,
+ReferenceGuard::ReferenceGuard(ReferenceLimits limits,
+                               const Eigen::Ref<const Eigen::VectorXd>& deceleration,
                                const std::vector<std::string>& joint_names)
     : limits_(std::move(limits)),
       safe_stop_(deceleration, joint_names),
@@ -82,7 +83,7 @@ ReferenceGuard::ReferenceGuard(ReferenceLimits limits, const Eigen::VectorXd& de
                       "rad", joint_names);
 }
 
-void ReferenceGuard::start(const Eigen::VectorXd& q) noexcept {
+void ReferenceGuard::start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept {
   if (q.size() != followed_.q.size()) return stop(StopReason::kWrongSize);
   followed_.q = q;
   followed_.qd.setZero();

@@ -8,7 +8,8 @@
 namespace inverse_dynamics_control {
 inline namespace v2 {
 
-SafeStop::SafeStop(const Eigen::VectorXd& deceleration, const std::vector<std::string>& joint_names)
+SafeStop::SafeStop(const Eigen::Ref<const Eigen::VectorXd>& deceleration,
+                   const std::vector<std::string>& joint_names)
     : deceleration_(deceleration),
       q_(Eigen::VectorXd::Zero(deceleration.size())),
       qd_(Eigen::VectorXd::Zero(deceleration.size())) {
@@ -16,7 +17,8 @@ SafeStop::SafeStop(const Eigen::VectorXd& deceleration, const std::vector<std::s
                       joint_names);
 }
 
-Status SafeStop::begin(const Eigen::VectorXd& q, const Eigen::VectorXd& qd) noexcept {
+Status SafeStop::begin(const Eigen::Ref<const Eigen::VectorXd>& q,
+                       const Eigen::Ref<const Eigen::VectorXd>& qd) noexcept {
   if (q.size() != q_.size() || qd.size() != q_.size()) return Status::kWrongSize;
   if (!q.allFinite() || !qd.allFinite()) return Status::kReferenceNotFinite;
   q_ = q;

@@ -52,7 +52,7 @@ class ReferenceInput {
   }
 
   /// Rest at q until somebody writes a reference; forgets an earlier stop.
-  void start(const Eigen::VectorXd& q, std::vector<double>& values) noexcept {
+  void start(const Eigen::Ref<const Eigen::VectorXd>& q, std::vector<double>& values) noexcept {
     topic_.read(values);  // an old message isn't a wish for now
     std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
     guard_.start(q);

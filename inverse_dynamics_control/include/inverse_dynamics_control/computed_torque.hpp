@@ -27,14 +27,14 @@ inline namespace v2 {
 
 /// Gains of computed torque, diagonal matrices as vectors.
 struct Gains {
-  Eigen::VectorXd Kp;  ///< n, finite, >= 0; 1/s^2
-  Eigen::VectorXd Kd;  ///< n, finite, >= 0; 1/s
+  OwnedVector Kp;  ///< n, finite, >= 0; 1/s^2
+  OwnedVector Kd;  ///< n, finite, >= 0; 1/s
 
   /// `Kp = w^2`, `Kd = 2 z w`.
   ///
   /// @param natural_frequency  n; w in rad/s.
   /// @param damping_ratio      n; z: 1 is critical, without overshoot.
-  static Gains of(const Eigen::VectorXd& natural_frequency, const Eigen::VectorXd& damping_ratio);
+  static Gains of(const ConstVectorRef& natural_frequency, const ConstVectorRef& damping_ratio);
 
   /// The same for all joints.
   static Gains uniform(Eigen::Index joints, double natural_frequency, double damping_ratio);
@@ -62,7 +62,7 @@ class ComputedTorque : public ControlLaw {
 
  private:
   Gains gains_;
-  Eigen::VectorXd acceleration_;  // scratch
+  OwnedVector acceleration_;  // scratch
 };
 
 }  // namespace v2

@@ -42,7 +42,7 @@ struct LawOptions {
 
   /// Damping of the safe torque and of hand guiding, n, finite, >= 0; N m s/rad (prismatic N s/m).
   /// Required; dampingFor() [damping.hpp] makes it from one number.
-  Eigen::VectorXd damping;
+  OwnedVector damping;
 
   /// How the solver's friction is compensated, if it has any.
   FrictionOptions friction;
@@ -62,7 +62,7 @@ class ControlLaw {
   /// its rate, or starts from the effort (n, N m) that acts now.
   void start() noexcept { output_.start(); }
   /// @copydoc start()
-  void start(const Eigen::Ref<const Eigen::VectorXd>& effort) noexcept { output_.start(effort); }
+  void start(const ConstVectorRef& effort) noexcept { output_.start(effort); }
 
   /// The safe torque instead of the law's: `tau = g(q) - damping qd`, within the limits.
   ///
@@ -91,8 +91,7 @@ class ControlLaw {
   Status check(const ConstVectorRef& reference) const noexcept;
 
   /// Adds the blended friction at the velocity that the options choose.
-  void addFriction(const Eigen::VectorXd& qd, const Eigen::VectorXd& qd_reference,
-                   Eigen::VectorXd& tau);
+  void addFriction(const ConstVectorRef& qd, const ConstVectorRef& qd_reference, VectorRef tau);
 
   /// Safe torque, and why.
   Status refuse(Status why, const JointState& state, double period, VectorRef tau) noexcept;
@@ -113,17 +112,17 @@ class ControlLaw {
   }
 
   ModelTerms& model() noexcept { return model_; }
-  const Eigen::VectorXd& damping() const noexcept { return damping_; }
+  const OwnedVector& damping() const noexcept { return damping_; }
 
  private:
-  void updateGravity(const Eigen::VectorXd& q) noexcept;
+  void updateGravity(const ConstVectorRef& q) noexcept;
 
   ModelTerms model_;
   FrictionCompensation friction_;
   OutputStage output_;
-  Eigen::VectorXd damping_;
-  Eigen::VectorXd wished_, f_;                   // scratch
-  Eigen::VectorXd gravity_, gravity_candidate_;  // last known; scratch
+  OwnedVector damping_;
+  OwnedVector wished_, f_;                   // scratch
+  OwnedVector gravity_, gravity_candidate_;  // last known; scratch
 };
 
 }  // namespace v2

@@ -11,6 +11,8 @@
 
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 
+#include "chain_dynamics/owned.hpp"
+
 namespace inverse_dynamics_control {
 inline namespace v2 {
 
@@ -28,8 +30,9 @@ inline namespace v2 {
 /// inertiaIsPhysical() is false, a number out of its range, a decay that is faster than 1 / period
 /// (half of what is stable). UninitializedException, SizeMismatchException: as
 /// solver.getInertiaMatrix(q). Allocates.
-Eigen::VectorXd dampingFor(const inverse_dynamics_solver::InverseDynamicsSolver& solver,
-                           const Eigen::VectorXd& q, double rate, double period);
+chain_dynamics::OwnedVector dampingFor(const inverse_dynamics_solver::InverseDynamicsSolver& solver,
+                                       const inverse_dynamics_solver::ConstVectorRef& q,
+                                       double rate, double period);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_control

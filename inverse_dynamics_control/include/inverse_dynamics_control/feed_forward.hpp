@@ -38,7 +38,7 @@ class FeedForward : public ControlLaw {
   /// @param effort    n; N m (prismatic N); of the other controller.
   /// @param period    s since the last call of hold() or update(), for the rate limit.
   /// @param[out] tau  n; N m (prismatic N); finite and within the limits whatever the status is.
-  Status update(const JointState& state, const Reference& reference, const Eigen::VectorXd& effort,
+  Status update(const JointState& state, const Reference& reference, const ConstVectorRef& effort,
                 double period, VectorRef tau) noexcept;
 
  private:

@@ -36,11 +36,11 @@ class GravityCompensation : public ControlLaw {
   /// The same beside a guiding velocity.
   ///
   /// @param qd_reference  n; rad/s (prismatic m/s); of the friction only.
-  Status update(const JointState& state, const Eigen::VectorXd& qd_reference, double period,
+  Status update(const JointState& state, const ConstVectorRef& qd_reference, double period,
                 VectorRef tau) noexcept;
 
  private:
-  Eigen::VectorXd rest_;  // zero
+  OwnedVector rest_;  // zero
 };
 
 }  // namespace v2

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "inverse_dynamics_control/compensated.hpp"
+#include "inverse_dynamics_control/signals.hpp"
 
 namespace inverse_dynamics_control {
 inline namespace v2 {
@@ -41,20 +42,20 @@ class ModelTerms {
   ///
   /// @param q,qd,a    n each; rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2).
   /// @param[out] tau  n; N m (prismatic N).
-  void torques(const Eigen::VectorXd& q, const Eigen::VectorXd& qd, const Eigen::VectorXd& a,
-               Eigen::VectorXd& tau);
+  void torques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& a,
+               VectorRef tau);
 
   /// `g(q)`, n; zero if compensated.
-  void gravity(const Eigen::VectorXd& q, Eigen::VectorXd& g) const;
+  void gravity(const ConstVectorRef& q, VectorRef g) const;
 
   /// `f(v)`, n; zero if compensated.
-  void friction(const Eigen::VectorXd& v, Eigen::VectorXd& f) const;
+  void friction(const ConstVectorRef& v, VectorRef f) const;
 
  private:
   std::shared_ptr<const InverseDynamicsSolver> solver_;
   Compensated compensated_;
-  Eigen::MatrixXd H_;
-  Eigen::VectorXd c_, g_;
+  chain_dynamics::OwnedMatrix H_;
+  OwnedVector c_, g_;
 };
 
 }  // namespace v2

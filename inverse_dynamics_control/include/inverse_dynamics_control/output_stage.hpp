@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "inverse_dynamics_control/signals.hpp"
 #include "inverse_dynamics_control/status.hpp"
 
 namespace inverse_dynamics_control {
@@ -19,10 +20,10 @@ inline namespace v2 {
 /// What the actuators may be asked for.
 struct OutputLimits {
   /// Greatest torque of each joint, n, > 0; N m (prismatic N); infinity: no limit. Required.
-  Eigen::VectorXd effort;
+  OwnedVector effort;
 
   /// Greatest change of torque, n, > 0; N m/s (prismatic N/s); empty or infinity: no limit.
-  Eigen::VectorXd rate;
+  OwnedVector rate;
 };
 
 /// Limits torques, and says of which joint. Remembers the last output. Not thread-safe.
@@ -30,7 +31,7 @@ struct OutputLimits {
 /// Real time: all methods but the constructor: no allocation, lock, exception or system call.
 class OutputStage {
  public:
-  using Joints = Eigen::Array<bool, Eigen::Dynamic, 1>;
+  using Joints = chain_dynamics::Owned<Eigen::Array<bool, Eigen::Dynamic, 1>>;
 
   /// @param joint_names  n of them.
   /// @param law          whose options these are, for the text of errors.
@@ -53,7 +54,7 @@ class OutputStage {
   ///                  that stands or jumps back) allows no change.
   /// @param[out] tau  n; N m (prismatic N).
   /// @return kSaturated, kRateLimited or kOk, the first that is true of a joint.
-  Status apply(const Eigen::VectorXd& wished, double period,
+  Status apply(const Eigen::Ref<const Eigen::VectorXd>& wished, double period,
                Eigen::Ref<Eigen::VectorXd> tau) noexcept;
 
   /// Whether the last output of each joint was cut to its effort limit.
@@ -64,7 +65,7 @@ class OutputStage {
 
  private:
   OutputLimits limits_;  // both n, infinity where there is none
-  Eigen::VectorXd last_;
+  OwnedVector last_;
   bool started_ = false;  // whether last_ counts
   Joints saturated_, rate_limited_;
 };

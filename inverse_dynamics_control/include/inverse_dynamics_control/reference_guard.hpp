@@ -25,9 +25,9 @@ inline namespace v2 {
 
 /// What a reference may ask for, n numbers each; infinity: no limit.
 struct ReferenceLimits {
-  Eigen::VectorXd lower;     ///< rad (prismatic m)
-  Eigen::VectorXd upper;     ///< rad (prismatic m), not below `lower`
-  Eigen::VectorXd velocity;  ///< > 0; rad/s (prismatic m/s)
+  OwnedVector lower;     ///< rad (prismatic m)
+  OwnedVector upper;     ///< rad (prismatic m), not below `lower`
+  OwnedVector velocity;  ///< > 0; rad/s (prismatic m/s)
 
   /// No limit at all.
   static ReferenceLimits none(Eigen::Index joints);
@@ -55,11 +55,11 @@ class ReferenceGuard {
   /// @param deceleration  of the stop, n, finite, > 0; rad/s^2 (prismatic m/s^2).
   /// @param joint_names   n of them, for the text of errors.
   /// Throws inverse_dynamics_solver::InvalidParameterValueException: wrong size or value.
-  ReferenceGuard(ReferenceLimits limits, const Eigen::VectorXd& deceleration,
+  ReferenceGuard(ReferenceLimits limits, const Eigen::Ref<const Eigen::VectorXd>& deceleration,
                  const std::vector<std::string>& joint_names);
 
   /// Rest at q, n finite numbers, until the first call of next(); forgets an earlier stop.
-  void start(const Eigen::VectorXd& q) noexcept;
+  void start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept;
 
   /// The reference to follow now: `wished`, or the next one of the stop.
   ///

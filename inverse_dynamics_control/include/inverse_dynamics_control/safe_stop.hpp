@@ -31,7 +31,8 @@ class SafeStop {
   /// @param deceleration  greatest, n, finite, > 0; rad/s^2 (prismatic m/s^2).
   /// @param joint_names   n of them, for the text of errors.
   /// Throws inverse_dynamics_solver::InvalidParameterValueException: wrong size or value.
-  SafeStop(const Eigen::VectorXd& deceleration, const std::vector<std::string>& joint_names);
+  SafeStop(const Eigen::Ref<const Eigen::VectorXd>& deceleration,
+           const std::vector<std::string>& joint_names);
 
   /// Number n of joints.
   Eigen::Index jointCount() const noexcept { return q_.size(); }
@@ -40,7 +41,8 @@ class SafeStop {
   ///
   /// @param q,qd  n each; rad, rad/s (prismatic m, m/s).
   /// @return kOk; kReferenceNotFinite or kWrongSize: nothing is changed.
-  Status begin(const Eigen::VectorXd& q, const Eigen::VectorXd& qd) noexcept;
+  Status begin(const Eigen::Ref<const Eigen::VectorXd>& q,
+               const Eigen::Ref<const Eigen::VectorXd>& qd) noexcept;
 
   /// The reference one period later; before begin() nothing is written.
   ///
@@ -56,7 +58,7 @@ class SafeStop {
   double duration() const noexcept { return duration_; }
 
  private:
-  Eigen::VectorXd deceleration_, q_, qd_;
+  OwnedVector deceleration_, q_, qd_;
   double duration_ = 0.0, time_ = 0.0;
   bool begun_ = false;
 };

@@ -10,8 +10,12 @@
 
 #include <Eigen/Core>
 
+#include "chain_dynamics/owned.hpp"
+
 namespace inverse_dynamics_control {
 inline namespace v2 {
+
+using chain_dynamics::OwnedVector;
 
 /// Measured state of n joints, in the order of the solver's jointNames().
 struct JointState {
@@ -19,8 +23,8 @@ struct JointState {
   explicit JointState(Eigen::Index joints)
       : q(Eigen::VectorXd::Zero(joints)), qd(Eigen::VectorXd::Zero(joints)) {}
 
-  Eigen::VectorXd q;   ///< n; rad (prismatic m)
-  Eigen::VectorXd qd;  ///< n; rad/s (prismatic m/s)
+  OwnedVector q;   ///< n; rad (prismatic m)
+  OwnedVector qd;  ///< n; rad/s (prismatic m/s)
 };
 
 /// Wished motion of n joints, in the order of the solver's jointNames().
@@ -31,9 +35,9 @@ struct Reference {
         qd(Eigen::VectorXd::Zero(joints)),
         qdd(Eigen::VectorXd::Zero(joints)) {}
 
-  Eigen::VectorXd q;    ///< n; rad (prismatic m)
-  Eigen::VectorXd qd;   ///< n; rad/s (prismatic m/s)
-  Eigen::VectorXd qdd;  ///< n; rad/s^2 (prismatic m/s^2)
+  OwnedVector q;    ///< n; rad (prismatic m)
+  OwnedVector qd;   ///< n; rad/s (prismatic m/s)
+  OwnedVector qdd;  ///< n; rad/s^2 (prismatic m/s^2)
 };
 
 }  // namespace v2
