@@ -123,8 +123,8 @@ std::vector<Eigen::MatrixXd> filterPieces(const std::vector<Piece>& pieces,
 
 }  // namespace
 
-Eigen::MatrixXd backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time,
-                                   const Eigen::Ref<const Eigen::MatrixXd>& qd) {
+OwnedMatrix backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time,
+                               const Eigen::Ref<const Eigen::MatrixXd>& qd) {
   requireSamples("backward difference", "qd", qd, 1);
   requireStampPerSample("backward difference", time, qd);
   requireFiniteStamps("backward difference", time);
@@ -139,7 +139,7 @@ Eigen::MatrixXd backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time
   return qdd;
 }
 
-Eigen::MatrixXd derivative(const Eigen::Ref<const Eigen::MatrixXd>& samples, double period) {
+OwnedMatrix derivative(const Eigen::Ref<const Eigen::MatrixXd>& samples, double period) {
   requireSamples("derivative", "samples", samples, 2);
   if (!(period > 0)) {
     throw EvaluationError("derivative", "period", "a positive number of seconds",

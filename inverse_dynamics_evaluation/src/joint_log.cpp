@@ -30,7 +30,8 @@ std::string numberText(double number) {
 // The stamps; their own memory is freed.
 Stamps takenStamps(std::vector<std::int64_t>& stamps) {
   const auto given = std::exchange(stamps, {});
-  return Eigen::Map<const Stamps>(given.data(), static_cast<Index>(given.size()));
+  using Numbers = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>;
+  return Eigen::Map<const Numbers>(given.data(), static_cast<Index>(given.size()));
 }
 
 }  // namespace
@@ -47,7 +48,7 @@ std::string name(Clock clock) {
   return "unknown";
 }
 
-Eigen::VectorXd JointLog::time() const {
+OwnedVector JointLog::time() const {
   const Stamps& all = stamps();
   return (all.array() - all[0]).cast<double>() * 1e-9;
 }
@@ -173,7 +174,8 @@ void JointLogBuilder::append(Column& column, const JointSample::Numbers& numbers
   const auto n = static_cast<Index>(matching_.joints().size());
   const auto count = static_cast<Index>(message_.size());
   if (column.numbers.cols() == count) {  // full: twice the room, by realloc, which copies no pages
-    column.numbers.conservativeResize(n, std::max<Index>(64, 2 * count));
+    if (count == 0) column.numbers.resize(n, 0);
+    column.numbers.conservativeResize(Eigen::NoChange, std::max<Index>(64, 2 * count));
   }
   for (std::size_t j = 0; j < matching_.columns().size(); ++j) {
     const double number = numbers[static_cast<Index>(matching_.columns()[j])];
@@ -203,7 +205,7 @@ std::string JointLogBuilder::place(const JointSample& sample) const {
 }
 
 // What was appended, in the same memory.
-Eigen::MatrixXd JointLogBuilder::taken(Column& column) const {
+OwnedMatrix JointLogBuilder::taken(Column& column) const {
   if (column.numbers.size() != 0) {
     column.numbers.conservativeResize(Eigen::NoChange, static_cast<Index>(message_.size()));
   }

@@ -105,8 +105,8 @@ Eigen::Index defaultPadding(Eigen::Index samples, double sampling_frequency, dou
   return static_cast<Eigen::Index>(std::min(std::max(periods, least), available));
 }
 
-Eigen::MatrixXd lowPass(const Eigen::Ref<const Eigen::MatrixXd>& samples, double sampling_frequency,
-                        double cutoff, int order, Eigen::Index padding) {
+OwnedMatrix lowPass(const Eigen::Ref<const Eigen::MatrixXd>& samples, double sampling_frequency,
+                    double cutoff, int order, Eigen::Index padding) {
   checkFilter(sampling_frequency, cutoff, order);
   requireSamples("low-pass", "samples", samples, leastSamples(order));
   requireFinite("low-pass", "samples", samples);

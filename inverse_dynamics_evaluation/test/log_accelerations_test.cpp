@@ -76,7 +76,7 @@ TEST(LogAccelerations, AreThoseRecordedIfThereAreAny) {
 
 TEST(LogAccelerations, SayWhatIsOddAboutTheSamples) {
   JointLog log = sine();
-  for (Eigen::MatrixXd* numbers : {&log.q, &log.qd, &log.effort}) {
+  for (OwnedMatrix* numbers : {&log.q, &log.qd, &log.effort}) {
     numbers->col(500) = numbers->col(499);
   }
   log.header_stamps[700] = log.header_stamps[699] - 1'000'000;

@@ -18,7 +18,7 @@ using sensor_msgs::msg::JointState;
 using trajectory_msgs::msg::JointTrajectory;
 using trajectory_msgs::msg::JointTrajectoryPoint;
 
-std::vector<double> numbers(const Eigen::MatrixXd& matrix, Index k) {
+std::vector<double> numbers(const Eigen::Ref<const Eigen::MatrixXd>& matrix, Index k) {
   const auto column = matrix.col(k);
   return {column.data(), column.data() + column.size()};
 }
@@ -36,7 +36,8 @@ JointState jointState(const RecordedMotion& motion, const Eigen::MatrixXd& effor
 }
 
 // The trajectory whose first sample is k; k then is the first of the next one.
-JointTrajectory trajectory(const RecordedMotion& motion, const Eigen::MatrixXd& qdd,
+JointTrajectory trajectory(const RecordedMotion& motion,
+                           const Eigen::Ref<const Eigen::MatrixXd>& qdd,
                            const Eigen::MatrixXd& effort, Index& k) {
   const JointLog& log = motion.log;
   const Index message = log.message[static_cast<std::size_t>(k)];
@@ -76,7 +77,7 @@ void writeTorques(const std::string& target, const std::string& storage, const s
     const std::int64_t received =
         motion.receive_stamps[static_cast<std::size_t>(log.message[static_cast<std::size_t>(k)])];
     Index next = k;
-    const Eigen::MatrixXd& qdd = evaluation.accelerations.qdd;
+    const Eigen::Ref<const Eigen::MatrixXd> qdd = evaluation.accelerations.qdd;
     if (measured) {
       bag.write(trajectory(motion, qdd, evaluation.measured, next = k), topic + "_gt", received);
     }

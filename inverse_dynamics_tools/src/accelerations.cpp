@@ -4,6 +4,7 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <chain_dynamics/owned.hpp>
 #include <inverse_dynamics_evaluation/accelerations.hpp>
 #include <inverse_dynamics_evaluation/log_accelerations.hpp>
 #include <inverse_dynamics_evaluation/low_pass.hpp>
@@ -36,15 +37,16 @@ using Vector = Eigen::Map<const Eigen::VectorXd>;
 Vector vectorOf(const Array& array) { return {array.data(), array.size()}; }
 
 /// A matrix, one state a column, as an array, one state a row; its memory changes hands.
-py::array rowsOf(Eigen::MatrixXd matrix) {
-  auto* owned = new Eigen::MatrixXd(std::move(matrix));
-  const py::capsule owner(owned, [](void* p) { delete static_cast<Eigen::MatrixXd*>(p); });
+py::array rowsOf(chain_dynamics::OwnedMatrix matrix) {
+  auto* owned = new chain_dynamics::OwnedMatrix(std::move(matrix));
+  const py::capsule owner(owned,
+                          [](void* p) { delete static_cast<chain_dynamics::OwnedMatrix*>(p); });
   return Array({owned->cols(), owned->rows()}, owned->data(), owner);
 }
 
 py::array backwardDifference(const Array& time, const Array& qd) {
   const ConstMap qd_in = states(qd, "qd");
-  Eigen::MatrixXd qdd;
+  chain_dynamics::OwnedMatrix qdd;
   {
     const py::gil_scoped_release release;
     qdd = evaluation::backwardDifference(vectorOf(time), qd_in);
@@ -79,7 +81,7 @@ SampleReport examineSamples(const Array& time, const Array& q, const Array& qd, 
 py::array lowPass(const Array& samples, double sampling_frequency, double cutoff, int order,
                   Eigen::Index padding) {
   const ConstMap in = states(samples, "samples");
-  Eigen::MatrixXd result;
+  chain_dynamics::OwnedMatrix result;
   {
     const py::gil_scoped_release release;
     result = evaluation::lowPass(in, sampling_frequency, cutoff, order, padding);

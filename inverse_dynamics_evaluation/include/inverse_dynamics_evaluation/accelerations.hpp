@@ -34,8 +34,8 @@ inline namespace v2 {
 /// @param qd    n x N, a sample a column; rad/s (prismatic m/s).
 /// @return n x N; rad/s^2 (prismatic m/s^2).
 /// @throws EvaluationError: sizes differ, no sample, a number that isn't finite.
-Eigen::MatrixXd backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time,
-                                   const Eigen::Ref<const Eigen::MatrixXd>& qd);
+OwnedMatrix backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time,
+                               const Eigen::Ref<const Eigen::MatrixXd>& qd);
 
 /// Derivative of equidistant samples: `x' = (x_(k-2) - 8 x_(k-1) + 8 x_(k+1) - x_(k+2)) / (12 T)`.
 ///
@@ -45,7 +45,7 @@ Eigen::MatrixXd backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time
 /// @param period   s; T above.
 /// @return n x N.
 /// @throws EvaluationError: fewer than 2 samples, a period that isn't positive.
-Eigen::MatrixXd derivative(const Eigen::Ref<const Eigen::MatrixXd>& samples, double period);
+OwnedMatrix derivative(const Eigen::Ref<const Eigen::MatrixXd>& samples, double period);
 
 /// Derivative of equidistant samples after the zero-phase low-pass of low_pass.hpp.
 ///
@@ -83,7 +83,7 @@ struct FilterChoice {
 
 /// Accelerations, how they came about, and what was found in the samples.
 struct AccelerationEstimate {
-  Eigen::MatrixXd qdd;   ///< n x N; rad/s^2 (prismatic m/s^2)
+  OwnedMatrix qdd;       ///< n x N; rad/s^2 (prismatic m/s^2)
   FilterChoice filter;   ///< what the filter did
   SampleReport samples;  ///< what was found; `samples.kept` is for the second metrics
 };

@@ -39,6 +39,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "inverse_dynamics_evaluation/metrics.hpp"
+
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
@@ -54,8 +56,8 @@ struct CutoffChoice {
 
 /// A stretch of equidistant samples.
 struct Stretch {
-  Eigen::MatrixXd q;   ///< n x N; rad (prismatic m)
-  Eigen::MatrixXd qd;  ///< n x N; rad/s (prismatic m/s)
+  OwnedMatrix q;   ///< n x N; rad (prismatic m)
+  OwnedMatrix qd;  ///< n x N; rad/s (prismatic m/s)
 };
 
 /// Cut-off for the zero-phase low-pass of qd before differentiation. O(N).

@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "inverse_dynamics_evaluation/joint_matching.hpp"
+#include "inverse_dynamics_evaluation/metrics.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -41,7 +42,7 @@ class RecordingError : public std::runtime_error {
 };
 
 /// Stamps of N samples; ns since the epoch of whoever wrote them.
-using Stamps = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>;
+using Stamps = chain_dynamics::Owned<Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>>;
 
 /// Which stamps are the time: the header's, those of reception, or what is there.
 enum class Clock { kAuto, kHeader, kReceive };
@@ -74,10 +75,10 @@ struct JointLog {
   std::vector<std::string> joint_names;  ///< n; the order of the rows
   Stamps header_stamps;                  ///< N; as the publisher wrote them
   Stamps receive_stamps;                 ///< N; as the recorder wrote them
-  Eigen::MatrixXd q;                     ///< n x N; rad (prismatic m)
-  Eigen::MatrixXd qd;                    ///< n x N; rad/s (prismatic m/s)
-  Eigen::MatrixXd effort;                ///< n x N; as recorded; empty (0 x 0) if none was
-  Eigen::MatrixXd qdd;                   ///< n x N; as recorded; empty (0 x 0) if none was
+  OwnedMatrix q;                         ///< n x N; rad (prismatic m)
+  OwnedMatrix qd;                        ///< n x N; rad/s (prismatic m/s)
+  OwnedMatrix effort;                    ///< n x N; as recorded; empty (0 x 0) if none was
+  OwnedMatrix qdd;                       ///< n x N; as recorded; empty (0 x 0) if none was
   std::string frame_id;                  ///< the first that a header has
   std::vector<Eigen::Index> message;     ///< N; which message each sample is of
   Clock clock = Clock::kHeader;          ///< which of the stamps is the time
@@ -87,7 +88,7 @@ struct JointLog {
   const Stamps& stamps() const { return clock == Clock::kReceive ? receive_stamps : header_stamps; }
 
   /// N; s since the first sample.
-  Eigen::VectorXd time() const;
+  OwnedVector time() const;
 };
 
 /// What a JointLogBuilder is to insist on, and how its texts name things.
@@ -118,8 +119,8 @@ class JointLogBuilder {
  private:
   struct Column {
     const char* field;
-    const char* reason;       // why it is needed
-    Eigen::MatrixXd numbers;  // with room for more samples than there are
+    const char* reason;   // why it is needed
+    OwnedMatrix numbers;  // with room for more samples than there are
   };
 
   bool matches(const JointSample& sample);
@@ -127,7 +128,7 @@ class JointLogBuilder {
               bool required);
   std::string place(const JointSample& sample) const;
   void requireSamples() const;
-  Eigen::MatrixXd taken(Column& column) const;
+  OwnedMatrix taken(Column& column) const;
 
   std::string where_;
   JointLogOptions options_;

@@ -36,7 +36,7 @@ AccelerationMethod accelerationMethod(const std::string& name);
 
 /// Accelerations, how they came about, and what was found in the samples.
 struct LogAccelerations {
-  Eigen::MatrixXd qdd;                ///< n x N; rad/s^2 (prismatic m/s^2)
+  OwnedMatrix qdd;                    ///< n x N; rad/s^2 (prismatic m/s^2)
   std::string summary;                ///< how they came about, in words
   SampleReport samples;               ///< what was found
   std::vector<std::string> findings;  ///< what is odd about the samples, a sentence each

@@ -22,6 +22,8 @@
 
 #include <Eigen/Core>
 
+#include "inverse_dynamics_evaluation/metrics.hpp"
+
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
@@ -44,8 +46,8 @@ Eigen::Index defaultPadding(Eigen::Index samples, double sampling_frequency, dou
 /// @param padding             samples by which each end is continued, below N; negative: default.
 /// @throws EvaluationError: cut-off, order or padding out of range; fewer than 3 (order + 1) + 1
 ///         samples; a number that isn't finite (joint and sample are named).
-Eigen::MatrixXd lowPass(const Eigen::Ref<const Eigen::MatrixXd>& samples, double sampling_frequency,
-                        double cutoff, int order = 2, Eigen::Index padding = -1);
+OwnedMatrix lowPass(const Eigen::Ref<const Eigen::MatrixXd>& samples, double sampling_frequency,
+                    double cutoff, int order = 2, Eigen::Index padding = -1);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -15,11 +15,16 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "chain_dynamics/owned.hpp"
+
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
+using chain_dynamics::OwnedMatrix;
+using chain_dynamics::OwnedVector;
+
 /// One truth value per sample.
-using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>;
+using Mask = chain_dynamics::Owned<Eigen::Array<bool, Eigen::Dynamic, 1>>;
 
 /// How far the computed torques of one joint are from the measured ones, over `count` samples.
 ///

@@ -24,6 +24,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "inverse_dynamics_evaluation/metrics.hpp"
+
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
@@ -57,7 +59,7 @@ class OnlineDerivative {
   bool settled() const;
 
   /// n; in units of u per second.
-  const Eigen::VectorXd& derivative() const { return derivative_; }
+  const OwnedVector& derivative() const { return derivative_; }
 
   /// By how much slow changes come late [s]: `1 / (pi f_c)`.
   double delay() const { return 2.0 / w_; }
@@ -69,9 +71,9 @@ class OnlineDerivative {
   double longest_gap_;  // s
   bool started_ = false;
   std::int64_t begin_ = 0, last_ = 0;  // ns; of the first and the latest sample
-  Eigen::VectorXd input_;              // u of the latest sample
-  Eigen::VectorXd value_;              // y
-  Eigen::VectorXd derivative_;         // y'
+  OwnedVector input_;                  // u of the latest sample
+  OwnedVector value_;                  // y
+  OwnedVector derivative_;             // y'
 };
 
 }  // namespace v2

@@ -80,7 +80,7 @@ struct SampleReport {
   Mask kept;             ///< N; counts in metrics over kept samples
 
   TimeBase time_base = TimeBase::kStamps;  ///< which one is used
-  Eigen::VectorXd time;              ///< N; s; instant of each sample in it; a repeat has that
+  OwnedVector time;                  ///< N; s; instant of each sample in it; a repeat has that
                                      ///< of the sample it repeats
   std::vector<Eigen::Index> pieces;  ///< first sample of each piece (rule 5)
   std::vector<Eigen::Index> gaps;    ///< first used sample behind each gap (rule 5)
