@@ -162,8 +162,8 @@ OwnedMatrix derivative(const Eigen::Ref<const Eigen::MatrixXd>& samples, double 
   return result;
 }
 
-Eigen::MatrixXd lowPassDerivative(const Eigen::Ref<const Eigen::MatrixXd>& samples,
-                                  double sampling_frequency, double cutoff, int order) {
+OwnedMatrix lowPassDerivative(const Eigen::Ref<const Eigen::MatrixXd>& samples,
+                              double sampling_frequency, double cutoff, int order) {
   requireSamples("low-pass derivative", "samples", samples, 3 * (order + 1) + 1);
   requireFinite("low-pass derivative", "samples", samples);
   const double period = sampling_frequency / cutoff;  // of the cut-off, in samples

@@ -92,7 +92,7 @@ py::array lowPass(const Array& samples, double sampling_frequency, double cutoff
 py::array lowPassDerivative(const Array& samples, double sampling_frequency, double cutoff,
                             int order) {
   const ConstMap in = states(samples, "samples");
-  Eigen::MatrixXd result;
+  chain_dynamics::OwnedMatrix result;
   {
     const py::gil_scoped_release release;
     result = evaluation::lowPassDerivative(in, sampling_frequency, cutoff, order);
@@ -100,10 +100,12 @@ py::array lowPassDerivative(const Array& samples, double sampling_frequency, dou
   return rowsOf(std::move(result));
 }
 
-std::vector<std::string> sampleFindings(const evaluation::Stamps& stamps, const std::string& clock,
+std::vector<std::string> sampleFindings(const Integers& stamps, const std::string& clock,
                                         const SampleReport& samples,
                                         const std::optional<FilterChoice>& filter) {
-  return evaluation::sampleFindings(stamps, clock, samples, filter ? &*filter : nullptr);
+  const Eigen::Map<const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>> read(stamps.data(),
+                                                                              stamps.size());
+  return evaluation::sampleFindings(read, clock, samples, filter ? &*filter : nullptr);
 }
 
 void bindSampleReport(py::module_& module) {

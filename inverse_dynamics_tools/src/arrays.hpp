@@ -6,6 +6,7 @@
 #include <pybind11/numpy.h>
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,10 @@ namespace inverse_dynamics_tools {
 
 /// Doubles, row after row; an array of another type or layout is copied into one.
 using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
+
+/// Integers, for stamps in ns.
+using Integers =
+    pybind11::array_t<std::int64_t, pybind11::array::c_style | pybind11::array::forcecast>;
 
 using ConstMap = Eigen::Map<const Eigen::MatrixXd>;
 using Map = Eigen::Map<Eigen::MatrixXd>;

@@ -27,7 +27,6 @@ using Eigen::Index;
 using evaluation::JointLog;
 using evaluation::JointLogBuilder;
 using evaluation::JointSample;
-using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
 void require(bool fulfilled, const char* what, Index expected, Index got) {
   if (fulfilled) return;

@@ -59,8 +59,8 @@ OwnedMatrix derivative(const Eigen::Ref<const Eigen::MatrixXd>& samples, double 
 /// @param order               of the Butterworth filter that runs twice; 1 to 12.
 /// @return n x N.
 /// @throws EvaluationError as lowPass() does.
-Eigen::MatrixXd lowPassDerivative(const Eigen::Ref<const Eigen::MatrixXd>& samples,
-                                  double sampling_frequency, double cutoff, int order = 2);
+OwnedMatrix lowPassDerivative(const Eigen::Ref<const Eigen::MatrixXd>& samples,
+                              double sampling_frequency, double cutoff, int order = 2);
 
 /// How lowPassAccelerations() is to work.
 struct LowPassOptions {
