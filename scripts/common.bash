@@ -140,6 +140,7 @@ build_into() {
 test_in() {
   local out=$1 programs=$2 package build targets status=0
   shift 2
+  find_recordings
   rm -rf "$out"/build/*/test_results "$out"/build/*/Testing
   for package in "$@"; do
     build=$out/build/$package

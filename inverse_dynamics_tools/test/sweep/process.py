@@ -17,7 +17,8 @@ from outcome import Outcome
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-SECONDS = 20.0
+SECONDS = 20  # of CPU
+LONGEST = 120.0  # s: a process that waits for ever uses no CPU
 MEMORY = 3 << 30  # bytes of address space: libraries alone map about 1 GiB
 
 
@@ -37,7 +38,7 @@ def run_apart(act: Callable[[], Outcome]) -> Outcome:
         answer.seek(0)
         content = answer.read()
     if status is None:
-        return Outcome("failed", f"still running after {SECONDS:.0f} s")
+        return Outcome("failed", f"still running after {LONGEST:.0f} s")
     if os.WIFSIGNALED(status):
         name = signal.Signals(os.WTERMSIG(status)).name
         return Outcome("failed", f"killed by {name}: {words[-300:]!r}")
@@ -55,6 +56,7 @@ def _child(act: Callable[[], Outcome], said: int, answer: int) -> None:
         os.dup2(said, 2)
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 1))
         try:
             outcome = act()
         except BaseException:
@@ -67,7 +69,7 @@ def _child(act: Callable[[], Outcome], said: int, answer: int) -> None:
 
 def _wait(child: int) -> int | None:
     """Exit status of the child; None if it had to be killed."""
-    end = time.monotonic() + SECONDS
+    end = time.monotonic() + LONGEST
     pause = 0.001
     while time.monotonic() < end:
         done, status = os.waitpid(child, os.WNOHANG)
