@@ -13,6 +13,7 @@ from test_evaluation import RIGID_BODY, UR10, URDF, recording
 
 from inverse_dynamics import Solver, cli, read_evaluation
 from inverse_dynamics.bags import write_joint_logs
+from inverse_dynamics.tables import figure
 
 RAW = ("--accelerations", "backward-difference")
 
@@ -38,7 +39,7 @@ def test_evaluate_prints_errors_and_writes_results(ids, bag, tmp_path):
     )
     assert "result/torques.png" in out
     result = read_evaluation(tmp_path / "result")
-    assert f"{result.mean_rmse:.3f}" in out
+    assert re.search(rf"mean +N m .*{re.escape(figure(result.mean_rmse))}", out)
     remedy = "it has no metadata.yaml; a recording is in it: give result/bag\n"
     fails(ids("evaluate", "result", "--robot", "ur10_simulated"), remedy)
     metrics = json.loads((tmp_path / "result/metrics.json").read_text())
