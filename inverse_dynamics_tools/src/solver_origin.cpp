@@ -4,6 +4,8 @@
 #include <pybind11/stl.h>
 
 #include <cstdint>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <string>
 #include <vector>
 
 namespace inverse_dynamics_tools {
@@ -13,13 +15,19 @@ namespace ids = inverse_dynamics_solver;
 
 std::map<std::string, ids::ParameterValue> parametersOf(const Origin& origin) {
   auto all = origin.parameters;
-  all["friction"] = origin.friction;
-  if (!origin.root.empty()) all["root"] = origin.root;
-  if (!origin.tip.empty()) all["tip"] = origin.tip;
-  if (!origin.attached.empty()) all["attached"] = origin.attached;
-  if (origin.model) all["model"] = *origin.model;
+  const auto give = [&all](const std::string& name, const ids::ParameterValue& value) {
+    if (all.emplace(name, value).second) return;
+    throw ids::InvalidParameterValueException(
+        ids::errorText("Solver", "", "each parameter once",
+                       "argument " + name + " and parameters['" + name + "']", "leave out one"));
+  };
+  if (!origin.friction || all.count("friction") == 0) give("friction", origin.friction);
+  if (!origin.root.empty()) give("root", origin.root);
+  if (!origin.tip.empty()) give("tip", origin.tip);
+  if (!origin.attached.empty()) give("attached", origin.attached);
+  if (origin.model) give("model", *origin.model);
   if (origin.gravity) {
-    all["gravity"] = std::vector<double>(origin.gravity->begin(), origin.gravity->end());
+    give("gravity", std::vector<double>(origin.gravity->begin(), origin.gravity->end()));
   }
   return all;
 }

@@ -184,8 +184,17 @@ def test_unknown_link_is_an_error():
 def test_parameter_of_the_wrong_type_is_an_error():
     with pytest.raises(errors.InvalidParameterError, match="attached"):
         Solver(RIGID_BODY, urdf=PENDULUM, parameters={"attached": 3})
+    with pytest.raises(errors.InvalidParameterError, match="friction"):
+        Solver(RIGID_BODY, urdf=PENDULUM, parameters={"friction": "no"})
     with pytest.raises(TypeError, match=r"parameter 'x': expected bool, int, .* got complex"):
         Solver(RIGID_BODY, urdf=PENDULUM, parameters={"x": 1j})
+
+
+def test_parameter_given_twice_is_an_error():
+    with pytest.raises(errors.InvalidParameterError, match="argument tip and parameters"):
+        Solver(RIGID_BODY, urdf=PENDULUM, tip="hand", parameters={"tip": "hand"})
+    with pytest.raises(errors.InvalidParameterError, match="argument friction and parameters"):
+        Solver(RIGID_BODY, urdf=PENDULUM, friction=False, parameters={"friction": True})
 
 
 @pytest.mark.parametrize(
