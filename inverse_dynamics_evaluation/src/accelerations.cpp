@@ -115,7 +115,7 @@ std::vector<Eigen::MatrixXd> filterPieces(const std::vector<Piece>& pieces,
   std::vector<Eigen::MatrixXd> qdd;
   qdd.reserve(pieces.size());
   for (std::size_t p = 0; p < pieces.size(); ++p) {
-    qdd.push_back(
+    qdd.emplace_back(
         lowPassDerivative(stretches[p].qd, 1.0 / pieces[p].period, filter.cutoff, filter.order));
   }
   return qdd;
@@ -174,7 +174,7 @@ OwnedMatrix lowPassDerivative(const Eigen::Ref<const Eigen::MatrixXd>& samples,
   // not further than the cubic may be trusted: as far as the samples that it is fitted to
   const auto beyond = static_cast<Index>(
       std::min(kBeyondPeriods * period, kBeyondPeriods / kFitPeriods * samples.cols()));
-  const Index count = std::max<Index>(beyond, 3 * (order + 1));
+  const Index count = std::max<Index>(beyond, 3 * (Index{order} + 1));
   const Eigen::MatrixXd longer =
       lowPass(continued(samples, fit, count), sampling_frequency, cutoff, order);
   return derivative(longer, 1.0 / sampling_frequency).middleCols(count, samples.cols());
