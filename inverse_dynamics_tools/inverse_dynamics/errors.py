@@ -4,9 +4,17 @@
 The command line prints the text and ends with exit code 2; a script catches `UserError`.
 """
 
+from inverse_dynamics.wording import message
+
 
 class UserError(Exception):
-    """Anything a user can put right: a file, an option, a name."""
+    """Anything a user can put right: a file, an option, a name.
+
+    Its text may quote a file: str() gives it printable and of bearable length, args as it is.
+    """
+
+    def __str__(self) -> str:
+        return message(super().__str__())
 
 
 class BagError(UserError):

@@ -224,11 +224,12 @@ def _work(target: Path, remedy: str, *, link: bool = True) -> Iterator[tuple[Wor
     except OSError as error:
         raise OutputError(_cannot_write(target, error, remedy)) from error
     except UserError as error:
-        if work is None or str(work.path) not in str(error):
+        text = " ".join(map(str, error.args))  # str() of it may be shortened
+        if work is None or str(work.path) not in text:
             raise
         # Texts name what is being made; its reader knows only where it was to be.
         made = str(work.new if not link else work.new / place.name)
-        raise type(error)(str(error).replace(made, str(target))) from error
+        raise type(error)(text.replace(made, str(target))) from error
     finally:
         if work is not None:
             _at_work.remove(work)

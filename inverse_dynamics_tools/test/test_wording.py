@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import pytest
 
+from inverse_dynamics.errors import BagError, EvaluationError, UserError
 from inverse_dynamics.wording import counted, did_you_mean, shown
 
 
@@ -31,3 +32,13 @@ def test_a_word_like_a_known_one_is_proposed():
     assert did_you_mean("tol0", known) == "did you mean tool0?"
     assert did_you_mean("simulate it", known) == ""
     assert did_you_mean("x" * 10_000_000, known) == ""
+
+
+def test_the_text_of_an_error_is_short_and_harmless():
+    error = BagError(f"bag: joints a\x1b[31m\r, {'x' * 100_000}: expected others:\n  b\n  c")
+    text = str(error)
+    assert text.startswith(r"bag: joints a\x1b[31m\x0d, xxx")
+    assert text.endswith("xxx: expected others:\n  b\n  c")
+    assert len(text) < 1000
+    assert str(EvaluationError("a\x1b", "b")) == r"('a\x1b', 'b')"
+    assert str(UserError("plain 'text' of café")) == "plain 'text' of café"
