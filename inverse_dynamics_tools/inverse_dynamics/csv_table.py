@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TextIO
 
 import numpy as np
 
-from inverse_dynamics.decimals import NOT_FINITE, decimal
+from inverse_dynamics.decimals import ASCII_SPACE, NOT_FINITE, decimal
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.joint_log import no_progress
 from inverse_dynamics.wording import counted, harmless, shown
@@ -140,7 +140,7 @@ class CsvTable:
                 continue
             fields = text.split(self._delimiter)
             for column, largest in sorted(zip(where, limits, strict=True)):
-                got = fields[column].strip()
+                got = fields[column].strip(ASCII_SPACE)
                 if not _is_number(got):
                     hint = "; decimals need a point" if _is_number(got.replace(",", ".")) else ""
                     return self._bad_field(line, column, f"a number, got {shown(got)}{hint}")

@@ -27,6 +27,11 @@ HOSTILE = {
     "full-width digits": (row("１２"), ":3: column 3 (velocity.a): expected a number, got '１２'"),
     "Arabic digits": (row("١٢"), ":3: column 3 (velocity.a): expected a number, got '١٢'"),
     "a minus sign of typography": (row("−1"), ":3: column 3 (velocity.a): expected a number, got"),
+    "a no-break space": (
+        row("1\u00a0"),
+        ":3: column 3 (velocity.a): expected a number, got '1\\xa0'",
+    ),
+    "an ideographic space": (row("\u30001"), ":3: column 3 (velocity.a): expected a number, got"),
     "a hexadecimal number": (row("0x10"), ":3: column 3 (velocity.a): expected a number, got"),
     "a quoted number": (row('"1"'), ":3: column 3 (velocity.a): expected a number, got '\"1\"'"),
     "an empty field": (row(""), ":3: column 3 (velocity.a): expected a number, got ''"),
