@@ -39,6 +39,7 @@ _TRUTHS = {
     **dict.fromkeys(("false", "False", "FALSE"), False),
 }
 _INTEGER = re.compile(r"[-+]?[0-9]+")
+_NO_CHARACTER = re.compile("[\0\ud800-\udfff]")
 _NOT_FINITE = re.compile(r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
 
 
@@ -268,3 +269,23 @@ class _Loader(yaml.BaseLoader):
         node = super().compose_node(parent, index)
         self.levels -= 1
         return node
+
+    def scan_flow_scalar_non_spaces(self, double: bool, start_mark: yaml.Mark) -> list[str]:
+        try:
+            found = super().scan_flow_scalar_non_spaces(double, start_mark)
+        except (ValueError, OverflowError):  # of chr()
+            found = ["\0"]
+        if any(map(_NO_CHARACTER.search, found)):
+            self._refuse(
+                "an escape stands for NUL, a surrogate or a code above 10ffff; write the character "
+                "itself"
+            )
+        return list(found)
+
+    def scan_yaml_directive_number(self, start_mark: yaml.Mark) -> int:
+        if self.prefix(10).isdecimal():
+            self._refuse("expected a version of at most 9 digits")
+        return int(super().scan_yaml_directive_number(start_mark))
+
+    def _refuse(self, problem: str) -> NoReturn:
+        raise yaml.MarkedYAMLError(problem=problem, problem_mark=self.get_mark())

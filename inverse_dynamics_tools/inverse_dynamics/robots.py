@@ -11,6 +11,7 @@ like. Strict: unknown or missing keys and wrong types are errors with file, line
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -77,7 +78,9 @@ def load_robot(name_or_file: str | Path) -> Robot:
     What ends in .yaml or .yml, or has a directory, is a file. Raises RobotError.
     """
     text = str(name_or_file)
-    file = Path(os.path.expanduser(text))  # Path's raises for unknown users
+    file = Path(text)
+    with suppress(ValueError):  # of a NUL, or half of a surrogate pair: no file has such a name
+        file = Path(os.path.expanduser(text))  # Path's raises for unknown users
     if file.suffix in {".yaml", ".yml"} or file.name != text:
         if not os.path.isfile(file):  # Path.is_file() raises where the path is too long
             raise RobotError(

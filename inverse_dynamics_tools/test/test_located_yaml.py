@@ -118,6 +118,24 @@ HOSTILE = {
     "two documents": (b"a: 1\n---\nb: 2\n", ":2: isn't YAML: but found another document"),
     "a NUL": (b"a: 1\nb: \0\n", ":2: isn't YAML: the character '\\x00' isn't allowed"),
     "a control character": (b"a: \x1b[31m\n", ":1: isn't YAML: the character '\\x1b' isn't"),
+    "an escape beyond Unicode": (
+        b'a: 1\nb: "\\U00110000"\n',
+        ":2: isn't YAML: an escape stands for NUL, a surrogate or a code above 10ffff; write",
+    ),
+    "an escape beyond 31 bits": (
+        b'a: "\\U99999999"\n',
+        ":1: isn't YAML: an escape stands for NUL,",
+    ),
+    "half of a surrogate pair": (b'a: 1\nb: "x\\ud800"\n', ":2: isn't YAML: an escape stands for"),
+    "a surrogate in a key": (b'"\\udc00": 1\n', ":1: isn't YAML: an escape stands for NUL"),
+    "an escaped NUL": (
+        b'a:\n  "~nouser\n  \\0/x"\n',
+        ":3: isn't YAML: an escape stands for NUL, a",
+    ),
+    "a version of 5000 digits": (
+        b"%YAML 1." + b"1" * 5000 + b"\n---\na: 1\n",
+        ":1: isn't YAML: expected a version of at most 9 digits",
+    ),
     "UTF-16": ("a: 1\n".encode("utf-16"), ":1: isn't text in UTF-8; expected YAML; save it"),
     "UTF-16 without a mark": ("a: 1\n".encode("utf-16-le"), ":1: isn't YAML: the character"),
     "Latin-1": (b"a: 1\nb: caf\xe9\n", ":2: isn't text in UTF-8; expected YAML"),
@@ -186,3 +204,14 @@ def test_an_unknown_key_like_a_known_one_is_told(tmp_path):
         top.optional(key)
     with pytest.raises(RobotError, match=r":2: gravty: unknown key; did you mean gravity\?; known"):
         top.reject_others()
+
+
+def test_escapes_of_characters_are_read(tmp_path):
+    assert (
+        value(
+            tmp_path,
+            r'"\x41\u00e9\U0001F600\t\
+  b"',
+        ).text()
+        == "Aé😀\tb"
+    )

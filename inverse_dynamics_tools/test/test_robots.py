@@ -254,3 +254,9 @@ def test_the_projects_robots_are_complete(name):
     assert robot.urdf.is_file()
     assert robot.source
     assert robot.joints
+
+
+@pytest.mark.parametrize("name", ["~nouser\0/x", "nouser\0", "~\ud800/x.yaml", "a\0.yaml"])
+def test_a_name_that_no_file_can_have_is_an_error(name):
+    with pytest.raises(RobotError, match=r"no such file; expected|expected one of"):
+        load_robot(name)
