@@ -7,7 +7,8 @@ What is made for NAME is made in the hidden folder `.NAME.part` beside it, on th
     .NAME.part/old/   the older result, between the two renames of a file system that can't exchange
 
 The folder is locked (flock) as long as its process lives. A folder without a lock was left behind by
-a process that was killed: the next run puts `old` back if NAME is missing, and removes the rest.
+a process that was killed: the next run puts `old` back if NAME is missing or if `new` never took its
+place, and removes the rest. It removes nothing if another program has made NAME meanwhile.
 """
 
 from __future__ import annotations
@@ -52,12 +53,17 @@ class WorkFolder:
                     self._lock = _lock(self.path, target, fresh=True)
         self.new = self.path / "new"
         self.old = self.path / "old"
-        self.new.mkdir()
+        try:
+            self.new.mkdir()
+        except BaseException:
+            self.remove()
+            raise
 
     def remove(self) -> None:
-        """Remove it with everything in it."""
+        """Remove it with everything in it, unless the older result is there: the next run puts it back."""
         if self._lock is not None:
-            shutil.rmtree(self.path, ignore_errors=True)
+            if not _is_between_renames(self.path):
+                shutil.rmtree(self.path, ignore_errors=True)
             os.close(self._lock)
             self._lock = None
 
@@ -73,7 +79,8 @@ def work_path(target: Path) -> Path:
 def restore_interrupted(target: Path) -> None:
     """Undo what a killed process left: put the older result back if it is missing, remove the rest.
 
-    Raises OutputError where another process is at work, or where the folder isn't ours; OSError.
+    Raises OutputError where another process is at work, where the folder isn't ours, or where something
+    else has taken the place of the older result; OSError.
     """
     path = work_path(target)
     if not os.path.lexists(path):
@@ -87,8 +94,8 @@ def restore_interrupted(target: Path) -> None:
         lock = _lock(path, target)
         try:
             with signals_deferred():
-                if not os.path.lexists(target) and (path / "old").exists():
-                    os.rename(path / "old", target)
+                if _is_between_renames(path) or not os.path.lexists(target):
+                    _put_back(path / "old", target)
                 shutil.rmtree(path)
         finally:
             os.close(lock)
@@ -160,6 +167,25 @@ def _rename_twice(new: Path, target: Path, old: Path) -> None:
     except BaseException:
         os.rename(old, target)
         raise
+
+
+def _is_between_renames(path: Path) -> bool:
+    """Whether the older result is in a work folder because the new one has not taken its place."""
+    return (path / "old").exists() and (path / "new").exists()
+
+
+def _put_back(old: Path, target: Path) -> None:
+    """Undo the first of two renames. Raises OutputError, OSError."""
+    try:
+        with suppress(FileNotFoundError):  # there was none
+            os.rename(old, target)  # replaces an empty directory too
+    except OSError as error:
+        if error.errno not in (errno.ENOTEMPTY, errno.EEXIST, errno.ENOTDIR):
+            raise
+        raise OutputError(
+            f"{target}: can't be written: it was made after a run was killed, and the older result is "
+            f"{old} still; move one of them elsewhere, or name another output"
+        ) from error
 
 
 def _exchange(one: Path, other: Path) -> bool:

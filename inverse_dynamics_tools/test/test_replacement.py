@@ -13,6 +13,7 @@ import sys
 import pytest
 
 from inverse_dynamics import replacement
+from inverse_dynamics.errors import OutputError
 
 # Writes a result again and again, with a signal before (even) or after (odd) the k-th system call that
 # changes the file system, until no step is left; a line of JSON for each.
@@ -173,3 +174,73 @@ def test_a_failure_between_two_renames_puts_the_old_result_back(tmp_path, monkey
             tmp_path / "new", tmp_path / "target", tmp_path / "old", overwrite=True
         )
     assert os.listdir(tmp_path / "target") == ["target"]
+
+
+def test_a_folder_that_can_not_be_completed_is_removed(tmp_path, monkeypatch):
+    mkdir = os.mkdir
+
+    def fail_for_new(path, *mode):
+        if os.path.basename(path) == "new":
+            raise OSError(28, "No space left on device")
+        mkdir(path, *mode)
+
+    with monkeypatch.context() as patches:
+        patches.setattr(os, "mkdir", fail_for_new)
+        with pytest.raises(OSError, match="No space left on device"):
+            replacement.WorkFolder(tmp_path / "result")
+    assert os.listdir(tmp_path) == []
+    replacement.WorkFolder(tmp_path / "result").remove()  # it isn't locked
+
+
+def killed_between_two_renames(directory):
+    """The target; the older result is in its work folder."""
+    for name in ("new", "old"):
+        (directory / ".result.part" / name).mkdir(parents=True)
+        (directory / ".result.part" / name / "data").write_text(name)
+    return directory / "result"
+
+
+def test_an_older_result_is_put_back_over_an_empty_directory(tmp_path):
+    target = killed_between_two_renames(tmp_path)
+    target.mkdir()
+    replacement.restore_interrupted(target)
+    assert os.listdir(tmp_path) == ["result"]
+    assert (target / "data").read_text() == "old"
+
+
+@pytest.mark.parametrize("kind", ["directory", "file"])
+def test_an_older_result_stays_where_something_else_took_its_place(tmp_path, kind):
+    target = killed_between_two_renames(tmp_path)
+    if kind == "directory":
+        target.mkdir()
+        (target / "mine").touch()
+    else:
+        target.touch()
+    old = tmp_path / ".result.part" / "old"
+    for _ in range(2):
+        with pytest.raises(OutputError, match=f"{target}: .*the older result is {old}.*move"):
+            replacement.restore_interrupted(target)
+    assert (old / "data").read_text() == "old"
+    assert os.listdir(target) == ["mine"] if kind == "directory" else target.is_file()
+
+
+def test_an_older_result_that_can_not_be_put_back_is_kept(tmp_path, monkeypatch):
+    work = replacement.WorkFolder(tmp_path / "result")
+    (tmp_path / "result").mkdir()
+    (tmp_path / "result" / "data").write_text("old")
+    rename, calls = os.rename, []
+
+    def fail_after_the_first(one, other):
+        calls.append(one)
+        if len(calls) != 2:
+            raise OSError(39 if len(calls) == 1 else 5, "no")
+        rename(one, other)
+
+    with monkeypatch.context() as patches:
+        patches.setattr(replacement, "_exchange", lambda *_: False)
+        patches.setattr(os, "rename", fail_after_the_first)
+        with pytest.raises(OSError, match="no"):
+            replacement.put_directory(work.new, tmp_path / "result", work.old, overwrite=True)
+        work.remove()
+    replacement.restore_interrupted(tmp_path / "result")
+    assert (tmp_path / "result" / "data").read_text() == "old"
