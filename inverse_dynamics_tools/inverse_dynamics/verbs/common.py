@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,6 +19,14 @@ if TYPE_CHECKING:
 
     from inverse_dynamics._core import Parameter
     from inverse_dynamics.joint_log import Progress
+
+_OPTIONS = {  # by the parameter that they set
+    "root": "--root",
+    "tip": "--tip",
+    "gravity": "--gravity",
+    "friction": "--no-friction",
+    "robot_description": "--urdf",
+}
 
 
 def three_numbers(text: str) -> tuple[float, float, float]:
@@ -74,14 +83,23 @@ def parameter(text: str) -> tuple[str, Parameter]:
     from inverse_dynamics.solver_parameters import solver_parameters
 
     name, _, value = text.partition("=")
+    if name == "model":
+        raise argparse.ArgumentTypeError(
+            "model: is no option: put it at the top of the run configuration"
+        )
+    if name in _OPTIONS:
+        raise argparse.ArgumentTypeError(
+            f"{name}: has an option of its own: give {_OPTIONS[name]} instead"
+        )
+    found, why = {}, ""
     try:
         found = solver_parameters(parse_mapping(f"{name}: {value}", Path("option"), UserError))
-    except UserError:
-        found = {}
+    except UserError as error:
+        why = f" ({re.sub(r'^option(:[0-9]+)?: ', '', str(error))})"
     if list(found) != [name]:
         raise argparse.ArgumentTypeError(
             "expected NAME=VALUE, VALUE a number, a text, true, false or a list of one of them, "
-            f"[1, 2], got {shown(text)}"
+            f"[1, 2], got {shown(text)}{why}"
         )
     return name, found[name]
 
