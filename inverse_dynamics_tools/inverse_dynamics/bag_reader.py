@@ -150,8 +150,14 @@ class BagReader:
         return list(self._reader.connections)
 
     def messages(self) -> Iterator[tuple[Connection, int, bytes]]:
-        """All messages as they are: connection, time of reception [ns], serialised message."""
-        yield from self._unpacked(self._reader.messages())
+        """All messages as they are: connection, time of reception [ns], serialised message.
+
+        Raises BagError where they can't be read.
+        """
+        try:
+            yield from self._unpacked(self._reader.messages())
+        except Exception as error:  # see __enter__
+            raise self._unreadable(error) from error
 
     def blocks(self, connections: list[Connection]) -> Iterator[tuple[list[bytes], Integers]]:
         """Serialised messages and their times of reception [ns], thousands at a time.

@@ -2,12 +2,14 @@
 import json
 import re
 import sqlite3
+from contextlib import closing
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import STORE, joint_state, write_messages
-from rosbags.rosbag2 import Reader, StoragePlugin, Writer
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, Reader, StoragePlugin, Writer
+from rosbags.rosbag2.writer import zstd
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from test_csv_recordings import table_of, write_table
 from test_evaluation import JOINTS, RIGID_BODY, URDF, motion
@@ -290,3 +292,26 @@ def test_another_description_and_chain_may_be_given(tmp_path, capsys):
     assert said in capsys.readouterr().out
     assert cli.main([*arguments, "--robot", "ur10_simulated", "--tip", "nowhere"]) == 2
     assert "nowhere" in capsys.readouterr().err
+
+
+def test_what_can_not_be_read_is_not_told_as_what_can_not_be_written(tmp_path, robot):
+    path = tmp_path / "planned"
+    writer = Writer(path, version=9, storage_plugin=StoragePlugin.SQLITE3)
+    writer.set_compression(CompressionMode.MESSAGE, CompressionFormat.ZSTD)
+    with writer:
+        plans = writer.add_connection(TOPIC, TRAJECTORY, typestore=STORE)
+        arm = writer.add_connection("/arm", "sensor_msgs/msg/JointState", typestore=STORE)
+        raw = STORE.serialize_cdr(trajectory(JOINTS, points_of_motion()), TRAJECTORY)
+        writer.write(plans, 1, raw)
+        writer.write(arm, 2, b"")
+    (file,) = path.glob("*.db3")
+    bomb = zstd.compress(bytes(300_000_000))
+    for damaged, expected in (
+        (b"no frame of zstd", "can't be read as a rosbag2 recording"),
+        (bomb, f"a message or chunk of {len(bomb)} bytes unpacks to more than 256 MB"),
+    ):
+        with closing(sqlite3.connect(file)) as database, database:
+            database.execute("UPDATE messages SET data = ? WHERE timestamp = 2", (damaged,))
+        with pytest.raises(BagError, match=f"^{path}: {expected}"):
+            write_trajectory_torques(trajectory_torques(path, robot), tmp_path / "filled")
+        assert not (tmp_path / "filled").exists()
