@@ -41,6 +41,10 @@ HOSTILE = {
     "many entities": BOMB + "]><robot name='&i;'><link name='base'/></robot>",
     "a file as an entity": "<!DOCTYPE r [<!ENTITY a SYSTEM 'file:///etc/passwd'>]><robot name='&a;'/>",
     "a document type": "<!DOCTYPE robot>" + pendulum(),
+    "an entity after a comment": (
+        "<!-- <robot --><!DOCTYPE robot [<!ENTITY a '2.0'>]>" + pendulum().replace('"2.0"', '"&a;"')
+    ),
+    "many entities after a comment": "<!-- <robot -->" + BOMB + "]><robot name='&i;'/>",
     "deep elements": "<robot>" + "<link>" * 100_000 + "</link>" * 100_000 + "</robot>",
     "a NUL": pendulum().replace("swing", "swi\0ng"),
     "a number of words": pendulum(xyz="0 0 up"),
@@ -164,6 +168,7 @@ EVERY = ("units", "limits", "scene", "simulation")
     [
         (EVERY, ("a word", "half of it", "another element", "many entities", "a NUL")),
         (EVERY, ("a file as an entity", "a document type", "deep elements")),
+        (EVERY, ("an entity after a comment", "many entities after a comment")),
         (("limits",), ("an effort of words", "an effort of NaN", "an effort with an underscore")),
         (("scene",), ("a loop", "a size of words", "two sizes", "no size", "a size of infinity")),
         (("scene",), ("a radius of words", "a place of words", "a colour of words", "two colours")),
@@ -181,5 +186,6 @@ def test_what_matters_to_a_reader_is_refused(found, readers, cases):
 
 def test_sound_descriptions_are_read(tmp_path):
     sound = {"pendulum": pendulum(), "two links": two_links(), "a shape": shape(BOX)}
+    sound["a comment on a document type"] = "<!-- no <!DOCTYPE robot> -->" + pendulum()
     assert not any(outcomes(sound, tmp_path).values())
     assert resource.getrlimit(resource.RLIMIT_AS)[0] == resource.RLIM_INFINITY
