@@ -58,9 +58,13 @@ class Contents:
         return _matches(path, self.files, directory)
 
     def foreign(self, directory: Path) -> list[str]:
-        """Paths in the directory that the user, or another program, has put there."""
+        """Paths in the directory that the user, or another program, has put there. Raises OSError."""
+
+        def fail(error: OSError) -> None:
+            raise error
+
         found = []
-        for place, directories, names in os.walk(directory):
+        for place, directories, names in os.walk(directory, onerror=fail):
             links = [name for name in directories if Path(place, name).is_symlink()]
             for name in (*names, *links):
                 path = Path(place, name).relative_to(directory)

@@ -14,6 +14,7 @@ from io import BytesIO
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.errors import BagError
+from inverse_dynamics.wording import shown
 
 if sys.version_info >= (3, 14):
     from compression import zstd
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 VARIABLE = "IDS_UNPACK_LIMIT_MB"
 
 _MEGABYTES = 256
+_MOST_DIGITS = 12
 _TIMES = 50  # joint states are mostly noise: they shrink to a third, at rest to a tenth
 _BLOCK = 2**20
 _PACKED = re.compile(rb"\x28\xb5\x2f\xfd|[\x50-\x5f]\x2a\x4d\x18", re.DOTALL)  # zstd frames
@@ -44,8 +46,10 @@ class UnpackError(BagError):
 def most_unpacked(packed: int) -> int:
     """Bytes that may come out of so many packed ones. Raises BagError: the variable isn't a number."""
     text = os.environ.get(VARIABLE) or str(_MEGABYTES)
-    if not (text.isascii() and text.isdigit()):
-        raise UnpackError(f"{VARIABLE}: expected a whole number of megabytes, got '{text}'")
+    if not (text.isascii() and text.isdigit() and len(text) <= _MOST_DIGITS):
+        raise UnpackError(
+            f"{VARIABLE}: expected a whole number of megabytes, got {shown(text, _MOST_DIGITS)}"
+        )
     return max(int(text) * 10**6, _TIMES * packed)
 
 

@@ -373,3 +373,20 @@ def test_a_folder_of_somebody_else_is_not_taken_for_a_leftover(tmp_path):
     ):
         write(tmp_path / "result")
     assert os.listdir(tmp_path / ".result.part") == ["film.mkv"]
+
+
+def test_a_directory_that_can_not_be_read_is_not_taken_for_an_empty_one(tmp_path, monkeypatch):
+    target = tmp_path / "result"
+    write(target, "old")
+    (target / "mine").mkdir()
+    scandir = os.scandir
+
+    def refuse(path="."):
+        if str(path).endswith("mine"):
+            raise PermissionError(13, "Permission denied", str(path))
+        return scandir(path)
+
+    monkeypatch.setattr(os, "scandir", refuse)
+    with pytest.raises(OutputError, match="Permission denied"):
+        write(target, overwrite=True)
+    assert sorted(os.listdir(target)) == ["mine", MARK]
