@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     _Message = tuple[Connection, int, bytes]
 
 _BLOCK = 4096  # messages read together
+_LONGEST_NAME = 300  # characters of a topic or type, in a text
 _LATEST = 2**62  # ns: differences of stamps fit 64 bits
 
 
@@ -118,7 +119,9 @@ class BagReader:
         """Connections of the topic; none given: of the only one with messages of the type."""
         topics = self.topics()
         there = "\n".join(
-            f"  {t.name}  {t.message_type}  {counted(t.message_count, 'message')}" for t in topics
+            f"  {harmless(t.name, _LONGEST_NAME)}  {harmless(t.message_type, _LONGEST_NAME)}  "
+            f"{counted(t.message_count, 'message')}"
+            for t in topics
         )
         if not topics:
             raise BagError(f"{self._path}: is an empty recording: it has no topic; record it again")
@@ -140,7 +143,7 @@ class BagReader:
         if found[0].message_type != message_type:
             raise BagError(
                 f"{self._path}: topic {topic}: expected type {message_type}, got "
-                f"{found[0].message_type}; name another topic with --topic:\n{there}"
+                f"{harmless(found[0].message_type)}; name another topic with --topic:\n{there}"
             )
         return [c for c in self._reader.connections if c.topic == topic]
 

@@ -353,3 +353,15 @@ def test_a_process_of_its_own_survives_an_endless_recording(tmp_path, good):
         check=False,
     )
     assert "BagError" in done.stderr
+
+
+def test_a_type_with_several_lines_stays_on_its_line(tmp_path: Path) -> None:
+    path = write_messages(tmp_path / "bag", states())
+    metadata = path / "metadata.yaml"
+    metadata.write_text(
+        metadata.read_text().replace("type: sensor_msgs/msg/JointState", 'type: "a\\nb"')
+    )
+    for topic in ("", "/joint_states"):
+        with pytest.raises(UserError) as caught:
+            read_joint_log(path, topic)
+        assert str(caught.value).splitlines()[1:] == [r"  /joint_states  a\nb  300 messages"]
