@@ -7,7 +7,6 @@
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "initialized.hpp"
@@ -116,12 +115,12 @@ void bindOptions(py::module_& module) {
            py::arg("source") = FrictionSource::kReferenceVelocity, py::kw_only(),
            py::arg("dead_band") = 0.0, py::arg("blend") = 0.05, py::arg("scale") = 1.0);
   py::class_<LawOptions>(module, "LawOptions", "Options of every law; arrays (n,).")
-      .def(py::init([](Vector effort_limit, Vector damping, Vector rate_limit,
+      .def(py::init([](const Vector& effort_limit, const Vector& damping, const Vector& rate_limit,
                        const Compensated& compensated, const FrictionOptions& friction) {
              LawOptions options;
              options.compensated = compensated;
-             options.limits = {std::move(effort_limit), std::move(rate_limit)};
-             options.damping = std::move(damping);
+             options.limits = {effort_limit, rate_limit};
+             options.damping = damping;
              options.friction = friction;
              return options;
            }),
@@ -129,8 +128,8 @@ void bindOptions(py::module_& module) {
            py::arg("rate_limit") = Vector(), py::arg("compensated") = Compensated(),
            py::arg("friction") = FrictionOptions());
   py::class_<Gains>(module, "Gains", "Gains of computed torque, (n,) each.")
-      .def(py::init([](Vector Kp, Vector Kd) {
-             return Gains{std::move(Kp), std::move(Kd)};
+      .def(py::init([](const Vector& Kp, const Vector& Kd) {
+             return Gains{Kp, Kd};
            }),
            py::arg("Kp"), py::arg("Kd"))
       .def_static("of", &Gains::of, py::arg("natural_frequency"), py::arg("damping_ratio"),
