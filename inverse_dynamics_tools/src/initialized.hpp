@@ -28,6 +28,7 @@ class InitializedCaster : public pybind11::detail::type_caster_base<T> {
  private:
   static void requireInit(pybind11::handle object) {
     auto* const instance = reinterpret_cast<pybind11::detail::instance*>(object.ptr());
+    if (!instance->owned) return;  // a part of another object
     for (const auto& part : pybind11::detail::values_and_holders(instance)) {
       if (part.holder_constructed()) continue;
       const std::string name = pybind11::str(pybind11::type::of(object).attr("__name__"));

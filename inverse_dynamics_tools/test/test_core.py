@@ -263,6 +263,13 @@ def test_argument_without_init_is_an_error():
         _core.LawOptions(effort_limit=np.ones(6), damping=np.ones(6), compensated=none)
 
 
+def test_part_of_a_result_is_an_initialized_object():
+    time = np.arange(500) / 100
+    q, qd = np.sin(time)[:, None], np.cos(time)[:, None]
+    _, choice, _ = _core.low_pass_accelerations(time, q, qd, q)
+    assert choice.choice.cutoff == choice.cutoff
+
+
 def test_errors_of_solvers_are_user_errors():
     assert issubclass(errors.PluginNotFoundError, UserError)
     assert issubclass(errors.InvalidRobotDescriptionError, errors.InvalidParameterError)
