@@ -134,38 +134,45 @@ def single(rate: float, duration: float, begin: float, length: float) -> Motion:
 # ---- what a robot records ------------------------------------------------------------------------
 
 
-def white(motion: Motion, random: np.random.Generator, deviation: float = 0.003) -> Floats:
+def fine(motion: Motion, random: np.random.Generator) -> Floats:
+    """Positions of a good encoder."""
+    return motion.q + 1e-6 * random.standard_normal(motion.q.shape)
+
+
+def white(
+    motion: Motion, random: np.random.Generator, deviation: float = 0.003
+) -> tuple[Floats, Floats]:
     """Velocities with white noise [rad/s]."""
-    return motion.qd + deviation * random.standard_normal(motion.qd.shape)
+    return fine(motion, random), motion.qd + deviation * random.standard_normal(motion.qd.shape)
 
 
-def little(motion: Motion, random: np.random.Generator) -> Floats:
+def little(motion: Motion, random: np.random.Generator) -> tuple[Floats, Floats]:
     """Velocities with a tenth of that noise."""
     return white(motion, random, 0.0003)
 
 
-def low_passed(motion: Motion, random: np.random.Generator) -> Floats:
+def low_passed(motion: Motion, random: np.random.Generator) -> tuple[Floats, Floats]:
     """Noise below 40 Hz, or of all frequencies where the samples hold no more."""
     noise = 0.01 * random.standard_normal(motion.qd.shape)
     if motion.rate > 100:
         noise = _core.low_pass(noise, motion.rate, 40.0, 1)
-    return motion.qd + noise
+    return fine(motion, random), motion.qd + noise
 
 
-def quantised(motion: Motion, random: np.random.Generator) -> Floats:
+def quantised(motion: Motion, random: np.random.Generator) -> tuple[Floats, Floats]:
     """Velocities in steps of 0.005 rad/s."""
-    del random
-    return 0.005 * np.round(motion.qd / 0.005)
+    return fine(motion, random), 0.005 * np.round(motion.qd / 0.005)
 
 
-def differentiated(motion: Motion, random: np.random.Generator) -> Floats:
-    """Differences of positions in steps of 1e-5 rad, made smooth by a filter of 30 Hz."""
+def differentiated(motion: Motion, random: np.random.Generator) -> tuple[Floats, Floats]:
+    """Differences of the recorded positions, in steps of 1e-5 rad, smoothed by a filter of 30 Hz."""
     q = 1e-5 * np.round((motion.q + 3e-6 * random.standard_normal(motion.q.shape)) / 1e-5)
     qd = np.gradient(q, 1 / motion.rate, axis=0)
-    return _core.low_pass(qd, motion.rate, 30.0, 1) if motion.rate > 100 else qd
+    return q, _core.low_pass(qd, motion.rate, 30.0, 1) if motion.rate > 100 else qd
 
 
-NOISES: dict[str, Callable[[Motion, np.random.Generator], Floats]] = {
+# The positions and velocities that a robot records of a motion.
+NOISES: dict[str, Callable[[Motion, np.random.Generator], tuple[Floats, Floats]]] = {
     "white": white,
     "little": little,
     "low-passed": low_passed,
@@ -182,8 +189,8 @@ def recorded(
     moving: Integers | None = None,
 ) -> Recording:
     """A recording of a motion; from 125 Hz on one in four has late stamps, one in four repeats."""
-    qd = clean = NOISES[noise](motion, random)
-    q = motion.q + 1e-6 * random.standard_normal(motion.q.shape)
+    q, qd = NOISES[noise](motion, random)
+    clean = qd
     time = motion.time
     fault = random.integers(4) if moving is None and motion.rate > 100 else 3
     if fault == 0:
