@@ -84,8 +84,9 @@ def _draw_spectra(axes: Axes, evaluation: Evaluation, measured: Floats, error: F
             evaluation.accelerations.cutoff, color="#009E73", linewidth=1.3, label="cut-off"
         )
     axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))  # also where a decade is all there is
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.xaxis.set_minor_formatter("")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter("")
     axes.grid(color="#e3e6ea")
     axes.legend(frameon=False)
     axes.set_xlabel("frequency [Hz]", color=_MUTED)
