@@ -24,7 +24,7 @@ def seeds() -> list[bytes]:
 
 
 def read(data: bytes) -> None:
-    """Both readers take a message, with the same content, or both refuse it."""
+    """What the fast reader takes, the library takes too, with the same content."""
     if layout_of(data) is None:
         return  # the library reads it
     (block,) = Decoder().decode([data])

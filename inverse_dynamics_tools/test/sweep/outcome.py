@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 LONGEST_MESSAGE = 2000  # characters
 RELATIVE_TOLERANCE = 1e-9  # of the greatest torque
 
-_CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f]")
+# A list, of topics for one, stands on indented lines of its own.
+_CONTROL = re.compile(r"[\x00-\x09\x0b-\x1f\x7f-\x9f]|\n(?!  )")
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ def _fault_of_message(text: str, expected: Expected) -> str:
     if not expected.refused:
         return f"refused, but it is right: {text}"
     if _CONTROL.search(text):
-        return f"message with control characters or several lines: {text!r}"
+        return f"message with control characters or lines that aren't indented: {text!r}"
     if len(text) > LONGEST_MESSAGE:
         return f"message of {len(text)} characters: {text[:200]!r}"
     if not re.search(expected.place, text):
