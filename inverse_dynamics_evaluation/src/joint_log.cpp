@@ -82,6 +82,19 @@ void JointLogBuilder::add(const JointSample& sample) {
   }
 }
 
+void JointLogBuilder::add(const JointStateBlock& block) {
+  using Numbers = JointSample::Numbers;
+  const auto row = [](const JointStateNumbers& field, std::size_t i) {
+    return Numbers(field.row(i), static_cast<Index>(field.columns));
+  };
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    add(JointSample{block.joint_names, row(block.position, i), row(block.velocity, i),
+                    row(block.effort, i), Numbers(nullptr, 0), block.header_stamps[i],
+                    block.receive_stamps[i], static_cast<Index>(block.first) + Index(i), -1,
+                    block.frame_id});
+  }
+}
+
 JointLog JointLogBuilder::finish(Clock clock) {
   requireSamples();
   JointLog log;

@@ -50,6 +50,45 @@ std::string logErrorOf(const Message& message, JointLogOptions options = {}) {
   });
 }
 
+JointStateBlock armBlock() {
+  JointStateBlock block;
+  block.first = 6;
+  block.joint_names = {"b", "a"};
+  block.frame_id = "base";
+  block.header_stamps = {5, 6};
+  block.receive_stamps = {7, 8};
+  block.position = {{2, 1, 4, 3}, 2};
+  block.velocity = {{20, 10, 40, 30}, 2};
+  block.effort = {{200, 100, 400, 300}, 2};
+  return block;
+}
+
+TEST(JointLog, TakesEachMessageOfABlock) {
+  JointLogBuilder builder("bag", {"a", "b"});
+  builder.add(armBlock());
+  EXPECT_EQ(builder.samples(), 2);
+  const JointLog log = builder.finish();
+  EXPECT_EQ(log.q, (Eigen::MatrixXd(2, 2) << 1, 3, 2, 4).finished());
+  EXPECT_EQ(log.qd, 10 * log.q);
+  EXPECT_EQ(log.effort, 100 * log.q);
+  EXPECT_EQ(log.header_stamps, (Stamps(2) << 5, 6).finished());
+  EXPECT_EQ(log.receive_stamps, (Stamps(2) << 7, 8).finished());
+  EXPECT_THAT(log.message, ElementsAre(6, 7));
+  EXPECT_EQ(log.frame_id, "base");
+}
+
+TEST(JointLog, NamesTheMessageOfABlock) {
+  JointLogBuilder builder("bag", {"a", "b"});
+  JointStateBlock block = armBlock();
+  block.velocity.values[2] = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(errorOf<RecordingError>([&] { builder.add(block); }),
+              HasSubstr("bag, message 8: velocity of joint b: expected a finite number"));
+  block.velocity = {};
+  EXPECT_THAT(errorOf<RecordingError>([&] { builder.add(block); }),
+              HasSubstr("bag, message 7: velocity: expected 2 numbers, one per name, got an empty "
+                        "array"));
+}
+
 TEST(JointLog, MatchesJointsByNameAndLeavesOthersOut) {
   JointLogBuilder builder("bag", {"a", "b"});
   builder.add(armMessage().sample());

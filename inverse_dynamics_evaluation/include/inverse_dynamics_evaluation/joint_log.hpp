@@ -22,24 +22,17 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "inverse_dynamics_evaluation/error.hpp"
 #include "inverse_dynamics_evaluation/joint_matching.hpp"
+#include "inverse_dynamics_evaluation/joint_state_source.hpp"
 #include "inverse_dynamics_evaluation/metrics.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
-
-/// A recording that doesn't hold what is asked of it.
-///
-/// The text says where, what was expected, what was found, and the remedy.
-class RecordingError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Stamps of N samples; ns since the epoch of whoever wrote them.
 using Stamps = chain_dynamics::Owned<Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>>;
@@ -107,6 +100,9 @@ class JointLogBuilder {
 
   /// Adds a sample. @throws RecordingError by the rules at the top of this file.
   void add(const JointSample& sample);
+
+  /// Adds each message of a block. @throws RecordingError by the same rules.
+  void add(const JointStateBlock& block);
 
   /// How many samples were added, those left out too.
   Eigen::Index samples() const { return samples_; }
