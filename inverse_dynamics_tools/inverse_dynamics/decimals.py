@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 
 DECIMAL = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
-ASCII_SPACE = " \t\n\v\f\r\x1c\x1d\x1e\x1f"  # what float() leaves out of an ASCII text
+ASCII_SPACE = " \t\n\v\f\r"  # what float() leaves out of an ASCII text
 NOT_FINITE = re.compile(r"[-+]?(inf|infinity|nan)", re.IGNORECASE)
 
 # Of a recorded or planned motion, in SI units: beyond it lie damage and mistaken units, and squares of

@@ -46,6 +46,10 @@ HOSTILE = {
         ":3: column 3 (velocity.a): expected a number, got '\\x1b",
     ),
     "a NUL": (row("1\0"), ":3: column 3 (velocity.a): expected a number, got '1\\x00'"),
+    "a separator of ASCII": (
+        row("1\x1f"),
+        ":3: column 3 (velocity.a): expected a number, got '1\\x1f'",
+    ),
     "a form feed": (row("1\f2"), ":3: column 3 (velocity.a): expected a number, got '1\\x0c2'"),
     "a bad number after many rows": (
         row("1_0", 90_000),
