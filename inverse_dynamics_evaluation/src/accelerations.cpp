@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "checks.hpp"
-#include "ends.hpp"
+#include "low_pass_differentiator.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -15,9 +15,6 @@ namespace {
 using Eigen::Index;
 using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
 using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
-
-constexpr double kFitPeriods = 1.2;     // of the cut-off, to which the ends' cubics are fitted
-constexpr double kBeyondPeriods = 2.0;  // of the cut-off, by which they continue the ends
 
 // Used samples between two gaps.
 struct Piece {
@@ -166,18 +163,17 @@ OwnedMatrix lowPassDerivative(const Eigen::Ref<const Eigen::MatrixXd>& samples,
                               double sampling_frequency, double cutoff, int order) {
   requireSamples("low-pass derivative", "samples", samples, 3 * (order + 1) + 1);
   requireFinite("low-pass derivative", "samples", samples);
-  const double period = sampling_frequency / cutoff;  // of the cut-off, in samples
-  if (!(period > 2.0) || !std::isfinite(period)) {
-    lowPass(samples, sampling_frequency, cutoff, order);  // says what is wrong
-  }
-  const auto fit = static_cast<Index>(std::min(kFitPeriods * period, 1.0 * samples.cols()));
-  // not further than the cubic may be trusted: as far as the samples that it is fitted to
-  const auto beyond = static_cast<Index>(
-      std::min(kBeyondPeriods * period, kBeyondPeriods / kFitPeriods * samples.cols()));
-  const Index count = std::max<Index>(beyond, 3 * (Index{order} + 1));
-  const Eigen::MatrixXd longer =
-      lowPass(continued(samples, fit, count), sampling_frequency, cutoff, order);
-  return derivative(longer, 1.0 / sampling_frequency).middleCols(count, samples.cols());
+  requireFilter(sampling_frequency, cutoff, order);
+  OwnedMatrix result(samples.rows(), samples.cols());
+  Index given = 0;
+  LowPassDifferentiator differentiator(samples.rows(), samples.cols(), sampling_frequency, cutoff,
+                                       order, [&](const auto& derivatives) {
+                                         result.middleCols(given, derivatives.cols()) = derivatives;
+                                         given += derivatives.cols();
+                                       });
+  differentiator.push(samples);
+  differentiator.finish();
+  return result;
 }
 
 AccelerationEstimate lowPassAccelerations(const Eigen::Ref<const Eigen::VectorXd>& time,

@@ -3,7 +3,8 @@
 /// @file
 /// What a velocity may have been before the first sample and after the last one.
 ///
-///     Eigen::MatrixXd longer = continued(qd, 60, 100);   // 100 samples more at each end
+///     Eigen::MatrixXd before = beyondEnd(qd.leftCols(60), 100);   // 100 samples, backwards in
+///     time
 ///
 /// A filter that runs forwards and backwards needs samples beyond both ends. The point reflection,
 /// 2 x_0 - x_k, is what lowPass() takes: it keeps value and slope, but its value at the end is that
@@ -20,15 +21,17 @@
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
-/// Each row of `samples`, continued at both ends by the cubic that fits them best there.
+/// Samples without which an end can't be continued, if there are as many.
+constexpr Eigen::Index kLeastFit = 6;
+
+/// Continuation of each row beyond its first sample, by the cubic that fits the samples best there.
 ///
-/// @param samples  n x N, equidistant, N >= 4.
-/// @param fit      samples that the cubic is fitted to, at least 6 or all there are; weights fall
-///                 from one at the end to zero (cos^2 of the amplitude).
-/// @param count    samples by which each end is continued.
-/// @return n x (N + 2 count).
-Eigen::MatrixXd continued(const Eigen::Ref<const Eigen::MatrixXd>& samples, Eigen::Index fit,
-                          Eigen::Index count);
+/// @param samples  n x N, equidistant, N >= 4; the first one is the end, so for the end of a
+///                 recording time is counted backwards. Weights fall from one at the first sample
+///                 to zero behind the last (cos^2 of the amplitude).
+/// @param count    samples by which the end is continued.
+/// @return n x count; the nearest first.
+Eigen::MatrixXd beyondEnd(const Eigen::Ref<const Eigen::MatrixXd>& samples, Eigen::Index count);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_evaluation
