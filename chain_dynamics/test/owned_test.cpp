@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <new>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -87,6 +88,34 @@ TEST(Owned, HoldsTruthValuesOneByOne) {
   mask = !mask;
   EXPECT_EQ(mask.count(), 2);
   EXPECT_TRUE(mask.data()[0]);
+}
+
+void fill(Eigen::Ref<Eigen::VectorXd> output) { output.setConstant(7.0); }
+
+TEST(Owned, IsAnOutputUnlessItIsConstOrATemporary) {
+  using Output = void (&)(Eigen::Ref<Eigen::VectorXd>);
+  static_assert(std::is_invocable_v<Output, OwnedVector&>);
+  static_assert(!std::is_invocable_v<Output, const OwnedVector&>);
+  static_assert(!std::is_invocable_v<Output, OwnedVector>);
+  using Matrices = void (&)(Eigen::Ref<Eigen::MatrixXd>);
+  static_assert(std::is_invocable_v<Matrices, OwnedMatrix&>);
+  static_assert(!std::is_invocable_v<Matrices, const OwnedMatrix&>);
+  using Input = void (&)(const Eigen::Ref<const Eigen::VectorXd>&);
+  static_assert(std::is_invocable_v<Input, const OwnedVector&>);
+  static_assert(std::is_invocable_v<Input, OwnedVector>);
+
+  OwnedVector v = kValues;
+  const double* const memory = v.data();
+  fill(v);
+  EXPECT_EQ(v.data(), memory);
+  EXPECT_EQ(v, Eigen::VectorXd::Constant(4, 7.0));
+  fill(v.head(2));
+}
+
+TEST(Owned, RefusesASizeThatIsTooLarge) {
+  constexpr Eigen::Index kHuge = Eigen::Index{1} << 40;
+  EXPECT_THROW(OwnedMatrix(kHuge, kHuge), std::bad_alloc);
+  EXPECT_THROW(OwnedVector(Eigen::Index{1} << 62), std::bad_alloc);
 }
 
 TEST(Owned, IsAnOutputOfBatchesUnlessItIsConstOrATemporary) {

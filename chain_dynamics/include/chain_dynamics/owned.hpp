@@ -17,6 +17,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <new>
@@ -28,9 +29,10 @@ inline namespace v2 {
 
 /// An Eigen::Map of memory of its own: a vector, matrix or array of dynamic size.
 ///
-/// Assigning an expression of the same size allocates nothing; another size resizes. In functions'
-/// arguments it is an expression like others: take Eigen::Ref, as a `const Eigen::VectorXd&` would
-/// be a copy.
+/// Assigning an expression of the same size allocates nothing; another size resizes. As arguments of
+/// functions, take `Eigen::Ref<const Eigen::VectorXd>` for inputs and `Eigen::Ref<Eigen::VectorXd>`
+/// for outputs: a `const Eigen::VectorXd&` would be a copy. As an output neither a const object nor a
+/// temporary is accepted.
 ///
 /// @tparam Plain  what it behaves like: Eigen::VectorXd, Eigen::MatrixXd, ...
 template <class Plain>
@@ -45,7 +47,9 @@ class Owned : public Eigen::Map<Plain> {
   Owned() : View(nullptr, 0, kIsVector ? 1 : 0) {}
 
   /// A vector of `size` numbers, not initialised.
-  explicit Owned(Eigen::Index size) : Owned(size, 1) {}
+  explicit Owned(Eigen::Index size) : Owned(size, 1) {
+    static_assert(kIsVector, "a matrix has rows and columns");
+  }
 
   /// A matrix, not initialised.
   explicit Owned(Eigen::Index rows, Eigen::Index cols) : Owned() { resize(rows, cols); }
@@ -83,11 +87,22 @@ class Owned : public Eigen::Map<Plain> {
     return *this;
   }
 
+  /// An output of functions. Without these Eigen would make one of const objects and temporaries too.
+  operator Eigen::Ref<Plain>() & {  // NOLINT(google-explicit-constructor)
+    return Eigen::Ref<Plain>(static_cast<View&>(*this));
+  }
+  operator Eigen::Ref<Plain>() const& = delete;
+  operator Eigen::Ref<Plain>() && = delete;
+
   /// Another size; the numbers are lost unless it is the same.
-  void resize(Eigen::Index rows, Eigen::Index cols = 1) {
+  void resize(Eigen::Index rows, Eigen::Index cols) {
     if (rows == this->rows() && cols == this->cols()) return;
     *this = Owned();  // so that nothing is copied
     reallocate(rows, cols);
+  }
+  void resize(Eigen::Index size) {
+    static_assert(kIsVector, "a matrix has rows and columns");
+    resize(size, 1);
   }
 
   /// @name As of Eigen::VectorXd, for vectors
@@ -101,7 +116,10 @@ class Owned : public Eigen::Map<Plain> {
   /// @}
 
   /// Another number of columns; those that stay keep their numbers. A large matrix isn't copied.
-  void conservativeResize(Eigen::NoChange_t, Eigen::Index cols) { reallocate(this->rows(), cols); }
+  void conservativeResize(Eigen::NoChange_t, Eigen::Index cols) {
+    static_assert(!Plain::IsRowMajor, "columns of a row-major matrix aren't contiguous");
+    reallocate(this->rows(), cols);
+  }
 
   /// A temporary isn't an output, nor a const one [states.hpp].
   friend std::true_type ownsMemory(const Owned*) { return {}; }
@@ -112,6 +130,10 @@ class Owned : public Eigen::Map<Plain> {
   };
 
   void reallocate(Eigen::Index rows, Eigen::Index cols) {
+    constexpr auto kMost = static_cast<std::size_t>(PTRDIFF_MAX) / sizeof(Number);
+    if (cols > 0 && static_cast<std::size_t>(rows) > kMost / static_cast<std::size_t>(cols)) {
+      throw std::bad_alloc();
+    }
     const auto bytes = static_cast<std::size_t>(rows * cols) * sizeof(Number);
     void* const memory = std::realloc(memory_.get(), bytes > 0 ? bytes : 1);
     if (memory == nullptr) throw std::bad_alloc();
@@ -120,7 +142,7 @@ class Owned : public Eigen::Map<Plain> {
     view(rows, cols);
   }
 
-  // How Eigen lets a Map look elsewhere.
+  // How Eigen documents that a Map is made to look elsewhere, and what Eigen::Ref does itself.
   void view(Eigen::Index rows, Eigen::Index cols) {
     new (viewed()) View(memory_.get(), rows, cols);
   }
