@@ -3,9 +3,8 @@
 /// @file
 /// Inertia of a body that drags others along on loose joints: what forward dynamics needs.
 ///
-///     ArticulatedInertia<double> I_A = X_AB * I_B.released(U, inverse_D);  // what hangs on a
-///     joint I_A += link;                                                         // and the link
-///     it hangs on
+///     ArticulatedInertia<double> I_A = X_AB * I_B.released(U, inverse_D);  // beyond the joint
+///     I_A += link;                                                         // and this side of it
 ///
 /// A rigid body resists a push equally in all directions. A body with a hinged flap doesn't: the
 /// flap gives way along its hinge. The inertia `F = I_A A` of such an articulated body is still a

@@ -5,8 +5,9 @@
 ///     JointInfo MySolver::configure(const Configuration& configuration) {
 ///       auto chain = chainFromDescription(configuration);   // URDF, root, tip, gravity, attached
 ///       auto threads = configuration.get<std::int64_t>("max_threads");   // a parameter of its own
-///       configuration.rejectOthers();                       // all is read, nothing has changed
-///       yet
+///       configuration.rejectOthers();                       // all is read, nothing changed yet
+///       ...
+///     }
 #pragma once
 
 #include <Eigen/Core>
@@ -116,7 +117,9 @@ struct Configuration {
 /// Reads and checks the parameters of the table above.
 ///
 /// @param robot_description  URDF text; if empty, the parameter `robot_description`, without
-/// namespace. Throws InvalidParameterValueException: wrong type, length or value.
+///                           namespace.
+///
+/// Throws InvalidParameterValueException: wrong type, length or value.
 Configuration readConfiguration(const Parameters& parameters, const std::string& param_namespace,
                                 const std::string& robot_description);
 

@@ -2,10 +2,13 @@
 /// @file
 /// What the interface and its solvers throw: one family, one class per reaction a caller may have.
 ///
-///     try { solver->initialize(parameters, "ids"); }
-///     catch (const inverse_dynamics_solver::InvalidParameterValueException& e) {
-///     ask_user(e.what()); } catch (const inverse_dynamics_solver::Exception& e) {
-///     give_up(e.what()); }
+///     try {
+///       solver->initialize(parameters, "ids");
+///     } catch (const inverse_dynamics_solver::InvalidParameterValueException& e) {
+///       ask_user(e.what());
+///     } catch (const inverse_dynamics_solver::Exception& e) {
+///       give_up(e.what());
+///     }
 #pragma once
 
 #include <stdexcept>

@@ -64,8 +64,9 @@ class InverseDynamicsSolver {
   /// @param parameters         a node's parameters interface, a map, or YAML: see parameters.hpp.
   /// @param param_namespace    where the parameters of Configuration stand, for example "ids".
   /// @param robot_description  URDF text; if empty, the parameter `robot_description` without
-  /// namespace. Throws ParameterUninitializedException, InvalidParameterValueException,
-  /// InvalidRobotDescriptionException.
+  ///                           namespace.
+  /// @throws ParameterUninitializedException, InvalidParameterValueException,
+  ///   InvalidRobotDescriptionException
   void initialize(const Parameters& parameters = {}, const std::string& param_namespace = "",
                   const std::string& robot_description = "");
 
