@@ -2,6 +2,7 @@
 
 #include "inverse_dynamics_evaluation/metrics.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,87 +12,180 @@ namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
 
-// One joint over the selected samples: a row of each.
-JointMetrics rowMetrics(const Eigen::RowVectorXd& computed, const Eigen::RowVectorXd& measured,
-                        const std::vector<Eigen::Index>& selected) {
-  const Eigen::ArrayXd error = (computed - measured).transpose().array();
-  const auto count = static_cast<double>(selected.size());
-  const double mean_measured = measured.mean();
-  // variance from differences to the mean: a sum of squares would lose the digits of a large mean
-  const double variance = (measured.array() - mean_measured).square().sum() / count;
+using Eigen::Index;
+using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
 
-  JointMetrics result;
-  result.count = error.size();
-  result.mae = error.abs().mean();
-  result.rmse = std::sqrt(error.square().mean());
-  result.bias = error.mean();
-  Eigen::Index at = 0;
-  result.max_abs = error.abs().maxCoeff(&at);
-  result.max_at = selected[static_cast<std::size_t>(at)];
+// Samples whose sums are taken at once: short enough to be exact to some roundings.
+constexpr Index kBlock = 256;
 
-  // a constant signal has no range: its mean may still be off by rounding, so ask the range
-  result.measured_range = measured.maxCoeff() - measured.minCoeff();
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const bool constant = result.measured_range == 0;
-  result.nrmse = constant ? nan : result.rmse / result.measured_range;
-  result.r2 = constant ? nan : 1.0 - error.square().mean() / variance;
-  return result;
-}
-
-[[noreturn]] void throwNotFinite(const Eigen::Ref<const Eigen::MatrixXd>& computed,
-                                 const Eigen::Ref<const Eigen::MatrixXd>& measured, Eigen::Index j,
-                                 Eigen::Index k) {
-  const bool in_computed = !std::isfinite(computed(j, k));
+[[noreturn]] void throwNotFinite(double computed, double measured, Index j, Index k) {
+  const bool in_computed = !std::isfinite(computed);
   throw EvaluationError("metrics", in_computed ? "computed" : "measured", "finite numbers",
-                        std::to_string(in_computed ? computed(j, k) : measured(j, k)) +
-                            " for joint " + std::to_string(j) + " in sample " + std::to_string(k) +
+                        std::to_string(in_computed ? computed : measured) + " for joint " +
+                            std::to_string(j) + " in sample " + std::to_string(k) +
                             " (counted from 0)",
                         "leave such samples out by a mask");
 }
 
-}  // namespace
-
-std::vector<JointMetrics> metrics(const Eigen::Ref<const Eigen::MatrixXd>& computed,
-                                  const Eigen::Ref<const Eigen::MatrixXd>& measured,
-                                  const Mask& mask) {
-  requireSameSize("metrics", "computed", computed, "measured", measured);
+void requireMask(const Mask& mask, const ConstMatrix& measured) {
   if (mask.size() != measured.cols()) {
     throw EvaluationError("metrics", "mask",
                           std::to_string(measured.cols()) + " truth values, one per sample",
                           std::to_string(mask.size()), "take the mask of the same recording");
   }
-  if (!mask.any()) {
-    throw EvaluationError("metrics", "samples", "one or more to compare",
-                          "none of " + std::to_string(mask.size()), "select some");
-  }
+}
 
-  // the selected columns, and where they were
-  std::vector<Eigen::Index> selected;
-  selected.reserve(static_cast<std::size_t>(mask.count()));
-  for (Eigen::Index k = 0; k < mask.size(); ++k) {
-    if (mask[k]) {
-      selected.push_back(k);
+}  // namespace
+
+void ErrorSums::Sum::operator+=(double number) {
+  const double total = sum + number;
+  lost += std::abs(sum) >= std::abs(number) ? (sum - total) + number : (number - total) + sum;
+  sum = total;
+}
+
+void ErrorSums::Joint::merge(const Joint& later) {
+  if (later.count == 0) {
+    return;
+  }
+  if (count == 0) {
+    *this = later;
+    return;
+  }
+  for (const auto member : {&Joint::error, &Joint::absolute, &Joint::square}) {
+    (this->*member) += (later.*member).sum;
+    (this->*member) += (later.*member).lost;
+  }
+  // [Chan, Golub, LeVeque 1983, doi 10.1080/00031305.1983.10483115]
+  const auto before = static_cast<double>(count);
+  const auto after = static_cast<double>(later.count);
+  const double step = later.mean - mean;
+  deviation += later.deviation + step * step * before * after / (before + after);
+  mean += step * after / (before + after);
+  least = std::min(least, later.least);
+  greatest = std::max(greatest, later.greatest);
+  if (later.max_abs > max_abs) {
+    max_abs = later.max_abs;
+    max_at = later.max_at;
+  }
+  count += later.count;
+}
+
+// One block of one joint.
+void ErrorSums::addJoint(const ConstMatrix& computed, const ConstMatrix& measured, Index first,
+                         const Mask* mask, Index j) {
+  Joint block;
+  double origin = 0;  // about which the variance is taken: near the mean
+  double sum = 0;
+  double squares = 0;
+  double error_sum = 0;
+  double absolute_sum = 0;
+  double square_sum = 0;
+  for (Index k = 0; k < measured.cols(); ++k) {
+    if (mask != nullptr && !(*mask)[k]) {
+      continue;
+    }
+    const double m = measured(j, k);
+    const double e = computed(j, k) - m;
+    if (!std::isfinite(computed(j, k)) || !std::isfinite(m)) {
+      throwNotFinite(computed(j, k), m, j, first + k);
+    }
+    if (block.count == 0) {
+      origin = block.least = block.greatest = m;
+    }
+    sum += m - origin;
+    squares += (m - origin) * (m - origin);
+    error_sum += e;
+    absolute_sum += std::abs(e);
+    square_sum += e * e;
+    block.least = std::min(block.least, m);
+    block.greatest = std::max(block.greatest, m);
+    if (std::abs(e) > block.max_abs) {
+      block.max_abs = std::abs(e);
+      block.max_at = first + k;
+    }
+    ++block.count;
+  }
+  if (block.count > 0) {
+    const auto count = static_cast<double>(block.count);
+    block.error += error_sum;
+    block.absolute += absolute_sum;
+    block.square += square_sum;
+    block.mean = origin + sum / count;
+    block.deviation = std::max(0.0, squares - sum * sum / count);
+    joints_[static_cast<std::size_t>(j)].merge(block);
+  }
+}
+
+void ErrorSums::add(const ConstMatrix& computed, const ConstMatrix& measured, Index first) {
+  requireSameSize("metrics", "computed", computed, "measured", measured);
+  for (Index begin = 0; begin < measured.cols(); begin += kBlock) {
+    const Index count = std::min(kBlock, measured.cols() - begin);
+    for (Index j = 0; j < measured.rows(); ++j) {
+      addJoint(computed.middleCols(begin, count), measured.middleCols(begin, count), first + begin,
+               nullptr, j);
     }
   }
-  std::vector<JointMetrics> result;
-  for (Eigen::Index j = 0; j < measured.rows(); ++j) {
-    Eigen::RowVectorXd computed_row(static_cast<Eigen::Index>(selected.size()));
-    Eigen::RowVectorXd measured_row(computed_row.size());
-    for (std::size_t i = 0; i < selected.size(); ++i) {
-      const Eigen::Index k = selected[i];
-      if (!std::isfinite(computed(j, k)) || !std::isfinite(measured(j, k))) {
-        throwNotFinite(computed, measured, j, k);
-      }
-      computed_row[static_cast<Eigen::Index>(i)] = computed(j, k);
-      measured_row[static_cast<Eigen::Index>(i)] = measured(j, k);
+}
+
+void ErrorSums::add(const ConstMatrix& computed, const ConstMatrix& measured, Index first,
+                    const Mask& mask) {
+  requireSameSize("metrics", "computed", computed, "measured", measured);
+  requireMask(mask, measured);
+  for (Index begin = 0; begin < measured.cols(); begin += kBlock) {
+    const Index count = std::min(kBlock, measured.cols() - begin);
+    const Mask part = mask.segment(begin, count);
+    for (Index j = 0; j < measured.rows(); ++j) {
+      addJoint(computed.middleCols(begin, count), measured.middleCols(begin, count), first + begin,
+               &part, j);
     }
-    result.push_back(rowMetrics(computed_row, measured_row, selected));
+  }
+}
+
+void ErrorSums::merge(const ErrorSums& later) {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    joints_[j].merge(later.joints_[j]);
+  }
+}
+
+std::vector<JointMetrics> ErrorSums::metrics() const {
+  std::vector<JointMetrics> result;
+  for (const Joint& joint : joints_) {
+    if (joint.count == 0) {
+      throw EvaluationError("metrics", "samples", "one or more to compare", "none", "select some");
+    }
+    const auto count = static_cast<double>(joint.count);
+    JointMetrics metrics;
+    metrics.count = joint.count;
+    metrics.mae = joint.absolute.value() / count;
+    metrics.rmse = std::sqrt(joint.square.value() / count);
+    metrics.bias = joint.error.value() / count;
+    metrics.max_abs = joint.max_abs;
+    metrics.max_at = joint.max_at;
+    // a constant signal has no range: its mean may still be off by rounding, so ask the range
+    metrics.measured_range = joint.greatest - joint.least;
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const bool constant = metrics.measured_range == 0;
+    metrics.nrmse = constant ? nan : metrics.rmse / metrics.measured_range;
+    metrics.r2 = constant ? nan : 1.0 - joint.square.value() / joint.deviation;
+    result.push_back(metrics);
   }
   return result;
 }
 
-std::vector<JointMetrics> metrics(const Eigen::Ref<const Eigen::MatrixXd>& computed,
-                                  const Eigen::Ref<const Eigen::MatrixXd>& measured) {
+std::vector<JointMetrics> metrics(const ConstMatrix& computed, const ConstMatrix& measured,
+                                  const Mask& mask) {
+  ErrorSums sums(measured.rows());
+  requireSameSize("metrics", "computed", computed, "measured", measured);
+  requireMask(mask, measured);
+  if (!mask.any()) {
+    throw EvaluationError("metrics", "samples", "one or more to compare",
+                          "none of " + std::to_string(mask.size()), "select some");
+  }
+  sums.add(computed, measured, 0, mask);
+  return sums.metrics();
+}
+
+std::vector<JointMetrics> metrics(const ConstMatrix& computed, const ConstMatrix& measured) {
   return metrics(computed, measured, Mask::Constant(measured.cols(), true));
 }
 
