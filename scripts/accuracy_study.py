@@ -24,14 +24,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics import _core
-from inverse_dynamics.robots import load_robot
-from inverse_dynamics.solvers import open_solver
+from inverse_dynamics.robot.robots import load_robot
+from inverse_dynamics.robot.solvers import open_solver
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from inverse_dynamics._core import CutoffChoice
-    from inverse_dynamics.joint_log import Floats, Integers
+    from inverse_dynamics.base.arrays import Floats, Integers
 
 PAGE = Path(__file__).parent.parent / "docs" / "accuracy.md"
 BEGIN, END = "<!-- scripts/accuracy_study: begin -->", "<!-- scripts/accuracy_study: end -->"

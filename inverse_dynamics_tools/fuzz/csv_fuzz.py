@@ -5,8 +5,8 @@ import atheris
 import harness
 
 with atheris.instrument_imports(include=["inverse_dynamics"]):
+    from inverse_dynamics.data.recordings import read_recording
     from inverse_dynamics.errors import BagError
-    from inverse_dynamics.recordings import read_recording
 
 SEEDS = (
     b"time,position.a,velocity.a,effort.a\n0,1,2,3\n0.01,1,2,3\n0.02,1.5,2e-3,-3\n",

@@ -24,8 +24,8 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from inverse_dynamics.data.joint_log import JointLog
     from inverse_dynamics.errors import UserError
-    from inverse_dynamics.joint_log import JointLog
 
 
 def run(target: Callable[[bytes], None], seeds: Iterable[bytes]) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 with atheris.instrument_imports(include=["inverse_dynamics", "rosbags"]):
     from rosbags.typesys import Stores, get_typestore
 
-    from inverse_dynamics.joint_state_cdr import MESSAGE_TYPE, Decoder, encode, layout_of
+    from inverse_dynamics.data.joint_state_cdr import MESSAGE_TYPE, Decoder, encode, layout_of
 
 STORE = get_typestore(Stores.ROS2_HUMBLE)
 

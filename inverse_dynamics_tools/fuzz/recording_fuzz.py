@@ -11,10 +11,10 @@ import numpy as np
 with atheris.instrument_imports(include=["inverse_dynamics", "rosbags"]):
     from rosbags.rosbag2 import Reader  # noqa: F401  imported late by what is fuzzed
 
-    from inverse_dynamics.bags import write_joint_logs
+    from inverse_dynamics.data.bags import write_joint_logs
+    from inverse_dynamics.data.joint_log import JointLog
+    from inverse_dynamics.data.recordings import read_recording
     from inverse_dynamics.errors import BagError
-    from inverse_dynamics.joint_log import JointLog
-    from inverse_dynamics.recordings import read_recording
 
 SUFFIXES = {"sqlite3": ".db3", "mcap": ".mcap"}
 

@@ -5,9 +5,9 @@ import atheris
 import harness
 
 with atheris.instrument_imports(include=["inverse_dynamics", "yaml"]):
-    from inverse_dynamics.ament import package_share
+    from inverse_dynamics.base.ament import DATA_PACKAGE, package_share
     from inverse_dynamics.errors import RobotError
-    from inverse_dynamics.robots import DATA_PACKAGE, load_robot
+    from inverse_dynamics.robot.robots import load_robot
 
 
 def seeds() -> list[bytes]:

@@ -19,43 +19,43 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from inverse_dynamics._core import Solver, available_solvers
-    from inverse_dynamics.bags import read_joint_log, read_topics, write_joint_logs
+    from inverse_dynamics.data.bags import read_joint_log, read_topics, write_joint_logs
+    from inverse_dynamics.data.joint_log import JointLog
+    from inverse_dynamics.data.public_recordings import fetch_recordings
+    from inverse_dynamics.data.recordings import read_recording
     from inverse_dynamics.errors import UserError
-    from inverse_dynamics.evaluation import Evaluation, JointError, evaluate
-    from inverse_dynamics.exports import export_series
-    from inverse_dynamics.feed_forward import TrajectoryTorques, trajectory_torques
-    from inverse_dynamics.feed_forward_files import write_trajectory_torques
-    from inverse_dynamics.joint_log import JointLog
-    from inverse_dynamics.plots import save_torque_figure, torque_figure
-    from inverse_dynamics.public_recordings import fetch_recordings
-    from inverse_dynamics.recordings import read_recording
-    from inverse_dynamics.results import read_evaluation, write_evaluation
-    from inverse_dynamics.robots import Robot, load_robot, robot_names
+    from inverse_dynamics.evaluation.evaluation import Evaluation, JointError, evaluate
+    from inverse_dynamics.evaluation.trajectory_torques import TrajectoryTorques, trajectory_torques
+    from inverse_dynamics.figures.plots import save_torque_figure, torque_figure
+    from inverse_dynamics.results.evaluations import read_evaluation, write_evaluation
+    from inverse_dynamics.results.exports import export_series
+    from inverse_dynamics.results.trajectory_torques import write_trajectory_torques
+    from inverse_dynamics.robot.robots import Robot, load_robot, robot_names
 
 _HOME = {
-    "Evaluation": "evaluation",
-    "JointError": "evaluation",
-    "JointLog": "joint_log",
-    "Robot": "robots",
+    "Evaluation": "evaluation.evaluation",
+    "JointError": "evaluation.evaluation",
+    "JointLog": "data.joint_log",
+    "Robot": "robot.robots",
     "Solver": "_core",
-    "TrajectoryTorques": "feed_forward",
+    "TrajectoryTorques": "evaluation.trajectory_torques",
     "UserError": "errors",
     "available_solvers": "_core",
-    "evaluate": "evaluation",
-    "export_series": "exports",
-    "fetch_recordings": "public_recordings",
-    "load_robot": "robots",
-    "read_evaluation": "results",
-    "read_joint_log": "bags",
-    "read_recording": "recordings",
-    "read_topics": "bags",
-    "robot_names": "robots",
-    "save_torque_figure": "plots",
-    "torque_figure": "plots",
-    "trajectory_torques": "feed_forward",
-    "write_evaluation": "results",
-    "write_joint_logs": "bags",
-    "write_trajectory_torques": "feed_forward_files",
+    "evaluate": "evaluation.evaluation",
+    "export_series": "results.exports",
+    "fetch_recordings": "data.public_recordings",
+    "load_robot": "robot.robots",
+    "read_evaluation": "results.evaluations",
+    "read_joint_log": "data.bags",
+    "read_recording": "data.recordings",
+    "read_topics": "data.bags",
+    "robot_names": "robot.robots",
+    "save_torque_figure": "figures.plots",
+    "torque_figure": "figures.plots",
+    "trajectory_torques": "evaluation.trajectory_torques",
+    "write_evaluation": "results.evaluations",
+    "write_joint_logs": "data.bags",
+    "write_trajectory_torques": "results.trajectory_torques",
 }
 
 __all__ = [

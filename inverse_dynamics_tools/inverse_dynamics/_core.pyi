@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from inverse_dynamics.joint_state_cdr import Block
+from inverse_dynamics.data.joint_state_cdr import Block
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -18,10 +18,10 @@ from contextlib import contextmanager, suppress
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.crash import crash_report
+from inverse_dynamics.base.crash import crash_report
+from inverse_dynamics.base.wording import did_you_mean
+from inverse_dynamics.base.wording import message as _message
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.wording import did_you_mean
-from inverse_dynamics.wording import message as _message
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -120,7 +120,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(given: list[str]) -> int:
-    from inverse_dynamics.files import start_noting_outputs, written_before
+    from inverse_dynamics.base.files import start_noting_outputs, written_before
 
     start_noting_outputs()
     parser = make_parser()
@@ -173,7 +173,7 @@ def _stopped_by_signals() -> Iterator[None]:
 
 
 def _outcome() -> str:
-    from inverse_dynamics.files import outcome
+    from inverse_dynamics.base.files import outcome
 
     return outcome()
 

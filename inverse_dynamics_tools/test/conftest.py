@@ -13,7 +13,7 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
 from inverse_dynamics import cli
-from inverse_dynamics.joint_log import JointLog
+from inverse_dynamics.data.joint_log import JointLog
 
 STORE = get_typestore(Stores.ROS2_HUMBLE)
 JOINT_STATE = "sensor_msgs/msg/JointState"

@@ -9,8 +9,8 @@ import pytest
 from conftest import JOINT_STATE, STORE, joint_log, joint_state, write_messages
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, Reader, StoragePlugin, Writer
 
-from inverse_dynamics.bag_reader import TopicSummary
-from inverse_dynamics.bags import read_joint_log, read_topics, write_joint_logs
+from inverse_dynamics.data.bag_reader import TopicSummary
+from inverse_dynamics.data.bags import read_joint_log, read_topics, write_joint_logs
 from inverse_dynamics.errors import BagError
 
 TOPIC = "/joint_states"

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from conftest import fails
 
-from inverse_dynamics.ament import PackageNotFoundError, package_share
+from inverse_dynamics.base.ament import PackageNotFoundError, package_share
 from inverse_dynamics.bench import bounds, measure, page, read_measurement, write_measurement
 from inverse_dynamics.bench.measurement import measurement
 from inverse_dynamics.bench.pages import PARTS, updated

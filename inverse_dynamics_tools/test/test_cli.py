@@ -12,8 +12,8 @@ from conftest import fails, joint_log
 from test_evaluation import RIGID_BODY, UR10, URDF, recording
 
 from inverse_dynamics import Solver, cli, read_evaluation
-from inverse_dynamics.bags import write_joint_logs
-from inverse_dynamics.tables import figure
+from inverse_dynamics.data.bags import write_joint_logs
+from inverse_dynamics.verbs.tables import figure
 
 RAW = ("--accelerations", "backward-difference")
 

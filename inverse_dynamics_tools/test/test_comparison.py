@@ -6,9 +6,9 @@ import pytest
 from test_results import make_evaluation
 
 from inverse_dynamics import cli, write_evaluation
-from inverse_dynamics.comparison import compare
-from inverse_dynamics.effort import FORMAT, OPTION, Effort
 from inverse_dynamics.errors import UserError
+from inverse_dynamics.evaluation.comparison import compare
+from inverse_dynamics.evaluation.effort import FORMAT, OPTION, Effort
 
 
 @pytest.fixture(scope="module")

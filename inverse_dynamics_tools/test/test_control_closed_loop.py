@@ -27,7 +27,7 @@ from inverse_dynamics.simulation.physics import Command, Response, drive
 from inverse_dynamics.simulation.trajectory import WaypointTrajectory
 
 if TYPE_CHECKING:
-    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.base.arrays import Floats
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 RATE = 1000

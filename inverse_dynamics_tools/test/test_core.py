@@ -8,8 +8,8 @@ import pytest
 from scipy import signal
 
 from inverse_dynamics import Solver, UserError, _core, available_solvers, errors
-from inverse_dynamics.ament import package_share
-from inverse_dynamics.joint_state_cdr import Block
+from inverse_dynamics.base.ament import package_share
+from inverse_dynamics.data.joint_state_cdr import Block
 
 UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
 PANDA = "franka_inria_inverse_dynamics_solver/InverseDynamicsSolverFrankaInria"

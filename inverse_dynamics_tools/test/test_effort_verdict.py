@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from inverse_dynamics.effort_verdict import Verdict, compare_meanings
+from inverse_dynamics.evaluation.effort_verdict import Verdict, compare_meanings
 
 MEANINGS = pytest.mark.parametrize("meaning", ["torque", "current", "torque_without_gravity"])
 GAINS = (10.0, 12.0, 8.0)

@@ -10,8 +10,9 @@ import pytest
 from conftest import joint_log
 
 from inverse_dynamics import Solver, evaluate, load_robot
-from inverse_dynamics.ament import package_share
-from inverse_dynamics.bags import write_joint_logs
+from inverse_dynamics.base.ament import package_share
+from inverse_dynamics.data.bags import write_joint_logs
+from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import (
     BagError,
     EvaluationError,
@@ -19,7 +20,6 @@ from inverse_dynamics.errors import (
     PluginNotFoundError,
     RobotError,
 )
-from inverse_dynamics.joint_log import JointLog
 
 UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"

@@ -10,11 +10,11 @@ from test_evaluation import JOINTS, UR10, motion
 from test_results import make_evaluation
 
 from inverse_dynamics import Solver, cli, evaluate, write_evaluation
-from inverse_dynamics.bags import write_joint_logs
-from inverse_dynamics.effort import Effort
+from inverse_dynamics.data.bags import write_joint_logs
+from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.exports import export_series, series_columns
-from inverse_dynamics.joint_log import JointLog
+from inverse_dynamics.evaluation.effort import Effort
+from inverse_dynamics.results.exports import export_series, series_columns
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ from test_evaluation import RIGID_BODY, URDF, recording
 from test_results import make_evaluation
 
 from inverse_dynamics import Solver, read_topics, write_evaluation
-from inverse_dynamics.results import CONTENTS
+from inverse_dynamics.results.evaluations import CONTENTS
 from inverse_dynamics.verbs import robots
 
 RAW = ("--accelerations", "backward-difference")

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from inverse_dynamics.errors import OutputError
-from inverse_dynamics.files import (
+from inverse_dynamics.base.files import (
     Contents,
     check_output_directory,
     check_output_file,
@@ -16,6 +15,7 @@ from inverse_dynamics.files import (
     write_text_whole,
     written_whole,
 )
+from inverse_dynamics.errors import OutputError
 
 MARK = "result.json"
 RESULT = Contents(MARK, (MARK, "of_old", "bag/{name}.db3", "plot.*"), added=("series.csv",))
@@ -311,7 +311,7 @@ def test_a_path_is_not_a_plain_name(text):
 CHILD = """
 import os, sys, signal
 from pathlib import Path
-from inverse_dynamics.files import Contents, written_whole
+from inverse_dynamics.base.files import Contents, written_whole
 with written_whole(Path(sys.argv[1]), contents=Contents("result.json", ("result.json",)), overwrite=True) as d:
     (d / "result.json").write_text("of the child")
     print("at work", flush=True)

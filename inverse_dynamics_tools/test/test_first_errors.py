@@ -13,7 +13,7 @@ import sys
 import pytest
 
 from inverse_dynamics import available_solvers
-from inverse_dynamics.ament import package_share
+from inverse_dynamics.base.ament import package_share
 
 KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
 PINOCCHIO = "pinocchio_inverse_dynamics_solver/InverseDynamicsSolverPinocchio"

@@ -20,7 +20,7 @@ from simulation_arms import pendulum, write_robot
 from test_evaluation import RIGID_BODY
 
 from inverse_dynamics import Robot, evaluate, load_robot, write_joint_logs
-from inverse_dynamics.bags import read_joint_log
+from inverse_dynamics.data.bags import read_joint_log
 from inverse_dynamics.errors import UserError
 
 SAMPLES = 300

@@ -105,9 +105,9 @@ SCRIPT = """
 import json, math, resource, sys
 resource.setrlimit(resource.RLIMIT_AS, (6 * 2**30, 6 * 2**30))
 from pathlib import Path
-from inverse_dynamics.descriptions import effort_limits, joint_units
+from inverse_dynamics.robot.descriptions import effort_limits, joint_units
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.report.scene import scene_from_urdf
+from inverse_dynamics.figures.scene import scene_from_urdf
 from inverse_dynamics.simulation.model import SimulatedRobot
 
 file, names = Path("arm.urdf"), ("swing",)

@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 from conftest import JOINT_STATE, STORE, joint_state
 
-from inverse_dynamics import joint_state_cdr
-from inverse_dynamics.joint_state_cdr import Decoder, encode, layout_of
+from inverse_dynamics.data import joint_state_cdr
+from inverse_dynamics.data.joint_state_cdr import Decoder, encode, layout_of
 
 
 def random_messages(rng: np.random.Generator, count: int) -> list[object]:

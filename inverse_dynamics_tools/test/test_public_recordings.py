@@ -10,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from inverse_dynamics import cli, public_recordings
-from inverse_dynamics.demo import find_recordings
+from inverse_dynamics import cli
+from inverse_dynamics.data import public_recordings
 from inverse_dynamics.errors import RecordingsError, UserError
+from inverse_dynamics.results.demo import find_recordings
 
 UR10 = "ur10_exciting_trajectory"
 

@@ -12,7 +12,7 @@ import sys
 
 import pytest
 
-from inverse_dynamics import replacement
+from inverse_dynamics.base import replacement
 from inverse_dynamics.errors import OutputError
 
 # Writes a result again and again, with a signal before (even) or after (odd) the k-th system call that
@@ -20,7 +20,9 @@ from inverse_dynamics.errors import OutputError
 PROGRAM = """
 import json, os, shutil, signal, sys
 from pathlib import Path
-from inverse_dynamics import cli, files, replacement
+from inverse_dynamics import cli
+from inverse_dynamics.base import files
+from inverse_dynamics.base import replacement
 from inverse_dynamics.verbs import robots
 
 number, exchange, kind = int(sys.argv[1]), sys.argv[2] == "exchange", sys.argv[3]

@@ -16,10 +16,10 @@ from test_evaluation import JOINTS, RIGID_BODY, URDF, motion, recording
 from test_joint_trajectories import points_of_motion, trajectory, write_trajectories
 
 from inverse_dynamics import Solver, cli, evaluate, read_evaluation, write_evaluation
-from inverse_dynamics.comparison import compare
-from inverse_dynamics.effort import DATA, Effort
-from inverse_dynamics.effort_verdict import Candidate, Verdict
 from inverse_dynamics.errors import UserError
+from inverse_dynamics.evaluation.comparison import compare
+from inverse_dynamics.evaluation.effort import DATA, Effort
+from inverse_dynamics.evaluation.effort_verdict import Candidate, Verdict
 from inverse_dynamics.report import report_comparison, report_run
 from inverse_dynamics.report.page import MAX_SAMPLES, render_page
 
@@ -405,7 +405,7 @@ def test_paper_shows_the_plots(page, tmp_path):
 def test_video_shows_the_robot_in_motion(evaluation, tmp_path):
     from PIL import Image, ImageChops
 
-    from inverse_dynamics.video import VideoError, write_video
+    from inverse_dynamics.figures.video import VideoError, write_video
 
     file = tmp_path / "film.gif"
     try:
@@ -426,7 +426,7 @@ def test_video_shows_the_robot_in_motion(evaluation, tmp_path):
 
 
 def test_video_says_so_where_nothing_can_be_drawn(evaluation, tmp_path, monkeypatch):
-    from inverse_dynamics.video import VideoError, write_video
+    from inverse_dynamics.figures.video import VideoError, write_video
 
     monkeypatch.setenv("MUJOCO_GL", "no_such_backend")
     with pytest.raises(VideoError, match=r"isn't possible here.*no_such_backend.*libosmesa6"):
@@ -435,7 +435,7 @@ def test_video_says_so_where_nothing_can_be_drawn(evaluation, tmp_path, monkeypa
 
 
 def test_video_refuses_other_formats(evaluation, tmp_path):
-    from inverse_dynamics.video import write_video
+    from inverse_dynamics.figures.video import write_video
 
     with pytest.raises(UserError, match="gif"):
         write_video(evaluation, tmp_path / "film.mp4")
@@ -463,7 +463,7 @@ def test_demo_shows_the_simulated_robots_and_how_to_get_the_others(tmp_path, cap
 
 
 def test_demo_that_fails_leaves_nothing(tmp_path, monkeypatch):
-    from inverse_dynamics import demo
+    from inverse_dynamics.results import demo
 
     def fails(*arguments, **options):
         raise UserError("no page today")

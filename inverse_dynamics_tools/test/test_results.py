@@ -9,12 +9,12 @@ import pytest
 from conftest import joint_log
 
 from inverse_dynamics import read_evaluation, read_joint_log, write_evaluation
-from inverse_dynamics.accelerations import Accelerations, Samples
-from inverse_dynamics.effort import DATA, Effort
-from inverse_dynamics.effort_verdict import Candidate, Verdict
 from inverse_dynamics.errors import BagError, OutputError, UserError
-from inverse_dynamics.evaluation import Evaluation, joint_errors
-from inverse_dynamics.robots import Robot
+from inverse_dynamics.evaluation.accelerations import Accelerations, Samples
+from inverse_dynamics.evaluation.effort import DATA, Effort
+from inverse_dynamics.evaluation.effort_verdict import Candidate, Verdict
+from inverse_dynamics.evaluation.evaluation import Evaluation, joint_errors
+from inverse_dynamics.robot.robots import Robot
 
 FILES = {
     "bag",
@@ -172,7 +172,7 @@ def test_an_older_result_is_replaced_only_on_demand(tmp_path, evaluation):
 
 
 def test_nothing_is_written_if_the_last_file_fails(tmp_path, evaluation, monkeypatch):
-    from inverse_dynamics import plots
+    from inverse_dynamics.figures import plots
 
     def fail(*_):
         raise OSError(28, "No space left on device")
@@ -235,11 +235,11 @@ def paths_of(data, path=()):
 
 def use(directory, *, page=True):
     """What report, compare and export do with a result. page: the slow part too."""
-    from inverse_dynamics.comparison import compare
-    from inverse_dynamics.exports import series_columns
+    from inverse_dynamics.evaluation.comparison import compare
     from inverse_dynamics.report import report_run
     from inverse_dynamics.report.page import render_page
-    from inverse_dynamics.tables import error_table
+    from inverse_dynamics.results.exports import series_columns
+    from inverse_dynamics.verbs.tables import error_table
 
     read = read_evaluation(directory)
     error_table(read)

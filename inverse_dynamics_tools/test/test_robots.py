@@ -4,9 +4,9 @@ from pathlib import Path
 import pytest
 from conftest import damaged
 
-from inverse_dynamics.ament import PackageNotFoundError
+from inverse_dynamics.base.ament import PackageNotFoundError
 from inverse_dynamics.errors import RobotError
-from inverse_dynamics.robots import load_robot, robot_names
+from inverse_dynamics.robot.robots import load_robot, robot_names
 
 COMPLETE = """\
 schema: 1

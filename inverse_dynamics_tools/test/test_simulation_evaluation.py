@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from inverse_dynamics.descriptions import read_description
-from inverse_dynamics.evaluation import evaluate
-from inverse_dynamics.robots import load_robot
+from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.robots import load_robot
+from inverse_dynamics.robot.solvers import open_solver
 from inverse_dynamics.simulation import MOUNTS, simulate, write_run
 from inverse_dynamics.simulation.match import greatest_differences
-from inverse_dynamics.solvers import open_solver
 
 ROBOTS = ("ur10_simulated", "panda_simulated")
 PLUGINS = (

@@ -13,9 +13,9 @@ import pytest
 import yaml
 from simulation_arms import CHAINS, pendulum, robots_package, two_links, write_robot
 
-from inverse_dynamics.bags import read_joint_log, read_topics
+from inverse_dynamics.data.bags import read_joint_log, read_topics
 from inverse_dynamics.errors import OutputError, RobotError, UserError
-from inverse_dynamics.robots import Robot, load_robot
+from inverse_dynamics.robot.robots import Robot, load_robot
 from inverse_dynamics.simulation import (
     Payload,
     Resolution,

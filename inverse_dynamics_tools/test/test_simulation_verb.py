@@ -11,8 +11,8 @@ import pytest
 import yaml
 from simulation_arms import pendulum, two_links, write_robot
 
-from inverse_dynamics.bags import read_joint_log
 from inverse_dynamics.cli import main
+from inverse_dynamics.data.bags import read_joint_log
 from inverse_dynamics.simulation import run as run_module
 from inverse_dynamics.simulation.excitation import optimise_excitation
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from inverse_dynamics import Solver, errors, load_robot
-from inverse_dynamics.solvers import open_solver
+from inverse_dynamics.robot.solvers import open_solver
 
 UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"

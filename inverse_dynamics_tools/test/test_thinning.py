@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from inverse_dynamics.thinning import peaks
+from inverse_dynamics.figures.thinning import peaks
 
 
 @pytest.mark.parametrize("count", [3, 10, 11, 12, 99, 1000])

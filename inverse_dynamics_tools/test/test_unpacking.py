@@ -11,8 +11,8 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, W
 from rosbags.rosbag2.writer import zstd
 
 from inverse_dynamics import read_joint_log
+from inverse_dynamics.data.unpacking import most_unpacked, unpacked
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.unpacking import most_unpacked, unpacked
 
 HUGE = 1_500_000_000
 KINDS = ["message sqlite3", "message mcap", "file sqlite3", "file mcap", "zstd chunk", "lz4 chunk"]

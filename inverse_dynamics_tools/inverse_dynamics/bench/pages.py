@@ -9,10 +9,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.base.files import write_text_whole
 from inverse_dynamics.bench import asked
 from inverse_dynamics.bench.names import ENGINE, LIBRARIES, QUANTITIES, ROBOTS
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.files import write_text_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence

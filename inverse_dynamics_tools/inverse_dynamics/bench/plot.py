@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from inverse_dynamics.bench import asked
 from inverse_dynamics.bench.names import LIBRARIES, QUANTITIES, ROBOTS
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.plots import save_figure
+from inverse_dynamics.figures.plots import save_figure
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.ament import PackageNotFoundError, package_share
+from inverse_dynamics.base.ament import PackageNotFoundError, package_share
 from inverse_dynamics.bench.measurement import Measurement, measurement
 from inverse_dynamics.errors import UserError
 

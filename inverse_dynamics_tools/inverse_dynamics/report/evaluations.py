@@ -8,14 +8,14 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.descriptions import read_description
+from inverse_dynamics.figures.scene import scene_from_urdf
 from inverse_dynamics.report.figures import error_figure
 from inverse_dynamics.report.page import Figure, ReportComparison, ReportRun
-from inverse_dynamics.report.scene import scene_from_urdf
+from inverse_dynamics.robot.descriptions import read_description
 
 if TYPE_CHECKING:
-    from inverse_dynamics.comparison import Comparison
-    from inverse_dynamics.evaluation import Evaluation
+    from inverse_dynamics.evaluation.comparison import Comparison
+    from inverse_dynamics.evaluation.evaluation import Evaluation
 
 
 def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
@@ -58,7 +58,7 @@ def report_comparison(
     comparison: Comparison, title: str = "", description: str = ""
 ) -> ReportComparison:
     """What the page shows of a comparison; empty texts: the recording's name and the labels."""
-    from inverse_dynamics.plots import save_comparison_figure
+    from inverse_dynamics.figures.plots import save_comparison_figure
 
     first = comparison.evaluations[0]
     with tempfile.TemporaryDirectory() as directory:

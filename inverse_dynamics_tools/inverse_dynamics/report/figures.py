@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.plots import make_printable
-from inverse_dynamics.wording import printable
+from inverse_dynamics.base.wording import printable
+from inverse_dynamics.figures.plots import make_printable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from inverse_dynamics.evaluation import Evaluation
-    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.evaluation.evaluation import Evaluation
 
 _BLUE = "#0072B2"
 _MUTED = "#555555"

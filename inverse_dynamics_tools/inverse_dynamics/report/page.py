@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.files import write_text_whole
-from inverse_dynamics.thinning import peaks
-from inverse_dynamics.wording import printable
+from inverse_dynamics.base.files import write_text_whole
+from inverse_dynamics.base.wording import printable
+from inverse_dynamics.figures.thinning import peaks
 
 if TYPE_CHECKING:
-    from inverse_dynamics.evaluation import JointError
-    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.evaluation.evaluation import JointError
 
 # Of longer recordings the page draws the lowest and the highest value of each of half as many stretches, so that no
 # peak is lost; metrics, bags and tables use every sample. Four robots stay below 10 MB.

@@ -18,7 +18,7 @@ import mujoco
 import numpy as np
 
 if TYPE_CHECKING:
-    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.simulation.model import SimulatedRobot
 
 TABLE = "the table"

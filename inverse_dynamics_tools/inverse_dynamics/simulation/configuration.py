@@ -17,15 +17,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.ament import resolve
+from inverse_dynamics.base.ament import resolve
 from inverse_dynamics.simulation.controller import Gains
 from inverse_dynamics.simulation.physics import RATES
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from inverse_dynamics.located_yaml import Mapping
-    from inverse_dynamics.robots import Robot
+    from inverse_dynamics.base.located_yaml import Mapping
+    from inverse_dynamics.robot.robots import Robot
     from inverse_dynamics.simulation.urdf import UrdfChain
 
 DEFAULT_RATE = 500  # Hz, where neither caller nor run configuration says

@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.joint_log import no_progress
+from inverse_dynamics.base.progress import no_progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from inverse_dynamics.joint_log import Floats, Progress
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.progress import Progress
 
 
 def minimise(

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.joint_log import no_progress
+from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.errors import SimulationError, TrajectoryError
 from inverse_dynamics.simulation.evolution import minimise
@@ -36,7 +36,8 @@ from inverse_dynamics.simulation.regressor import (
 from inverse_dynamics.simulation.trajectory import FourierTrajectory
 
 if TYPE_CHECKING:
-    from inverse_dynamics.joint_log import Floats, Progress
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.simulation.model import SimulatedRobot
 
 PERIOD = 20.0  # s

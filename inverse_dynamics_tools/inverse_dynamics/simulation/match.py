@@ -9,7 +9,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from inverse_dynamics._core import Solver
-    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.simulation.run import SimulatedRun
 
 

@@ -25,7 +25,7 @@ from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.urdf import UrdfChain, chain_from_urdf
 
 if TYPE_CHECKING:
-    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.base.arrays import Floats
 
 GRAVITY = (0.0, 0.0, -9.81)
 """Acceleration of falling bodies in the frame of the root link [m/s^2], robot standing on the floor."""

@@ -22,12 +22,13 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from inverse_dynamics.joint_log import no_progress
+from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.simulation.controller import DesiredMotion, Gains, JointTrajectoryController
 from inverse_dynamics.simulation.errors import SimulationError
 
 if TYPE_CHECKING:
-    from inverse_dynamics.joint_log import Floats, Progress
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory
 

@@ -21,7 +21,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.simulation.model import SimulatedRobot
 
 PARAMETERS_PER_LINK = 10

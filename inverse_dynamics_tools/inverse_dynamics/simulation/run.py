@@ -16,9 +16,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.decimals import decimal
-from inverse_dynamics.descriptions import read_description
-from inverse_dynamics.joint_log import JointLog, no_progress
+from inverse_dynamics.base.decimals import decimal
+from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.base.wording import listed
+from inverse_dynamics.data.joint_log import JointLog
+from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.configuration import Wishes
 from inverse_dynamics.simulation.controller import Gains
@@ -31,11 +33,10 @@ from inverse_dynamics.simulation.sensors import Recorded, Sensors
 from inverse_dynamics.simulation.trajectory import FourierTrajectory
 from inverse_dynamics.simulation.trajectory_file import read_trajectory
 from inverse_dynamics.simulation.urdf import chain_from_urdf
-from inverse_dynamics.wording import listed
 
 if TYPE_CHECKING:
-    from inverse_dynamics.joint_log import Progress
-    from inverse_dynamics.robots import Robot
+    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.robot.robots import Robot
     from inverse_dynamics.simulation.model import Payload
     from inverse_dynamics.simulation.trajectory import Trajectory
     from inverse_dynamics.simulation.urdf import UrdfChain

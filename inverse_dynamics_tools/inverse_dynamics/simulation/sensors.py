@@ -19,7 +19,7 @@ from inverse_dynamics.simulation.errors import SimulationError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from inverse_dynamics.joint_log import Floats, Integers
+    from inverse_dynamics.base.arrays import Floats, Integers
     from inverse_dynamics.simulation.physics import Motion
 
 EPOCH = 1_700_000_000.0

@@ -23,7 +23,7 @@ import numpy as np
 from inverse_dynamics.simulation.errors import TrajectoryError
 
 if TYPE_CHECKING:
-    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.base.arrays import Floats
 
 
 class Trajectory(Protocol):

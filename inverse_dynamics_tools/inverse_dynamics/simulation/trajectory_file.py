@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.located_yaml import read_mapping
+from inverse_dynamics.base.located_yaml import read_mapping
 from inverse_dynamics.simulation.errors import TrajectoryError
 from inverse_dynamics.simulation.trajectory import FourierTrajectory, WaypointTrajectory
 
@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from inverse_dynamics.joint_log import Floats
-    from inverse_dynamics.located_yaml import Mapping, Value
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.located_yaml import Mapping, Value
     from inverse_dynamics.simulation.trajectory import Trajectory
 
 SCHEMA = 1

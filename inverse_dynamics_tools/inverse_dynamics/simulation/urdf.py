@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.descriptions import numbers_of, parse_description
+from inverse_dynamics.base.wording import harmless, listed, shown
+from inverse_dynamics.robot.descriptions import numbers_of, parse_description
 from inverse_dynamics.simulation.errors import SimulationError
-from inverse_dynamics.wording import harmless, listed, shown
 
 if TYPE_CHECKING:
-    from inverse_dynamics.joint_log import Floats
+    from inverse_dynamics.base.arrays import Floats
 
 _MOVING = {"revolute", "continuous", "prismatic"}
 _IMPOSSIBLE = {"planar", "floating"}

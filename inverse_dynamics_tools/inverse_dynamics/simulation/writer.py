@@ -15,15 +15,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.bags import write_joint_logs
-from inverse_dynamics.files import Contents, move_up, write_text, written_whole
-from inverse_dynamics.joint_log import no_progress
+from inverse_dynamics.base.files import Contents, move_up, write_text, written_whole
+from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.simulation.trajectory_file import trajectory_text
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from inverse_dynamics.joint_log import Progress, Storage
+    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.data.joint_log import Storage
     from inverse_dynamics.simulation.run import SimulatedRun
 
 MARK = "simulation.yaml"

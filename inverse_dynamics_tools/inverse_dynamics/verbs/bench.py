@@ -103,11 +103,11 @@ def _add_measuring(group: argparse._ArgumentGroup) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
+    from inverse_dynamics.base.files import write_text_whole
     from inverse_dynamics.bench import measure, page, read_measurement, write_measurement
     from inverse_dynamics.bench.pages import check_pages, update_pages
     from inverse_dynamics.bench.plot import check_figure_name, save_speed_figure
-    from inverse_dynamics.files import write_text_whole
-    from inverse_dynamics.screen import Screen
+    from inverse_dynamics.verbs.screen import Screen
 
     # Before anything is measured: that may take ten minutes.
     _check_outputs(arguments)
@@ -137,8 +137,8 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _check_outputs(arguments: argparse.Namespace) -> None:
+    from inverse_dynamics.base.files import check_output_file
     from inverse_dynamics.errors import OutputError
-    from inverse_dynamics.files import check_output_file
 
     others: dict[Path, str] = {}
     for option in ("--json", "--markdown", "--plot"):
@@ -175,7 +175,7 @@ def _print(result: Measurement) -> None:
     from rich.markdown import Markdown
 
     from inverse_dynamics.bench import page
-    from inverse_dynamics.screen import Screen
+    from inverse_dynamics.verbs.screen import Screen
 
     # Whole figures on a narrow screen too, if need be by scrolling.
     Screen(soft_wrap=False, width=max(120, Screen().width)).print(Markdown(page(result)))

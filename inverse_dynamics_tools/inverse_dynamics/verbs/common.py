@@ -10,15 +10,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.decimals import decimal
+from inverse_dynamics.base.decimals import decimal
+from inverse_dynamics.base.wording import shown
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.wording import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from inverse_dynamics._core import Parameter
-    from inverse_dynamics.joint_log import Progress
+    from inverse_dynamics.base.progress import Progress
 
 _OPTIONS = {  # by the parameter that they set
     "root": "--root",
@@ -79,8 +79,8 @@ def whole_number(text: str) -> int:
 
 def parameter(text: str) -> tuple[str, Parameter]:
     """`NAME=VALUE` of an option; the value as it would stand in a run configuration."""
-    from inverse_dynamics.located_yaml import parse_mapping
-    from inverse_dynamics.solver_parameters import solver_parameters
+    from inverse_dynamics.base.located_yaml import parse_mapping
+    from inverse_dynamics.robot.solver_parameters import solver_parameters
 
     name, _, value = text.partition("=")
     if name == "model":
@@ -109,7 +109,7 @@ def progress_bar() -> Iterator[Progress]:
     """A bar per kind of work, on stderr, gone at the end; none where stderr isn't a terminal."""
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
-    from inverse_dynamics.screen import Screen
+    from inverse_dynamics.verbs.screen import Screen
 
     console = Screen(stderr=True)
     with Progress(

@@ -11,7 +11,7 @@ from inverse_dynamics.verbs.common import names
 from inverse_dynamics.verbs.options import add_runs, add_verb
 
 if TYPE_CHECKING:
-    from inverse_dynamics.comparison import Comparison
+    from inverse_dynamics.evaluation.comparison import Comparison
 
 _EPILOG = """\
 examples:
@@ -60,10 +60,10 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.comparison import compare
-    from inverse_dynamics.comparison_results import CONTENTS, write_comparison
-    from inverse_dynamics.files import check_output_directory
-    from inverse_dynamics.results import read_evaluation
+    from inverse_dynamics.base.files import check_output_directory
+    from inverse_dynamics.evaluation.comparison import compare
+    from inverse_dynamics.results.comparisons import CONTENTS, write_comparison
+    from inverse_dynamics.results.evaluations import read_evaluation
 
     if arguments.out is not None:
         check_output_directory(
@@ -79,8 +79,8 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _print(comparison: Comparison, out: Path | None) -> None:
-    from inverse_dynamics.screen import Screen
-    from inverse_dynamics.tables import comparison_table
+    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.tables import comparison_table
 
     console = Screen()
     console.print(comparison_table(comparison))

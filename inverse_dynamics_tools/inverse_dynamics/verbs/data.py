@@ -57,8 +57,8 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.public_recordings import data_directory, fetch_recordings
-    from inverse_dynamics.screen import Screen
+    from inverse_dynamics.data.public_recordings import data_directory, fetch_recordings
+    from inverse_dynamics.verbs.screen import Screen
 
     directory = arguments.out or data_directory()
     if arguments.dry_run:
@@ -75,8 +75,8 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _print_plan(directory: Path) -> None:
-    from inverse_dynamics.public_recordings import is_intact, public_recordings
-    from inverse_dynamics.screen import Screen
+    from inverse_dynamics.data.public_recordings import is_intact, public_recordings
+    from inverse_dynamics.verbs.screen import Screen
 
     screen = Screen()
     table = public_recordings()

@@ -11,8 +11,8 @@ from inverse_dynamics.verbs.common import progress_bar
 from inverse_dynamics.verbs.options import add_verb
 
 if TYPE_CHECKING:
-    from inverse_dynamics.demo import Demo
-    from inverse_dynamics.screen import Screen
+    from inverse_dynamics.results.demo import Demo
+    from inverse_dynamics.verbs.screen import Screen
 
 _EPILOG = """\
 examples:
@@ -60,8 +60,8 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.demo import find_recordings, run_demo
-    from inverse_dynamics.screen import Screen
+    from inverse_dynamics.results.demo import find_recordings, run_demo
+    from inverse_dynamics.verbs.screen import Screen
 
     console = Screen()
     with progress_bar() as progress:
@@ -78,8 +78,8 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _print(demo: Demo, console: Screen) -> None:
-    from inverse_dynamics.demo import TITLES
-    from inverse_dynamics.tables import comparison_table, mean_table
+    from inverse_dynamics.results.demo import TITLES
+    from inverse_dynamics.verbs.tables import comparison_table, mean_table
 
     console.print(mean_table({TITLES[name]: e for name, e in demo.evaluations.items()}))
     if demo.comparison is not None:

@@ -11,7 +11,7 @@ from inverse_dynamics.verbs.common import positive_number, progress_bar
 from inverse_dynamics.verbs.options import add_robot, add_robot_changes, add_verb, robot_changes
 
 if TYPE_CHECKING:
-    from inverse_dynamics.evaluation import Evaluation
+    from inverse_dynamics.evaluation.evaluation import Evaluation
 
 _EPILOG = """\
 examples:
@@ -58,9 +58,9 @@ def add_parser(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
 ) -> argparse.ArgumentParser:
     """Declare the verb."""
-    from inverse_dynamics.accelerations import METHODS, RULES
-    from inverse_dynamics.effort_meanings import EFFORT_CHOICES
-    from inverse_dynamics.joint_log import CLOCKS
+    from inverse_dynamics.data.joint_log import CLOCKS
+    from inverse_dynamics.evaluation.accelerations import RULES
+    from inverse_dynamics.robot.choices import EFFORT_CHOICES, METHODS
 
     parser = add_verb(
         subparsers,
@@ -136,10 +136,10 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.evaluation import evaluate
-    from inverse_dynamics.files import check_output_directory
-    from inverse_dynamics.results import CONTENTS, write_evaluation
-    from inverse_dynamics.robots import load_robot
+    from inverse_dynamics.base.files import check_output_directory
+    from inverse_dynamics.evaluation.evaluation import evaluate
+    from inverse_dynamics.results.evaluations import CONTENTS, write_evaluation
+    from inverse_dynamics.robot.robots import load_robot
 
     robot = load_robot(arguments.robot)
     out = arguments.out or Path(f"{arguments.bag.absolute().stem}_{robot.name}")
@@ -171,8 +171,8 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _print(evaluation: Evaluation, out: Path, seconds: dict[str, float]) -> None:
-    from inverse_dynamics.screen import Screen
-    from inverse_dynamics.tables import error_table
+    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.tables import error_table
 
     console = Screen()
     robot, log = evaluation.robot, evaluation.log

@@ -32,7 +32,7 @@ def add_parser(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
 ) -> argparse.ArgumentParser:
     """Declare the verb."""
-    from inverse_dynamics.exports import FORMATS
+    from inverse_dynamics.results.exports import FORMATS
 
     parser = add_verb(
         subparsers,
@@ -57,10 +57,10 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.exports import check_pyarrow, export_series
-    from inverse_dynamics.files import check_output_file
-    from inverse_dynamics.results import CONTENTS, read_evaluation
-    from inverse_dynamics.screen import Screen
+    from inverse_dynamics.base.files import check_output_file
+    from inverse_dynamics.results.evaluations import CONTENTS, read_evaluation
+    from inverse_dynamics.results.exports import check_pyarrow, export_series
+    from inverse_dynamics.verbs.screen import Screen
 
     check_pyarrow()
     files = _files(arguments)

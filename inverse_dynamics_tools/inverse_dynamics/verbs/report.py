@@ -47,11 +47,11 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
+    from inverse_dynamics.base.files import check_output_file
     from inverse_dynamics.errors import UserError
-    from inverse_dynamics.files import check_output_file
     from inverse_dynamics.report import report_run, write_page
-    from inverse_dynamics.results import CONTENTS, read_evaluation
-    from inverse_dynamics.screen import Screen
+    from inverse_dynamics.results.evaluations import CONTENTS, read_evaluation
+    from inverse_dynamics.verbs.screen import Screen
 
     check_output_file(
         arguments.out, overwrite=arguments.overwrite, inputs=arguments.runs, results=CONTENTS

@@ -10,8 +10,8 @@ from inverse_dynamics.verbs.options import add_verb
 if TYPE_CHECKING:
     import argparse
 
-    from inverse_dynamics.evaluation import Arm
-    from inverse_dynamics.robots import Robot
+    from inverse_dynamics.evaluation.evaluation import Arm
+    from inverse_dynamics.robot.robots import Robot
 
 _EPILOG = """\
 examples:
@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     if arguments.plugins:
         from inverse_dynamics import _core
-        from inverse_dynamics.screen import Screen
+        from inverse_dynamics.verbs.screen import Screen
 
         Screen().print("\n".join(_core.available_solvers()))
     elif arguments.robot:
@@ -55,7 +55,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _list() -> None:
-    from inverse_dynamics.robots import load_robot, robot_names
+    from inverse_dynamics.robot.robots import load_robot, robot_names
 
     _print_rows({name: load_robot(name).description for name in robot_names()})
 
@@ -64,7 +64,7 @@ def _print_rows(rows: dict[str, str]) -> None:
     """A key and a text a line; lines stay whole, so that paths can be copied. No text: no line."""
     from rich.text import Text
 
-    from inverse_dynamics.screen import Screen
+    from inverse_dynamics.verbs.screen import Screen
 
     console = Screen()
     width = max(map(len, rows), default=0) + 2
@@ -74,9 +74,8 @@ def _print_rows(rows: dict[str, str]) -> None:
 
 
 def _show(robot: str) -> None:
-    from inverse_dynamics.accelerations import METHODS
-    from inverse_dynamics.effort_meanings import EFFORT_CHOICES
-    from inverse_dynamics.robots import load_robot
+    from inverse_dynamics.robot.choices import EFFORT_CHOICES, METHODS
+    from inverse_dynamics.robot.robots import load_robot
 
     shown = load_robot(robot)
     arm, notes = _checked(shown)
@@ -106,9 +105,9 @@ def _show(robot: str) -> None:
 
 def _checked(robot: Robot) -> tuple[Arm, list[str]]:
     """What can be told of it without a recording, and what is odd about it. Raises UserError."""
-    from inverse_dynamics.descriptions import effort_limits, read_description
-    from inverse_dynamics.evaluation import Arm
-    from inverse_dynamics.wording import did_you_mean
+    from inverse_dynamics.base.wording import did_you_mean
+    from inverse_dynamics.evaluation.evaluation import Arm
+    from inverse_dynamics.robot.descriptions import effort_limits, read_description
 
     arm = Arm(robot)
     notes = list(arm.solver.warnings)

@@ -8,10 +8,10 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.decimals import decimal
+from inverse_dynamics.base.decimals import decimal
+from inverse_dynamics.base.wording import counted
 from inverse_dynamics.verbs.common import number, positive_number, progress_bar, whole_number
 from inverse_dynamics.verbs.options import add_gravity, add_robot, add_verb
-from inverse_dynamics.wording import counted
 
 if TYPE_CHECKING:
     from inverse_dynamics.simulation import Payload, Resolution, SimulatedRun
@@ -168,8 +168,8 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.files import check_output_directory
-    from inverse_dynamics.robots import load_robot
+    from inverse_dynamics.base.files import check_output_directory
+    from inverse_dynamics.robot.robots import load_robot
 
     robot = load_robot(arguments.robot)
     from inverse_dynamics.simulation.writer import CONTENTS
@@ -220,7 +220,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _print(result: SimulatedRun, out: Path) -> None:
-    from inverse_dynamics.screen import Screen
+    from inverse_dynamics.verbs.screen import Screen
 
     console = Screen()
     settings, log = result.settings, result.log

@@ -6,9 +6,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from inverse_dynamics.base.wording import counted
 from inverse_dynamics.verbs.common import progress_bar
 from inverse_dynamics.verbs.options import add_robot, add_robot_changes, add_verb, robot_changes
-from inverse_dynamics.wording import counted
 
 _EPILOG = """\
 examples:
@@ -68,17 +68,17 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.feed_forward_files import check_output
-    from inverse_dynamics.robots import load_robot, with_changes
+    from inverse_dynamics.results.trajectory_torques import check_output
+    from inverse_dynamics.robot.robots import load_robot, with_changes
 
     robot = with_changes(load_robot(arguments.robot), **robot_changes(arguments))
     check_output(arguments.trajectory, arguments.out, robot, overwrite=arguments.overwrite)
 
-    from inverse_dynamics.feed_forward import trajectory_torques
-    from inverse_dynamics.feed_forward_files import write_trajectory_torques
-    from inverse_dynamics.screen import Screen
-    from inverse_dynamics.solvers import description_notes
-    from inverse_dynamics.tables import load_table
+    from inverse_dynamics.evaluation.trajectory_torques import trajectory_torques
+    from inverse_dynamics.results.trajectory_torques import write_trajectory_torques
+    from inverse_dynamics.robot.solvers import description_notes
+    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.tables import load_table
 
     with progress_bar() as progress:
         result = trajectory_torques(

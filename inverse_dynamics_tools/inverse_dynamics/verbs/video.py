@@ -46,10 +46,10 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.files import check_output_file
-    from inverse_dynamics.results import CONTENTS, read_evaluation
-    from inverse_dynamics.screen import Screen
-    from inverse_dynamics.video import write_video
+    from inverse_dynamics.base.files import check_output_file
+    from inverse_dynamics.figures.video import write_video
+    from inverse_dynamics.results.evaluations import CONTENTS, read_evaluation
+    from inverse_dynamics.verbs.screen import Screen
 
     out = arguments.out or Path(f"{arguments.evaluation.absolute().name}.gif")
     check_output_file(

@@ -18,7 +18,7 @@ from outcome import Outcome
 
 from inverse_dynamics import Solver, available_solvers, cli
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.evaluation import evaluate
+from inverse_dynamics.evaluation.evaluation import evaluate
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"

@@ -12,7 +12,7 @@ from outcome import Case, Expected
 from process import run_apart
 from yaml_text import NOT_A_MAPPING, spoiled
 
-from inverse_dynamics.ament import package_share
+from inverse_dynamics.base.ament import package_share
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

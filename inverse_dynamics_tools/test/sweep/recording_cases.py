@@ -18,7 +18,7 @@ from process import run_apart
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from conftest import joint_log, joint_state, write_messages
 
-from inverse_dynamics.bags import write_joint_logs
+from inverse_dynamics.data.bags import write_joint_logs
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

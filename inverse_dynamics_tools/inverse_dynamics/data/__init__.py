@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings: rosbag2, CSV, trajectories, and the public ones."""

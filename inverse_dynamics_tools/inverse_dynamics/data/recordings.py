@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A recorded motion from whatever it is stored in.
+
+    log = read_recording("recording", ["joint_1", "joint_2"])
+
+rosbag2 recordings of sensor_msgs/JointState (bags.py) or trajectory_msgs/JointTrajectory
+(joint_trajectories.py), and text files, .csv or .txt (csv_recordings.py).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.data import joint_state_cdr, joint_trajectories
+from inverse_dynamics.data.bag_reader import BagReader
+from inverse_dynamics.data.bags import read_joint_log
+from inverse_dynamics.data.csv_recordings import open_table, read_csv_log
+from inverse_dynamics.data.csv_table import is_csv
+from inverse_dynamics.data.joint_log import CLOCKS
+from inverse_dynamics.errors import BagError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.data.joint_log import Clock, JointLog
+
+
+def read_recording(
+    path: Path | str,
+    joints: Sequence[str] = (),
+    *,
+    topic: str = "",
+    usual_topic: str = "",
+    clock: Clock = "auto",
+    progress: Progress = no_progress,
+) -> JointLog:
+    """Samples of a motion: time, positions, velocities, efforts, accelerations where there are any.
+
+    path: a file ending in .csv or .txt, else a rosbag2 recording. joints: names, in the order
+    wanted; none: those of the recording. topic, of a bag; none: usual_topic, if it is there or
+    there are no trajectories, else the only one of joint states, else that of trajectories. clock:
+    which stamp of messages is the time.
+
+    Raises BagError.
+    """
+    path = Path(path)
+    if clock not in CLOCKS:
+        raise BagError(f"clock: expected one of {', '.join(CLOCKS)}, got '{clock}'")
+    if is_csv(path):
+        return read_csv_log(open_table(path, topic=topic, clock=clock), joints, progress=progress)
+    with BagReader(path) as bag:
+        storage = bag.storage
+        topics = bag.topics()
+        types = {t.name: t.message_type for t in topics if t.message_count or t.name == topic}
+        types = types or {t.name: t.message_type for t in topics}
+    if not topic:
+        topic = _topic(types, usual_topic)
+    if types.get(topic) != joint_trajectories.MESSAGE_TYPE:
+        return read_joint_log(path, joints, topic=topic, clock=clock, progress=progress)
+    trajectories = joint_trajectories.read_joint_trajectories(path, topic, progress)
+    return joint_trajectories.joint_log_of(trajectories, joints, clock, topic, storage)
+
+
+def _topic(types: dict[str, str], usual: str) -> str:
+    """The usual topic, or that of trajectories if there are no joint states; "" leaves it open."""
+    if usual in types or joint_state_cdr.MESSAGE_TYPE in types.values():
+        return usual
+    found = [name for name, kind in types.items() if kind == joint_trajectories.MESSAGE_TYPE]
+    return found[0] if len(found) == 1 else usual

@@ -1,0 +1,276 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a recording to computed torques and their errors.
+
+result = evaluate("recording", "ur10_real")
+for error in result.errors:
+    print(error.joint, error.rmse, error.unit)
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.base.decimals import LARGEST
+from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.data.recordings import read_recording
+from inverse_dynamics.errors import EvaluationError, RobotError
+from inverse_dynamics.evaluation.accelerations import (
+    Accelerations,
+    Samples,
+    estimate_accelerations,
+)
+from inverse_dynamics.evaluation.effort import (
+    Effort,
+    compared_torques,
+    drive_gains,
+    effort_notes,
+    effort_of_data,
+    stated_effort,
+)
+from inverse_dynamics.robot.descriptions import joint_units, read_description
+from inverse_dynamics.robot.robots import Robot, load_robot, with_changes
+from inverse_dynamics.robot.solvers import description_notes, open_solver
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from inverse_dynamics._core import Parameter
+    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.data.joint_log import Clock, JointLog
+
+
+@dataclass(frozen=True)
+class JointError:
+    """How far the computed torques of one joint are from the measured ones: see docs/notation.md.
+
+    NaN where a figure is undefined (nrmse and r2 of a joint whose measured torque never changes).
+    """
+
+    joint: str
+    unit: str  # of mae, rmse, bias: N m or N
+    mae: float
+    rmse: float
+    nrmse: float  # share of the measured range: 0.01 is 1 %
+    bias: float
+    r2: float
+    max_abs: float
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Measured and computed torques of a recorded motion. N samples, n joints; order of the chain.
+
+    robot: the run configuration with everything that was overridden; joints and effort filled in.
+    """
+
+    robot: Robot
+    bag: Path
+    log: JointLog  # its efforts are as recorded: see measured
+    joint_names: tuple[str, ...]  # those of the solver; the recording's are log.joint_names
+    units: tuple[str, ...]
+    accelerations: Accelerations
+    samples: Samples
+    qdd: Floats  # (N, n) rad/s^2 or m/s^2
+    computed: Floats  # (N, n) N m or N; without gravity if the efforts are
+    errors: tuple[JointError, ...]  # over all samples
+    errors_of_kept: tuple[JointError, ...]  # over samples.kept: to be shown beside the others
+    effort: Effort = field(default_factory=Effort)  # what recorded efforts mean
+    notes: tuple[str, ...] = ()  # what was left out or assumed, in words
+    seconds: dict[str, float] = field(default_factory=dict)  # what took how long
+
+    @property
+    def measured(self) -> Floats:
+        """(N, n) N m or N: the torques that recorded efforts mean."""
+        return self.effort.torques(self.log.effort)
+
+    @property
+    def time(self) -> Floats:
+        """(N,) s since the first sample."""
+        return self.log.time
+
+    @property
+    def mean_rmse(self) -> float:
+        """Mean over the joints of the root mean square errors."""
+        return sum(e.rmse for e in self.errors) / len(self.errors)
+
+
+def evaluate(
+    bag: Path | str,
+    robot: Robot | Path | str,
+    *,
+    plugin: str | None = None,
+    friction: bool | None = None,
+    urdf: Path | str | None = None,
+    root: str | None = None,
+    tip: str | None = None,
+    gravity: tuple[float, float, float] | None = None,
+    topic: str | None = None,
+    joints: Sequence[str] | None = None,
+    parameters: Mapping[str, Parameter] | None = None,
+    effort_is: str | None = None,
+    accelerations: str | None = None,
+    cutoff: float | None = None,
+    clock: Clock = "auto",
+    without_rules: Sequence[str] = (),
+    progress: Progress = no_progress,
+) -> Evaluation:
+    """Compute the torques of a recorded motion and compare them with the measured ones.
+
+    bag: rosbag2 recording or text file, see recordings.py. robot: a name of robot_names(), the file of a
+    run configuration, or one that is loaded. What else is given replaces what the configuration
+    says: see Robot; parameters, of the solver, one by one. effort_is: what recorded efforts mean, one of
+    EFFORT_CHOICES.
+    accelerations: one of accelerations.METHODS; cutoff: Hz, of a low-pass. clock: which stamps are
+    the time. without_rules: those of accelerations.RULES not to be acted upon.
+
+    Raises UserError: BagError, RobotError, SolverError, EvaluationError.
+    """
+    if not isinstance(robot, Robot):
+        robot = load_robot(robot)
+    robot = with_changes(
+        robot,
+        plugin=plugin,
+        friction=friction,
+        urdf=None if urdf is None else Path(urdf),
+        root=root,
+        tip=tip,
+        gravity=gravity,
+        topic=topic,
+        joints=None if joints is None else tuple(joints),
+        parameters=parameters,
+        accelerations=accelerations,
+        cutoff=cutoff,
+    )
+    if accelerations is not None and cutoff is None:
+        robot = replace(robot, cutoff=None)  # the configuration's belongs to its own method
+    bag = Path(bag)
+
+    start = time.perf_counter()
+    arm = Arm(robot)
+    ready = time.perf_counter()
+    log = read_recording(
+        bag,
+        arm.recorded_names,
+        topic=topic or "",
+        usual_topic=robot.topic,
+        clock=clock,
+        progress=progress,
+    )
+    effort = stated_effort(effort_is, log, robot, arm.gains)
+    seconds = {"solver": ready - start, "reading": time.perf_counter() - ready}
+    progress("computing", 0, len(log))
+    result = _compare(bag, robot, arm, log, effort, without_rules)
+    progress("computing", len(log), len(log))
+    notes = description_notes(robot, "drawn") if urdf is not None else ()
+    return replace(result, notes=(*notes, *result.notes), seconds={**seconds, **result.seconds})
+
+
+class Arm:
+    """What a run configuration says of the arm, before anything is read. Raises UserError."""
+
+    def __init__(self, robot: Robot) -> None:
+        description = "" if robot.urdf is None else read_description(robot.urdf)
+        self.solver = open_solver(robot, description)
+        self.gains = drive_gains(robot, self.solver)
+        self.joint_names = tuple(self.solver.joint_names)
+        self.recorded_names = names_in_recording(robot, self.joint_names)
+        self.units = joint_units(robot.urdf, description, self.joint_names)
+
+
+def _compare(
+    bag: Path,
+    robot: Robot,
+    arm: Arm,
+    log: JointLog,
+    effort: Effort,
+    without_rules: Sequence[str],
+) -> Evaluation:
+    """Computed torques of a log against its measured ones. Raises EvaluationError, RobotError."""
+    start = time.perf_counter()
+    try:
+        qdd, how, samples, findings = estimate_accelerations(
+            log, robot.accelerations, robot.cutoff, without_rules
+        )
+    except EvaluationError as error:
+        where = f"{bag}: {log.topic}" if log.topic else f"{bag}"
+        raise EvaluationError(f"{where}: {error}") from error
+    filtered = time.perf_counter()
+    solver = arm.solver
+    computed = solver.torques(log.q, log.qd, qdd)
+    check_torques(f"{bag}", arm, computed)
+    if effort.meaning == "auto":
+        effort = effort_of_data(solver, robot, log, computed, arm.gains, samples.kept)
+    computed, measured = compared_torques(effort, solver, log, computed)
+    errors = joint_errors(arm.joint_names, arm.units, computed, measured)
+    errors_of_kept = errors
+    if samples.left_out:
+        errors_of_kept = joint_errors(arm.joint_names, arm.units, computed, measured, samples.kept)
+    done = time.perf_counter()
+    notes = (*solver.warnings, *log.notes, *effort_notes(effort, solver, robot, log))
+    return Evaluation(
+        robot=replace(robot, joints=arm.recorded_names, topic=log.topic, effort=effort.meaning),
+        bag=bag,
+        log=log,
+        joint_names=arm.joint_names,
+        units=arm.units,
+        accelerations=how,
+        samples=samples,
+        qdd=qdd,
+        computed=computed,
+        errors=errors,
+        errors_of_kept=errors_of_kept,
+        effort=effort,
+        notes=(*notes, *findings),
+        seconds={"accelerations": filtered - start, "torques": done - filtered},
+    )
+
+
+def check_torques(where: str, arm: Arm, computed: Floats) -> None:
+    """Raise EvaluationError for (N, n) computed torques that no robot has, infinite ones too."""
+    too_large = ~(np.abs(computed) <= LARGEST)
+    if too_large.any():
+        k, j = (int(i) for i in np.argwhere(too_large)[0])
+        raise EvaluationError(
+            f"{where}: sample {k + 1}: computed torque of joint {arm.joint_names[j]}: expected at most "
+            f"{LARGEST:g} {arm.units[j]}, got {computed[k, j]:g}; check masses, gravity and units"
+        )
+
+
+def joint_errors(
+    joint_names: Sequence[str],
+    units: Sequence[str],
+    computed: Floats,
+    measured: Floats,
+    kept: Mask | None = None,
+) -> tuple[JointError, ...]:
+    """Errors of each joint; computed and measured are (N, n), kept (N,) says which samples count."""
+    from inverse_dynamics import _core
+
+    metrics = _core.metrics(computed, measured, kept)
+    return tuple(
+        JointError(joint, unit, m.mae, m.rmse, m.nrmse, m.bias, m.r2, m.max_abs)
+        for joint, unit, m in zip(joint_names, units, metrics, strict=True)
+    )
+
+
+def names_in_recording(robot: Robot, joint_names: tuple[str, ...]) -> tuple[str, ...]:
+    """Names in the recording of the solver's joints, in the order of the chain."""
+    if not robot.joints:
+        return joint_names
+    if len(robot.joints) != len(joint_names):
+        raise RobotError(
+            f"{robot.file}: joints: expected {len(joint_names)} names, one per joint of the chain "
+            f"({', '.join(joint_names)}), got {len(robot.joints)} ({', '.join(robot.joints)})"
+        )
+    if set(robot.joints) == set(joint_names) and robot.joints != joint_names:
+        raise RobotError(
+            f"{robot.file}: joints: expected the order of the chain, {', '.join(joint_names)}, got "
+            f"{', '.join(robot.joints)}; the recording's order doesn't matter, so leave --joints out"
+        )
+    return robot.joints

@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Figures of an evaluation.
+
+Measured is black and dashed, computed red, the error blue: told apart in black and white, and by
+colour-blind readers.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.base.wording import printable
+from inverse_dynamics.figures.thinning import peaks
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+    from typing import Any
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.evaluation.comparison import Comparison
+    from inverse_dynamics.evaluation.evaluation import Evaluation
+
+MEASURED: dict[str, Any] = {"color": "black", "linestyle": (0, (3.0, 1.6)), "linewidth": 0.9}
+COMPUTED: dict[str, Any] = {"color": "#d7191c", "linewidth": 1.2}
+ERROR: dict[str, Any] = {"color": "#2c5f9e", "linewidth": 0.7}
+_RUNS = ("#E69F00", "#0072B2", "#009E73", "#CC79A7", "#56B4E9")  # Okabe and Ito: for all eyes
+_MUTED = "#555555"
+
+_MOST_POINTS = 6000  # of a line
+
+STYLE: Any = {
+    "font.size": 8.5,
+    "font.family": "sans-serif",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "#999999",
+    "axes.linewidth": 0.6,
+    "axes.grid": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.5,
+    "xtick.color": _MUTED,
+    "ytick.color": _MUTED,
+    "svg.fonttype": "none",
+    "pdf.fonttype": 42,
+    "text.parse_math": False,  # a name may hold $
+    "path.simplify": True,
+    "path.simplify_threshold": 0.3,
+}
+
+
+def save_torque_figure(evaluation: Evaluation, file: Path) -> None:
+    """Save torque_figure(); the format is that of the suffix. The same evaluation, the same bytes."""
+    save_figure(lambda: torque_figure(evaluation), file)
+
+
+def save_comparison_figure(comparison: Comparison, file: Path) -> None:
+    """Save comparison_figure(); the format is that of the suffix. The same runs, the same bytes."""
+    save_figure(lambda: comparison_figure(comparison), file)
+
+
+def save_figure(make: Callable[[], Figure], file: Path) -> None:
+    """Save what `make` draws, in the common style. The same figure, the same bytes."""
+    import matplotlib as mpl
+
+    with mpl.rc_context({**STYLE, "svg.hashsalt": "inverse_dynamics"}):
+        metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(file.suffix)
+        figure = make()
+        make_printable(figure)
+        figure.savefig(file, dpi=160, metadata=metadata)
+
+
+def make_printable(figure: Figure) -> None:
+    """Names that no font, and no XML, can show become escapes."""
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        text.set_text(printable(text.get_text()))
+
+
+def torque_figure(evaluation: Evaluation) -> Figure:
+    """Measured and computed torque over time, and the error, a joint a row."""
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+
+    n = len(evaluation.joint_names)
+    height = 1.25 * n + 1.7
+    figure = Figure(figsize=(11.0, height))
+    axes = figure.subplots(n, 2, sharex=True, squeeze=False, width_ratios=(1.7, 1.0))
+    figure.subplots_adjust(
+        left=0.065,
+        right=0.985,
+        top=1 - 1.32 / height,
+        bottom=0.5 / height,
+        hspace=0.42,
+        wspace=0.13,
+    )
+    time = evaluation.time
+    for j, (left, right) in enumerate(axes):
+        _draw_torques(left, evaluation, time, j)
+        _draw_error(right, evaluation, time, j)
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]", color=_MUTED)
+        axis.set_xlim(time[0], time[-1])
+
+    def at(inches_from_top: float) -> float:
+        return 1 - inches_from_top / height
+
+    robot = evaluation.robot
+    title = robot.description or robot.name
+    size = min(13.0, 13.0 * 100 / len(title))  # long ones on one line too
+    figure.text(0.012, at(0.3), title, fontsize=size, fontweight="bold")
+    figure.text(0.012, at(0.52), _subtitle(evaluation), color=_MUTED)
+    figure.text(0.012, at(0.7), _assumptions(evaluation), color=_MUTED)
+    columns = (
+        {"measured torque": MEASURED, "computed torque": COMPUTED},
+        {"error: computed - measured": ERROR},
+    )
+    for axis, lines in zip(axes[0], columns, strict=True):
+        figure.legend(
+            handles=[Line2D([], [], label=label, **style) for label, style in lines.items()],
+            loc="upper left",
+            bbox_to_anchor=(axis.get_position().x0, at(0.87)),
+            borderaxespad=0,
+            borderpad=0,
+            ncols=2,
+            frameon=False,
+            fontsize=9,
+        )
+    return figure
+
+
+def comparison_figure(comparison: Comparison) -> Figure:
+    """Measured torque and that of each run over time, and the runs' errors, a joint a row."""
+    from matplotlib.figure import Figure
+
+    first = comparison.evaluations[0]
+    n = len(comparison.joint_names)
+    figure = Figure(figsize=(11.0, 1.25 * n + 1.2), layout="constrained")
+    figure.suptitle(
+        f"{first.bag.name}: {' against '.join(comparison.labels)}", fontsize=12, fontweight="bold"
+    )
+    axes = figure.subplots(n, 2, sharex=True, squeeze=False, width_ratios=(1.7, 1.0))
+    for j, (left, right) in enumerate(axes):
+        for k, evaluation in enumerate(comparison.evaluations):
+            error = evaluation.computed[:, j] - evaluation.measured[:, j]
+            style = {
+                "color": _RUNS[k % len(_RUNS)],
+                "linewidth": 1.1,
+                "label": comparison.labels[k],
+            }
+            left.plot(*_thinned(first.time, evaluation.computed[:, j]), **style)
+            right.plot(*_thinned(first.time, error), **style)
+        left.plot(*_thinned(first.time, first.measured[:, j]), **MEASURED, label="measured")
+        left.set_title(f"{comparison.joint_names[j]} [{first.units[j]}]", loc="left", fontsize=9)
+        rmse = " / ".join(f"{value:.3g}" for value in comparison.rmse[:, j])
+        right.set_title(
+            f"error: RMSE {rmse} {first.units[j]}", loc="left", fontsize=9, color=_MUTED
+        )
+        right.axhline(0, color="#999999", linewidth=0.6)
+        largest = max(
+            _error_limit(e.computed[:, j] - e.measured[:, j]) for e in comparison.evaluations
+        )
+        right.set_ylim(-1.1 * (largest or 1.0), 1.1 * (largest or 1.0))
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]", color=_MUTED)
+        axis.set_xlim(first.time[0], first.time[-1])
+    handles, labels = axes[0][0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
+    return figure
+
+
+def _draw_torques(axes: Axes, evaluation: Evaluation, time: Floats, j: int) -> None:
+    axes.plot(*_thinned(time, evaluation.computed[:, j]), **COMPUTED)
+    axes.plot(*_thinned(time, evaluation.measured[:, j]), **MEASURED)
+    axes.set_title(
+        f"{evaluation.joint_names[j]} [{evaluation.units[j]}]", loc="left", fontsize=9, pad=3
+    )
+    axes.margins(y=0.08)
+
+
+def _draw_error(axes: Axes, evaluation: Evaluation, time: Floats, j: int) -> None:
+    from matplotlib.ticker import EngFormatter
+
+    error = evaluation.errors[j]
+    largest = _error_limit(evaluation.computed[:, j] - evaluation.measured[:, j]) or 1.0
+    t, difference = _thinned(time, evaluation.computed[:, j] - evaluation.measured[:, j])
+    axes.axhline(0, color="#999999", linewidth=0.6)
+    axes.fill_between(t, 0, difference, color=ERROR["color"], alpha=0.15, linewidth=0)
+    axes.plot(t, difference, **ERROR)
+    axes.set_ylim(-1.1 * largest, 1.1 * largest)
+    if largest < 0.01:
+        axes.yaxis.set_major_formatter(EngFormatter(sep=""))  # 200µ instead of 0.0002
+    share = "" if np.isnan(error.nrmse) else f", {100 * error.nrmse:.2g} % of measured range"
+    axes.set_title(
+        f"RMSE {error.rmse:.3g} {error.unit}{share}", loc="left", fontsize=9, pad=3, color=_MUTED
+    )
+
+
+def _error_limit(error: Floats) -> float:
+    """What an axis of errors (N,) must show: all of them, but for spikes that would flatten the rest.
+
+    A spike is beyond one and a half times the 99.5 % quantile of the magnitudes.
+    """
+    magnitude = np.abs(error)
+    return float(min(magnitude.max(), 1.5 * np.quantile(magnitude, 0.995) or np.inf))
+
+
+def _subtitle(evaluation: Evaluation) -> str:
+    friction = "" if evaluation.robot.friction else ", friction left out"
+    return f"{evaluation.robot.name}   ·   solver {evaluation.robot.plugin}{friction}"
+
+
+def _assumptions(evaluation: Evaluation) -> str:
+    return (
+        f"{evaluation.bag.name}, {len(evaluation.log)} samples, {evaluation.time[-1]:.1f} s   ·   "
+        f"accelerations: {evaluation.accelerations.summary}"
+    )
+
+
+def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    shown = peaks(y, _MOST_POINTS)
+    return x[shown], y[shown]

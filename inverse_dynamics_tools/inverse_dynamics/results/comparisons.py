@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A comparison as a directory of files.
+
+comparison.json             root mean square errors of each joint and run; marks the directory
+comparison.png, .svg, .pdf  measured torque and that of each run, over time
+report.html                 all runs on one page
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from inverse_dynamics.base.files import Contents, write_text, written_whole
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from inverse_dynamics.evaluation.comparison import Comparison
+
+MARK = "comparison.json"
+CONTENTS = Contents(
+    MARK, (MARK, "comparison.png", "comparison.svg", "comparison.pdf", "report.html")
+)
+
+
+def write_comparison(
+    comparison: Comparison, directory: Path, *, overwrite: bool = False, title: str = ""
+) -> None:
+    """Write all files of a comparison, or none of them. Raises OutputError."""
+    from inverse_dynamics.figures.plots import save_comparison_figure
+    from inverse_dynamics.report import report_comparison, report_run, write_page
+    from inverse_dynamics.results.evaluations import PLOT_FORMATS
+
+    first = comparison.evaluations[0]
+    title = title or f"{first.bag.name}: {' against '.join(comparison.labels)}"
+    inputs = [path for e in comparison.evaluations for path in (e.bag, *e.robot.files)]
+    with written_whole(directory, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as target:
+        text = json.dumps(_figures(comparison), indent=2, allow_nan=False, ensure_ascii=False)
+        write_text(target / MARK, text + "\n")
+        for suffix in PLOT_FORMATS:
+            save_comparison_figure(comparison, target / f"comparison.{suffix}")
+        runs = [
+            report_run(evaluation, label)
+            for evaluation, label in zip(comparison.evaluations, comparison.labels, strict=True)
+        ]
+        write_page(target / "report.html", title, runs, [report_comparison(comparison)])
+
+
+def _figures(comparison: Comparison) -> dict[str, Any]:
+    first = comparison.evaluations[0]
+    return {
+        "schema": 1,
+        "bag": str(first.bag),
+        "joints": list(comparison.joint_names),
+        "units": list(first.units),
+        "runs": [
+            {"label": label, "plugin": evaluation.robot.plugin, "rmse": list(map(float, rmse))}
+            for label, evaluation, rmse in zip(
+                comparison.labels, comparison.evaluations, comparison.rmse, strict=True
+            )
+        ],
+    }

@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An evaluation as a directory of files, and back.
+
+evaluation.json   what was evaluated, how, and what was assumed; marks the directory
+metrics.json      errors of each joint
+series.npz        time, q, qd, qdd, effort as recorded, measured and computed torques, stamps; one row
+                  per sample
+bag/              recording with /torques (computed) and /torques_gt (measured)
+plotjuggler.xml   layout for PlotJuggler that opens it
+torques.png, .svg, .pdf
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from contextlib import suppress
+from dataclasses import asdict, fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics.base.files import Contents, write_text, written_whole
+from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.base.replacement import restore_interrupted
+from inverse_dynamics.data.bags import write_joint_logs
+from inverse_dynamics.data.joint_log import JointLog
+from inverse_dynamics.errors import OutputError
+from inverse_dynamics.evaluation.accelerations import MASKS, Accelerations, Samples
+from inverse_dynamics.evaluation.effort import Effort
+from inverse_dynamics.evaluation.effort_verdict import Candidate, Verdict
+from inverse_dynamics.evaluation.evaluation import Evaluation, JointError
+from inverse_dynamics.results.stated_types import check_types
+from inverse_dynamics.robot.robots import Robot
+
+if TYPE_CHECKING:
+    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.data.joint_log import Storage
+
+SCHEMA = 2
+MARK = "evaluation.json"
+PLOT_FORMATS = ("png", "svg", "pdf")
+
+CONTENTS = Contents(
+    MARK,
+    (
+        MARK,
+        "metrics.json",
+        "series.npz",
+        "plotjuggler.xml",
+        *(f"torques.{suffix}" for suffix in PLOT_FORMATS),
+        "bag/metadata.yaml",
+        "bag/bag.db3*",
+        "bag/bag.mcap",
+    ),
+    added=("series.csv", "series.parquet", "report.html"),
+)
+"""Of a directory of results: `ids export` and `ids report` may have added theirs."""
+
+COMPUTED_TOPIC = "/torques"
+MEASURED_TOPIC = "/torques_gt"
+
+
+def write_evaluation(
+    evaluation: Evaluation,
+    directory: Path | str,
+    *,
+    overwrite: bool = False,
+    storage: Storage | None = None,
+    progress: Progress = no_progress,
+) -> dict[str, float]:
+    """Write all files of an evaluation, or none of them; gives what took how long [s].
+
+    overwrite: replace an older result. storage: sqlite3 or mcap; None: that of the recording.
+    Raises OutputError, BagError.
+    """
+    from inverse_dynamics.figures.plots import save_torque_figure
+
+    start = time.perf_counter()
+    inputs = (evaluation.bag, *evaluation.robot.files)
+    with written_whole(
+        Path(directory), overwrite=overwrite, contents=CONTENTS, inputs=inputs
+    ) as target:
+        log = evaluation.log
+        topics = {
+            COMPUTED_TOPIC: replace(log, effort=evaluation.computed),
+            MEASURED_TOPIC: replace(log, effort=evaluation.measured),
+        }
+        write_joint_logs(target / "bag", topics, storage=storage or log.storage, progress=progress)
+        layout = _layout(evaluation, target / "bag", storage or log.storage)
+        write_text(target / "plotjuggler.xml", layout)
+        _write_json(target / "metrics.json", _metrics(evaluation))
+        _write_json(target / MARK, _summary(evaluation))
+        np.savez(target / "series.npz", allow_pickle=False, **_series(evaluation))
+        written = time.perf_counter()
+        for i, suffix in enumerate(PLOT_FORMATS):
+            progress("plotting", i, len(PLOT_FORMATS))
+            save_torque_figure(evaluation, target / f"torques.{suffix}")
+        progress("plotting", len(PLOT_FORMATS), len(PLOT_FORMATS))
+    return {"writing": written - start, "plotting": time.perf_counter() - written}
+
+
+def read_evaluation(directory: Path | str) -> Evaluation:
+    """An evaluation that write_evaluation() wrote. Raises OutputError."""
+    directory = Path(directory)
+    file = directory / MARK
+    if not directory.exists():
+        with suppress(OSError, OutputError):
+            restore_interrupted(directory.absolute())
+    if not file.is_file():
+        found = f"holds no {MARK}" if directory.is_dir() else "no such directory"
+        raise OutputError(f"{directory}: {found}; expected one written by `ids evaluate`")
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+        if data["schema"] != SCHEMA:
+            raise OutputError(
+                f"{file}: expected schema {SCHEMA}, got {data['schema']}; evaluate again"
+            )
+        metrics = json.loads((directory / "metrics.json").read_text(encoding="utf-8"))
+        with np.load(directory / "series.npz", allow_pickle=False) as series:
+            arrays = {name: series[name] for name in series.files}
+        evaluation = _from_files(data, metrics, arrays)
+        check_types(evaluation, "evaluation")
+        _check_sizes(evaluation)
+        return evaluation
+    except OutputError:
+        raise
+    except Exception as error:  # of files that were edited or damaged, whatever their readers raise
+        raise OutputError(
+            f"{directory}: isn't a complete evaluation ({type(error).__name__}: {error}); evaluate "
+            "again"
+        ) from error
+
+
+def _check_sizes(evaluation: Evaluation) -> None:
+    """Raise ValueError unless all series have one row per sample and one column per joint."""
+    log, effort = evaluation.log, evaluation.effort
+    samples, joints = len(log.header_stamps), len(log.joint_names)
+    stamps = ("header_stamps", "receive_stamps")
+    series = {name: getattr(log, name) for name in ("q", "qd", "effort", *stamps)}
+    series |= {name: getattr(evaluation, name) for name in ("qdd", "computed")}
+    series |= {name: getattr(evaluation.samples, name) for name in MASKS}
+    for name, array in series.items():
+        shape = (samples,) if name in (*MASKS, *stamps) else (samples, joints)
+        if array.shape != shape or not samples:
+            raise ValueError(f"{name}: expected the shape {shape}, got {array.shape}")
+    counts = {name: getattr(evaluation, name) for name in ("joint_names", "units", "errors")}
+    counts["kept"] = evaluation.errors_of_kept
+    if effort.meaning == "current":
+        counts["drive_gains"] = effort.drive_gains
+    for name, entries in counts.items():
+        if len(entries) != joints or not joints:
+            raise ValueError(f"{name}: expected {joints}, one per joint, got {len(entries)}")
+    if effort.verdict is not None and not effort.verdict.candidates:
+        raise ValueError("candidates: expected one or more, got none")
+
+
+def _layout(evaluation: Evaluation, bag: Path, storage: Storage) -> str:
+    """For PlotJuggler, beside the bag."""
+    from inverse_dynamics.figures.plotjuggler import torque_layout
+
+    opened = next(bag.glob("*.mcap")) if storage == "mcap" else bag / "metadata.yaml"
+    recording = f"{bag.name}/{opened.name}"
+    topics = (MEASURED_TOPIC, COMPUTED_TOPIC)
+    return torque_layout(evaluation.log, evaluation.units, topics, recording, storage)
+
+
+def _series(evaluation: Evaluation) -> dict[str, Any]:
+    log = evaluation.log
+    return {
+        "time": evaluation.time,
+        "header_stamps": log.header_stamps,
+        "receive_stamps": log.receive_stamps,
+        "q": log.q,
+        "qd": log.qd,
+        "qdd": evaluation.qdd,
+        "effort": log.effort,
+        "measured": evaluation.measured,
+        "computed": evaluation.computed,
+        **{name: getattr(evaluation.samples, name) for name in MASKS},
+    }
+
+
+def _metrics(evaluation: Evaluation) -> dict[str, Any]:
+    """For people and scripts: errors, and enough to know of what."""
+    return {
+        "robot": evaluation.robot.name,
+        "plugin": evaluation.robot.plugin,
+        "friction": evaluation.robot.friction,
+        "bag": str(evaluation.bag),
+        "samples": len(evaluation.log),
+        "accelerations": asdict(evaluation.accelerations),
+        "effort": asdict(evaluation.effort),
+        "joints": [_without_nan(error) for error in evaluation.errors],
+        "mean_rmse": evaluation.mean_rmse if len(set(evaluation.units)) == 1 else None,
+        "kept": {
+            "samples": len(evaluation.log) - evaluation.samples.left_out,
+            "joints": [_without_nan(error) for error in evaluation.errors_of_kept],
+        },
+    }
+
+
+def _summary(evaluation: Evaluation) -> dict[str, Any]:
+    log, robot = evaluation.log, evaluation.robot
+    return {
+        "schema": SCHEMA,
+        "bag": str(evaluation.bag),
+        "samples": len(log),
+        "duration": float(evaluation.time[-1]),
+        "robot": {
+            f.name: _plain(getattr(robot, f.name)) for f in fields(robot) if f.name != "simulation"
+        },
+        "joint_names": list(evaluation.joint_names),
+        "units": list(evaluation.units),
+        "accelerations": asdict(evaluation.accelerations),
+        "effort": asdict(evaluation.effort),
+        "sampling": {"period": evaluation.samples.period, "jitter": evaluation.samples.jitter},
+        "recording": {
+            "joint_names": list(log.joint_names),
+            "frame_id": log.frame_id,
+            "clock": log.clock,
+            "topic": log.topic,
+            "storage": log.storage,
+            "effort_is": log.effort_is,
+            "notes": list(log.notes),
+        },
+        "notes": list(evaluation.notes),
+        "seconds": evaluation.seconds,
+    }
+
+
+def _from_files(
+    data: dict[str, Any], metrics: dict[str, Any], arrays: dict[str, Any]
+) -> Evaluation:
+    robot = data["robot"]
+    for name in ("file", "urdf", "model"):
+        robot[name] = None if robot[name] is None else Path(robot[name])
+    robot["gravity"] = None if robot["gravity"] is None else tuple(robot["gravity"])
+    for name in ("joints", "drive_gains"):
+        robot[name] = tuple(robot[name])
+    recording = data["recording"]
+    log = JointLog(
+        joint_names=tuple(recording["joint_names"]),
+        header_stamps=arrays["header_stamps"],
+        receive_stamps=arrays["receive_stamps"],
+        q=arrays["q"],
+        qd=arrays["qd"],
+        effort=arrays["effort"],
+        frame_id=recording["frame_id"],
+        clock=recording["clock"],
+        topic=recording["topic"],
+        storage=recording["storage"],
+        effort_is=recording["effort_is"],
+        notes=tuple(recording["notes"]),
+    )
+    samples = Samples(**{name: arrays[name] for name in MASKS}, **data["sampling"])
+    return Evaluation(
+        robot=Robot(**robot),
+        bag=Path(data["bag"]),
+        log=log,
+        joint_names=tuple(data["joint_names"]),
+        units=tuple(data["units"]),
+        accelerations=Accelerations(**data["accelerations"]),
+        samples=samples,
+        qdd=arrays["qdd"],
+        computed=arrays["computed"],
+        errors=_errors(metrics["joints"]),
+        errors_of_kept=_errors(metrics["kept"]["joints"]),
+        effort=_effort(data["effort"]),
+        notes=tuple(data["notes"]),
+        seconds=data["seconds"],
+    )
+
+
+def _effort(data: dict[str, Any]) -> Effort:
+    verdict = data["verdict"]
+    if verdict is not None:
+        candidates = tuple(Candidate(**candidate) for candidate in verdict["candidates"])
+        verdict = Verdict(**{**verdict, "candidates": candidates})
+    gains = tuple(data["drive_gains"])
+    return Effort(**{**data, "drive_gains": gains, "verdict": verdict})
+
+
+def _write_json(file: Path, data: dict[str, Any]) -> None:
+    write_text(file, json.dumps(data, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
+
+
+def _plain(value: object) -> object:
+    return str(value) if isinstance(value, Path) else value
+
+
+def _without_nan(error: JointError) -> dict[str, Any]:
+    """Undefined figures are null: JSON has no NaN."""
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value
+        for name, value in asdict(error).items()
+    }
+
+
+def _errors(joints: list[dict[str, Any]]) -> tuple[JointError, ...]:
+    def error(joint: dict[str, Any]) -> JointError:
+        figures: dict[str, Any] = {k: math.nan if v is None else v for k, v in joint.items()}
+        return JointError(**figures)
+
+    return tuple(error(joint) for joint in joints)

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trajectories with their efforts filled in: what the file had, and nothing else changed."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics.base.files import (
+    Contents,
+    check_output_directory,
+    check_output_file,
+    move_up,
+    write_text,
+    write_text_whole,
+    written_whole,
+)
+from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.data.bag_reader import BagReader
+from inverse_dynamics.data.bags import new_recording, unwritable
+from inverse_dynamics.data.csv_table import CsvTable, is_csv
+from inverse_dynamics.data.joint_trajectories import MESSAGE_TYPE, typestore
+from inverse_dynamics.errors import BagError, OutputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rosbags.interfaces import Connection
+    from rosbags.rosbag2 import Writer
+
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.evaluation.trajectory_torques import TrajectoryTorques
+    from inverse_dynamics.robot.robots import Robot
+
+
+MARK = "torques.json"
+CONTENTS = Contents(MARK, (MARK, "metadata.yaml", "{name}.db3*", "{name}.mcap"))
+
+_SELDOM = 1000  # messages between two words on the progress
+
+
+def check_output(path: Path, out: Path, robot: Robot, *, overwrite: bool = False) -> None:
+    """Raise OutputError unless the copy of a file `path` may be made at `out`."""
+    inputs = (path, *robot.files)
+    if is_csv(path):
+        if not is_csv(out):
+            raise OutputError(
+                f"{out}: expected a name ending in .csv or .txt, as {path.name} is a table"
+            )
+        check_output_file(out, overwrite=overwrite, inputs=inputs)
+    else:
+        check_output_directory(out, overwrite=overwrite, contents=CONTENTS, inputs=inputs)
+
+
+def write_trajectory_torques(
+    result: TrajectoryTorques,
+    out: Path | str,
+    *,
+    overwrite: bool = False,
+    progress: Progress = no_progress,
+) -> tuple[str, ...]:
+    """Write a copy of the file with the efforts filled in, whole or not at all; gives notes.
+
+    out: of the same kind as the file: a directory for a recording, a file for a table. Other
+    topics of a recording are copied, further columns of a table too; torques.json beside a
+    recording says how efforts were computed, and each joint's load. overwrite: replace an older
+    result.
+
+    Raises OutputError, BagError.
+    """
+    out = Path(out)
+    check_output(result.path, out, result.robot, overwrite=overwrite)
+    if is_csv(result.path):
+        write_text_whole(out, "".join(_filled_lines(CsvTable(result.path), result)))
+        return ()
+    with written_whole(out, overwrite=overwrite, contents=CONTENTS) as directory:
+        bag = directory / out.name
+        try:
+            notes = _write_bag(result, bag, progress)
+        except BagError:
+            raise
+        except Exception as error:  # writers raise more than they document
+            raise unwritable(out, error) from error
+        move_up(bag)
+        text = json.dumps(_summary(result), indent=2, allow_nan=False, ensure_ascii=False)
+        write_text(directory / MARK, text + "\n")
+    return notes
+
+
+def _summary(result: TrajectoryTorques) -> dict[str, Any]:
+    robot = result.robot
+    return {
+        "schema": 1,
+        "bag": str(result.path),
+        "topic": result.topic,
+        "robot": robot.name,
+        "plugin": robot.plugin,
+        "friction": robot.friction,
+        "gravity": robot.gravity,
+        "joints": [
+            {**asdict(load), "limit": load.limit if math.isfinite(load.limit) else None}
+            for load in result.loads
+        ],
+    }
+
+
+def _write_bag(result: TrajectoryTorques, path: Path, progress: Progress) -> tuple[str, ...]:
+    filled = iter(zip(result.trajectories, result.torques, strict=True))
+    notes = []
+    with BagReader(result.path) as bag, new_recording(path, bag.storage) as writer:
+        copies = {c.id: _copied(writer, c) for c in bag.connections}
+        total = sum(c.msgcount for c in bag.connections)
+        for done, (connection, received, raw) in enumerate(bag.messages(), 1):
+            if done % _SELDOM == 0 or done == total:
+                progress("writing", done, total)
+            copy = copies[connection.id]
+            if copy is None:
+                continue
+            if connection.topic == result.topic:
+                trajectory, torques = next(filled)
+                columns = [result.joint_names.index(n) for n in trajectory.joint_names]
+                raw = _with_effort(trajectory.message, torques[:, columns])
+            writer.write(copy, received, raw)
+        notes += [
+            f"topic {c.topic} left out: the recording doesn't define its type, {c.msgtype}"
+            for c in bag.connections
+            if copies[c.id] is None
+        ]
+    return tuple(notes)
+
+
+def _copied(writer: Writer, connection: Connection) -> Connection | None:
+    """The same topic in the new recording; None if its type isn't known."""
+    ext: Any = connection.ext
+    known = connection.msgtype in typestore().types
+    defined = bool(connection.msgdef.data and connection.digest)
+    if not known and not defined:
+        return None
+    return writer.add_connection(
+        connection.topic,
+        connection.msgtype,
+        typestore=None if defined else typestore(),
+        msgdef=connection.msgdef.data if defined else None,
+        rihs01=connection.digest if defined else None,
+        serialization_format=ext.serialization_format,
+        offered_qos_profiles=ext.offered_qos_profiles,
+    )
+
+
+def _with_effort(message: Any, efforts: Floats) -> bytes:
+    for point, effort in zip(message.points, efforts, strict=True):
+        point.effort = np.ascontiguousarray(effort)
+    return bytes(typestore().serialize_cdr(message, MESSAGE_TYPE))
+
+
+def _filled_lines(table: CsvTable, result: TrajectoryTorques) -> Iterable[str]:
+    """Lines of the table; columns of efforts replaced where there are any, else put last."""
+    names = [f"effort.{joint}" for joint in result.joint_names]
+    added = [name for name in names if name not in table.names]
+    header = [*table.names, *added]
+    columns = [header.index(name) for name in names]
+    yield table.line(header)
+    for fields, torques in zip(table.rows(), result.torques[0].tolist(), strict=True):
+        row = [*fields, *("" for _ in added)]
+        for column, torque in zip(columns, torques, strict=True):
+            row[column] = repr(torque)
+        yield table.line(row)

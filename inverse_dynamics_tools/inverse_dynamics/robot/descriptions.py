@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Robot descriptions: the text of a URDF file, or of a .xacro file after the xacro tool."""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.base.decimals import decimal
+from inverse_dynamics.base.wording import harmless, shown
+from inverse_dynamics.errors import RobotError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from xml.etree.ElementTree import Element
+
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.errors import UserError
+
+_MOST_BYTES = 64 * 2**20
+_MOST_LEVELS = 50
+
+
+class _DocumentTypeError(Exception):
+    """Entities are defined in it: a few lines may stand for gigabytes, or for another file."""
+
+
+def read_description(file: Path) -> str:
+    """URDF text of a .urdf or .xacro file. Raises RobotError."""
+    if not os.path.isfile(file):  # Path.is_file() raises where the path is too long
+        raise RobotError(f"{file}: no such file; expected a robot description (URDF or .xacro)")
+    if file.suffix == ".xacro":
+        return _expanded(file)
+    try:
+        with file.open("rb") as stream:
+            data = stream.read(_MOST_BYTES + 1)
+    except OSError as error:
+        raise RobotError(f"{file}: can't be read ({error.strerror})") from error
+    if len(data) > _MOST_BYTES:
+        raise RobotError(f"{file}: expected a URDF of at most {_MOST_BYTES >> 20} MiB, got more")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise RobotError(f"{file}: isn't text in UTF-8; expected a URDF") from error
+
+
+def parse_description(
+    text: str, where: object = "robot description", raised: type[UserError] = RobotError
+) -> Element:
+    """The element <robot> of a URDF. Raises that error for what isn't one."""
+    import xml.etree.ElementTree as ElementTree
+
+    class Builder(ElementTree.TreeBuilder):
+        def doctype(self, *_: object) -> None:
+            raise _DocumentTypeError
+
+    try:
+        robot = ElementTree.fromstring(text, ElementTree.XMLParser(target=Builder()))
+    except _DocumentTypeError:
+        raise raised(
+            f"{where}: expected no document type, got one; no URDF needs it: remove it"
+        ) from None
+    except (ElementTree.ParseError, ValueError) as error:
+        raise raised(f"{where}: isn't a robot description: no XML ({error})") from error
+    if robot.tag != "robot":
+        raise raised(
+            f"{where}: expected the element <robot>, got <{harmless(robot.tag)}>; give a URDF"
+        )
+    level = [robot]
+    for _ in range(_MOST_LEVELS):
+        level = [element for parent in level for element in parent]
+    if level:
+        raise raised(f"{where}: expected at most {_MOST_LEVELS} levels of elements, got more")
+    return robot
+
+
+def numbers_of(
+    element: Element, attribute: str, length: int, raised: type[UserError]
+) -> list[float]:
+    """Finite numbers of an attribute that is there."""
+    text = element.get(attribute, "")
+    try:
+        numbers = [decimal(word) for word in text.split()]
+    except ValueError:
+        numbers = []
+    if len(numbers) != length or not all(map(math.isfinite, numbers)):
+        what = "a finite number" if length == 1 else f"{length} finite numbers"
+        raise raised(
+            f"robot description: <{element.tag} {attribute}=...>: expected {what}, got {shown(text)}"
+        )
+    return numbers
+
+
+def joint_units(
+    file: Path | None, description: str, joint_names: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Unit of each joint's torque: N for a prismatic joint of the URDF, else N m.
+
+    file: where the description is from, for errors. Raises RobotError if it isn't XML.
+    """
+    joints = _joints(file, description)
+    prismatic = {j.get("name") for j in joints if j.get("type") == "prismatic"}
+    return tuple("N" if name in prismatic else "N m" for name in joint_names)
+
+
+def effort_limits(file: Path | None, description: str, joint_names: Sequence[str]) -> Floats:
+    """(n,) N m (prismatic N) of the URDF; infinite for a joint without one.
+
+    file: where the description is from, for errors. Raises RobotError if it isn't XML, or if a
+    limit isn't a number.
+    """
+    limits = np.full(len(joint_names), np.inf)
+    for joint in _joints(file, description):
+        limit = joint.find("limit")
+        text = None if limit is None else limit.get("effort")
+        if joint.get("name") not in joint_names or text is None:
+            continue
+        try:
+            number = decimal(text)
+        except ValueError:
+            raise RobotError(
+                f"{file}: joint {joint.get('name')}: limit: expected a number as effort, got "
+                f"{shown(text)}"
+            ) from None
+        if number > 0:  # zero states none
+            limits[list(joint_names).index(joint.get("name", ""))] = number
+    return limits
+
+
+def _joints(file: Path | None, description: str) -> list[Element]:
+    return list(parse_description(description, file).iter("joint")) if description else []
+
+
+def _expanded(file: Path) -> str:
+    tool = shutil.which("xacro") or shutil.which("xacro", path=str(Path(sys.executable).parent))
+    if tool is None:
+        raise RobotError(
+            f"{file}: needs the tool xacro, which isn't installed; `pip install xacro`, or expand "
+            f"it elsewhere: xacro {file.name} > {file.stem}"
+        )
+    result = subprocess.run([tool, str(file)], capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        lines = result.stderr.strip().splitlines() or [f"exit code {result.returncode}"]
+        raise RobotError(f"{file}: xacro can't expand it: {harmless('; '.join(lines), 500)}")
+    return result.stdout

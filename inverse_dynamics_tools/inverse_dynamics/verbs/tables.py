@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Results as tables on the screen."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from rich import box
+from rich.table import Table
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from inverse_dynamics.evaluation.comparison import Comparison
+    from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.evaluation.trajectory_torques import TrajectoryTorques
+
+
+def error_table(evaluation: Evaluation) -> Table:
+    """Errors of the computed torques, a joint a row.
+
+    Where samples don't count, errors without them stand beside those over all samples.
+    """
+    left_out = evaluation.samples.left_out
+    count = len(evaluation.log)
+    table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
+    table.add_column("joint", overflow="fold")  # names whole
+    table.add_column("unit")
+    for heading in ("MAE", "RMSE", "NRMSE", "bias", "R²"):
+        table.add_column(heading, justify="right")
+    if left_out:
+        table.add_column("RMSE*", justify="right")
+        table.caption = f"* over the {count - left_out} of {count} samples that count"
+    for error, kept in zip(evaluation.errors, evaluation.errors_of_kept, strict=True):
+        table.add_row(
+            error.joint,
+            error.unit,
+            figure(error.mae),
+            figure(error.rmse),
+            _percent(error.nrmse),
+            f"{error.bias:+.3g}" if abs(error.bias) < 0.1 else f"{error.bias:+.3f}",
+            _number(error.r2),
+            *([figure(kept.rmse)] if left_out else []),
+        )
+    if len(set(evaluation.units)) == 1 and len(evaluation.errors) > 1:
+        table.add_section()
+        table.add_row(
+            "mean",
+            evaluation.units[0],
+            figure(_mean([e.mae for e in evaluation.errors])),
+            figure(evaluation.mean_rmse),
+            "",
+            "",
+            "",
+            *([figure(_mean([e.rmse for e in evaluation.errors_of_kept]))] if left_out else []),
+        )
+    return table
+
+
+def mean_table(evaluations: Mapping[str, Evaluation]) -> Table:
+    """Mean over the joints of the root mean square errors, a robot a row."""
+    table = Table(box=box.SIMPLE_HEAD)
+    table.add_column("robot")
+    table.add_column("solver")
+    for heading in ("samples", "mean RMSE", "mean NRMSE"):
+        table.add_column(heading, justify="right")
+    for title, evaluation in evaluations.items():
+        units = set(evaluation.units)
+        mean = f"{figure(evaluation.mean_rmse)} {units.pop()}" if len(units) == 1 else "-"
+        shares = [e.nrmse for e in evaluation.errors if not math.isnan(e.nrmse)]
+        table.add_row(
+            title,
+            evaluation.robot.plugin.partition("/")[2],
+            str(len(evaluation.log)),
+            mean,
+            _percent(_mean(shares)) if shares else "-",
+        )
+    return table
+
+
+def comparison_table(comparison: Comparison) -> Table:
+    """Root mean square errors, a run a column."""
+    table = Table(box=box.SIMPLE_HEAD, title="RMSE", title_justify="left")
+    table.add_column("joint")
+    table.add_column("unit")
+    for label in comparison.labels:
+        table.add_column(label, justify="right", overflow="fold")
+    units = comparison.evaluations[0].units
+    for joint, unit, row in zip(comparison.joint_names, units, comparison.rmse.T, strict=True):
+        table.add_row(joint, unit, *(figure(value) for value in row))
+    if len(set(units)) == 1 and len(units) > 1:
+        table.add_section()
+        means = comparison.rmse.mean(axis=1)
+        table.add_row("mean", units[0], *(figure(value) for value in means))
+    return table
+
+
+def load_table(result: TrajectoryTorques) -> Table:
+    """Greatest torque of each joint and, where it is too much, when it is first."""
+    several = len(result.times) > 1
+    table = Table(box=box.SIMPLE_HEAD)
+    table.add_column("joint")
+    for heading in ("peak", "at", "limit"):
+        table.add_column(heading, justify="right")
+    table.add_column("passes its limit")
+    for load in result.loads:
+        passed = "-" if math.isfinite(load.limit) else "not known"
+        if load.passed_time is not None:
+            passed = "first at " + _moment(load.passed_time, load.passed_trajectory, several)
+        table.add_row(
+            load.joint,
+            f"{load.peak:.3f} {load.unit}",
+            _moment(load.peak_time, load.peak_trajectory, several),
+            f"{load.limit:g} {load.unit}" if math.isfinite(load.limit) else "-",
+            passed,
+        )
+    return table
+
+
+def _moment(time: float, trajectory: int | None, several: bool) -> str:
+    return f"{time:.3f} s" + (f" of trajectory {trajectory}" if several else "")
+
+
+def figure(value: float) -> str:
+    """Three decimals, or three significant digits where that says nothing."""
+    return f"{value:.3f}" if abs(value) >= 0.1 or value == 0 else f"{value:.3g}"
+
+
+def _mean(numbers: list[float]) -> float:
+    return sum(numbers) / len(numbers)
+
+
+def _percent(share: float) -> str:
+    return "-" if math.isnan(share) else f"{100 * share:.2f} %"
+
+
+def _number(value: float) -> str:
+    if math.isnan(value):
+        return "-"
+    return f"{value:.4f}" if abs(value) < 1000 else f"{value:.3g}"
