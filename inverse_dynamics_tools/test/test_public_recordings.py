@@ -133,6 +133,13 @@ def test_recordings_are_fetched_whole_and_their_size_is_said_first(ids, tmp_path
     assert (tmp_path / "out/bags/one/metadata.yaml").read_text() == "of: one\n"
 
 
+def test_recordings_may_lie_below_the_working_directory(ids, tmp_path, monkeypatch):
+    """As they do by default for who calls `ids data` in the home directory."""
+    monkeypatch.chdir(tmp_path)
+    assert ids()[::2] == (0, "")
+    assert files(tmp_path / "out") == ALL
+
+
 def test_what_is_there_and_intact_is_left_alone(ids, tmp_path, server):
     ids()
     server.asked.clear()

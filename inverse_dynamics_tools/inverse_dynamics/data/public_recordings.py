@@ -172,7 +172,7 @@ def fetch_recordings(
     for recording in missing:
         place = places[recording.name]
         contents = Contents(METADATA, (METADATA, *(file.name for file in recording.files)))
-        inputs = (None if "://" in source else Path(source),)
+        inputs = (Path(source) if source and "://" not in source else None,)
         with written_whole(place, overwrite=overwrite, contents=contents, inputs=inputs) as target:
             for file in recording.files:
                 _fetch(f"{base}/{file.source}", file, target, table, progress)
