@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every public header declares its names in the inline ABI namespace, and all in the same one."""
+"""What public headers must do for users who compile with other flags than the libraries.
+
+All names are in one inline ABI namespace. No compiled function returns an Eigen object of dynamic size:
+one side would allocate its memory, the other free it, and which functions Eigen uses depends on flags.
+"""
 
 from __future__ import annotations
 
@@ -39,3 +43,26 @@ def test_names_are_in_the_abi_namespace(header: Path) -> None:
 
 def test_a_header_without_it_is_found() -> None:
     assert abi_namespaces("\nnamespace chain_dynamics {\n\nstruct A;\n}\n") == ["struct A;"]
+
+
+def compiled_results(text: str) -> list[str]:
+    """Functions returning Eigen objects of dynamic size that are declared without being defined."""
+    code = re.sub(r"//[^\n]*", "", text)
+    declarations = re.findall(
+        r"\b(?:Eigen::)?(?:Vector|RowVector|Matrix|Array)XX?[df]\s+(\w+)"
+        r"\s*\((?:\)|(?:const\s+)?[\w:<>]+[&*]*\s+\w+\s*[,)=])[^;{}]*?(;|\{)",
+        code,
+    )
+    return [name for name, end in declarations if end == ";"]
+
+
+@pytest.mark.parametrize("header", HEADERS, ids=lambda path: path.name)
+def test_no_compiled_function_returns_what_eigen_allocates(header: Path) -> None:
+    assert compiled_results(header.read_text(encoding="utf-8")) == []
+
+
+def test_a_compiled_function_that_returns_what_eigen_allocates_is_found() -> None:
+    assert compiled_results("Eigen::VectorXd f(int a,\n  const B& b);\n") == ["f"]
+    assert compiled_results("class A {\n  virtual MatrixXd g() const;\n};") == ["g"]
+    assert compiled_results("inline Eigen::VectorXd h(int a) {\n  return VectorXd(a);\n}") == []
+    assert compiled_results("{\n  Eigen::VectorXd p(10 * n), c(n.rows());\n}") == []

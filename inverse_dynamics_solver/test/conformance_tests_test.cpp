@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"Coriolis torques with the wrong sign", "PowerIsTheRateOfKineticEnergy"},
         Fault{"friction can't be switched off", "FrictionCanBeSwitchedOff"},
         Fault{"friction overflows", "FrictionIsFiniteAtAnyVelocity"},
-        Fault{"wrong drive gain", "MotorCurrentsTimesDriveGainsAreTorques"}),
+        Fault{"a drive gain is zero", "MotorCurrentsTimesDriveGainsAreTorques"}),
     // The name of a test is its fault in letters: `NanIsSwallowed`.
     [](const ::testing::TestParamInfo<Fault>& fault) {
       std::string name = fault.param.fault[0] == '\0' ? "none" : "";

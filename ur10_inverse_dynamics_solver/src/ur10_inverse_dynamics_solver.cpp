@@ -32,40 +32,5 @@ auto InverseDynamicsSolverUR10::configure(
   return use(std::move(model), configuration);
 }
 
-// The current of each term is its torque divided by the gain of its joint, i = K^-1 tau. The
-// methods of the base class check their arguments.
-
-void InverseDynamicsSolverUR10::computeCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
-                                                const ConstVectorRef& qdd,
-                                                VectorRef currents) const {
-  getTorques(q, qd, qdd, currents);
-  currents.array() /= model().drive_gains.array();
-}
-
-void InverseDynamicsSolverUR10::computeInertiaCurrents(const ConstVectorRef& q,
-                                                       MatrixRef currents) const {
-  getInertiaMatrix(q, currents);
-  currents.array().colwise() /= model().drive_gains.array();
-}
-
-void InverseDynamicsSolverUR10::computeCoriolisCurrents(const ConstVectorRef& q,
-                                                        const ConstVectorRef& qd,
-                                                        VectorRef currents) const {
-  getCoriolisVector(q, qd, currents);
-  currents.array() /= model().drive_gains.array();
-}
-
-void InverseDynamicsSolverUR10::computeGravityCurrents(const ConstVectorRef& q,
-                                                       VectorRef currents) const {
-  getGravityVector(q, currents);
-  currents.array() /= model().drive_gains.array();
-}
-
-void InverseDynamicsSolverUR10::computeFrictionCurrents(const ConstVectorRef& qd,
-                                                        VectorRef currents) const {
-  getFrictionVector(qd, currents);
-  currents.array() /= model().drive_gains.array();
-}
-
 }  // namespace v2
 }  // namespace ur10_inverse_dynamics_solver

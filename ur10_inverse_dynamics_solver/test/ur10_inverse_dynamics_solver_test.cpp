@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
@@ -13,6 +14,7 @@ namespace {
 
 using inverse_dynamics_solver::Exception;
 using inverse_dynamics_solver::MotorCurrents;
+using inverse_dynamics_solver::SizeMismatchException;
 using inverse_dynamics_solver::UninitializedException;
 using inverse_dynamics_solver::conformance::expectEntry;
 using inverse_dynamics_solver::conformance::expectReferenceValues;
@@ -67,13 +69,34 @@ TEST(UR10, OffersMotorCurrentsAsAPlugin) {
   const auto* motors = dynamic_cast<const MotorCurrents*>(solver.get());
   ASSERT_NE(motors, nullptr);
   EXPECT_THROW(motors->getDriveGainsMatrix(), UninitializedException);
-  EXPECT_THROW(motors->getCurrents(kQ, kQd, kQdd), UninitializedException);
+  try {
+    motors->getCurrents(kQ, kQd, kQdd);
+    FAIL() << "expected an error";
+  } catch (const UninitializedException& e) {
+    EXPECT_EQ(std::string(e.what()).rfind("getCurrents", 0), 0U) << e.what();
+  }
   solver->initialize();
   const Vector6d gains = vector6(13.5841, 14.2959, 11.3716, 11.2408, 11.7681, 11.7682);
   const Matrix6d K = gains.asDiagonal();
   EXPECT_EQ(motors->getDriveGainsMatrix(), K);
   const Vector6d tau = solver->getTorques(kQ, kQd, kQdd);
   EXPECT_TRUE((K * motors->getCurrents(kQ, kQd, kQdd)).isApprox(tau, 1e-14));
+}
+
+TEST(UR10, CurrentsIntoMemoryOfTheCallerAreThoseByValue) {
+  InverseDynamicsSolverUR10 solver;
+  solver.initialize();
+  Eigen::VectorXd i(6), c(6), g(6), f(6);
+  Eigen::MatrixXd H(6, 6);
+  solver.getCurrents(kQ, kQd, kQdd, i);
+  solver.getInertiaCurrents(kQ, H);
+  solver.getCoriolisCurrents(kQ, kQd, c);
+  solver.getGravityCurrents(kQ, g);
+  solver.getFrictionCurrents(kQd, f);
+  EXPECT_EQ(i, solver.getCurrents(kQ, kQd, kQdd));
+  EXPECT_TRUE((H * kQdd + c + g + f).isApprox(i, 1e-12));
+  Eigen::VectorXd five(5);
+  EXPECT_THROW(solver.getCurrents(kQ, kQd, kQdd, five), SizeMismatchException);
 }
 
 TEST(UR10, JointsAreThoseOfTheRobot) {

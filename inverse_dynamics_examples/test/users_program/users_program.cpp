@@ -155,6 +155,9 @@ TEST(UsersProgram, TakesMotorCurrentsByValue) {
                          motors->getCoriolisCurrents(kQ, kQd) + motors->getGravityCurrents(kQ) +
                          motors->getFrictionCurrents(kQd);
   EXPECT_LT((terms - i).cwiseAbs().maxCoeff(), kRounding);
+  VectorXd mine(6);
+  motors->getCurrents(kQ, kQd, kQdd, mine);
+  EXPECT_EQ(mine, i);
 }
 
 TEST(UsersProgram, DerivesASolver) {
@@ -262,6 +265,7 @@ TEST(UsersProgram, EvaluatesALogOfItsOwn) {
   EXPECT_EQ(estimate.qdd.cols(), kSamples);
   MatrixXd smooth = lowPass(log.qd, 100.0, 10.0);
   smooth = derivative(smooth, 0.01);
+  smooth = lowPassDerivative(log.qd, 100.0, 10.0);
 
   OnlineDerivative online(1, 5.0);
   OnlineDerivative copy = online;

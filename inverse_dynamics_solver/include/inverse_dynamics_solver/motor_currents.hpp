@@ -9,14 +9,16 @@
 
 #include <Eigen/Core>
 
+#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
+
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
 /// The motor currents of each term of the dynamics: torque = K current, K the drive gains.
 ///
-/// Not a base of InverseDynamicsSolver: a solver that has it derives from both, and overrides
-/// `compute...`. Arguments, order, real-time and thread promises, and errors (uninitialized, wrong
-/// size) are those of the solver's method of the same term.
+/// Not a base of InverseDynamicsSolver: a solver that has it derives from both. Arguments, order,
+/// real-time and thread promises, and errors (uninitialized, wrong size) are those of the solver's
+/// method of the same term.
 class MotorCurrents {
  public:
   virtual ~MotorCurrents();
@@ -25,77 +27,75 @@ class MotorCurrents {
   /// @{
 
   /// Currents of a motion [A], n: `K^-1 tau`. All terms, friction too unless it is switched off.
-  Eigen::VectorXd getCurrents(const Eigen::Ref<const Eigen::VectorXd>& q,
-                              const Eigen::Ref<const Eigen::VectorXd>& qd,
-                              const Eigen::Ref<const Eigen::VectorXd>& qdd) const {
-    Eigen::VectorXd currents(motorCount());
-    computeCurrents(q, qd, qdd, currents);
-    return currents;
+  Eigen::VectorXd getCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                              const ConstVectorRef& qdd) const {
+    Eigen::VectorXd i(gains("getCurrents").size());
+    getCurrents(q, qd, qdd, i);
+    return i;
   }
 
   /// Current per acceleration [A s^2/rad], n x n: `K^-1 H(q)`.
-  Eigen::MatrixXd getInertiaCurrents(const Eigen::Ref<const Eigen::VectorXd>& q) const {
-    Eigen::MatrixXd currents(motorCount(), motorCount());
-    computeInertiaCurrents(q, currents);
-    return currents;
+  Eigen::MatrixXd getInertiaCurrents(const ConstVectorRef& q) const {
+    const Eigen::Index n = gains("getInertiaCurrents").size();
+    Eigen::MatrixXd i(n, n);
+    getInertiaCurrents(q, i);
+    return i;
   }
 
   /// Coriolis and centrifugal currents [A], n: `K^-1 C(q, qd) qd`.
-  Eigen::VectorXd getCoriolisCurrents(const Eigen::Ref<const Eigen::VectorXd>& q,
-                                      const Eigen::Ref<const Eigen::VectorXd>& qd) const {
-    Eigen::VectorXd currents(motorCount());
-    computeCoriolisCurrents(q, qd, currents);
-    return currents;
+  Eigen::VectorXd getCoriolisCurrents(const ConstVectorRef& q, const ConstVectorRef& qd) const {
+    Eigen::VectorXd i(gains("getCoriolisCurrents").size());
+    getCoriolisCurrents(q, qd, i);
+    return i;
   }
 
   /// Currents that hold the robot still [A], n: `K^-1 g(q)`.
-  Eigen::VectorXd getGravityCurrents(const Eigen::Ref<const Eigen::VectorXd>& q) const {
-    Eigen::VectorXd currents(motorCount());
-    computeGravityCurrents(q, currents);
-    return currents;
+  Eigen::VectorXd getGravityCurrents(const ConstVectorRef& q) const {
+    Eigen::VectorXd i(gains("getGravityCurrents").size());
+    getGravityCurrents(q, i);
+    return i;
   }
 
   /// Currents against friction [A], n: `K^-1 f(qd)`.
-  Eigen::VectorXd getFrictionCurrents(const Eigen::Ref<const Eigen::VectorXd>& qd) const {
-    Eigen::VectorXd currents(motorCount());
-    computeFrictionCurrents(qd, currents);
-    return currents;
+  Eigen::VectorXd getFrictionCurrents(const ConstVectorRef& qd) const {
+    Eigen::VectorXd i(gains("getFrictionCurrents").size());
+    getFrictionCurrents(qd, i);
+    return i;
   }
 
   /// Drive gains K [N m/A; prismatic N/A], n x n, diagonal.
-  Eigen::MatrixXd getDriveGainsMatrix() const {
-    Eigen::VectorXd gains(motorCount());
-    computeDriveGains(gains);
-    return gains.asDiagonal();
-  }
+  Eigen::MatrixXd getDriveGainsMatrix() const { return gains("getDriveGainsMatrix").asDiagonal(); }
+  /// @}
+
+  /// @name Into memory of the caller, without allocation
+  /// @{
+  void getCurrents(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
+                   VectorRef i) const;
+  void getInertiaCurrents(const ConstVectorRef& q, MatrixRef i) const;
+  void getCoriolisCurrents(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef i) const;
+  void getGravityCurrents(const ConstVectorRef& q, VectorRef i) const;
+  void getFrictionCurrents(const ConstVectorRef& qd, VectorRef i) const;
   /// @}
 
  protected:
-  using ConstVectorRef = Eigen::Ref<const Eigen::VectorXd>;
-  using VectorRef = Eigen::Ref<Eigen::VectorXd>;
-  using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
+  using Gains = Eigen::Map<const Eigen::VectorXd>;
 
   MotorCurrents() = default;
   MotorCurrents(const MotorCurrents&) = default;
   MotorCurrents& operator=(const MotorCurrents&) = default;
 
-  /// @name What a solver computes
-  /// The method of the same name without `compute`. Outputs have motorCount() rows; sizes of inputs
-  /// are the solver's to check.
+  /// @name What a solver implements
   /// @{
 
-  /// n; throws UninitializedException.
-  virtual Eigen::Index motorCount() const = 0;
-  virtual void computeCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
-                               const ConstVectorRef& qdd, VectorRef currents) const = 0;
-  virtual void computeInertiaCurrents(const ConstVectorRef& q, MatrixRef currents) const = 0;
-  virtual void computeCoriolisCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
-                                       VectorRef currents) const = 0;
-  virtual void computeGravityCurrents(const ConstVectorRef& q, VectorRef currents) const = 0;
-  virtual void computeFrictionCurrents(const ConstVectorRef& qd, VectorRef currents) const = 0;
-  /// The diagonal of K.
-  virtual void computeDriveGains(VectorRef gains) const = 0;
+  /// Itself: `return *this;`.
+  virtual const InverseDynamicsSolver& torqueSolver() const = 0;
+
+  /// The diagonal of K, n numbers other than zero. Called after a successful initialize().
+  virtual Gains driveGains() const = 0;
   /// @}
+
+ private:
+  Gains gains(const char* method) const;  // throws UninitializedException
 };
 
 }  // namespace v2

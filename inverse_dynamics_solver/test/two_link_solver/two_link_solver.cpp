@@ -123,31 +123,9 @@ void TwoLinkSolver::computeTorquesBatch(const ConstStates& q, const ConstStates&
   if (has("parts of a batch differ") && tau.count < 4096) tau(0, 0) += 1e-13;
 }
 
-// Drive gains 2 and 4 N m/A.
-void TwoLinkSolver::computeDriveGains(VectorRef gains) const {
-  gains << 2.0, has("wrong drive gain") ? 5.0 : 4.0;
-}
-
-void TwoLinkSolver::computeCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
-                                    const ConstVectorRef& qdd, VectorRef currents) const {
-  currents = Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getTorques(q, qd, qdd);
-}
-
-void TwoLinkSolver::computeInertiaCurrents(const ConstVectorRef& q, MatrixRef currents) const {
-  currents = Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getInertiaMatrix(q);
-}
-
-void TwoLinkSolver::computeCoriolisCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
-                                            VectorRef currents) const {
-  currents = Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getCoriolisVector(q, qd);
-}
-
-void TwoLinkSolver::computeGravityCurrents(const ConstVectorRef& q, VectorRef currents) const {
-  currents = Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getGravityVector(q);
-}
-
-void TwoLinkSolver::computeFrictionCurrents(const ConstVectorRef& qd, VectorRef currents) const {
-  currents = Eigen::DiagonalMatrix<double, 2>(0.5, 0.25) * getFrictionVector(qd);
+TwoLinkSolver::Gains TwoLinkSolver::driveGains() const {
+  static constexpr double kGains[] = {2.0, 4.0}, kZero[] = {2.0, 0.0};  // N m/A
+  return Gains(has("a drive gain is zero") ? kZero : kGains, 2);
 }
 
 }  // namespace two_link_solver

@@ -32,15 +32,8 @@ class TwoLinkSolver : public InverseDynamicsSolver, public MotorCurrents {
                            const States& tau) const override;
   bool inertiaIsPhysicalImpl() const override { return true; }
 
-  Eigen::Index motorCount() const override { return jointCount(); }
-  void computeCurrents(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
-                       VectorRef currents) const override;
-  void computeInertiaCurrents(const ConstVectorRef& q, MatrixRef currents) const override;
-  void computeCoriolisCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
-                               VectorRef currents) const override;
-  void computeGravityCurrents(const ConstVectorRef& q, VectorRef currents) const override;
-  void computeFrictionCurrents(const ConstVectorRef& qd, VectorRef currents) const override;
-  void computeDriveGains(VectorRef gains) const override;
+  const InverseDynamicsSolver& torqueSolver() const override { return *this; }
+  Gains driveGains() const override;
 
  private:
   bool has(const char* fault) const { return fault_ == fault; }

@@ -39,22 +39,10 @@ using Matrix6d = Eigen::Matrix<double, NUMBER_OF_JOINTS, NUMBER_OF_JOINTS>;
 class InverseDynamicsSolverUR10
     : public rigid_body_inverse_dynamics_solver::InverseDynamicsSolverRigidBody,
       public inverse_dynamics_solver::MotorCurrents {
- public:
-  using ConstVectorRef = inverse_dynamics_solver::ConstVectorRef;
-  using VectorRef = inverse_dynamics_solver::VectorRef;
-  using MatrixRef = inverse_dynamics_solver::MatrixRef;
-
  protected:
   JointInfo configure(const inverse_dynamics_solver::Configuration& configuration) override;
-  Eigen::Index motorCount() const override { return jointCount(); }
-  void computeCurrents(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
-                       VectorRef currents) const override;
-  void computeInertiaCurrents(const ConstVectorRef& q, MatrixRef currents) const override;
-  void computeCoriolisCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
-                               VectorRef currents) const override;
-  void computeGravityCurrents(const ConstVectorRef& q, VectorRef currents) const override;
-  void computeFrictionCurrents(const ConstVectorRef& qd, VectorRef currents) const override;
-  void computeDriveGains(VectorRef gains) const override { gains = model().drive_gains; }
+  const InverseDynamicsSolver& torqueSolver() const override { return *this; }
+  Gains driveGains() const override { return Gains(model().drive_gains.data(), jointCount()); }
 };
 
 }  // namespace v2

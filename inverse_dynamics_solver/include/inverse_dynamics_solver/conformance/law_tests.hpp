@@ -179,6 +179,8 @@ TYPED_TEST_P(SolverConformance, MotorCurrentsTimesDriveGainsAreTorques) {
   const auto* motors = dynamic_cast<const MotorCurrents*>(&s);
   if (motors == nullptr) GTEST_SKIP() << "this solver has no MotorCurrents";
   const Eigen::MatrixXd K = motors->getDriveGainsMatrix();
+  ASSERT_EQ(K.rows(), s.jointCount());
+  Eigen::VectorXd i(s.jointCount());
   for (const State& x : this->randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const auto equal = [&](const Eigen::MatrixXd& currents, const Eigen::MatrixXd& torques) {
@@ -189,6 +191,8 @@ TYPED_TEST_P(SolverConformance, MotorCurrentsTimesDriveGainsAreTorques) {
     EXPECT_TRUE(equal(motors->getCoriolisCurrents(x.q, x.qd), s.getCoriolisVector(x.q, x.qd)));
     EXPECT_TRUE(equal(motors->getGravityCurrents(x.q), s.getGravityVector(x.q)));
     EXPECT_TRUE(equal(motors->getFrictionCurrents(x.qd), s.getFrictionVector(x.qd)));
+    motors->getCurrents(x.q, x.qd, x.qdd, i);
+    EXPECT_EQ(i, motors->getCurrents(x.q, x.qd, x.qdd));
   }
 
   // The same errors as the solver's own methods.
