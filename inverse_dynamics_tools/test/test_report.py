@@ -456,7 +456,7 @@ def test_demo_shows_the_simulated_robots_and_how_to_get_the_others(tmp_path, cap
     matches = re.findall(r"computed and measured torques differ by (\S+) N m at most", html)
     assert len(matches) == 2
     assert all(0 < float(match) < 1e-6 for match in matches)
-    assert (out / "ur10_simulated" / "torques.pdf").is_file()
+    assert (out / "ur10_simulated" / "torques.png").is_file()
     assert json.loads((out / "demo.json").read_text())["robots"]["panda_simulated"]["samples"] > 0
     assert cli.main(["demo", "--quick", "--out", str(out)]) == 2
     assert "exists already" in capsys.readouterr().err

@@ -22,9 +22,7 @@ FILES = {
     "metrics.json",
     "plotjuggler.xml",
     "series.npz",
-    "torques.pdf",
     "torques.png",
-    "torques.svg",
 }
 
 
@@ -181,6 +179,17 @@ def test_nothing_is_written_if_the_last_file_fails(tmp_path, evaluation, monkeyp
     with pytest.raises(OutputError, match="No space left on device"):
         write_evaluation(evaluation, tmp_path / "result")
     assert os.listdir(tmp_path) == []
+
+
+def test_figures_are_those_asked_for(tmp_path, evaluation):
+    write_evaluation(evaluation, tmp_path / "none", figures=())
+    assert set(os.listdir(tmp_path / "none")) == FILES - {"torques.png"}
+    write_evaluation(evaluation, tmp_path / "none", figures=("svg", "pdf"), overwrite=True)
+    expected = FILES - {"torques.png"} | {"torques.svg", "torques.pdf"}
+    assert set(os.listdir(tmp_path / "none")) == expected
+    with pytest.raises(OutputError, match="figures: expected some of png, svg, pdf, got 'gif'"):
+        write_evaluation(evaluation, tmp_path / "other", figures=("gif",))
+    assert os.listdir(tmp_path) == ["none"]
 
 
 def test_unknown_storage_is_an_error_and_nothing_is_written(tmp_path, evaluation):

@@ -4,11 +4,7 @@
 from __future__ import annotations
 
 import os
-import platform
-import shlex
 import tempfile
-import traceback
-from importlib import metadata
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -35,6 +31,11 @@ def crash_report(error: Exception, arguments: Sequence[str]) -> str:
 
 
 def _report(error: Exception, arguments: Sequence[str]) -> str:
+    import platform
+    import shlex
+    import traceback
+    from importlib import metadata
+
     versions = [f"Python {platform.python_version()}, {platform.platform()}"]
     for package in _PACKAGES:
         try:

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.base.wording import printable
+from inverse_dynamics.base.wording import printable, shown
+from inverse_dynamics.errors import OutputError
 from inverse_dynamics.figures.thinning import peaks
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from pathlib import Path
     from typing import Any
 
@@ -34,6 +35,8 @@ _MUTED = "#555555"
 
 _MOST_POINTS = 6000  # of a line
 
+FORMATS = ("png", "svg", "pdf")
+
 STYLE: Any = {
     "font.size": 8.5,
     "font.family": "sans-serif",
@@ -42,6 +45,7 @@ STYLE: Any = {
     "axes.edgecolor": "#999999",
     "axes.linewidth": 0.6,
     "axes.grid": True,
+    "axes.titley": 1.0,  # else every panel is laid out again to look for a better place
     "grid.color": "#dddddd",
     "grid.linewidth": 0.5,
     "xtick.color": _MUTED,
@@ -54,25 +58,34 @@ STYLE: Any = {
 }
 
 
-def save_torque_figure(evaluation: Evaluation, file: Path) -> None:
-    """Save torque_figure(); the format is that of the suffix. The same evaluation, the same bytes."""
-    save_figure(lambda: torque_figure(evaluation), file)
+def check_formats(figures: Sequence[str]) -> None:
+    """Raise OutputError unless figures can be saved in these formats."""
+    for wrong in (f for f in figures if f not in FORMATS):
+        raise OutputError(f"figures: expected some of {', '.join(FORMATS)}, got {shown(wrong)}")
 
 
-def save_comparison_figure(comparison: Comparison, file: Path) -> None:
-    """Save comparison_figure(); the format is that of the suffix. The same runs, the same bytes."""
-    save_figure(lambda: comparison_figure(comparison), file)
+def save_torque_figure(evaluation: Evaluation, *files: Path) -> None:
+    """Save torque_figure(); formats are those of the suffixes. The same evaluation, the same bytes."""
+    save_figure(lambda: torque_figure(evaluation), *files)
 
 
-def save_figure(make: Callable[[], Figure], file: Path) -> None:
+def save_comparison_figure(comparison: Comparison, *files: Path) -> None:
+    """Save comparison_figure(); formats are those of the suffixes. The same runs, the same bytes."""
+    save_figure(lambda: comparison_figure(comparison), *files)
+
+
+def save_figure(make: Callable[[], Figure], *files: Path) -> None:
     """Save what `make` draws, in the common style. The same figure, the same bytes."""
+    if not files:
+        return
     import matplotlib as mpl
 
     with mpl.rc_context({**STYLE, "svg.hashsalt": "inverse_dynamics"}):
-        metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(file.suffix)
         figure = make()
         make_printable(figure)
-        figure.savefig(file, dpi=160, metadata=metadata)
+        for file in files:
+            metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(file.suffix)
+            figure.savefig(file, dpi=160, metadata=metadata)
 
 
 def make_printable(figure: Figure) -> None:

@@ -2,7 +2,7 @@
 """A comparison as a directory of files.
 
 comparison.json             root mean square errors of each joint and run; marks the directory
-comparison.png, .svg, .pdf  measured torque and that of each run, over time
+comparison.png              measured torque and that of each run, over time; or .svg, .pdf
 report.html                 all runs on one page
 """
 
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from inverse_dynamics.base.files import Contents, write_text, written_whole
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from inverse_dynamics.evaluation.comparison import Comparison
@@ -25,21 +26,28 @@ CONTENTS = Contents(
 
 
 def write_comparison(
-    comparison: Comparison, directory: Path, *, overwrite: bool = False, title: str = ""
+    comparison: Comparison,
+    directory: Path,
+    *,
+    overwrite: bool = False,
+    title: str = "",
+    figures: Sequence[str] = ("png",),
 ) -> None:
-    """Write all files of a comparison, or none of them. Raises OutputError."""
-    from inverse_dynamics.figures.plots import save_comparison_figure
-    from inverse_dynamics.report import report_comparison, report_run, write_page
-    from inverse_dynamics.results.evaluations import PLOT_FORMATS
+    """Write all files of a comparison, or none of them. Raises OutputError.
 
+    figures: of "png", "svg", "pdf"; none of them: only that of the page.
+    """
+    from inverse_dynamics.figures.plots import check_formats, save_comparison_figure
+    from inverse_dynamics.report import report_comparison, report_run, write_page
+
+    check_formats(figures)
     first = comparison.evaluations[0]
     title = title or f"{first.bag.name}: {' against '.join(comparison.labels)}"
     inputs = [path for e in comparison.evaluations for path in (e.bag, *e.robot.files)]
     with written_whole(directory, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as target:
         text = json.dumps(_figures(comparison), indent=2, allow_nan=False, ensure_ascii=False)
         write_text(target / MARK, text + "\n")
-        for suffix in PLOT_FORMATS:
-            save_comparison_figure(comparison, target / f"comparison.{suffix}")
+        save_comparison_figure(comparison, *(target / f"comparison.{f}" for f in figures))
         runs = [
             report_run(evaluation, label)
             for evaluation, label in zip(comparison.evaluations, comparison.labels, strict=True)

@@ -7,7 +7,7 @@ series.npz        time, q, qd, qdd, effort as recorded, measured and computed to
                   per sample
 bag/              recording with /torques (computed) and /torques_gt (measured)
 plotjuggler.xml   layout for PlotJuggler that opens it
-torques.png, .svg, .pdf
+torques.png     figure; or .svg, .pdf, where they are asked for
 """
 
 from __future__ import annotations
@@ -32,16 +32,18 @@ from inverse_dynamics.evaluation.accelerations import MASKS, Accelerations, Samp
 from inverse_dynamics.evaluation.effort import Effort
 from inverse_dynamics.evaluation.effort_verdict import Candidate, Verdict
 from inverse_dynamics.evaluation.evaluation import Evaluation, JointError
+from inverse_dynamics.figures.plots import FORMATS
 from inverse_dynamics.results.stated_types import check_types
 from inverse_dynamics.robot.robots import Robot
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Storage
 
 SCHEMA = 2
 MARK = "evaluation.json"
-PLOT_FORMATS = ("png", "svg", "pdf")
 
 CONTENTS = Contents(
     MARK,
@@ -50,7 +52,7 @@ CONTENTS = Contents(
         "metrics.json",
         "series.npz",
         "plotjuggler.xml",
-        *(f"torques.{suffix}" for suffix in PLOT_FORMATS),
+        *(f"torques.{suffix}" for suffix in FORMATS),
         "bag/metadata.yaml",
         "bag/bag.db3*",
         "bag/bag.mcap",
@@ -69,15 +71,18 @@ def write_evaluation(
     *,
     overwrite: bool = False,
     storage: Storage | None = None,
+    figures: Sequence[str] = ("png",),
     progress: Progress = no_progress,
 ) -> dict[str, float]:
     """Write all files of an evaluation, or none of them; gives what took how long [s].
 
     overwrite: replace an older result. storage: sqlite3 or mcap; None: that of the recording.
+    figures: of "png", "svg", "pdf"; none of them: no figure.
     Raises OutputError, BagError.
     """
-    from inverse_dynamics.figures.plots import save_torque_figure
+    from inverse_dynamics.figures.plots import check_formats, save_torque_figure
 
+    check_formats(figures)
     start = time.perf_counter()
     inputs = (evaluation.bag, *evaluation.robot.files)
     with written_whole(
@@ -95,10 +100,10 @@ def write_evaluation(
         _write_json(target / MARK, _summary(evaluation))
         np.savez(target / "series.npz", allow_pickle=False, **_series(evaluation))
         written = time.perf_counter()
-        for i, suffix in enumerate(PLOT_FORMATS):
-            progress("plotting", i, len(PLOT_FORMATS))
-            save_torque_figure(evaluation, target / f"torques.{suffix}")
-        progress("plotting", len(PLOT_FORMATS), len(PLOT_FORMATS))
+        if figures:
+            progress("plotting", 0, 1)
+            save_torque_figure(evaluation, *(target / f"torques.{suffix}" for suffix in figures))
+            progress("plotting", 1, 1)
     return {"writing": written - start, "plotting": time.perf_counter() - written}
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.decimals import decimal
+from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import shown
 from inverse_dynamics.errors import UserError
 
@@ -46,6 +47,18 @@ def names(text: str) -> tuple[str, ...]:
     if not all(parts):
         raise argparse.ArgumentTypeError(f"expected names, a,b,c, got '{text}'")
     return parts
+
+
+def figure_formats(text: str) -> tuple[str, ...]:
+    """`png,svg` of an option; `none`: no figure."""
+    from inverse_dynamics.figures.plots import FORMATS
+
+    formats = () if text == "none" else tuple(part.strip() for part in text.split(","))
+    if any(part not in FORMATS for part in formats) or len(set(formats)) < len(formats):
+        raise argparse.ArgumentTypeError(
+            f"expected some of {', '.join(FORMATS)}, such as png,pdf, or none, got {shown(text)}"
+        )
+    return formats
 
 
 def positive_number(text: str) -> float:
@@ -107,11 +120,15 @@ def parameter(text: str) -> tuple[str, Parameter]:
 @contextmanager
 def progress_bar() -> Iterator[Progress]:
     """A bar per kind of work, on stderr, gone at the end; none where stderr isn't a terminal."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
     from inverse_dynamics.verbs.screen import Screen
 
     console = Screen(stderr=True)
+    if not console.is_terminal:
+        yield no_progress
+        return
+
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
     with Progress(
         TextColumn("{task.description:<16}"),
         BarColumn(),
@@ -119,7 +136,6 @@ def progress_bar() -> Iterator[Progress]:
         TimeElapsedColumn(),
         console=console,
         transient=True,
-        disable=not console.is_terminal,
     ) as bars:
         tasks: dict[str, object] = {}
 

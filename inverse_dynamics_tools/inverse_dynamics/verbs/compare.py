@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.verbs.common import names
-from inverse_dynamics.verbs.options import add_runs, add_verb
+from inverse_dynamics.verbs.options import add_figures, add_runs, add_verb
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from inverse_dynamics.evaluation.comparison import Comparison
 
 _EPILOG = """\
@@ -22,9 +24,9 @@ examples:
       what identification and friction bring
 
 results, written whole or not at all:
-  comparison.png .svg .pdf   measured torque, and each run's, over time
-  comparison.json            root mean square errors of each joint and run
-  report.html                all runs on one page
+  comparison.png    measured torque, and each run's, over time; with --figures also .svg, .pdf
+  comparison.json   root mean square errors of each joint and run
+  report.html       all runs on one page
 """
 
 
@@ -55,6 +57,7 @@ def add_parser(
         action="store_true",
         help="replace an older result in that directory, unless it holds other files too",
     )
+    add_figures(parser)
     return parser
 
 
@@ -74,16 +77,19 @@ def run(arguments: argparse.Namespace) -> None:
         )
     comparison = compare([read_evaluation(run) for run in arguments.runs], arguments.labels)
     if arguments.out is not None:
-        write_comparison(comparison, arguments.out, overwrite=arguments.overwrite)
-    _print(comparison, arguments.out)
+        write_comparison(
+            comparison, arguments.out, overwrite=arguments.overwrite, figures=arguments.figures
+        )
+    _print(comparison, arguments.out, arguments.figures)
 
 
-def _print(comparison: Comparison, out: Path | None) -> None:
+def _print(comparison: Comparison, out: Path | None, figures: Sequence[str]) -> None:
     from inverse_dynamics.verbs.screen import Screen
     from inverse_dynamics.verbs.tables import comparison_table
 
     console = Screen()
     console.print(comparison_table(comparison))
     if out is not None:
-        console.print(f"figure         {out / 'comparison.png'} (.svg, .pdf)")
+        for suffix in figures:
+            console.print(f"figure         {out / f'comparison.{suffix}'}")
         console.print(f"page           {out / 'report.html'}")

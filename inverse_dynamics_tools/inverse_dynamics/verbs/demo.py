@@ -22,7 +22,7 @@ examples:
 
 results, written whole or not at all:
   report.html      all robots: 3D view beside the torques, errors, assumptions; needs no network
-  ROBOT/           figures (.png, .svg, .pdf), errors and series of each robot, as of `ids evaluate`
+  ROBOT/           figure (torques.png), errors and series of each robot, as of `ids evaluate`
   ROBOT.gif        the robot in motion beside its torques, for slides
   comparison/      URDF against identified model on the real UR10, as of `ids compare`
 """
@@ -87,7 +87,7 @@ def _print(demo: Demo, console: Screen) -> None:
         console.print(comparison_table(demo.comparison))
     for note in demo.notes:
         console.print(f"note           {note}")
-    console.print(f"figures        {demo.directory}/*/torques.png (.svg, .pdf)")
+    console.print(f"figures        {demo.directory}/*/torques.png")
     for video in demo.videos:
         console.print(f"video          {video}")
     console.print(f"page           {demo.page.absolute()}")

@@ -8,9 +8,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.verbs.common import positive_number, progress_bar
-from inverse_dynamics.verbs.options import add_robot, add_robot_changes, add_verb, robot_changes
+from inverse_dynamics.verbs.options import (
+    add_figures,
+    add_robot,
+    add_robot_changes,
+    add_verb,
+    robot_changes,
+)
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from inverse_dynamics.evaluation.evaluation import Evaluation
 
 _EPILOG = """\
@@ -43,7 +51,8 @@ examples:
 
 results, written whole or not at all:
   metrics.json            errors of each joint
-  torques.png .svg .pdf   measured and computed torques and the error, over time
+  torques.png             measured and computed torques and the error, over time; with --figures
+                          also torques.svg, torques.pdf
   bag/                    recording with /torques (computed) and /torques_gt (measured)
   plotjuggler.xml         layout for PlotJuggler: `plotjuggler --layout plotjuggler.xml`
   series.npz              time, q, qd, qdd, effort (as recorded), measured, computed, for numpy.load()
@@ -92,6 +101,8 @@ def add_parser(
         choices=("sqlite3", "mcap"),
         help="storage of the output recording (default: that of BAG; of a table: sqlite3)",
     )
+    add_figures(parser)
+    parser.add_argument("--verbose", action="store_true", help="say also what took how long")
 
     robot = add_robot_changes(parser, "recording")
     robot.add_argument(
@@ -165,12 +176,15 @@ def run(arguments: argparse.Namespace) -> None:
             out,
             overwrite=arguments.overwrite,
             storage=arguments.storage,
+            figures=arguments.figures,
             progress=progress,
         )
-    _print(evaluation, out, {**evaluation.seconds, **seconds})
+    _print(evaluation, out, arguments.figures)
+    if arguments.verbose:
+        _print_times({**evaluation.seconds, **seconds}, len(evaluation.log))
 
 
-def _print(evaluation: Evaluation, out: Path, seconds: dict[str, float]) -> None:
+def _print(evaluation: Evaluation, out: Path, figures: Sequence[str]) -> None:
     from inverse_dynamics.verbs.screen import Screen
     from inverse_dynamics.verbs.tables import error_table
 
@@ -188,18 +202,20 @@ def _print(evaluation: Evaluation, out: Path, seconds: dict[str, float]) -> None
     for note in evaluation.notes:
         console.print(f"note           {note}")
     console.print(error_table(evaluation))
-    console.print(f"figure         {out / 'torques.png'} (.svg, .pdf)")
+    for suffix in figures:
+        console.print(f"figure         {out / f'torques.{suffix}'}")
     console.print(f"bag            {out / 'bag'}: /torques (computed), /torques_gt (measured)")
     console.print(f"errors         {out / 'metrics.json'}")
-    console.print(f"time           {_times(seconds, len(log))}")
 
 
-def _times(seconds: dict[str, float], messages: int) -> str:
+def _print_times(seconds: dict[str, float], messages: int) -> None:
     """Where the time went: what grows with the recording, and the rest."""
+    from inverse_dynamics.verbs.screen import Screen
+
     growing = ("reading", "accelerations", "torques", "writing")
     each = ", ".join(f"{what} {seconds[what] / messages * 1e6:.1f} µs" for what in growing)
     together = sum(seconds[what] for what in growing)
-    return (
-        f"{each} per message, {together:.1f} s together; solver {seconds['solver']:.1f} s, "
-        f"plots {seconds['plotting']:.1f} s"
+    Screen().print(
+        f"time           {each} per message, {together:.1f} s together; solver "
+        f"{seconds['solver']:.1f} s, plots {seconds['plotting']:.1f} s"
     )

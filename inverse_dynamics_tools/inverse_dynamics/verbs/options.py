@@ -7,7 +7,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from inverse_dynamics.verbs.common import names, parameter, three_numbers
+from inverse_dynamics.verbs.common import figure_formats, names, parameter, three_numbers
 
 # Options of add_robot_changes(), by the names that with_changes() has for them.
 _CHANGES = ("plugin", "friction", "urdf", "root", "tip", "gravity", "joints", "parameters")
@@ -45,6 +45,17 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
         metavar="NAME|FILE",
         required=True,
         help="run configuration: a name that `ids robots` lists, or a YAML file",
+    )
+
+
+def add_figures(parser: argparse.ArgumentParser) -> None:
+    """--figures."""
+    parser.add_argument(
+        "--figures",
+        metavar="FORMATS",
+        type=figure_formats,
+        default=("png",),
+        help="formats of the figure: some of png,svg,pdf, or none (default: png)",
     )
 
 

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How much a command does before and beside its work: what it imports, what it draws.
+
+Times depend on the machine; what costs time doesn't. `benchmarks/small_recording` measures.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_evaluation import RIGID_BODY, URDF, recording
+from test_results import make_evaluation
+
+from inverse_dynamics import Solver, save_torque_figure
+
+# Imports of tens of milliseconds and more, each.
+HEAVY = (
+    "PIL",
+    "dask",
+    "fontTools.subset",
+    "importlib.metadata",
+    "jinja2",
+    "matplotlib",
+    "mujoco",
+    "numpy",
+    "pyarrow",
+    "rich",
+    "rich.progress",
+    "rosbags",
+    "scipy",
+    "yaml",
+    "zipfile",
+)
+RUN = """\
+import sys
+before = set(sys.modules)  # whatever this machine imports at each start
+from inverse_dynamics.cli import main
+try:
+    main(sys.argv[2:])
+except SystemExit:
+    pass
+print(*sorted((set(sys.argv[1].split(",")) & set(sys.modules)) - before), file=sys.stderr)
+"""
+
+
+def imported(*command: object, cwd: Path) -> set[str]:
+    """Those of HEAVY that a command of ids imports."""
+    arguments = [sys.executable, "-c", RUN, ",".join(HEAVY), *map(str, command)]
+    finished = subprocess.run(arguments, cwd=cwd, capture_output=True, text=True, check=True)
+    return set(finished.stderr.splitlines()[-1].split())
+
+
+@pytest.fixture(scope="module")
+def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("recording") / "motion"
+    recording(path, Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0"))
+    return path
+
+
+@pytest.mark.parametrize("command", ["--help", "evaluate --help", "simulate --help", "evaluate"])
+def test_help_imports_nothing_heavy(command: str, tmp_path: Path) -> None:
+    assert imported(*command.split(), cwd=tmp_path) == set()
+
+
+def test_the_list_of_robots_imports_what_it_reads_and_prints(tmp_path: Path) -> None:
+    assert imported("robots", cwd=tmp_path) <= {"rich", "yaml"}
+
+
+def test_an_evaluation_without_a_figure_draws_nothing(bag: Path, tmp_path: Path) -> None:
+    command = ("evaluate", bag, "--robot", "ur10_simulated", "--figures", "none")
+    allowed = {"importlib.metadata", "numpy", "rich", "rosbags", "yaml", "zipfile"}
+    assert imported(*command, cwd=tmp_path) <= allowed
+
+
+def test_a_picture_of_pixels_needs_no_tables_of_fonts(bag: Path, tmp_path: Path) -> None:
+    """PDF takes fonts apart; PNG needs the glyphs alone."""
+    command = ("evaluate", bag, "--robot", "ur10_simulated")
+    assert not {"fontTools.subset", "mujoco", "scipy"} & imported(*command, cwd=tmp_path)
+
+
+def test_a_figure_is_made_once_for_all_formats_and_laid_out_without_trials(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+
+    joints = 3
+    made: list[Axes] = []
+    measured: list[Axis] = []
+    make, measure = Axes.__init__, Axis.get_tightbbox
+    monkeypatch.setattr(Axes, "__init__", lambda a, *x, **k: (made.append(a), make(a, *x, **k))[1])
+    monkeypatch.setattr(
+        Axis, "get_tightbbox", lambda a, *x, **k: (measured.append(a), measure(a, *x, **k))[1]
+    )
+    evaluation = make_evaluation(200, joints)
+    save_torque_figure(evaluation, tmp_path / "a.png", tmp_path / "a.svg")
+    assert len(made) == 2 * joints
+    assert measured == []  # boxes of ticks are asked for to look for a place for titles
+
+
+def test_lines_of_a_figure_are_thinned(tmp_path: Path) -> None:
+    """However long the recording is, what is drawn has some thousand points."""
+    from inverse_dynamics.figures.plots import torque_figure
+
+    evaluation = make_evaluation(30_000, 1)
+    lines = [line for axes in torque_figure(evaluation).axes for line in axes.get_lines()]
+    assert max(len(np.atleast_1d(line.get_xdata())) for line in lines) <= 6002
