@@ -2,9 +2,9 @@
 
 #include "inverse_dynamics_evaluation/log_accelerations.hpp"
 
-#include <cstdio>
 #include <utility>
 
+#include "figures.hpp"
 #include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 
@@ -16,24 +16,13 @@ using Eigen::Index;
 
 constexpr double kMostlyAtRest = 0.5;  // share of motion below which the rest is reported
 
-// A number as `format` writes it.
-std::string formatted(const char* format, double number) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, number);
-  return text;
-}
-
-std::string summaryOf(const FilterChoice& filter) {
-  return "zero-phase low-pass, cut-off " + formatted("%.3g", filter.cutoff) + " Hz (" +
-         (filter.chosen ? "chosen from the data" : "given") + "), then derivative";
-}
-
 std::string seconds(std::int64_t stamp) {
   return formatted("%.9f", static_cast<double>(stamp) * 1e-9) + " s";
 }
 
 // The first of the samples whose stamps don't increase, and the latest stamp before it.
-std::string firstBackwardStamp(const Stamps& stamps, const SampleReport& samples) {
+std::string firstBackwardStamp(const JointLogView::StampsBlock& stamps,
+                               const SampleReport& samples) {
   Index first = 0;
   while (!samples.non_increasing[first]) {
     ++first;
@@ -43,7 +32,8 @@ std::string firstBackwardStamp(const Stamps& stamps, const SampleReport& samples
 }
 
 // How many gaps there are, and the longest.
-std::string gapFinding(const Stamps& stamps, const SampleReport& samples, bool filtered) {
+std::string gapFinding(const JointLogView::StampsBlock& stamps, const SampleReport& samples,
+                       bool filtered) {
   Index behind = samples.gaps.front();
   const auto length = [&](Index k) { return samples.time[k] - samples.time[k - 1]; };
   for (const Index k : samples.gaps) {
@@ -95,19 +85,19 @@ std::string name(AccelerationMethod method) {
 AccelerationMethod accelerationMethod(const std::string& text) {
   std::vector<std::string> names;
   for (const AccelerationMethod method :
-       {AccelerationMethod::kAuto, AccelerationMethod::kLowPass,
-        AccelerationMethod::kBackwardDifference, AccelerationMethod::kGiven}) {
+       {AccelerationMethod::kAuto, AccelerationMethod::kLowPass, AccelerationMethod::kGiven,
+        AccelerationMethod::kBackwardDifference}) {
     if (name(method) == text) {
       return method;
     }
     names.push_back(name(method));
   }
-  throw EvaluationError("accelerations", "method", "one of " + listed(names), "'" + text + "'",
-                        "auto is right for most recordings");
+  throw EvaluationError("accelerations: expected one of " + listed(names) + ", got '" + text + "'");
 }
 
-std::vector<std::string> sampleFindings(const Stamps& stamps, const std::string& clock,
-                                        const SampleReport& samples, const FilterChoice* filter) {
+std::vector<std::string> sampleFindings(const JointLogView::StampsBlock& stamps,
+                                        const std::string& clock, const SampleReport& samples,
+                                        const FilterChoice* filter) {
   const std::string of_all = " of " + std::to_string(stamps.size()) + " samples ";
   const std::string left_out = filter != nullptr ? " (left out of the differentiation)" : "";
   std::vector<std::string> found;
@@ -140,42 +130,51 @@ std::vector<std::string> sampleFindings(const Stamps& stamps, const std::string&
   return found;
 }
 
-LogAccelerations logAccelerations(const JointLog& log, AccelerationMethod method, double cutoff,
-                                  const SampleRules& rules) {
-  if (method == AccelerationMethod::kAuto) {
-    method = log.qdd.size() > 0 && cutoff == 0 ? AccelerationMethod::kGiven
-                                               : AccelerationMethod::kLowPass;
+std::string accelerationSummary(AccelerationMethod method, double cutoff, bool chosen) {
+  if (method == AccelerationMethod::kGiven) {
+    return "given by the recording";
   }
-  const bool filtered = method == AccelerationMethod::kLowPass;
+  if (method != AccelerationMethod::kLowPass) {
+    return name(method) + ", no filter";
+  }
+  return "zero-phase low-pass, cut-off " + formatted("%.3g", cutoff) + " Hz (" +
+         (chosen ? "chosen from the data" : "given") + "), then derivative";
+}
+
+LogAccelerations logAccelerations(const JointLogView& log, AccelerationMethod method, double cutoff,
+                                  const SampleRules& rules) {
+  LogAccelerations result;
+  result.method = method;
+  if (method == AccelerationMethod::kAuto) {
+    result.method = log.qdd.size() > 0 && cutoff == 0 ? AccelerationMethod::kGiven
+                                                      : AccelerationMethod::kLowPass;
+  }
+  const bool filtered = result.method == AccelerationMethod::kLowPass;
   if (!filtered && cutoff != 0) {
-    throw EvaluationError("accelerations", "cut-off", "none, as " + name(method) + " has none",
-                          formatted("%g", cutoff) + " Hz", "use low-pass");
+    throw EvaluationError("accelerations: " + name(result.method) + " has no cut-off, got " +
+                          formatted("%g", cutoff) + " Hz; use low-pass");
   }
   const Eigen::VectorXd time = log.time();
-  LogAccelerations result;
-  FilterChoice filter;
   if (filtered) {
     AccelerationEstimate estimate = lowPassAccelerations(time, log.q, log.qd, log.effort,
                                                          {cutoff, LowPassOptions().order, rules});
     result.qdd = std::move(estimate.qdd);
     result.samples = std::move(estimate.samples);
-    filter = std::move(estimate.filter);
-    result.summary = summaryOf(filter);
-  } else if (method == AccelerationMethod::kGiven) {
-    if (log.qdd.size() == 0) {
-      throw EvaluationError("accelerations", "recorded ones", "some", "none",
-                            "use another method, such as auto");
-    }
-    result.samples = examineSamples(time, log.q, log.qd, log.effort, rules);
-    result.qdd = log.qdd;
-    result.summary = "given by the recording";
+    result.filter = std::move(estimate.filter);
+  } else if (result.method == AccelerationMethod::kGiven && log.qdd.size() == 0) {
+    throw EvaluationError(
+        "accelerations: the recording gives none; expected another method, such as auto");
   } else {
     result.samples = examineSamples(time, log.q, log.qd, log.effort, rules);
-    result.qdd = backwardDifference(time, log.qd);
-    result.summary = name(method) + ", no filter";
+    if (result.method == AccelerationMethod::kGiven) {
+      result.qdd = log.qdd;
+    } else {
+      result.qdd = backwardDifference(time, log.qd);
+    }
   }
-  result.findings =
-      sampleFindings(log.stamps(), name(log.clock), result.samples, filtered ? &filter : nullptr);
+  result.summary = accelerationSummary(result.method, result.filter.cutoff, result.filter.chosen);
+  result.findings = sampleFindings(log.stamps, name(log.clock), result.samples,
+                                   filtered ? &result.filter : nullptr);
   return result;
 }
 

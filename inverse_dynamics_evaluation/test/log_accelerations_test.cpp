@@ -68,10 +68,10 @@ TEST(LogAccelerations, AreThoseRecordedIfThereAreAny) {
   EXPECT_NE(logAccelerations(log, AccelerationMethod::kLowPass).qdd, log.qdd);
   EXPECT_THAT(
       errorOf<EvaluationError>([&] { logAccelerations(log, AccelerationMethod::kGiven, 5.0); }),
-      HasSubstr("given has none, got 5 Hz"));
+      HasSubstr("given has no cut-off, got 5 Hz"));
   EXPECT_THAT(
       errorOf<EvaluationError>([&] { logAccelerations(sine(), AccelerationMethod::kGiven); }),
-      HasSubstr("recorded ones: expected some, got none"));
+      HasSubstr("the recording gives none; expected another method, such as auto"));
 }
 
 TEST(LogAccelerations, SayWhatIsOddAboutTheSamples) {
@@ -133,10 +133,10 @@ TEST(LogAccelerations, SayWhatTheDataCannotTell) {
 TEST(LogAccelerations, RefuseAnUnknownMethodAndACutOffWithoutAFilter) {
   EXPECT_THAT(
       errorOf<EvaluationError>([] { accelerationMethod("savgol"); }),
-      HasSubstr("expected one of auto, low-pass, backward-difference, given, got 'savgol'"));
+      HasSubstr("expected one of auto, low-pass, given, backward-difference, got 'savgol'"));
   EXPECT_THAT(errorOf<EvaluationError>(
                   [] { logAccelerations(sine(), AccelerationMethod::kBackwardDifference, 5.0); }),
-              HasSubstr("backward-difference has none, got 5 Hz"));
+              HasSubstr("backward-difference has no cut-off, got 5 Hz"));
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// The exceptions of this package: samples that can't be evaluated, recordings that can't be used.
+/// The exceptions of this package: samples that can't be evaluated, recordings and run configurations
+/// that can't be used.
 ///
 ///     throw EvaluationError("metrics", "samples", "3 columns", "2 columns", "pair each computed "
 ///                           "sample with its measured one");
@@ -25,6 +26,17 @@ class EvaluationError : public std::invalid_argument {
                   const std::string& got, const std::string& remedy)
       : std::invalid_argument(where + ": " + what + ": expected " + expected + ", got " + got +
                               "; " + remedy) {}
+
+  /// That text.
+  explicit EvaluationError(const std::string& text) : std::invalid_argument(text) {}
+};
+
+/// A run configuration that doesn't say what is asked of it.
+///
+/// The text says where, what was expected, what was found, and the remedy.
+class ConfigurationError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 /// A recording that can't be read or doesn't hold what is asked of it.

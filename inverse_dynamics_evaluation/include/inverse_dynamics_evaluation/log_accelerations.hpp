@@ -10,6 +10,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,32 @@
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
+
+/// What an evaluation needs of a JointLog, looked at where it lies.
+struct JointLogView {
+  using Block = Eigen::Ref<const Eigen::MatrixXd>;
+  using StampsBlock = Eigen::Ref<const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>>;
+
+  StampsBlock stamps;  ///< N; ns; those that are the time of the samples
+  Clock clock;         ///< whose they are
+  Block q, qd;         ///< n x N; rad, rad/s (prismatic m, m/s)
+  Block effort;        ///< n x N; as recorded; empty (0 x 0) if none was
+  Block qdd;           ///< n x N; rad/s^2 (prismatic m/s^2); empty (0 x 0) if none was
+
+  JointLogView(const StampsBlock& log_stamps, Clock log_clock, const Block& log_q,
+               const Block& log_qd, const Block& log_effort, const Block& log_qdd)
+      : stamps(log_stamps),
+        clock(log_clock),
+        q(log_q),
+        qd(log_qd),
+        effort(log_effort),
+        qdd(log_qdd) {}
+  JointLogView(const JointLog& log)  // NOLINT(google-explicit-constructor)
+      : JointLogView(log.stamps(), log.clock, log.q, log.qd, log.effort, log.qdd) {}
+
+  /// N; s since the first sample.
+  OwnedVector time() const { return (stamps.array() - stamps[0]).cast<double>() * 1e-9; }
+};
 
 /// Where accelerations come from.
 enum class AccelerationMethod {
@@ -36,11 +63,18 @@ AccelerationMethod accelerationMethod(const std::string& name);
 
 /// Accelerations, how they came about, and what was found in the samples.
 struct LogAccelerations {
-  OwnedMatrix qdd;                    ///< n x N; rad/s^2 (prismatic m/s^2)
+  OwnedMatrix qdd;                                           ///< n x N; rad/s^2 (prismatic m/s^2)
+  AccelerationMethod method = AccelerationMethod::kLowPass;  ///< the one taken; not kAuto
+  FilterChoice filter;                ///< what the low-pass did; all zero where there was none
   std::string summary;                ///< how they came about, in words
   SampleReport samples;               ///< what was found
   std::vector<std::string> findings;  ///< what is odd about the samples, a sentence each
 };
+
+/// How accelerations came about, in words, as titles and tables show it.
+///
+/// @param cutoff  Hz; of the low-pass. @param chosen  whether it was chosen from the data.
+std::string accelerationSummary(AccelerationMethod method, double cutoff, bool chosen);
 
 /// Accelerations of a log, as recorded or estimated from its velocities.
 ///
@@ -48,7 +82,7 @@ struct LogAccelerations {
 /// @param rules   which faults of the samples are acted upon.
 /// @throws EvaluationError as lowPassAccelerations() and backwardDifference() do; a cut-off for a
 ///         method that has none; kGiven where none are recorded.
-LogAccelerations logAccelerations(const JointLog& log,
+LogAccelerations logAccelerations(const JointLogView& log,
                                   AccelerationMethod method = AccelerationMethod::kAuto,
                                   double cutoff = 0, const SampleRules& rules = {});
 
@@ -58,8 +92,9 @@ LogAccelerations logAccelerations(const JointLog& log,
 /// @param clock    whose stamps they are: `header` or `receive`.
 /// @param samples  what examineSamples() found.
 /// @param filter   what the low-pass did; nullptr where there was none.
-std::vector<std::string> sampleFindings(const Stamps& stamps, const std::string& clock,
-                                        const SampleReport& samples, const FilterChoice* filter);
+std::vector<std::string> sampleFindings(const JointLogView::StampsBlock& stamps,
+                                        const std::string& clock, const SampleReport& samples,
+                                        const FilterChoice* filter);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_evaluation

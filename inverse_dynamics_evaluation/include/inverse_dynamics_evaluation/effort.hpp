@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// What recorded efforts mean, and so what is compared with what.
+///
+///     Effort effort = statedEffort(options);
+///     if (effort.meaning == kAutomatic) effort = effortOfData(sums.verdict(), options);
+///     std::cout << effort.summary() << "\n";   // current, as told, with drive gains 13 14 N m/A
+///
+/// The meaning is stated by the user, else by the recording's format, else by the run configuration;
+/// `auto` has the data tell: see effort_verdict.hpp.
+
+#pragma once
+
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inverse_dynamics_evaluation/effort_verdict.hpp"
+
+namespace inverse_dynamics_evaluation {
+inline namespace v2 {
+
+/// Statement that the data are to tell what efforts mean.
+inline constexpr const char* kAutomatic = "auto";
+
+/// What is stated of efforts: a meaning, or `auto`. And how texts name who states it.
+struct EffortOptions {
+  std::optional<std::string> option;    ///< by the user; none: nothing
+  std::string format;                   ///< by the recording's format; empty: nothing
+  std::string configuration = kTorque;  ///< by the run configuration
+  std::vector<double> drive_gains;      ///< n; N m/A (prismatic N/A); driveGains(); or none
+  std::string robot;                    ///< name of the run configuration
+  std::string file;                     ///< its file
+  std::string plugin;                   ///< of the solver
+};
+
+/// What recorded efforts mean, and how that is known.
+struct Effort {
+  std::string meaning = kTorque;
+  std::string stated_by;                 ///< in words
+  std::vector<double> drive_gains;       ///< n; N m/A (prismatic N/A), of currents
+  std::optional<EffortVerdict> verdict;  ///< of the data, if they were asked
+
+  /// In words, as tables show it.
+  std::string summary() const;
+
+  /// Measured torques n x N [N m] of recorded efforts; without gravity if these are.
+  OwnedMatrix torques(const Eigen::Ref<const Eigen::MatrixXd>& effort) const;
+};
+
+/// Drive gains of a model identified in motor currents; none of any other.
+std::vector<double> driveGainsOf(const inverse_dynamics_solver::InverseDynamicsSolver& solver);
+
+/// The run configuration's drive gains if it has any, else the solver's, if there are any.
+///
+/// @throws ConfigurationError: not one per joint; one that isn't above 0.
+std::vector<double> driveGains(const std::vector<double>& configured, const std::string& file,
+                               const inverse_dynamics_solver::InverseDynamicsSolver& solver);
+
+/// What is stated; meaning `auto` where the data are to tell.
+///
+/// @throws EvaluationError: another word. @throws ConfigurationError: currents without drive gains.
+Effort statedEffort(const EffortOptions& options);
+
+/// What the data tell, else what is stated without them.
+///
+/// @throws ConfigurationError: currents without drive gains.
+Effort effortOfData(EffortVerdict verdict, const EffortOptions& options);
+
+/// What a reader of the results should know of it, a sentence each.
+///
+/// @param all_zero    whether all recorded efforts are.
+/// @param own_gains   driveGainsOf() the solver.
+std::vector<std::string> effortNotes(const Effort& effort, const EffortOptions& options,
+                                     bool all_zero, const std::vector<double>& own_gains);
+
+}  // namespace v2
+}  // namespace inverse_dynamics_evaluation

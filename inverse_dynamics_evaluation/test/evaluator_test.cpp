@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "inverse_dynamics_evaluation/evaluator.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "error_of.hpp"
+#include "inverse_dynamics_evaluation/error.hpp"
+
+namespace inverse_dynamics_evaluation {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+constexpr double kRounding = 1e-12;
+
+// tau = (2 qdd_1 + 10 cos q_1, 3 qdd_2 + 20).
+class TwoJointSolver : public inverse_dynamics_solver::InverseDynamicsSolver {
+ public:
+  TwoJointSolver() { initialize(); }
+
+ protected:
+  using ConstVector = inverse_dynamics_solver::ConstVectorRef;
+  using Vector = inverse_dynamics_solver::VectorRef;
+
+  JointInfo configure(const inverse_dynamics_solver::Configuration&) override {
+    return {{"a", "b"}, {"the solver warns"}};
+  }
+  void computeInertiaMatrix(const ConstVector&,
+                            inverse_dynamics_solver::MatrixRef H) const override {
+    H << 2, 0, 0, 3;
+  }
+  void computeCoriolisVector(const ConstVector&, const ConstVector&, Vector c) const override {
+    c.setZero();
+  }
+  void computeGravityVector(const ConstVector& q, Vector g) const override {
+    g << 10 * std::cos(q[0]), 20;
+  }
+  bool inertiaIsPhysicalImpl() const override { return true; }
+};
+
+MatrixXd gravityOf(const MatrixXd& q) {
+  MatrixXd gravity = MatrixXd::Constant(2, q.cols(), 20);
+  gravity.row(0) = 10 * q.row(0).array().cos();
+  return gravity;
+}
+
+// Torques of the motion, with recorded accelerations, and 0.25 and -0.5 N m more; longer than the
+// blocks that a solver gets.
+JointLog recorded(Index count = 10000) {
+  JointLog log;
+  log.joint_names = {"a", "b"};
+  log.header_stamps = Stamps::LinSpaced(count, 0, 10'000'000 * (count - 1));
+  log.receive_stamps = log.header_stamps;
+  const Eigen::RowVectorXd t = log.time().transpose();
+  log.q.resize(2, count);
+  log.q << t.array().sin().matrix(), t.array().cos().matrix();
+  log.qd.resize(2, count);
+  log.qd << t.array().cos().matrix(), -t.array().sin().matrix();
+  log.qdd = -log.q;
+  log.effort = Eigen::Vector2d(2, 3).asDiagonal() * log.qdd + gravityOf(log.q);
+  log.effort.row(0).array() += 0.25;
+  log.effort.row(1).array() -= 0.5;
+  return log;
+}
+
+EvaluationOptions options(const std::string& effort) {
+  EvaluationOptions options;
+  options.effort.option = effort;
+  options.effort.robot = "two_joints";
+  options.effort.file = "two_joints.yaml";
+  options.effort.plugin = "package/TwoJointSolver";
+  options.recording = "bag";
+  options.topic = "/joint_states";
+  options.units = {"N m", "N"};
+  options.notes = {"the reader notes"};
+  return options;
+}
+
+// Collects what is handed over.
+struct Series {
+  explicit Series(Index count)
+      : qdd(2, count), computed(MatrixXd::Zero(2, count)), measured(2, count) {}
+  TakeSamples take() {
+    return [this](const EvaluatedSamples& next) {
+      EXPECT_EQ(next.first, taken);
+      qdd.middleCols(taken, next.qdd.cols()) = next.qdd;
+      computed.middleCols(taken, next.computed.cols()) = next.computed;
+      measured.middleCols(taken, next.measured.cols()) = next.measured;
+      taken += next.computed.cols();
+    };
+  }
+  MatrixXd qdd, computed, measured;
+  Index taken = 0;
+};
+
+TEST(Evaluate, ComparesComputedWithMeasuredTorques) {
+  const JointLog log = recorded();
+  Series series(10000);
+  const Evaluation evaluation = evaluate(log, TwoJointSolver(), options(kTorque), series.take());
+  EXPECT_EQ(series.taken, 10000);
+  EXPECT_EQ(evaluation.joint_names, (std::vector<std::string>{"a", "b"}));
+  EXPECT_NEAR(evaluation.errors[0].bias, -0.25, kRounding);
+  EXPECT_NEAR(evaluation.errors[1].rmse, 0.5, kRounding);
+  EXPECT_EQ(evaluation.errors[0].count, 10000);
+  EXPECT_EQ(evaluation.accelerations.summary, "given by the recording");
+  EXPECT_EQ(series.qdd, log.qdd);
+  EXPECT_EQ(series.measured, log.effort);
+  const std::vector<JointMetrics> whole = metrics(series.computed, series.measured);
+  EXPECT_NEAR(evaluation.errors[0].r2, whole[0].r2, kRounding);
+  EXPECT_EQ(evaluation.notes, (std::vector<std::string>{"the solver warns", "the reader notes"}));
+}
+
+TEST(Evaluate, TakesAccelerationsOfTheLowPassWhereACutOffIsGiven) {
+  const JointLog log = recorded();
+  EvaluationOptions filtered = options(kTorque);
+  filtered.cutoff = 5.0;
+  Series series(10000);
+  const Evaluation evaluation = evaluate(log, TwoJointSolver(), filtered, series.take());
+  const LogAccelerations expected = logAccelerations(log, AccelerationMethod::kLowPass, 5.0);
+  EXPECT_EQ(series.qdd, expected.qdd);
+  EXPECT_EQ(evaluation.accelerations.method, AccelerationMethod::kLowPass);
+  EXPECT_EQ(evaluation.accelerations.filter.cutoff, 5.0);
+}
+
+TEST(Evaluate, LeavesSamplesOutOfTheSecondMetricsAlone) {
+  JointLog log = recorded(2000);
+  for (Index k = 10; k < 2000; k += 10) {  // a driver that repeats itself, with another effort
+    log.q.col(k) = log.q.col(k - 1);
+    log.qd.col(k) = log.qd.col(k - 1);
+    log.effort.col(k) = log.effort.col(k - 1);
+  }
+  const Evaluation evaluation = evaluate(log, TwoJointSolver(), options(kTorque));
+  EXPECT_EQ(evaluation.errors[0].count, 2000);
+  EXPECT_EQ(evaluation.errors_of_kept[0].count, 1801);
+  EXPECT_THAT(evaluation.notes, Contains(HasSubstr("199 of 2000 samples repeat the one before")));
+}
+
+TEST(Evaluate, TakesCurrentsTimesDriveGains) {
+  JointLog log = recorded();
+  const MatrixXd torques = log.effort;
+  log.effort = Eigen::Vector2d(0.1, 0.2).asDiagonal() * torques;
+  EvaluationOptions currents = options(kCurrent);
+  currents.effort.drive_gains = {10, 5};
+  Series series(10000);
+  const Evaluation evaluation = evaluate(log, TwoJointSolver(), currents, series.take());
+  EXPECT_NEAR(evaluation.errors[0].bias, -0.25, kRounding);
+  EXPECT_LT((series.measured - torques).cwiseAbs().maxCoeff(), kRounding);
+  EXPECT_EQ(evaluation.effort.summary(), "current, as told, with drive gains 10 5 N m/A");
+}
+
+TEST(Evaluate, LeavesGravityOutOfBothWhereEffortsAreWithoutIt) {
+  JointLog log = recorded();
+  log.effort -= gravityOf(log.q);
+  for (const char* stated : {kTorqueWithoutGravity, kAutomatic}) {
+    Series series(10000);
+    const Evaluation evaluation = evaluate(log, TwoJointSolver(), options(stated), series.take());
+    EXPECT_EQ(evaluation.effort.meaning, kTorqueWithoutGravity);
+    EXPECT_NEAR(evaluation.errors[0].bias, -0.25, kRounding);
+    EXPECT_NEAR(series.computed(1, 0), -3, kRounding);
+    EXPECT_EQ(evaluation.effort.verdict.has_value(), std::string(stated) == kAutomatic);
+    EXPECT_THAT(evaluation.notes, Contains("computed torques are shown without gravity, as efforts "
+                                           "were recorded"));
+  }
+}
+
+TEST(Evaluate, ComputesTorquesWhereNoEffortsAreRecorded) {
+  JointLog log = recorded(50);
+  log.effort.resize(0, 0);
+  Series series(50);
+  const Evaluation evaluation =
+      evaluate(log, TwoJointSolver(), options(kTorque), [&](const EvaluatedSamples& next) {
+        EXPECT_EQ(next.measured.size(), 0);
+        series.computed = next.computed;
+      });
+  EXPECT_TRUE(evaluation.errors.empty());
+  EXPECT_NEAR(series.computed(1, 0), 3 * log.qdd(1, 0) + 20, kRounding);
+}
+
+TEST(Evaluate, RefusesWhatCannotBeEvaluated) {
+  const TwoJointSolver solver;
+  EvaluationOptions given = options(kTorque);
+  given.method = AccelerationMethod::kGiven;
+  JointLog log = recorded(50);
+  log.qdd.resize(0, 0);
+  EXPECT_EQ(errorOf<EvaluationError>([&] { evaluate(log, solver, given); }),
+            "bag: /joint_states: accelerations: the recording gives none; expected another method, "
+            "such as auto");
+  log = recorded(50);
+  log.qdd(1, 7) = 1e13;
+  EXPECT_EQ(errorOf<EvaluationError>([&] { evaluate(log, solver, options(kTorque)); }),
+            "bag: sample 8: computed torque of joint b: expected at most 1e+12 N, got 3e+13; check "
+            "masses, gravity and units");
+  log.qdd(1, 7) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(evaluate(log, solver, options(kTorque)), EvaluationError);
+  EXPECT_EQ(errorOf<EvaluationError>([&] { evaluate(log, solver, options("force")); }),
+            "effort, as told: expected one of torque, current, torque_without_gravity, auto, got "
+            "'force'");
+  EXPECT_THAT(errorOf<ConfigurationError>([&] { evaluate(log, solver, options(kCurrent)); }),
+              HasSubstr("robot two_joints: effort means current, as told: expected drive gains "
+                        "[N m/A], got none from two_joints.yaml nor from package/TwoJointSolver"));
+}
+
+TEST(DriveGains, AreOnePositiveNumberPerJoint) {
+  const TwoJointSolver solver;
+  EXPECT_TRUE(driveGains({}, "file.yaml", solver).empty());
+  EXPECT_EQ(driveGains({2, 3}, "file.yaml", solver), (std::vector<double>{2, 3}));
+  EXPECT_EQ(errorOf<ConfigurationError>([&] { driveGains({2}, "file.yaml", solver); }),
+            "file.yaml: drive_gains: expected 2 figures, one per joint of the chain (a, b), got 1");
+  EXPECT_EQ(errorOf<ConfigurationError>([&] {
+              driveGains({2, -3}, "file.yaml", solver);
+            }),
+            "file.yaml: drive_gains: expected figures above zero [N m/A], got 2 -3");
+}
+
+TEST(RulesWithout, SwitchOffTheRulesThatAreNamed) {
+  EXPECT_FALSE(rulesWithout({"repeated"}).repeated);
+  EXPECT_TRUE(rulesWithout({"repeated"}).time_base);
+  EXPECT_FALSE(rulesWithout({"non-increasing"}).non_increasing);
+  EXPECT_FALSE(rulesWithout({"time-base"}).time_base);
+  EXPECT_FALSE(rulesWithout({"start-transient"}).start_transient);
+  EXPECT_THAT(errorOf<EvaluationError>([] { rulesWithout({"all"}); }), HasSubstr("got 'all'"));
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_evaluation
