@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.data.joint_state_cdr import Block
 
 Floats = NDArray[np.float64]
@@ -267,6 +268,114 @@ def low_pass_gain(
 def metrics(
     computed: ArrayLike, measured: ArrayLike, mask: Mask | None = None
 ) -> list[JointMetrics]: ...
+
+class EffortCandidate:
+    """A meaning of efforts: inverse_dynamics_evaluation/effort_verdict.hpp."""
+
+    def __init__(self, meaning: str, error: float, margin: float, worse_in: int) -> None: ...
+    @property
+    def meaning(self) -> str: ...
+    @property
+    def error(self) -> float: ...
+    @property
+    def margin(self) -> float: ...
+    @property
+    def worse_in(self) -> int: ...
+
+class EffortVerdict:
+    """Candidates, the best first: inverse_dynamics_evaluation/effort_verdict.hpp."""
+
+    def __init__(
+        self, candidates: list[EffortCandidate], sure: bool, stretches: int, reason: str = ""
+    ) -> None: ...
+    @property
+    def candidates(self) -> list[EffortCandidate]: ...
+    @property
+    def sure(self) -> bool: ...
+    @property
+    def stretches(self) -> int: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def rivals(self) -> list[str]: ...
+    @property
+    def summary(self) -> str: ...
+
+class EffortOptions:
+    """What is stated of efforts: inverse_dynamics_evaluation/effort.hpp."""
+
+    def __init__(
+        self,
+        *,
+        option: str | None,
+        format: str,
+        configuration: str,
+        drive_gains: list[float],
+        robot: str,
+        file: str,
+        plugin: str,
+    ) -> None: ...
+
+class Evaluated:
+    """What came of evaluate(): inverse_dynamics_evaluation/evaluator.hpp."""
+
+    @property
+    def method(self) -> str: ...
+    @property
+    def filter(self) -> FilterChoice: ...
+    @property
+    def samples(self) -> SampleReport: ...
+    @property
+    def qdd(self) -> Floats: ...
+    @property
+    def computed(self) -> Floats: ...
+    @property
+    def meaning(self) -> str: ...
+    @property
+    def stated_by(self) -> str: ...
+    @property
+    def drive_gains(self) -> list[float]: ...
+    @property
+    def verdict(self) -> EffortVerdict | None: ...
+    @property
+    def errors(self) -> list[JointMetrics]: ...
+    @property
+    def errors_of_kept(self) -> list[JointMetrics]: ...
+    @property
+    def acceleration_seconds(self) -> float: ...
+    @property
+    def torque_seconds(self) -> float: ...
+    @property
+    def notes(self) -> list[str]: ...
+
+def compare_meanings(
+    computed: ArrayLike,
+    gravity: ArrayLike,
+    effort: ArrayLike,
+    drive_gains: list[float] = ...,
+    mask: Mask | None = None,
+) -> EffortVerdict: ...
+def effort_summary(
+    meaning: str, stated_by: str, drive_gains: list[float], verdict: EffortVerdict | None
+) -> str: ...
+def drive_gains(solver: Solver, configured: list[float], file: str) -> list[float]: ...
+def evaluate(
+    solver: Solver,
+    log: JointLog,
+    *,
+    method: str,
+    cutoff: float | None,
+    without_rules: list[str],
+    effort: EffortOptions,
+    recording: str,
+    topic: str,
+    units: list[str],
+    notes: list[str],
+) -> Evaluated: ...
+def acceleration_summary(method: str, cutoff: float | None, chosen: bool) -> str: ...
+def check_torques(
+    where: str, joint_names: list[str], units: list[str], computed: ArrayLike
+) -> None: ...
 
 class Status(Enum):
     """How an update ended: inverse_dynamics_control/status.hpp."""

@@ -4,7 +4,6 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
-#include <chain_dynamics/owned.hpp>
 #include <inverse_dynamics_evaluation/accelerations.hpp>
 #include <inverse_dynamics_evaluation/log_accelerations.hpp>
 #include <inverse_dynamics_evaluation/low_pass.hpp>
@@ -35,14 +34,6 @@ using evaluation::SampleRules;
 using Vector = Eigen::Map<const Eigen::VectorXd>;
 
 Vector vectorOf(const Array& array) { return {array.data(), array.size()}; }
-
-/// A matrix, one state a column, as an array, one state a row; its memory changes hands.
-py::array rowsOf(chain_dynamics::OwnedMatrix matrix) {
-  auto* owned = new chain_dynamics::OwnedMatrix(std::move(matrix));
-  const py::capsule owner(owned,
-                          [](void* p) { delete static_cast<chain_dynamics::OwnedMatrix*>(p); });
-  return Array({owned->cols(), owned->rows()}, owned->data(), owner);
-}
 
 py::array backwardDifference(const Array& time, const Array& qd) {
   const ConstMap qd_in = states(qd, "qd");

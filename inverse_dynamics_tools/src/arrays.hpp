@@ -6,8 +6,10 @@
 #include <pybind11/numpy.h>
 
 #include <Eigen/Core>
+#include <chain_dynamics/owned.hpp>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace inverse_dynamics_tools {
@@ -44,6 +46,14 @@ inline Array like(const Array& array) {
 inline Map columns(Array& array) {
   const auto n = array.shape(array.ndim() - 1);
   return {array.mutable_data(), n, array.ndim() == 1 ? 1 : array.shape(0)};
+}
+
+/// A matrix, one state a column, as an array, one state a row; its memory changes hands.
+inline pybind11::array rowsOf(chain_dynamics::OwnedMatrix matrix) {
+  using chain_dynamics::OwnedMatrix;
+  auto* owned = new OwnedMatrix(std::move(matrix));
+  const pybind11::capsule owner(owned, [](void* p) { delete static_cast<OwnedMatrix*>(p); });
+  return Array({owned->cols(), owned->rows()}, owned->data(), owner);
 }
 
 }  // namespace inverse_dynamics_tools

@@ -13,6 +13,7 @@
 #include "accelerations.hpp"
 #include "control.hpp"
 #include "errors.hpp"
+#include "evaluator.hpp"
 #include "joint_log.hpp"
 #include "metrics.hpp"
 #include "solver.hpp"
@@ -24,5 +25,6 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindAccelerations(module);
   inverse_dynamics_tools::bindJointLog(module);
   inverse_dynamics_tools::bindMetrics(module);
+  inverse_dynamics_tools::bindEvaluator(module);
   inverse_dynamics_tools::bindControl(module);
 }

@@ -38,6 +38,8 @@ void translate(std::exception_ptr thrown) {
     raise("SolverError", e);
   } catch (const inverse_dynamics_evaluation::EvaluationError& e) {
     raise("EvaluationError", e);
+  } catch (const inverse_dynamics_evaluation::ConfigurationError& e) {
+    raise("RobotError", e);
   } catch (const inverse_dynamics_evaluation::RecordingError& e) {
     raise("BagError", e);
   } catch (const chain_dynamics::ModelError& e) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Joint accelerations of a recording, estimated in C++, and what was found in its samples.
+"""How joint accelerations of a recording were estimated, in C++, and what was found in its samples.
 
 The rules are those of inverse_dynamics_evaluation/samples.hpp. What they find is said in words in
 any case; they are acted upon unless they are switched off.
@@ -11,11 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
-
-    from inverse_dynamics._core import FilterChoice, SampleReport
-    from inverse_dynamics.base.arrays import Floats, Mask
-    from inverse_dynamics.data.joint_log import JointLog
+    from inverse_dynamics._core import Evaluated, SampleReport
+    from inverse_dynamics.base.arrays import Mask
 
 # What each rule does, as --help says it.
 RULES = {
@@ -39,12 +36,9 @@ class Accelerations:
     @property
     def summary(self) -> str:
         """In words, as titles and tables show it."""
-        if self.method == "given":
-            return "given by the recording"
-        if self.cutoff is None:
-            return f"{self.method}, no filter"
-        how = "chosen from the data" if self.chosen else "given"
-        return f"zero-phase low-pass, cut-off {self.cutoff:.3g} Hz ({how}), then derivative"
+        from inverse_dynamics import _core
+
+        return _core.acceleration_summary(self.method, self.cutoff, self.chosen)
 
 
 # Names of the masks of Samples, as files have them.
@@ -69,63 +63,15 @@ class Samples:
         return int((~self.kept).sum())
 
 
-def estimate_accelerations(
-    log: JointLog,
-    method: str = "auto",
-    cutoff: float | None = None,
-    without_rules: Collection[str] = (),
-) -> tuple[Floats, Accelerations, Samples, list[str]]:
-    """Accelerations (N, n) of a recorded motion, how they came about, what was found, in words too.
-
-    method: one of METHODS. cutoff: Hz, of a low-pass; None: chosen from the data. without_rules:
-    those of RULES that aren't to be acted upon.
-
-    Raises EvaluationError.
-    """
-    from inverse_dynamics import _core
-    from inverse_dynamics.errors import EvaluationError
-    from inverse_dynamics.robot.choices import METHODS
-
-    if method not in METHODS:
-        raise EvaluationError(
-            f"accelerations: expected one of {', '.join(METHODS)}, got '{method}'"
-        )
-    for rule in without_rules:
-        if rule not in RULES:
-            raise EvaluationError(f"rules: expected some of {', '.join(RULES)}, got '{rule}'")
-    rules = _core.SampleRules(
-        **{rule.replace("-", "_"): rule not in without_rules for rule in RULES}
-    )
-    time = log.time
-    if method == "auto":
-        method = "low-pass" if log.qdd is None or cutoff is not None else "given"
-    if method in ("given", "backward-difference"):
-        if cutoff is not None:
-            raise EvaluationError(
-                f"accelerations: {method} has no cut-off, got {cutoff:g} Hz; use low-pass"
-            )
-        report = _core.examine_samples(time, log.q, log.qd, log.effort, rules)
-        qdd = _core.backward_difference(time, log.qd) if method != "given" else log.qdd
-        if qdd is None:
-            raise EvaluationError(
-                "accelerations: the recording gives none; expected another method, such as auto"
-            )
-        return qdd, Accelerations(method), _samples(report), _findings(log, report, None)
-    qdd, choice, report = _core.low_pass_accelerations(
-        time, log.q, log.qd, log.effort, cutoff or 0.0, rules
-    )
-    how = Accelerations("low-pass", choice.cutoff, choice.chosen, choice.order, choice.time_base)
-    return qdd, how, _samples(report), _findings(log, report, choice)
+def accelerations_of(found: Evaluated) -> Accelerations:
+    """How the extension module has estimated them."""
+    if found.method != "low-pass":
+        return Accelerations(found.method)
+    choice = found.filter
+    return Accelerations(found.method, choice.cutoff, choice.chosen, choice.order, choice.time_base)
 
 
-def _findings(log: JointLog, report: SampleReport, choice: FilterChoice | None) -> list[str]:
-    """What is odd about the samples and what follows, one sentence each."""
-    from inverse_dynamics import _core
-
-    return _core.sample_findings(log.stamps, log.clock, report, choice)
-
-
-def _samples(report: SampleReport) -> Samples:
-    names = ("repeated", "non_increasing", "start_transient", "isolated", "kept")
-    masks = {name: getattr(report, name) for name in names}
+def samples_of(report: SampleReport) -> Samples:
+    """What the extension module has found."""
+    masks = {name: getattr(report, name) for name in MASKS}
     return Samples(**masks, period=report.period, jitter=report.jitter)

@@ -13,25 +13,16 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from inverse_dynamics.base.decimals import LARGEST
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data.recordings import read_recording
-from inverse_dynamics.errors import EvaluationError, RobotError
+from inverse_dynamics.errors import RobotError
 from inverse_dynamics.evaluation.accelerations import (
     Accelerations,
     Samples,
-    estimate_accelerations,
+    accelerations_of,
+    samples_of,
 )
-from inverse_dynamics.evaluation.effort import (
-    Effort,
-    compared_torques,
-    drive_gains,
-    effort_notes,
-    effort_of_data,
-    stated_effort,
-)
+from inverse_dynamics.evaluation.effort import Effort, drive_gains, effort_of, effort_options
 from inverse_dynamics.robot.descriptions import joint_units, read_description
 from inverse_dynamics.robot.robots import Robot, load_robot, with_changes
 from inverse_dynamics.robot.solvers import description_notes, open_solver
@@ -39,7 +30,7 @@ from inverse_dynamics.robot.solvers import description_notes, open_solver
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from inverse_dynamics._core import Parameter
+    from inverse_dynamics._core import JointMetrics, Parameter
     from inverse_dynamics.base.arrays import Floats, Mask
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Clock, JointLog
@@ -162,10 +153,9 @@ def evaluate(
         clock=clock,
         progress=progress,
     )
-    effort = stated_effort(effort_is, log, robot, arm.gains)
     seconds = {"solver": ready - start, "reading": time.perf_counter() - ready}
     progress("computing", 0, len(log))
-    result = _compare(bag, robot, arm, log, effort, without_rules)
+    result = _compare(bag, robot, arm, log, effort_is, without_rules)
     progress("computing", len(log), len(log))
     notes = description_notes(robot, "drawn") if urdf is not None else ()
     return replace(result, notes=(*notes, *result.notes), seconds={**seconds, **result.seconds})
@@ -188,58 +178,40 @@ def _compare(
     robot: Robot,
     arm: Arm,
     log: JointLog,
-    effort: Effort,
+    effort_is: str | None,
     without_rules: Sequence[str],
 ) -> Evaluation:
     """Computed torques of a log against its measured ones. Raises EvaluationError, RobotError."""
-    start = time.perf_counter()
-    try:
-        qdd, how, samples, findings = estimate_accelerations(
-            log, robot.accelerations, robot.cutoff, without_rules
-        )
-    except EvaluationError as error:
-        where = f"{bag}: {log.topic}" if log.topic else f"{bag}"
-        raise EvaluationError(f"{where}: {error}") from error
-    filtered = time.perf_counter()
-    solver = arm.solver
-    computed = solver.torques(log.q, log.qd, qdd)
-    check_torques(f"{bag}", arm, computed)
-    if effort.meaning == "auto":
-        effort = effort_of_data(solver, robot, log, computed, arm.gains, samples.kept)
-    computed, measured = compared_torques(effort, solver, log, computed)
-    errors = joint_errors(arm.joint_names, arm.units, computed, measured)
-    errors_of_kept = errors
-    if samples.left_out:
-        errors_of_kept = joint_errors(arm.joint_names, arm.units, computed, measured, samples.kept)
-    done = time.perf_counter()
-    notes = (*solver.warnings, *log.notes, *effort_notes(effort, solver, robot, log))
+    from inverse_dynamics import _core
+
+    found = _core.evaluate(
+        arm.solver,
+        log,
+        method=robot.accelerations,
+        cutoff=robot.cutoff,
+        without_rules=list(without_rules),
+        effort=effort_options(effort_is, log, robot, arm.gains),
+        recording=f"{bag}",
+        topic=log.topic,
+        units=list(arm.units),
+        notes=list(log.notes),
+    )
     return Evaluation(
-        robot=replace(robot, joints=arm.recorded_names, topic=log.topic, effort=effort.meaning),
+        robot=replace(robot, joints=arm.recorded_names, topic=log.topic, effort=found.meaning),
         bag=bag,
         log=log,
         joint_names=arm.joint_names,
         units=arm.units,
-        accelerations=how,
-        samples=samples,
-        qdd=qdd,
-        computed=computed,
-        errors=errors,
-        errors_of_kept=errors_of_kept,
-        effort=effort,
-        notes=(*notes, *findings),
-        seconds={"accelerations": filtered - start, "torques": done - filtered},
+        accelerations=accelerations_of(found),
+        samples=samples_of(found.samples),
+        qdd=found.qdd,
+        computed=found.computed,
+        errors=_joint_errors(arm.joint_names, arm.units, found.errors),
+        errors_of_kept=_joint_errors(arm.joint_names, arm.units, found.errors_of_kept),
+        effort=effort_of(found),
+        notes=tuple(found.notes),
+        seconds={"accelerations": found.acceleration_seconds, "torques": found.torque_seconds},
     )
-
-
-def check_torques(where: str, arm: Arm, computed: Floats) -> None:
-    """Raise EvaluationError for (N, n) computed torques that no robot has, infinite ones too."""
-    too_large = ~(np.abs(computed) <= LARGEST)
-    if too_large.any():
-        k, j = (int(i) for i in np.argwhere(too_large)[0])
-        raise EvaluationError(
-            f"{where}: sample {k + 1}: computed torque of joint {arm.joint_names[j]}: expected at most "
-            f"{LARGEST:g} {arm.units[j]}, got {computed[k, j]:g}; check masses, gravity and units"
-        )
 
 
 def joint_errors(
@@ -252,7 +224,12 @@ def joint_errors(
     """Errors of each joint; computed and measured are (N, n), kept (N,) says which samples count."""
     from inverse_dynamics import _core
 
-    metrics = _core.metrics(computed, measured, kept)
+    return _joint_errors(joint_names, units, _core.metrics(computed, measured, kept))
+
+
+def _joint_errors(
+    joint_names: Sequence[str], units: Sequence[str], metrics: Sequence[JointMetrics]
+) -> tuple[JointError, ...]:
     return tuple(
         JointError(joint, unit, m.mae, m.rmse, m.nrmse, m.bias, m.r2, m.max_abs)
         for joint, unit, m in zip(joint_names, units, metrics, strict=True)

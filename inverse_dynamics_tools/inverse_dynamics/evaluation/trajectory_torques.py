@@ -28,7 +28,7 @@ from inverse_dynamics.data.csv_recordings import (
 from inverse_dynamics.data.csv_table import is_csv
 from inverse_dynamics.data.joint_trajectories import JointTrajectory, read_joint_trajectories
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.evaluation.evaluation import Arm, check_torques
+from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.robot.descriptions import effort_limits, read_description
 from inverse_dynamics.robot.robots import Robot, load_robot
 
@@ -114,6 +114,8 @@ def trajectory_torques(
 
     Raises UserError: BagError, RobotError, SolverError.
     """
+    from inverse_dynamics import _core
+
     path = Path(path)
     if not isinstance(robot, Robot):
         robot = load_robot(robot)
@@ -131,7 +133,9 @@ def trajectory_torques(
     progress("computing", 0, len(states))
     torques = [solver.torques(*state) if len(time) else state[0] for time, state in states]
     for number, computed in enumerate(torques, 1):
-        check_torques(f"{path}, trajectory {number}", arm, computed)
+        _core.check_torques(
+            f"{path}, trajectory {number}", list(solver.joint_names), list(arm.units), computed
+        )
     progress("computing", len(states), len(states))
     return TrajectoryTorques(
         path=path,
