@@ -50,8 +50,8 @@ struct Peer {
     return data.dtau_dq.data();
   }
 
-  pinocchio::Model model;
-  pinocchio::Data data;
+  pinocchio_inverse_dynamics_solver::Model model;
+  pinocchio_inverse_dynamics_solver::Data data;
   States states;
 };
 

@@ -19,16 +19,17 @@ pinocchio::Inertia inertia(const chain_dynamics::LinkParameters& link) {
 
 }  // namespace
 
-pinocchio::Model toPinocchio(const chain_dynamics::Chain& chain) {
-  pinocchio::Model model;
+Model toPinocchio(const chain_dynamics::Chain& chain) {
+  Model model;
   model.name = chain.name();
   model.gravity = pinocchio::Motion(chain.gravity(), Eigen::Vector3d::Zero());
   pinocchio::JointIndex last = 0;  // the root link
   for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
     const chain_dynamics::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
     const pinocchio::SE3 X(joint.placement.R, joint.placement.p);
-    last = isPrismatic(joint) ? model.addJoint(last, pinocchio::JointModelPZ(), X, joint.name)
-                              : model.addJoint(last, pinocchio::JointModelRZ(), X, joint.name);
+    last = isPrismatic(joint)
+               ? model.addJoint(last, Model::JointCollection::Prismatic(), X, joint.name)
+               : model.addJoint(last, Model::JointCollection::Revolute(), X, joint.name);
     model.appendBodyToJoint(last, inertia(chain.links()[static_cast<std::size_t>(i)]));
     model.armature[i] = joint.rotor_inertia;
   }

@@ -11,7 +11,7 @@ inline namespace v2 {
 
 /// The model of a chain: joint i is Pinocchio's joint i + 1, with its axis along z. A continuous
 /// joint is a revolute one, so that positions stay angles (nq = nv).
-pinocchio::Model toPinocchio(const chain_dynamics::Chain& chain);
+Model toPinocchio(const chain_dynamics::Chain& chain);
 
 }  // namespace v2
 }  // namespace pinocchio_inverse_dynamics_solver

@@ -17,8 +17,8 @@ using inverse_dynamics_solver::VectorRef;
 
 /// A model that all threads read.
 struct Models {
-  pinocchio::Model with_gravity;
-  pinocchio::Model without_gravity;
+  Model with_gravity;
+  Model without_gravity;
 };
 
 /// Pinocchio's data and all that is written to. One thread at a time.
@@ -34,7 +34,7 @@ class PinocchioWorkspace : public inverse_dynamics_solver::Workspace {
 
  private:
   std::shared_ptr<const Models> models_;
-  pinocchio::Data data_;
+  Data data_;
 };
 
 }  // namespace v2
