@@ -28,6 +28,10 @@ solver_packages=(
 )
 user_packages=(inverse_dynamics_evaluation inverse_dynamics_control inverse_dynamics_tools)
 
+# What the command line works without, so that a first build is short: a plain ./scripts/build, and
+# ./scripts/demo, leave it out.
+optional_packages=(inverse_dynamics_benchmarks pinocchio_inverse_dynamics_solver)
+
 # Debian and Ubuntu packages, in groups.
 apt_packages=(
   # Fetching, compiling, checking.

@@ -58,7 +58,8 @@ def benchmarks_installed():
 
 
 needs_benchmarks = pytest.mark.skipif(
-    not benchmarks_installed(), reason="built without Google Benchmark (Debian: libbenchmark-dev)"
+    not benchmarks_installed(),
+    reason="without the benchmarks (./scripts/build --all; Debian: libbenchmark-dev)",
 )
 
 
@@ -96,13 +97,18 @@ def test_a_name_that_no_benchmark_has_is_told(ids):
 
 def test_without_the_benchmarks_the_remedy_is_told(ids, tmp_path, monkeypatch):
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
-    remedy = "install Google Benchmark (Debian: apt install libbenchmark-dev)"
-    fails(ids("bench"), "package inverse_dynamics_benchmarks: not in any", remedy)
+    build = "`./scripts/build --packages-select inverse_dynamics_benchmarks`"
+    fails(ids("bench"), "inverse_dynamics_benchmarks: not in any", f"only on request: {build}")
 
     marker = tmp_path / "share/ament_index/resource_index/packages/inverse_dynamics_benchmarks"
     marker.parent.mkdir(parents=True)
     marker.touch()
-    fails(ids("bench"), "bin/inverse_dynamics_benchmark: not there", remedy)
+    fails(
+        ids("bench"),
+        "bin/inverse_dynamics_benchmark: not there",
+        "apt install libbenchmark-dev",
+        build,
+    )
 
 
 def test_a_benchmark_that_fails_is_told_by_its_last_words(tmp_path, monkeypatch):

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 PACKAGE = "inverse_dynamics_benchmarks"
-_REMEDY = (
-    "install Google Benchmark (Debian: apt install libbenchmark-dev), then "
-    f"`./scripts/build --packages-select {PACKAGE}` in the workspace"
+_BUILD = (
+    f"`./scripts/build --packages-select {PACKAGE}` in the workspace, then "
+    "`source install/local_setup.bash`"
 )
 _NAMES = (
     "; names are ROBOT/QUANTITY/LIBRARY, such as ur10/torques/ours (those of `ids bench --json`)"
@@ -74,10 +74,13 @@ def _program(name: str) -> str:
     try:
         program = package_share(PACKAGE).parents[1] / "bin" / name
     except PackageNotFoundError as error:
-        raise BenchmarkError(f"{error}; for the benchmarks: {_REMEDY}") from error
+        raise BenchmarkError(
+            f"package {PACKAGE}: not in any sourced workspace, as it is built only on request: {_BUILD}"
+        ) from error
     if not program.is_file():
         raise BenchmarkError(
-            f"{program}: not there: {PACKAGE} was built without Google Benchmark; {_REMEDY}"
+            f"{program}: not there: {PACKAGE} was built without Google Benchmark; install it (Debian: "
+            f"apt install libbenchmark-dev), then {_BUILD}"
         )
     return str(program)
 
