@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tests of tidy_sources.py, on small repositories with a build by Ninja."""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from tidy_sources import sources_to_check
+
+NINJA = """\
+rule compile
+  command = g++ -MD -MF $out.d -I../../{}/include -c $in -o $out
+  depfile = $out.d
+  deps = gcc
+"""
+SOURCES = {
+    "engine/src/chain.cpp": '#include "engine/chain.hpp"\n',
+    "engine/src/text.cpp": "",
+    "solver/src/solver.cpp": "#include <engine/chain.hpp>\n",
+    "solver/src/plugin.cpp": "",
+}
+ALL = sorted(SOURCES)
+
+pytestmark = pytest.mark.skipif(
+    not all(map(shutil.which, ("git", "ninja", "g++"))), reason="git, Ninja or g++ isn't installed"
+)
+
+
+def git(root: Path, *arguments: str) -> None:
+    who = ("-c", "user.name=test", "-c", "user.email=test@example.invalid")
+    subprocess.run(["git", "-C", str(root), *who, *arguments], check=True, capture_output=True)
+
+
+def commit(root: Path) -> None:
+    git(root, "add", "--all")
+    git(root, "commit", "--quiet", "--message", "change")
+
+
+def write(root: Path, file: str, text: str) -> None:
+    path = root / file
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+
+
+def build(root: Path) -> None:
+    """As colcon does: the second package includes the installed copy of the first one's header."""
+    installed = root / "install/engine/include/engine"
+    installed.mkdir(parents=True)
+    shutil.copy(root / "engine/include/engine/chain.hpp", installed)
+    for package in ("engine", "solver"):
+        objects = [s for s in ALL if s.startswith(package)]
+        rules = [f"build {Path(s).stem}.o: compile ../../{s}\n" for s in objects]
+        headers = "engine" if package == "engine" else "install/engine"
+        write(root, f"build/{package}/build.ninja", NINJA.format(headers) + "".join(rules))
+        command = ["ninja", "-C", str(root / "build" / package)]
+        subprocess.run(command, check=True, capture_output=True)
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Path:
+    """Two commits on `main`, of which the second changes engine/src/text.cpp; built."""
+    root = tmp_path / "workspace"
+    root.mkdir()
+    git(root, "init", "--quiet", "--initial-branch", "main")
+    write(root, ".gitignore", "build/\ninstall/\n")
+    write(root, "engine/include/engine/chain.hpp", "#pragma once\n")
+    for file, text in SOURCES.items():
+        write(root, file, text)
+    commit(root)
+    write(root, "engine/src/text.cpp", "// text\n")
+    commit(root)
+    build(root)
+    return root
+
+
+def test_on_the_main_branch_the_last_commit_counts(root: Path) -> None:
+    sources, reason = sources_to_check(root)
+    assert sources == ["engine/src/text.cpp"]
+    assert "1 of 4 sources" in reason
+    assert "the commit before" in reason
+
+
+def test_on_a_branch_everything_since_it_left_counts(root: Path) -> None:
+    git(root, "checkout", "--quiet", "-b", "branch")
+    for file in ("solver/src/plugin.cpp", "README.md"):
+        write(root, file, "// changed\n")
+        commit(root)
+    sources, reason = sources_to_check(root)
+    assert sources == ["solver/src/plugin.cpp"]
+    assert "where this branch left main" in reason
+
+
+def test_a_header_touches_those_that_include_it_installed_or_not(root: Path) -> None:
+    git(root, "checkout", "--quiet", "-b", "branch")
+    write(root, "engine/include/engine/chain.hpp", "#pragma once\n// changed\n")
+    commit(root)
+    assert sources_to_check(root)[0] == ["engine/src/chain.cpp", "solver/src/solver.cpp"]
+
+
+def test_what_is_not_committed_counts(root: Path) -> None:
+    write(root, "engine/src/new.cpp", "")
+    write(root, "solver/src/plugin.cpp", "// changed\n")
+    sources, _ = sources_to_check(root)
+    assert sources == ["engine/src/new.cpp", "engine/src/text.cpp", "solver/src/plugin.cpp"]
+
+
+def test_other_rules_touch_everything(root: Path) -> None:
+    write(root, ".clang-tidy", "Checks: '*'\n")
+    sources, reason = sources_to_check(root)
+    assert sources == ALL
+    assert ".clang-tidy changed" in reason
+
+
+def test_all_means_all(root: Path) -> None:
+    assert sources_to_check(root, everything=True) == (ALL, "all 4 sources")
+
+
+def test_a_source_of_which_no_build_is_known_is_checked(root: Path) -> None:
+    shutil.rmtree(root / "build/solver")
+    sources, _ = sources_to_check(root)
+    assert sources == ["engine/src/text.cpp", "solver/src/plugin.cpp", "solver/src/solver.cpp"]
+
+
+def test_a_clone_without_history_checks_everything_and_says_so(root: Path, tmp_path: Path) -> None:
+    shallow = tmp_path / "shallow"
+    git(tmp_path, "clone", "--quiet", "--depth", "1", f"file://{root}", str(shallow))
+    sources, reason = sources_to_check(shallow)
+    assert sources == ALL
+    assert "no commit to compare with" in reason
+
+
+def test_a_clone_compares_with_the_branch_that_it_came_from(root: Path, tmp_path: Path) -> None:
+    clone = tmp_path / "clone"
+    git(tmp_path, "clone", "--quiet", str(root), str(clone))
+    git(clone, "checkout", "--quiet", "-b", "branch")
+    build(clone)
+    write(clone, "solver/src/solver.cpp", "")
+    commit(clone)
+    sources, reason = sources_to_check(clone)
+    assert sources == ["solver/src/solver.cpp"]
+    assert "where this branch left origin/HEAD" in reason
