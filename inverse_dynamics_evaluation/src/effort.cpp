@@ -33,9 +33,9 @@ Effort withGains(Effort effort, const EffortOptions& options) {
     return effort;
   }
   if (options.drive_gains.empty()) {
-    throw ConfigurationError("robot " + options.robot + ": effort means current, " +
-                             effort.stated_by + ": expected drive gains [N m/A], got none from " +
-                             options.file + " nor from " + options.plugin +
+    throw ConfigurationError(options.where + ": effort means current, " + effort.stated_by +
+                             ": expected drive gains [N m/A], got none from " + options.gains_from +
+                             " nor from " + options.plugin +
                              "; add drive_gains: [...], one per joint, to the run configuration");
   }
   effort.drive_gains = options.drive_gains;
@@ -76,20 +76,20 @@ std::vector<double> driveGainsOf(const InverseDynamicsSolver& solver) {
   return {gains.data(), gains.data() + gains.size()};
 }
 
-std::vector<double> driveGains(const std::vector<double>& configured, const std::string& file,
+std::vector<double> driveGains(const std::vector<double>& configured, const std::string& where,
                                const InverseDynamicsSolver& solver) {
   if (configured.empty()) {
     return driveGainsOf(solver);
   }
   const std::vector<std::string>& names = solver.jointNames();
   if (configured.size() != names.size()) {
-    throw ConfigurationError(file + ": drive_gains: expected " + std::to_string(names.size()) +
+    throw ConfigurationError(where + ": expected " + std::to_string(names.size()) +
                              " figures, one per joint of the chain (" + listed(names) + "), got " +
                              std::to_string(configured.size()));
   }
   if (!std::all_of(configured.begin(), configured.end(),
                    [](double gain) { return std::isfinite(gain) && gain > 0; })) {
-    throw ConfigurationError(file + ": drive_gains: expected figures above zero [N m/A], got " +
+    throw ConfigurationError(where + ": expected figures above zero [N m/A], got " +
                              figures("%.4g", configured, " "));
   }
   return configured;

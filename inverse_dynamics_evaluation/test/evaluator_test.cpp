@@ -72,8 +72,8 @@ JointLog recorded(Index count = 10000) {
 EvaluationOptions options(const std::string& effort) {
   EvaluationOptions options;
   options.effort.option = effort;
-  options.effort.robot = "two_joints";
-  options.effort.file = "two_joints.yaml";
+  options.effort.where = "robot two_joints";
+  options.effort.gains_from = "two_joints.yaml";
   options.effort.plugin = "package/TwoJointSolver";
   options.recording = "bag";
   options.topic = "/joint_states";
@@ -208,12 +208,12 @@ TEST(Evaluate, RefusesWhatCannotBeEvaluated) {
 
 TEST(DriveGains, AreOnePositiveNumberPerJoint) {
   const TwoJointSolver solver;
-  EXPECT_TRUE(driveGains({}, "file.yaml", solver).empty());
-  EXPECT_EQ(driveGains({2, 3}, "file.yaml", solver), (std::vector<double>{2, 3}));
-  EXPECT_EQ(errorOf<ConfigurationError>([&] { driveGains({2}, "file.yaml", solver); }),
+  EXPECT_TRUE(driveGains({}, "file.yaml: drive_gains", solver).empty());
+  EXPECT_EQ(driveGains({2, 3}, "file.yaml: drive_gains", solver), (std::vector<double>{2, 3}));
+  EXPECT_EQ(errorOf<ConfigurationError>([&] { driveGains({2}, "file.yaml: drive_gains", solver); }),
             "file.yaml: drive_gains: expected 2 figures, one per joint of the chain (a, b), got 1");
   EXPECT_EQ(errorOf<ConfigurationError>([&] {
-              driveGains({2, -3}, "file.yaml", solver);
+              driveGains({2, -3}, "file.yaml: drive_gains", solver);
             }),
             "file.yaml: drive_gains: expected figures above zero [N m/A], got 2 -3");
 }

@@ -311,8 +311,8 @@ class EffortOptions:
         format: str,
         configuration: str,
         drive_gains: list[float],
-        robot: str,
-        file: str,
+        where: str,
+        gains_from: str,
         plugin: str,
     ) -> None: ...
 
@@ -358,7 +358,7 @@ def compare_meanings(
 def effort_summary(
     meaning: str, stated_by: str, drive_gains: list[float], verdict: EffortVerdict | None
 ) -> str: ...
-def drive_gains(solver: Solver, configured: list[float], file: str) -> list[float]: ...
+def drive_gains(solver: Solver, configured: list[float], where: str) -> list[float]: ...
 def evaluate(
     solver: Solver,
     log: JointLog,

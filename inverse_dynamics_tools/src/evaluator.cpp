@@ -153,12 +153,13 @@ void bindEffort(py::module_& module) {
   py::class_<EffortOptions>(module, "EffortOptions", "What is stated of efforts, and by whom.")
       .def(py::init([](const std::optional<std::string>& option, const std::string& format,
                        const std::string& configuration, const std::vector<double>& drive_gains,
-                       const std::string& robot, const std::string& file,
+                       const std::string& where, const std::string& gains_from,
                        const std::string& plugin) {
-             return EffortOptions{option, format, configuration, drive_gains, robot, file, plugin};
+             return EffortOptions{option, format,     configuration, drive_gains,
+                                  where,  gains_from, plugin};
            }),
            py::kw_only(), py::arg("option"), py::arg("format"), py::arg("configuration"),
-           py::arg("drive_gains"), py::arg("robot"), py::arg("file"), py::arg("plugin"));
+           py::arg("drive_gains"), py::arg("where"), py::arg("gains_from"), py::arg("plugin"));
   module.def("compare_meanings", &compareMeanings, py::arg("computed"), py::arg("gravity"),
              py::arg("effort"), py::arg("drive_gains") = std::vector<double>(),
              py::arg("mask") = py::none(),
@@ -168,10 +169,11 @@ void bindEffort(py::module_& module) {
              py::arg("drive_gains"), py::arg("verdict"), "What efforts mean, in words.");
   module.def(
       "drive_gains",
-      [](const py::object& solver, const std::vector<double>& configured, const std::string& file) {
-        return evaluation::driveGains(configured, file, *solverOf(solver));
+      [](const py::object& solver, const std::vector<double>& configured,
+         const std::string& where) {
+        return evaluation::driveGains(configured, where, *solverOf(solver));
       },
-      py::arg("solver"), py::arg("configured"), py::arg("file"),
+      py::arg("solver"), py::arg("configured"), py::arg("where"),
       "The run configuration's drive gains, else the solver's, else none.");
 }
 

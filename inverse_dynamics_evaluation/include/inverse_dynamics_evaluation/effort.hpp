@@ -31,8 +31,8 @@ struct EffortOptions {
   std::string format;                   ///< by the recording's format; empty: nothing
   std::string configuration = kTorque;  ///< by the run configuration
   std::vector<double> drive_gains;      ///< n; N m/A (prismatic N/A); driveGains(); or none
-  std::string robot;                    ///< name of the run configuration
-  std::string file;                     ///< its file
+  std::string where;                    ///< who states it: `robot NAME`, a parameter
+  std::string gains_from;               ///< where drive gains can be given: a file, a parameter
   std::string plugin;                   ///< of the solver
 };
 
@@ -55,8 +55,9 @@ std::vector<double> driveGainsOf(const inverse_dynamics_solver::InverseDynamicsS
 
 /// The run configuration's drive gains if it has any, else the solver's, if there are any.
 ///
+/// @param where  where they are configured, for texts.
 /// @throws ConfigurationError: not one per joint; one that isn't above 0.
-std::vector<double> driveGains(const std::vector<double>& configured, const std::string& file,
+std::vector<double> driveGains(const std::vector<double>& configured, const std::string& where,
                                const inverse_dynamics_solver::InverseDynamicsSolver& solver);
 
 /// What is stated; meaning `auto` where the data are to tell.

@@ -57,7 +57,7 @@ def drive_gains(robot: Robot, solver: Solver) -> tuple[float, ...]:
     """The run configuration's drive gains, else the solver's, else none. Raises RobotError."""
     from inverse_dynamics import _core
 
-    return tuple(_core.drive_gains(solver, list(robot.drive_gains), f"{robot.file}"))
+    return tuple(_core.drive_gains(solver, list(robot.drive_gains), f"{robot.file}: drive_gains"))
 
 
 def effort_options(
@@ -71,7 +71,7 @@ def effort_options(
         format=log.effort_is,
         configuration=robot.effort,
         drive_gains=list(gains),
-        robot=robot.name,
-        file=f"{robot.file}",
+        where=f"robot {robot.name}",
+        gains_from=f"{robot.file}",
         plugin=robot.plugin,
     )
