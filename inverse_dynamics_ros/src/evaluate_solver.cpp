@@ -41,11 +41,18 @@ void check(const evaluate_solver::Params& params) {
 
 EvaluationOptions optionsOf(const evaluate_solver::Params& params,
                             const inverse_dynamics_solver::InverseDynamicsSolver& solver) {
+  const std::string gains = "parameter 'drive_gains'";
   EvaluationOptions options;
   options.method = inverse_dynamics_evaluation::accelerationMethod(params.accelerations);
   options.cutoff = params.cutoff;
-  options.rules = rulesWithout(params.without_rules);
-  options.effort = effortMeaning(params.effort, params.drive_gains, solver);
+  options.rules = inverse_dynamics_evaluation::rulesWithout(params.without_rules);
+  options.effort.option = options.effort.configuration = params.effort;
+  options.effort.drive_gains =
+      inverse_dynamics_evaluation::driveGains(params.drive_gains, gains, solver);
+  options.effort.where = "parameter 'effort'";
+  options.effort.gains_from = gains;
+  options.effort.plugin = params.plugin_name;
+  options.recording = params.input_bag;
   return options;
 }
 
@@ -68,28 +75,28 @@ void run(rclcpp::Node& node) {
   const rclcpp::Logger logger = node.get_logger();
 
   const auto solver = makeSolver(node, params.plugin_name, params.robot_description);
-  const EvaluationOptions options = optionsOf(params, *solver);
+  EvaluationOptions options = optionsOf(params, *solver);
+  options.units = torqueUnits(node, solver->jointNames(), params.robot_description);
   say(logger, "solver: " + params.plugin_name);
-  sayAll(logger, solver->warnings());
 
   const RecordedMotion motion = readMotion(
       params.input_bag, {params.input_topic, messageNames(params.joints, solver->jointNames()),
                          clockOf(params.clock)});
   say(logger, "recording: " + params.input_bag + ", " + motion.topic + ": " +
                   std::to_string(motion.log.q.cols()) + " samples");
-  sayAll(logger, motion.log.notes);
 
+  options.topic = motion.topic;
+  options.notes = motion.log.notes;
   const Evaluation evaluation = evaluate(motion.log, *solver, options);
   say(logger, "accelerations: " + evaluation.accelerations.summary);
-  say(logger, "effort means: " + options.effort.summary);
-  sayAll(logger, evaluation.accelerations.findings);
+  say(logger, "effort means: " + evaluation.effort.summary());
+  sayAll(logger, evaluation.notes);
 
   writeTorques(params.output_bag, params.storage.empty() ? motion.storage : params.storage,
                params.topic, motion, evaluation);
   say(logger, "written: " + params.output_bag + ": " + params.topic + " (computed)" +
                   (evaluation.measured.size() > 0 ? ", " + params.topic + "_gt (measured)" : ""));
-  const auto units = torqueUnits(node, solver->jointNames(), params.robot_description);
-  std::fputs(errorTable(evaluation, units).c_str(), stdout);
+  std::fputs(errorTable(evaluation, options.units).c_str(), stdout);
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ Failure failureOf(const std::exception& error) {
   }
   const bool repairable = isOneOf<
       UserError, inverse_dynamics_solver::Exception, inverse_dynamics_evaluation::EvaluationError,
-      inverse_dynamics_evaluation::RecordingError, rclcpp::exceptions::InvalidParametersException,
+      inverse_dynamics_evaluation::ConfigurationError, inverse_dynamics_evaluation::RecordingError,
+      rclcpp::exceptions::InvalidParametersException,
       rclcpp::exceptions::InvalidParameterValueException,
       rclcpp::exceptions::ParameterUninitializedException>(error);
   return {repairable ? kExitUserError : kExitUnexpected, error.what()};

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "effort_meaning.hpp"
 #include "two_joint_solver.hpp"
 #include "user_error.hpp"
 
@@ -35,7 +36,8 @@ JointLog log(Eigen::Index count = 50) {
 
 EvaluationOptions options(const std::string& effort = "torque") {
   EvaluationOptions options;
-  options.effort = effortMeaning(effort, {}, *TwoJointSolver::make());
+  options.effort.option = effort;
+  options.units = {"N m", "N m"};
   return options;
 }
 
@@ -54,6 +56,7 @@ TEST(Evaluation, LeavesGravityOutOfBothWhereEffortsAreWithoutIt) {
       evaluate(without, *TwoJointSolver::make(), options("torque_without_gravity"));
   EXPECT_NEAR(evaluation.errors[0].bias, -0.25, 1e-12);
   EXPECT_NEAR(evaluation.computed(1, 0), -3, 1e-12);
+  EXPECT_EQ(evaluation.measured, without.effort);
 }
 
 TEST(Evaluation, HasNoErrorsWhereNoEffortsAreRecorded) {
@@ -75,15 +78,6 @@ TEST(Evaluation, IsPrintedAsATable) {
   EXPECT_EQ(table.find("mean"), std::string::npos) << "units differ";
   EXPECT_NE(errorTable(evaluation, {"N m", "N m"}).find("  mean    N m    0.375   0.375\n"),
             std::string::npos);
-}
-
-TEST(Evaluation, ActsUponTheRulesThatAreNotSwitchedOff) {
-  EXPECT_FALSE(rulesWithout({"repeated"}).repeated);
-  EXPECT_TRUE(rulesWithout({"repeated"}).time_base);
-  EXPECT_FALSE(rulesWithout({"non-increasing"}).non_increasing);
-  EXPECT_FALSE(rulesWithout({"time-base"}).time_base);
-  EXPECT_FALSE(rulesWithout({"start-transient"}).start_transient);
-  EXPECT_THROW(rulesWithout({"all"}), UserError);
 }
 
 TEST(EffortMeaning, AsksForDriveGainsOfCurrents) {
