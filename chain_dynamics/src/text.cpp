@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -105,6 +106,12 @@ std::string lowerCase(std::string text) {
   return text;
 }
 
+std::string sortedLetters(const std::string& word) {
+  std::string letters = lowerCase(word);
+  std::sort(letters.begin(), letters.end());
+  return letters;
+}
+
 }  // namespace
 
 std::string errorText(const std::string& where, const std::string& what,
@@ -174,12 +181,15 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 }
 
 std::string nearestName(const std::string& name, const std::vector<std::string>& known) {
+  const std::string letters = sortedLetters(name);
   std::string nearest;
-  std::size_t least = std::max<std::size_t>(name.size() / 3, 1) + 1;
+  // distance, and whether the letters are others
+  auto least = std::make_pair(std::max<std::size_t>(name.size() / 3, 1) + 1, false);
   for (const std::string& candidate : known) {
-    const std::size_t distance = editDistance(name, candidate);
-    if (distance < least && distance < candidate.size()) {
-      least = distance;
+    const auto cost =
+        std::make_pair(editDistance(name, candidate), sortedLetters(candidate) != letters);
+    if (cost < least && cost.first < candidate.size()) {
+      least = cost;
       nearest = candidate;
     }
   }

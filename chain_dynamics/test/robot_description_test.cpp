@@ -228,6 +228,8 @@ TEST(RobotDescription, MisspeltNamesAreAWarningWithTheNameThatWasMeant) {
               ElementsAre("URDF:5: joint j: <axes> isn't read; did you mean <axis>?"));
   EXPECT_THAT(warnings(hinge(inertial(), "<origin xzy='0 0 1'/>")),
               ElementsAre("URDF:5: joint j: <origin> xzy isn't read; did you mean xyz?"));
+  EXPECT_THAT(warnings(hinge(replaced(inertial(), "<inertia ", "<inertia iyx='0' "))),
+              ElementsAre("URDF:4: link bob: <inertia> iyx isn't read; did you mean ixy?"));
   EXPECT_THAT(warnings(hinge(inertial(), "<Origin xyz='0 0 1'/>")),
               ElementsAre("URDF:5: joint j: <Origin> isn't read; did you mean <origin>?"));
   EXPECT_THAT(warnings(hinge(inertial(), "<dynamics dampng='1'/>")),

@@ -93,6 +93,7 @@ TEST(Text, NearestNameIsOneThatIsNear) {
   const std::vector<std::string> known{"origin", "mass", "inertia"};
   EXPECT_EQ(nearestName("orgin", known), "origin");
   EXPECT_EQ(nearestName("Mas", known), "mass");
+  EXPECT_EQ(nearestName("iyx", {"ixx", "ixy", "iyy"}), "ixy");  // all near; one has its letters
   EXPECT_EQ(nearestName("com", known), "");
   EXPECT_EQ(nearestName("", known), "");
   EXPECT_EQ(nearestName("a", {"b"}), "");

@@ -54,7 +54,8 @@ std::size_t editDistance(const std::string& a, const std::string& b);
 
 /// The known name that a misspelt one most likely means; empty if none is near.
 ///
-/// Near: at most a third of the letters differ; of short names, one.
+/// Near: at most a third of the letters differ; of short names, one. Of several that are as near,
+/// one with the same letters, in another order, is preferred.
 std::string nearestName(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace v2
