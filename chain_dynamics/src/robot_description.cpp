@@ -228,7 +228,7 @@ class Reader {
     }
     const std::string version = robot.text("version");
     const auto number = finiteNumber(version);
-    if (!number || *number < 1 || *number >= 2) {
+    if (number != 1.0 && number != 1.1 && number != 1.2) {
       throw robot.error("<robot> version", "1.0, 1.1 or 1.2", "'" + version + "'");
     }
   }

@@ -149,7 +149,7 @@ TEST(RobotDescription, VersionsOfUrdf1AreRead) {
     const std::string urdf = replaced(arm(), "name='arm'", "name='arm' version='" + version + "'");
     EXPECT_EQ(urdfError(urdf), "no error") << version;
   }
-  for (const std::string version : {"7", "2.0", "0.9", "one", "", "1.0.0"}) {
+  for (const std::string version : {"7", "2.0", "1.7", "0.9", "one", "", "1.0.0"}) {
     const std::string urdf = replaced(arm(), "name='arm'", "name='arm' version='" + version + "'");
     EXPECT_THAT(urdfError(urdf), HasSubstr("URDF:2: robot: <robot> version: expected 1.0, 1.1 or "
                                            "1.2, got '" +
