@@ -9,14 +9,14 @@
 #include <sstream>
 #include <utility>
 
+#include "number.hpp"
+
 namespace chain_dynamics {
 inline namespace v2 {
 namespace {
 
 constexpr double kRotationTolerance = 1e-9;  // entries of R'R - 1: what ten printed digits leave
 constexpr double kInertiaTolerance = 1e-9;  // of the greatest moment: published figures are rounded
-// Masses, squares of lengths and of velocities of this size have products that a double holds.
-constexpr double kGreatest = 1e50;
 constexpr double kSymmetryTolerance = 1e-12;  // of the greatest entry: a frame changed by R I R'
 
 // Any printable value, with enough digits to find it in a file.
@@ -43,7 +43,7 @@ void checkPose(const std::string& where, const std::string& what, const Transfor
   if (!X.R.allFinite() || !X.p.allFinite()) {
     throw ModelError(where, what, "finite numbers", "a NaN or an infinity", "");
   }
-  if (X.p.cwiseAbs().maxCoeff() > kGreatest) {
+  if (X.p.cwiseAbs().maxCoeff() > kGreatestFigure) {
     throw ModelError(where, what, "lengths up to 1e50 m", text(Eigen::Vector3d(X.p)), "");
   }
   const double error = (X.R.transpose() * X.R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
@@ -86,7 +86,7 @@ void checkLink(const std::string& where, const LinkParameters& link) {
                      "");
   }
   const double greatest = link.toVector().cwiseAbs().maxCoeff();
-  if (greatest > kGreatest) {
+  if (greatest > kGreatestFigure) {
     throw ModelError(where, "inertial parameters", "numbers up to 1e50", text(greatest), "");
   }
   if (link.mass < 0) {

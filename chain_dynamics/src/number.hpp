@@ -23,5 +23,8 @@ inline namespace v2 {
 /// `-1.5e-3`, `+2`, `.5`, `5.`. One too small for a double is 0, one too great isn't finite.
 std::optional<double> finiteNumber(const std::string& text);
 
+/// Masses, squares of lengths and of velocities of this size have products that a double holds.
+constexpr double kGreatestFigure = 1e50;
+
 }  // namespace v2
 }  // namespace chain_dynamics

@@ -16,8 +16,6 @@ namespace {
 using tinyxml2::XMLElement;
 
 constexpr std::size_t kMostFindings = 100;
-// Masses, squares of lengths and of velocities of this size have products that a double holds.
-constexpr double kGreatest = 1e50;
 
 const char* const kBlanks = " \t\r\n";
 
@@ -153,7 +151,7 @@ void UrdfElement::checkSize(const std::string& what, double value, double greate
   }
   std::ostringstream got;
   got << value << " " << unit;
-  if (!(std::abs(value) <= kGreatest)) {
+  if (!(std::abs(value) <= kGreatestFigure)) {
     throw error(what, "a figure that can be computed with, up to 1e50", got.str(),
                 "correct it, or its unit");
   }
