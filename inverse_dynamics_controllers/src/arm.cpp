@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "arm.hpp"
 
+#include <chain_dynamics/text.hpp>
 #include <inverse_dynamics_control/damping.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
@@ -9,6 +10,7 @@
 
 namespace inverse_dynamics_controllers {
 
+using chain_dynamics::joined;
 using inverse_dynamics_control::FrictionSource;
 using inverse_dynamics_control::LawOptions;
 using inverse_dynamics_solver::errorText;
@@ -23,8 +25,8 @@ std::vector<std::string> hardwareNames(const std::vector<std::string>& given,
   if (given.empty() || given.size() == solvers.size()) return given.empty() ? solvers : given;
   throw InvalidParameterValueException(
       errorText("parameter 'joints'", "wrong number of names",
-                std::to_string(solvers.size()) + ", in the order of " + listed(solvers),
-                std::to_string(given.size()) + " (" + listed(given) + ")", "correct them"));
+                std::to_string(solvers.size()) + ", in the order of " + joined(solvers),
+                std::to_string(given.size()) + " (" + joined(given) + ")", "correct them"));
 }
 
 FrictionSource frictionSource(const std::string& name) {
@@ -67,7 +69,7 @@ Arm makeArm(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
   if (parameters.plugin_name.empty()) {
     throw ParameterUninitializedException(
         errorText("parameter 'plugin_name'", "not set", "a solver, package/Class", "nothing",
-                  "set it to one of " + listed(loader.availableSolvers())));
+                  "set it to one of " + joined(loader.availableSolvers())));
   }
   const auto solver = loader.load(parameters.plugin_name);
   const std::string description =

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "joint_numbers.hpp"
 
+#include <chain_dynamics/text.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 
 namespace inverse_dynamics_controllers {
+
+using chain_dynamics::joined;
 
 Eigen::VectorXd jointNumbers(const std::string& name, const std::vector<double>& values,
                              const std::vector<std::string>& joints) {
@@ -14,19 +17,13 @@ Eigen::VectorXd jointNumbers(const std::string& name, const std::vector<double>&
   }
   throw inverse_dynamics_solver::InvalidParameterValueException(inverse_dynamics_solver::errorText(
       "parameter '" + name + "'", "wrong size", std::to_string(n) + " numbers, or one for all",
-      std::to_string(values.size()), "give one for each of the joints " + listed(joints)));
+      std::to_string(values.size()), "give one for each of the joints " + joined(joints)));
 }
 
 Eigen::VectorXd jointNumbers(const std::string& name, const std::vector<double>& values,
                              const std::vector<std::string>& joints,
                              const Eigen::VectorXd& otherwise) {
   return values.empty() ? otherwise : jointNumbers(name, values, joints);
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 }  // namespace inverse_dynamics_controllers

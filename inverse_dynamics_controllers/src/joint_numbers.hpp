@@ -23,7 +23,4 @@ Eigen::VectorXd jointNumbers(const std::string& name, const std::vector<double>&
                              const std::vector<std::string>& joints,
                              const Eigen::VectorXd& otherwise);
 
-/// Names in one line: `a, b`.
-std::string listed(const std::vector<std::string>& names);
-
 }  // namespace inverse_dynamics_controllers

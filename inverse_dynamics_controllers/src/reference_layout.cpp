@@ -2,12 +2,13 @@
 #include "reference_layout.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/text.hpp>
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
 
-#include "joint_numbers.hpp"
-
 namespace inverse_dynamics_controllers {
+
+using chain_dynamics::joined;
 
 ReferenceLayout::ReferenceLayout(const std::vector<std::string>& interfaces,
                                  const std::vector<std::string>& joints)
@@ -26,7 +27,7 @@ ReferenceLayout::ReferenceLayout(const std::vector<std::string>& interfaces,
     throw inverse_dynamics_solver::InvalidParameterValueException(
         inverse_dynamics_solver::errorText("parameter 'reference_interfaces'", "not a motion",
                                            "position and velocity, acceleration only beside them",
-                                           interfaces.empty() ? "nothing" : listed(interfaces),
+                                           interfaces.empty() ? "nothing" : joined(interfaces),
                                            "add what is missing"));
   }
   for (const std::string& joint : joints) {

@@ -2,12 +2,13 @@
 #include "reference_topic.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/text.hpp>
 
-#include "joint_numbers.hpp"
 #include "latest_value.hpp"
 
 namespace inverse_dynamics_controllers {
 
+using chain_dynamics::joined;
 using trajectory_msgs::msg::JointTrajectory;
 using trajectory_msgs::msg::JointTrajectoryPoint;
 
@@ -19,14 +20,14 @@ std::string find(const std::vector<std::string>& joints, const std::vector<std::
   for (const std::string& joint : joints) {
     const auto place = std::find(names.begin(), names.end(), joint);
     if (place == names.end()) {
-      return "joint_names: '" + joint + "' is missing: expected " + listed(joints) + ", got " +
-             (names.empty() ? "none" : listed(names));
+      return "joint_names: '" + joint + "' is missing: expected " + joined(joints) + ", got " +
+             (names.empty() ? "none" : joined(names));
     }
     places.push_back(static_cast<std::size_t>(place - names.begin()));
   }
   if (names.size() == joints.size()) return "";
-  return "joint_names: expected " + std::to_string(joints.size()) + " (" + listed(joints) +
-         "), got " + std::to_string(names.size()) + " (" + listed(names) + ")";
+  return "joint_names: expected " + std::to_string(joints.size()) + " (" + joined(joints) +
+         "), got " + std::to_string(names.size()) + " (" + joined(names) + ")";
 }
 
 std::string checkSize(const char* field, std::size_t size, std::size_t joints) {

@@ -2,12 +2,12 @@
 #include "update_report.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/text.hpp>
 #include <chrono>
-
-#include "joint_numbers.hpp"
 
 namespace inverse_dynamics_controllers {
 
+using chain_dynamics::joined;
 using inverse_dynamics_control::isRefusal;
 using inverse_dynamics_control::Status;
 using inverse_dynamics_control::StopReason;
@@ -47,7 +47,7 @@ std::string UpdateReport::names(std::uint64_t mask) const {
   for (std::size_t j = 0; j < std::min<std::size_t>(joints_.size(), 64); ++j) {
     if ((mask >> j & 1U) != 0) names.push_back(joints_[j]);
   }
-  return listed(names);
+  return joined(names);
 }
 
 std::vector<UpdateReport::Line> UpdateReport::takeLines() {

@@ -2,6 +2,7 @@
 #include "simulation/simulated_arm.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/text.hpp>
 #include <cmath>
 #include <hardware_interface/types/hardware_interface_type_values.hpp>
 #include <pluginlib/class_list_macros.hpp>
@@ -9,10 +10,10 @@
 #include <stdexcept>
 
 #include "inverse_dynamics_controllers/ros2_control_compatibility.hpp"
-#include "joint_numbers.hpp"
 
 namespace inverse_dynamics_controllers {
 
+using chain_dynamics::joined;
 using hardware_interface::CallbackReturn;
 using hardware_interface::HW_IF_ACCELERATION;
 using hardware_interface::HW_IF_EFFORT;
@@ -65,7 +66,7 @@ void requireEffort(const hardware_interface::ComponentInfo& joint) {
   for (const auto& command : joint.command_interfaces) names.push_back(command.name);
   throw std::invalid_argument("joint " + joint.name +
                               ": command_interface: expected effort alone, got " +
-                              (names.empty() ? "none" : listed(names)));
+                              (names.empty() ? "none" : joined(names)));
 }
 
 }  // namespace
