@@ -5,7 +5,7 @@
 ///
 ///     declareSolverParameters(*node);                       // ids.root, ids.tip, ids.gravity, ...
 ///     auto solver = makeSolver(*node, plugin_name, robot_description);
-///     Units units = torqueUnits(*node, *solver, robot_description);
+///     auto units = torqueUnits(*node, solver->jointNames(), robot_description);
 
 #pragma once
 
