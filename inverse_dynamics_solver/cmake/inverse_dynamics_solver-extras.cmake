@@ -3,6 +3,9 @@
 # Keeps a plugin library open once it has been: pluginlib's loader closes libraries when it is destroyed, and an exception
 # that the plugin has thrown needs the plugin's code until it has been handled.
 function(inverse_dynamics_solver_keep_open plugin_library)
+  if(APPLE OR WIN32)
+    return() # whose linkers know no such option; SolverLoader keeps what it opens
+  endif()
   target_link_options(${plugin_library} PRIVATE LINKER:-z,nodelete)
 endfunction()
 
