@@ -15,8 +15,8 @@ namespace inverse_dynamics_solver {
 inline namespace v2 {
 namespace {
 
-using chain_dynamics::editDistance;
 using chain_dynamics::joined;
+using chain_dynamics::nearestName;
 using PluginLoader = pluginlib::ClassLoader<InverseDynamicsSolver>;
 
 const char* const kSource = "source the workspace that has it: source install/local_setup.bash";
@@ -44,21 +44,20 @@ PluginLoader& pluginLoader(const Index& index) {
   return *loader;
 }
 
-/// "; did you mean NAME?" with the name nearest to the given one; empty if none is near.
+/// "did you mean NAME?" with the plugin that a misspelt name most likely means; else empty.
 std::string suggestion(const std::string& name, const std::vector<std::string>& available) {
-  std::string nearest;
-  std::size_t least = name.size() / 2 + 1;
-  for (const std::string& candidate : available) {
-    // The class alone is a common shorthand of `package/Class`.
-    const std::string short_name = candidate.substr(candidate.find('/') + 1);
-    const std::size_t distance =
-        std::min(editDistance(name, candidate), editDistance(name, short_name));
-    if (distance < least) {
-      least = distance;
-      nearest = candidate;
-    }
+  // The class alone is a common shorthand of `package/Class`.
+  std::vector<std::string> classes;
+  for (const std::string& plugin : available) {
+    classes.push_back(plugin.substr(plugin.find('/') + 1));
   }
-  return nearest.empty() ? "" : "did you mean " + nearest + "?";
+  std::string plugin = nearestName(name, available);
+  if (plugin.empty()) {
+    const std::string found = nearestName(name, classes);
+    const auto place = std::find(classes.begin(), classes.end(), found) - classes.begin();
+    if (!found.empty()) plugin = available[static_cast<std::size_t>(place)];
+  }
+  return plugin.empty() ? "" : "did you mean " + plugin + "?";
 }
 
 /// Whether the dynamic linker looked for a name of ours in vain: the number of the ABI namespace is
