@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+// What a model file means.
+
 #include "chain_dynamics/model_file.hpp"
 
 #include <gmock/gmock.h>
@@ -7,12 +9,16 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <locale>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "chain_dynamics/urdf.hpp"
-#include "reference.hpp"
+#include "model_file_texts.hpp"
 
 namespace chain_dynamics {
 namespace {
@@ -21,69 +27,6 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-// Two ways of rounding through the same few hundred operations on figures below 100.
-constexpr double kRounding = 1e-12;
-
-const std::string kRobots = CHAIN_DYNAMICS_ROBOTS_DIR;
-
-double difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff();
-}
-
-std::string replaced(std::string text, const std::string& old_part, const std::string& new_part) {
-  const std::size_t at = text.find(old_part);
-  EXPECT_NE(at, std::string::npos) << "no '" << old_part << "' in:\n" << text;
-  return at == std::string::npos ? text : text.replace(at, old_part.size(), new_part);
-}
-
-/// The file that docs/model_file.md shows.
-std::string documentedFile() {
-  const std::string page = textOf(CHAIN_DYNAMICS_DOCS_DIR "/model_file.md");
-  const std::string fence = "```yaml\n";
-  const std::size_t begin = page.find(fence) + fence.size();
-  return page.substr(begin, page.find("```", begin) - begin);
-}
-
-/// A model of one or more joints in schema 1, without check rows.
-std::string file(const std::string& geometry, const std::string& joints,
-                 const std::string& more = "") {
-  return "schema: 1\nname: arm\nsource: made up\nvalidity: tests\nunits: SI\ngeometry: " +
-         geometry + "\nparameters: about_origin\ngravity: [0, 0, -9.81]\n" + more + "joints:\n" +
-         joints;
-}
-
-const char* const kLink = "[2, 0.2, 0.4, 0.6, 0.5, -0.03, -0.04, 0.6, -0.05, 0.7]";
-
-std::string joint(const std::string& name, const std::string& content,
-                  const std::string& type = "revolute") {
-  return "- name: " + name + "\n  type: " + type + "\n  " + content + "\n";
-}
-
-std::string dh(const std::string& a, const std::string& alpha, const std::string& d,
-               const std::string& offset) {
-  return "dh: {a: " + a + ", alpha: " + alpha + ", d: " + d + ", offset: " + offset + "}\n";
-}
-
-std::string withLink(const std::string& content) { return content + "  link: " + kLink; }
-
-Model model(const std::string& text) { return modelFromYaml(text, "arm.yaml"); }
-
-std::string fileError(const std::string& text) {
-  return errorOf([&] { modelFromYaml(text, "arm.yaml"); });
-}
-
-Eigen::VectorXd someTorques(const Model& robot) {
-  const Eigen::Index n = robot.chain.jointCount();
-  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(n, 0.3, 1.1);
-  const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(n, -1.2, 2.0);
-  const Eigen::VectorXd qdd = Eigen::VectorXd::LinSpaced(n, 3.0, -2.0);
-  Eigen::VectorXd tau(n);
-  torques(robot, q, qd, qdd, tau);
-  return tau;
-}
-
-// --- what a file means ---
 
 TEST(ModelFile, DocumentedFileIsReadAndItsCheckRowsHold) {
   const Model robot = model(documentedFile());
@@ -286,20 +229,6 @@ TEST(ModelFile, ParametersAboutTheCenterOfMassAreMovedToTheOrigin) {
             kRounding);
 }
 
-/// Two joints identified in currents, each with a row of its own.
-std::string rowsFile(const std::string& levels = "{parameters: current, friction: current}") {
-  const auto row = [](const std::string& gain, const std::string& first,
-                      const std::string& second) {
-    return dh("0.1", "0.2", "0.3", "0.4") + "  drive_gain: " + gain +
-           "\n  friction: {law: viscous_coulomb_offset, fv: 2, fc: 0, fo: 1}\n  row: [" + first +
-           ", " + second + "]";
-  };
-  const std::string other = "[1, 0.3, 0.2, 0.1, 0.3, 0, 0, 0.3, 0, 0.3]";
-  return file("standard_dh",
-              joint("one", row("10", kLink, other)) + joint("two", row("5", other, kLink)),
-              "levels: " + levels + "\n");
-}
-
 TEST(ModelFile, RowsAreThoseOfRobotsWithOneParameterSetEach) {
   const Model robot = model(rowsFile());
   const std::string other = "[1, 0.3, 0.2, 0.1, 0.3, 0, 0, 0.3, 0, 0.3]";
@@ -358,300 +287,6 @@ TEST(ModelFile, NumbersDoNotDependOnTheLocale) {
   const std::string error = fileError(documentedFile());
   std::locale::global(before);
   EXPECT_EQ(error, "no error");
-}
-
-// --- other people's values ---
-
-void expectReference(const std::string& model_file, const std::string& reference) {
-  constexpr double kReference = 1e-10;  // greatest difference, in kg m^2, N m
-  const Model robot = modelFromFile(kRobots + "/models/" + model_file);
-  const Eigen::Index n = robot.chain.jointCount();
-  const auto states = referenceStates(reference);
-  ASSERT_EQ(states.size(), 25U);
-  for (const ReferenceState& state : states) {
-    Eigen::MatrixXd H(n, n);
-    Eigen::VectorXd c(n), g(n), f(n), tau(n);
-    dynamicComponents(robot, state.q, state.qd, H, c, g);
-    frictionVector(robot, state.qd, f);
-    torques(robot, state.q, state.qd, state.qdd, tau);
-    EXPECT_LT(difference(H, state.H), kReference) << state.label;
-    EXPECT_LT(difference(c, state.coriolis), kReference) << state.label;
-    EXPECT_LT(difference(g, state.gravity), kReference) << state.label;
-    EXPECT_LT(difference(f, state.friction), kReference) << state.label;
-    EXPECT_LT(difference(tau + f, state.torques), kReference) << state.label;
-  }
-}
-
-TEST(ModelFileReference, UR10IdentifiedIsTheSourcesModel) {
-  expectReference("ur10_identified.yaml", "ur10.json");
-}
-
-TEST(ModelFileReference, FrankaInriaIdentifiedIsTheSourcesModel) {
-  expectReference("franka_inria_identified.yaml", "franka_inria.json");
-}
-
-TEST(ModelFileReference, OnlyTheFeasibleModelIsPhysical) {
-  EXPECT_FALSE(modelFromFile(kRobots + "/models/ur10_identified.yaml").inertiaIsPhysical());
-  EXPECT_FALSE(modelFromFile(kRobots + "/models/franka_inria_identified.yaml").inertiaIsPhysical());
-  const Model feasible = modelFromFile(kRobots + "/models/franka_gaz2019_feasible.yaml");
-  EXPECT_TRUE(feasible.inertiaIsPhysical());
-  EXPECT_TRUE(feasible.chain.warnings().empty());
-}
-
-// The file's figures must be those of the source, digit by digit.
-TEST(ModelFileReference, FiguresAreThoseOfTheSource) {
-  if (dataFolder().empty()) {
-    GTEST_SKIP() << "IDS_DATA_DIR isn't set: it names the folder with models/*.yaml";
-  }
-  for (const std::string name : {"franka_gaz2019_feasible", "franka_inria_identified"}) {
-    const YAML::Node source = YAML::LoadFile(dataFolder() + "/models/" + name + ".yaml");
-    const Model robot = modelFromFile(kRobots + "/models/" + name + ".yaml");
-    for (std::size_t i = 0; i < 7; ++i) {
-      EXPECT_EQ(robot.chain.links()[i].toVector(), vectorOf(source["links"][i])) << name << i;
-      EXPECT_EQ(robot.chain.joints()[i].limits.lower,
-                source["limits"]["position_lower"][i].as<double>());
-      EXPECT_EQ(robot.chain.joints()[i].limits.effort, source["limits"]["effort"][i].as<double>());
-    }
-  }
-  const YAML::Node ur10 = YAML::LoadFile(dataFolder() + "/models/ur10_identified.yaml");
-  const Model robot = modelFromFile(kRobots + "/models/ur10_identified.yaml");
-  EXPECT_EQ(robot.drive_gains, vectorOf(ur10["drive_gains"]));
-  for (std::size_t j = 0; j < 6; ++j) {
-    for (std::size_t i = 0; i < 6; ++i) {
-      const Eigen::VectorXd links = vectorOf(ur10["rows"][j]["links"][i]);
-      EXPECT_LT(difference(robot.row_parameters[j][i].toVector(),
-                           robot.drive_gains[static_cast<Eigen::Index>(j)] * links),
-                1e-15)
-          << j << " " << i;
-    }
-  }
-}
-
-// --- bad input ---
-
-TEST(ModelFileError, FileThatCannotBeRead) {
-  EXPECT_THAT(errorOf([] { modelFromFile("/no/such/model.yaml"); }),
-              AllOf(HasSubstr("/no/such/model.yaml"), HasSubstr("a file that can be read")));
-  EXPECT_THAT(errorOf([] { modelFromFile(kRobots); }), HasSubstr("got a directory"));
-}
-
-TEST(ModelFileError, TextThatIsNotOneYamlDocument) {
-  EXPECT_THAT(fileError(""), HasSubstr("expected one YAML document, got an empty file"));
-  EXPECT_THAT(fileError("# nothing\n"), HasSubstr("expected one YAML document, got an empty file"));
-  EXPECT_THAT(fileError("a: 1\n---\nb: 2\n"), HasSubstr("expected one YAML document, got 2"));
-  EXPECT_THAT(fileError("schema: 1\njoints: [1, 2\n"),
-              AllOf(HasSubstr("arm.yaml:"), HasSubstr("expected well-formed YAML")));
-  EXPECT_EQ(fileError("- 1\n- 2\n"),
-            "arm.yaml:1: file: expected a map of keys and values, got a list of 2");
-}
-
-// yaml-cpp makes empty documents of these, without end.
-TEST(ModelFileError, TablesAndOtherTextsAreNotReadForEver) {
-  for (const std::string table : {",a\n", ",", "\"time\",\"q\"\n1,2\n", "'time','q'\n",
-                                  "# heading\n\"time\", 1\n", "--- ,\n"}) {
-    EXPECT_THAT(fileError(table), AllOf(StartsWith("arm.yaml:"), HasSubstr("expected one YAML "
-                                                                           "document, got a text "
-                                                                           "that isn't YAML")))
-        << table;
-  }
-  EXPECT_THAT(fileError("# heading\n\"time\", 1\n"), StartsWith("arm.yaml:2: file: "));
-}
-
-TEST(ModelFileError, HostileYaml) {
-  for (const std::string part : {"[", "{", "- ", "? ", "a: [", "[a: ", "{a: "}) {
-    std::string nested;
-    for (int i = 0; i < 100000; ++i) {
-      nested += part;
-    }
-    EXPECT_THAT(fileError(nested),
-                AllOf(StartsWith("arm.yaml:"), HasSubstr("inside of each other")))
-        << part;
-  }
-  std::string bomb = "a0: &a0 [x]\n";
-  for (int i = 1; i < 100; ++i) {
-    const std::string last = "*a" + std::to_string(i - 1);
-    bomb +=
-        "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [" + last + ", " + last + "]\n";
-  }
-  EXPECT_THAT(fileError(bomb), HasSubstr("schema: expected this key, got none"));
-  EXPECT_THAT(fileError("&a [*a]"), HasSubstr("expected a map of keys and values"));
-  EXPECT_THAT(fileError("schema: 1\nname: &n {name: *n}\n"), HasSubstr("name: expected a text"));
-}
-
-TEST(ModelFileError, FileWithoutEndIsNotReadToItsEnd) {
-  EXPECT_THAT(errorOf([] { modelFromFile("/dev/zero"); }),
-              HasSubstr("/dev/zero: file: expected at most 16 MiB, got more"));
-}
-
-TEST(ModelFileError, TextThatIsNoModelIsNotQuoted) {
-  EXPECT_EQ(fileError("root:x:0:0:root:/root:/bin/bash\ndaemon:x:1:1\n"),
-            "arm.yaml:1: file: expected a map of keys and values, got a text");
-}
-
-TEST(ModelFileError, NamesWithControlCharacters) {
-  EXPECT_THAT(fileError(replaced(documentedFile(), "- name: cart", "- name: \"cart\\e[31m\"")),
-              HasSubstr("expected UTF-8 text without control characters, got 'cart\\x1b[31m'"));
-  EXPECT_THAT(
-      fileError(replaced(file("modified_dh", joint("one", withLink("dh: {a: 0, alpha: 0, d: "
-                                                                   "0, offset: 0}\n"))),
-                         "name: arm", "name: \"a\\rm\"")),
-      HasSubstr("name: expected UTF-8 text without control characters, got 'a\\rm'"));
-}
-
-// YAML cut off between two lines is YAML still: what is missing must be noticed, or was optional.
-TEST(ModelFileError, TruncatedFileIsNeverReadAsAnotherRobot) {
-  const std::string whole = documentedFile();
-  const std::size_t optional_rest = whole.find("  - name: hinge");
-  for (std::size_t size = 0; size < optional_rest; ++size) {
-    const std::string error = fileError(whole.substr(0, size));
-    // the first joint is a robot, too, once it is complete
-    if (size < whole.find("link: [3") + 30) {
-      EXPECT_THAT(error, StartsWith("arm.yaml")) << whole.substr(0, size);
-    }
-  }
-}
-
-TEST(ModelFileError, UnknownKeysNameLineAndKnownKeys) {
-  EXPECT_THAT(fileError(documentedFile() + "mass: 3\n"),
-              AllOf(HasSubstr("mass: expected a known key"), HasSubstr("known here: checks, ")));
-  EXPECT_EQ(
-      fileError(file("modified_dh",
-                     joint("one", withLink("dh: {a: 0, alpha: 0, d: 0, offset: 0, e: 1}\n")))),
-      "arm.yaml:12: joint one: dh: e: expected a known key, got an unknown one; known here: "
-      "a, alpha, alpha_quarter_turns, d, offset, offset_quarter_turns");
-  EXPECT_THAT(fileError(replaced(documentedFile(), "fo: 0", "fo: 0, alpha: 1")),
-              HasSubstr("joint cart: friction: alpha: expected a known key"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "    rotor_inertia", "    rotor_inertai")),
-              HasSubstr("joint hinge: rotor_inertai: expected a known key"));
-}
-
-TEST(ModelFileError, MissingKeysNameLineAndKey) {
-  for (const std::string key : {"schema", "name", "source", "validity", "units", "geometry",
-                                "gravity", "parameters", "joints"}) {
-    YAML::Node node = YAML::Load(documentedFile());
-    node.remove(key);
-    EXPECT_THAT(fileError(YAML::Dump(node)),
-                HasSubstr("arm.yaml:1: " + key + ": expected this key, got none; add it"));
-  }
-  for (const std::string key : {"name", "type", "placement", "link"}) {
-    YAML::Node node = YAML::Load(documentedFile());
-    node["joints"][1].remove(key);
-    EXPECT_THAT(fileError(YAML::Dump(node)),
-                AllOf(HasSubstr("joint "), HasSubstr(key + ": expected this key, got none")));
-  }
-  EXPECT_THAT(fileError(replaced(documentedFile(), ", fo: 0", "")),
-              HasSubstr("joint cart: friction: fo: expected this key, got none"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), ", axis: [1, 0, 0]", "")),
-              HasSubstr("joint cart: placement: axis: expected this key, got none"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "  tolerance: 1e-12\n", "")),
-              HasSubstr("checks: tolerance: expected this key, got none"));
-}
-
-TEST(ModelFileError, RepeatedKey) {
-  EXPECT_THAT(fileError(documentedFile() + "units: SI\n"),
-              AllOf(HasSubstr("units: expected each key once"), HasSubstr("after line 5")));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "fv: 4,", "fv: 4, fv: 5,")),
-              HasSubstr("joint cart: friction: fv: expected each key once"));
-}
-
-TEST(ModelFileError, WrongLength) {
-  EXPECT_EQ(fileError(file("modified_dh", joint("one", dh("0", "0", "0", "0") + "  link: [1, 2]"))),
-            "arm.yaml:13: joint one: link: expected 10 numbers, got a list of 2");
-  EXPECT_THAT(fileError(replaced(documentedFile(), "[0, 0, -9.81]", "[0, -9.81]")),
-              HasSubstr("arm.yaml:8: gravity: expected 3 numbers, got a list of 2"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "[0, 0, -9.81]", "[0, 0, 0, -9.81]")),
-              HasSubstr("arm.yaml:8: gravity: expected 3 numbers, got a list of 4"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "q: [0.2, 0]", "q: [0.2]")),
-              HasSubstr("checks: states[0]: q: expected 2 numbers, got a list of 1"));
-  EXPECT_THAT(fileError(replaced(rowsFile(), std::string("[") + kLink + ", ", "[")),
-              HasSubstr("joint one: row: expected a list of 2, got a list of 1"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "joints:", "joints: []\nold:")),
-              HasSubstr("joints: expected at least one joint, got a list of 0"));
-}
-
-TEST(ModelFileError, NumbersMustBeFiniteNumbers) {
-  for (const std::string bad : {".nan", ".inf", "-.inf", "nan", "1e999", "heavy", "'3'", "1,5", "~",
-                                "1:30", "-9_81", "0x10", "0o17", "1e400", "!!str 3", "!mass 3"}) {
-    EXPECT_THAT(
-        fileError(replaced(documentedFile(), "rotor_inertia: 0.05", "rotor_inertia: " + bad)),
-        HasSubstr("joint hinge: rotor_inertia: expected a finite number, got"))
-        << bad;
-  }
-  EXPECT_THAT(fileError(replaced(documentedFile(), "link: [3,", "link: [.nan,")),
-              HasSubstr("joint cart: link[0]: expected a finite number, got '.nan'"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "fv: 4", "fv: [4]")),
-              HasSubstr("joint cart: friction: fv: expected a finite number, got a list of 1"));
-}
-
-TEST(ModelFileError, WrongTypesAndWords) {
-  EXPECT_THAT(fileError(replaced(documentedFile(), "schema: 1", "schema: 2")),
-              HasSubstr("arm.yaml:1: schema: expected 1, got '2'"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "schema: 1", "schema: 1.5")),
-              HasSubstr("schema: expected a small whole number, got '1.5'"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "units: SI", "units: imperial")),
-              HasSubstr("units: expected one of SI, got 'imperial'"));
-  EXPECT_THAT(
-      fileError(replaced(documentedFile(), "placements ", "screws ")),
-      HasSubstr("geometry: expected one of modified_dh, standard_dh, placements, got 'scr"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "type: continuous", "type: planar")),
-              HasSubstr("joint hinge: type: expected one of revolute, continuous, prismatic"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "law: none", "law: stribeck")),
-              AllOf(HasSubstr("joint hinge: friction: law: expected one of none, "),
-                    HasSubstr("got 'stribeck'")));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "source: worked by hand", "source: [a]")),
-              HasSubstr("source: expected a text, got a list of 1"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "source: worked by hand", "source: ")),
-              HasSubstr("source: expected a text, got nothing"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "[0, 1, 0]}", "[0, 0, 0]}")),
-              HasSubstr("joint hinge: placement: axis: expected a direction"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "friction: {law: none}", "friction: none")),
-              HasSubstr("joint hinge: friction: expected a map of keys and values, got 'none'"));
-}
-
-TEST(ModelFileError, WhatOneJointHasAllMustHave) {
-  EXPECT_THAT(fileError(replaced(documentedFile(), "    friction: {law: none}\n", "")),
-              AllOf(HasSubstr("joint hinge: friction: expected this key, as in the first joint"),
-                    HasSubstr("{law: none}")));
-  EXPECT_THAT(
-      fileError(replaced(documentedFile(), "    friction: {law: none}\n",
-                         "    friction: {law: none}\n    gravity_first_moment: [1, 2, 3]\n")),
-      HasSubstr("joint hinge: gravity_first_moment: expected no such key"));
-  EXPECT_THAT(fileError(replaced(rowsFile(), "  drive_gain: 5\n", "")),
-              HasSubstr("joint two: drive_gain: expected this key, got none"));
-}
-
-TEST(ModelFileError, KeysThatExcludeEachOther) {
-  EXPECT_THAT(fileError(rowsFile() + "  link: " + kLink + "\n"),
-              HasSubstr("joint two: link: expected either this key or row"));
-  EXPECT_THAT(fileError(rowsFile() + "  gravity_first_moment: [1, 2, 3]\n"),
-              HasSubstr("gravity_first_moment"));
-  EXPECT_THAT(fileError(file("modified_dh",
-                             joint("one", withLink("dh: {a: 0, alpha: 0, alpha_quarter_turns: 0, "
-                                                   "d: 0, offset: 0}\n")))),
-              HasSubstr("alpha: expected either this key or alpha_quarter_turns"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "    rotor_inertia",
-                                 "    drive_gain: 3\n    rotor_inertia")),
-              HasSubstr("joint hinge: drive_gain: expected no such key without levels"));
-  EXPECT_THAT(fileError(file("modified_dh",
-                             joint("one", withLink(dh("0", "0", "0", "0") + "  drive_gain: 3\n")),
-                             "levels: {parameters: current, friction: torque}\n")),
-              HasSubstr("joint one: link: expected a row of links, as parameters are in currents"));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "    rotor_inertia",
-                                 "    limits: {lower: 1}\n    rotor_inertia")),
-              HasSubstr("joint hinge: limits: lower: expected a known key"));
-}
-
-TEST(ModelFileError, WhatCannotBeARobotNamesFileAndJoint) {
-  EXPECT_THAT(fileError(replaced(documentedFile(), "link: [2,", "link: [-2,")),
-              AllOf(StartsWith("arm.yaml: "), HasSubstr("joint hinge"), HasSubstr("mass")));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "name: hinge", "name: cart")),
-              AllOf(StartsWith("arm.yaml: "), HasSubstr("'cart' twice")));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "lower: -2", "lower: 5")),
-              AllOf(StartsWith("arm.yaml: "), HasSubstr("joint cart: position limits")));
-  EXPECT_THAT(fileError(replaced(rowsFile(), "drive_gain: 5", "drive_gain: 0")),
-              AllOf(StartsWith("arm.yaml: "), HasSubstr("drive gain of joint two")));
-  EXPECT_THAT(fileError(replaced(documentedFile(), "tolerance: 1e-12", "tolerance: 0")),
-              HasSubstr("checks: tolerance: expected a number > 0"));
 }
 
 }  // namespace

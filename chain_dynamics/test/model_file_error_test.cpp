@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Model files that are refused, with place and remedy.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+
+#include "model_file_texts.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TEST(ModelFileError, FileThatCannotBeRead) {
+  EXPECT_THAT(errorOf([] { modelFromFile("/no/such/model.yaml"); }),
+              AllOf(HasSubstr("/no/such/model.yaml"), HasSubstr("a file that can be read")));
+  EXPECT_THAT(errorOf([] { modelFromFile(kRobots); }), HasSubstr("got a directory"));
+}
+
+TEST(ModelFileError, TextThatIsNotOneYamlDocument) {
+  EXPECT_THAT(fileError(""), HasSubstr("expected one YAML document, got an empty file"));
+  EXPECT_THAT(fileError("# nothing\n"), HasSubstr("expected one YAML document, got an empty file"));
+  EXPECT_THAT(fileError("a: 1\n---\nb: 2\n"), HasSubstr("expected one YAML document, got 2"));
+  EXPECT_THAT(fileError("schema: 1\njoints: [1, 2\n"),
+              AllOf(HasSubstr("arm.yaml:"), HasSubstr("expected well-formed YAML")));
+  EXPECT_EQ(fileError("- 1\n- 2\n"),
+            "arm.yaml:1: file: expected a map of keys and values, got a list of 2");
+}
+
+// yaml-cpp makes empty documents of these, without end.
+TEST(ModelFileError, TablesAndOtherTextsAreNotReadForEver) {
+  for (const std::string table : {",a\n", ",", "\"time\",\"q\"\n1,2\n", "'time','q'\n",
+                                  "# heading\n\"time\", 1\n", "--- ,\n"}) {
+    EXPECT_THAT(fileError(table), AllOf(StartsWith("arm.yaml:"), HasSubstr("expected one YAML "
+                                                                           "document, got a text "
+                                                                           "that isn't YAML")))
+        << table;
+  }
+  EXPECT_THAT(fileError("# heading\n\"time\", 1\n"), StartsWith("arm.yaml:2: file: "));
+}
+
+TEST(ModelFileError, HostileYaml) {
+  for (const std::string part : {"[", "{", "- ", "? ", "a: [", "[a: ", "{a: "}) {
+    std::string nested;
+    for (int i = 0; i < 100000; ++i) {
+      nested += part;
+    }
+    EXPECT_THAT(fileError(nested),
+                AllOf(StartsWith("arm.yaml:"), HasSubstr("inside of each other")))
+        << part;
+  }
+  std::string bomb = "a0: &a0 [x]\n";
+  for (int i = 1; i < 100; ++i) {
+    const std::string last = "*a" + std::to_string(i - 1);
+    bomb +=
+        "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [" + last + ", " + last + "]\n";
+  }
+  EXPECT_THAT(fileError(bomb), HasSubstr("schema: expected this key, got none"));
+  EXPECT_THAT(fileError("&a [*a]"), HasSubstr("expected a map of keys and values"));
+  EXPECT_THAT(fileError("schema: 1\nname: &n {name: *n}\n"), HasSubstr("name: expected a text"));
+}
+
+TEST(ModelFileError, FileWithoutEndIsNotReadToItsEnd) {
+  EXPECT_THAT(errorOf([] { modelFromFile("/dev/zero"); }),
+              HasSubstr("/dev/zero: file: expected at most 16 MiB, got more"));
+}
+
+TEST(ModelFileError, TextThatIsNoModelIsNotQuoted) {
+  EXPECT_EQ(fileError("root:x:0:0:root:/root:/bin/bash\ndaemon:x:1:1\n"),
+            "arm.yaml:1: file: expected a map of keys and values, got a text");
+}
+
+TEST(ModelFileError, NamesWithControlCharacters) {
+  EXPECT_THAT(fileError(replaced(documentedFile(), "- name: cart", "- name: \"cart\\e[31m\"")),
+              HasSubstr("expected UTF-8 text without control characters, got 'cart\\x1b[31m'"));
+  EXPECT_THAT(
+      fileError(replaced(file("modified_dh", joint("one", withLink("dh: {a: 0, alpha: 0, d: "
+                                                                   "0, offset: 0}\n"))),
+                         "name: arm", "name: \"a\\rm\"")),
+      HasSubstr("name: expected UTF-8 text without control characters, got 'a\\rm'"));
+}
+
+// YAML cut off between two lines is YAML still: what is missing must be noticed, or was optional.
+TEST(ModelFileError, TruncatedFileIsNeverReadAsAnotherRobot) {
+  const std::string whole = documentedFile();
+  const std::size_t optional_rest = whole.find("  - name: hinge");
+  for (std::size_t size = 0; size < optional_rest; ++size) {
+    const std::string error = fileError(whole.substr(0, size));
+    // the first joint is a robot, too, once it is complete
+    if (size < whole.find("link: [3") + 30) {
+      EXPECT_THAT(error, StartsWith("arm.yaml")) << whole.substr(0, size);
+    }
+  }
+}
+
+TEST(ModelFileError, UnknownKeysNameLineAndKnownKeys) {
+  EXPECT_THAT(fileError(documentedFile() + "mass: 3\n"),
+              AllOf(HasSubstr("mass: expected a known key"), HasSubstr("known here: checks, ")));
+  EXPECT_EQ(
+      fileError(file("modified_dh",
+                     joint("one", withLink("dh: {a: 0, alpha: 0, d: 0, offset: 0, e: 1}\n")))),
+      "arm.yaml:12: joint one: dh: e: expected a known key, got an unknown one; known here: "
+      "a, alpha, alpha_quarter_turns, d, offset, offset_quarter_turns");
+  EXPECT_THAT(fileError(replaced(documentedFile(), "fo: 0", "fo: 0, alpha: 1")),
+              HasSubstr("joint cart: friction: alpha: expected a known key"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "    rotor_inertia", "    rotor_inertai")),
+              HasSubstr("joint hinge: rotor_inertai: expected a known key"));
+}
+
+TEST(ModelFileError, MissingKeysNameLineAndKey) {
+  for (const std::string key : {"schema", "name", "source", "validity", "units", "geometry",
+                                "gravity", "parameters", "joints"}) {
+    YAML::Node node = YAML::Load(documentedFile());
+    node.remove(key);
+    EXPECT_THAT(fileError(YAML::Dump(node)),
+                HasSubstr("arm.yaml:1: " + key + ": expected this key, got none; add it"));
+  }
+  for (const std::string key : {"name", "type", "placement", "link"}) {
+    YAML::Node node = YAML::Load(documentedFile());
+    node["joints"][1].remove(key);
+    EXPECT_THAT(fileError(YAML::Dump(node)),
+                AllOf(HasSubstr("joint "), HasSubstr(key + ": expected this key, got none")));
+  }
+  EXPECT_THAT(fileError(replaced(documentedFile(), ", fo: 0", "")),
+              HasSubstr("joint cart: friction: fo: expected this key, got none"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), ", axis: [1, 0, 0]", "")),
+              HasSubstr("joint cart: placement: axis: expected this key, got none"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "  tolerance: 1e-12\n", "")),
+              HasSubstr("checks: tolerance: expected this key, got none"));
+}
+
+TEST(ModelFileError, RepeatedKey) {
+  EXPECT_THAT(fileError(documentedFile() + "units: SI\n"),
+              AllOf(HasSubstr("units: expected each key once"), HasSubstr("after line 5")));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "fv: 4,", "fv: 4, fv: 5,")),
+              HasSubstr("joint cart: friction: fv: expected each key once"));
+}
+
+TEST(ModelFileError, WrongLength) {
+  EXPECT_EQ(fileError(file("modified_dh", joint("one", dh("0", "0", "0", "0") + "  link: [1, 2]"))),
+            "arm.yaml:13: joint one: link: expected 10 numbers, got a list of 2");
+  EXPECT_THAT(fileError(replaced(documentedFile(), "[0, 0, -9.81]", "[0, -9.81]")),
+              HasSubstr("arm.yaml:8: gravity: expected 3 numbers, got a list of 2"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "[0, 0, -9.81]", "[0, 0, 0, -9.81]")),
+              HasSubstr("arm.yaml:8: gravity: expected 3 numbers, got a list of 4"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "q: [0.2, 0]", "q: [0.2]")),
+              HasSubstr("checks: states[0]: q: expected 2 numbers, got a list of 1"));
+  EXPECT_THAT(fileError(replaced(rowsFile(), std::string("[") + kLink + ", ", "[")),
+              HasSubstr("joint one: row: expected a list of 2, got a list of 1"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "joints:", "joints: []\nold:")),
+              HasSubstr("joints: expected at least one joint, got a list of 0"));
+}
+
+TEST(ModelFileError, NumbersMustBeFiniteNumbers) {
+  for (const std::string bad : {".nan", ".inf", "-.inf", "nan", "1e999", "heavy", "'3'", "1,5", "~",
+                                "1:30", "-9_81", "0x10", "0o17", "1e400", "!!str 3", "!mass 3"}) {
+    EXPECT_THAT(
+        fileError(replaced(documentedFile(), "rotor_inertia: 0.05", "rotor_inertia: " + bad)),
+        HasSubstr("joint hinge: rotor_inertia: expected a finite number, got"))
+        << bad;
+  }
+  EXPECT_THAT(fileError(replaced(documentedFile(), "link: [3,", "link: [.nan,")),
+              HasSubstr("joint cart: link[0]: expected a finite number, got '.nan'"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "fv: 4", "fv: [4]")),
+              HasSubstr("joint cart: friction: fv: expected a finite number, got a list of 1"));
+}
+
+TEST(ModelFileError, WrongTypesAndWords) {
+  EXPECT_THAT(fileError(replaced(documentedFile(), "schema: 1", "schema: 2")),
+              HasSubstr("arm.yaml:1: schema: expected 1, got '2'"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "schema: 1", "schema: 1.5")),
+              HasSubstr("schema: expected a small whole number, got '1.5'"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "units: SI", "units: imperial")),
+              HasSubstr("units: expected one of SI, got 'imperial'"));
+  EXPECT_THAT(
+      fileError(replaced(documentedFile(), "placements ", "screws ")),
+      HasSubstr("geometry: expected one of modified_dh, standard_dh, placements, got 'scr"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "type: continuous", "type: planar")),
+              HasSubstr("joint hinge: type: expected one of revolute, continuous, prismatic"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "law: none", "law: stribeck")),
+              AllOf(HasSubstr("joint hinge: friction: law: expected one of none, "),
+                    HasSubstr("got 'stribeck'")));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "source: worked by hand", "source: [a]")),
+              HasSubstr("source: expected a text, got a list of 1"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "source: worked by hand", "source: ")),
+              HasSubstr("source: expected a text, got nothing"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "[0, 1, 0]}", "[0, 0, 0]}")),
+              HasSubstr("joint hinge: placement: axis: expected a direction"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "friction: {law: none}", "friction: none")),
+              HasSubstr("joint hinge: friction: expected a map of keys and values, got 'none'"));
+}
+
+TEST(ModelFileError, WhatOneJointHasAllMustHave) {
+  EXPECT_THAT(fileError(replaced(documentedFile(), "    friction: {law: none}\n", "")),
+              AllOf(HasSubstr("joint hinge: friction: expected this key, as in the first joint"),
+                    HasSubstr("{law: none}")));
+  EXPECT_THAT(
+      fileError(replaced(documentedFile(), "    friction: {law: none}\n",
+                         "    friction: {law: none}\n    gravity_first_moment: [1, 2, 3]\n")),
+      HasSubstr("joint hinge: gravity_first_moment: expected no such key"));
+  EXPECT_THAT(fileError(replaced(rowsFile(), "  drive_gain: 5\n", "")),
+              HasSubstr("joint two: drive_gain: expected this key, got none"));
+}
+
+TEST(ModelFileError, KeysThatExcludeEachOther) {
+  EXPECT_THAT(fileError(rowsFile() + "  link: " + kLink + "\n"),
+              HasSubstr("joint two: link: expected either this key or row"));
+  EXPECT_THAT(fileError(rowsFile() + "  gravity_first_moment: [1, 2, 3]\n"),
+              HasSubstr("gravity_first_moment"));
+  EXPECT_THAT(fileError(file("modified_dh",
+                             joint("one", withLink("dh: {a: 0, alpha: 0, alpha_quarter_turns: 0, "
+                                                   "d: 0, offset: 0}\n")))),
+              HasSubstr("alpha: expected either this key or alpha_quarter_turns"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "    rotor_inertia",
+                                 "    drive_gain: 3\n    rotor_inertia")),
+              HasSubstr("joint hinge: drive_gain: expected no such key without levels"));
+  EXPECT_THAT(fileError(file("modified_dh",
+                             joint("one", withLink(dh("0", "0", "0", "0") + "  drive_gain: 3\n")),
+                             "levels: {parameters: current, friction: torque}\n")),
+              HasSubstr("joint one: link: expected a row of links, as parameters are in currents"));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "    rotor_inertia",
+                                 "    limits: {lower: 1}\n    rotor_inertia")),
+              HasSubstr("joint hinge: limits: lower: expected a known key"));
+}
+
+TEST(ModelFileError, WhatCannotBeARobotNamesFileAndJoint) {
+  EXPECT_THAT(fileError(replaced(documentedFile(), "link: [2,", "link: [-2,")),
+              AllOf(StartsWith("arm.yaml: "), HasSubstr("joint hinge"), HasSubstr("mass")));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "name: hinge", "name: cart")),
+              AllOf(StartsWith("arm.yaml: "), HasSubstr("'cart' twice")));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "lower: -2", "lower: 5")),
+              AllOf(StartsWith("arm.yaml: "), HasSubstr("joint cart: position limits")));
+  EXPECT_THAT(fileError(replaced(rowsFile(), "drive_gain: 5", "drive_gain: 0")),
+              AllOf(StartsWith("arm.yaml: "), HasSubstr("drive gain of joint two")));
+  EXPECT_THAT(fileError(replaced(documentedFile(), "tolerance: 1e-12", "tolerance: 0")),
+              HasSubstr("checks: tolerance: expected a number > 0"));
+}
+
+}  // namespace
+}  // namespace chain_dynamics
