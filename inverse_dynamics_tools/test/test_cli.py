@@ -13,6 +13,7 @@ from test_evaluation import RIGID_BODY, UR10, URDF, recording
 
 from inverse_dynamics import Solver, cli, read_evaluation
 from inverse_dynamics.data.bags import write_joint_logs
+from inverse_dynamics.verbs.common import progress_bar
 from inverse_dynamics.verbs.tables import figure
 
 RAW = ("--accelerations", "backward-difference")
@@ -388,3 +389,14 @@ def test_without_a_sourced_workspace_the_command_names_the_remedy():
     )
     assert result.returncode != 0
     assert "source install/local_setup.bash" in result.stderr
+
+
+def test_progress_tells_the_time_that_is_left(monkeypatch, capsys):
+    """Where standard error is a terminal."""
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "120")
+    with progress_bar() as progress:
+        progress("reading", 0, 1000)
+        progress("reading", 10, 1000)
+    plain = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", capsys.readouterr().err)
+    assert re.search(r"reading .* 10/1000 \d:\d\d:\d\d [-\d]+:[-\d:]+ left", plain), plain

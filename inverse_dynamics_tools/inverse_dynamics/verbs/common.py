@@ -119,7 +119,10 @@ def parameter(text: str) -> tuple[str, Parameter]:
 
 @contextmanager
 def progress_bar() -> Iterator[Progress]:
-    """A bar per kind of work, on stderr, gone at the end; none where stderr isn't a terminal."""
+    """A bar per kind of work, on stderr, gone at the end; none where stderr isn't a terminal.
+
+    It shows what is done, the time that it took, and the time that is left.
+    """
     from inverse_dynamics.verbs.screen import Screen
 
     console = Screen(stderr=True)
@@ -127,13 +130,22 @@ def progress_bar() -> Iterator[Progress]:
         yield no_progress
         return
 
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
 
     with Progress(
         TextColumn("{task.description:<16}"),
         BarColumn(),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        TextColumn("left"),
         console=console,
         transient=True,
     ) as bars:
