@@ -17,6 +17,10 @@ class UserError(Exception):
         return message(super().__str__())
 
 
+class ArgumentError(UserError, TypeError):
+    """An argument of a function that is missing, unknown, or of another type."""
+
+
 class BagError(UserError):
     """A recording that can't be read or doesn't hold what is asked of it."""
 

@@ -11,6 +11,7 @@
 #include <pybind11/pybind11.h>
 
 #include "accelerations.hpp"
+#include "arguments.hpp"
 #include "control.hpp"
 #include "errors.hpp"
 #include "evaluator.hpp"
@@ -27,4 +28,5 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindMetrics(module);
   inverse_dynamics_tools::bindEvaluator(module);
   inverse_dynamics_tools::bindControl(module);
+  inverse_dynamics_tools::explainRefusedArguments(module);
 }

@@ -154,6 +154,10 @@ std::string represented(const Solver& solver) {
 }  // namespace
 
 std::shared_ptr<const ids::InverseDynamicsSolver> solverOf(const py::handle& object) {
+  if (!py::isinstance<Solver>(object)) {
+    throw py::type_error(ids::errorText("argument solver", "", "a Solver",
+                                        py::str(py::type::handle_of(object).attr("__name__"))));
+  }
   return object.cast<const Solver&>().shared();
 }
 

@@ -14,7 +14,7 @@ void bindSolver(pybind11::module_& module);
 
 /// The solver inside an object of class Solver; it outlives the object if need be.
 ///
-/// @throws pybind11::cast_error  another class.
+/// @throws pybind11::type_error  another class.
 std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solverOf(
     const pybind11::handle& object);
 

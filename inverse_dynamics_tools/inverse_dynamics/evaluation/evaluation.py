@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data.recordings import read_recording
 from inverse_dynamics.errors import RobotError
@@ -91,6 +92,7 @@ class Evaluation:
         return sum(e.rmse for e in self.errors) / len(self.errors)
 
 
+@checked
 def evaluate(
     bag: Path | str,
     robot: Robot | Path | str,

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Calls with arguments that a function doesn't take: one line with argument, expected, and got."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from inverse_dynamics import Solver, UserError, _core, evaluate
+from inverse_dynamics.base.arguments import checked, refused
+from inverse_dynamics.errors import ArgumentError
+
+UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
+Q = np.zeros(6)
+
+
+@pytest.fixture(scope="module")
+def solver() -> Solver:
+    return Solver(UR10)
+
+
+def refusal(call) -> str:
+    """The text of the error that a call ends in."""
+    with pytest.raises(ArgumentError) as error:
+        call()
+    assert isinstance(error.value, UserError)
+    assert isinstance(error.value, TypeError)
+    assert "\n" not in str(error.value)
+    return str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("positional", "named", "text"),
+    [
+        ((), {}, "Solver: argument plugin: expected a text, got none"),
+        ((3,), {}, "Solver: argument plugin: expected a text, got 3"),
+        ((UR10,), {"tip": 3.5}, "Solver: argument tip: expected a text, got 3.5"),
+        (
+            (UR10,),
+            {"tpi": "tool0"},
+            "Solver: argument tpi: unknown; did you mean tip? known: plugin, urdf, root, tip, "
+            "gravity, friction, attached, model, parameters",
+        ),
+        ((UR10, "", ""), {"root": "a"}, "Solver: argument root: expected once, got twice"),
+        (
+            (UR10,),
+            {"gravity": (0, -9.81)},
+            "Solver: argument gravity: expected three numbers or None, got an object of type tuple",
+        ),
+        (
+            (UR10,),
+            {"gravity": "down"},
+            "Solver: argument gravity: expected three numbers or None, got 'down'",
+        ),
+        (
+            (UR10,),
+            {"parameters": {3: 4}},
+            "Solver: argument parameters: expected a dictionary whose keys are texts, got an object "
+            "of type dict",
+        ),
+        ((UR10,) * 12, {}, "Solver: expected at most 9 arguments without a name, got 12"),
+    ],
+)
+def test_constructor_names_the_argument(positional: tuple, named: dict, text: str) -> None:
+    assert refusal(lambda: Solver(*positional, **named)) == text
+
+
+def test_methods_name_the_argument(solver: Solver) -> None:
+    assert (
+        refusal(lambda: solver.torques(Q, Q))
+        == "Solver.torques: argument qdd: expected a value, got none"
+    )
+    assert (
+        refusal(lambda: solver.torques(Q, Q, Q, Q))
+        == "Solver.torques: expected at most 3 arguments without a name, got 4"
+    )
+    assert refusal(lambda: solver.gravity_vector(Q, ou=Q)) == (
+        "Solver.gravity_vector: argument ou: unknown; did you mean out? known: q, out"
+    )
+    assert refusal(lambda: Solver.gravity_vector(3, Q)) == (
+        "Solver.gravity_vector: argument self: expected a Solver, got 3"
+    )
+
+
+def test_functions_and_laws_name_the_argument(solver: Solver) -> None:
+    assert refusal(lambda: _core.low_pass_gain("a", 1, 2)) == (
+        "low_pass_gain: argument frequency: expected a number, got 'a'"
+    )
+    assert refusal(lambda: _core.Gains(Q, ["a"])) == (
+        "Gains: argument Kd: expected an array of real numbers, got an object of type list"
+    )
+    assert refusal(lambda: _core.Gains.of(Q)) == (
+        "Gains.of: argument damping_ratio: expected an array of real numbers, got none"
+    )
+    assert refusal(lambda: _core.ComputedTorque(solver, 3, 4)) == (
+        "ComputedTorque: argument gains: expected a Gains, got 3"
+    )
+    assert refusal(lambda: _core.SafeStop(Q, "elbow")) == (
+        "SafeStop: argument joint_names: expected a list of texts, got 'elbow'"
+    )
+    with pytest.raises(TypeError, match="^argument solver: expected a Solver, got int$"):
+        _core.damping_for(3, Q, 0.1, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("positional", "named", "text"),
+    [
+        ((), {}, "evaluate: argument bag: expected a path or a text, got none"),
+        ((3, "ur10_real"), {}, "evaluate: argument bag: expected a path or a text, got 3"),
+        (
+            ("bag", 3),
+            {},
+            "evaluate: argument robot: expected a Robot or a path or a text, got 3",
+        ),
+        (
+            ("bag", "ur10_real"),
+            {"cutoff": "high"},
+            "evaluate: argument cutoff: expected a number or None, got 'high'",
+        ),
+        (
+            ("bag", "ur10_real"),
+            {"joints": "elbow"},
+            "evaluate: argument joints: expected a list of texts or None, got 'elbow'",
+        ),
+        (
+            ("bag", "ur10_real", "UR10"),
+            {},
+            "evaluate: expected at most 2 arguments without a name, got 3",
+        ),
+    ],
+)
+def test_evaluate_names_the_argument(positional: tuple, named: dict, text: str) -> None:
+    assert refusal(lambda: evaluate(*positional, **named)) == text
+
+
+@pytest.mark.parametrize(
+    ("annotation", "right", "wrong"),
+    [
+        ("bool", [True, np.True_], [1, "no"]),
+        ("int", [3, np.int32(3)], [3.5, "3"]),
+        ("SupportsInt | typing.SupportsIndex", [3], [3.5]),
+        ("float", [3, 0.5, np.float32(1)], ["3", None]),
+        ("float | None", [3, None], ["3"]),
+        ("Optional[float]", [3, None], ["3"]),
+        ("List[str]", [["a"], ()], ["a", [3], 3, np.float64(3)]),
+        ("numpy.ndarray[numpy.float64[m, 1]]", [[1, 2], np.zeros(3), 3], ["a", [[1], [1, 2]]]),
+        ("inverse_dynamics._core.Gains | None", [None], [3]),
+        ("whatever", [3, None, "a"], []),
+    ],
+)
+def test_types_of_several_pybind11_releases(annotation: str, right: list, wrong: list) -> None:
+    signature = f"f(x: {annotation}) -> None"
+    for value in right:
+        assert str(refused("f", signature, [value], {})).startswith("f: arguments: expected f(x")
+    for value in wrong:
+        assert str(refused("f", signature, [value], {})).startswith("f: argument x: expected ")
+
+
+def test_what_fits_is_passed_on(solver: Solver) -> None:
+    @checked
+    def hypotenuse(a: float, *, b: float = 1) -> float:
+        return math.hypot(a, b)
+
+    assert hypotenuse(3, b=4) == 5
+    assert hypotenuse.__name__ == "hypotenuse"
+    assert solver.gravity_vector(q=Q).shape == (6,)
