@@ -12,6 +12,7 @@
 
 #pragma once
 
+#include <Eigen/Core>  // Clang's mm_malloc.h must declare posix_memalign before it is defined here
 #include <cerrno>
 #include <cstddef>
 

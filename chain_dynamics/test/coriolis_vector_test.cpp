@@ -48,7 +48,7 @@ double termsOf(const Chain& chain, const State<Scalar>& state) {
 template <typename Scalar>
 class CoriolisVectorOf : public ::testing::Test {};
 using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(CoriolisVectorOf, Scalars);
+TYPED_TEST_SUITE(CoriolisVectorOf, Scalars, );
 
 // Derived in torques_test.cpp: with k = m2 l1 l2,
 //   c1 = -k sin q2 (2 qd1 qd2 + qd2^2), c2 = k sin q2 qd1^2

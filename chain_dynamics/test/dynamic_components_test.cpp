@@ -15,7 +15,7 @@ using namespace test;  // NOLINT(google-build-using-namespace)
 template <typename Scalar>
 class DynamicComponentsOf : public ::testing::Test {};
 using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(DynamicComponentsOf, Scalars);
+TYPED_TEST_SUITE(DynamicComponentsOf, Scalars, );
 
 // The same operations, which a compiler may still round differently in another place.
 TYPED_TEST(DynamicComponentsOf, AnyRobotAreWhatTheirOwnFunctionsGive) {

@@ -22,7 +22,7 @@ constexpr double kByHand = 1e-13;
 template <typename Scalar>
 class EnergyOf : public ::testing::Test {};
 using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(EnergyOf, Scalars);
+TYPED_TEST_SUITE(EnergyOf, Scalars, );
 
 // 1/2 (m l^2 + J) qd^2, and m g times the height l sin q.
 TEST(Energy, OfAPendulumByHand) {

@@ -52,7 +52,7 @@ double conditionOf(const Chain& chain, const VectorX<Scalar>& q) {
 template <typename Scalar>
 class ForwardDynamicsOf : public ::testing::Test {};
 using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(ForwardDynamicsOf, Scalars);
+TYPED_TEST_SUITE(ForwardDynamicsOf, Scalars, );
 
 // (m l^2 + J) qdd = tau - m g l cos q
 TEST(ForwardDynamics, OfAPendulumByHand) {

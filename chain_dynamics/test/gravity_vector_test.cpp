@@ -41,7 +41,7 @@ double weightOf(const Chain& chain) {
 template <typename Scalar>
 class GravityVectorOf : public ::testing::Test {};
 using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(GravityVectorOf, Scalars);
+TYPED_TEST_SUITE(GravityVectorOf, Scalars, );
 
 TEST(GravityVector, OfAPendulumIsItsWeightTimesItsHorizontalReach) {
   const Chain chain = pendulum(2, 0.5, 9.81);

@@ -33,7 +33,7 @@ MatrixX<Scalar> inertiaMatrixOf(const Chain& chain, const VectorX<Scalar>& q) {
 template <typename Scalar>
 class InertiaMatrixOf : public ::testing::Test {};
 using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(InertiaMatrixOf, Scalars);
+TYPED_TEST_SUITE(InertiaMatrixOf, Scalars, );
 
 TEST(InertiaMatrix, OfAPendulumIsMassTimesLengthSquaredAndRotor) {
   const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 0.3);

@@ -95,7 +95,7 @@ void expectSame(const Chain& chain, const Quantities<Scalar>& a, const Quantitie
 template <typename Scalar>
 class ParameterSetsOf : public ::testing::Test {};
 using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(ParameterSetsOf, Scalars);
+TYPED_TEST_SUITE(ParameterSetsOf, Scalars, );
 
 TYPED_TEST(ParameterSetsOf, TheChainItselfChangeNothing) {
   using Scalar = TypeParam;

@@ -69,7 +69,7 @@ std::vector<std::vector<LinkParameters>> rowsOf(const Chain& chain) {
 template <typename Scalar>
 class RealTime : public ::testing::Test {};
 using Scalars = ::testing::Types<double, float, Dual<double, 3>>;
-TYPED_TEST_SUITE(RealTime, Scalars);
+TYPED_TEST_SUITE(RealTime, Scalars, );
 
 TYPED_TEST(RealTime, NoAlgorithmAllocatesUpToSixtyFourJoints) {
   if (!CHAIN_DYNAMICS_COUNTS_ALLOCATIONS) {

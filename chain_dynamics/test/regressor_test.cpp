@@ -38,7 +38,7 @@ VectorX<double> rotorInertia(const Chain& chain) {
 template <typename Scalar>
 class RegressorOf : public ::testing::Test {};
 using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(RegressorOf, Scalars);
+TYPED_TEST_SUITE(RegressorOf, Scalars, );
 
 // A body turning about the horizontal z axis, y up. Torque about z:
 //   Izz qdd + mcx (g cos q) - mcy (g sin q)

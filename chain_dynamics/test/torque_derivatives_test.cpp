@@ -87,7 +87,7 @@ std::vector<LinkParameters> identifiedLinks(Random& random, const Chain& chain) 
 template <typename Scalar>
 class TorqueDerivativesOf : public ::testing::Test {};
 using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(TorqueDerivativesOf, Scalars);
+TYPED_TEST_SUITE(TorqueDerivativesOf, Scalars, );
 
 // tau = (m l^2 + J) qdd + m g l cos q
 TEST(TorqueDerivatives, OfAPendulumByHand) {

@@ -43,7 +43,7 @@ double termsOf(const Chain& chain, const State<Scalar>& state) {
 template <typename Scalar>
 class TorquesOf : public ::testing::Test {};
 using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(TorquesOf, Scalars);
+TYPED_TEST_SUITE(TorquesOf, Scalars, );
 
 // Point mass m on a rod l, rod at angle q above the horizontal. About the pivot:
 //   inertia  m l^2, with a rotor J on the same axis m l^2 + J

@@ -61,8 +61,8 @@ REGISTER_TYPED_TEST_SUITE_P(SolverAlone, FirstErrorOfAProcessIsReported);
 }  // namespace inverse_dynamics_solver::conformance
 
 /// Runs all tests for the solver that `traits` describes, under the name `prefix`.
-#define INVERSE_DYNAMICS_SOLVER_CONFORMANCE(prefix, traits)          \
-  using inverse_dynamics_solver::conformance::SolverAlone;           \
-  using inverse_dynamics_solver::conformance::SolverConformance;     \
-  INSTANTIATE_TYPED_TEST_SUITE_P(prefix, SolverConformance, traits); \
-  INSTANTIATE_TYPED_TEST_SUITE_P(prefix, SolverAlone, traits)
+#define INVERSE_DYNAMICS_SOLVER_CONFORMANCE(prefix, traits)            \
+  using inverse_dynamics_solver::conformance::SolverAlone;             \
+  using inverse_dynamics_solver::conformance::SolverConformance;       \
+  INSTANTIATE_TYPED_TEST_SUITE_P(prefix, SolverConformance, traits, ); \
+  INSTANTIATE_TYPED_TEST_SUITE_P(prefix, SolverAlone, traits, )

@@ -14,6 +14,7 @@
 /// sanitizer, which has a malloc of its own) kAllocationGuardWorks is false.
 #pragma once
 
+#include <Eigen/Core>  // Clang's mm_malloc.h must declare posix_memalign before it is defined here
 #include <cerrno>
 #include <cstddef>
 #include <cstdlib>
