@@ -7,6 +7,7 @@
 
 #include "checks.hpp"
 #include "low_pass_differentiator.hpp"
+#include "quantile.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -16,6 +17,8 @@ using Eigen::Index;
 using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
 using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
 
+constexpr double kApart = 0.5;  // periods between samples that a cubic may run through
+
 // Used samples between two gaps.
 struct Piece {
   std::vector<Index> sample;
@@ -24,22 +27,60 @@ struct Piece {
   Index count = 0;    // of them
 };
 
-// Values at equidistant instants, linearly between the samples of a piece.
+// Weights of four samples at the instants `at` in the cubic through them, at instant t.
+Eigen::Vector4d cubicWeights(const Eigen::Vector4d& at, double t) {
+  Eigen::Vector4d weights = Eigen::Vector4d::Ones();
+  for (Index i = 0; i < 4; ++i) {
+    for (Index k = 0; k < 4; ++k) {
+      weights[i] *= i == k ? 1.0 : (t - at[k]) / (at[i] - at[k]);
+    }
+  }
+  return weights;
+}
+
+// Values at equidistant instants: on the cubic through the four samples around each, or on a
+// straight line where two of these are so close in time that a cubic would enlarge their noise.
 Eigen::MatrixXd equidistant(const ConstVector& time, const ConstMatrix& values,
                             const Piece& piece) {
   Eigen::MatrixXd result(values.rows(), piece.count);
-  std::size_t right = 1;  // of the two samples around an instant
+  const auto count = static_cast<Index>(piece.sample.size());
+  const auto sample = [&](Index i) { return piece.sample[static_cast<std::size_t>(i)]; };
+  Index right = 1;  // of the two samples around an instant
   for (Index i = 0; i < piece.count; ++i) {
     const double t = piece.begin + static_cast<double>(i) * piece.period;
-    while (right + 1 < piece.sample.size() && time[piece.sample[right]] < t) {
+    while (right + 1 < count && time[sample(right)] < t) {
       ++right;
     }
-    const Index before = piece.sample[right - 1];
-    const Index after = piece.sample[right];
-    const double share = std::clamp((t - time[before]) / (time[after] - time[before]), 0.0, 1.0);
-    result.col(i) = (1.0 - share) * values.col(before) + share * values.col(after);
+    const Index first = std::clamp<Index>(right - 2, 0, count - 4);
+    Eigen::Vector4d at;
+    for (Index k = 0; k < 4; ++k) {
+      at[k] = time[sample(first + k)];
+    }
+    if ((at.tail<3>() - at.head<3>()).minCoeff() >= kApart * piece.period) {
+      const Eigen::Vector4d weights = cubicWeights(at, t);
+      result.col(i).setZero();
+      for (Index k = 0; k < 4; ++k) {
+        result.col(i) += weights[k] * values.col(sample(first + k));
+      }
+    } else {
+      const Index before = sample(right - 1);
+      const Index after = sample(right);
+      const double share = std::clamp((t - time[before]) / (time[after] - time[before]), 0.0, 1.0);
+      result.col(i) = (1.0 - share) * values.col(before) + share * values.col(after);
+    }
   }
   return result;
+}
+
+// Median distance in time of neighbours in a piece: a sample that was lost doesn't change it.
+double usualPeriod(const SampleReport& samples, const std::vector<Piece>& pieces) {
+  std::vector<double> distances;
+  for (const Piece& piece : pieces) {
+    for (std::size_t i = 1; i < piece.sample.size(); ++i) {
+      distances.push_back(samples.time[piece.sample[i]] - samples.time[piece.sample[i - 1]]);
+    }
+  }
+  return distances.empty() ? samples.period : quantile(distances, 0.5);
 }
 
 std::vector<Piece> cutPieces(const SampleReport& samples) {
@@ -55,14 +96,26 @@ std::vector<Piece> cutPieces(const SampleReport& samples) {
     }
     pieces.back().sample.push_back(k);
   }
+  const double period = usualPeriod(samples, pieces);
   for (Piece& piece : pieces) {
     piece.begin = samples.time[piece.sample.front()];
     const double duration = samples.time[piece.sample.back()] - piece.begin;
-    piece.count = std::max(static_cast<Index>(std::llround(duration / samples.period)) + 1,
+    piece.count = std::max(static_cast<Index>(std::llround(duration / period)) + 1,
                            static_cast<Index>(piece.sample.size()));
     piece.period = duration / static_cast<double>(piece.count - 1);
   }
   return pieces;
+}
+
+// Of the equidistant samples of all pieces [Hz].
+double samplingFrequency(const std::vector<Piece>& pieces) {
+  double intervals = 0.0;
+  double duration = 0.0;
+  for (const Piece& piece : pieces) {
+    intervals += static_cast<double>(piece.count - 1);
+    duration += static_cast<double>(piece.count - 1) * piece.period;
+  }
+  return intervals / duration;
 }
 
 // Accelerations of equidistant samples at any instants that don't decrease; between two pieces on
@@ -199,7 +252,7 @@ AccelerationEstimate lowPassAccelerations(const Eigen::Ref<const Eigen::VectorXd
 
   FilterChoice& filter = estimate.filter;
   filter.order = options.order;
-  filter.sampling_frequency = 1.0 / estimate.samples.period;
+  filter.sampling_frequency = samplingFrequency(pieces);
   filter.time_base = estimate.samples.time_base;
   filter.pieces = static_cast<Index>(pieces.size());
   filter.cutoff = options.cutoff;
