@@ -62,9 +62,10 @@ class Recording:
     group: str
     motion: Motion
     time: Floats  # stamps
+    source: Integers  # whose sample of the motion a message holds: repeats hold an older one
     q: Floats
     qd: Floats
-    clean_qd: Floats  # without repeated samples: what the fixed filter gets
+    clean_qd: Floats  # of all samples of the motion: what the fixed filter gets
     moving: Integers | None = None  # where the error is taken, if not everywhere
 
 
@@ -190,16 +191,13 @@ def recorded(
 ) -> Recording:
     """A recording of a motion; from 125 Hz on one in four has late stamps, one in four repeats."""
     q, qd = NOISES[noise](motion, random)
-    clean = qd
-    time = motion.time
+    time, source = motion.time, np.arange(len(q))
     fault = random.integers(4) if moving is None and motion.rate > 100 else 3
     if fault == 0:
         time = time + random.uniform(0.0, 0.8 / motion.rate, len(time))
     elif fault == 1:
-        source = np.arange(len(time))
         source[9::10] -= 1
-        q, qd = q[source], qd[source]
-    return Recording(group, motion, time, q, qd, clean, moving)
+    return Recording(group, motion, time, source, q[source], qd[source], qd, moving)
 
 
 def recordings(step: int) -> Iterator[Recording]:
@@ -252,7 +250,8 @@ class Judge:
         motion = recording.motion
         stride = -(-len(motion.q) // MOST_TORQUES)
         self.at = np.arange(0, len(motion.q), stride)
-        self.true = torques(motion.q[self.at], motion.qd[self.at], motion.qdd[self.at])
+        source = recording.source[self.at]  # a repeat repeats the torque too
+        self.true = torques(motion.q[source], motion.qd[source], motion.qdd[source])
 
     def error(self, qdd: Floats) -> float:
         """Of torques over all samples, or of accelerations within the motion."""
@@ -277,7 +276,7 @@ class Judge:
         for cutoff in (fixed for fixed in CUTOFFS if fixed < 0.4 * rate):
             qdd = np.zeros_like(recording.qd)
             qdd[offset : offset + len(qd)] = derivative(_core.low_pass(qd, rate, cutoff), rate)
-            errors.append(self.error(qdd))
+            errors.append(self.error(qdd[recording.source]))
         return min(errors)
 
 
