@@ -163,7 +163,7 @@ VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sa
   Index samples = 0;
   for (const Stretch& stretch : stretches) {
     longest = std::max(longest, stretch.qd.cols());
-    samples += stretch.qd.cols();
+    samples += stretch.qd.cols() >= kLeastStretch ? stretch.qd.cols() : 0;
   }
   Index length = 1;
   while (static_cast<double>(2 * length) <= kSegmentSeconds * sampling_frequency &&

@@ -160,6 +160,16 @@ TEST(ChooseCutoff, UsesStretchesOfAnyLength) {
   EXPECT_LT(std::abs(std::log(both / alone)), std::log(1.3)) << both << " " << alone;
 }
 
+TEST(ChooseCutoff, CountsNoStretchesThatAreTooShortToBeUsed) {
+  Motion motion = sines(125.0, 10.0, {1.0, 0.7});
+  addVelocityNoise(motion, 0.005, 12);
+  std::vector<Stretch> stretches = {{motion.q, motion.qd}};
+  for (int i = 0; i < 200; ++i) {
+    stretches.push_back({motion.q.leftCols(12), motion.qd.leftCols(12)});
+  }
+  EXPECT_GT(chooseCutoff(stretches, 125.0).moving, 0.99);
+}
+
 TEST(ChooseCutoff, RefusesTooFewSamples) {
   const Eigen::MatrixXd few = Eigen::MatrixXd::Ones(2, 15);
   EXPECT_THAT(errorOf<EvaluationError>([&] {
