@@ -172,6 +172,7 @@ std::vector<EffortSums::Matrix> EffortSums::errors() const {
 std::vector<EffortCandidate> EffortSums::ranked(const std::vector<Matrix>& errors) const {
   const auto joints = static_cast<double>(effort_.size());
   std::vector<ArrayXd> scores;  // per stretch
+  scores.reserve(errors.size());
   for (const Matrix& error : errors) {
     scores.emplace_back(error.log().colwise().sum().transpose() / joints);
   }
