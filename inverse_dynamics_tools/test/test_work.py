@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How much a command does before and beside its work: what it imports, what it draws.
 
-Times depend on the machine; what costs time doesn't. `benchmarks/small_recording` measures.
+Times depend on the machine; what costs time doesn't. `benchmarks/small_recording.py` measures.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from test_evaluation import RIGID_BODY, URDF, recording
 from test_results import make_evaluation
 
 from inverse_dynamics import Solver, save_torque_figure
+from inverse_dynamics.evaluation.comparison import compare
+from inverse_dynamics.results.comparisons import write_comparison
 
 # Imports of tens of milliseconds and more, each.
 HEAVY = (
@@ -90,7 +92,7 @@ def test_a_figure_is_made_once_for_all_formats_and_laid_out_without_trials(
 
     joints = 3
     made: list[Axes] = []
-    measured: list[Axis] = []
+    measured: list[Axis] = []  # boxes of ticks and labels are asked for to find places for others
     make, measure = Axes.__init__, Axis.get_tightbbox
     monkeypatch.setattr(Axes, "__init__", lambda a, *x, **k: (made.append(a), make(a, *x, **k))[1])
     monkeypatch.setattr(
@@ -99,7 +101,12 @@ def test_a_figure_is_made_once_for_all_formats_and_laid_out_without_trials(
     evaluation = make_evaluation(200, joints)
     save_torque_figure(evaluation, tmp_path / "a.png", tmp_path / "a.svg")
     assert len(made) == 2 * joints
-    assert measured == []  # boxes of ticks are asked for to look for a place for titles
+    assert measured == []
+    both = compare([evaluation, evaluation], ("one", "two"))
+    write_comparison(both, tmp_path / "out", figures=("png", "svg"), page=False)
+    assert len(made) == 4 * joints
+    assert measured == []
+    assert not (tmp_path / "out" / "report.html").exists()
 
 
 def test_lines_of_a_figure_are_thinned(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.evaluation.comparison import Comparison
@@ -104,15 +105,7 @@ def torque_figure(evaluation: Evaluation) -> Figure:
     n = len(evaluation.joint_names)
     height = 1.25 * n + 1.7
     figure = Figure(figsize=(11.0, height))
-    axes = figure.subplots(n, 2, sharex=True, squeeze=False, width_ratios=(1.7, 1.0))
-    figure.subplots_adjust(
-        left=0.065,
-        right=0.985,
-        top=1 - 1.32 / height,
-        bottom=0.5 / height,
-        hspace=0.42,
-        wspace=0.13,
-    )
+    axes = _panels(figure, n, top=1.32, bottom=0.5)
     time = evaluation.time
     for j, (left, right) in enumerate(axes):
         _draw_torques(left, evaluation, time, j)
@@ -154,11 +147,15 @@ def comparison_figure(comparison: Comparison) -> Figure:
 
     first = comparison.evaluations[0]
     n = len(comparison.joint_names)
-    figure = Figure(figsize=(11.0, 1.25 * n + 1.2), layout="constrained")
+    height = 1.25 * n + 1.2
+    figure = Figure(figsize=(11.0, height))
     figure.suptitle(
-        f"{first.bag.name}: {' against '.join(comparison.labels)}", fontsize=12, fontweight="bold"
+        f"{first.bag.name}: {' against '.join(comparison.labels)}",
+        y=1 - 0.1 / height,
+        fontsize=12,
+        fontweight="bold",
     )
-    axes = figure.subplots(n, 2, sharex=True, squeeze=False, width_ratios=(1.7, 1.0))
+    axes = _panels(figure, n, top=0.55, bottom=0.8)
     for j, (left, right) in enumerate(axes):
         for k, evaluation in enumerate(comparison.evaluations):
             error = evaluation.computed[:, j] - evaluation.measured[:, j]
@@ -184,8 +181,23 @@ def comparison_figure(comparison: Comparison) -> Figure:
         axis.set_xlabel("time [s]", color=_MUTED)
         axis.set_xlim(first.time[0], first.time[-1])
     handles, labels = axes[0][0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), frameon=False)
+    figure.legend(handles, labels, loc="lower center", ncols=len(labels), frameon=False)
     return figure
+
+
+def _panels(figure: Figure, n: int, *, top: float, bottom: float) -> NDArray[np.object_]:
+    """Axes (n, 2) at fixed places, torques and errors; `top` and `bottom` inches are left to others."""
+    axes = figure.subplots(n, 2, sharex=True, squeeze=False, width_ratios=(1.7, 1.0))
+    height = figure.get_figheight()
+    figure.subplots_adjust(
+        left=0.065,
+        right=0.985,
+        top=1 - top / height,
+        bottom=bottom / height,
+        hspace=0.42,
+        wspace=0.13,
+    )
+    return axes
 
 
 def _draw_torques(axes: Axes, evaluation: Evaluation, time: Floats, j: int) -> None:

@@ -125,6 +125,7 @@ def _plot(
         "font.size": 7,
         "axes.spines.top": False,
         "axes.spines.right": False,
+        "axes.titley": 1.0,
     }
     with mpl.rc_context(style):
         figure = Figure(figsize=(_PLOT_WIDTH / dpi, _HEIGHT / dpi), dpi=dpi)
@@ -215,7 +216,8 @@ def _scene(links: Sequence[dict[str, Any]]) -> Any:
     spec = mujoco.MjSpec()
     spec.visual.global_.fovy = _FIELD_OF_VIEW
     spec.visual.global_.offwidth, spec.visual.global_.offheight = _ROBOT_WIDTH, _HEIGHT
-    spec.visual.quality.offsamples = 4
+    quality = spec.visual.quality  # round enough for pictures of this size, at half the work
+    quality.offsamples, quality.numslices, quality.numstacks, quality.numquads = 4, 24, 6, 1
     spec.visual.headlight.ambient = [0.45, 0.45, 0.45]
     spec.visual.headlight.diffuse = [0.35, 0.35, 0.35]
     spec.visual.rgba.haze = spec.visual.rgba.fog = [0.96, 0.965, 0.975, 1.0]

@@ -31,6 +31,7 @@ def error_figure(evaluation: Evaluation) -> str:
         "font.size": 9,
         "axes.spines.top": False,
         "axes.spines.right": False,
+        "axes.titley": 1.0,
         "svg.fonttype": "none",
         "svg.hashsalt": printable(evaluation.robot.name),
     }

@@ -32,13 +32,14 @@ def write_comparison(
     overwrite: bool = False,
     title: str = "",
     figures: Sequence[str] = ("png",),
+    page: bool = True,
 ) -> None:
     """Write all files of a comparison, or none of them. Raises OutputError.
 
-    figures: of "png", "svg", "pdf"; none of them: only that of the page.
+    figures: of "png", "svg", "pdf"; none of them: only that of the page. page: whether report.html is
+    among the files.
     """
     from inverse_dynamics.figures.plots import check_formats, save_comparison_figure
-    from inverse_dynamics.report import report_comparison, report_run, write_page
 
     check_formats(figures)
     first = comparison.evaluations[0]
@@ -48,11 +49,18 @@ def write_comparison(
         text = json.dumps(_figures(comparison), indent=2, allow_nan=False, ensure_ascii=False)
         write_text(target / MARK, text + "\n")
         save_comparison_figure(comparison, *(target / f"comparison.{f}" for f in figures))
-        runs = [
-            report_run(evaluation, label)
-            for evaluation, label in zip(comparison.evaluations, comparison.labels, strict=True)
-        ]
-        write_page(target / "report.html", title, runs, [report_comparison(comparison)])
+        if page:
+            _write_page(target / "report.html", title, comparison)
+
+
+def _write_page(file: Path, title: str, comparison: Comparison) -> None:
+    from inverse_dynamics.report import report_comparison, report_run, write_page
+
+    runs = [
+        report_run(evaluation, label)
+        for evaluation, label in zip(comparison.evaluations, comparison.labels, strict=True)
+    ]
+    write_page(file, title, runs, [report_comparison(comparison)])
 
 
 def _figures(comparison: Comparison) -> dict[str, Any]:

@@ -59,6 +59,7 @@ HOW_TO_GET_RECORDINGS = (
 )
 
 _QUICK_SECONDS = 4.0  # of simulated motion
+_FILM_SECONDS = 5.0  # drawing the robots is the larger part of the work
 
 
 @dataclass(frozen=True)
@@ -205,12 +206,14 @@ class _Work:
         from inverse_dynamics.results.evaluations import write_evaluation
 
         rigid = evaluate(bag, "ur10_real", plugin=RIGID_BODY, progress=self.progress)
-        write_evaluation(rigid, self.target / "ur10_real_urdf", progress=self.progress)
+        write_evaluation(  # the figure of the comparison shows its torques
+            rigid, self.target / "ur10_real_urdf", figures=(), progress=self.progress
+        )
         comparison = compare(
             [rigid, self.evaluations["ur10_real"]],
             ("rigid bodies of the URDF", "identified, with friction"),
         )
-        write_comparison(comparison, self.target / "comparison")
+        write_comparison(comparison, self.target / "comparison", page=False)  # report.html shows it
         return comparison
 
     def film(self) -> None:
@@ -220,7 +223,13 @@ class _Work:
             self.say(f"filming {TITLES[name]}")
             file = self.target / f"{name}.gif"
             try:
-                write_video(evaluation, file, title=TITLES[name], progress=self.progress)
+                write_video(
+                    evaluation,
+                    file,
+                    title=TITLES[name],
+                    seconds=_FILM_SECONDS,
+                    progress=self.progress,
+                )
             except VideoError as error:
                 self.notes.append(f"no videos: {error}")
                 return
