@@ -20,7 +20,7 @@ constexpr double kRateShare = 8.0;  // the same of q's, over a block squared; no
 constexpr double kSecondDifference = 6.0;  // variance of a second difference of white noise
 
 // Variance of white noise, from second differences about the samples from `first` to `last` - 1.
-Eigen::ArrayXd noiseVariance(const Eigen::MatrixXd& x, Index first, Index last) {
+Eigen::ArrayXd noiseVariance(const Eigen::Ref<const Eigen::MatrixXd>& x, Index first, Index last) {
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(x.rows());
   for (Index k = first; k < last; ++k) {
     sum += (x.col(k + 1) - 2.0 * x.col(k) + x.col(k - 1)).array().square();
