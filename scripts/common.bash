@@ -26,7 +26,10 @@ solver_packages=(
   franka_inria_inverse_dynamics_solver kdl_inverse_dynamics_solver
   pinocchio_inverse_dynamics_solver
 )
-user_packages=(inverse_dynamics_evaluation inverse_dynamics_control inverse_dynamics_tools)
+user_packages=(
+  inverse_dynamics_evaluation inverse_dynamics_recordings inverse_dynamics_control
+  inverse_dynamics_tools
+)
 
 # What the command line works without, so that a first build is short: a plain ./scripts/build, and
 # ./scripts/demo, leave it out.
@@ -49,6 +52,8 @@ apt_packages=(
   libament-index-cpp-dev python3-ament-index libclass-loader-dev pluginlib-dev
   # Mathematics, robot descriptions, data files, tests.
   libeigen3-dev libgtest-dev liborocos-kdl-dev libtinyxml2-dev libyaml-cpp-dev
+  # Recordings.
+  liblz4-dev libsqlite3-dev libzstd-dev
   # How fast this machine is: ids bench.
   libbenchmark-dev
   # Pictures of simulated robots without a screen.
