@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inverse_dynamics.data.joint_log import JointLog
-from inverse_dynamics.data.joint_state_cdr import Block
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -191,23 +190,112 @@ class RecordedJoints:
     def notes(self) -> list[str]:
         """What was left out or assumed."""
 
+class Connection:
+    """What a recording states about the messages of a publisher."""
+
+    @property
+    def topic(self) -> str: ...
+    @property
+    def message_type(self) -> str: ...
+    @property
+    def message_count(self) -> int: ...
+    @property
+    def serialization(self) -> str: ...
+    @property
+    def qos_profiles(self) -> str:
+        """YAML; empty where there are none."""
+
+    @property
+    def definition(self) -> str:
+        """Of the type; empty where the recording doesn't hold it."""
+
+    @property
+    def definition_hash(self) -> str: ...
+
+class Messages:
+    """Serialized messages, thousands at a time: indices of connections, times [ns], bytes."""
+
+    def __iter__(self) -> Messages: ...
+    def __next__(self) -> tuple[list[int], list[int], list[bytes]]: ...
+
+class JointStates:
+    """Joint states of a topic, in blocks of messages that have the same names, frame and lengths.
+
+    A block: names, frame, header and receive stamps (N,) [ns], position, velocity, effort, one row
+    per message. A JointLogBuilder takes them too.
+    """
+
+    @property
+    def expected_messages(self) -> int:
+        """How many messages there are by the recording's own account."""
+
+    def __iter__(self) -> JointStates: ...
+    def __next__(
+        self,
+    ) -> tuple[tuple[str, ...], str, Integers, Integers, Floats, Floats, Floats]: ...
+
+class Recording:
+    """A rosbag2 recording: inverse_dynamics_recordings/recording.hpp. Errors are BagError.
+
+    path: directory with metadata.yaml, or a .db3 or .mcap file; bytes, as os.fsencode gives.
+    """
+
+    def __init__(self, path: str | bytes) -> None: ...
+    @property
+    def storage(self) -> Literal["sqlite3", "mcap"]: ...
+    def topics(self) -> list[tuple[str, str, int]]:
+        """By name: name, type, number of messages."""
+
+    def topic_of_type(self, message_type: str, topic: str | bytes = "") -> str:
+        """The topic; none given: the only one with messages of the type."""
+
+    def expected_messages(self, topic: str | bytes) -> int:
+        """How many messages a topic has by the recording's own account."""
+
+    def connections(self) -> list[Connection]:
+        """In the order of the recording, with definitions."""
+
+    def messages(self, topic: str | bytes) -> Messages:
+        """All messages of a topic; an error where they aren't as many as expected."""
+
+    def all_messages(self) -> Messages:
+        """All messages of all topics."""
+
+    def joint_states(self, topic: str | bytes = "") -> JointStates:
+        """Of a topic; none given: of the only one with joint states."""
+
+class JointStateWriter:
+    """A new recording: inverse_dynamics_recordings/joint_state_writer.hpp. Errors are BagError.
+
+    topics: name, joint names and frame of each. It is complete after finish() only.
+    """
+
+    def __init__(
+        self,
+        path: str | bytes,
+        storage: Literal["sqlite3", "mcap"],
+        topics: Sequence[tuple[str, Sequence[str], str]],
+    ) -> None: ...
+    def write(self, rows: Sequence[tuple[Integers, Integers, Floats, Floats, Floats]]) -> None:
+        """Append messages, per topic: header and receive stamps (N,) [ns]; position, velocity, effort (N, n)."""
+
+    def finish(self) -> None:
+        """Write indexes and metadata."""
+
 class JointLogBuilder:
     """Collects messages, one row each, by the rules of joint_log.hpp.
 
-    where: file and topic, for error texts. joints: names in the order wanted; none: those of the
-    first message. Errors are BagError.
+    states: name file and topic in error texts. joints: names in the order wanted; none: those of
+    the first message. Errors are BagError.
     """
 
-    def __init__(self, where: str, joints: Sequence[str]) -> None: ...
+    def __init__(self, states: JointStates, joints: Sequence[str]) -> None: ...
     @property
     def messages(self) -> int:
         """How many were added."""
 
-    def add(self, blocks: Sequence[Block], received: Integers) -> None:
-        """Add blocks that together hold len(received) messages, received at these times [ns].
-
-        ValueError: blocks that don't.
-        """
+    def add_next(self, states: JointStates) -> bool:
+        """Add the next messages of a recording; whether there were any."""
 
     def finish(self, clock: Literal["auto", "header", "receive"]) -> RecordedJoints:
         """Everything added, whose memory the builder gives away: it holds no message then."""

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The extension module `inverse_dynamics._core`: solvers by name, samples of recordings,
+/// The extension module `inverse_dynamics._core`: solvers by name, recordings and their samples,
 /// accelerations, metrics and control laws, on numpy arrays.
 ///
 /// A batch is an (N, n) array, one state a row. Solvers compute from and into doubles where they
@@ -17,6 +17,7 @@
 #include "evaluator.hpp"
 #include "joint_log.hpp"
 #include "metrics.hpp"
+#include "recordings.hpp"
 #include "solver.hpp"
 
 PYBIND11_MODULE(_core, module) {
@@ -24,6 +25,7 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindErrors();
   inverse_dynamics_tools::bindSolver(module);
   inverse_dynamics_tools::bindAccelerations(module);
+  inverse_dynamics_tools::bindRecordings(module);
   inverse_dynamics_tools::bindJointLog(module);
   inverse_dynamics_tools::bindMetrics(module);
   inverse_dynamics_tools::bindEvaluator(module);

@@ -8,6 +8,7 @@
 #include <inverse_dynamics_evaluation/error.hpp>
 #include <inverse_dynamics_evaluation/joint_log.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
+#include <string>
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -17,7 +18,11 @@ namespace ids = inverse_dynamics_solver;
 
 void raise(const char* class_name, const std::exception& error) {
   const py::object type = py::module_::import("inverse_dynamics.errors").attr(class_name);
-  PyErr_SetString(type.ptr(), error.what());
+  // Paths and names may hold bytes that aren't UTF-8.
+  const std::string text = error.what();
+  const auto decoded = py::reinterpret_steal<py::object>(
+      PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
+  if (decoded) PyErr_SetObject(type.ptr(), decoded.ptr());
 }
 
 void translate(std::exception_ptr thrown) {

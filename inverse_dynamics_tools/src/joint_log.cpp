@@ -4,16 +4,13 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include <Eigen/Core>
-#include <cstdint>
 #include <inverse_dynamics_evaluation/joint_log.hpp>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
-#include "arrays.hpp"
 #include "initialized.hpp"
+#include "joint_states.hpp"
 
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::JointLog)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::JointLogBuilder)
@@ -23,77 +20,15 @@ namespace {
 
 namespace py = pybind11;
 namespace evaluation = inverse_dynamics_evaluation;
-using Eigen::Index;
 using evaluation::JointLog;
 using evaluation::JointLogBuilder;
-using evaluation::JointSample;
 
-void require(bool fulfilled, const char* what, Index expected, Index got) {
-  if (fulfilled) return;
-  throw py::value_error("JointLogBuilder.add: " + std::string(what) + ": expected " +
-                        std::to_string(expected) + ", got " + std::to_string(got));
-}
-
-/// Messages with the same names and array lengths: the NamedTuple Block of joint_state_cdr.py.
-struct Block {
-  explicit Block(const py::handle& block)
-      : rows(block.attr("rows").cast<Integers>()),
-        names(block.attr("names").cast<std::vector<std::string>>()),
-        frame_id(block.attr("frame_id").cast<std::string>()),
-        stamps(block.attr("stamps").cast<Integers>()),
-        position(block.attr("position").cast<Array>()),
-        velocity(block.attr("velocity").cast<Array>()),
-        effort(block.attr("effort").cast<Array>()) {
-    const Index count = rows.size();
-    require(stamps.size() == count, "stamps of a block", count, stamps.size());
-    for (const Array* array : {&position, &velocity, &effort}) {
-      require(array->shape(0) == count, "rows of numbers of a block", count, array->shape(0));
-    }
-  }
-
-  /// Message i of the block.
-  JointSample sample(Index i) const {
-    JointSample result{names};
-    new (&result.position) JointSample::Numbers(row(position, i));
-    new (&result.velocity) JointSample::Numbers(row(velocity, i));
-    new (&result.effort) JointSample::Numbers(row(effort, i));
-    result.header_stamp = stamps.data()[i];
-    result.frame_id = frame_id;
-    return result;
-  }
-
-  static JointSample::Numbers row(const Array& array, Index i) {
-    return {array.data() + i * array.shape(1), array.shape(1)};
-  }
-
-  Integers rows;
-  std::vector<std::string> names;
-  std::string frame_id;
-  Integers stamps;
-  Array position, velocity, effort;
-};
-
-/// Adds messages, in the order in which they were received, whichever blocks they are in.
-void add(JointLogBuilder& builder, const std::vector<py::object>& blocks,
-         const Integers& received) {
-  const std::vector<Block> decoded(blocks.begin(), blocks.end());
-  std::vector<std::pair<const Block*, Index>> places(static_cast<std::size_t>(received.size()));
-  for (const Block& block : decoded) {
-    for (Index i = 0; i < block.rows.size(); ++i) {
-      places.at(static_cast<std::size_t>(block.rows.data()[i])) = {&block, i};
-    }
-  }
-  for (const auto& [block, i] : places) {
-    if (block == nullptr) throw py::value_error("JointLogBuilder.add: a message is in no block");
-  }
-  const std::int64_t* stamp = received.data();
+/// Adds the next messages of a recording; whether there were any.
+bool addNext(JointLogBuilder& builder, JointStates& states) {
   const py::gil_scoped_release release;
-  for (const auto& [block, i] : places) {
-    JointSample sample = block->sample(i);
-    sample.receive_stamp = *stamp++;
-    sample.message = builder.samples();
-    builder.add(sample);
-  }
+  if (!states.source->next(states.block)) return false;
+  builder.add(states.block);
+  return true;
 }
 
 JointLog finish(JointLogBuilder& builder, const std::string& clock) {
@@ -132,13 +67,13 @@ void bindJointLog(py::module_& module) {
   py::class_<JointLogBuilder>(module, "JointLogBuilder",
                               "Collects messages, by the rules of "
                               "inverse_dynamics_evaluation/joint_log.hpp.")
-      .def(py::init([](const std::string& where, const std::vector<std::string>& joints) {
-             return JointLogBuilder(where, joints, {true, "--joints"});
+      .def(py::init([](const JointStates& states, const std::vector<std::string>& joints) {
+             return JointLogBuilder(states.source->where(), joints, {true, "--joints"});
            }),
-           py::arg("where"), py::arg("joints"))
+           py::arg("states"), py::arg("joints"))
       .def_property_readonly("messages", &JointLogBuilder::samples, "How many were added.")
-      .def("add", &add, py::arg("blocks"), py::arg("received"),
-           "Add blocks that together hold len(received) messages, received at these times [ns].")
+      .def("add_next", &addNext, py::arg("states"),
+           "Add the next messages of a recording; whether there were any.")
       .def("finish", &finish, py::arg("clock"),
            "Everything added, whose memory the builder gives away: it holds no message then.");
 }

@@ -9,7 +9,6 @@ from scipy import signal
 
 from inverse_dynamics import Solver, UserError, _core, available_solvers, errors
 from inverse_dynamics.base.ament import package_share
-from inverse_dynamics.data.joint_state_cdr import Block
 
 UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
 PANDA = "franka_inria_inverse_dynamics_solver/InverseDynamicsSolverFrankaInria"
@@ -372,15 +371,15 @@ def test_samples_that_can_not_be_evaluated_are_an_error():
 
 
 @pytest.mark.parametrize(
-    ("change", "received", "message"),
+    "rows",
     [
-        ({}, [5, 6, 7], r"^JointLogBuilder\.add: a message is in no block$"),
-        ({"stamps": np.zeros(1, np.int64)}, [5, 6], r"add: stamps of a block: expected 2, got 1$"),
-        ({"effort": np.zeros((3, 1))}, [5, 6], r"rows of numbers of a block: expected 2, got 3$"),
+        [],
+        [(np.zeros(2, np.int64), np.zeros(1, np.int64), *[np.zeros((2, 1))] * 3)],
+        [(np.zeros(2, np.int64), np.zeros(2, np.int64), *[np.zeros((2, 2))] * 3)],
+        [(np.zeros(2, np.int64), np.zeros(2, np.int64), *[np.zeros(2)] * 3)],
     ],
 )
-def test_blocks_of_messages_that_do_not_fit_are_an_error(change, received, message):
-    numbers = np.zeros((2, 1))
-    block = Block(np.arange(2), ("a",), "", np.zeros(2, np.int64), numbers, numbers, numbers)
-    with pytest.raises(ValueError, match=message):
-        _core.JointLogBuilder("x", []).add([block._replace(**change)], np.array(received))
+def test_rows_that_do_not_fit_a_topic_are_an_error(tmp_path, rows):
+    writer = _core.JointStateWriter(str(tmp_path / "bag"), "mcap", [("/torques", ["a"], "")])
+    with pytest.raises(ValueError, match=r"^JointStateWriter\.write: expected "):
+        writer.write(rows)

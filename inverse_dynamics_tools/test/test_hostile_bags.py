@@ -171,21 +171,30 @@ SQL = {
         "UPDATE messages SET timestamp = -9223372036854775808 WHERE id = 7",
         "message 1: time of reception: expected 0 to 4.6e+18 ns, got -9223372036854775808",
     ),
-    "data of words": ("UPDATE messages SET data = 'hello' WHERE id = 7", "messages 1 to 300 can't"),
-    "data of numbers": ("UPDATE messages SET data = 7 WHERE id = 7", "messages"),
-    "empty data": ("UPDATE messages SET data = x'' WHERE id = 7", "messages 1 to 300 can't be dec"),
-    "noise": ("UPDATE messages SET data = randomblob(200) WHERE id = 7", "messages 1 to 300 can't"),
+    "data of words": (
+        "UPDATE messages SET data = 'hello' WHERE id = 7",
+        "message 7: can't be decoded",
+    ),
+    "data of numbers": (
+        "UPDATE messages SET data = 7 WHERE id = 7",
+        "message 7: can't be decoded",
+    ),
+    "empty data": ("UPDATE messages SET data = x'' WHERE id = 7", "message 7: can't be decoded"),
+    "noise": (
+        "UPDATE messages SET data = randomblob(200) WHERE id = 7",
+        "message 7: can't be decoded",
+    ),
     "cut data": (
         "UPDATE messages SET data = substr(data, 1, 60) WHERE id = 7",
-        "messages 1 to 300",
+        "message 7: can't be decoded",
     ),
     "data of a gigabyte": (
         "UPDATE messages SET data = CAST(substr(data, 1, 16) || x'ffffff3f' || substr(data, 21) AS BLOB) WHERE id = 7",
-        "messages 1 to 300 can't be decoded",
+        "message 7: can't be decoded",
     ),
     "more names than bytes": (
         "UPDATE messages SET data = CAST(substr(data, 1, 20) || x'ffffffff' || substr(data, 25) AS BLOB) WHERE id = 7",
-        "messages 1 to 300 can't be decoded",
+        "message 7: can't be decoded",
     ),
     "another serialization": ("UPDATE topics SET serialization_format = 'xml'", ""),
     "another type": ("UPDATE topics SET type = 'std_msgs/msg/String'", ""),

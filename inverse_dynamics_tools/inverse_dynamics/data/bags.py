@@ -9,36 +9,58 @@ Which messages and joints are taken, and which time: inverse_dynamics_evaluation
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
+from urllib.parse import quote
 
-import numpy as np
-
-from inverse_dynamics._core import JointLogBuilder
+from inverse_dynamics._core import JointLogBuilder, JointStateWriter, Recording
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.data.bag_reader import BagReader, TopicSummary, UriPath, error_text
+from inverse_dynamics.base.wording import harmless
 from inverse_dynamics.data.joint_log import CLOCKS, JointLog
-from inverse_dynamics.data.joint_state_cdr import MESSAGE_TYPE, Decoder, encode
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
     from rosbags.rosbag2 import Writer
 
     from inverse_dynamics._core import RecordedJoints
+    from inverse_dynamics.base.arrays import Floats, Integers
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Clock, Storage
-    from inverse_dynamics.data.joint_state_cdr import Block
 
-_BLOCK = 4096  # messages encoded together
+MESSAGE_TYPE = "sensor_msgs/msg/JointState"
+
+_BLOCK = 4096  # messages written together
+
+
+class TopicSummary(NamedTuple):
+    """What a recording says of one topic."""
+
+    name: str
+    message_type: str
+    message_count: int
+
+
+def open_recording(path: Path | str) -> Recording:
+    """The recording: directory with metadata.yaml, or a .db3 or .mcap file. Raises BagError."""
+    return Recording(os.fsencode(Path(path)))
 
 
 def read_topics(path: Path | str) -> list[TopicSummary]:
     """Topics of a recording, by name."""
-    with BagReader(Path(path)) as recording:
-        return recording.topics()
+    return topics_of(open_recording(path))
+
+
+def topics_of(recording: Recording) -> list[TopicSummary]:
+    """Its topics, by name."""
+    return [TopicSummary(*topic) for topic in recording.topics()]
+
+
+def topic_of_type(recording: Recording, message_type: str, topic: str = "") -> str:
+    """The topic; none given: the only one with messages of the type. Raises BagError."""
+    return recording.topic_of_type(message_type, topic.encode("utf-8", "surrogateescape"))
 
 
 def read_joint_log(
@@ -57,20 +79,15 @@ def read_joint_log(
 
     Raises BagError.
     """
-    path = Path(path)
     if clock not in CLOCKS:
         raise BagError(f"clock: expected one of {', '.join(CLOCKS)}, got '{clock}'")
-    with BagReader(path) as recording:
-        connections = recording.connections_of_type(MESSAGE_TYPE, topic)
-        topic = connections[0].topic
-        where = f"{path}: {topic}"
-        expected = sum(connection.msgcount for connection in connections)
-        builder = JointLogBuilder(where, joints)
-        decoder = Decoder()
-        for messages, received in recording.blocks(connections):
-            builder.add(_decoded(decoder, messages, where, builder.messages), received)
-            progress("reading", builder.messages, expected)
-        return _joint_log(builder.finish(clock), topic, recording.storage)
+    recording = open_recording(path)
+    topic = topic_of_type(recording, MESSAGE_TYPE, topic)
+    states = recording.joint_states(topic)
+    builder = JointLogBuilder(states, joints)
+    while builder.add_next(states):
+        progress("reading", builder.messages, states.expected_messages)
+    return _joint_log(builder.finish(clock), topic, recording.storage)
 
 
 def _joint_log(recorded: RecordedJoints, topic: str, storage: Storage) -> JointLog:
@@ -90,18 +107,6 @@ def _joint_log(recorded: RecordedJoints, topic: str, storage: Storage) -> JointL
     )
 
 
-def _decoded(decoder: Decoder, messages: Sequence[bytes], where: str, before: int) -> list[Block]:
-    """Decoded messages; one that can't be decoded is a BagError."""
-    try:
-        return list(decoder.decode(messages))
-    except Exception as error:  # whatever a decoder makes of a damaged message
-        raise BagError(
-            f"{where}: one of the messages {before + 1} to {before + len(messages)} can't be "
-            f"decoded as {MESSAGE_TYPE} ({error_text(error)}): the recording is damaged; copy or record "
-            "it again"
-        ) from error
-
-
 def write_joint_logs(
     path: Path | str,
     topics: Mapping[str, JointLog],
@@ -115,39 +120,50 @@ def write_joint_logs(
 
     Raises BagError if the path exists or can't be written.
     """
-    from rosbags.typesys import Stores, get_typestore
-
     if storage not in ("sqlite3", "mcap"):
         raise BagError(f"storage: expected one of sqlite3, mcap, got '{storage}'")
-    typestore = get_typestore(Stores.ROS2_HUMBLE)
-    total = sum(len(log) for log in topics.values())
+    logs = list(topics.values())
+    longest = max(map(len, logs), default=0)
     done = 0
     try:
-        with new_recording(Path(path), storage) as writer:
-            connections = [
-                writer.add_connection(topic, MESSAGE_TYPE, typestore=typestore) for topic in topics
-            ]
-            longest = max((len(log) for log in topics.values()), default=0)
-            for begin in range(0, longest, _BLOCK):
-                rows = slice(begin, begin + _BLOCK)
-                tables = [_encoded(log, rows) for log in topics.values()]
-                for row in range(max(len(table) for _, table in tables)):
-                    for connection, (stamps, table) in zip(connections, tables, strict=True):
-                        if row < len(table):
-                            writer.write(connection, stamps[row], table[row].tobytes())
-                            done += 1
-                progress("writing the bag", done, total)
-    except Exception as error:  # sqlite3 and rosbags raise more than they document
+        about = [(topic, log.joint_names, log.frame_id) for topic, log in topics.items()]
+        writer = JointStateWriter(os.fsencode(Path(path)), storage, about)
+        for begin in range(0, longest, _BLOCK):
+            rows = slice(begin, begin + _BLOCK)
+            writer.write([_rows(log, rows) for log in logs])
+            done += sum(len(log.q[rows]) for log in logs)
+            progress("writing the bag", done, sum(map(len, logs)))
+        writer.finish()
+    except BagError:
+        raise
+    except Exception as error:  # a name that can't be encoded
         raise unwritable(path, error) from error
 
 
+def _rows(log: JointLog, rows: slice) -> tuple[Integers, Integers, Floats, Floats, Floats]:
+    return (
+        log.header_stamps[rows],
+        log.receive_stamps[rows],
+        log.q[rows],
+        log.qd[rows],
+        log.effort[rows],
+    )
+
+
+class _UriPath(type(Path())):  # type: ignore[misc]
+    """A path that rosbags puts into a URI as it is: in a name, `?`, `#` and `%` mean themselves."""
+
+    def __format__(self, _: str) -> str:
+        return quote(os.fsencode(self))
+
+
 def new_recording(path: Path, storage: Storage) -> Writer:
-    """Writer of a new recording, in the current format of rosbag2."""
+    """Writer of a new recording of any types, in the current format of rosbag2."""
     from rosbags.rosbag2 import StoragePlugin, Writer
 
     plugin = StoragePlugin.MCAP if storage == "mcap" else StoragePlugin.SQLITE3
     writer = Writer(path, version=Writer.VERSION_LATEST, storage_plugin=plugin)
-    writer.path = UriPath(path)
+    writer.path = _UriPath(path)
     return writer
 
 
@@ -159,14 +175,7 @@ def unwritable(path: Path | str, error: Exception) -> BagError:
     )
 
 
-def _encoded(log: JointLog, rows: slice) -> tuple[list[int], NDArray[np.uint8]]:
-    """Times of reception and serialised messages."""
-    table = encode(
-        log.joint_names,
-        log.frame_id,
-        log.header_stamps[rows],
-        log.q[rows],
-        log.qd[rows],
-        log.effort[rows],
-    )
-    return log.receive_stamps[rows].tolist(), table
+def error_text(error: Exception) -> str:
+    """First line of what an error says, or its name."""
+    lines = str(error).strip().splitlines()
+    return harmless(lines[0], 300) if lines else type(error).__name__

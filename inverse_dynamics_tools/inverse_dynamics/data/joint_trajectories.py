@@ -16,7 +16,7 @@ import numpy as np
 
 from inverse_dynamics.base.decimals import LARGEST
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.data.bag_reader import BagReader, error_text
+from inverse_dynamics.data.bags import error_text, open_recording, topic_of_type
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import BagError
 
@@ -102,16 +102,14 @@ def read_joint_trajectories(
     path: Path, topic: str = "", progress: Progress = no_progress
 ) -> list[JointTrajectory]:
     """Messages of one topic; none given: of the only one with trajectories. Raises BagError."""
-    with BagReader(path) as bag:
-        connections = bag.connections_of_type(MESSAGE_TYPE, topic)
-        topic = connections[0].topic
-        where = f"{path}: {topic}"
-        expected = sum(connection.msgcount for connection in connections)
-        found: list[JointTrajectory] = []
-        for messages, received in bag.blocks(connections):
-            for raw, stamp in zip(messages, received.tolist(), strict=True):
-                found.append(decode(raw, f"{where}, message {len(found) + 1}", topic, stamp))
-            progress("reading", len(found), expected)
+    recording = open_recording(path)
+    topic = topic_of_type(recording, MESSAGE_TYPE, topic)
+    where = f"{path}: {topic}"
+    found: list[JointTrajectory] = []
+    for _, received, messages in recording.messages(topic):
+        for raw, stamp in zip(messages, received, strict=True):
+            found.append(decode(raw, f"{where}, message {len(found) + 1}", topic, stamp))
+        progress("reading", len(found), recording.expected_messages(topic))
     if not found:
         raise BagError(f"{where}: expected trajectories, got no message; record it again")
     return found

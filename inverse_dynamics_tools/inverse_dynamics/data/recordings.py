@@ -13,9 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.data import joint_state_cdr, joint_trajectories
-from inverse_dynamics.data.bag_reader import BagReader
-from inverse_dynamics.data.bags import read_joint_log
+from inverse_dynamics.data import bags, joint_trajectories
 from inverse_dynamics.data.csv_recordings import open_table, read_csv_log
 from inverse_dynamics.data.csv_table import is_csv
 from inverse_dynamics.data.joint_log import CLOCKS
@@ -51,22 +49,21 @@ def read_recording(
         raise BagError(f"clock: expected one of {', '.join(CLOCKS)}, got '{clock}'")
     if is_csv(path):
         return read_csv_log(open_table(path, topic=topic, clock=clock), joints, progress=progress)
-    with BagReader(path) as bag:
-        storage = bag.storage
-        topics = bag.topics()
-        types = {t.name: t.message_type for t in topics if t.message_count or t.name == topic}
-        types = types or {t.name: t.message_type for t in topics}
+    recording = bags.open_recording(path)
+    topics = bags.topics_of(recording)
+    types = {t.name: t.message_type for t in topics if t.message_count or t.name == topic}
+    types = types or {t.name: t.message_type for t in topics}
     if not topic:
         topic = _topic(types, usual_topic)
     if types.get(topic) != joint_trajectories.MESSAGE_TYPE:
-        return read_joint_log(path, joints, topic=topic, clock=clock, progress=progress)
+        return bags.read_joint_log(path, joints, topic=topic, clock=clock, progress=progress)
     trajectories = joint_trajectories.read_joint_trajectories(path, topic, progress)
-    return joint_trajectories.joint_log_of(trajectories, joints, clock, topic, storage)
+    return joint_trajectories.joint_log_of(trajectories, joints, clock, topic, recording.storage)
 
 
 def _topic(types: dict[str, str], usual: str) -> str:
     """The usual topic, or that of trajectories if there are no joint states; "" leaves it open."""
-    if usual in types or joint_state_cdr.MESSAGE_TYPE in types.values():
+    if usual in types or bags.MESSAGE_TYPE in types.values():
         return usual
     found = [name for name, kind in types.items() if kind == joint_trajectories.MESSAGE_TYPE]
     return found[0] if len(found) == 1 else usual

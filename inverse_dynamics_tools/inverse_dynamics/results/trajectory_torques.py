@@ -21,8 +21,7 @@ from inverse_dynamics.base.files import (
     written_whole,
 )
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.data.bag_reader import BagReader
-from inverse_dynamics.data.bags import new_recording, unwritable
+from inverse_dynamics.data.bags import new_recording, open_recording, unwritable
 from inverse_dynamics.data.csv_table import CsvTable, is_csv
 from inverse_dynamics.data.joint_trajectories import MESSAGE_TYPE, typestore
 from inverse_dynamics.errors import BagError, OutputError
@@ -30,9 +29,10 @@ from inverse_dynamics.errors import BagError, OutputError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosbags.interfaces import Connection
+    from rosbags.interfaces import Connection as Written
     from rosbags.rosbag2 import Writer
 
+    from inverse_dynamics._core import Connection
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.trajectory_torques import TrajectoryTorques
@@ -41,8 +41,6 @@ if TYPE_CHECKING:
 
 MARK = "torques.json"
 CONTENTS = Contents(MARK, (MARK, "metadata.yaml", "{name}.db3*", "{name}.mcap"))
-
-_SELDOM = 1000  # messages between two words on the progress
 
 
 def check_output(path: Path, out: Path, robot: Robot, *, overwrite: bool = False) -> None:
@@ -112,44 +110,50 @@ def _summary(result: TrajectoryTorques) -> dict[str, Any]:
 
 def _write_bag(result: TrajectoryTorques, path: Path, progress: Progress) -> tuple[str, ...]:
     filled = iter(zip(result.trajectories, result.torques, strict=True))
-    notes = []
-    with BagReader(result.path) as bag, new_recording(path, bag.storage) as writer:
-        copies = {c.id: _copied(writer, c) for c in bag.connections}
-        total = sum(c.msgcount for c in bag.connections)
-        for done, (connection, received, raw) in enumerate(bag.messages(), 1):
-            if done % _SELDOM == 0 or done == total:
-                progress("writing", done, total)
-            copy = copies[connection.id]
-            if copy is None:
-                continue
-            if connection.topic == result.topic:
-                trajectory, torques = next(filled)
-                columns = [result.joint_names.index(n) for n in trajectory.joint_names]
-                raw = _with_effort(trajectory.message, torques[:, columns])
-            writer.write(copy, received, raw)
-        notes += [
-            f"topic {c.topic} left out: the recording doesn't define its type, {c.msgtype}"
-            for c in bag.connections
-            if copies[c.id] is None
-        ]
-    return tuple(notes)
+    recording = open_recording(result.path)
+    connections = recording.connections()
+    total = sum(c.message_count for c in connections)
+    done = 0
+    with new_recording(path, recording.storage) as writer:
+        copies = [_copied(writer, c) for c in connections]
+        for indices, stamps, messages in recording.all_messages():
+            for index, received, raw in zip(indices, stamps, messages, strict=True):
+                copy = copies[index]
+                if copy is None:
+                    continue
+                if copy.topic == result.topic:
+                    trajectory, torques = next(filled)
+                    columns = [result.joint_names.index(n) for n in trajectory.joint_names]
+                    writer.write(
+                        copy, received, _with_effort(trajectory.message, torques[:, columns])
+                    )
+                else:
+                    writer.write(copy, received, raw)
+            done += len(messages)
+            progress("writing", done, total)
+    return tuple(
+        f"topic {c.topic} left out: the recording doesn't define its type, {c.message_type}"
+        for c, copy in zip(connections, copies, strict=True)
+        if copy is None
+    )
 
 
-def _copied(writer: Writer, connection: Connection) -> Connection | None:
+def _copied(writer: Writer, connection: Connection) -> Written | None:
     """The same topic in the new recording; None if its type isn't known."""
-    ext: Any = connection.ext
-    known = connection.msgtype in typestore().types
-    defined = bool(connection.msgdef.data and connection.digest)
+    from rosbags.rosbag2.metadata import parse_qos
+
+    known = connection.message_type in typestore().types
+    defined = bool(connection.definition and connection.definition_hash)
     if not known and not defined:
         return None
     return writer.add_connection(
         connection.topic,
-        connection.msgtype,
+        connection.message_type,
         typestore=None if defined else typestore(),
-        msgdef=connection.msgdef.data if defined else None,
-        rihs01=connection.digest if defined else None,
-        serialization_format=ext.serialization_format,
-        offered_qos_profiles=ext.offered_qos_profiles,
+        msgdef=connection.definition if defined else None,
+        rihs01=connection.definition_hash if defined else None,
+        serialization_format=connection.serialization,
+        offered_qos_profiles=parse_qos(connection.qos_profiles),
     )
 
 
