@@ -17,7 +17,10 @@ using Eigen::Index;
 using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
 using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
 
-constexpr double kApart = 0.5;  // periods between samples that a cubic may run through
+// Distances of samples that a cubic may run through, in periods: across a longer hole, the noise of
+// the two samples at either end would set its slope.
+constexpr double kLeastApart = 0.5;
+constexpr double kMostApart = 3.0;
 
 // Used samples between two gaps.
 struct Piece {
@@ -39,7 +42,8 @@ Eigen::Vector4d cubicWeights(const Eigen::Vector4d& at, double t) {
 }
 
 // Values at equidistant instants: on the cubic through the four samples around each, or on a
-// straight line where two of these are so close in time that a cubic would enlarge their noise.
+// straight line where two of these are so close, or so far apart, that a cubic would enlarge their
+// noise.
 Eigen::MatrixXd equidistant(const ConstVector& time, const ConstMatrix& values,
                             const Piece& piece) {
   Eigen::MatrixXd result(values.rows(), piece.count);
@@ -56,7 +60,8 @@ Eigen::MatrixXd equidistant(const ConstVector& time, const ConstMatrix& values,
     for (Index k = 0; k < 4; ++k) {
       at[k] = time[sample(first + k)];
     }
-    if ((at.tail<3>() - at.head<3>()).minCoeff() >= kApart * piece.period) {
+    const Eigen::Vector3d apart = (at.tail<3>() - at.head<3>()) / piece.period;
+    if (apart.minCoeff() >= kLeastApart && apart.maxCoeff() <= kMostApart) {
       const Eigen::Vector4d weights = cubicWeights(at, t);
       result.col(i).setZero();
       for (Index k = 0; k < 4; ++k) {
@@ -72,7 +77,8 @@ Eigen::MatrixXd equidistant(const ConstVector& time, const ConstMatrix& values,
   return result;
 }
 
-// Median distance in time of neighbours in a piece: a sample that was lost doesn't change it.
+// Median distance in time of neighbours in a piece: a sample that was lost doesn't change it. At
+// least half of the mean distance, as most samples of a recording may come in bursts.
 double usualPeriod(const SampleReport& samples, const std::vector<Piece>& pieces) {
   std::vector<double> distances;
   for (const Piece& piece : pieces) {
@@ -80,7 +86,8 @@ double usualPeriod(const SampleReport& samples, const std::vector<Piece>& pieces
       distances.push_back(samples.time[piece.sample[i]] - samples.time[piece.sample[i - 1]]);
     }
   }
-  return distances.empty() ? samples.period : quantile(distances, 0.5);
+  return distances.empty() ? samples.period
+                           : std::max(quantile(distances, 0.5), 0.5 * samples.period);
 }
 
 std::vector<Piece> cutPieces(const SampleReport& samples) {

@@ -7,6 +7,7 @@
 #include <inverse_dynamics_solver/motor_currents.hpp>
 #include <utility>
 
+#include "checks.hpp"
 #include "figures.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "inverse_dynamics_evaluation/joint_matching.hpp"
@@ -61,6 +62,7 @@ OwnedMatrix Effort::torques(const Eigen::Ref<const Eigen::MatrixXd>& effort) con
   if (meaning != kCurrent) {
     return effort;
   }
+  requireGains("torques of recorded efforts", drive_gains.size(), effort.rows());
   return Eigen::Map<const Eigen::VectorXd>(drive_gains.data(),
                                            static_cast<Eigen::Index>(drive_gains.size()))
              .asDiagonal() *

@@ -88,6 +88,7 @@ std::string EffortVerdict::summary() const {
 
 EffortSums::EffortSums(Index count, Index joints, std::vector<double> drive_gains)
     : count_(count), drive_gains_(std::move(drive_gains)) {
+  requireGains("meanings of effort", drive_gains_.size(), joints);
   const Index stretches = std::clamp<Index>(count, 1, kStretches);
   const double step = static_cast<double>(count) / static_cast<double>(stretches);
   for (Index i = 0; i < stretches; ++i) {
@@ -255,6 +256,7 @@ EffortVerdict compareMeanings(const ConstMatrix& computed, const ConstMatrix& gr
                               const Mask& mask) {
   requireSameSize("meanings of effort", "gravity", gravity, "computed", computed);
   requireSameSize("meanings of effort", "effort", effort, "computed", computed);
+  requireMask("meanings of effort", mask.size(), computed);
   Mask counts = mask;
   for (Index k = 0; k < counts.size(); ++k) {
     counts[k] = mask[k] && computed.col(k).allFinite() && effort.col(k).allFinite();

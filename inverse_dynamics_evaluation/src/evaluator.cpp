@@ -187,15 +187,23 @@ SampleRules rulesWithout(const std::vector<std::string>& names) {
 void requirePossibleTorques(const std::string& where, const std::vector<std::string>& joint_names,
                             const std::vector<std::string>& units,
                             const Eigen::Ref<const Eigen::MatrixXd>& computed, Index first) {
+  const auto joints = static_cast<std::size_t>(computed.rows());
+  if (joint_names.size() != joints || (!units.empty() && units.size() != joints)) {
+    throw EvaluationError(
+        where, "names and units of joints",
+        std::to_string(joints) + " of both, as torques have rows",
+        std::to_string(joint_names.size()) + " names, " + std::to_string(units.size()) + " units",
+        "units may be left out");
+  }
   for (Index k = 0; k < computed.cols(); ++k) {
     for (Index j = 0; j < computed.rows(); ++j) {
       const auto joint = static_cast<std::size_t>(j);
       if (!(std::abs(computed(j, k)) <= kLargestNumber)) {
-        throw EvaluationError(where + ": sample " + std::to_string(first + k + 1) +
-                              ": computed torque of joint " + joint_names[joint] +
-                              ": expected at most " + formatted("%g", kLargestNumber) + " " +
-                              units[joint] + ", got " + formatted("%g", computed(j, k)) +
-                              "; check masses, gravity and units");
+        throw EvaluationError(
+            where + ": sample " + std::to_string(first + k + 1) + ": computed torque of joint " +
+            joint_names[joint] + ": expected at most " + formatted("%g", kLargestNumber) +
+            (units.empty() ? "" : " " + units[joint]) + ", got " + formatted("%g", computed(j, k)) +
+            "; check masses, gravity and units");
       }
     }
   }

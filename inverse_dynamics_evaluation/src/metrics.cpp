@@ -27,14 +27,6 @@ constexpr Index kBlock = 256;
                         "leave such samples out by a mask");
 }
 
-void requireMask(const Mask& mask, const ConstMatrix& measured) {
-  if (mask.size() != measured.cols()) {
-    throw EvaluationError("metrics", "mask",
-                          std::to_string(measured.cols()) + " truth values, one per sample",
-                          std::to_string(mask.size()), "take the mask of the same recording");
-  }
-}
-
 }  // namespace
 
 void ErrorSums::Sum::operator+=(double number) {
@@ -130,7 +122,7 @@ void ErrorSums::add(const ConstMatrix& computed, const ConstMatrix& measured, In
 void ErrorSums::add(const ConstMatrix& computed, const ConstMatrix& measured, Index first,
                     const Mask& mask) {
   requireSameSize("metrics", "computed", computed, "measured", measured);
-  requireMask(mask, measured);
+  requireMask("metrics", mask.size(), measured);
   for (Index begin = 0; begin < measured.cols(); begin += kBlock) {
     const Index count = std::min(kBlock, measured.cols() - begin);
     const Mask part = mask.segment(begin, count);
@@ -176,7 +168,7 @@ std::vector<JointMetrics> metrics(const ConstMatrix& computed, const ConstMatrix
                                   const Mask& mask) {
   ErrorSums sums(measured.rows());
   requireSameSize("metrics", "computed", computed, "measured", measured);
-  requireMask(mask, measured);
+  requireMask("metrics", mask.size(), measured);
   if (!mask.any()) {
     throw EvaluationError("metrics", "samples", "one or more to compare",
                           "none of " + std::to_string(mask.size()), "select some");

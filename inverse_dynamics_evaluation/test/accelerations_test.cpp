@@ -301,6 +301,44 @@ TEST(LowPassAccelerations, DoNotSufferFromLostSamplesOfFastMotion) {
   EXPECT_LT(rms(estimate(motion).qdd, motion.qdd), 1.2 * rms(estimate(clean).qdd, clean.qdd));
 }
 
+TEST(LowPassAccelerations, DoNotEnlargeNoiseAcrossHoles) {
+  // 60 samples lost in a row: a cubic's slopes would be those of two noisy samples
+  Motion clean = sines(1000.0, 20.0, {0.5, 1.0});
+  addVelocityNoise(clean, 5e-3, 1);
+  std::vector<Eigen::Index> samples;
+  for (Eigen::Index k = 0; k < clean.count(); ++k) {
+    if (k % 1500 < 1440) {
+      samples.push_back(k);
+    }
+  }
+  Eigen::VectorXd time(static_cast<Eigen::Index>(samples.size()));
+  for (Eigen::Index i = 0; i < time.size(); ++i) {
+    time[i] = clean.time[samples[static_cast<std::size_t>(i)]];
+  }
+  const Motion motion = pick(clean, samples, time);
+  EXPECT_LT(rms(estimate(motion, cutoffOf(8.0)).qdd, motion.qdd),
+            3.0 * rms(estimate(clean, cutoffOf(8.0)).qdd, clean.qdd));
+}
+
+TEST(LowPassAccelerations, DoNotMultiplySamplesThatComeInBursts) {
+  // two publishers, a tenth of a microsecond apart: a grid so fine would have 1.6e9 samples
+  const Motion once = sines(125.0, 20.0, {0.5, 1.0});
+  std::vector<Eigen::Index> samples;
+  Eigen::VectorXd time(2 * once.count());
+  for (Eigen::Index k = 0; k < once.count(); ++k) {
+    samples.insert(samples.end(), {k, k});
+    time[2 * k] = once.time[k];
+    time[2 * k + 1] = once.time[k] + 1e-7;
+  }
+  Motion twice = pick(once, samples, time);
+  addVelocityNoise(twice, 1e-4, 1);  // so that no sample repeats the one before
+  LowPassOptions options = cutoffOf(8.0);
+  options.rules.time_base = false;
+  const AccelerationEstimate result = estimate(twice, options);
+  EXPECT_LT(result.filter.sampling_frequency, 5.0 * 125.0);
+  EXPECT_LT(rms(result.qdd, twice.qdd), 0.1);
+}
+
 TEST(LowPassAccelerations, FilterPiecesBetweenGapsByThemselves) {
   Motion motion = sines(200.0, 10.0, {0.5, 1.0});
   addVelocityNoise(motion, 0.002, 1);

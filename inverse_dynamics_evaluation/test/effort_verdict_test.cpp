@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "error_of.hpp"
 #include "inverse_dynamics_evaluation/effort.hpp"
+#include "inverse_dynamics_evaluation/error.hpp"
 
 namespace inverse_dynamics_evaluation {
 namespace {
@@ -96,6 +98,23 @@ TEST(EffortVerdict, NeedsEnoughSamplesThatCountAndAreFinite) {
   const EffortVerdict verdict = compareMeanings(arm.computed, arm.gravity, effort, {}, few);
   EXPECT_EQ(verdict.reason, "99 samples that count are too few, 100 are needed");
   EXPECT_EQ(EffortSums(0, 2, {}).verdict().stretches, 1);
+}
+
+TEST(EffortVerdict, RefusesMasksAndGainsOfOtherSizes) {
+  const Arm arm;
+  const auto refused = [&](const std::vector<double>& gains, Index samples) {
+    return errorOf<EvaluationError>([&] {
+      compareMeanings(arm.computed, arm.gravity, arm.computed, gains,
+                      Mask::Constant(samples, true));
+    });
+  };
+  EXPECT_EQ(refused({}, 1000),
+            "meanings of effort: mask: expected 2000 truth values, one per sample, got 1000; take "
+            "the mask of the same recording");
+  EXPECT_EQ(refused({}, 3000).substr(0, 24), "meanings of effort: mask");
+  EXPECT_EQ(refused({1.0}, 2000),
+            "meanings of effort: drive gains: expected 2 numbers, one per joint, got 1; take those "
+            "of the same robot");
 }
 
 TEST(EffortSums, OfPartsAreThoseOfTheWhole) {

@@ -198,6 +198,18 @@ TEST(Evaluate, RefusesWhatCannotBeEvaluated) {
             "masses, gravity and units");
   log.qdd(1, 7) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(evaluate(log, solver, options(kTorque)), EvaluationError);
+  EvaluationOptions without_units = options(kTorque);
+  without_units.units.clear();
+  EXPECT_EQ(errorOf<EvaluationError>([&] { evaluate(log, solver, without_units); }),
+            "bag: sample 8: computed torque of joint a: expected at most 1e+12, got nan; check "
+            "masses, gravity and units");
+  without_units.units = {"N m"};
+  EXPECT_THROW(evaluate(log, solver, without_units), EvaluationError);
+  EvaluationOptions another_robots = options(kAutomatic);
+  another_robots.effort.drive_gains = {1.0};
+  EXPECT_THROW(evaluate(recorded(200), solver, another_robots), EvaluationError);
+  another_robots.effort.option = kCurrent;
+  EXPECT_THROW(evaluate(recorded(200), solver, another_robots), EvaluationError);
   EXPECT_EQ(errorOf<EvaluationError>([&] { evaluate(log, solver, options("force")); }),
             "effort, as told: expected one of torque, current, torque_without_gravity, auto, got "
             "'force'");

@@ -91,8 +91,10 @@ struct AccelerationEstimate {
 /// Accelerations by a zero-phase low-pass of the velocities, then their derivative. O(N log N).
 ///
 /// The used samples of examineSamples() are interpolated to equidistant ones at the median sampling
-/// period, by cubics through four neighbours, low-passed, differentiated, and interpolated back to
-/// the instants of all N samples. A sample that wasn't used gets the acceleration of its instant.
+/// period (at least half of the mean one), by cubics through four neighbours or, where two of these
+/// are closer than half a period or more than three apart, by a straight line; low-passed,
+/// differentiated, and interpolated back to the instants of all N samples. A sample that wasn't used
+/// gets the acceleration of its instant.
 ///
 /// @param time    N; s; stamps.
 /// @param q       n x N, a sample a column; rad (prismatic m).

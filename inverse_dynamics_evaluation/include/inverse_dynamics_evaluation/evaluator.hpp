@@ -43,7 +43,7 @@ struct EvaluationOptions {
   EffortOptions effort;            ///< what is stated of efforts
   std::string recording;           ///< its file or directory
   std::string topic;               ///< in it; empty: it has none
-  std::vector<std::string> units;  ///< n; of the torques: N m or N
+  std::vector<std::string> units;  ///< n; of the torques: N m or N; empty: texts leave them out
   std::vector<std::string> notes;  ///< what was left out or assumed in reading: JointLog::notes
 };
 
@@ -90,6 +90,7 @@ SampleRules rulesWithout(const std::vector<std::string>& names);
 /// Refuses torques that no robot has: infinite, NaN, above kLargestNumber.
 ///
 /// @param where  what was computed, for the text.
+/// @param units  n, or none.
 /// @param first  number of the first sample, counted from 0.
 /// @throws EvaluationError: names the sample and the joint.
 void requirePossibleTorques(const std::string& where, const std::vector<std::string>& joint_names,
