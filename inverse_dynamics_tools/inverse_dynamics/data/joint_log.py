@@ -7,17 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, get_args
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Integers = NDArray[np.int64]
-    Mask = NDArray[np.bool_]
-
-    # Called now and then during long work: what is done, how much of it, out of how much.
-    Progress = Callable[[str, int, int], None]
+    from inverse_dynamics.base.arrays import Floats, Integers
 
 # Which stamps are the time: the header's, those of reception, or what is there.
 Clock = Literal["auto", "header", "receive"]
@@ -25,10 +15,6 @@ CLOCKS: tuple[Clock, ...] = get_args(Clock)
 
 # What rosbag2 keeps messages in.
 Storage = Literal["sqlite3", "mcap"]
-
-
-def no_progress(_what: str, _done: int, _total: int) -> None:
-    """Say nothing: the progress of a call from a script."""
 
 
 @dataclass(frozen=True)
