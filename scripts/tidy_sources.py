@@ -2,22 +2,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which C++ sources clang-tidy has to check: those that a change touches, or all.
 
-A change is what differs from where this branch left the main branch, or, on the main branch itself,
-from the commit before; files that aren't committed count. It touches a source that is changed or
-includes a changed header. Ninja knows who includes what, from the last build.
+A change is what differs from where this branch left the main branch; on the main branch itself, from
+the commit that the environment variable CHANGED_SINCE names (the workflow states the one before a
+push), else from the commit before. Files that aren't committed count. A change touches a source that
+is changed, includes a changed header (Ninja knows that from the last build), or lies below a changed
+CMakeLists.txt.
 
 Prints the sources, one per line, and on the standard error output why it is these.
 """
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
 from pathlib import Path, PurePosixPath
 
 MAIN_BRANCHES = ("origin/HEAD", "origin/main", "main")
-RULES = ".clang-tidy"
+RULES = {".clang-tidy", "scripts/lint"}
 _OBJECT = re.compile(r"^\S.*: #deps \d+")
 
 
@@ -31,8 +34,9 @@ def sources_to_check(root: Path, everything: bool = False) -> tuple[list[str], s
     if base is None:
         return sources, f"all {len(sources)} sources: {where}"
     changed = changed_files(root, base)
-    if any(PurePosixPath(name).name == RULES for name in changed):
-        return sources, f"all {len(sources)} sources: {RULES} changed {where}"
+    for name in sorted(changed):
+        if not RULES.isdisjoint((name, PurePosixPath(name).name)):
+            return sources, f"all {len(sources)} sources: {name} changed {where}"
     includes = included_files(root)
     chosen = [s for s in sources if s in changed or _touched(s, includes, changed)]
     return chosen, f"{len(chosen)} of {len(sources)} sources: what changed {where} touches these"
@@ -45,6 +49,11 @@ def comparison(root: Path) -> tuple[str | None, str]:
         base = _lines(root, "merge-base", branch, "HEAD")
         if base and base[0] != head:
             return base[0], f"since {base[0][:10]}, where this branch left {branch}"
+    if stated := os.environ.get("CHANGED_SINCE"):
+        # It isn't there at the first push of a branch, or if the branch was rewritten.
+        if _commit(root, stated) is None:
+            return None, f"this clone has no commit {stated[:10]}, which CHANGED_SINCE names"
+        return stated, f"since {stated[:10]}, which CHANGED_SINCE names"
     parent = _commit(root, "HEAD^")
     if parent is not None:
         return parent, f"since {parent[:10]}, the commit before"
@@ -103,6 +112,9 @@ def _normal(path: Path) -> str:
 
 
 def _touched(source: str, includes: dict[str, set[str]], changed: set[str]) -> bool:
+    # How it is compiled may have changed.
+    if any(f"{folder}/CMakeLists.txt" in changed for folder in PurePosixPath(source).parents):
+        return True
     # Of a source that wasn't built with Ninja, nothing is known.
     return source not in includes or not includes[source].isdisjoint(changed)
 

@@ -58,8 +58,9 @@ def build(root: Path) -> None:
 
 
 @pytest.fixture
-def root(tmp_path: Path) -> Path:
+def root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Two commits on `main`, of which the second changes engine/src/text.cpp; built."""
+    monkeypatch.delenv("CHANGED_SINCE", raising=False)
     root = tmp_path / "workspace"
     root.mkdir()
     git(root, "init", "--quiet", "--initial-branch", "main")
@@ -79,6 +80,40 @@ def test_on_the_main_branch_the_last_commit_counts(root: Path) -> None:
     assert sources == ["engine/src/text.cpp"]
     assert "1 of 4 sources" in reason
     assert "the commit before" in reason
+
+
+def test_on_the_main_branch_all_commits_of_a_push_count(
+    root: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    show = ["git", "-C", str(root), "rev-parse", "HEAD"]
+    before = subprocess.run(show, check=True, capture_output=True, text=True).stdout.strip()
+    for file in ("solver/src/plugin.cpp", "engine/src/chain.cpp"):
+        write(root, file, "// changed\n")
+        commit(root)
+    monkeypatch.setenv("CHANGED_SINCE", before)
+    sources, reason = sources_to_check(root)
+    assert sources == ["engine/src/chain.cpp", "solver/src/plugin.cpp"]
+    assert f"since {before[:10]}, which CHANGED_SINCE names" in reason
+
+
+def test_a_stated_commit_that_the_clone_lacks_means_all(
+    root: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CHANGED_SINCE", 40 * "0")
+    sources, reason = sources_to_check(root)
+    assert sources == ALL
+    assert "no commit 0000000000" in reason
+
+
+def test_on_a_branch_what_changed_since_the_last_push_does_not_limit_the_check(
+    root: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    git(root, "checkout", "--quiet", "-b", "branch")
+    for file in ("solver/src/plugin.cpp", "README.md"):
+        write(root, file, "// changed\n")
+        commit(root)
+    monkeypatch.setenv("CHANGED_SINCE", "HEAD^")
+    assert sources_to_check(root)[0] == ["solver/src/plugin.cpp"]
 
 
 def test_on_a_branch_everything_since_it_left_counts(root: Path) -> None:
@@ -110,6 +145,20 @@ def test_other_rules_touch_everything(root: Path) -> None:
     sources, reason = sources_to_check(root)
     assert sources == ALL
     assert ".clang-tidy changed" in reason
+
+
+def test_another_lint_touches_everything(root: Path) -> None:
+    write(root, "scripts/lint", "clang-tidy --other\n")
+    sources, reason = sources_to_check(root)
+    assert sources == ALL
+    assert "scripts/lint changed" in reason
+
+
+def test_other_flags_touch_the_sources_of_their_package(root: Path) -> None:
+    write(root, "solver/CMakeLists.txt", "add_compile_options(-O3)\n")
+    write(root, "engine/test/CMakeLists.txt", "\n")
+    sources, _ = sources_to_check(root)
+    assert sources == ["engine/src/text.cpp", "solver/src/plugin.cpp", "solver/src/solver.cpp"]
 
 
 def test_all_means_all(root: Path) -> None:
