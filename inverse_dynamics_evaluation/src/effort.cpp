@@ -21,7 +21,6 @@ using inverse_dynamics_solver::InverseDynamicsSolver;
 // Who stated a meaning.
 constexpr const char* kOption = "as told";
 constexpr const char* kFormat = "as the recording's format says";
-constexpr const char* kConfiguration = "as the run configuration says";
 constexpr const char* kData = "found from the data";
 constexpr const char* kNobody = "as nothing is stated";
 
@@ -29,15 +28,19 @@ bool isMeaning(const std::string& word) {
   return word == kTorque || word == kCurrent || word == kTorqueWithoutGravity;
 }
 
+std::string asConfigured(const EffortOptions& options) {
+  return "as " + options.configured_by + " says";
+}
+
 Effort withGains(Effort effort, const EffortOptions& options) {
   if (effort.meaning != kCurrent) {
     return effort;
   }
   if (options.drive_gains.empty()) {
-    throw ConfigurationError(options.where + ": effort means current, " + effort.stated_by +
-                             ": expected drive gains [N m/A], got none from " + options.gains_from +
-                             " nor from " + options.plugin +
-                             "; add drive_gains: [...], one per joint, to the run configuration");
+    throw ConfigurationError(
+        options.where + ": effort means current, " + effort.stated_by +
+        ": expected drive gains [N m/A], got none from " + options.gains_from + " nor from " +
+        options.plugin + "; add drive_gains: [...], one per joint, to " + options.configured_by);
   }
   effort.drive_gains = options.drive_gains;
   return effort;
@@ -100,7 +103,7 @@ std::vector<double> driveGains(const std::vector<double>& configured, const std:
 Effort statedEffort(const EffortOptions& options) {
   Effort effort;
   effort.meaning = options.configuration;
-  effort.stated_by = kConfiguration;
+  effort.stated_by = asConfigured(options);
   if (!options.format.empty()) {
     effort.meaning = options.format;
     effort.stated_by = kFormat;
@@ -127,7 +130,7 @@ Effort effortOfData(EffortVerdict verdict, const EffortOptions& options) {
     effort.stated_by = kFormat;
   } else if (isMeaning(options.configuration)) {
     effort.meaning = options.configuration;
-    effort.stated_by = kConfiguration;
+    effort.stated_by = asConfigured(options);
   } else {
     effort.stated_by = kNobody;
   }
@@ -147,7 +150,7 @@ std::vector<std::string> effortNotes(const Effort& effort, const EffortOptions& 
                     "; taken as " + effort.meaning + ", " + effort.stated_by + " (" +
                     effort.verdict->summary() + ")");
   }
-  const auto contradicted = [&](const std::string& other, const char* who) {
+  const auto contradicted = [&](const std::string& other, const std::string& who) {
     if (isMeaning(other) && other != effort.meaning) {
       notes.push_back("effort is taken as " + effort.meaning + ", " + effort.stated_by +
                       ", where " + who + " says " + other);
@@ -155,11 +158,11 @@ std::vector<std::string> effortNotes(const Effort& effort, const EffortOptions& 
   };
   contradicted(options.format, "the recording's format");
   if (effort.stated_by != kOption) {
-    contradicted(options.configuration, "the run configuration");
+    contradicted(options.configuration, options.configured_by);
   }
   if (!own_gains.empty() && !effort.drive_gains.empty() && effort.drive_gains != own_gains) {
-    notes.push_back("drive gains are those of the run configuration; the solver's own are " +
-                    figures("%.4g", own_gains, " ") + " N m/A");
+    notes.push_back("drive gains are those of " + options.configured_by +
+                    "; the solver's own are " + figures("%.4g", own_gains, " ") + " N m/A");
   }
   if (effort.meaning == kTorqueWithoutGravity) {
     notes.emplace_back("computed torques are shown without gravity, as efforts were recorded");

@@ -244,8 +244,7 @@ std::string EffortSums::gainsThatWouldFit() const {
     if (const double middle = median(gains); !(middle > 0.5 && middle < 2)) {
       return ", but efforts are proportional to " + meaning.name + ", by " +
              figures("%.3g", gains, ", ") +
-             ": if they are currents, state drive_gains in the run configuration, from the robot's "
-             "data sheet";
+             ": if they are currents, state drive_gains, from the robot's data sheet";
     }
   }
   return "; gravity, payload, joint order and units are worth a look";

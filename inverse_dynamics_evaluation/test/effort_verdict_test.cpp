@@ -74,7 +74,7 @@ TEST(EffortVerdict, RecognisesEachMeaning) {
   // without gains nothing fits, and those that would are named
   EXPECT_EQ(arm.verdict(currents).reason,
             "no meaning fits, but efforts are proportional to torque, by 10, 12: if they are "
-            "currents, state drive_gains in the run configuration, from the robot's data sheet");
+            "currents, state drive_gains, from the robot's data sheet");
 }
 
 TEST(EffortVerdict, IsNotSureWhereGravityDoesNotLoadTheJoints) {

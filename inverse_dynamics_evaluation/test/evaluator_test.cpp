@@ -218,6 +218,27 @@ TEST(Evaluate, RefusesWhatCannotBeEvaluated) {
                         "[N m/A], got none from two_joints.yaml nor from package/TwoJointSolver"));
 }
 
+TEST(Effort, IsStatedByWhatTheProgramIsConfiguredBy) {
+  EffortOptions node;
+  node.configuration = kCurrent;
+  node.where = "parameter 'effort'";
+  node.gains_from = "parameter 'drive_gains'";
+  node.plugin = "package/Solver";
+  node.configured_by = "the node's configuration";
+  EXPECT_EQ(errorOf<ConfigurationError>([&] { statedEffort(node); }),
+            "parameter 'effort': effort means current, as the node's configuration says: expected "
+            "drive gains [N m/A], got none from parameter 'drive_gains' nor from package/Solver; "
+            "add drive_gains: [...], one per joint, to the node's configuration");
+  node.drive_gains = {2, 3};
+  const Effort effort = statedEffort(node);
+  EXPECT_EQ(effort.summary(),
+            "current, as the node's configuration says, with drive gains 2 3 N m/A");
+  EXPECT_THAT(
+      effortNotes(effort, node, false, {4, 5}),
+      Contains("drive gains are those of the node's configuration; the solver's own are 4 5 "
+               "N m/A"));
+}
+
 TEST(DriveGains, AreOnePositiveNumberPerJoint) {
   const TwoJointSolver solver;
   EXPECT_TRUE(driveGains({}, "file.yaml: drive_gains", solver).empty());

@@ -34,6 +34,8 @@ struct EffortOptions {
   std::string where;                    ///< who states it: `robot NAME`, a parameter
   std::string gains_from;               ///< where drive gains can be given: a file, a parameter
   std::string plugin;                   ///< of the solver
+  /// What states `configuration` and `drive_gains`, in words.
+  std::string configured_by = "the run configuration";
 };
 
 /// What recorded efforts mean, and how that is known.
