@@ -41,17 +41,13 @@ void check(const evaluate_solver::Params& params) {
 
 EvaluationOptions optionsOf(const evaluate_solver::Params& params,
                             const inverse_dynamics_solver::InverseDynamicsSolver& solver) {
-  const std::string gains = "parameter 'drive_gains'";
   EvaluationOptions options;
   options.method = inverse_dynamics_evaluation::accelerationMethod(params.accelerations);
   options.cutoff = params.cutoff;
   options.rules = inverse_dynamics_evaluation::rulesWithout(params.without_rules);
-  options.effort.option = options.effort.configuration = params.effort;
-  options.effort.drive_gains =
-      inverse_dynamics_evaluation::driveGains(params.drive_gains, gains, solver);
-  options.effort.where = "parameter 'effort'";
-  options.effort.gains_from = gains;
-  options.effort.plugin = params.plugin_name;
+  options.effort = effortOptions(params.effort, params.drive_gains, params.plugin_name, solver);
+  // Currents without drive gains are refused before the recording is read.
+  inverse_dynamics_evaluation::statedEffort(options.effort);
   options.recording = params.input_bag;
   return options;
 }
@@ -60,9 +56,10 @@ void say(const rclcpp::Logger& logger, const std::string& line) {
   RCLCPP_INFO(logger, "%s", line.c_str());
 }
 
-void sayAll(const rclcpp::Logger& logger, const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) {
-    RCLCPP_WARN(logger, "%s", note.c_str());
+void sayAll(const rclcpp::Logger& logger, const std::vector<std::string>& notes,
+            std::size_t first = 0) {
+  for (std::size_t k = first; k < notes.size(); ++k) {
+    RCLCPP_WARN(logger, "%s", notes[k].c_str());
   }
 }
 
@@ -75,6 +72,8 @@ void run(rclcpp::Node& node) {
   const rclcpp::Logger logger = node.get_logger();
 
   const auto solver = makeSolver(node, params.plugin_name, params.robot_description);
+  const std::vector<std::string> warnings = solver->warnings();
+  sayAll(logger, warnings);
   EvaluationOptions options = optionsOf(params, *solver);
   options.units = torqueUnits(node, solver->jointNames(), params.robot_description);
   say(logger, "solver: " + params.plugin_name);
@@ -90,7 +89,7 @@ void run(rclcpp::Node& node) {
   const Evaluation evaluation = evaluate(motion.log, *solver, options);
   say(logger, "accelerations: " + evaluation.accelerations.summary);
   say(logger, "effort means: " + evaluation.effort.summary());
-  sayAll(logger, evaluation.notes);
+  sayAll(logger, evaluation.notes, warnings.size());  // the solver's come first
 
   writeTorques(params.output_bag, params.storage.empty() ? motion.storage : params.storage,
                params.topic, motion, evaluation);

@@ -96,7 +96,8 @@ class LiveNode::Implementation {
     const auto solver = makeSolver(node_, params_.plugin_name, robot_description);
     LiveOptions options;
     options.joints = messageNames(params_.joints, solver->jointNames());
-    options.effort = effortMeaning(params_.effort, params_.drive_gains, *solver);
+    options.effort = inverse_dynamics_evaluation::statedEffort(
+        effortOptions(params_.effort, params_.drive_gains, params_.plugin_name, *solver));
     options.cutoff = params_.cutoff;
     options.longest_gap = params_.longest_gap;
     live_ = std::make_unique<LiveTorques>(solver, options);

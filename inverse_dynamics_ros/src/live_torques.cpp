@@ -13,11 +13,18 @@ LiveTorques::LiveTorques(
     std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
     LiveOptions options)
     : solver_(std::move(solver)),
-      effort_(std::move(options.effort)),
+      without_gravity_(options.effort.meaning ==
+                       inverse_dynamics_evaluation::kTorqueWithoutGravity),
+      drive_gains_(Eigen::VectorXd::Ones(solver_->jointCount())),
       matching_(std::move(options.joints)),
       accelerations_(solver_->jointCount(), options.cutoff, options.longest_gap) {
   for (Eigen::VectorXd* vector : {&q_, &qd_, &measured_, &gravity_, &computed_, &residual_}) {
     vector->setZero(solver_->jointCount());
+  }
+  const std::vector<double>& gains = options.effort.drive_gains;
+  if (!gains.empty()) {
+    drive_gains_ =
+        Eigen::Map<const Eigen::VectorXd>(gains.data(), static_cast<Eigen::Index>(gains.size()));
   }
 }
 
@@ -46,12 +53,12 @@ LiveTorques::Outcome LiveTorques::process(const sensor_msgs::msg::JointState& me
     return Outcome::kSettling;
   }
   solver_->getTorques(q_, qd_, accelerations_.derivative(), computed_);
-  if (effort_.without_gravity) {
+  if (without_gravity_) {
     solver_->getGravityVector(q_, gravity_);
     computed_ -= gravity_;
   }
   if (pick(message.effort, message.name.size(), measured_) && measured_.allFinite()) {
-    residual_ = effort_.drive_gains.cwiseProduct(measured_) - computed_;
+    residual_ = drive_gains_.cwiseProduct(measured_) - computed_;
     has_residual_ = true;
   }
   return Outcome::kComputed;

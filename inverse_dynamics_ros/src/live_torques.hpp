@@ -3,7 +3,7 @@
 /// @file
 /// Torques of joint states as they come: the work of the live node, without topics.
 ///
-///     LiveTorques live(solver, {names, meaning, 5.0, 0.5});
+///     LiveTorques live(solver, {names, effort, 5.0, 0.5});
 ///     if (live.process(message, stamp) == LiveTorques::Outcome::kComputed)
 ///       publish(live.computed(), live.residual());
 
@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <inverse_dynamics_evaluation/effort.hpp>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
 #include <inverse_dynamics_evaluation/online_derivative.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
@@ -19,16 +20,14 @@
 #include <string>
 #include <vector>
 
-#include "effort_meaning.hpp"
-
 namespace inverse_dynamics_ros {
 
 /// Joint names, meaning of efforts and filter of LiveTorques.
 struct LiveOptions {
-  std::vector<std::string> joints;  ///< names in messages, in the order of the chain
-  EffortMeaning effort;
-  double cutoff = 5.0;       ///< Hz; see online_derivative.hpp
-  double longest_gap = 0.5;  ///< s
+  std::vector<std::string> joints;             ///< names in messages, in the order of the chain
+  inverse_dynamics_evaluation::Effort effort;  ///< what they mean; not `auto`
+  double cutoff = 5.0;                         ///< Hz; see online_derivative.hpp
+  double longest_gap = 0.5;                    ///< s
 };
 
 /// From one joint state after the other to computed torques and residuals.
@@ -82,7 +81,8 @@ class LiveTorques {
   bool pick(const std::vector<double>& numbers, std::size_t names, Eigen::VectorXd& picked) const;
 
   std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver_;
-  EffortMeaning effort_;
+  bool without_gravity_;         // efforts
+  Eigen::VectorXd drive_gains_;  // n; N m/A (prismatic N/A); ones where efforts aren't currents
   inverse_dynamics_evaluation::JointMatching matching_;
   inverse_dynamics_evaluation::OnlineDerivative accelerations_;
   inverse_dynamics_evaluation::OnlineDerivative::Step step_ =

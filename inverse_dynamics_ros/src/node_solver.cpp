@@ -90,4 +90,19 @@ std::vector<std::string> messageNames(const std::vector<std::string>& given,
   return given;
 }
 
+inverse_dynamics_evaluation::EffortOptions effortOptions(const std::string& effort,
+                                                         const std::vector<double>& drive_gains,
+                                                         const std::string& plugin_name,
+                                                         const InverseDynamicsSolver& solver) {
+  inverse_dynamics_evaluation::EffortOptions options;
+  options.configuration = effort;
+  options.where = "parameter 'effort'";
+  options.gains_from = "parameter 'drive_gains'";
+  options.plugin = plugin_name;
+  options.configured_by = "the node's configuration";
+  options.drive_gains =
+      inverse_dynamics_evaluation::driveGains(drive_gains, options.gains_from, solver);
+  return options;
+}
+
 }  // namespace inverse_dynamics_ros

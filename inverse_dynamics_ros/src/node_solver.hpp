@@ -9,6 +9,7 @@
 
 #pragma once
 
+#include <inverse_dynamics_evaluation/effort.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 #include <rclcpp/node.hpp>
@@ -43,5 +44,14 @@ std::vector<std::string> torqueUnits(rclcpp::Node& node,
 /// @throws UserError: another number of names; the solver's names in another order.
 std::vector<std::string> messageNames(const std::vector<std::string>& given,
                                       const std::vector<std::string>& joint_names);
+
+/// What the parameters `effort` and `drive_gains` state.
+///
+/// @param drive_gains  n, or none: those of the solver.
+/// @throws inverse_dynamics_evaluation::ConfigurationError: wrong number of gains; one that isn't
+/// above 0.
+inverse_dynamics_evaluation::EffortOptions effortOptions(
+    const std::string& effort, const std::vector<double>& drive_gains,
+    const std::string& plugin_name, const inverse_dynamics_solver::InverseDynamicsSolver& solver);
 
 }  // namespace inverse_dynamics_ros

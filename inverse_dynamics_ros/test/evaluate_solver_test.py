@@ -155,6 +155,11 @@ CASES = {
         ["parameter 'ids.gravty': the solver doesn't know it: expected one of", "ids.gravity"],
     ),
     "currents": Case({"effort": "current"}, 2, ["parameter 'drive_gains'", "effort means current"]),
+    # refused before the recording is read
+    "currents_of_nothing": Case(
+        {"effort": "current", "input_bag": str(FOLDER / "nowhere")}, 2, ["effort means current"]
+    ),
+    "automatic": Case({"effort": "auto"}, 0, ["effort means: torque, ", MADE], "INFO"),
     "names": Case(
         {"joints": ["a", "b"]}, 2, ["parameter 'joints': expected 1 names", "got 2 (a, b)"]
     ),

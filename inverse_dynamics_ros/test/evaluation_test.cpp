@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "effort_meaning.hpp"
+#include "node_solver.hpp"
 #include "two_joint_solver.hpp"
 #include "user_error.hpp"
 
@@ -80,23 +80,25 @@ TEST(Evaluation, IsPrintedAsATable) {
             std::string::npos);
 }
 
-TEST(EffortMeaning, AsksForDriveGainsOfCurrents) {
+TEST(EffortOptions, AskForDriveGainsOfCurrents) {
   const auto solver = TwoJointSolver::make();
   const auto error = [&](const std::string& effort, const std::vector<double>& gains) {
     try {
-      effortMeaning(effort, gains, *solver);
-    } catch (const UserError& refused) {
+      inverse_dynamics_evaluation::statedEffort(
+          effortOptions(effort, gains, "package/TwoJointSolver", *solver));
+    } catch (const std::exception& refused) {
+      EXPECT_EQ(failureOf(refused).code, kExitUserError);
       return std::string(refused.what());
     }
     return std::string("no error");
   };
   EXPECT_EQ(error("current", {2, 3}), "no error");
-  EXPECT_EQ(error("current", {}),
-            "parameter 'drive_gains': expected 2 figures above 0 [N m/A], one per joint of the "
-            "chain (a, b), as effort means current, got none, and the solver has none of its own; "
-            "set it");
-  EXPECT_NE(error("current", {2}).find("got 1 (2)"), std::string::npos);
-  EXPECT_NE(error("current", {2, -3}).find("got 2 (2 -3)"), std::string::npos);
+  EXPECT_EQ(error("torque", {}), "no error");
+  EXPECT_NE(error("current", {}).find("got none from parameter 'drive_gains' nor from package/Two"),
+            std::string::npos);
+  EXPECT_NE(error("current", {2}).find("parameter 'drive_gains': expected 2 figures"),
+            std::string::npos);
+  EXPECT_NE(error("current", {2, -3}).find("got 2 -3"), std::string::npos);
   EXPECT_NE(error("volts", {}).find("got 'volts'"), std::string::npos);
 }
 

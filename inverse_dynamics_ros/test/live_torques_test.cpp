@@ -7,6 +7,7 @@
 #include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
 #include <limits>
 
+#include "node_solver.hpp"
 #include "two_joint_solver.hpp"
 
 namespace inverse_dynamics_ros {
@@ -34,7 +35,9 @@ JointState stateAt(std::int64_t stamp) {
 
 LiveTorques make(const std::string& effort = "torque", const std::vector<double>& gains = {}) {
   const auto solver = TwoJointSolver::make();
-  return {solver, {{"a", "b"}, effortMeaning(effort, gains, *solver), kCutoff, 0.5}};
+  const auto meaning = inverse_dynamics_evaluation::statedEffort(
+      effortOptions(effort, gains, "package/TwoJointSolver", *solver));
+  return {solver, {{"a", "b"}, meaning, kCutoff, 0.5}};
 }
 
 // Runs until the filter has settled; the stamp after the last one.
