@@ -43,6 +43,7 @@ _EFFORTS = {
     "current": "A, times the drive gains of the solver",
     "torque_without_gravity": "N m, as newer UR drivers send",
 }
+_EFFORTS_OF_RECORDINGS = {**_EFFORTS, "auto": "what clearly fits the data"}
 
 
 def choice(name: str, what: str, choices: dict[str, str], default: str) -> DeclareLaunchArgument:
@@ -96,19 +97,21 @@ def sample_arguments(
             default_value=str(cutoff),
             description="Cut-off of the low-pass [Hz]; 0.0: chosen from the data",
         ),
-        *effort_arguments(effort, drive_gains),
+        *effort_arguments(effort, drive_gains, _EFFORTS_OF_RECORDINGS),
     ]
 
 
-def effort_arguments(effort: str = "torque", drive_gains: str = "") -> list[DeclareLaunchArgument]:
-    """Arguments about what measured efforts mean."""
+def effort_arguments(
+    effort: str = "torque", drive_gains: str = "", efforts: dict[str, str] = _EFFORTS
+) -> list[DeclareLaunchArgument]:
+    """Arguments about what measured efforts mean; `auto` is for recordings alone."""
     return [
-        choice("effort", "What measured efforts mean", _EFFORTS, effort),
+        choice("effort", "What measured efforts mean", efforts, effort),
         DeclareLaunchArgument(
             "drive_gains",
             default_value=drive_gains,
             description="Torque per current of each joint [N m/A], comma-separated, for "
-            "effort:=current; empty: the solver's, if it has any",
+            "currents; empty: the solver's, if it has any",
         ),
     ]
 

@@ -69,11 +69,6 @@ def load_robot(name: str) -> dict[str, Any]:
     for key in configuration:
         if key not in _KEYS:
             raise ValueError(f"{file}: {key}: unknown key; known here: {', '.join(sorted(_KEYS))}")
-    if configuration.get("effort") == "auto":
-        raise ValueError(
-            f"{file}: effort: expected torque, current or torque_without_gravity, got auto; "
-            "`ids evaluate` finds it from the data, then state it"
-        )
     return configuration
 
 

@@ -84,13 +84,13 @@ class TestRunConfigurations(unittest.TestCase):
         for name in ROBOTS:
             self.assertEqual(robots.load_robot(name)["name"], name)
         self.assertEqual(self.load("schema: 1\nplugin: a/B\n")["plugin"], "a/B")
+        self.assertEqual(self.load("schema: 1\neffort: auto\n")["effort"], "auto")
         for text, expected in {
             "schema: 1\ngravty: [0, 0, 1]\n": "arm.yaml: gravty: unknown key; known here: acc",
             "schema: 1\nparameters: {mass: 1}\n": "arm.yaml: parameters: unknown key",
             "schema: 1\nmodel: arm.yaml\n": "arm.yaml: model: unknown key",
             "schema: 2\n": "arm.yaml: schema: expected 1, got 2",
             "- 1\n": "arm.yaml: expected keys with values",
-            "schema: 1\neffort: auto\n": "arm.yaml: effort: expected torque, current or torque_wi",
         }.items():
             with self.subTest(text):
                 said = "nothing"
@@ -136,9 +136,17 @@ class TestLaunchFiles(unittest.TestCase):
             f"robot_description:={PENDULUM}", "effort:=current", "drive_gains:=2", name="currents"
         )
         self.assertEqual(run.returncode, 0, run.stdout)
-        self.assertIn("current, with drive gains 2 N m/A", run.stdout)
+        self.assertIn("says, with drive gains 2 N m/A", run.stdout)
         measured, _ = read_bag(FOLDER / "currents")["/torques_gt"][0]
         self.assertEqual(measured.effort[0], 2 * recordings.joint_state(1.0).effort[1])
+
+    def test_have_the_data_tell_what_efforts_mean(self):
+        run = self.evaluate(f"robot_description:={PENDULUM}", "effort:=auto", name="auto")
+        self.assertEqual(run.returncode, 0, run.stdout)
+        self.assertIn("effort means: torque, ", run.stdout)
+        run = launch("live.launch.py", f"plugin_name:={SOLVER}", "effort:=auto")
+        self.assertEqual(run.returncode, 1, run.stdout)
+        self.assertIn("effort", run.stdout)
 
     def test_end_with_an_error_where_the_program_does(self):
         run = self.evaluate(name="not_written")
