@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <new>
 #include <thread>
 #include <vector>
 
@@ -105,8 +106,8 @@ TEST(AllocationGuard, SeesEigenAndNew) {
   const Eigen::VectorXd vector = Eigen::VectorXd::Ones(100);
   EXPECT_GE(eigen.count(), 1) << vector.sum();
   const AllocationGuard standard;
-  const std::vector<double> other(100, vector[0]);
-  EXPECT_GE(standard.count(), 1) << other[0];
+  ::operator delete(::operator new(1));  // by its name: Clang leaves out an unused new-expression
+  EXPECT_GE(standard.count(), 1);
 }
 
 TEST(Threads, GiveTheSameNumbersAsOneAlone) {

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <limits>
+#include <new>
 #include <set>
 #include <thread>
 
@@ -126,9 +127,10 @@ TYPED_TEST_P(SolverConformance, CallsIntoMemoryOfTheCallerDoNotAllocate) {
   Eigen::MatrixXd H(n, n);
   Eigen::VectorXd c(n), f(n), g(n), tau(n);
 
-  // The counter counts.
+  // The counter counts. Clang leaves out a pair of malloc and free, or new and delete, whose memory
+  // isn't used; but no call of these functions by their names.
   AllocationGuard proof;
-  Eigen::VectorXd().resize(n);
+  ::operator delete(::operator new(1));
   ASSERT_GT(proof.count(), 0) << "the allocation guard doesn't see allocations";
 
   const auto allocations = [](const std::function<void()>& call) {
