@@ -16,7 +16,6 @@ inline namespace v2 {
 namespace {
 
 constexpr std::size_t kChunk = 1 << 20;  // bytes of records after which a chunk ends
-constexpr std::size_t kIndexEntry = 8 + 8;
 constexpr std::uint16_t kSchemaId = 1;
 
 void putString(Bytes& out, const std::string& text) {

@@ -299,6 +299,7 @@ std::vector<Topic> Recording::topics() const {
     at->second.messages += connection.messages;
   }
   std::vector<Topic> found;
+  found.reserve(topics.size());
   for (auto& [topic_name, topic] : topics) found.push_back(std::move(topic));
   return found;
 }

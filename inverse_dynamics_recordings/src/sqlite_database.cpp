@@ -22,7 +22,7 @@ void Database::fail() const { throw SqliteError(sqlite3_errmsg(get())); }
 
 void Database::close() {
   if (sqlite3_close(get()) != SQLITE_OK) fail();
-  database_.release();
+  static_cast<void>(database_.release());  // closed
 }
 
 Statement::Statement(const Database& database, const std::string& text) : database_(&database) {

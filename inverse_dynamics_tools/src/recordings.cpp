@@ -38,6 +38,7 @@ struct Writer {
 
   static std::vector<recordings::JointStateTopic> about(const std::vector<Topic>& topics) {
     std::vector<recordings::JointStateTopic> made;
+    made.reserve(topics.size());
     for (const auto& [name, joint_names, frame_id] : topics) {
       made.push_back({name, joint_names, frame_id});
     }
