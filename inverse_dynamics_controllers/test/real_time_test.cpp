@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
 #include <inverse_dynamics_solver/conformance/real_time_section.hpp>
+#include <new>
 
 #include "controller_fixture.hpp"
 #include "inverse_dynamics_controllers/feed_forward_controller.hpp"
@@ -19,7 +20,7 @@ void proveTheGuard() {
   if (kRealtimeSanitizerWatches) return;
   if (!kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted in this build";
   AllocationGuard proof;
-  Eigen::VectorXd().resize(2);
+  ::operator delete(::operator new(1));  // by its name: Clang leaves out an unused new-expression
   ASSERT_GT(proof.count(), 0) << "the allocation guard doesn't see allocations";
 }
 
