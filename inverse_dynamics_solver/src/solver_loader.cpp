@@ -48,6 +48,7 @@ PluginLoader& pluginLoader(const Index& index) {
 std::string suggestion(const std::string& name, const std::vector<std::string>& available) {
   // The class alone is a common shorthand of `package/Class`.
   std::vector<std::string> classes;
+  classes.reserve(available.size());
   for (const std::string& plugin : available) {
     classes.push_back(plugin.substr(plugin.find('/') + 1));
   }
