@@ -32,6 +32,10 @@ TEST_P(ConformanceTests, FindTheFault) {
   const int status = pclose(pipe);
   ASSERT_TRUE(WIFEXITED(status)) << output;
 
+  // Allocations can't be counted under a sanitizer.
+  if (fault.test[0] != '\0' && output.find("[  SKIPPED ] TwoLink") != std::string::npos) {
+    GTEST_SKIP() << output;
+  }
   const bool found = output.find("[  FAILED  ] TwoLink") != std::string::npos;
   EXPECT_EQ(found, fault.test[0] != '\0') << output;
   EXPECT_EQ(WEXITSTATUS(status) != 0, found) << output;
