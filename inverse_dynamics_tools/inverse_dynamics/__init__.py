@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.figures.plots import save_torque_figure, torque_figure
     from inverse_dynamics.results.evaluations import read_evaluation, write_evaluation
     from inverse_dynamics.results.exports import export_series
+    from inverse_dynamics.results.many_evaluations import ManyEvaluations, evaluate_many
     from inverse_dynamics.results.trajectory_torques import write_trajectory_torques
     from inverse_dynamics.robot.robots import Robot, load_robot, robot_names
 
@@ -36,12 +37,14 @@ _HOME = {
     "Evaluation": "evaluation.evaluation",
     "JointError": "evaluation.evaluation",
     "JointLog": "data.joint_log",
+    "ManyEvaluations": "results.many_evaluations",
     "Robot": "robot.robots",
     "Solver": "_core",
     "TrajectoryTorques": "evaluation.trajectory_torques",
     "UserError": "errors",
     "available_solvers": "_core",
     "evaluate": "evaluation.evaluation",
+    "evaluate_many": "results.many_evaluations",
     "export_series": "results.exports",
     "fetch_recordings": "data.public_recordings",
     "load_robot": "robot.robots",
@@ -62,12 +65,14 @@ __all__ = [
     "Evaluation",
     "JointError",
     "JointLog",
+    "ManyEvaluations",
     "Robot",
     "Solver",
     "TrajectoryTorques",
     "UserError",
     "available_solvers",
     "evaluate",
+    "evaluate_many",
     "export_series",
     "fetch_recordings",
     "load_robot",

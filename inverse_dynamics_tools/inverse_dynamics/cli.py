@@ -3,8 +3,9 @@
 
 A verb is a module of inverse_dynamics.verbs with `add_parser(subparsers)` and `run(arguments)`; it
 imports what is heavy inside `run`. Exit code 0: done; 2: something the user can put right, named on
-stderr (without a verb: the help); 1: an unexpected error, with a report in a file; 128 + n: ended by
-signal n (141: the reader of the output has gone).
+stderr (without a verb: the help); 3: some of several recordings failed, the others are done; 1: an
+unexpected error, with a report in a file; 128 + n: ended by signal n (141: the reader of the output
+has gone).
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 from inverse_dynamics.base.crash import crash_report
 from inverse_dynamics.base.wording import did_you_mean
 from inverse_dynamics.base.wording import message as _message
-from inverse_dynamics.errors import UserError
+from inverse_dynamics.errors import PartialError, UserError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -52,7 +53,7 @@ start here:
   ids VERB --help                                more on a verb, with examples
 
 An output is written whole or not at all, whatever happens. Exit status: 0 done, 2 something to put
-right, 1 an unexpected error, 128 + N ended by signal N.
+right, 3 some of several recordings failed, 1 an unexpected error, 128 + N ended by signal N.
 """
 
 # A list of numbers that begins with a minus looks like an option to argparse.
@@ -136,7 +137,7 @@ def _run(given: list[str]) -> int:
         raise
     except UserError as error:
         _say("; ".join(filter(None, (f"error: {error}", written_before()))))
-        return 2
+        return 3 if isinstance(error, PartialError) else 2
     except OSError as error:
         place = error.filename or "a file, or the standard output"
         _say(f"error: {place}: {error.strerror or error}; {_outcome()}")

@@ -17,6 +17,10 @@ class UserError(Exception):
         return message(super().__str__())
 
 
+class PartialError(UserError):
+    """Some of several recordings failed; the results of the others are written."""
+
+
 class ArgumentError(UserError, TypeError):
     """An argument of a function that is missing, unknown, or of another type."""
 

@@ -50,8 +50,35 @@ def refused(
 
 
 def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Result]:
-    """The function, which raises ArgumentError for arguments that its annotations don't allow."""
-    parameters = [
+    """The function, which raises ArgumentError for arguments that its annotations don't allow.
+
+    What it takes as `**options` isn't looked at.
+    """
+    parameters = _declared(function)
+    kinds = [parameter.kind for parameter in inspect.signature(function).parameters.values()]
+    open_ended = inspect.Parameter.VAR_KEYWORD in kinds
+    own = {parameter.name for parameter in parameters}
+
+    @wraps(function)
+    def call(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> _Result:
+        looked_at = {k: v for k, v in kwargs.items() if k in own} if open_ended else kwargs
+        error = _mistake(function.__name__, parameters, args, looked_at)
+        if error is not None:
+            raise ArgumentError(error)
+        return function(*args, **kwargs)
+
+    return call
+
+
+def check_call(function: Callable[..., object], *args: object, **kwargs: object) -> None:
+    """Raise the ArgumentError that a checked function would raise of these arguments; don't call it."""
+    error = _mistake(function.__name__, _declared(function), args, kwargs)
+    if error is not None:
+        raise ArgumentError(error)
+
+
+def _declared(function: Callable[..., object]) -> list[_Parameter]:
+    return [
         _Parameter(
             parameter.name,
             str(parameter.annotation),
@@ -59,16 +86,8 @@ def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Re
             parameter.kind is parameter.KEYWORD_ONLY,
         )
         for parameter in inspect.signature(function).parameters.values()
+        if parameter.kind is not parameter.VAR_KEYWORD
     ]
-
-    @wraps(function)
-    def call(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> _Result:
-        error = _mistake(function.__name__, parameters, args, kwargs)
-        if error is not None:
-            raise ArgumentError(error)
-        return function(*args, **kwargs)
-
-    return call
 
 
 def _mistake(

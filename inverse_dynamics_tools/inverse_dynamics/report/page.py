@@ -22,6 +22,8 @@ from inverse_dynamics.base.wording import printable
 from inverse_dynamics.figures.thinning import peaks
 
 if TYPE_CHECKING:
+    from jinja2 import Template
+
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.evaluation.evaluation import JointError
 
@@ -92,6 +94,19 @@ def render_page(
     notes: Sequence[str] = (),
 ) -> str:
     """The page as text."""
+    script = "\n".join(_asset(name) for name in ("scene.js", "plots.js", "viewer.js"))
+    return template("page.html").render(
+        title=title,
+        script=script,
+        data=_json_for_html([_data(run, i) for i, run in enumerate(runs)]),
+        runs=[_view(run, i) for i, run in enumerate(runs)],
+        comparisons=[_comparison_view(comparison, i) for i, comparison in enumerate(comparisons)],
+        notes=notes,
+    )
+
+
+def template(name: str) -> Template:
+    """A page to be filled in; it has the style, and the filters figure and percent."""
     from jinja2 import Environment, StrictUndefined
 
     environment = Environment(
@@ -99,16 +114,8 @@ def render_page(
     )
     environment.filters["figure"] = _figure
     environment.filters["percent"] = lambda share: _figure(100.0 * share)
-    script = "\n".join(_asset(name) for name in ("scene.js", "plots.js", "viewer.js"))
-    return environment.from_string(_asset("page.html")).render(
-        title=title,
-        style=_asset("style.css"),
-        script=script,
-        data=_json_for_html([_data(run, i) for i, run in enumerate(runs)]),
-        runs=[_view(run, i) for i, run in enumerate(runs)],
-        comparisons=[_comparison_view(comparison, i) for i, comparison in enumerate(comparisons)],
-        notes=notes,
-    )
+    environment.globals["style"] = _asset("style.css")
+    return environment.from_string(_asset(name))
 
 
 def _printable(value: object) -> object:

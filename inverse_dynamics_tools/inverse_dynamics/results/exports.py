@@ -5,6 +5,7 @@ export_series(read_evaluation("result"), Path("series.parquet"))
 
 A row per sample. Columns, J being a joint as the recording names it:
 
+recording                             its name among others, where one is given
 time                                  s since the first sample
 position.J velocity.J acceleration.J  of the motion; the acceleration is the estimated one
 effort.J                              as recorded; current.J in its place where it is a current
@@ -75,11 +76,14 @@ def export_series(
     evaluation: Evaluation,
     file: Path,
     *,
+    recording: str = "",
     overwrite: bool = False,
     progress: Progress = no_progress,
 ) -> None:
     """Write the table, as CSV or Parquet by the file's ending, or nothing.
 
+    recording: a name that a first column of that title repeats, so that the tables of several
+    recordings are one; "": no such column.
     Raises OutputError: the ending is another one, the file is there or can't be written, pyarrow isn't
     installed.
     """
@@ -95,6 +99,8 @@ def export_series(
         pa.field(c.name, pa.float64() if c.unit else pa.bool_(), metadata=_metadata(unit=c.unit))
         for c in columns
     ]
+    if recording:
+        fields.insert(0, pa.field("recording", pa.string()))
     about = _metadata(
         robot=evaluation.robot.name,
         plugin=evaluation.robot.plugin,
@@ -106,6 +112,8 @@ def export_series(
     with file_written_whole(file) as work, _writer(work, schema, file_format) as writer:
         for begin in range(0, total, _ROWS):
             arrays = [pa.array(c.values[begin : begin + _ROWS]) for c in columns]
+            if recording:
+                arrays.insert(0, pa.repeat(printable(recording), len(arrays[0])))
             writer.write_batch(pa.record_batch(arrays, schema=schema))
             progress(f"writing {file_format}", min(begin + _ROWS, total), total)
 

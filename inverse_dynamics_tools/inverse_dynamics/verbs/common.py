@@ -90,6 +90,14 @@ def whole_number(text: str) -> int:
     return int(text)
 
 
+def process_count(text: str) -> int:
+    """A number of processes of an option: 1, 2, ..."""
+    count = whole_number(text)
+    if count == 0:
+        raise argparse.ArgumentTypeError("expected a number of processes above zero, got '0'")
+    return count
+
+
 def parameter(text: str) -> tuple[str, Parameter]:
     """`NAME=VALUE` of an option; the value as it would stand in a run configuration."""
     from inverse_dynamics.base.located_yaml import parse_mapping

@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import argparse
+import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.verbs.common import positive_number, progress_bar
+from inverse_dynamics.verbs.common import positive_number, process_count, progress_bar
 from inverse_dynamics.verbs.options import (
     add_figures,
     add_robot,
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.results.many_evaluations import ManyEvaluations
+    from inverse_dynamics.robot.robots import Robot
 
 _EPILOG = """\
 examples:
@@ -49,6 +52,10 @@ examples:
   ids evaluate robot_data.csv --robot ur10_real
       what the record tool of UR's RTDE client library writes: efforts are motor currents
 
+  ids evaluate monday tuesday wednesday --robot ur10_real --out week
+  ids evaluate recordings_of_a_week --robot ur10_real --jobs 4
+      many recordings at the same time: one table, one page, and a result of each (docs/many_recordings.md)
+
 results, written whole or not at all:
   metrics.json            errors of each joint
   torques.png             measured and computed torques and the error, over time; with --figures
@@ -57,6 +64,14 @@ results, written whole or not at all:
   plotjuggler.xml         layout for PlotJuggler: `plotjuggler --layout plotjuggler.xml`
   series.npz              time, q, qd, qdd, effort (as recorded), measured, computed, for numpy.load()
   evaluation.json         what was assumed: filter, messages left out, model, what effort means
+
+results of several recordings:
+  report.html             all of them on one page; NAME/report.html is that of each
+  summary.csv, .parquet   errors, one row per recording and joint, for pandas, polars, DuckDB
+  recordings.json         which recordings, and why some failed
+  NAME/                   what is listed above, of each recording; with --parquet also series.parquet
+
+One that fails is named, and the others are finished; exit status 3 then.
 
 A piece of a compressed recording may unpack to 256 MB, or to 50 times its size; the environment
 variable IDS_UNPACK_LIMIT_MB sets another limit.
@@ -78,18 +93,21 @@ def add_parser(
         epilog=_EPILOG,
     )
     parser.add_argument(
-        "bag",
+        "bags",
         metavar="BAG",
         type=Path,
+        nargs="+",
         help="rosbag2 recording of sensor_msgs/JointState or trajectory_msgs/JointTrajectory (a "
-        "directory, or a .db3 or .mcap file), or a table of numbers (.csv or .txt)",
+        "directory, or a .db3 or .mcap file), or a table of numbers (.csv or .txt); or a directory "
+        "that holds recordings",
     )
     add_robot(parser)
     parser.add_argument(
         "--out",
         metavar="DIR",
         type=Path,
-        help="where results go (default: BAG_ROBOT in the working directory)",
+        help="where results go (default: BAG_ROBOT in the working directory; of several recordings: "
+        "recordings_ROBOT)",
     )
     parser.add_argument(
         "--overwrite",
@@ -102,7 +120,23 @@ def add_parser(
         help="storage of the output recording (default: that of BAG; of a table: sqlite3)",
     )
     add_figures(parser)
+    parser.add_argument(
+        "--parquet", action="store_true", help="write series.parquet too: see `ids export --help`"
+    )
     parser.add_argument("--verbose", action="store_true", help="say also what took how long")
+
+    many = parser.add_argument_group("several recordings")
+    many.add_argument(
+        "--jobs",
+        metavar="N",
+        type=process_count,
+        help="how many at the same time, each in a process of its own (default: one per core)",
+    )
+    many.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="on the workers of a Dask cluster instead: tcp://HOST:8786 of its scheduler",
+    )
 
     robot = add_robot_changes(parser, "recording")
     robot.add_argument(
@@ -147,30 +181,34 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.base.files import check_output_directory
-    from inverse_dynamics.evaluation.evaluation import evaluate
-    from inverse_dynamics.results.evaluations import CONTENTS, write_evaluation
+    from inverse_dynamics.data.several_recordings import holds_recordings
     from inverse_dynamics.robot.robots import load_robot
 
     robot = load_robot(arguments.robot)
-    out = arguments.out or Path(f"{arguments.bag.absolute().stem}_{robot.name}")
-    inputs = (arguments.bag, arguments.urdf, *robot.files)
+    asked = arguments.jobs is not None or arguments.scheduler is not None
+    if asked or len(arguments.bags) > 1 or holds_recordings(arguments.bags[0]):
+        _run_many(arguments, robot)
+    else:
+        _run_one(arguments, robot)
+
+
+def _run_one(arguments: argparse.Namespace, robot: Robot) -> None:
+    from inverse_dynamics.base.files import check_output_directory
+    from inverse_dynamics.evaluation.evaluation import evaluate
+    from inverse_dynamics.results.evaluations import CONTENTS, write_evaluation
+
+    (bag,) = arguments.bags
+    out = arguments.out or Path(f"{bag.absolute().stem}_{robot.name}")
+    inputs = (bag, arguments.urdf, *robot.files)
     # Before the work.
     check_output_directory(out, overwrite=arguments.overwrite, contents=CONTENTS, inputs=inputs)
+    if arguments.parquet:
+        from inverse_dynamics.results.exports import check_pyarrow
+
+        check_pyarrow()
 
     with progress_bar() as progress:
-        evaluation = evaluate(
-            arguments.bag,
-            robot,
-            **robot_changes(arguments),
-            topic=arguments.topic,
-            effort_is=arguments.effort_is,
-            accelerations=arguments.accelerations,
-            cutoff=arguments.cutoff,
-            clock=arguments.clock,
-            without_rules=arguments.without_rule,
-            progress=progress,
-        )
+        evaluation = evaluate(bag, robot, **_options(arguments), progress=progress)
         seconds = write_evaluation(
             evaluation,
             out,
@@ -179,9 +217,70 @@ def run(arguments: argparse.Namespace) -> None:
             figures=arguments.figures,
             progress=progress,
         )
+        if arguments.parquet:
+            from inverse_dynamics.results.exports import export_series
+
+            export_series(evaluation, out / "series.parquet", recording=bag.absolute().stem)
     _print(evaluation, out, arguments.figures)
     if arguments.verbose:
         _print_times({**evaluation.seconds, **seconds}, len(evaluation.log))
+
+
+def _options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """What evaluate() is told beyond recording and robot."""
+    return {
+        **robot_changes(arguments),
+        "topic": arguments.topic,
+        "effort_is": arguments.effort_is,
+        "accelerations": arguments.accelerations,
+        "cutoff": arguments.cutoff,
+        "clock": arguments.clock,
+        "without_rules": arguments.without_rule,
+    }
+
+
+def _run_many(arguments: argparse.Namespace, robot: Robot) -> None:
+    from inverse_dynamics.errors import PartialError
+    from inverse_dynamics.results.many_evaluations import evaluate_many, failures_told
+
+    start = time.perf_counter()
+    with progress_bar() as progress:
+        result = evaluate_many(
+            arguments.bags,
+            arguments.robot,
+            arguments.out or Path(f"recordings_{robot.name}"),
+            jobs=arguments.jobs,
+            scheduler=arguments.scheduler,
+            overwrite=arguments.overwrite,
+            storage=arguments.storage,
+            figures=arguments.figures,
+            parquet=arguments.parquet,
+            progress=progress,
+            **_options(arguments),
+        )
+    _print_many(result, robot)
+    if arguments.verbose:
+        from inverse_dynamics.verbs.screen import Screen
+
+        Screen().print(f"time           {time.perf_counter() - start:.1f} s")
+    if result.failures:
+        count = len(result.failures) + len(result.summaries)
+        raise PartialError(
+            failures_told(f"{len(result.failures)} of {count} recordings failed", result.failures)
+        )
+
+
+def _print_many(result: ManyEvaluations, robot: Robot) -> None:
+    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.tables import recordings_table
+
+    console = Screen()
+    console.print(robot.description or robot.name, style="bold")
+    console.print(f"solver         {result.summaries[0].plugin}")
+    console.print(recordings_table(result.summaries))
+    console.print(f"page           {result.directory / 'report.html'}")
+    console.print(f"summary        {result.directory / 'summary.csv'}")
+    console.print(f"results        {result.directory}/NAME")
 
 
 def _print(evaluation: Evaluation, out: Path, figures: Sequence[str]) -> None:

@@ -10,10 +10,11 @@ from rich import box
 from rich.table import Table
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from inverse_dynamics.evaluation.comparison import Comparison
     from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.evaluation.summary import EvaluationSummary
     from inverse_dynamics.evaluation.trajectory_torques import TrajectoryTorques
 
 
@@ -75,6 +76,26 @@ def mean_table(evaluations: Mapping[str, Evaluation]) -> Table:
             str(len(evaluation.log)),
             mean,
             _percent(_mean(shares)) if shares else "-",
+        )
+    return table
+
+
+def recordings_table(summaries: Sequence[EvaluationSummary]) -> Table:
+    """Root mean square errors, one row per recording, one column per joint."""
+    first = summaries[0].errors
+    table = Table(box=box.SIMPLE_HEAD, title="RMSE", title_justify="left", collapse_padding=True)
+    table.add_column("recording", overflow="fold")
+    for error in first:  # a name in lines, so that columns are narrow
+        name = error.joint.replace("_", "\n")
+        table.add_column(f"{name}\n{error.unit}", justify="right", overflow="fold")
+    one_unit = len({error.unit for error in first}) == 1 and len(first) > 1
+    if one_unit:
+        table.add_column(f"mean\n{first[0].unit}", justify="right")
+    for summary in summaries:
+        table.add_row(
+            summary.name,
+            *(figure(error.rmse) for error in summary.errors),
+            *([figure(summary.mean_rmse)] if one_unit else []),
         )
     return table
 

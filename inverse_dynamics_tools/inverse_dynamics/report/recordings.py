@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One page for many recordings of a robot: errors of every joint in each of them, and what failed.
+
+write_recordings_page(Path("report.html"), "UR10", summaries, {"tuesday": "no such recording"})
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from statistics import median
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
+
+from inverse_dynamics.base.files import write_text_whole
+from inverse_dynamics.base.wording import counted, listed
+from inverse_dynamics.report.page import template
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from inverse_dynamics.evaluation.summary import EvaluationSummary
+
+_MOST_SHADED = 3.0  # times the median
+_EARLIEST = 1e9  # s, September 2001: an earlier stamp is no date
+
+
+@dataclass(frozen=True)
+class _Cell:
+    """A figure of the table, and how dark it is: 0 to 1."""
+
+    value: float
+    shade: float
+
+
+def write_recordings_page(
+    path: Path,
+    title: str,
+    summaries: Sequence[EvaluationSummary],
+    failures: Mapping[str, str],
+    *,
+    linked: str = "",
+) -> None:
+    """Write the page, whole or not at all; what is there is replaced. Raises OutputError.
+
+    summaries: one or more, of the same joints. failures: recording to message. linked: the file in the
+    directory of a recording's name that its name leads to; "": the directory.
+    """
+    write_text_whole(path, render_recordings_page(title, summaries, failures, linked=linked))
+
+
+def render_recordings_page(
+    title: str,
+    summaries: Sequence[EvaluationSummary],
+    failures: Mapping[str, str],
+    *,
+    linked: str = "",
+) -> str:
+    """The page as text."""
+    middle = [median(column) for column in _columns(summaries)]
+    return template("recordings.html").render(
+        title=title,
+        facts=_facts(summaries, failures),
+        failures=failures.items(),
+        joints=_joints(summaries, middle),
+        rows=[_row(summary, middle, linked) for summary in summaries],
+        median=middle,
+        median_mean=median(summary.mean_rmse for summary in summaries),
+        dated=any(summary.start > _EARLIEST for summary in summaries),
+        filtered=any(summary.accelerations.cutoff for summary in summaries),
+        one_unit=len({error.unit for error in summaries[0].errors}) == 1,
+        most_shaded=f"{_MOST_SHADED:g}",
+        notes=_notes(summaries),
+    )
+
+
+def _columns(summaries: Sequence[EvaluationSummary]) -> list[list[float]]:
+    """Root mean square errors of each joint, in the order of the recordings."""
+    return [list(c) for c in zip(*([e.rmse for e in s.errors] for s in summaries), strict=True)]
+
+
+def _facts(
+    summaries: Sequence[EvaluationSummary], failures: Mapping[str, str]
+) -> list[tuple[str, str]]:
+    first = summaries[0]
+    count = f"{len(summaries)} evaluated" + (f", {len(failures)} failed" if failures else "")
+    seconds = sum(summary.duration for summary in summaries)
+    efforts = sorted({summary.effort.replace("_", " ") for summary in summaries})
+    return [
+        ("robot", first.robot),
+        ("solver", first.plugin),
+        ("recordings", count),
+        ("motion", f"{_duration(seconds)}, {sum(s.samples for s in summaries):,} samples"),
+        ("accelerations", _accelerations(summaries)),
+        ("effort means", ", ".join(efforts)),
+    ]
+
+
+def _accelerations(summaries: Sequence[EvaluationSummary]) -> str:
+    cutoffs = [s.accelerations.cutoff for s in summaries if s.accelerations.cutoff]
+    methods = sorted({summary.accelerations.method for summary in summaries})
+    text = ", ".join(methods)
+    if cutoffs:
+        least, most = min(cutoffs), max(cutoffs)
+        text += f", cut-off {least:.3g}" + (f" to {most:.3g} Hz" if most > least else " Hz")
+    return text
+
+
+def _joints(
+    summaries: Sequence[EvaluationSummary], middle: Sequence[float]
+) -> list[dict[str, Any]]:
+    """What stands above each column: the joint, and its errors as bars."""
+    joints = []
+    for error, column, typical in zip(
+        summaries[0].errors, _columns(summaries), middle, strict=True
+    ):
+        highest = max([*column, typical]) or 1.0
+        bars = "".join(f"M{k + 0.5} 1V{1 - value / highest:.3f}" for k, value in enumerate(column))
+        joints.append({"parts": error.joint.split("_"), "unit": error.unit, "bars": bars})
+    return joints
+
+
+def _row(summary: EvaluationSummary, middle: Sequence[float], linked: str) -> dict[str, Any]:
+    ratios = [e.rmse / m if m else 1.0 for e, m in zip(summary.errors, middle, strict=True)]
+    start = datetime.fromtimestamp(max(summary.start, 0.0), timezone.utc)
+    return {
+        "name": summary.name,
+        "link": f"{quote(summary.name)}/{linked}",
+        "start": f"{start:%Y-%m-%d %H:%M:%S}" if summary.start > _EARLIEST else "\N{EN DASH}",
+        "seconds": summary.start,
+        "duration": _duration(summary.duration),
+        "samples": f"{summary.samples:,}",
+        "cutoff": summary.accelerations.cutoff or math.nan,
+        "cells": [
+            _Cell(error.rmse, _shade(ratio))
+            for error, ratio in zip(summary.errors, ratios, strict=True)
+        ],
+        "mean": summary.mean_rmse,
+        "badness": f"{sum(ratios) / len(ratios):.6g}",
+    }
+
+
+def _shade(ratio: float) -> float:
+    """0 up to the median, 1 from _MOST_SHADED times it on, in steps of equal ratios between."""
+    if not ratio > 1.0:
+        return 0.0
+    return min(1.0, math.log(ratio) / math.log(_MOST_SHADED))
+
+
+def _notes(summaries: Sequence[EvaluationSummary]) -> list[tuple[str, str]]:
+    """Each note once, and of which recordings."""
+    found: dict[str, list[str]] = {}
+    for summary in summaries:
+        for note in summary.notes:
+            found.setdefault(note, []).append(summary.name)
+    return [
+        (
+            note,
+            counted(len(names), "recording") if len(names) == len(summaries) > 1 else listed(names),
+        )
+        for note, names in found.items()
+    ]
+
+
+def _duration(seconds: float) -> str:
+    """27.5 s, 12 min 30 s, 5 h 12 min."""
+    if seconds < 100:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes < 100:
+        return f"{minutes} min {rest} s"
+    return f"{minutes // 60} h {minutes % 60} min"

@@ -1,0 +1,326 @@
+# SPDX-License-Identifier: Apache-2.0
+import csv
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from conftest import fails
+from test_evaluation import RIGID_BODY, URDF, recording
+
+import inverse_dynamics
+from inverse_dynamics import Solver, evaluate, evaluate_many, read_evaluation, write_joint_logs
+from inverse_dynamics.errors import ArgumentError, BagError, OutputError, UserError
+from inverse_dynamics.results.summaries import COLUMNS
+
+ROBOT = ("--robot", "ur10_simulated")
+RAW = ("--accelerations", "backward-difference")
+NO_FIGURE = ("--figures", "none")
+QUICK = {"figures": (), "accelerations": "backward-difference"}
+
+
+@pytest.fixture(scope="module")
+def bags(tmp_path_factory):
+    """Three recordings: efforts are right, and 1 and 2 N m off."""
+    directory = tmp_path_factory.mktemp("recordings") / "week"
+    directory.mkdir()
+    solver = Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0")
+    log = recording(directory / "monday", solver)
+    for name, offset in (("tuesday", 1.0), ("wednesday", 2.0)):
+        shifted = replace(log, effort=log.effort + offset)
+        write_joint_logs(directory / name, {log.topic: shifted}, storage="mcap")
+    return directory
+
+
+def files(directory):
+    return {
+        str(f.relative_to(directory)): f.read_bytes() for f in directory.rglob("*") if f.is_file()
+    }
+
+
+def without_times(content):
+    data = json.loads(content)
+    del data["seconds"]
+    return data
+
+
+# ---- results ---------------------------------------------------------------------------------------
+
+
+def test_a_recording_among_others_has_the_result_that_it_has_alone(ids, bags, tmp_path):
+    several = ("evaluate", bags / "monday", bags / "tuesday", *ROBOT, *NO_FIGURE)
+    assert ids(*several, "--out", "week", "--jobs", "2")[0] == 0
+    for name in ("monday", "tuesday"):
+        assert ids("evaluate", bags / name, *ROBOT, *NO_FIGURE, "--out", name)[0] == 0
+        alone, among = files(tmp_path / name), files(tmp_path / "week" / name)
+        texts = [result.pop("evaluation.json") for result in (alone, among)]
+        assert without_times(texts[0]) == without_times(texts[1])
+        assert among == alone
+
+
+def test_one_table_and_one_page_show_all_of_them(ids, bags, tmp_path):
+    code, out, err = ids("evaluate", bags, *ROBOT, *RAW, "--out", "week", "--jobs", "2")
+    assert (code, err) == (0, "")
+    for name, mean in (("monday", "0"), ("tuesday", "1"), ("wednesday", "2")):
+        assert re.search(rf"^ +{name}( +[-.e\d]+){{6}} +{mean}\.\d+ +$", out, re.M)
+        assert (tmp_path / "week" / name / "torques.png").is_file()
+    assert re.search(r"^page +week/report.html$", out, re.M)
+    html = (tmp_path / "week/report.html").read_text()
+    for name in ("monday", "tuesday", "wednesday"):
+        assert f'<a href="{name}/report.html">{name}</a>' in html
+        assert (tmp_path / "week" / name / "report.html").is_file()
+    assert "Not evaluated" not in html
+    assert {f.name for f in (tmp_path / "week").iterdir()} == {
+        *("monday", "tuesday", "wednesday"),
+        *("recordings.json", "report.html", "summary.csv", "summary.parquet"),
+    }
+
+
+def test_the_summary_has_a_row_per_recording_and_joint(bags, tmp_path):
+    result = evaluate_many(bags, "ur10_simulated", tmp_path / "week", jobs=2, **QUICK)
+    with (tmp_path / "week/summary.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == list(COLUMNS)
+    assert len(rows) == len(result.rows) == 18
+    for row, expected in zip(rows, result.rows, strict=True):
+        for name, kind in COLUMNS.items():
+            value = expected[name]
+            assert (kind(row[name]) if row[name] else None) == value
+    one = evaluate(bags / "tuesday", "ur10_simulated", accelerations="backward-difference")
+    tuesday = [row for row in result.rows if row["recording"] == "tuesday"]
+    for row, error, kept in zip(tuesday, one.errors, one.errors_of_kept, strict=True):
+        assert {name: row[name] for name in vars(error)} == vars(error)
+        assert row["kept_rmse"] == kept.rmse
+    assert (tuesday[0]["samples"], tuesday[0]["kept_samples"]) == (1500, 1500)
+    assert (tuesday[0]["accelerations"], tuesday[0]["effort"]) == ("backward-difference", "torque")
+    assert tuesday[0]["bag"] == str(bags / "tuesday")
+    assert tuesday[0]["duration"] == pytest.approx(5.996)
+    assert tuesday[0]["start"] == pytest.approx(0.004)
+
+
+def test_parquet_files_are_one_table(bags, tmp_path):
+    dataset = pytest.importorskip("pyarrow.dataset")
+    out = tmp_path / "week"
+    evaluate_many(bags, "ur10_simulated", out, jobs=2, parquet=True, **QUICK)
+    series = dataset.dataset(sorted(map(str, out.glob("*/series.parquet")))).to_table()
+    assert series.num_rows == 4500
+    counts = series.group_by("recording").aggregate([("time", "count")]).to_pylist()
+    assert {row["recording"]: row["time_count"] for row in counts} == {
+        "monday": 1500,
+        "tuesday": 1500,
+        "wednesday": 1500,
+    }
+    summary = dataset.dataset(str(out / "summary.parquet")).to_table()
+    assert summary.column_names == list(COLUMNS)
+    assert summary.to_pylist()[0]["cutoff"] is None
+    assert {str(field.type) for field in summary.schema} == {"string", "double", "int64"}
+
+
+def test_evaluations_can_be_read_again(bags, tmp_path):
+    result = evaluate_many([bags / "monday"], "ur10_simulated", tmp_path / "out", **QUICK)
+    assert result.directories == {"monday": tmp_path / "out/monday"}
+    read = result.evaluation("monday")
+    assert read.errors == result.summaries[0].errors
+    assert read_evaluation(tmp_path / "out/monday").errors == read.errors
+
+
+def test_a_robot_may_be_given_as_an_object_or_by_a_file(bags, tmp_path, monkeypatch):
+    robot = inverse_dynamics.load_robot("ur10_simulated")
+    by_name = evaluate_many(bags / "monday", robot.name, tmp_path / "name", **QUICK)
+    changed = replace(robot, name="mine")
+    by_object = evaluate_many(bags / "monday", changed, tmp_path / "object", **QUICK)
+    monkeypatch.chdir(tmp_path)
+    text = robot.file.read_text().replace("ur10_simulated", "ours")
+    Path("ours.yaml").write_text(text)
+    by_file = evaluate_many(bags / "monday", "ours.yaml", tmp_path / "file", **QUICK)
+    assert by_name.summaries[0].errors == by_object.summaries[0].errors
+    assert by_name.summaries[0].errors == by_file.summaries[0].errors
+    assert [r.summaries[0].robot for r in (by_object, by_file)] == ["mine", "ours"]
+
+
+def test_an_older_result_is_replaced_unless_it_holds_other_files(ids, bags, tmp_path):
+    command = ("evaluate", bags, *ROBOT, *RAW, *NO_FIGURE, "--out", "week")
+    assert ids(*command)[0] == 0
+    fails(ids(*command), "week: exists already")
+    assert ids(*command, "--overwrite")[0] == 0
+    (tmp_path / "week/monday/mine.txt").write_text("mine")
+    fails(ids(*command, "--overwrite"), "holds 1 file that this command doesn't write (monday/mine")
+
+
+def test_one_recording_goes_into_the_same_layout_where_processes_are_asked_for(ids, bags, tmp_path):
+    command = ("evaluate", bags / "monday", *ROBOT, *RAW, *NO_FIGURE)
+    assert ids(*command, "--jobs", "1")[0] == 0
+    assert (tmp_path / "recordings_ur10_simulated/monday/metrics.json").is_file()
+
+
+# ---- failures --------------------------------------------------------------------------------------
+
+
+def test_a_recording_that_fails_is_named_and_the_others_are_finished(ids, bags, tmp_path):
+    damaged = tmp_path / "tuesday"
+    shutil.copytree(bags / "tuesday", damaged)
+    (damaged / "tuesday.mcap").write_bytes(b"nothing")
+    given = (bags / "monday", damaged, tmp_path / "nowhere", bags / "wednesday")
+    code, out, err = ids("evaluate", *given, *ROBOT, *RAW, *NO_FIGURE, "--out", "week")
+    assert code == 3
+    assert re.search(r"^ +monday .*\n +wednesday ", out, re.M)
+    lines = err.splitlines()
+    assert lines[0] == "ids: error: 2 of 4 recordings failed:"
+    assert re.match(rf"  tuesday: {damaged}: can't be read as a rosbag2 recording", lines[1])
+    assert re.match(rf"  nowhere: {tmp_path}/nowhere: .*; written before, whole: week", lines[2])
+    assert len(lines) == 3
+    recordings = json.loads((tmp_path / "week/recordings.json").read_text())["recordings"]
+    assert [bool(r["error"]) for r in recordings] == [False, True, True, False]
+    html = (tmp_path / "week/report.html").read_text()
+    assert "Not evaluated" in html
+    assert "can&#39;t be read as a rosbag2 recording" in html
+    assert not (tmp_path / "week/tuesday").exists()
+
+
+def test_where_everything_fails_nothing_is_written(ids, tmp_path):
+    (tmp_path / "a.csv").write_text("time\n1\n")
+    (tmp_path / "b.csv").write_text("time\n1\n")
+    fails(
+        ids("evaluate", "a.csv", "b.csv", *ROBOT, "--out", "week"),
+        "error: none of the recordings could be evaluated:\n  a: a.csv: expected columns",
+        "\n  b: b.csv: expected columns",
+    )
+    assert sorted(os.listdir(tmp_path)) == ["a.csv", "b.csv"]
+
+
+def test_a_fault_of_the_robot_is_told_once(ids, bags, tmp_path):
+    fails(
+        ids("evaluate", bags, *ROBOT, "--plugin", "no/Plugin", "--out", "week"),
+        "error: none of the recordings could be evaluated: ",
+    )
+    assert os.listdir(tmp_path) == []
+
+
+def reader_of(fifo, parent):
+    """The worker that waits for a FIFO, once it does."""
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline:
+        for place in Path("/proc").glob("[0-9]*"):
+            try:
+                status = (place / "status").read_text()
+                command = (place / "cmdline").read_text()
+                waits = "fifo" in (place / "wchan").read_text() or fifo_is_open(place, fifo)
+            except OSError:
+                continue
+            if f"PPid:\t{parent}\n" in status and "workers import serve" in command and waits:
+                return int(place.name)
+        time.sleep(0.02)
+    raise AssertionError("no worker reads the FIFO")
+
+
+def fifo_is_open(place, fifo):
+    return any(os.path.realpath(f) == str(fifo) for f in (place / "fd").iterdir())
+
+
+def fifo_held_open(path):
+    """A table that a reader gets stuck in: a pipe whose writer says nothing."""
+    os.mkfifo(path)
+    return os.open(path, os.O_RDWR)
+
+
+def test_a_worker_that_is_killed_is_a_failure_of_its_recording(bags, tmp_path):
+    stuck = tmp_path / "stuck.csv"
+    writer = fifo_held_open(stuck)
+    result = []
+
+    def work():
+        given = [stuck, bags / "monday"]
+        result.append(evaluate_many(given, "ur10_simulated", tmp_path / "week", jobs=2, **QUICK))
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    os.kill(reader_of(stuck, os.getpid()), signal.SIGKILL)
+    thread.join()
+    os.close(writer)
+    (failure,) = result[0].failures
+    assert (failure.name, failure.bag) == ("stuck", stuck)
+    assert "most likely memory ran out" in failure.error
+    assert [summary.name for summary in result[0].summaries] == ["monday"]
+    assert sorted(os.listdir(tmp_path)) == ["stuck.csv", "week"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_all_workers_and_leaves_nothing(bags, tmp_path, number):
+    stuck = tmp_path / "stuck.csv"
+    writer = fifo_held_open(stuck)
+    command = [sys.executable, "-c", "import sys; from inverse_dynamics.cli import main; "
+               "sys.exit(main())", "evaluate", str(bags), str(stuck), *ROBOT, *NO_FIGURE,
+               "--out", "week", "--jobs", "2"]  # fmt: skip
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
+        worker = reader_of(stuck, process.pid)
+        process.send_signal(number)
+        start = time.monotonic()
+        _, err = process.communicate(timeout=60)
+        assert time.monotonic() - start < 30
+    os.close(writer)
+    assert process.returncode == 128 + number
+    assert err.endswith("; nothing was written\n")
+    assert not Path(f"/proc/{worker}").exists()
+    assert os.listdir(tmp_path) == ["stuck.csv"]
+
+
+# ---- errors before the work ------------------------------------------------------------------------
+
+
+def test_what_no_recording_can_be_evaluated_with_is_an_error_at_once(bags, tmp_path):
+    out = tmp_path / "week"
+    with pytest.raises(ArgumentError, match="evaluate: argument cutof: unknown; did you mean cut"):
+        evaluate_many(bags, "ur10_simulated", out, cutof=3.0)
+    with pytest.raises(ArgumentError, match="argument jobs: expected a whole number or None"):
+        evaluate_many(bags, "ur10_simulated", out, jobs="two")
+    with pytest.raises(UserError, match="jobs: expected a number of processes above zero, got 0"):
+        evaluate_many(bags, "ur10_simulated", out, jobs=0)
+    with pytest.raises(UserError, match="recordings: expected one or more, got none"):
+        evaluate_many([], "ur10_simulated", out)
+    with pytest.raises(UserError, match="robot 'ur11': expected one of"):
+        evaluate_many(bags, "ur11", out)
+    with pytest.raises(BagError, match="expected each recording once"):
+        evaluate_many([bags, bags / "monday"], "ur10_simulated", out)
+    with pytest.raises(OutputError, match="lies in .*monday, which is read"):
+        evaluate_many(bags, "ur10_simulated", bags / "monday/out")
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_recording_in_an_older_result_is_not_replaced(bags, tmp_path):
+    evaluate_many(bags, "ur10_simulated", tmp_path / "week", **QUICK)
+    before = files(tmp_path)
+    with pytest.raises(
+        OutputError, match="holds .*monday/bag, which is read and would be replaced"
+    ):
+        evaluate_many(
+            [bags / "tuesday", tmp_path / "week/monday/bag"],
+            "ur10_simulated",
+            tmp_path / "week",
+            overwrite=True,
+            topic="/torques",
+        )
+    assert files(tmp_path) == before
+
+
+@pytest.mark.parametrize("jobs", ["0", "-1", "two", "1.5"])
+def test_a_number_of_jobs_is_a_whole_number_above_zero(ids, bags, jobs):
+    fails(
+        ids("evaluate", bags, *ROBOT, f"--jobs={jobs}"), "argument --jobs: expected a", f"'{jobs}'"
+    )
+
+
+def test_one_recording_alone_has_its_parquet_too(ids, bags, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    command = ("evaluate", bags / "monday", *ROBOT, *RAW, *NO_FIGURE, "--out", "one", "--parquet")
+    assert ids(*command)[0] == 0
+    table = parquet.read_table(tmp_path / "one/series.parquet")
+    assert table.column_names[:2] == ["recording", "time"]
+    assert set(table["recording"].to_pylist()) == {"monday"}
