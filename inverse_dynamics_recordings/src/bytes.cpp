@@ -18,11 +18,11 @@ InputFile::InputFile(const std::string& path)
   if (file_ < 0 || ::fstat(file_, &about) != 0) {
     const std::string reason = std::generic_category().message(errno);
     if (file_ >= 0) ::close(file_);
-    throw DamageError("can't open " + quoted(path) + ": " + reason);
+    throw ReadingError("can't open " + quoted(path) + ": " + reason + "; make it readable");
   }
   if (!S_ISREG(about.st_mode)) {
     ::close(file_);
-    throw DamageError(quoted(path) + " is no file");
+    throw DamageError(quoted(path) + " is not a file");
   }
   size_ = static_cast<std::uint64_t>(about.st_size);
 }
@@ -39,7 +39,10 @@ void InputFile::read(std::uint64_t offset, std::uint64_t size, Bytes& out) const
     const ssize_t got =
         ::pread(file_, out.data() + done, size - done, static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw DamageError("can't be read: " + std::generic_category().message(errno));
+    if (got < 0) {
+      throw ReadingError("can't be read: " + std::generic_category().message(errno) +
+                         "; copy it to another disk");
+    }
     if (got == 0) throw DamageError("the file became shorter while it was read");
     done += static_cast<std::size_t>(got);
   }

@@ -75,7 +75,7 @@ class Fields {
 /// A regular file, open for reading.
 class InputFile {
  public:
-  /// @throws DamageError: it can't be opened.
+  /// @throws ReadingError: it can't be opened; DamageError: it isn't a file.
   explicit InputFile(const std::string& path);
   ~InputFile();
   InputFile(const InputFile&) = delete;
@@ -85,7 +85,7 @@ class InputFile {
 
   /// Bytes from an offset on, into memory that is used again.
   ///
-  /// @throws DamageError: the file ends before; then no memory is taken.
+  /// @throws DamageError: the file ends before; then no memory is taken. ReadingError: of the disk.
   void read(std::uint64_t offset, std::uint64_t size, Bytes& out) const;
 
  private:

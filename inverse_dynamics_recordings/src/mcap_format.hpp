@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Kinds of records in MCAP files [https://mcap.dev/spec].
+/// Records of MCAP files [https://mcap.dev/spec].
 ///
 /// A record is its kind (1 byte), the size of its content (8 bytes), and the content. Numbers have
 /// their least byte first; texts and lists begin with their size in bytes (4 bytes).
 #pragma once
 
 #include <cstdint>
+#include <string>
+
+#include "bytes.hpp"
 
 namespace inverse_dynamics_recordings {
 inline namespace v2 {
@@ -33,6 +36,19 @@ enum McapRecord : std::uint8_t {
   kMcapSummaryOffset = 0x0e,
   kMcapDataEnd = 0x0f,
 };
+
+/// Appends a text.
+inline void putString(Bytes& out, const std::string& text) {
+  putNumber(out, static_cast<std::uint32_t>(text.size()));
+  out.insert(out.end(), text.begin(), text.end());
+}
+
+/// Appends a record.
+inline void putRecord(Bytes& out, McapRecord kind, const Bytes& content) {
+  out.push_back(kind);
+  putNumber(out, std::uint64_t{content.size()});
+  out.insert(out.end(), content.begin(), content.end());
+}
 
 }  // namespace v2
 }  // namespace inverse_dynamics_recordings

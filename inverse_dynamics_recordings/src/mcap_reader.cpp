@@ -31,6 +31,18 @@ struct ChunkIndex {
   std::map<std::uint16_t, std::uint64_t> messages;  // of channels; empty: not known
 };
 
+// A record within a chunk.
+struct Record {
+  std::uint8_t kind;
+  Fields content;
+};
+
+Record nextRecord(Fields& records) {
+  const auto kind = records.number<std::uint8_t>();
+  const auto size = records.number<std::uint64_t>();
+  return {kind, Fields(records.take(size), size)};
+}
+
 // A message record.
 struct Entry {
   std::uint64_t time;
@@ -71,7 +83,7 @@ class McapReader : public StorageReader {
     readHeader();
     readFooter();
     if (summary_ != 0) readSummary();
-    if (schemas_.empty() || (!counted_ && chunks_.empty())) scan();
+    if (schemas_.empty() || connections_.empty() || (!counted_ && chunks_.empty())) scan();
   }
 
   void countMessages() override {
@@ -97,6 +109,7 @@ class McapReader : public StorageReader {
   std::uint64_t readRecord(std::uint64_t offset, std::uint64_t end, std::uint8_t& kind);
   Fields unpackChunk(Bytes& memory);
   void openChunk(const ChunkIndex& index);
+  void requireMemory() const;
   bool isWanted(std::uint16_t channel) const {
     const auto at = connection_of_.find(channel);
     return at != connection_of_.end() && wanted_[at->second];
@@ -145,7 +158,10 @@ void McapReader::readFooter() {
   const std::uint8_t* const magic = record_.data() + kSize - sizeof kMcapMagic;
   if (!std::equal(magic, magic + sizeof kMcapMagic, kMcapMagic) || record_[0] != kMcapFooter ||
       littleEndian<std::uint64_t>(&record_[1]) != kMcapFooterSize) {
-    throw DamageError("the file has no end: the recorder was killed, or the file is cut off");
+    throw DamageError(
+        "the file has no end: the recorder was killed, or the file is cut off; `mcap recover` "
+        "saves "
+        "what is there");
   }
   summary_ = littleEndian<std::uint64_t>(&record_[kMcapRecordHead]);
   if (summary_ != 0 && (summary_ < data_ || summary_ > begin)) {
@@ -188,8 +204,9 @@ void McapReader::readSummaryRecord(std::uint8_t kind, Fields fields) {
 void McapReader::readSchema(Fields fields) {
   const auto id = fields.number<std::uint16_t>();
   std::string name = fields.string();
-  const std::string encoding = fields.string();
-  schemas_[id] = {std::move(name), fields.string()};
+  const bool is_message = fields.string() == "ros2msg";
+  std::string definition = fields.string();
+  schemas_[id] = {std::move(name), is_message ? std::move(definition) : ""};
 }
 
 void McapReader::readChannel(Fields fields) {
@@ -264,6 +281,9 @@ void McapReader::checkChunks() {
 
 // Reads all records for their definitions and numbers of messages.
 void McapReader::scan() {
+  schemas_.clear();
+  connections_.clear();
+  connection_of_.clear();
   counts_.clear();
   counted_ = true;
   std::uint8_t kind = 0;
@@ -271,9 +291,8 @@ void McapReader::scan() {
     at = readRecord(at, data_end_, kind);
     if (kind == kMcapChunk) {
       for (Fields records = unpackChunk(chunk_); records.left() > 0;) {
-        const auto inner = records.number<std::uint8_t>();
-        const auto size = records.number<std::uint64_t>();
-        scanRecord(inner, Fields(records.take(size), size));
+        const Record record = nextRecord(records);
+        scanRecord(record.kind, record.content);
       }
     } else {
       scanRecord(kind, Fields(record_.data(), record_.size()));
@@ -360,17 +379,17 @@ bool McapReader::isWanted(const ChunkIndex& chunk) const {
 void McapReader::openChunk(const ChunkIndex& index) {
   auto chunk = spent_ ? std::move(spent_) : std::make_unique<Chunk>();
   std::uint8_t kind = 0;
-  readRecord(index.offset, data_end_, kind);
-  if (kind != kMcapChunk) throw DamageError("a chunk isn't where the index says");
+  const std::uint64_t end = readRecord(index.offset, data_end_, kind);
+  if (kind != kMcapChunk || end != index.offset + index.length) {
+    throw DamageError("a chunk isn't where the index says");
+  }
   chunk->entries.clear();
   chunk->next = 0;
   chunk->place = index.offset;
   for (Fields records = unpackChunk(chunk->memory); records.left() > 0;) {
-    const auto inner = records.number<std::uint8_t>();
-    const auto size = records.number<std::uint64_t>();
-    const Fields fields(records.take(size), size);
-    if (inner != kMcapMessage) continue;
-    const Entry entry = entryOf(fields);
+    const Record record = nextRecord(records);
+    if (record.kind != kMcapMessage) continue;
+    const Entry entry = entryOf(record.content);
     if (entry.time >= index.begin_time && entry.time <= index.end_time && isWanted(entry.channel)) {
       chunk->entries.push_back(entry);
     }
@@ -385,6 +404,15 @@ void McapReader::openChunk(const ChunkIndex& index) {
   }
   open_.push_back(std::move(chunk));
   std::push_heap(open_.begin(), open_.end(), isLater);
+  requireMemory();
+}
+
+// Chunks that overlap in time are in memory together.
+void McapReader::requireMemory() const {
+  const std::uint64_t most = mostUnpacked(file_.size());
+  std::uint64_t bytes = 0;
+  for (const auto& chunk : open_) bytes += chunk->memory.size();
+  if (bytes > most) throw beyondLimit("an MCAP file", file_.size(), most);
 }
 
 bool McapReader::nextInMerge(Message& message) {
@@ -412,20 +440,14 @@ bool McapReader::nextInOrder(Message& message) {
   while (true) {
     if (in_chunk_ && in_chunk_->left() == 0) in_chunk_.reset();
     if (!in_chunk_ && at_ >= data_end_) return false;
-    Fields content(nullptr, 0);
-    if (in_chunk_) {
-      kind = in_chunk_->number<std::uint8_t>();
-      const auto size = in_chunk_->number<std::uint64_t>();
-      content = Fields(in_chunk_->take(size), size);
-    } else {
-      at_ = readRecord(at_, data_end_, kind);
-      content = Fields(record_.data(), record_.size());
-    }
-    if (kind == kMcapChunk) {
+    if (!in_chunk_) at_ = readRecord(at_, data_end_, kind);
+    const Record record =
+        in_chunk_ ? nextRecord(*in_chunk_) : Record{kind, {record_.data(), record_.size()}};
+    if (record.kind == kMcapChunk) {
       if (in_chunk_) throw DamageError("a chunk within a chunk");
       in_chunk_ = unpackChunk(chunk_);
-    } else if (kind == kMcapMessage) {
-      const Entry entry = entryOf(content);
+    } else if (record.kind == kMcapMessage) {
+      const Entry entry = entryOf(record.content);
       if (!isWanted(entry.channel)) continue;
       if (entry.time < previous_) {
         throw DamageError(

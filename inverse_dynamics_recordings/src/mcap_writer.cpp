@@ -18,17 +18,6 @@ namespace {
 constexpr std::size_t kChunk = 1 << 20;  // bytes of records after which a chunk ends
 constexpr std::uint16_t kSchemaId = 1;
 
-void putString(Bytes& out, const std::string& text) {
-  putNumber(out, static_cast<std::uint32_t>(text.size()));
-  out.insert(out.end(), text.begin(), text.end());
-}
-
-void putRecord(Bytes& out, McapRecord kind, const Bytes& content) {
-  out.push_back(kind);
-  putNumber(out, std::uint64_t{content.size()});
-  out.insert(out.end(), content.begin(), content.end());
-}
-
 // First and last time of messages, and how many there are.
 struct Times {
   std::uint64_t first = std::numeric_limits<std::uint64_t>::max(), last = 0, count = 0;
@@ -88,10 +77,6 @@ class McapWriter : public StorageWriter {
 
 void McapWriter::write(std::size_t connection, std::int64_t received, const std::uint8_t* data,
                        std::size_t size) {
-  if (received < 0) {
-    throw std::runtime_error("time of reception: expected 0 or more ns, got " +
-                             std::to_string(received));
-  }
   const auto time = static_cast<std::uint64_t>(received);
   times_.add(time);
   chunk_times_.add(time);

@@ -23,7 +23,7 @@ struct Metadata {
   std::vector<Connection> connections;
 };
 
-/// @throws DamageError, LimitError, and YAML::Exception where it isn't YAML.
+/// @throws DamageError, ReadingError, and YAML::Exception where it isn't YAML.
 Metadata readMetadata(const std::string& path);
 
 /// Times and numbers of a recording of one file.

@@ -12,7 +12,7 @@ namespace inverse_dynamics_recordings {
 inline namespace v2 {
 namespace {
 
-[[noreturn]] void fail() { throw std::runtime_error(std::generic_category().message(errno)); }
+[[noreturn]] void fail() { throw std::system_error(errno, std::generic_category()); }
 
 }  // namespace
 

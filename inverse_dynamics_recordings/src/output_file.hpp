@@ -9,11 +9,13 @@
 namespace inverse_dynamics_recordings {
 inline namespace v2 {
 
-/// A file that is written from its beginning to its end. Its errors are std::runtime_error.
+/// A file that is written from its beginning to its end. Its errors are std::system_error.
 class OutputFile {
  public:
   /// The file must not exist.
   explicit OutputFile(const std::string& path);
+  /// A file that is open already, and empty.
+  explicit OutputFile(int descriptor) : file_(descriptor) {}
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;

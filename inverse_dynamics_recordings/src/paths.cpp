@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <inverse_dynamics_evaluation/error.hpp>
 #include <system_error>
 
@@ -17,14 +18,27 @@ using inverse_dynamics_evaluation::RecordingError;
 
 namespace {
 
-// A recorder that was killed leaves messages in a log beside the database.
+// The first byte of a file; 0 of an empty one, or where there is none.
+char firstByte(const std::string& file) {
+  char byte = 0;
+  return std::ifstream(file, std::ios::binary).get(byte) ? byte : '\0';
+}
+
+// A recorder that was killed leaves messages in a log beside the database, or what it has changed
+// last in a journal. A journal that is done with is empty or begins with zeros.
 void requireComplete(const std::string& file) {
-  const std::string log = file + "-wal";
-  std::error_code error;
-  if (fs::file_size(log, error) == 0 || error) return;
-  throw RecordingError(file + ": is incomplete: some of its messages are in " +
-                       fs::path(log).filename().string() + " still; put them in with `sqlite3 " +
-                       file + " 'PRAGMA wal_checkpoint(TRUNCATE)'`");
+  if (firstByte(file + "-wal") != 0) {
+    throw RecordingError(file + ": is incomplete: some of its messages are in " +
+                         fs::path(file).filename().string() +
+                         "-wal still; put them in with `sqlite3 " + file +
+                         " 'PRAGMA wal_checkpoint(TRUNCATE)'`");
+  }
+  if (firstByte(file + "-journal") != 0) {
+    throw RecordingError(file +
+                         ": is incomplete: a change of it was interrupted; undo it with "
+                         "`sqlite3 " +
+                         file + " 'PRAGMA integrity_check'`");
+  }
 }
 
 // A directory without metadata.yaml.

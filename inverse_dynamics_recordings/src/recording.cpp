@@ -23,8 +23,6 @@ using inverse_dynamics_evaluation::RecordingError;
 
 namespace {
 
-constexpr std::int64_t kLatest = std::int64_t{1} << 62U;  // ns: differences of stamps fit 64 bits
-
 // Calls a function; what it says of a damaged file becomes an error of the recording.
 template <class Function>
 auto readable(const std::string& path, Function function) -> decltype(function()) {
@@ -39,7 +37,7 @@ auto readable(const std::string& path, Function function) -> decltype(function()
     return function();
   } catch (const RecordingError&) {
     throw;
-  } catch (const LimitError& error) {
+  } catch (const ReadingError& error) {
     throw RecordingError(path + ": " + error.what());
   } catch (const std::bad_alloc&) {
     throw;
@@ -56,13 +54,6 @@ std::string name(Storage storage) { return storage == Storage::kMcap ? "mcap" : 
 struct Recording::Content {
   explicit Content(std::string given_path) : path(std::move(given_path)) {
     readable(path, [this] { read(); });
-    for (const Connection& connection : connections) {
-      if (connection.serialization == "cdr") continue;
-      throw RecordingError(path + ": topic " + chain_dynamics::printable(connection.topic, 60) +
-                           ": serialization: expected cdr, got " +
-                           quoted(connection.serialization) +
-                           "; was the recording edited? Copy or record it again");
-    }
   }
 
   void read() {
@@ -85,7 +76,7 @@ struct Recording::Content {
   }
 
   std::unique_ptr<StorageReader> open(const std::string& file) const {
-    return storage == Storage::kMcap ? openMcap(file) : openSqlite(file, file);
+    return storage == Storage::kMcap ? openMcap(file) : openSqlite(file);
   }
 
   std::string path;
@@ -99,7 +90,16 @@ struct Recording::Content {
 class Recording::Source : public MessageSource {
  public:
   Source(std::shared_ptr<const Content> content, std::vector<bool> wanted)
-      : content_(std::move(content)), wanted_(std::move(wanted)) {}
+      : content_(std::move(content)), wanted_(std::move(wanted)) {
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+      const Connection& connection = content_->connections[i];
+      if (!wanted_[i] || connection.serialization == "cdr") continue;
+      throw RecordingError(
+          content_->path + ": topic " + chain_dynamics::printable(connection.topic, 60) +
+          ": serialization: expected cdr, got " + quoted(connection.serialization) +
+          "; was the recording edited? Copy or record it again");
+    }
+  }
 
   bool next(Message& message) override {
     return readable(content_->path, [&] { return nextOfFiles(message); });
@@ -174,7 +174,7 @@ class Recording::CheckedSource : public MessageSource {
       return false;
     }
     if (++done_ > expected_) failToCount("more");
-    if (message.received < 0 || message.received > kLatest) {
+    if (message.received < 0 || message.received > kLatestReception) {
       throw RecordingError(where_ + ", message " + std::to_string(done_) +
                            ": time of reception: expected 0 to 4.6e+18 ns, got " +
                            std::to_string(message.received) +
@@ -232,7 +232,7 @@ class JointStates : public JointStateSource {
   std::string where() const override { return where_; }
 
  private:
-  // Whether a message is waiting. An error waits until the block before it has been taken.
+  // Whether a message is waiting.
   bool take() {
     if (waiting_) return true;
     waiting_ = messages_->next(message_);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <inverse_dynamics_evaluation/error.hpp>
 #include <limits>
 #include <optional>
 #include <unordered_map>
@@ -36,12 +35,16 @@ std::string immutableUri(const std::string& path) {
 
 class SqliteReader : public StorageReader {
  public:
-  SqliteReader(const std::string& path, const std::string& shown)
+  explicit SqliteReader(const std::string& path)
       : size_(InputFile(path).size()),
         database_(immutableUri(path), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI) {
     sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-    requireTables(shown);
+    // Nothing in a file is longer than the file; what it may compute isn't, either.
+    sqlite3_limit(
+        database_.get(), SQLITE_LIMIT_LENGTH,
+        static_cast<int>(std::min<std::uint64_t>(size_, std::numeric_limits<int>::max())));
+    requireTables();
     readTopics();
   }
 
@@ -50,7 +53,7 @@ class SqliteReader : public StorageReader {
   bool next(Message& message) override;
 
  private:
-  void requireTables(const std::string& shown);
+  void requireTables();
   bool hasColumn(const std::string& table, const std::string& column);
   void readTopics();
   void readDefinitions();
@@ -76,21 +79,18 @@ class SqliteReader : public StorageReader {
   bool done_ = true;
 };
 
-// A view may compute without end.
-void SqliteReader::requireTables(const std::string& shown) {
+// A view may compute without end, and a virtual table be anything.
+void SqliteReader::requireTables() {
   Statement names(database_,
-                  "SELECT name, type FROM sqlite_master WHERE name IN ('messages', 'topics', "
-                  "'message_definitions')");
+                  "SELECT name, iif(type = 'table' AND rootpage = 0, 'virtual table', type) FROM "
+                  "sqlite_master WHERE name IN ('messages', 'topics', 'message_definitions')");
   int tables = 0;
   while (names.step()) {
     const std::string kind = names.text(1);
     if (kind == "table") {
       tables += names.text(0) != "message_definitions" ? 1 : 0;
     } else if (kind != "index") {
-      throw inverse_dynamics_evaluation::RecordingError(
-          shown + ": expected the table " + names.text(0) + ", got a " +
-          quoted(kind).substr(1, quoted(kind).size() - 2) +
-          "; was the recording edited? Copy or record it again");
+      throw DamageError("expected the table " + names.text(0) + ", got a " + kind);
     }
   }
   if (tables != 2) throw DamageError("expected the tables messages and topics, got others");
@@ -134,7 +134,7 @@ void SqliteReader::readDefinitions() {
   if (!hasColumn("message_definitions", "encoded_message_definition")) return;
   Statement rows(database_,
                  "SELECT topic_type, encoded_message_definition FROM message_definitions "
-                 "ORDER BY id");
+                 "WHERE encoding = 'ros2msg' ORDER BY id");
   std::unordered_map<std::string, std::string> definitions;  // the first of each type
   for (; rows.step(); countRow()) definitions.emplace(rows.text(0), rows.text(1));
   for (Connection& connection : connections_) connection.definition = definitions[connection.type];
@@ -207,8 +207,8 @@ bool SqliteReader::next(Message& message) {
 
 }  // namespace
 
-std::unique_ptr<StorageReader> openSqlite(const std::string& path, const std::string& shown) {
-  return std::make_unique<SqliteReader>(path, shown);
+std::unique_ptr<StorageReader> openSqlite(const std::string& path) {
+  return std::make_unique<SqliteReader>(path);
 }
 
 }  // namespace v2

@@ -13,8 +13,7 @@
 namespace inverse_dynamics_recordings {
 inline namespace v2 {
 
-/// A file that is open. Its errors are DamageError, LimitError, and RecordingError where the text
-/// names the file already.
+/// A file that is open. Its errors are DamageError, ReadingError and SqliteError.
 class StorageReader {
  public:
   StorageReader() = default;
@@ -38,8 +37,7 @@ class StorageReader {
   std::vector<Connection> connections_;
 };
 
-/// @param shown  path of the file in texts.
-std::unique_ptr<StorageReader> openSqlite(const std::string& path, const std::string& shown);
+std::unique_ptr<StorageReader> openSqlite(const std::string& path);
 std::unique_ptr<StorageReader> openMcap(const std::string& path);
 
 }  // namespace v2

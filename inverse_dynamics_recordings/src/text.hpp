@@ -17,8 +17,8 @@ class DamageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// More than a limit would come out: the text lacks the path only.
-class LimitError : public std::runtime_error {
+/// A reason why a file that may be intact can't be read, and the remedy: the text lacks the path only.
+class ReadingError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

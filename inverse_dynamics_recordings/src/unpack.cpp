@@ -2,6 +2,7 @@
 
 #include "unpack.hpp"
 
+#include <fcntl.h>
 #include <lz4frame.h>
 #include <unistd.h>
 #include <zstd.h>
@@ -12,6 +13,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "output_file.hpp"
+
 namespace inverse_dynamics_recordings {
 inline namespace v2 {
 namespace {
@@ -20,14 +23,6 @@ constexpr char kVariable[] = "IDS_UNPACK_LIMIT_MB";
 constexpr std::uint64_t kMegabyte = 1'000'000;
 constexpr std::size_t kStep = 1 << 20;
 
-LimitError beyondLimit(const std::string& what, std::uint64_t packed, std::uint64_t most) {
-  return LimitError(what + " of " + std::to_string(packed) + " bytes unpacks to more than " +
-                    std::to_string((most + kMegabyte / 2) / kMegabyte) +
-                    " MB: it is damaged, or made to fill memory or disk; if you trust it, raise "
-                    "the limit with " +
-                    kVariable);
-}
-
 // Room for more bytes behind the first `done`, up to the limit and one byte beyond it.
 void makeRoom(Bytes& out, std::size_t done, std::uint64_t most) {
   if (done < out.size()) return;
@@ -35,7 +30,38 @@ void makeRoom(Bytes& out, std::size_t done, std::uint64_t most) {
   out.resize(std::min<std::uint64_t>(wanted, most + 1));
 }
 
+// A compressed file, piece by piece.
+void unpackFile(const InputFile& packed, const std::string& what, OutputFile& unpacked) {
+  const std::uint64_t most = mostUnpacked(packed.size());
+  const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(),
+                                                                             &ZSTD_freeDStream);
+  if (!stream) throw std::bad_alloc();
+  Bytes in, out(kStep);
+  std::size_t unfinished = 0;
+  for (std::uint64_t read = 0; read < packed.size(); read += in.size()) {
+    packed.read(read, std::min<std::uint64_t>(kStep, packed.size() - read), in);
+    ZSTD_inBuffer from{in.data(), in.size(), 0};
+    for (bool full = true; from.pos < from.size || (unfinished != 0 && full);) {
+      ZSTD_outBuffer to{out.data(), out.size(), 0};
+      unfinished = ZSTD_decompressStream(stream.get(), &to, &from);
+      if (ZSTD_isError(unfinished) != 0) throw DamageError(ZSTD_getErrorName(unfinished));
+      full = to.pos == to.size;
+      if (unpacked.size() + to.pos > most) throw beyondLimit(what, packed.size(), most);
+      unpacked.write(out.data(), to.pos);
+    }
+  }
+  if (unfinished != 0) throw DamageError("compressed data ended before the end of its frame");
+}
+
 }  // namespace
+
+ReadingError beyondLimit(const std::string& what, std::uint64_t packed, std::uint64_t most) {
+  return ReadingError(what + " of " + std::to_string(packed) + " bytes unpacks to more than " +
+                      std::to_string((most + kMegabyte / 2) / kMegabyte) +
+                      " MB: it is damaged, or made to fill memory or disk; if you trust it, raise "
+                      "the limit with " +
+                      kVariable);
+}
 
 std::uint64_t mostUnpacked(std::uint64_t packed) {
   constexpr std::uint64_t kMegabytes = 256;
@@ -46,7 +72,7 @@ std::uint64_t mostUnpacked(std::uint64_t packed) {
   if (variable != nullptr && *variable != '\0') {
     const std::string text = variable;
     if (text.size() > kMostDigits || text.find_first_not_of("0123456789") != std::string::npos) {
-      throw LimitError(
+      throw ReadingError(
           std::string(kVariable) + ": expected a whole number of megabytes, got " +
           quoted(text.size() > kMostDigits ? text.substr(0, kMostDigits) + "..." : text));
     }
@@ -111,57 +137,28 @@ void unpackLz4(const std::uint8_t* packed, std::size_t size, Bytes& out) {
 }
 
 UnpackedFile::UnpackedFile(const std::string& packed_path) {
-  const std::filesystem::path packed(packed_path);
-  path_ = std::filesystem::temp_directory_path() / "recording_XXXXXX";
-  const int file = ::mkstemp(path_.data());
-  if (file < 0) {
-    throw DamageError("can't make a temporary file: " + std::generic_category().message(errno));
-  }
+  namespace fs = std::filesystem;
+  const InputFile packed(packed_path);
+  std::error_code none;
+  const std::string directory = fs::temp_directory_path(none);
+  path_ = directory + "/recording_XXXXXX";
+  const int descriptor = ::mkostemp(path_.data(), O_CLOEXEC);
   try {
-    fill(packed_path, file);
+    if (descriptor < 0) throw std::system_error(errno, std::generic_category());
+    OutputFile unpacked(descriptor);
+    unpackFile(packed, fs::path(packed_path).filename(), unpacked);
+    unpacked.close();
+  } catch (const std::system_error& error) {
+    if (descriptor >= 0) ::unlink(path_.c_str());
+    throw ReadingError("can't be unpacked into " + quoted(directory) + ": " + error.what() +
+                       "; free some space, or name another directory with TMPDIR");
   } catch (...) {
-    ::close(file);
     ::unlink(path_.c_str());
     throw;
   }
-  ::close(file);
 }
 
 UnpackedFile::~UnpackedFile() { ::unlink(path_.c_str()); }
-
-void UnpackedFile::fill(const std::string& packed_path, int file) const {
-  const InputFile packed(packed_path);
-  const std::string what = std::filesystem::path(packed_path).filename();
-  const std::uint64_t most = mostUnpacked(packed.size());
-  const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(),
-                                                                             &ZSTD_freeDStream);
-  if (!stream) throw std::bad_alloc();
-  Bytes in, out(kStep);
-  std::uint64_t done = 0;
-  std::size_t unfinished = 0;
-  for (std::uint64_t read = 0; read < packed.size(); read += in.size()) {
-    packed.read(read, std::min<std::uint64_t>(kStep, packed.size() - read), in);
-    ZSTD_inBuffer from{in.data(), in.size(), 0};
-    for (bool full = true; from.pos < from.size || (unfinished != 0 && full);) {
-      ZSTD_outBuffer to{out.data(), out.size(), 0};
-      unfinished = ZSTD_decompressStream(stream.get(), &to, &from);
-      if (ZSTD_isError(unfinished) != 0) throw DamageError(ZSTD_getErrorName(unfinished));
-      full = to.pos == to.size;
-      done += to.pos;
-      if (done > most) throw beyondLimit(what, packed.size(), most);
-      for (std::size_t written = 0; written < to.pos;) {
-        const ssize_t more = ::write(file, out.data() + written, to.pos - written);
-        if (more < 0 && errno == EINTR) continue;
-        if (more < 0) {
-          throw DamageError("can't be unpacked into " + path_ + ": " +
-                            std::generic_category().message(errno));
-        }
-        written += static_cast<std::size_t>(more);
-      }
-    }
-  }
-  if (unfinished != 0) throw DamageError("compressed data ended before the end of its frame");
-}
 
 }  // namespace v2
 }  // namespace inverse_dynamics_recordings

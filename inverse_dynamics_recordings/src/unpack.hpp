@@ -15,8 +15,11 @@ struct ZSTD_DCtx_s;
 namespace inverse_dynamics_recordings {
 inline namespace v2 {
 
-/// How many bytes may come out of so many. @throws LimitError: the variable isn't a number.
+/// How many bytes may come out of so many. @throws ReadingError: the variable isn't a number.
 std::uint64_t mostUnpacked(std::uint64_t packed);
+
+/// What is said of something that would unpack to more.
+ReadingError beyondLimit(const std::string& what, std::uint64_t packed, std::uint64_t most);
 
 /// Unpacks zstd, reusing its memory.
 class ZstdUnpacker {
@@ -25,7 +28,7 @@ class ZstdUnpacker {
 
   /// Frames one after another.
   ///
-  /// what: the text's subject (`a message or chunk`). @throws DamageError, LimitError
+  /// what: the text's subject (`a message or chunk`). @throws DamageError, ReadingError
   void unpack(const std::uint8_t* packed, std::size_t size, const std::string& what, Bytes& out);
 
  private:
@@ -35,13 +38,13 @@ class ZstdUnpacker {
   std::unique_ptr<ZSTD_DCtx_s, Free> context_;
 };
 
-/// Unpacks LZ4 frames. @throws DamageError, LimitError
+/// Unpacks LZ4 frames. @throws DamageError, ReadingError
 void unpackLz4(const std::uint8_t* packed, std::size_t size, Bytes& out);
 
 /// A compressed file (zstd), unpacked into a temporary file that goes with the object.
 class UnpackedFile {
  public:
-  /// @throws DamageError, LimitError
+  /// @throws DamageError, ReadingError
   explicit UnpackedFile(const std::string& packed_path);
   ~UnpackedFile();
   UnpackedFile(const UnpackedFile&) = delete;
@@ -50,8 +53,6 @@ class UnpackedFile {
   const std::string& path() const { return path_; }
 
  private:
-  void fill(const std::string& packed_path, int file) const;
-
   std::string path_;
 };
 

@@ -5,7 +5,10 @@
 #include <gmock/gmock.h>
 #include <sqlite3.h>
 #include <unistd.h>
+#include <zstd.h>
 
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <inverse_dynamics_evaluation/error.hpp>
@@ -15,6 +18,7 @@
 
 #include "error_of.hpp"
 #include "inverse_dynamics_recordings/joint_state_writer.hpp"
+#include "mcap_format.hpp"
 
 namespace inverse_dynamics_recordings {
 namespace {
@@ -25,6 +29,7 @@ using inverse_dynamics_evaluation::JointStateSource;
 using inverse_dynamics_evaluation::RecordingError;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 using Stamps = std::vector<std::int64_t>;
 
@@ -32,6 +37,22 @@ const std::vector<std::string> kNames = {"joint_1", "joint_2"};
 
 std::string storageName(const ::testing::TestParamInfo<Storage>& storage) {
   return name(storage.param);
+}
+
+std::string contentOf(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void put(const fs::path& file, const std::string& content) {
+  std::ofstream(file, std::ios::binary | std::ios::trunc) << content;
+}
+
+void replace(const fs::path& file, const std::string& pattern, const std::string& instead) {
+  const std::string before = contentOf(file);
+  const std::string after = std::regex_replace(before, std::regex(pattern), instead);
+  ASSERT_NE(after, before) << pattern;
+  put(file, after);
 }
 
 // What a test writes goes with it.
@@ -45,6 +66,20 @@ class RecordingTest : public ::testing::TestWithParam<Storage> {
 
   fs::path file(const std::string& bag) const {
     return directory_ / bag / (bag + (GetParam() == Storage::kMcap ? ".mcap" : ".db3"));
+  }
+
+  // Compresses the file of a recording, as rosbag2 does with the mode FILE.
+  void pack(const std::string& bag) const {
+    const std::string raw = contentOf(file(bag));
+    std::string packed(ZSTD_compressBound(raw.size()), '\0');
+    packed.resize(ZSTD_compress(packed.data(), packed.size(), raw.data(), raw.size(), 3));
+    const std::string name = file(bag).filename();
+    put(file(bag).string() + ".zstd", packed);
+    fs::remove(file(bag));
+    const fs::path metadata = directory_ / bag / "metadata.yaml";
+    replace(metadata, name + "\n", name + ".zstd\n");
+    replace(metadata, "compression_format: ''", "compression_format: zstd");
+    replace(metadata, "compression_mode: ''", "compression_mode: FILE");
   }
 
   // Messages received at these times; the k-th has position k and 2k, velocity 3k, effort 4k.
@@ -96,22 +131,6 @@ JointStateBlock rest(JointStateSource& source) {
 
 std::string errorOfReading(const std::string& path, const std::string& topic = "") {
   return errorOf<RecordingError>([&] { rest(*Recording(path).jointStates(topic)); });
-}
-
-std::string contentOf(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-void put(const fs::path& file, const std::string& content) {
-  std::ofstream(file, std::ios::binary | std::ios::trunc) << content;
-}
-
-void replace(const fs::path& file, const std::string& pattern, const std::string& instead) {
-  const std::string before = contentOf(file);
-  const std::string after = std::regex_replace(before, std::regex(pattern), instead);
-  ASSERT_NE(after, before) << pattern;
-  put(file, after);
 }
 
 TEST_P(RecordingTest, GivesBackWhatWasWritten) {
@@ -232,6 +251,25 @@ TEST_P(RecordingTest, NamesOddTopicsAndFilesAsTheyAre) {
   EXPECT_EQ(rest(*Recording(file("b%20 ?#\"\xc3\xa9\n")).jointStates()).size(), 3U);
 }
 
+TEST_P(RecordingTest, OfACompressedFileIsRead) {
+  const std::string bag = write("bag", evenly(9000));
+  pack("bag");
+  EXPECT_EQ(rest(*Recording(bag).jointStates()).receive_stamps, evenly(9000));
+}
+
+TEST_P(RecordingTest, NamesTheDirectoryThatCompressedFilesCantBeUnpackedInto) {
+  const std::string bag = write("bag", evenly(3));
+  pack("bag");
+  const char* const before = std::getenv("TMPDIR");
+  const std::string kept = before == nullptr ? "" : before;
+  setenv("TMPDIR", "/proc", 1);
+  const std::string text = errorOfReading(bag);
+  before == nullptr ? unsetenv("TMPDIR") : setenv("TMPDIR", kept.c_str(), 1);
+  EXPECT_THAT(text, StartsWith(bag + ": can't be unpacked into '/proc': "));
+  EXPECT_THAT(text, HasSubstr("name another directory with TMPDIR"));
+  EXPECT_THAT(text, Not(HasSubstr("damaged")));
+}
+
 TEST_P(RecordingTest, IsRefusedWhereItIsCutOff) {
   const std::string bag = write("bag", evenly(500));
   const std::string whole = contentOf(file("bag"));
@@ -310,6 +348,22 @@ class McapTest : public RecordingTest {
     content.replace(content.size() - 8 - 20, 8, reinterpret_cast<const char*>(&offset), 8);
     return content;
   }
+
+  // Calls a function for each record of a kind in the summary.
+  template <class Change>
+  static void changeSummary(std::string& content, McapRecord kind, Change change) {
+    const auto number = [&](std::size_t at) {
+      std::uint64_t value = 0;
+      std::memcpy(&value, &content[at], 8);
+      return value;
+    };
+    const std::size_t end = content.size() - sizeof kMcapMagic - kMcapFooterSize - kMcapRecordHead;
+    for (std::size_t at = number(end + kMcapRecordHead); at < end;) {
+      const std::size_t next = at + kMcapRecordHead + number(at + 1);
+      if (content[at] == kind) change(&content[at]);
+      at = next;
+    }
+  }
 };
 
 TEST_P(McapTest, WithoutSummaryIsReadFromItsBeginning) {
@@ -338,6 +392,37 @@ TEST_P(McapTest, WithAnotherBeginningEndOrSummaryIsRefused) {
   EXPECT_THAT(errorOfReading(file("bag")), HasSubstr("expected an MCAP file"));
   put(file("bag"), whole.substr(0, whole.size() - 1));
   EXPECT_THAT(errorOfReading(file("bag")), HasSubstr("the file has no end"));
+}
+
+TEST_P(McapTest, WithoutAnEndNamesTheCommandThatSavesWhatIsThere) {
+  write("bag", evenly(10));
+  const std::string whole = contentOf(file("bag"));
+  put(file("bag"), whole.substr(0, whole.size() - 100));
+  EXPECT_THAT(errorOfReading(file("bag")), HasSubstr("`mcap recover` saves what is there"));
+}
+
+TEST_P(McapTest, WithoutSchemasOrChannelsInTheSummaryIsRead) {
+  write("bag", evenly(9000));
+  std::string content = contentOf(file("bag"));
+  for (const McapRecord kind : {kMcapSchema, kMcapChannel}) {
+    changeSummary(content, kind, [](char* record) { *record = '\x80'; });
+    put(file("bag"), content);
+    EXPECT_EQ(rest(*Recording(file("bag")).jointStates()).receive_stamps, evenly(9000)) << kind;
+  }
+}
+
+TEST_P(McapTest, WithChunksOfOtherSizesThanTheIndexSaysIsRefused) {
+  write("bag", evenly(9000));
+  std::string content = contentOf(file("bag"));
+  changeSummary(content, kMcapChunkIndex, [](char* record) { --record[kMcapRecordHead + 24]; });
+  put(file("bag"), content);
+  EXPECT_THAT(errorOfReading(file("bag")), HasSubstr("a chunk isn't where the index says"));
+}
+
+TEST_P(McapTest, GivesDefinitionsOfMessagesOnly) {
+  write("bag", evenly(10));
+  replace(file("bag"), "ros2msg", "ros2idl");
+  EXPECT_EQ(Recording(file("bag")).definitions()[0].definition, "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Storages, McapTest, ::testing::Values(Storage::kMcap), storageName);
@@ -386,9 +471,57 @@ TEST_P(SqliteTest, OfOlderVersionsIsRead) {
 TEST_P(SqliteTest, WithAViewInsteadOfATableIsRefused) {
   const std::string bag = write("bag", evenly(10));
   run("ALTER TABLE messages RENAME TO m; CREATE VIEW messages AS SELECT * FROM m");
-  EXPECT_THAT(errorOfReading(bag),
-              HasSubstr("bag.db3: expected the table messages, got a view; was "
-                        "the recording edited? Copy or record it again"));
+  EXPECT_THAT(errorOfReading(bag), HasSubstr("expected the table messages, got a view"));
+  pack("bag");
+  EXPECT_THAT(errorOfReading(bag), StartsWith(bag + ": can't be read as a rosbag2 recording ("
+                                                    "expected the table messages, got a view)"));
+}
+
+TEST_P(SqliteTest, WithAVirtualTableIsRefused) {
+  const std::string bag = write("bag", evenly(10));
+  run("DROP TABLE messages; CREATE VIRTUAL TABLE messages USING rtree(topic_id, timestamp, data)");
+  EXPECT_THAT(errorOfReading(bag), HasSubstr("expected the table messages, got a virtual table"));
+}
+
+TEST_P(SqliteTest, TakesNoMoreMemoryForAValueThanTheFileHas) {
+  const std::string bag = write("bag", evenly(10));
+  run("ALTER TABLE messages RENAME TO m; CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id, "
+      "timestamp, data AS (zeroblob(500000000))); "
+      "INSERT INTO messages SELECT id, topic_id, timestamp FROM m");
+  EXPECT_THAT(errorOfReading(bag), HasSubstr("string or blob too big"));
+}
+
+TEST_P(SqliteTest, WithAnInterruptedChangeIsRefused) {
+  write("bag", evenly(5000));
+  sqlite3* database = nullptr;
+  sqlite3_open(file("bag").c_str(), &database);
+  sqlite3_exec(database,
+               "PRAGMA cache_size=2; BEGIN; UPDATE messages SET timestamp = timestamp + 5e9",
+               nullptr, nullptr, nullptr);
+  const std::string killed = directory_ / "killed.db3";  // what a process that was killed leaves
+  fs::copy(file("bag"), killed);
+  fs::copy(file("bag").string() + "-journal", killed + "-journal");
+  sqlite3_close(database);
+  EXPECT_THAT(errorOfReading(killed),
+              StartsWith(killed + ": is incomplete: a change of it was interrupted; undo it with"));
+  fs::resize_file(killed + "-journal", 0);  // as the mode TRUNCATE leaves it
+  EXPECT_THAT(errorOfReading(killed), Not(HasSubstr("is incomplete")));
+}
+
+TEST_P(SqliteTest, GivesDefinitionsOfMessagesOnly) {
+  write("bag", evenly(10));
+  run("UPDATE message_definitions SET encoding = 'ros2idl'");
+  EXPECT_EQ(Recording(file("bag")).definitions()[0].definition, "");
+}
+
+TEST_P(SqliteTest, WithAnotherSerializationOfAnotherTopicIsRead) {
+  write("bag", evenly(10));
+  run("INSERT INTO topics VALUES (7, '/scan', 'a/msg/B', 'protobuf', '', '')");
+  const Recording recording(file("bag"));
+  EXPECT_EQ(rest(*recording.jointStates()).size(), 10U);
+  EXPECT_THAT(errorOf<RecordingError>([&] { recording.messages("/scan"); }),
+              HasSubstr("topic /scan: serialization: expected cdr, got 'protobuf'"));
+  EXPECT_THAT(errorOf<RecordingError>([&] { recording.allMessages(); }), HasSubstr("/scan"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Storages, SqliteTest, ::testing::Values(Storage::kSqlite3), storageName);

@@ -87,8 +87,8 @@ TEST(Unpack, RefusesWhatIsCutOffOrNoise) {
 TEST(Unpack, StopsAtTheLimit) {
   const Limit limit("1");
   const Bytes bomb(2'000'000);
-  for (const auto& what : {errorOf<LimitError>([&] { unpacked(zstdOf(bomb)); }),
-                           errorOf<LimitError>([&] { unpackedLz4(lz4Of(bomb)); })}) {
+  for (const auto& what : {errorOf<ReadingError>([&] { unpacked(zstdOf(bomb)); }),
+                           errorOf<ReadingError>([&] { unpackedLz4(lz4Of(bomb)); })}) {
     EXPECT_THAT(what, HasSubstr("bytes unpacks to more than 1 MB: it is damaged, or made to fill "
                                 "memory or disk; if you trust it, raise the limit with "
                                 "IDS_UNPACK_LIMIT_MB"));
@@ -102,7 +102,7 @@ TEST(Unpack, LimitIsAWholeNumberOfMegabytes) {
   EXPECT_EQ(mostUnpacked(100'000'000), 5'000'000'000U);
   for (const char* text : {"-1", "1.5", "many", "\xd9\xa3", "9999999999999"}) {
     const Limit limit(text);
-    EXPECT_THAT(errorOf<LimitError>([] { mostUnpacked(1); }),
+    EXPECT_THAT(errorOf<ReadingError>([] { mostUnpacked(1); }),
                 HasSubstr("IDS_UNPACK_LIMIT_MB: expected a whole number of megabytes, got '"));
   }
 }

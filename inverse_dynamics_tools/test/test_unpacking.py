@@ -117,3 +117,18 @@ def test_the_limit_can_be_set(tmp_path, monkeypatch):
             BagError, match=r"IDS_UNPACK_LIMIT_MB: expected a whole number of .{,90}$"
         ):
             read_joint_log(path)
+
+
+def test_chunks_that_are_in_memory_together_count_together(tmp_path, monkeypatch):
+    writer = Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin.MCAP)
+    writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+    with writer:
+        connection = writer.add_connection("/joint_states", JOINT_STATE, typestore=STORE)
+        for k in range(60):  # about ten in each chunk, from the beginning to the end of the time
+            message = joint_state(["a"], [0.0], [1.0], [0.0], 10**7, frame_id="x" * 100_000)
+            raw = STORE.serialize_cdr(message, JOINT_STATE)
+            writer.write(connection, 10**7 * (1 + 7 * k % 10), raw)
+    assert len(read_joint_log(tmp_path / "bag")) == 60
+    monkeypatch.setenv("IDS_UNPACK_LIMIT_MB", "3")
+    with pytest.raises(BagError, match="an MCAP file of .* unpacks to more than 3 MB"):
+        read_joint_log(tmp_path / "bag")

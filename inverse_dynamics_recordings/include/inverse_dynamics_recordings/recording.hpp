@@ -13,8 +13,9 @@
 /// order in which they were received, file by file.
 ///
 /// Whatever a file states is checked before memory is taken for it. What is compressed may unpack
-/// to 256 MB per message, chunk or file, or to 50 times its size if that is more; the environment
-/// variable IDS_UNPACK_LIMIT_MB replaces 256.
+/// to 256 MB per message, chunk or file, or to 50 times its size if that is more, and so may the
+/// chunks of an MCAP file that overlap in time together; the environment variable
+/// IDS_UNPACK_LIMIT_MB replaces 256.
 ///
 /// A recording that can't be read is an inverse_dynamics_evaluation::RecordingError.
 
@@ -46,9 +47,12 @@ struct Connection {
   std::int64_t messages = 0;    ///< how many
   std::string serialization;    ///< `cdr`
   std::string qos_profiles;     ///< YAML; empty where there are none
-  std::string definition;       ///< of the type; empty where the recording doesn't hold it
+  std::string definition;       ///< of the type, in ROS 2's own language; empty where there is none
   std::string definition_hash;  ///< `RIHS01_...`; empty where the recording doesn't hold it
 };
+
+/// Times of reception are 0 to this number of ns, so that their differences fit 64 bits.
+inline constexpr std::int64_t kLatestReception = std::int64_t{1} << 62U;
 
 /// A topic, of one connection or several.
 struct Topic {
@@ -110,9 +114,11 @@ class Recording {
 
   /// All messages of a topic, as many as the recording states, each received within the years
   /// 1970 to 2116: anything else is an error at the message where it shows.
+  ///
+  /// @throws RecordingError: their serialization isn't CDR.
   std::unique_ptr<MessageSource> messages(const std::string& topic) const;
 
-  /// All messages of all topics, as they are.
+  /// All messages of all topics, as they are. @throws RecordingError: one isn't serialized as CDR.
   std::unique_ptr<MessageSource> allMessages() const;
 
   /// Joint states of a topic; none given: of the only one with joint states.
