@@ -216,6 +216,13 @@ JointStateEncoder::JointStateEncoder(const std::vector<std::string>& names,
   }
 }
 
+bool JointStateEncoder::fits(const std::array<const double*, 3>& numbers) const {
+  return std::equal(arrays_.begin(), arrays_.end(), numbers.begin(),
+                    [](const CdrArray& array, const double* from) {
+                      return array.count == 0 || from != nullptr;
+                    });
+}
+
 void JointStateEncoder::write(std::int64_t stamp, const std::array<const double*, 3>& numbers,
                               std::uint8_t* out) const {
   std::memcpy(out, template_.data(), template_.size());

@@ -80,8 +80,12 @@ class JointStateEncoder {
   /// Size of each message, in bytes.
   std::size_t size() const { return template_.size(); }
 
+  /// Whether there are numbers for each field that messages have.
+  bool fits(const std::array<const double*, 3>& numbers) const;
+
   /// Writes size() bytes.
   ///
+  /// @param stamp    ns; its seconds fit 32 bits.
   /// @param numbers  of position, velocity, effort; null where there are none.
   void write(std::int64_t stamp, const std::array<const double*, 3>& numbers,
              std::uint8_t* out) const;

@@ -11,7 +11,7 @@
 /// definitions of the type. MCAP files hold chunks of about 1 MB that aren't compressed.
 ///
 /// Whatever can't be written is an inverse_dynamics_evaluation::RecordingError. A recording is
-/// complete after finish() only; removing an incomplete one is up to the caller.
+/// complete after finish(); before, an error or the end of the writer removes it.
 
 #pragma once
 
@@ -38,8 +38,8 @@ struct JointStateTopic {
 /// Consecutive messages of a topic, looked at where they lie; numbers are N x n, row-major.
 struct JointStateRows {
   std::size_t count = 0;                         ///< N
-  const std::int64_t* header_stamps = nullptr;   ///< N; ns
-  const std::int64_t* receive_stamps = nullptr;  ///< N; ns, not before 1970
+  const std::int64_t* header_stamps = nullptr;   ///< N; ns, of the years 1901 to 2038
+  const std::int64_t* receive_stamps = nullptr;  ///< N; ns, of the years 1970 to 2116
   const double* position = nullptr;              ///< rad (prismatic m)
   const double* velocity = nullptr;              ///< rad/s (prismatic m/s)
   const double* effort = nullptr;                ///< N m (prismatic N), or as the topic has it
