@@ -166,3 +166,17 @@ def test_what_fits_is_passed_on(solver: Solver) -> None:
     assert hypotenuse(3, b=4) == 5
     assert hypotenuse.__name__ == "hypotenuse"
     assert solver.gravity_vector(q=Q).shape == (6,)
+
+
+@pytest.mark.parametrize(
+    ("mask", "got"),
+    [
+        (np.ones(3), "an array of float64 of shape (3,)"),
+        (np.ones(3, dtype=int), "an array of int64 of shape (3,)"),
+    ],
+)
+def test_masks_of_numbers_are_named(mask: np.ndarray, got: str) -> None:
+    numbers = np.zeros((3, 2))
+    assert refusal(lambda: _core.metrics(numbers, numbers, mask)) == (
+        f"metrics: argument mask: expected an array of True and False or None, got {got}"
+    )

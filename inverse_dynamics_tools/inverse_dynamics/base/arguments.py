@@ -167,6 +167,10 @@ def _is_array(value: object) -> bool:
         return False
 
 
+def _is_mask(value: object) -> bool:
+    return _is_array(value) and np.asarray(value).dtype.kind == "b"
+
+
 def _are(fits: Callable[[object], bool], count: int | None = None) -> Callable[[Any], bool]:
     """Whether a value is a sequence, or an array, of such values, or of so many."""
 
@@ -190,6 +194,7 @@ _KINDS: tuple[tuple[str, str, Callable[[Any], bool]], ...] = (
     (r"bool", "True or False", lambda value: isinstance(value, (bool, np.bool_))),
     (r"str|Clock", "a text", _is_text),
     (r"Path", "a path", lambda value: isinstance(value, os.PathLike)),
+    (r".*ArrayLike, numpy\.bool\].*", "an array of True and False", _is_mask),
     (r".*(ArrayLike|NDArray|ndarray).*", "an array of real numbers", _is_array),
     (r".*(Sequence|[Ll]ist)\[str\].*", "a list of texts", _are(_is_text)),
     (
