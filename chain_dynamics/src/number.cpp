@@ -51,6 +51,10 @@ std::optional<double> outOfRange(const std::string& number) {
 
 }  // namespace
 
+bool isDecimal(const std::string& text) {
+  return isDecimal(text.data(), text.data() + text.size());
+}
+
 std::optional<double> finiteNumber(const std::string& text) {
   constexpr const char* kBlanks = " \t\r\n";
   const std::size_t first = text.find_first_not_of(kBlanks);

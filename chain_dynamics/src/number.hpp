@@ -23,6 +23,9 @@ inline namespace v2 {
 /// `-1.5e-3`, `+2`, `.5`, `5.`. One too small for a double is 0, one too great isn't finite.
 std::optional<double> finiteNumber(const std::string& text);
 
+/// Whether all of a text is such a number; one that is too great too.
+bool isDecimal(const std::string& text);
+
 /// Masses, squares of lengths and of velocities of this size have products that a double holds.
 constexpr double kGreatestFigure = 1e50;
 

@@ -3,50 +3,16 @@
 #include "chain_dynamics/text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstdint>
 #include <numeric>
 #include <utility>
 
+#include "utf8.hpp"
+
 namespace chain_dynamics {
 inline namespace v2 {
 namespace {
-
-struct Character {
-  std::uint32_t code = 0;  // of Unicode
-  std::size_t size = 0;    // bytes; 0: no UTF-8
-};
-
-unsigned char byteAt(const std::string& text, std::size_t i) {
-  return static_cast<unsigned char>(text[i]);
-}
-
-bool isContinuation(unsigned char byte) { return (byte & 0xC0U) == 0x80U; }
-
-/// The character that starts at byte i [RFC 3629].
-Character characterAt(const std::string& text, std::size_t i) {
-  const unsigned char first = byteAt(text, i);
-  if (first < 0x80U) {
-    return {first, 1};
-  }
-  // a leading byte 110....., 1110...., 11110... says how many follow
-  const std::size_t size = first >= 0xF0U ? 4 : first >= 0xE0U ? 3 : 2;
-  if (first < 0xC2U || first > 0xF4U || i + size > text.size()) {
-    return {};
-  }
-  std::uint32_t code = first & (0xFFU >> (size + 1));
-  for (std::size_t k = i + 1; k < i + size; ++k) {
-    if (!isContinuation(byteAt(text, k))) {
-      return {};
-    }
-    code = code << 6U | (byteAt(text, k) & 0x3FU);
-  }
-  constexpr std::array<std::uint32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
-  const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
-  const bool valid = code >= kLeast[size] && code <= 0x10FFFF && !surrogate;
-  return valid ? Character{code, size} : Character{};
-}
 
 /// Whether a terminal would act on the character, or show the rest of the line in another order.
 bool isControl(std::uint32_t code) {

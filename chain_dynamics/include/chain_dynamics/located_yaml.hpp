@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// YAML whose mistakes can be pointed at: every value knows its file, line and key.
+///
+///     LocatedMap robot = LocatedValue::ofFile("robot.yaml").map();
+///     const std::string name = robot.required("name").text();
+///     robot.rejectOthers();    // robot.yaml:7: tpi: unknown key; did you mean tip?; known here: ...
+///
+/// Strict: a key that isn't asked for is an error, so is a key that stands twice. Values without
+/// quotes have the types of the core schema of YAML 1.2: `1:30` and `1_000` are texts, `yes` is one
+/// too, `1e-3` is a number. Tags, aliases and other encodings than UTF-8 are errors.
+///
+/// Texts of errors are `file:line: key: expected ..., got ...; remedy`.
+
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace chain_dynamics {
+inline namespace v2 {
+
+class LocatedMap;
+
+/// A value of a YAML file and where it stands. Cheap to copy; keeps what was read alive.
+///
+/// Threads: const methods are safe.
+class LocatedValue {
+ public:
+  /// A function that throws the error with this text; each kind of file has an error of its own.
+  using Throw = std::function<void(const std::string& text)>;
+  using Scalar = std::variant<bool, std::int64_t, double, std::string>;
+
+  /// The value that a text of YAML is.
+  ///
+  /// @param file   what to call it in errors.
+  /// @param raise  throws the errors of this value and those inside of it; none: ModelError.
+  /// @throws what raise throws: not UTF-8, not YAML, several documents, none, tags, aliases, more
+  ///     than 50 levels, 200,000 values or 4 MiB.
+  static LocatedValue ofText(const std::string& text, const std::string& file,
+                             const Throw& raise = nullptr);
+
+  /// The same of a file. Throws also where it can't be read.
+  static LocatedValue ofFile(const std::string& path, const Throw& raise = nullptr);
+
+  bool isList() const;
+  bool isMap() const;
+  bool isNull() const;  ///< a key with nothing behind it
+
+  /// A text, a finite number, an integer, true or false: what it looks like.
+  Scalar scalar() const;
+
+  /// A text: what looks like something else needs quotes.
+  ///
+  /// @param one_of  those that are allowed; none: all.
+  std::string text(const std::vector<std::string>& one_of = {}) const;
+
+  double number() const;         ///< a finite one
+  std::int64_t integer() const;  ///< of 64 bits
+  bool truth() const;            ///< `true` or `false`
+
+  /// A list.
+  ///
+  /// @param length  of it, if only one will do.
+  std::vector<LocatedValue> entries(std::optional<std::size_t> length = std::nullopt) const;
+
+  /// Keys with values.
+  LocatedMap map() const;
+
+  /// Throws the error that says what was expected here; what was found is added.
+  [[noreturn]] void fail(const std::string& expected, const std::string& remedy = "") const;
+
+  /// Throws the error with this text behind where().
+  [[noreturn]] void refuse(const std::string& text) const;
+
+  /// `file:line: key`, as error texts begin.
+  std::string where() const;
+
+  const std::string& key() const { return key_; }
+  const std::string& file() const;
+
+ private:
+  friend class LocatedMap;
+  struct Document;
+  struct Content;
+  class Builder;
+
+  LocatedValue(std::shared_ptr<const Document> document, const Content& node, std::string key);
+  const std::string* plain() const;
+  std::string shown() const;
+
+  std::shared_ptr<const Document> document_;
+  const Content* node_;
+  std::string key_;
+};
+
+/// Keys with values, and which of them have been asked for.
+class LocatedMap {
+ public:
+  /// The value of a key that must be there.
+  LocatedValue required(const std::string& key);
+
+  /// The value of a key; nothing where it is absent or null.
+  std::optional<LocatedValue> optional(const std::string& key);
+
+  /// Throws the error of a key that nobody has asked for.
+  void rejectOthers() const;
+
+  /// Where the map stands.
+  const LocatedValue& value() const { return value_; }
+
+  /// All of it, in the order of the file. Their LocatedValue::key() is dotted: `outer.inner`.
+  const std::vector<std::pair<std::string, LocatedValue>>& entries() const { return entries_; }
+
+ private:
+  friend class LocatedValue;
+  explicit LocatedMap(const LocatedValue& value);
+
+  LocatedValue value_;
+  std::vector<std::pair<std::string, LocatedValue>> entries_;
+  std::vector<std::string> asked_;
+};
+
+}  // namespace v2
+}  // namespace chain_dynamics
