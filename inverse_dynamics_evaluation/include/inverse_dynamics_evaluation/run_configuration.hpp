@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Run configurations: what a robot is, in one YAML file [docs/add_a_robot.md].
+///
+///     RunConfiguration robot = readRunConfiguration("ur10_real");      // one of the project's
+///     RunConfiguration mine = readRunConfiguration("my_robot.yaml");   // one's own
+///     solver->initialize(Parameters(solverParameters(robot)).strict(), "", robot_description);
+///
+/// Which solver, from which description or model, between which links, and what its recordings look
+/// like. Strict: unknown or missing keys and wrong types are errors with file, line and key.
+
+#pragma once
+
+#include <array>
+#include <chain_dynamics/located_yaml.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/parameters.hpp>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inverse_dynamics_evaluation/effort.hpp"
+
+namespace inverse_dynamics_evaluation {
+inline namespace v2 {
+
+/// Parameters of a solver: dotted name to value.
+using SolverParameters = std::map<std::string, inverse_dynamics_solver::ParameterValue>;
+
+/// One run configuration. An empty text: not stated, so the solver's own default.
+struct RunConfiguration {
+  std::string name;
+  std::string description;                       ///< one line
+  std::string file;                              ///< where it is from; empty: parameters of a node
+  std::string plugin;                            ///< `package/Class`
+  std::string urdf;                              ///< path
+  std::string model;                             ///< path
+  std::string root, tip;                         ///< links
+  std::optional<std::array<double, 3>> gravity;  ///< m/s^2, in the frame of the root link
+  bool friction = true;                          ///< whether the solver's friction model counts
+  std::string topic = "/joint_states";           ///< of recordings
+  std::vector<std::string> joints;     ///< names in recordings, in the order of the chain; or none
+  std::string effort = kTorque;        ///< what recorded efforts mean: a meaning, or kAutomatic
+  std::vector<double> drive_gains;     ///< N m/A (prismatic N/A); none: the solver's, if it has any
+  std::string accelerations = "auto";  ///< name() of an AccelerationMethod
+  std::optional<double> cutoff;        ///< Hz; none: chosen from the data
+  SolverParameters parameters;         ///< of the solver, beyond the fields above
+  std::string source;                  ///< where description and figures come from
+};
+
+/// What stands instead of a run configuration's fields; nothing: the field stays.
+struct RunConfigurationChanges {
+  std::optional<std::string> plugin, urdf, root, tip, topic, effort, accelerations;
+  std::optional<std::array<double, 3>> gravity;
+  std::optional<bool> friction;
+  std::optional<std::vector<std::string>> joints;
+  std::optional<std::vector<double>> drive_gains;
+  std::optional<double> cutoff;
+  SolverParameters parameters;  ///< added to the others, or instead of them, one by one
+};
+
+/// Names of the run configurations that the sourced workspaces bring, sorted.
+///
+/// @throws PackageNotFoundError: no workspace has the package inverse_dynamics_robots.
+std::vector<std::string> robotNames();
+
+/// The run configuration by the name of one of robotNames(), or from a file.
+///
+/// @param name_or_file  what ends in .yaml or .yml, or has a directory, is a file.
+/// @throws PackageNotFoundError. @throws ConfigurationError: no such robot; a file that isn't right.
+RunConfiguration readRunConfiguration(const std::string& name_or_file);
+
+/// The run configuration with changes.
+///
+/// A description that is given stands instead of a model file too, and a method of accelerations
+/// without the cut-off that belongs to the configuration's own.
+RunConfiguration withChanges(RunConfiguration robot, const RunConfigurationChanges& changes);
+
+/// What is below `parameters`; names of nested maps are joined by dots.
+///
+/// @throws what the map throws: a key of the configuration's own; a list of several types.
+SolverParameters readSolverParameters(const chain_dynamics::LocatedMap& map);
+
+/// All that the solver's initialize() takes; what isn't stated is left out.
+SolverParameters solverParameters(const RunConfiguration& robot);
+
+/// Names in a recording of the solver's joints, in the order of the chain.
+///
+/// @throws ConfigurationError: another number of names; the chain's names in another order.
+std::vector<std::string> recordedNames(const RunConfiguration& robot,
+                                       const std::vector<std::string>& joint_names);
+
+/// What the run configuration states of efforts; drive gains are the solver's where it has none.
+///
+/// @throws ConfigurationError: not one drive gain per joint; one that isn't above 0.
+EffortOptions effortOptions(const RunConfiguration& robot,
+                            const inverse_dynamics_solver::InverseDynamicsSolver& solver);
+
+}  // namespace v2
+}  // namespace inverse_dynamics_evaluation

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Run configurations as files have them.
+
+#include <algorithm>
+#include <chain_dynamics/text.hpp>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include "inverse_dynamics_evaluation/error.hpp"
+#include "inverse_dynamics_evaluation/log_accelerations.hpp"
+#include "inverse_dynamics_evaluation/package_share.hpp"
+#include "inverse_dynamics_evaluation/run_configuration.hpp"
+
+namespace inverse_dynamics_evaluation {
+inline namespace v2 {
+namespace {
+
+namespace fs = std::filesystem;
+using chain_dynamics::joined;
+using chain_dynamics::LocatedMap;
+using chain_dynamics::LocatedValue;
+using inverse_dynamics_solver::ParameterValue;
+
+constexpr std::int64_t kSchema = 1;
+constexpr const char* kData = "inverse_dynamics_robots";
+
+/// Whether it can be the name of a file: results are called after a robot.
+bool isPlainName(const std::string& text) {
+  return !text.empty() && text != "." && text != ".." && text.find('/') == std::string::npos &&
+         chain_dynamics::isPrintable(text);
+}
+
+std::string stripped(const std::string& text) {
+  const char* const blanks = " \t\r\n";
+  const std::size_t begin = text.find_first_not_of(blanks);
+  return begin == std::string::npos ? ""
+                                    : text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
+}
+
+// No path has a NUL; a system call would take what is before it.
+bool isFile(const std::string& path) {
+  std::error_code ignored;
+  return path.find('\0') == std::string::npos && fs::is_regular_file(path, ignored);
+}
+
+// ---------------------------------------------------------------------------------------------
+// Values
+
+std::string textOf(const std::optional<LocatedValue>& value, const std::string& otherwise = "",
+                   const std::vector<std::string>& one_of = {}) {
+  return value ? value->text(one_of) : otherwise;
+}
+
+std::string existingFile(const std::optional<LocatedValue>& value) {
+  if (!value) {
+    return "";
+  }
+  const std::string directory = fs::path(value->file()).parent_path();
+  std::string path = value->text();
+  try {
+    path = resolvedPath(path, directory);
+  } catch (const ConfigurationError& error) {
+    value->fail("a file", error.what());
+  }
+  if (!isFile(path)) {
+    value->fail("a file", path + " isn't there");
+  }
+  return path;
+}
+
+std::optional<std::array<double, 3>> gravityOf(const std::optional<LocatedValue>& value) {
+  if (!value) {
+    return std::nullopt;
+  }
+  const std::vector<LocatedValue> entries = value->entries(3);
+  return std::array<double, 3>{entries[0].number(), entries[1].number(), entries[2].number()};
+}
+
+std::vector<double> driveGainsOf(const std::optional<LocatedValue>& value) {
+  std::vector<double> gains;
+  if (!value) {
+    return gains;
+  }
+  for (const LocatedValue& entry : value->entries()) {
+    gains.push_back(entry.number());
+    if (gains.back() <= 0) {
+      entry.fail("a drive gain above zero, in N m/A", "turn the sign of the efforts instead");
+    }
+  }
+  if (gains.empty()) {
+    value->fail("a figure per joint");
+  }
+  return gains;
+}
+
+std::vector<std::string> jointsOf(const std::optional<LocatedValue>& value) {
+  std::vector<std::string> names;
+  if (!value) {
+    return names;
+  }
+  for (const LocatedValue& entry : value->entries()) {
+    names.push_back(entry.text());
+  }
+  if (std::set<std::string>(names.begin(), names.end()).size() != names.size()) {
+    value->refuse("expected each name once, got " + joined(names));
+  }
+  return names;
+}
+
+void readAccelerations(const std::optional<LocatedValue>& value, RunConfiguration& robot) {
+  if (!value) {
+    return;
+  }
+  LocatedMap map = value->map();
+  std::vector<std::string> methods;
+  for (const auto method : {AccelerationMethod::kAuto, AccelerationMethod::kLowPass,
+                            AccelerationMethod::kGiven, AccelerationMethod::kBackwardDifference}) {
+    methods.push_back(inverse_dynamics_evaluation::name(method));
+  }
+  robot.accelerations = textOf(map.optional("method"), robot.accelerations, methods);
+  if (const auto cutoff = map.optional("cutoff")) {
+    robot.cutoff = cutoff->number();
+    if (*robot.cutoff <= 0) {
+      cutoff->fail("a frequency in Hz above zero");
+    }
+  }
+  map.rejectOthers();
+}
+
+// ---------------------------------------------------------------------------------------------
+// Parameters of solvers
+
+const char* kindOf(const LocatedValue::Scalar& scalar) {
+  return std::holds_alternative<bool>(scalar)          ? "true or false"
+         : std::holds_alternative<std::string>(scalar) ? "a text"
+                                                       : "a number";
+}
+
+template <class T>
+std::vector<T> allOf(const std::vector<LocatedValue::Scalar>& scalars) {
+  std::vector<T> values;
+  values.reserve(scalars.size());
+  for (const LocatedValue::Scalar& scalar : scalars) {
+    values.push_back(std::get<T>(scalar));
+  }
+  return values;
+}
+
+/// Entries of one kind; integers among doubles are doubles.
+ParameterValue listOf(const std::vector<LocatedValue>& entries) {
+  std::vector<LocatedValue::Scalar> scalars;
+  bool doubles = false;
+  for (const LocatedValue& entry : entries) {
+    scalars.push_back(entry.scalar());
+    if (kindOf(scalars.back()) != std::string(kindOf(scalars.front()))) {
+      entry.fail(std::string(kindOf(scalars.front())) + ", as the entries before it");
+    }
+    doubles = doubles || std::holds_alternative<double>(scalars.back());
+  }
+  if (doubles) {
+    std::vector<double> values;
+    values.reserve(entries.size());
+    for (const LocatedValue& entry : entries) {
+      values.push_back(entry.number());
+    }
+    return values;
+  }
+  if (scalars.empty() || std::holds_alternative<std::int64_t>(scalars.front())) {
+    return allOf<std::int64_t>(scalars);
+  }
+  return std::holds_alternative<bool>(scalars.front()) ? ParameterValue(allOf<bool>(scalars))
+                                                       : allOf<std::string>(scalars);
+}
+
+ParameterValue parameterOf(const LocatedValue& value) {
+  if (value.isList()) {
+    return listOf(value.entries());
+  }
+  return std::visit([](const auto& scalar) { return ParameterValue(scalar); }, value.scalar());
+}
+
+// Adds what isn't a map itself; `start` is the length of what is left out of names.
+void addLeaves(const LocatedMap& map, std::size_t start, SolverParameters& found) {
+  const std::vector<std::string> keys = {"root",     "tip",   "gravity",
+                                         "friction", "model", "robot_description"};
+  for (const auto& [key, value] : map.entries()) {
+    if (value.isMap()) {
+      addLeaves(value.map(), start, found);
+      continue;
+    }
+    const std::string name = value.key().substr(start);
+    if (std::find(keys.begin(), keys.end(), name) != keys.end()) {
+      value.refuse("is a key of its own: put " + name + " at the top of the run configuration");
+    }
+    if (!found.emplace(name, parameterOf(value)).second) {
+      value.refuse("stands here for a second time");
+    }
+  }
+}
+
+// ---------------------------------------------------------------------------------------------
+// Files
+
+void throwConfigurationError(const std::string& text) {
+  throw ConfigurationError(chain_dynamics::printable(text, 8000));
+}
+
+RunConfiguration readFile(const std::string& file) {
+  LocatedMap top = LocatedValue::ofFile(file, &throwConfigurationError).map();
+  const LocatedValue schema = top.required("schema");
+  if (schema.integer() != kSchema) {
+    schema.fail(std::to_string(kSchema), "it was written for another version of this command");
+  }
+  RunConfiguration robot;
+  robot.file = file;
+  const LocatedValue name = top.required("name");
+  robot.name = name.text();
+  if (!isPlainName(robot.name)) {
+    name.fail("a plain name: results are called after it", "leave out / and control characters");
+  }
+  robot.description = stripped(top.required("description").text());
+  const LocatedValue plugin = top.required("plugin");
+  robot.plugin = plugin.text();
+  if (std::count(robot.plugin.begin(), robot.plugin.end(), '/') != 1) {
+    plugin.fail("package/Class", "`ids robots --plugins` lists what is installed");
+  }
+  readAccelerations(top.optional("accelerations"), robot);
+  robot.urdf = existingFile(top.optional("urdf"));
+  robot.model = existingFile(top.optional("model"));
+  robot.root = textOf(top.optional("root"));
+  robot.tip = textOf(top.optional("tip"));
+  robot.gravity = gravityOf(top.optional("gravity"));
+  const auto friction = top.optional("friction");
+  robot.friction = friction ? friction->truth() : robot.friction;
+  robot.topic = textOf(top.optional("topic"), robot.topic);
+  robot.joints = jointsOf(top.optional("joints"));
+  robot.effort = textOf(top.optional("effort"), robot.effort,
+                        {kTorque, kCurrent, kTorqueWithoutGravity, kAutomatic});
+  robot.drive_gains = driveGainsOf(top.optional("drive_gains"));
+  if (const auto parameters = top.optional("parameters")) {
+    robot.parameters = readSolverParameters(parameters->map());
+  }
+  robot.source = stripped(textOf(top.optional("source")));
+  if (const auto simulation = top.optional("simulation")) {
+    simulation->map();  // what it holds, the simulator reads
+  }
+  top.rejectOthers();
+  return robot;
+}
+
+[[noreturn]] void refuseName(const std::string& name) {
+  constexpr std::size_t kLongest = 60;
+  const std::vector<std::string> known = robotNames();
+  const std::string nearest = chain_dynamics::nearestName(name, known);
+  const std::string shown = name.size() > kLongest ? name.substr(0, kLongest) + "..." : name;
+  throw ConfigurationError(chain_dynamics::errorText(
+      "robot '" + shown + "'", "", "one of " + joined(known) + ", or a file ending in .yaml", "",
+      nearest.empty() ? "" : "did you mean " + nearest + "?"));
+}
+
+std::string namesIfAny() {
+  try {
+    return joined(robotNames());
+  } catch (const PackageNotFoundError&) {
+    return "(no workspace is sourced)";
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> robotNames() {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry :
+       fs::directory_iterator(fs::path(packageShare(kData)) / "robots", ignored)) {
+    if (entry.path().extension() == ".yaml") {
+      names.push_back(entry.path().stem());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+SolverParameters readSolverParameters(const LocatedMap& map) {
+  SolverParameters found;
+  const std::string& key = map.value().key();
+  addLeaves(map, key.empty() ? 0 : key.size() + 1, found);
+  return found;
+}
+
+RunConfiguration readRunConfiguration(const std::string& name_or_file) {
+  const fs::path path(name_or_file);
+  const bool is_file =
+      path.extension() == ".yaml" || path.extension() == ".yml" || path.filename() != path;
+  if (is_file) {
+    std::string file = name_or_file;
+    try {
+      file = resolvedPath(name_or_file, "");
+    } catch (const ConfigurationError&) {
+      // of a user that isn't there: nor is the file
+    }
+    if (!isFile(file)) {
+      throwConfigurationError(name_or_file +
+                              ": no such file; expected a run configuration, or one of the names " +
+                              namesIfAny());
+    }
+    return readFile(file);
+  }
+  const std::string file = fs::path(packageShare(kData)) / "robots" / (name_or_file + ".yaml");
+  if (!isFile(file)) {
+    refuseName(name_or_file);
+  }
+  return readFile(file);
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_evaluation
