@@ -6,12 +6,15 @@ Arrays are (n,), one state, or (N, n), one state a row; results have the same sh
 
 from collections.abc import Sequence
 from enum import Enum
-from typing import Literal
+from pathlib import Path
+from typing import Any, Literal, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inverse_dynamics.data.joint_log import JointLog
+from inverse_dynamics.errors import UserError
+from inverse_dynamics.robot.robots import Robot
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -390,19 +393,7 @@ class EffortVerdict:
     def summary(self) -> str: ...
 
 class EffortOptions:
-    """What is stated of efforts: inverse_dynamics_evaluation/effort.hpp."""
-
-    def __init__(
-        self,
-        *,
-        option: str | None,
-        format: str,
-        configuration: str,
-        drive_gains: list[float],
-        where: str,
-        gains_from: str,
-        plugin: str,
-    ) -> None: ...
+    """What is stated of efforts: inverse_dynamics_evaluation/effort.hpp. Made by effort_options()."""
 
 class Evaluated:
     """What came of evaluate(): inverse_dynamics_evaluation/evaluator.hpp."""
@@ -446,7 +437,6 @@ def compare_meanings(
 def effort_summary(
     meaning: str, stated_by: str, drive_gains: list[float], verdict: EffortVerdict | None
 ) -> str: ...
-def drive_gains(solver: Solver, configured: list[float], where: str) -> list[float]: ...
 def evaluate(
     solver: Solver,
     log: JointLog,
@@ -599,3 +589,85 @@ class SafeStop:
     def finished(self) -> bool: ...
     @property
     def duration(self) -> float: ...
+
+class YamlValue:
+    """A value of a YAML file and where it stands: chain_dynamics/located_yaml.hpp.
+
+    What isn't as asked for is raised with the error class that the file was read with.
+    """
+
+    @property
+    def where(self) -> str:
+        """`file:line: key`, as errors begin."""
+
+    @property
+    def is_list(self) -> bool: ...
+    @property
+    def is_mapping(self) -> bool: ...
+    def fail(self, expected: str, remedy: str = "") -> NoReturn:
+        """Raise the error that says what was expected here."""
+
+    def scalar(self) -> bool | int | float | str:
+        """A text, a finite number, an integer, true or false: what it looks like."""
+
+    def text(self, one_of: Sequence[str] = ()) -> str:
+        """A text; one of these, if any are given."""
+
+    def number(self) -> float:
+        """A finite number."""
+
+    def integer(self) -> int:
+        """An integer of 64 bits."""
+
+    def truth(self) -> bool:
+        """True or false."""
+
+    def entries(self, length: int | None = None) -> list[YamlValue]:
+        """A list; of this length, if one is given."""
+
+    def mapping(self) -> YamlMap:
+        """Keys with values."""
+
+class YamlMap:
+    """Keys with values, and which of them have been asked for."""
+
+    def required(self, key: str) -> YamlValue:
+        """The value of a key that must be there."""
+
+    def optional(self, key: str) -> YamlValue | None:
+        """The value of a key, or None if it is absent or null."""
+
+    def reject_others(self) -> None:
+        """Raise the error for a key that nobody has asked for."""
+
+def read_yaml(path: bytes | str, error: type[UserError]) -> YamlValue:
+    """The value that a YAML file is. error: what is raised, now and by the value."""
+
+def parse_yaml(text: bytes | str, file: str, error: type[UserError]) -> YamlValue:
+    """The value that a text of YAML is. file: what errors call it."""
+
+def robot_names() -> list[str]:
+    """Names of the run configurations that the sourced workspaces bring."""
+
+def read_robot(name_or_file: bytes | str) -> dict[str, Any]:
+    """Fields of the Robot of that name, or of that file."""
+
+def change_robot(robot: Robot, changes: dict[str, Any]) -> dict[str, Any]:
+    """Fields of a Robot with changes, by the names of its fields."""
+
+def recorded_names(robot: Robot, joint_names: Sequence[str]) -> list[str]:
+    """Names in a recording of the solver's joints, in the order of the chain."""
+
+def effort_options(
+    robot: Robot, solver: Solver, option: str | None = None, format: str = ""
+) -> EffortOptions:
+    """What is stated of efforts: by a Robot, the user, the recording's format."""
+
+def solver_parameters(mapping: YamlMap) -> dict[str, Parameter]:
+    """Parameters of a solver as YAML has them; dotted name to value."""
+
+def package_share(package: str) -> Path:
+    """Directory `share/PACKAGE` of an installed package."""
+
+def resolved_path(path: str, directory: Path) -> Path:
+    """File that a path in a configuration names; relative ones begin in the directory."""

@@ -33,6 +33,10 @@ class RobotError(UserError):
     """A run configuration that isn't there or isn't right."""
 
 
+class PackageNotFoundError(UserError):
+    """A package that no sourced workspace has."""
+
+
 class RecordingsError(UserError):
     """Public recordings that can't be fetched, or aren't the published ones."""
 

@@ -18,6 +18,7 @@
 #include "joint_log.hpp"
 #include "metrics.hpp"
 #include "recordings.hpp"
+#include "run_configuration.hpp"
 #include "solver.hpp"
 
 PYBIND11_MODULE(_core, module) {
@@ -29,6 +30,8 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindJointLog(module);
   inverse_dynamics_tools::bindMetrics(module);
   inverse_dynamics_tools::bindEvaluator(module);
+  inverse_dynamics_tools::bindYaml(module);
+  inverse_dynamics_tools::bindRunConfiguration(module);
   inverse_dynamics_tools::bindControl(module);
   inverse_dynamics_tools::explainRefusedArguments(module);
 }

@@ -7,6 +7,7 @@
 #include <exception>
 #include <inverse_dynamics_evaluation/error.hpp>
 #include <inverse_dynamics_evaluation/joint_log.hpp>
+#include <inverse_dynamics_evaluation/package_share.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <string>
 
@@ -43,6 +44,8 @@ void translate(std::exception_ptr thrown) {
     raise("SolverError", e);
   } catch (const inverse_dynamics_evaluation::EvaluationError& e) {
     raise("EvaluationError", e);
+  } catch (const inverse_dynamics_evaluation::PackageNotFoundError& e) {
+    raise("PackageNotFoundError", e);
   } catch (const inverse_dynamics_evaluation::ConfigurationError& e) {
     raise("RobotError", e);
   } catch (const inverse_dynamics_evaluation::RecordingError& e) {

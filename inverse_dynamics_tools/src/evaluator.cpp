@@ -124,7 +124,6 @@ Evaluated evaluate(const py::object& solver, const py::object& log, const std::s
 }
 
 void bindEffort(py::module_& module) {
-  using evaluation::EffortOptions;
   py::class_<EffortCandidate>(module, "EffortCandidate",
                               "A meaning of efforts, and how far it is from the recorded ones.")
       .def(py::init([](std::string meaning, double error, double margin, Index worse_in) {
@@ -150,16 +149,8 @@ void bindEffort(py::module_& module) {
       .def_readonly("reason", &EffortVerdict::reason)
       .def_property_readonly("rivals", &EffortVerdict::rivals)
       .def_property_readonly("summary", &EffortVerdict::summary);
-  py::class_<EffortOptions>(module, "EffortOptions", "What is stated of efforts, and by whom.")
-      .def(py::init([](const std::optional<std::string>& option, const std::string& format,
-                       const std::string& configuration, const std::vector<double>& drive_gains,
-                       const std::string& where, const std::string& gains_from,
-                       const std::string& plugin) {
-             return EffortOptions{option, format,     configuration, drive_gains,
-                                  where,  gains_from, plugin};
-           }),
-           py::kw_only(), py::arg("option"), py::arg("format"), py::arg("configuration"),
-           py::arg("drive_gains"), py::arg("where"), py::arg("gains_from"), py::arg("plugin"));
+  py::class_<evaluation::EffortOptions>(
+      module, "EffortOptions", "What is stated of efforts, and by whom: effort_options().");
   module.def("compare_meanings", &compareMeanings, py::arg("computed"), py::arg("gravity"),
              py::arg("effort"), py::arg("drive_gains") = std::vector<double>(),
              py::arg("mask") = py::none(),
@@ -167,14 +158,6 @@ void bindEffort(py::module_& module) {
              "drive_gains: (n,) or none; mask: (N,) samples that count.");
   module.def("effort_summary", &effortSummary, py::arg("meaning"), py::arg("stated_by"),
              py::arg("drive_gains"), py::arg("verdict"), "What efforts mean, in words.");
-  module.def(
-      "drive_gains",
-      [](const py::object& solver, const std::vector<double>& configured,
-         const std::string& where) {
-        return evaluation::driveGains(configured, where, *solverOf(solver));
-      },
-      py::arg("solver"), py::arg("configured"), py::arg("where"),
-      "The run configuration's drive gains, else the solver's, else none.");
 }
 
 }  // namespace

@@ -115,7 +115,10 @@ HOSTILE = {
     "a list as a key": (b"[a, b]: 1\n", ":1: expected a text as a key, got a list of 2"),
     "a mapping as a key": (b"? {a: 1}\n: 1\n", ":1: expected a text as a key, got keys with"),
     "a merge": (b"<<: {a: 1}\n", ":1: <<: unknown key"),
-    "two documents": (b"a: 1\n---\nb: 2\n", ":2: isn't YAML: but found another document"),
+    "two documents": (
+        b"a: 1\n---\nb: 2\n",
+        ":2: isn't YAML: expected one document, got another one",
+    ),
     "a NUL": (b"a: 1\nb: \0\n", ":2: isn't YAML: the character '\\x00' isn't allowed"),
     "a control character": (b"a: \x1b[31m\n", ":1: isn't YAML: the character '\\x1b' isn't"),
     "an escape beyond Unicode": (
@@ -130,18 +133,18 @@ HOSTILE = {
     "a surrogate in a key": (b'"\\udc00": 1\n', ":1: isn't YAML: an escape stands for NUL"),
     "an escaped NUL": (
         b'a:\n  "~nouser\n  \\0/x"\n',
-        ":3: isn't YAML: an escape stands for NUL, a",
+        ":2: isn't YAML: an escape stands for NUL, a",
     ),
     "a version of 5000 digits": (
         b"%YAML 1." + b"1" * 5000 + b"\n---\na: 1\n",
-        ":1: isn't YAML: expected a version of at most 9 digits",
+        ":1: isn't YAML: bad YAML version: 1.111",
     ),
     "UTF-16": ("a: 1\n".encode("utf-16"), ":1: isn't text in UTF-8; expected YAML; save it"),
     "UTF-16 without a mark": ("a: 1\n".encode("utf-16-le"), ":1: isn't YAML: the character"),
     "Latin-1": (b"a: 1\nb: caf\xe9\n", ":2: isn't text in UTF-8; expected YAML"),
     "a picture": (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", ":1: isn't text in UTF-8; expected YAML"),
     "noise": (bytes(range(256)) * 100, ":2: isn't text in UTF-8"),
-    "a tab": (b"a:\n\tb: 1\n", ":2: isn't YAML: found character '\\t' that cannot start"),
+    "a tab": (b"a:\n\tb: 1\n", ":2: isn't YAML: a tab is before the text; indent with spaces"),
     "an open bracket": (b"a: [1, 2\n", ":2: isn't YAML: expected ',' or ']'"),
     "a text": (b"hello", ":1: expected keys with values, got a text"),
     "a long text": (b"x" * 1_000_000, ":1: expected keys with values, got a text"),
@@ -149,7 +152,7 @@ HOSTILE = {
     "a byte order mark alone": (b"\xef\xbb\xbf", ": is empty; expected keys with values"),
     "too long a file": (b"#" * (5 * 2**20), ": expected YAML of at most 4 MiB, got a longer file"),
     "many values": (b"a: [" + b"1," * 500_000 + b"]", ":1: isn't YAML: expected at most 200000 va"),
-    "a directive": (b"%YAML 3.0\n---\na: 1\n", ":1: isn't YAML: found incompatible YAML document"),
+    "a directive": (b"%YAML 3.0\n---\na: 1\n", ":1: isn't YAML: expected version 1"),
 }
 
 

@@ -4,40 +4,36 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
+from typing import TYPE_CHECKING
 
-from inverse_dynamics.errors import UserError
+from inverse_dynamics import _core
+from inverse_dynamics.errors import PackageNotFoundError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["DATA_PACKAGE", "PackageNotFoundError", "package_share", "path_bytes", "resolve"]
 
 DATA_PACKAGE = "inverse_dynamics_robots"  # run configurations, and where recordings are
 
-_SOURCE_IT = "run `source install/local_setup.bash` in the workspace first"
-
-
-class PackageNotFoundError(UserError):
-    """A package that no sourced workspace has."""
-
 
 def package_share(package: str) -> Path:
-    """Directory `share/PACKAGE` of an installed package."""
-    prefixes = [p for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
-    for prefix in prefixes:
-        if (Path(prefix) / "share/ament_index/resource_index/packages" / package).is_file():
-            return Path(prefix) / "share" / package
-    if not prefixes:
-        raise PackageNotFoundError(f"package {package}: no workspace is sourced; {_SOURCE_IT}")
-    raise PackageNotFoundError(
-        f"package {package}: not in any of the sourced workspaces ({', '.join(prefixes)}); build "
-        f"it, then {_SOURCE_IT}"
-    )
+    """Directory `share/PACKAGE` of an installed package. Raises PackageNotFoundError."""
+    return _core.package_share(package)
 
 
 def resolve(path: str, base: Path) -> Path:
     """File that a path in a configuration names.
 
     `package://PACKAGE/FILE`: below the share directory of an installed package; absolute; else
-    relative to the directory `base` of the configuration.
+    relative to the directory `base` of the configuration. Raises PackageNotFoundError, RobotError.
     """
-    if path.startswith("package://"):
-        package, _, file = path.removeprefix("package://").partition("/")
-        return package_share(package) / file
-    return base / Path(path).expanduser()
+    return _core.resolved_path(path, base)
+
+
+def path_bytes(path: Path | str) -> bytes:
+    """A path as C++ takes it: os.fsencode(), but for what no path can be."""
+    try:
+        return os.fsencode(path)
+    except UnicodeEncodeError:
+        return str(path).encode("utf-8", "backslashreplace")

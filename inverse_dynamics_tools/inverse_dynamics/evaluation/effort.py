@@ -13,10 +13,8 @@ from typing import TYPE_CHECKING
 from inverse_dynamics.evaluation.effort_verdict import Verdict, verdict_of
 
 if TYPE_CHECKING:
-    from inverse_dynamics._core import EffortOptions, Evaluated, Solver
+    from inverse_dynamics._core import Evaluated
     from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.data.joint_log import JointLog
-    from inverse_dynamics.robot.robots import Robot
 
 # Who stated the meaning, in words.
 OPTION = "as told"
@@ -51,27 +49,3 @@ def effort_of(found: Evaluated) -> Effort:
     """What the extension module has decided."""
     verdict = verdict_of(found.verdict) if found.verdict else None
     return Effort(found.meaning, found.stated_by, tuple(found.drive_gains), verdict)
-
-
-def drive_gains(robot: Robot, solver: Solver) -> tuple[float, ...]:
-    """The run configuration's drive gains, else the solver's, else none. Raises RobotError."""
-    from inverse_dynamics import _core
-
-    return tuple(_core.drive_gains(solver, list(robot.drive_gains), f"{robot.file}: drive_gains"))
-
-
-def effort_options(
-    option: str | None, log: JointLog, robot: Robot, gains: tuple[float, ...]
-) -> EffortOptions:
-    """What is stated of efforts. option: what the user says, or None. gains: see drive_gains()."""
-    from inverse_dynamics import _core
-
-    return _core.EffortOptions(
-        option=option,
-        format=log.effort_is,
-        configuration=robot.effort,
-        drive_gains=list(gains),
-        where=f"robot {robot.name}",
-        gains_from=f"{robot.file}",
-        plugin=robot.plugin,
-    )

@@ -16,14 +16,13 @@ from typing import TYPE_CHECKING
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data.recordings import read_recording
-from inverse_dynamics.errors import RobotError
 from inverse_dynamics.evaluation.accelerations import (
     Accelerations,
     Samples,
     accelerations_of,
     samples_of,
 )
-from inverse_dynamics.evaluation.effort import Effort, drive_gains, effort_of, effort_options
+from inverse_dynamics.evaluation.effort import Effort, effort_of
 from inverse_dynamics.robot.descriptions import joint_units, read_description
 from inverse_dynamics.robot.robots import Robot, load_robot, with_changes
 from inverse_dynamics.robot.solvers import description_notes, open_solver
@@ -140,8 +139,6 @@ def evaluate(
         accelerations=accelerations,
         cutoff=cutoff,
     )
-    if accelerations is not None and cutoff is None:
-        robot = replace(robot, cutoff=None)  # the configuration's belongs to its own method
     bag = Path(bag)
 
     start = time.perf_counter()
@@ -167,11 +164,13 @@ class Arm:
     """What a run configuration says of the arm, before anything is read. Raises UserError."""
 
     def __init__(self, robot: Robot) -> None:
+        from inverse_dynamics import _core
+
         description = "" if robot.urdf is None else read_description(robot.urdf)
         self.solver = open_solver(robot, description)
-        self.gains = drive_gains(robot, self.solver)
         self.joint_names = tuple(self.solver.joint_names)
-        self.recorded_names = names_in_recording(robot, self.joint_names)
+        self.recorded_names = tuple(_core.recorded_names(robot, list(self.joint_names)))
+        _core.effort_options(robot, self.solver)  # drive gains that don't fit are refused
         self.units = joint_units(robot.urdf, description, self.joint_names)
 
 
@@ -192,7 +191,7 @@ def _compare(
         method=robot.accelerations,
         cutoff=robot.cutoff,
         without_rules=list(without_rules),
-        effort=effort_options(effort_is, log, robot, arm.gains),
+        effort=_core.effort_options(robot, arm.solver, effort_is, log.effort_is),
         recording=f"{bag}",
         topic=log.topic,
         units=list(arm.units),
@@ -236,20 +235,3 @@ def _joint_errors(
         JointError(joint, unit, m.mae, m.rmse, m.nrmse, m.bias, m.r2, m.max_abs)
         for joint, unit, m in zip(joint_names, units, metrics, strict=True)
     )
-
-
-def names_in_recording(robot: Robot, joint_names: tuple[str, ...]) -> tuple[str, ...]:
-    """Names in the recording of the solver's joints, in the order of the chain."""
-    if not robot.joints:
-        return joint_names
-    if len(robot.joints) != len(joint_names):
-        raise RobotError(
-            f"{robot.file}: joints: expected {len(joint_names)} names, one per joint of the chain "
-            f"({', '.join(joint_names)}), got {len(robot.joints)} ({', '.join(robot.joints)})"
-        )
-    if set(robot.joints) == set(joint_names) and robot.joints != joint_names:
-        raise RobotError(
-            f"{robot.file}: joints: expected the order of the chain, {', '.join(joint_names)}, got "
-            f"{', '.join(robot.joints)}; the recording's order doesn't matter, so leave --joints out"
-        )
-    return robot.joints

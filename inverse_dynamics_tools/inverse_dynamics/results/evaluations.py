@@ -214,9 +214,7 @@ def _summary(evaluation: Evaluation) -> dict[str, Any]:
         "bag": str(evaluation.bag),
         "samples": len(log),
         "duration": float(evaluation.time[-1]),
-        "robot": {
-            f.name: _plain(getattr(robot, f.name)) for f in fields(robot) if f.name != "simulation"
-        },
+        "robot": {f.name: _plain(getattr(robot, f.name)) for f in fields(robot)},
         "joint_names": list(evaluation.joint_names),
         "units": list(evaluation.units),
         "accelerations": asdict(evaluation.accelerations),

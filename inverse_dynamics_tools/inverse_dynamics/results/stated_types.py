@@ -26,7 +26,6 @@ _NAMES: dict[str, Any] = {
     "Floats": Literal[_Array("f")],
     "Integers": Literal[_Array("i")],
     "Mask": Literal[_Array("b")],
-    "Mapping": object,
     "Parameter": object,
     "Clock": joint_log.Clock,
     "Storage": joint_log.Storage,

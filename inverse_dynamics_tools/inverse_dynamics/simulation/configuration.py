@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.ament import resolve
+from inverse_dynamics.base.located_yaml import read_mapping
+from inverse_dynamics.errors import RobotError
 from inverse_dynamics.simulation.controller import Gains
 from inverse_dynamics.simulation.physics import RATES
 
@@ -56,9 +58,9 @@ class Wishes:
     @classmethod
     def of(cls, robot: Robot, chain: UrdfChain) -> Wishes:
         """Reads them. Raises RobotError with file, line and key."""
-        if robot.simulation is None:
+        mapping = _simulation(robot)
+        if mapping is None:
             return cls(None, DEFAULT_RATE, GainWishes({}))
-        mapping = robot.simulation
         trajectory = mapping.optional("trajectory")
         file = None if trajectory is None else resolve(trajectory.text(), robot.file.parent)
         if trajectory is not None and file is not None and not file.is_file():
@@ -70,6 +72,18 @@ class Wishes:
         wishes = GainWishes({} if gains is None else _gains(gains.mapping(), chain))
         mapping.reject_others()
         return cls(file, DEFAULT_RATE if rate is None else rate.integer(), wishes)
+
+
+def states_simulation(robot: Robot) -> bool:
+    """Whether the run configuration says anything of its simulation."""
+    return _simulation(robot) is not None
+
+
+def _simulation(robot: Robot) -> Mapping | None:
+    if not robot.file.is_file():  # a robot that a program made
+        return None
+    value = read_mapping(robot.file, RobotError).optional("simulation")
+    return None if value is None else value.mapping()
 
 
 def _gains(mapping: Mapping, chain: UrdfChain) -> dict[tuple[int, str], float]:

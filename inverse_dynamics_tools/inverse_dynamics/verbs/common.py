@@ -7,7 +7,6 @@ import argparse
 import math
 import re
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.decimals import decimal
@@ -100,8 +99,8 @@ def process_count(text: str) -> int:
 
 def parameter(text: str) -> tuple[str, Parameter]:
     """`NAME=VALUE` of an option; the value as it would stand in a run configuration."""
+    from inverse_dynamics import _core
     from inverse_dynamics.base.located_yaml import parse_mapping
-    from inverse_dynamics.robot.solver_parameters import solver_parameters
 
     name, _, value = text.partition("=")
     if name == "model":
@@ -114,7 +113,7 @@ def parameter(text: str) -> tuple[str, Parameter]:
         )
     found, why = {}, ""
     try:
-        found = solver_parameters(parse_mapping(f"{name}: {value}", Path("option"), UserError))
+        found = _core.solver_parameters(parse_mapping(f"{name}: {value}", "option", UserError))
     except UserError as error:
         why = f" ({re.sub(r'^option(:[0-9]+)?: ', '', str(error))})"
     if list(found) != [name]:

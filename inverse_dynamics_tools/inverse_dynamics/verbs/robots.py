@@ -108,6 +108,7 @@ def _checked(robot: Robot) -> tuple[Arm, list[str]]:
     from inverse_dynamics.base.wording import did_you_mean
     from inverse_dynamics.evaluation.evaluation import Arm
     from inverse_dynamics.robot.descriptions import effort_limits, read_description
+    from inverse_dynamics.simulation.configuration import Wishes, states_simulation
 
     arm = Arm(robot)
     notes = list(arm.solver.warnings)
@@ -121,8 +122,7 @@ def _checked(robot: Robot) -> tuple[Arm, list[str]]:
     if robot.urdf is not None:
         description = read_description(robot.urdf)
         effort_limits(robot.urdf, description, arm.joint_names)
-        if robot.simulation is not None:
-            from inverse_dynamics.simulation.configuration import Wishes
+        if states_simulation(robot):
             from inverse_dynamics.simulation.urdf import chain_from_urdf
 
             Wishes.of(robot, chain_from_urdf(description, robot.root, robot.tip))

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <chain_dynamics/located_yaml.hpp>
+#include <optional>
+#include <string>
+
+#include "initialized.hpp"
+#include "run_configuration.hpp"
+
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(chain_dynamics::LocatedValue)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(chain_dynamics::LocatedMap)
+
+namespace inverse_dynamics_tools {
+namespace {
+
+namespace py = pybind11;
+using chain_dynamics::LocatedMap;
+using chain_dynamics::LocatedValue;
+
+/// Raises a Python exception of that class.
+LocatedValue::Throw raising(const py::type& error) {
+  return [error](const std::string& text) {
+    // Paths may hold bytes that aren't UTF-8.
+    const auto decoded = py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(
+        text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
+    if (decoded) PyErr_SetObject(error.ptr(), decoded.ptr());
+    throw py::error_already_set();
+  };
+}
+
+}  // namespace
+
+void bindYaml(py::module_& module) {
+  py::class_<LocatedValue>(module, "YamlValue", "A value of a YAML file and where it stands.")
+      .def_property_readonly("where", &LocatedValue::where, "`file:line: key`, as errors begin.")
+      .def_property_readonly("is_list", &LocatedValue::isList)
+      .def_property_readonly("is_mapping", &LocatedValue::isMap)
+      .def(
+          "fail",
+          [](const LocatedValue& value, const std::string& expected, const std::string& remedy) {
+            value.fail(expected, remedy);
+          },
+          py::arg("expected"), py::arg("remedy") = "",
+          "Raise the error that says what was expected here.")
+      .def("scalar", &LocatedValue::scalar, "A text, a finite number, an integer, true or false.")
+      .def("text", &LocatedValue::text, py::arg("one_of") = std::vector<std::string>(),
+           "A text; one of these, if any are given.")
+      .def("number", &LocatedValue::number, "A finite number.")
+      .def("integer", &LocatedValue::integer, "An integer of 64 bits.")
+      .def("truth", &LocatedValue::truth, "True or false.")
+      .def("entries", &LocatedValue::entries, py::arg("length") = py::none(),
+           "A list; of this length, if one is given.")
+      .def("mapping", &LocatedValue::map, "Keys with values.");
+  py::class_<LocatedMap>(module, "YamlMap", "Keys with values, and which have been asked for.")
+      .def("required", &LocatedMap::required, py::arg("key"),
+           "The value of a key that must be there.")
+      .def("optional", &LocatedMap::optional, py::arg("key"),
+           "The value of a key, or None if it is absent or null.")
+      .def("reject_others", &LocatedMap::rejectOthers,
+           "Raise the error for a key that nobody has asked for.");
+  module.def(
+      "read_yaml",
+      [](const std::string& path, const py::type& error) {
+        return LocatedValue::ofFile(path, raising(error));
+      },
+      py::arg("path"), py::arg("error"),
+      "The value that a YAML file is. error: what is raised, now and by the value.");
+  module.def(
+      "parse_yaml",
+      [](const std::string& text, const std::string& file, const py::type& error) {
+        return LocatedValue::ofText(text, file, raising(error));
+      },
+      py::arg("text"), py::arg("file"), py::arg("error"), "The value that a text of YAML is.");
+}
+
+}  // namespace inverse_dynamics_tools
