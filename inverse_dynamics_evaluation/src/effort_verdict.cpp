@@ -109,12 +109,13 @@ void EffortSums::add(const ConstMatrix& computed, const ConstMatrix& gravity,
                      const ConstMatrix& effort) {
   const Eigen::Map<const ArrayXd> gains(drive_gains_.data(),
                                         static_cast<Index>(drive_gains_.size()));
+  ArrayXd prediction(effort.rows());
   for (Index k = 0; k < effort.cols(); ++k, ++added_) {
     const auto next = std::upper_bound(starts_.begin(), starts_.end(), added_);
     const Index stretch = std::distance(starts_.begin(), next) - 1;
     const auto recorded = effort.col(k).array();
     for (Meaning& meaning : meanings_) {
-      ArrayXd prediction = computed.col(k).array();
+      prediction = computed.col(k).array();
       if (meaning.name == kTorqueWithoutGravity) {
         prediction -= gravity.col(k).array();
       } else if (meaning.name == kCurrent) {
@@ -126,8 +127,8 @@ void EffortSums::add(const ConstMatrix& computed, const ConstMatrix& gravity,
     }
     effort_ += recorded.square();
     gravity_ += gravity.col(k).array().square();
-    least_ = least_.min(recorded).eval();
-    greatest_ = greatest_.max(recorded).eval();
+    least_ = least_.min(recorded);
+    greatest_ = greatest_.max(recorded);
   }
 }
 

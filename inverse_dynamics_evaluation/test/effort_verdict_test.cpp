@@ -10,6 +10,7 @@
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/effort.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
+#include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
 
 namespace inverse_dynamics_evaluation {
 namespace {
@@ -38,7 +39,17 @@ struct Arm {
   MatrixXd gravity, computed;
 };
 
-TEST(EffortVerdict, HasTheFiguresWorkedByHand) {
+TEST(EffortSums, AllocateNothingForEachSample) {
+  namespace conformance = inverse_dynamics_solver::conformance;
+  if (!conformance::kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted here";
+  const Arm arm;
+  EffortSums sums(arm.computed.cols(), 2, {1.0, 2.0});
+  const conformance::AllocationGuard guard;
+  sums.add(arm.computed, arm.gravity, arm.computed);
+  EXPECT_LE(guard.count(), 1);
+}
+
+TEST(EffortVerdict, HasTheValuesWorkedByHand) {
   MatrixXd computed = MatrixXd::Zero(2, 200);
   computed.row(0) = MatrixXd::Constant(1, 200, -4);
   for (Index k = 0; k < 200; k += 2) {
