@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "bytes.hpp"
+#include "crc32.hpp"
 #include "mcap_format.hpp"
 #include "output_file.hpp"
 #include "storage_writer.hpp"
@@ -121,8 +122,8 @@ void McapWriter::writeChunk() {
   Bytes head;
   chunk_times_.put(head);
   putNumber(head, std::uint64_t{chunk_.size()});
-  putNumber(head, std::uint32_t{0});  // checksum: none
-  putString(head, "");                // compression: none
+  putNumber(head, crc32(chunk_.data(), chunk_.size()));
+  putString(head, "");  // compression: none
   putNumber(head, std::uint64_t{chunk_.size()});
   Bytes record_head = {kMcapChunk};
   putNumber(record_head, std::uint64_t{head.size() + chunk_.size()});

@@ -55,6 +55,14 @@ void replace(const fs::path& file, const std::string& pattern, const std::string
   put(file, after);
 }
 
+// The content of an MCAP file whose first chunk may be changed.
+std::string withoutChecksum(std::string content) {
+  std::uint64_t header = 0;
+  std::memcpy(&header, &content[sizeof kMcapMagic + 1], 8);
+  const std::size_t chunk = sizeof kMcapMagic + kMcapRecordHead + header;
+  return content.replace(chunk + kMcapRecordHead + 24, 4, 4, '\0');
+}
+
 // What a test writes goes with it.
 class RecordingTest : public ::testing::TestWithParam<Storage> {
  protected:
@@ -214,6 +222,7 @@ TEST_P(RecordingTest, ReadsFilesOfASplitRecordingOneAfterAnother) {
 TEST_P(RecordingTest, NamesTheMessageThatCantBeDecoded) {
   const std::string bag = write("bag", evenly(1));
   std::string content = contentOf(file("bag"));
+  if (GetParam() == Storage::kMcap) content = withoutChecksum(content);
   content[content.find("joint_1") - 4] = '\x7f';  // the length of the name
   put(file("bag"), content);
   EXPECT_THAT(errorOfReading(bag),
@@ -417,6 +426,16 @@ TEST_P(McapTest, WithChunksOfOtherSizesThanTheIndexSaysIsRefused) {
   changeSummary(content, kMcapChunkIndex, [](char* record) { --record[kMcapRecordHead + 24]; });
   put(file("bag"), content);
   EXPECT_THAT(errorOfReading(file("bag")), HasSubstr("a chunk isn't where the index says"));
+}
+
+TEST_P(McapTest, WithANumberThatWasDamagedIsRefused) {
+  write("bag", evenly(10));
+  std::string content = contentOf(file("bag"));
+  content[content.find("joint_2") + 30] ^= 1;
+  put(file("bag"), content);
+  EXPECT_THAT(errorOfReading(file("bag")), HasSubstr("a chunk's checksum doesn't fit its content"));
+  put(file("bag"), withoutChecksum(content));
+  EXPECT_EQ(errorOfReading(file("bag")), "no error");
 }
 
 TEST_P(McapTest, GivesDefinitionsOfMessagesOnly) {

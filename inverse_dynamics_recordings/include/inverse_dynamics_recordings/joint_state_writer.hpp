@@ -8,7 +8,7 @@
 ///     writer.finish();
 ///
 /// The format is rosbag2's current one: metadata.yaml of version 9, messages with an index by time,
-/// definitions of the type. MCAP files hold chunks of about 1 MB that aren't compressed.
+/// definitions of the type. MCAP files hold chunks of about 1 MB with checksums, not compressed.
 ///
 /// Whatever can't be written is an inverse_dynamics_evaluation::RecordingError. A recording is
 /// complete after finish(); before, an error or the end of the writer removes it.
