@@ -54,7 +54,7 @@ const Vocabulary kMimic{{}, {"joint", "multiplier", "offset"}};
 const Vocabulary kDynamics{{}, {"damping", "friction"}};
 
 // ---------------------------------------------------------------------------------------------
-// Figures beyond what a robot can be
+// Numbers beyond what a robot can be
 
 // At 1e6 m a double is exact to 1e-10 m, and 1 m of lever arm still has ten digits.
 constexpr double kFarthest = 1e6;

@@ -49,5 +49,5 @@ int main() {
     state.qd[0] += acceleration * period;
     state.q[0] += state.qd[0] * period;
   }
-  std::cout << "stopped at " << state.q[0] << " rad, " << reference.q[0] << " wished\n";
+  std::cout << "stopped at " << state.q[0] << " rad, " << reference.q[0] << " desired\n";
 }

@@ -19,10 +19,10 @@ namespace {
 using inverse_dynamics_solver::InverseDynamicsSolver;
 
 // Who stated a meaning.
-constexpr const char* kOption = "as told";
+constexpr const char* kOption = "as given";
 constexpr const char* kFormat = "as the recording's format says";
 constexpr const char* kData = "found from the data";
-constexpr const char* kNobody = "as nothing is stated";
+constexpr const char* kNothingStated = "as nothing is stated";
 
 bool isMeaning(const std::string& word) {
   return word == kTorque || word == kCurrent || word == kTorqueWithoutGravity;
@@ -132,7 +132,7 @@ Effort effortOfData(EffortVerdict verdict, const EffortOptions& options) {
     effort.meaning = options.configuration;
     effort.stated_by = asConfigured(options);
   } else {
-    effort.stated_by = kNobody;
+    effort.stated_by = kNothingStated;
   }
   effort.verdict = std::move(verdict);
   return withGains(std::move(effort), options);

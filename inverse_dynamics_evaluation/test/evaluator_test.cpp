@@ -151,7 +151,7 @@ TEST(Evaluate, TakesCurrentsTimesDriveGains) {
   const Evaluation evaluation = evaluate(log, TwoJointSolver(), currents, series.take());
   EXPECT_NEAR(evaluation.errors[0].bias, -0.25, kRounding);
   EXPECT_LT((series.measured - torques).cwiseAbs().maxCoeff(), kRounding);
-  EXPECT_EQ(evaluation.effort.summary(), "current, as told, with drive gains 10 5 N m/A");
+  EXPECT_EQ(evaluation.effort.summary(), "current, as given, with drive gains 10 5 N m/A");
 }
 
 TEST(Evaluate, LeavesGravityOutOfBothWhereEffortsAreWithoutIt) {
@@ -211,10 +211,10 @@ TEST(Evaluate, RefusesWhatCannotBeEvaluated) {
   another_robots.effort.option = kCurrent;
   EXPECT_THROW(evaluate(recorded(200), solver, another_robots), EvaluationError);
   EXPECT_EQ(errorOf<EvaluationError>([&] { evaluate(log, solver, options("force")); }),
-            "effort, as told: expected one of torque, current, torque_without_gravity, auto, got "
+            "effort, as given: expected one of torque, current, torque_without_gravity, auto, got "
             "'force'");
   EXPECT_THAT(errorOf<ConfigurationError>([&] { evaluate(log, solver, options(kCurrent)); }),
-              HasSubstr("robot two_joints: effort means current, as told: expected drive gains "
+              HasSubstr("robot two_joints: effort means current, as given: expected drive gains "
                         "[N m/A], got none from two_joints.yaml nor from package/TwoJointSolver"));
 }
 

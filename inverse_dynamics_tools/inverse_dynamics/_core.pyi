@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Types of the extension module: solvers, samples of recordings, accelerations, metrics, control laws.
 
-Arrays are (n,), one state, or (N, n), one state a row; results have the same shape.
+Arrays are (n,), one state, or (N, n), one state per row; results have the same shape.
 """
 
 from collections.abc import Sequence

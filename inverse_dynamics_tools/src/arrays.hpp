@@ -30,7 +30,7 @@ using Map = Eigen::Map<Eigen::MatrixXd>;
 inline ConstMap states(const Array& array, const char* name) {
   if (array.ndim() != 1 && array.ndim() != 2) {
     throw pybind11::value_error(std::string(name) +
-                                ": expected an array (n,) or (N, n), one state a row, got " +
+                                ": expected an array (n,) or (N, n), one state per row, got " +
                                 std::to_string(array.ndim()) + " dimensions");
   }
   const auto n = array.shape(array.ndim() - 1);
@@ -48,7 +48,7 @@ inline Map columns(Array& array) {
   return {array.mutable_data(), n, array.ndim() == 1 ? 1 : array.shape(0)};
 }
 
-/// A matrix, one state a column, as an array, one state a row; its memory changes hands.
+/// A matrix, one state per column, as an array, one state per row; its memory changes hands.
 inline pybind11::array rowsOf(chain_dynamics::OwnedMatrix matrix) {
   using chain_dynamics::OwnedMatrix;
   auto* owned = new OwnedMatrix(std::move(matrix));

@@ -3,9 +3,9 @@
 /// The extension module `inverse_dynamics._core`: solvers by name, recordings and their samples,
 /// accelerations, metrics and control laws, on numpy arrays.
 ///
-/// A batch is an (N, n) array, one state a row. Solvers compute from and into doubles where they
+/// A batch is an (N, n) array, one state per row. Solvers compute from and into doubles where they
 /// are, whatever their layout; another type is copied once on the way in. To the other functions an
-/// array row after row is, byte for byte, the n x N matrix of Eigen with one state a column, and
+/// array row after row is, byte for byte, the n x N matrix of Eigen with one state per column, and
 /// anything else is copied once on the way in. All computing releases the GIL.
 
 #include <pybind11/pybind11.h>

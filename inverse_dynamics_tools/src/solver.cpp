@@ -169,7 +169,7 @@ void bindSolver(py::module_& module) {
   py::class_<Solver>(
       module, "Solver",
       "An inverse dynamics solver, made by name and ready to compute.\n\n"
-      "Arrays are (n,), one state, or (N, n), one state a row; results have the\n"
+      "Arrays are (n,), one state, or (N, n), one state per row; results have the\n"
       "same shape. rad, rad/s, rad/s^2, N m (prismatic m, m/s, m/s^2, N); joints\n"
       "in the order of joint_names. out: an array of doubles that takes the result.\n"
       "Any layout, without copies. Threads: safe; the GIL is released. Pickled, it is\n"

@@ -124,9 +124,9 @@ void SolverCall::requireShape(const char* name, const py::array& array) const {
     std::string remedy = "the joints are";
     for (const std::string& joint : joint_names_) remedy += " " + joint;
     if (shape.size() == 2 && shape.front() == n_) remedy = "states are rows: transpose it (.T)";
-    throw ids::SizeMismatchException(ids::errorText(place(name), "wrong shape",
-                                                    "(" + n + ",) or (N, " + n + "), a state a row",
-                                                    text(shape), remedy));
+    throw ids::SizeMismatchException(
+        ids::errorText(place(name), "wrong shape",
+                       "(" + n + ",) or (N, " + n + "), one state per row", text(shape), remedy));
   }
   if (!inputs_.empty() && shape != shape_) {
     throw ids::SizeMismatchException(ids::errorText(

@@ -286,7 +286,7 @@ def test_long_calls_are_in_units_that_can_be_read():
 
 def test_a_build_without_optimisation_is_told():
     result = measurement(document(entry("ur10/torques/ours", 1.0), optimized="no"), "here")
-    assert "**Compiled without optimisation: these figures say nothing.**" in page(result)
+    assert "**Compiled without optimisation: these times say nothing.**" in page(result)
 
 
 def test_libraries_that_are_missing_are_told():

@@ -43,7 +43,7 @@ def test_other_recordings_are_refused(evaluation):
         (
             Effort(stated_by=FORMAT),
             currents(2.0, 3.0, 4.0),
-            "got 'torque, as the recording's format says' and 'current, as told, with drive gains 2 "
+            "got 'torque, as the recording's format says' and 'current, as given, with drive gains 2 "
             "3 4 N m/A': measured torques aren't the same then; evaluate again with the same "
             "--effort-is",
         ),

@@ -61,7 +61,7 @@ def test_measured_torques_are_drive_gains_times_currents_and_currents_stay(bags,
     assert "with drive gains 13 14 11 10 9 8 N m/A" in result.effort.summary
     torque = evaluate(bags / "torque", robot)
     np.testing.assert_allclose(result.measured, torque.measured, rtol=1e-14)
-    assert result.effort.summary.startswith("current, as told")
+    assert result.effort.summary.startswith("current, as given")
 
 
 def test_without_gravity_efforts_stay_and_gravity_leaves_the_computed_torques(bags, robot, solver):
@@ -138,7 +138,7 @@ def test_the_format_goes_before_the_configuration_and_the_option_before_both(bag
     told = evaluate(bags / "torque", robot, effort_is="torque")
     assert told.effort.meaning == "torque"
     assert (
-        "effort is taken as torque, as told, where the recording's format says current"
+        "effort is taken as torque, as given, where the recording's format says current"
         in told.notes
     )
 
@@ -206,10 +206,10 @@ def test_drive_gains_that_make_no_sense_are_an_error_whatever_efforts_mean(
 
 def test_an_unknown_meaning_is_an_error(bags, robot):
     expected = (
-        r"effort, as told: expected one of torque, current, torque_without_gravity, auto, got"
+        r"effort, as given: expected one of torque, current, torque_without_gravity, auto, got"
     )
     with pytest.raises(EvaluationError, match=expected + " 'force'"):
         evaluate(bags / "torque", robot, effort_is="force")
-    expected = expected.replace("as told", "as the run configuration says")
+    expected = expected.replace("as given", "as the run configuration says")
     with pytest.raises(EvaluationError, match=expected + " 'newton'"):
         evaluate(bags / "torque", replace(robot, effort="newton"))

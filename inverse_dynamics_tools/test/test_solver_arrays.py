@@ -278,7 +278,7 @@ def test_other_threads_run_while_a_solver_computes(ur10, quantity):
 )
 def test_wrong_shapes_are_errors(ur10, q, message):
     expected = (
-        r"gravity_vector: argument q: wrong shape: expected \(6,\) or \(N, 6\), a state a row"
+        r"gravity_vector: argument q: wrong shape: expected \(6,\) or \(N, 6\), one state per row"
     )
     with pytest.raises(errors.SizeMismatchError, match=f"^{expected}, {message}"):
         ur10.gravity_vector(q)

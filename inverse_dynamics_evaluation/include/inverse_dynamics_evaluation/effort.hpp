@@ -5,7 +5,7 @@
 ///
 ///     Effort effort = statedEffort(options);
 ///     if (effort.meaning == kAutomatic) effort = effortOfData(sums.verdict(), options);
-///     std::cout << effort.summary() << "\n";   // current, as told, with drive gains 13 14 N m/A
+///     std::cout << effort.summary() << "\n";   // current, as given, with drive gains 13 14 N m/A
 ///
 /// The meaning is stated by the user, else by the recording's format, else by the run configuration;
 /// `auto` has the data tell: see effort_verdict.hpp.

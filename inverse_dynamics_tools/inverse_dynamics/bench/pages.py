@@ -31,7 +31,7 @@ def page(result: Measurement) -> str:
 
 
 def updated(text: str, result: Measurement, where: str) -> str:
-    """A page with its generated parts made anew. `where` begins the text of an OutputError."""
+    """A page with its generated parts updated. `where` begins the text of an OutputError."""
     _check_parts(text, where)
     return _MARKED.sub(
         lambda match: (
@@ -42,13 +42,13 @@ def updated(text: str, result: Measurement, where: str) -> str:
 
 
 def check_pages(files: Iterable[Path]) -> None:
-    """Raise OutputError unless all of them are pages that update_pages() can make anew."""
+    """Raise OutputError unless all of them are pages that update_pages() can update."""
     for file in files:
         _check_parts(_read(file), str(file))
 
 
 def update_pages(files: Sequence[Path], result: Measurement) -> None:
-    """Write pages with their generated parts made anew: all of them, or none. Raises OutputError."""
+    """Write pages with their generated parts updated: all of them, or none. Raises OutputError."""
     texts = {file: updated(_read(file), result, str(file)) for file in files}
     for file, text in texts.items():
         write_text_whole(file, text)
@@ -60,7 +60,7 @@ def _read(file: Path) -> str:
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
         raise OutputError(
-            f"{file}: can't be read ({reason}); expected a page of Markdown with parts to make anew"
+            f"{file}: can't be read ({reason}); expected a page of Markdown with generated parts"
         ) from error
 
 
@@ -105,7 +105,7 @@ def machine(result: Measurement) -> str:
         lines.append(f"Not found when the benchmarks were built: {', '.join(missing)}.")
     if context.get("optimized") == "no":
         lines.append(
-            "**Compiled without optimisation: these figures say nothing.** Build with "
+            "**Compiled without optimisation: these times say nothing.** Build with "
             "`-DCMAKE_BUILD_TYPE=Release`."
         )
     return "\n".join(lines) + "\n"
@@ -181,7 +181,7 @@ def memory(result: Measurement) -> str:
         ["sum of the same arrays", _time(result.time("ur10", "torques_memory", "sum"))],
         ["131072 states", _time(result.time("ur10", "torques_many", "ours"))],
         ["131072 states, two threads", _time(result.time("ur10", "torques_many", "two_threads"))],
-        ["1024 states, a state a row", _time(result.time("ur10", "torques_rows", "ours"))],
+        ["1024 states, one state per row", _time(result.time("ur10", "torques_rows", "ours"))],
     ]
     return _table(["UR10, torques", "ns"], [row for row in rows if row[1]], 1)
 
@@ -237,7 +237,7 @@ def latency(result: Measurement) -> str:
 
 
 def _table(heads: Sequence[str], rows: Iterable[Sequence[str]], words: int) -> str:
-    """Markdown; the first `words` columns are text, the others figures. Empty without rows."""
+    """Markdown; the first `words` columns are text, the others numbers. Empty without rows."""
     lines = ["| " + " | ".join(row) + " |" for row in rows]
     rule = "|" + "".join("---|" if i < words else "--:|" for i in range(len(heads)))
     return "\n".join(["| " + " | ".join(heads) + " |", rule, *lines]) + "\n" if lines else ""

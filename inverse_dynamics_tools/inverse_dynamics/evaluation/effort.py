@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
 
 # Who stated the meaning, in words.
-OPTION = "as told"
+OPTION = "as given"
 FORMAT = "as the recording's format says"
 CONFIGURATION = "as the run configuration says"
 DATA = "found from the data"

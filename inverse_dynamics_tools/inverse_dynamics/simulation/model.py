@@ -6,7 +6,7 @@
 
 What MuJoCo would do to a URDF on its own, and what is done about it:
 
-- it refuses inertia that breaks the triangle inequality (vendors publish such figures): it may balance them while it
+- it refuses inertia that breaks the triangle inequality (vendors publish such numbers): it may balance them while it
   compiles, then the URDF's inertia is written back;
 - it takes `<dynamics>` for damping and friction: set to zero; the friction that is asked for has its own law;
 - it pushes at position limits and contacts: switched off, since a trajectory must stay clear of both (limits.py and

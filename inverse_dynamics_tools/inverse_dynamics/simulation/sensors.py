@@ -32,7 +32,7 @@ _FINEST, _COARSEST = 1e-12, 1e6  # of noise and steps
 
 @dataclass(frozen=True)
 class Resolution:
-    """One figure for each of the three fields of a joint state; the same for all joints."""
+    """One number for each of the three fields of a joint state; the same for all joints."""
 
     position: float  # rad
     velocity: float  # rad/s

@@ -5,7 +5,7 @@
     chain.joint_names, chain.lower, chain.urdf
 
 MuJoCo's own reader makes bodies, joints and inertia, so that the simulator is independent of the engine it is used to
-check. Here stand the choice of the chain, the limits, and the figures MuJoCo changes or drops while reading.
+check. Here stand the choice of the chain, the limits, and the numbers MuJoCo changes or drops while reading.
 """
 
 from __future__ import annotations

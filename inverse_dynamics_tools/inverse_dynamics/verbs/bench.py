@@ -19,8 +19,8 @@ examples:
   ids bench                                      this machine's tables, in about a minute
   ids bench --only ur10/torques                  only what has such a name
   ids bench --latency                            the slowest of a million single calls too
-  ids bench --repetitions 200 --json speed.json  with less noise; the figures in a file
-  ids bench --from speed.json --plot speed.svg   a figure of figures measured before
+  ids bench --repetitions 200 --json speed.json  with less noise; the times in a file
+  ids bench --from speed.json --plot speed.svg   a figure of times measured before
   ids bench --from docs/speed.json --update docs/speed.md --update docs/real_time.md
       generated parts of pages, between `<!-- ids bench: NAME -->` and `<!-- ids bench: end -->`
 
@@ -48,7 +48,7 @@ def add_parser(
     )
     _add_measuring(parser.add_argument_group("what is measured"))
     results = parser.add_argument_group("where results go, besides the screen")
-    results.add_argument("--json", metavar="FILE", type=Path, help="all figures, for --from")
+    results.add_argument("--json", metavar="FILE", type=Path, help="all times, for --from")
     results.add_argument("--markdown", metavar="FILE", type=Path, help="the tables as a page")
     results.add_argument("--plot", metavar="FILE", type=Path, help="a figure: .svg, .png or .pdf")
     results.add_argument(
@@ -57,7 +57,7 @@ def add_parser(
         type=Path,
         action="append",
         default=[],
-        help="make the generated parts of a page anew; more than once: several pages",
+        help="update the generated parts of a page; more than once: several pages",
     )
     results.add_argument("--overwrite", action="store_true", help="replace existing files")
     return parser
@@ -177,7 +177,7 @@ def _print(result: Measurement) -> None:
     from inverse_dynamics.bench import page
     from inverse_dynamics.verbs.screen import Screen
 
-    # Whole figures on a narrow screen too, if need be by scrolling.
+    # Numbers in full on a narrow screen too, if need be by scrolling.
     Screen(soft_wrap=False, width=max(120, Screen().width)).print(Markdown(page(result)))
 
 

@@ -138,7 +138,7 @@ def add_parser(
         nargs="?",
         const="default",
         type=_resolution,
-        help="steps of the figures [rad, rad/s, N m] (without a value: 1e-5,1e-3,0.01)",
+        help="steps of the values [rad, rad/s, N m] (without a value: 1e-5,1e-3,0.01)",
     )
     recording.add_argument(
         "--drop", metavar="P", type=number, default=0.0, help="part of the messages that is lost"
@@ -148,7 +148,7 @@ def add_parser(
         metavar="P",
         type=number,
         default=0.0,
-        help="part of the messages that repeats the figures of the one before",
+        help="share of messages that repeat the values of the previous one",
     )
     recording.add_argument(
         "--jitter",
