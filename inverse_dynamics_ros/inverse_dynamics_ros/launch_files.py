@@ -26,7 +26,7 @@ from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration
 from launch_ros.parameter_descriptions import ParameterValue
 
-from inverse_dynamics_ros.robots import SOURCES, load_robot, robot_description
+from inverse_dynamics_ros.robots import SOURCES, robot_description
 
 if TYPE_CHECKING:
     from launch import Action, LaunchContext
@@ -80,45 +80,52 @@ def bag_arguments(default_topic: str = "/torques") -> list[DeclareLaunchArgument
     ]
 
 
-def sample_arguments(
-    accelerations: str = "auto", cutoff: float = 0.0, effort: str = "torque", drive_gains: str = ""
-) -> list[DeclareLaunchArgument]:
+def sample_arguments() -> list[DeclareLaunchArgument]:
     """Arguments about what the samples mean."""
     return [
         DeclareLaunchArgument(
             "input_topic",
             default_value="",
-            description="Topic of the motion in input_bag; empty: the only one of joint states, "
-            "else that of trajectories",
+            description="Topic of the motion in input_bag; empty: the run configuration's, else the "
+            "only one of joint states, else that of trajectories",
         ),
-        choice("accelerations", "How they come from the velocities", _ACCELERATIONS, accelerations),
+        choice(
+            "accelerations",
+            "How they come from the velocities",
+            {"": "what the run configuration says, else auto", **_ACCELERATIONS},
+            "",
+        ),
         DeclareLaunchArgument(
             "cutoff",
-            default_value=str(cutoff),
-            description="Cut-off of the low-pass [Hz]; 0.0: chosen from the data",
+            default_value="",
+            description="Cut-off of the low-pass [Hz]; 0.0: chosen from the data; empty: what the run "
+            "configuration says, else chosen",
         ),
-        *effort_arguments(effort, drive_gains, _EFFORTS_OF_RECORDINGS),
+        *effort_arguments(_EFFORTS_OF_RECORDINGS),
     ]
 
 
-def effort_arguments(
-    effort: str = "torque", drive_gains: str = "", efforts: dict[str, str] = _EFFORTS
-) -> list[DeclareLaunchArgument]:
+def effort_arguments(efforts: dict[str, str] = _EFFORTS) -> list[DeclareLaunchArgument]:
     """Arguments about what measured efforts mean; `auto` is for recordings alone."""
     return [
-        choice("effort", "What measured efforts mean", efforts, effort),
+        choice(
+            "effort",
+            "What measured efforts mean",
+            {"": "what the run configuration says, else torque", **efforts},
+            "",
+        ),
         DeclareLaunchArgument(
             "drive_gains",
-            default_value=drive_gains,
-            description="Torque per current of each joint [N m/A], comma-separated, for "
-            "currents; empty: the solver's, if it has any",
+            default_value="",
+            description="Torque per current of each joint [N m/A], comma-separated, for currents; "
+            "empty: the run configuration's, else the solver's, if it has any",
         ),
     ]
 
 
 def effort_parameters(context: LaunchContext) -> dict[str, Any]:
     """Node parameters of the arguments of effort_arguments(). Raises ValueError."""
-    parameters: dict[str, Any] = {"effort": string(text(context, "effort"))}
+    parameters = given_strings(context, "effort")
     if gains := text(context, "drive_gains"):
         try:
             parameters["drive_gains"] = [float(gain) for gain in gains.split(",")]
@@ -130,59 +137,78 @@ def effort_parameters(context: LaunchContext) -> dict[str, Any]:
 
 
 def solver_arguments() -> list[DeclareLaunchArgument]:
-    """Arguments of a solver and its robot."""
+    """Arguments of a robot and its solver: a run configuration, and what replaces parts of it."""
     return [
         DeclareLaunchArgument(
+            "robot",
+            default_value="",
+            description="Run configuration: ur10_real for one, or a YAML file; empty: the other "
+            "arguments say all",
+        ),
+        DeclareLaunchArgument(
             "plugin_name",
+            default_value="",
             description="Solver, package/Class of a plugin: "
-            "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL for one",
+            "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL for one; needed without robot",
         ),
         DeclareLaunchArgument(
             "robot_description",
             default_value="",
             description="Text of a URDF, for a solver that doesn't bring its own model: "
-            'robot_description:="$(xacro robot.urdf.xacro)"',
+            'robot_description:="$(xacro robot.urdf.xacro)"; empty: that of robot, if it has one',
         ),
         DeclareLaunchArgument(
-            "root", default_value="", description="First link of the chain; empty: the URDF's root"
+            "root",
+            default_value="",
+            description="First link of the chain; empty: that of robot, else the URDF's root",
         ),
         DeclareLaunchArgument(
-            "tip", default_value="", description="Last link of the chain; empty: the URDF's leaf"
+            "tip",
+            default_value="",
+            description="Last link of the chain; empty: that of robot, else the URDF's leaf",
         ),
         DeclareLaunchArgument(
             "gravity",
-            default_value="[0, 0, -9.81]",
-            description="Where things fall, in the frame of the root link [m/s^2]",
+            default_value="",
+            description="Where things fall, in the frame of the root link [m/s^2]: [0, 0, -9.81] for "
+            "one; empty: what robot says, else that",
         ),
         DeclareLaunchArgument(
             "friction",
-            default_value="true",
-            choices=["true", "false"],
+            default_value="",
+            choices=["", "true", "false"],
             description="Whether the solver's friction model counts; false where the robot's "
-            "controller compensates friction",
+            "controller compensates friction; empty: what robot says, else true",
         ),
         DeclareLaunchArgument(
             "joints",
             default_value="",
             description="Names of the joints in the messages, comma-separated, in the order of the "
-            "chain; empty: the solver's names",
+            "chain; empty: those of robot, else the solver's names",
         ),
     ]
 
 
 def solver_parameters(context: LaunchContext) -> dict[str, Any]:
     """Node parameters of the arguments of solver_arguments(). Raises ValueError."""
-    parameters: dict[str, Any] = {
-        "plugin_name": string(text(context, "plugin_name")),
-        "robot_description": string(_plain(text(context, "robot_description"))),
-        "ids.root": string(text(context, "root")),
-        "ids.tip": string(text(context, "tip")),
-        "ids.gravity": _three_numbers(text(context, "gravity")),
-        "ids.friction": text(context, "friction") == "true",
-    }
+    parameters = given_strings(context, "robot", "plugin_name")
+    if description := _plain(text(context, "robot_description")):
+        parameters["robot_description"] = string(description)
+    for name in ("root", "tip"):
+        if value := text(context, name):
+            parameters[f"ids.{name}"] = string(value)
+    if gravity := text(context, "gravity"):
+        parameters["ids.gravity"] = _three_numbers(gravity)
+    if friction := text(context, "friction"):
+        parameters["ids.friction"] = friction == "true"
     if joints := text(context, "joints"):
         parameters["joints"] = [name.strip() for name in joints.split(",")]
     return parameters
+
+
+def given_strings(context: LaunchContext, *names: str) -> dict[str, Any]:
+    """Node parameters of those arguments that aren't empty: others would replace what `robot` says."""
+    return {name: string(value) for name in names if (value := text(context, name))}
 
 
 def string(value: str) -> ParameterValue:
@@ -216,38 +242,26 @@ def failing_with_its_node() -> RegisterEventHandler:
 
 def evaluate_robot(name: str) -> LaunchDescription:
     """Launch description that evaluates a recording of a robot with a run configuration."""
-    robot = load_robot(name)
-    accelerations = robot.get("accelerations", {})
     return LaunchDescription(
         [
             *bag_arguments(),
-            *sample_arguments(
-                accelerations.get("method", "auto"),
-                float(accelerations.get("cutoff", 0.0)),
-                robot.get("effort", "torque"),
-                ",".join(str(gain) for gain in robot.get("drive_gains", [])),
-            ),
+            *sample_arguments(),
             choice("description", "Where the robot description comes from", SOURCES, "auto"),
-            OpaqueFunction(function=_include_evaluation, args=[robot]),
+            OpaqueFunction(function=_include_evaluation, args=[name]),
         ]
     )
 
 
-def _include_evaluation(context: LaunchContext, robot: dict[str, Any]) -> list[Action]:
+def _include_evaluation(context: LaunchContext, robot: str) -> list[Action]:
     description, origin = robot_description(robot, text(context, "description"))
     own = [*bag_arguments(), *sample_arguments()]
     arguments = {
         **{argument.name: text(context, argument.name) for argument in own},
-        "plugin_name": robot["plugin"],
+        "robot": robot,
         "robot_description": description,
-        "root": robot.get("root", ""),
-        "tip": robot.get("tip", ""),
-        "gravity": str(robot.get("gravity", [0, 0, -9.81])),
-        "friction": str(robot.get("friction", True)).lower(),
-        "joints": ",".join(robot.get("joints", [])),
     }
     return [
-        LogInfo(msg=f"{robot['description']}; robot description: {origin}"),
+        LogInfo(msg=f"{robot}; robot description: {origin}"),
         IncludeLaunchDescription(
             PythonLaunchDescriptionSource(launch_file("evaluate_solver.launch.py")),
             launch_arguments=arguments.items(),

@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Run configurations of inverse_dynamics_robots, and where descriptions of their robots come from.
+"""Where descriptions of the project's robots come from.
 
-robot = load_robot("ur10_real")
-description = robot_description(robot, "auto")
+description, origin = robot_description("ur10_real", "auto")
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import yaml
 from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
 
 if TYPE_CHECKING:
@@ -21,13 +19,8 @@ if TYPE_CHECKING:
 SOURCES = {
     "auto": "xacro where the manufacturer's description package is installed, else urdf",
     "xacro": "the manufacturer's description package, expanded by the tool xacro",
-    "urdf": "the plain URDF of inverse_dynamics_robots",
+    "urdf": "the plain URDF that the run configuration names",
 }
-
-# Keys of a run configuration that the launch files understand or may leave aside.
-_USED = ("plugin", "urdf", "root", "tip", "gravity", "friction", "joints", "effort", "drive_gains")
-_KEYS = {*_USED, "accelerations", "schema", "name", "description", "topic", "source", "simulation"}
-_SCHEMA = 1
 
 
 @dataclass(frozen=True)
@@ -39,50 +32,27 @@ class Xacro:
     arguments: tuple[str, ...]
 
 
-# By the file name of the plain URDF that describes the same robot.
+_UR10 = Xacro("ur_description", "urdf/ur.urdf.xacro", ("name:=ur10", "ur_type:=ur10"))
+_PANDA = Xacro("franka_description", "robots/fer/fer.urdf.xacro", ("hand:=false",))
+# By the name of the run configuration.
 _XACROS = {
-    "ur10.urdf": Xacro("ur_description", "urdf/ur.urdf.xacro", ("name:=ur10", "ur_type:=ur10")),
-    "panda.urdf": Xacro("franka_description", "robots/fer/fer.urdf.xacro", ("hand:=false",)),
+    "ur10_real": _UR10,
+    "ur10_simulated": _UR10,
+    "panda_real": _PANDA,
+    "panda_simulated": _PANDA,
 }
 
 
-def robot_names() -> list[str]:
-    """Names of the run configurations."""
-    directory = Path(get_package_share_directory("inverse_dynamics_robots")) / "robots"
-    return sorted(file.stem for file in directory.glob("*.yaml"))
-
-
-def load_robot(name: str) -> dict[str, Any]:
-    """The run configuration of that name; its keys are those of docs/add_a_robot.md.
-
-    Raises ValueError: no such name; not keys with values; a key that the launch files don't know.
-    """
-    if name not in robot_names():
-        raise ValueError(f"robot: expected one of {', '.join(robot_names())}, got '{name}'")
-    share = Path(get_package_share_directory("inverse_dynamics_robots"))
-    file = share / "robots" / f"{name}.yaml"
-    configuration: dict[str, Any] = yaml.safe_load(file.read_text(encoding="utf-8"))
-    if not isinstance(configuration, dict):
-        raise ValueError(f"{file}: expected keys with values")
-    if configuration.get("schema") != _SCHEMA:
-        raise ValueError(f"{file}: schema: expected {_SCHEMA}, got {configuration.get('schema')}")
-    for key in configuration:
-        if key not in _KEYS:
-            raise ValueError(f"{file}: {key}: unknown key; known here: {', '.join(sorted(_KEYS))}")
-    return configuration
-
-
-def robot_description(robot: dict[str, Any], source: str) -> tuple[SomeSubstitutionsType, str]:
+def robot_description(robot: str, source: str) -> tuple[SomeSubstitutionsType, str]:
     """Description of a robot as a launch substitution, and in words where it is from.
 
-    source: one of SOURCES. Raises PackageNotFoundError: xacro is asked for, but not the package.
+    robot: name of a run configuration. source: one of SOURCES. Empty: the run configuration's.
+    Raises PackageNotFoundError: xacro is asked for, but not the package.
     """
     from launch.substitutions import Command, FindExecutable
 
-    package, _, path = robot["urdf"].removeprefix("package://").partition("/")
-    file = Path(get_package_share_directory(package)) / path
-    xacro = _XACROS.get(file.name)
-    if source != "urdf" and xacro is not None:
+    xacro = _XACROS[robot]
+    if source != "urdf":
         try:
             share = Path(get_package_share_directory(xacro.package))
         except PackageNotFoundError:
@@ -93,5 +63,5 @@ def robot_description(robot: dict[str, Any], source: str) -> tuple[SomeSubstitut
             for argument in xacro.arguments:
                 command += [" ", argument]
             return Command(command), f"{xacro.package}/{xacro.file}, by xacro"
-    why = f" ({xacro.package} is not installed)" if source == "auto" and xacro else ""
-    return file.read_text(), f"{package}/{path}{why}"
+    why = f" ({xacro.package} is not installed)" if source == "auto" else ""
+    return "", f"the run configuration's{why}"

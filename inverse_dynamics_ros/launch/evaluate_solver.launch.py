@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Torques of a recorded motion by any solver, as a recording and as a table of errors.
 
+ros2 launch inverse_dynamics_ros evaluate_solver.launch.py robot:=ur10_real input_bag:=recording output_bag:=result
 ros2 launch inverse_dynamics_ros evaluate_solver.launch.py --show-args
 """
 
@@ -9,6 +10,7 @@ from inverse_dynamics_ros.launch_files import (
     choice,
     effort_parameters,
     failing_with_its_node,
+    given_strings,
     number,
     sample_arguments,
     solver_arguments,
@@ -31,18 +33,11 @@ def nodes(context):
     """The program, with the parameters of the arguments."""
     parameters = solver_parameters(context) | {
         name: string(text(context, name))
-        for name in (
-            "input_bag",
-            "output_bag",
-            "topic",
-            "storage",
-            "input_topic",
-            "clock",
-            "accelerations",
-        )
+        for name in ("input_bag", "output_bag", "topic", "storage", "input_topic", "clock")
     }
-    parameters |= effort_parameters(context)
-    parameters["cutoff"] = number(context, "cutoff")
+    parameters |= given_strings(context, "accelerations") | effort_parameters(context)
+    if text(context, "cutoff"):
+        parameters["cutoff"] = number(context, "cutoff")
     if rules := text(context, "without_rules"):
         parameters["without_rules"] = [rule.strip() for rule in rules.split(",")]
     return [

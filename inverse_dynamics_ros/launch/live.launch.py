@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Computed torques of a robot that is running, and how far the measured ones are from them.
 
+ros2 launch inverse_dynamics_ros live.launch.py robot:=ur10_real
 ros2 launch inverse_dynamics_ros live.launch.py plugin_name:=package/Class tip:=tool0
 ros2 launch inverse_dynamics_ros live.launch.py --show-args
 """

@@ -4,7 +4,7 @@
 /// Program: torques of a recorded motion by a solver, as a recording and as a table of errors.
 ///
 ///     ros2 run inverse_dynamics_ros evaluate_solver --ros-args -p input_bag:=recording
-///         -p output_bag:=result -p plugin_name:=ur10_.../InverseDynamicsSolverUR10
+///         -p output_bag:=result -p robot:=ur10_real
 ///
 /// Exit code 0: done; 2: something the user can repair (the last line says what); 130: interrupted.
 
@@ -22,6 +22,7 @@ namespace inverse_dynamics_ros {
 namespace {
 
 using inverse_dynamics_evaluation::Clock;
+using inverse_dynamics_evaluation::RunConfiguration;
 
 Clock clockOf(const std::string& name) {
   return name == "header" ? Clock::kHeader : name == "receive" ? Clock::kReceive : Clock::kAuto;
@@ -39,13 +40,13 @@ void check(const evaluate_solver::Params& params) {
   }
 }
 
-EvaluationOptions optionsOf(const evaluate_solver::Params& params,
+EvaluationOptions optionsOf(const evaluate_solver::Params& params, const RunConfiguration& robot,
                             const inverse_dynamics_solver::InverseDynamicsSolver& solver) {
   EvaluationOptions options;
-  options.method = inverse_dynamics_evaluation::accelerationMethod(params.accelerations);
-  options.cutoff = params.cutoff;
+  options.method = inverse_dynamics_evaluation::accelerationMethod(robot.accelerations);
+  options.cutoff = robot.cutoff.value_or(0.0);
   options.rules = inverse_dynamics_evaluation::rulesWithout(params.without_rules);
-  options.effort = effortOptions(params.effort, params.drive_gains, params.plugin_name, solver);
+  options.effort = inverse_dynamics_evaluation::effortOptions(robot, solver);
   // Currents without drive gains are refused before the recording is read.
   inverse_dynamics_evaluation::statedEffort(options.effort);
   options.recording = params.input_bag;
@@ -63,6 +64,14 @@ void sayAll(const rclcpp::Logger& logger, const std::vector<std::string>& notes,
   }
 }
 
+// The run configuration, if there is one, and where its description is from.
+void sayRobot(const rclcpp::Logger& logger, const RunConfiguration& robot) {
+  if (!robot.file.empty()) {
+    say(logger, "robot: " + robot.name + ", " + robot.description + "; robot description: " +
+                    (robot.urdf.empty() ? "none of its own" : robot.urdf));
+  }
+}
+
 void run(rclcpp::Node& node) {
   declareSolverParameters(node);
   const evaluate_solver::ParamListener listener(node.get_node_parameters_interface(),
@@ -71,16 +80,22 @@ void run(rclcpp::Node& node) {
   check(params);
   const rclcpp::Logger logger = node.get_logger();
 
-  const auto solver = makeSolver(node, params.plugin_name, params.robot_description);
+  const NodeRobot made(givenParameters(node));
+  const RunConfiguration& robot = made.configuration();
+  sayRobot(logger, robot);
+  const std::string description = made.description();
+  const auto solver = made.makeSolver(description);
   const std::vector<std::string> warnings = solver->warnings();
   sayAll(logger, warnings);
-  EvaluationOptions options = optionsOf(params, *solver);
-  options.units = torqueUnits(node, solver->jointNames(), params.robot_description);
-  say(logger, "solver: " + params.plugin_name);
+  EvaluationOptions options = optionsOf(params, robot, *solver);
+  options.units = made.torqueUnits(solver->jointNames(), description);
+  say(logger, "solver: " + robot.plugin);
 
+  const std::vector<std::string> joints =
+      inverse_dynamics_evaluation::recordedNames(robot, solver->jointNames());
   const RecordedMotion motion = readMotion(
-      params.input_bag, {params.input_topic, messageNames(params.joints, solver->jointNames()),
-                         clockOf(params.clock)});
+      params.input_bag,
+      {params.input_topic, robot.file.empty() ? "" : robot.topic, joints, clockOf(params.clock)});
   say(logger, "recording: " + params.input_bag + ", " + motion.topic + ": " +
                   std::to_string(motion.log.q.cols()) + " samples");
 

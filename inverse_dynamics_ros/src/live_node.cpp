@@ -11,6 +11,7 @@
 #include "live_diagnostics.hpp"
 #include "live_torques.hpp"
 #include "node_solver.hpp"
+#include "user_error.hpp"
 
 namespace inverse_dynamics_ros {
 namespace {
@@ -35,6 +36,7 @@ class LiveNode::Implementation {
         params_((declareSolverParameters(node),
                  live_node::ParamListener(node.get_node_parameters_interface(), node.get_logger())
                      .get_params())),
+        robot_(givenParameters(node)),
         diagnostics_(node, node.get_node_topics_interface()->resolve_topic_name("joint_states"),
                      {params_.max_age, params_.min_rate}) {
     torques_publisher_ = node.create_publisher<JointState>("~/torques", rclcpp::QoS(10),
@@ -60,12 +62,23 @@ class LiveNode::Implementation {
 
   rclcpp::Logger logger() const { return node_.get_logger(); }
 
-  // With the description of the parameter, or the solver's own model, or when one comes.
+  // No verdict without a recording.
+  static void requireMeaning(const inverse_dynamics_evaluation::Effort& effort) {
+    if (effort.meaning == inverse_dynamics_evaluation::kAutomatic) {
+      throw UserError("parameter 'effort'",
+                      "what efforts mean: torque, current or "
+                      "torque_without_gravity",
+                      "auto, by the run configuration", "set it: only a recording can tell");
+    }
+  }
+
+  // With the description of the parameters, or the solver's own model, or when one comes.
   void openSolver() {
+    const std::string description = robot_.description();
     try {
-      useSolver(params_.robot_description);
+      useSolver(description);
     } catch (const inverse_dynamics_solver::ParameterUninitializedException& error) {
-      if (!params_.robot_description.empty()) {
+      if (!description.empty()) {
         throw;
       }
       description_ = node_.create_subscription<String>(
@@ -93,11 +106,13 @@ class LiveNode::Implementation {
 
   // Replaces the solver, or throws and leaves it as it was.
   void useSolver(const std::string& robot_description) {
-    const auto solver = makeSolver(node_, params_.plugin_name, robot_description);
+    const auto solver = robot_.makeSolver(robot_description);
+    const auto& robot = robot_.configuration();
     LiveOptions options;
-    options.joints = messageNames(params_.joints, solver->jointNames());
+    options.joints = inverse_dynamics_evaluation::recordedNames(robot, solver->jointNames());
     options.effort = inverse_dynamics_evaluation::statedEffort(
-        effortOptions(params_.effort, params_.drive_gains, params_.plugin_name, *solver));
+        inverse_dynamics_evaluation::effortOptions(robot, *solver));
+    requireMeaning(options.effort);
     options.cutoff = params_.cutoff;
     options.longest_gap = params_.longest_gap;
     live_ = std::make_unique<LiveTorques>(solver, options);
@@ -105,7 +120,7 @@ class LiveNode::Implementation {
     for (const std::string& warning : solver->warnings()) {
       RCLCPP_WARN(logger(), "%s", warning.c_str());
     }
-    const std::string text = params_.plugin_name + ", " + std::to_string(solver->jointCount()) +
+    const std::string text = robot.plugin + ", " + std::to_string(solver->jointCount()) +
                              " joints: " + inverse_dynamics_evaluation::listed(options.joints);
     diagnostics_.setSolver(true, text);
     RCLCPP_INFO(logger(), "solver: %s; accelerations late by %.0f ms", text.c_str(),
@@ -219,6 +234,7 @@ class LiveNode::Implementation {
 
   LiveNode& node_;
   live_node::Params params_;
+  NodeRobot robot_;
   LiveDiagnostics diagnostics_;
   std::unique_ptr<LiveTorques> live_;      // null until there is a description
   JointState torques_, residual_;          // reused, so that nothing is allocated per message

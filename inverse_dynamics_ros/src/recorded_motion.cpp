@@ -84,6 +84,13 @@ class OpenRecording {
 
   const std::string& storage() const { return storage_; }
 
+  /// Whether it has messages of that topic.
+  bool has(const std::string& name) const {
+    return std::any_of(topics_.begin(), topics_.end(), [&name](const auto& topic) {
+      return topic.topic_metadata.name == name && topic.message_count > 0;
+    });
+  }
+
   /// The topic of that name, or the only one of joint states, else the only one of trajectories.
   rosbag2_storage::TopicInformation topic(const std::string& name) const {
     std::vector<rosbag2_storage::TopicInformation> found;
@@ -234,7 +241,8 @@ void countEmpty(const RecordedMotion& motion, std::vector<std::string>& notes) {
 
 RecordedMotion readMotion(const std::string& path, const MotionQuery& query) {
   OpenRecording recording(path);
-  const auto topic = recording.topic(query.topic);
+  const bool usual = query.topic.empty() && recording.has(query.usual_topic);
+  const auto topic = recording.topic(usual ? query.usual_topic : query.topic);
   RecordedMotion motion;
   motion.topic = topic.topic_metadata.name;
   motion.type = topic.topic_metadata.type;

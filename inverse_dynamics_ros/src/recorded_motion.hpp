@@ -25,7 +25,9 @@ inline const std::string kJointTrajectory = "trajectory_msgs/msg/JointTrajectory
 
 /// Which messages are read, and of which joints.
 struct MotionQuery {
-  std::string topic;                ///< empty: the only one of joint states, else of trajectories
+  std::string topic;        ///< empty: usual_topic, else the only one of joint states, else of
+                            ///< trajectories
+  std::string usual_topic;  ///< taken where the recording has it and none is named; or empty
   std::vector<std::string> joints;  ///< in the order wanted
   inverse_dynamics_evaluation::Clock clock = inverse_dynamics_evaluation::Clock::kAuto;
 };

@@ -26,6 +26,8 @@ from recordings import PENDULUM, SOLVER, JointTrajectory, String, read_bag, writ
 
 FOLDER = Path(tempfile.mkdtemp())
 GOOD = FOLDER / "good"
+ROBOT = FOLDER / "pendulum.yaml"
+CONFIGURED = {"robot": str(ROBOT), "plugin_name": None, "robot_description": None}
 
 
 @dataclass
@@ -95,6 +97,11 @@ def make_recordings():
         FOLDER / "no_effort", {"/joint_states": shorter(recordings.joint_states(50), "effort")}
     )
     write_bag(FOLDER / "one_missing", {"/joint_states": missing_joint()})
+    (FOLDER / "pendulum.urdf").write_text(PENDULUM)
+    ROBOT.write_text(
+        f"schema: 1\nname: pendulum\ndescription: a pendulum\nplugin: {SOLVER}\n"
+        "urdf: pendulum.urdf\njoints: [swing]\neffort: torque\n"
+    )
     (FOLDER / "directory").mkdir()
     (FOLDER / "exists").mkdir()
     (FOLDER / "file.txt").write_text("no recording")
@@ -115,6 +122,20 @@ CASES = {
         {"accelerations": "low-pass", "cutoff": 4.0}, 0, ["cut-off 4 Hz (given)"], "INFO"
     ),
     "topic": Case({"topic": "/effort"}, 0, ["/effort (computed), /effort_gt (measured)"], "INFO"),
+    "robot": Case(
+        CONFIGURED, 0, ["robot: pendulum, a pendulum; robot description: /", MADE], "INFO"
+    ),
+    "robot_changed": Case(
+        CONFIGURED | {"accelerations": "low-pass", "cutoff": 4.0},
+        0,
+        ["cut-off 4 Hz (given)", MADE],
+        "INFO",
+    ),
+    "no_robot": Case(
+        {"robot": "ur11_real", "plugin_name": None},
+        2,
+        ["robot 'ur11_real': expected one of ", "or a file ending in .yaml"],
+    ),
     "trajectory": Case(
         {"input_bag": str(FOLDER / "trajectory")}, 0, ["given by the recording", MADE], "INFO"
     ),
@@ -282,21 +303,19 @@ class TestRecordings(unittest.TestCase):
         ids = os.environ.get("IDS_COMMAND") or shutil.which("ids")
         if ids is None:
             self.skipTest("the command ids is not installed")
-        urdf = FOLDER / "pendulum.urdf"
-        urdf.write_text(PENDULUM)
-        robot = FOLDER / "pendulum.yaml"
-        robot.write_text(
-            f"schema: 1\nname: pendulum\ndescription: a pendulum\nplugin: {SOLVER}\nurdf: {urdf}\n"
-        )
-        out = FOLDER / "ids"
-        command = [ids, "evaluate", GOOD, "--robot", robot, "--out", out, "--storage", "mcap"]
-        run = subprocess.run(command, check=True, capture_output=True, text=True)
-        ours = read_bag(FOLDER / "out_fine")
-        theirs = read_bag(next((out / "bag").glob("*.mcap")), storage="mcap")
-        for topic in ("/torques", "/torques_gt"):
-            self.assertEqual(ours[topic], theirs[topic])
-        said = "".join(o.text.decode() for o in proc_output[CASES["fine"].node])
-        table = [line.split() for line in said.splitlines()]
-        for line in run.stdout.splitlines():
-            if line.split()[:1] in (["joint"], ["swing"]):
-                self.assertIn(line.split(), table)
+        changes = ["--accelerations", "low-pass", "--cutoff", "4"]
+        for name, options in {"fine": [], "robot": [], "robot_changed": changes}.items():
+            out = FOLDER / f"ids_{name}"
+            command = [ids, "evaluate", GOOD, "--robot", ROBOT, "--out", out, "--storage", "mcap"]
+            run = subprocess.run([*command, *options], check=True, capture_output=True, text=True)
+            # payload bytes and stamps
+            ours = read_bag(FOLDER / f"out_{name}", bytes)
+            theirs = read_bag(next((out / "bag").glob("*.mcap")), bytes, storage="mcap")
+            for topic in ("/torques", "/torques_gt"):
+                self.assertEqual(len(ours[topic]), 1000)
+                self.assertEqual(ours[topic], theirs[topic])
+            said = "".join(o.text.decode() for o in proc_output[CASES[name].node])
+            table = [line.split() for line in said.splitlines()]
+            for line in run.stdout.splitlines():
+                if line.split()[:1] in (["joint"], ["swing"]):
+                    self.assertIn(line.split(), table)

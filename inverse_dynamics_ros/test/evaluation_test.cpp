@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "node_solver.hpp"
 #include "two_joint_solver.hpp"
 #include "user_error.hpp"
 
@@ -81,11 +80,9 @@ TEST(Evaluation, IsPrintedAsATable) {
 }
 
 TEST(EffortOptions, AskForDriveGainsOfCurrents) {
-  const auto solver = TwoJointSolver::make();
-  const auto error = [&](const std::string& effort, const std::vector<double>& gains) {
+  const auto error = [](const std::string& effort, const std::vector<double>& gains) {
     try {
-      inverse_dynamics_evaluation::statedEffort(
-          effortOptions(effort, gains, "package/TwoJointSolver", *solver));
+      inverse_dynamics_evaluation::statedEffort(effortsOfTwoJoints(effort, gains));
     } catch (const std::exception& refused) {
       EXPECT_EQ(failureOf(refused).code, kExitUserError);
       return std::string(refused.what());

@@ -7,14 +7,11 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
-from unittest import mock
 
 from ament_index_python.packages import get_package_share_directory
 from launch import LaunchDescription
 from launch_testing.actions import ReadyToTest
 from launch_testing.util import KeepAliveProc
-
-from inverse_dynamics_ros import robots
 
 sys.path.insert(0, str(Path(__file__).parent))
 import recordings
@@ -71,36 +68,6 @@ def launch(*arguments):
     )
 
 
-class TestRunConfigurations(unittest.TestCase):
-    def load(self, text):
-        """What the launch files make of a run configuration with this text."""
-        with tempfile.TemporaryDirectory() as share:
-            (Path(share) / "robots").mkdir()
-            (Path(share) / "robots/arm.yaml").write_text(text)
-            with mock.patch.object(robots, "get_package_share_directory", return_value=share):
-                return robots.load_robot("arm")
-
-    def test_read_the_projects_strictly(self):
-        for name in ROBOTS:
-            self.assertEqual(robots.load_robot(name)["name"], name)
-        self.assertEqual(self.load("schema: 1\nplugin: a/B\n")["plugin"], "a/B")
-        self.assertEqual(self.load("schema: 1\neffort: auto\n")["effort"], "auto")
-        for text, expected in {
-            "schema: 1\ngravty: [0, 0, 1]\n": "arm.yaml: gravty: unknown key; known here: acc",
-            "schema: 1\nparameters: {mass: 1}\n": "arm.yaml: parameters: unknown key",
-            "schema: 1\nmodel: arm.yaml\n": "arm.yaml: model: unknown key",
-            "schema: 2\n": "arm.yaml: schema: expected 1, got 2",
-            "- 1\n": "arm.yaml: expected keys with values",
-        }.items():
-            with self.subTest(text):
-                said = "nothing"
-                try:
-                    self.load(text)
-                except ValueError as error:
-                    said = str(error)
-                self.assertIn(expected, said)
-
-
 class TestLaunchFiles(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -139,6 +106,32 @@ class TestLaunchFiles(unittest.TestCase):
         self.assertIn("says, with drive gains 2 N m/A", run.stdout)
         measured, _ = read_bag(FOLDER / "currents")["/torques_gt"][0]
         self.assertEqual(measured.effort[0], 2 * recordings.joint_state(1.0).effort[1])
+
+    def test_take_a_run_configuration_and_what_replaces_parts_of_it(self):
+        (FOLDER / "pendulum.urdf").write_text(PENDULUM)
+        robot = FOLDER / "pendulum.yaml"
+        robot.write_text(
+            f"schema: 1\nname: pendulum\ndescription: a pendulum\nplugin: {SOLVER}\n"
+            "urdf: pendulum.urdf\neffort: current\ndrive_gains: [2]\ngravity: [0, 0, -1]\n"
+        )
+        command = ["evaluate_solver.launch.py", f"input_bag:={FOLDER / 'pendulum'}"]
+        run = launch(*command, f"output_bag:={FOLDER / 'robot'}", f"robot:={robot}")
+        self.assertEqual(run.returncode, 0, run.stdout)
+        self.assertIn("as the run configuration says, with drive gains 2 N m/A", run.stdout)
+        changed = ["effort:=torque", "gravity:=[0, 0, -2]", "friction:=false"]
+        run = launch(*command, f"output_bag:={FOLDER / 'changed'}", f"robot:={robot}", *changed)
+        self.assertEqual(run.returncode, 0, run.stdout)
+        self.assertIn("effort means: torque, ", run.stdout)
+        weight = recordings.MASS * recordings.LENGTH
+        for name, gravity in {"robot": 1.0, "changed": 2.0}.items():
+            first, _ = read_bag(FOLDER / name)["/torques"][50]
+            q, _, qdd = recordings.motion(1.5)
+            expected = weight * (recordings.LENGTH * qdd + gravity * recordings.math.sin(q))
+            self.assertAlmostEqual(first.effort[0], expected, delta=0.02)
+        robot.write_text(robot.read_text().replace("gravity", "gravty"))
+        run = launch(*command, f"output_bag:={FOLDER / 'not_written'}", f"robot:={robot}")
+        self.assertEqual(run.returncode, 1, run.stdout)
+        self.assertIn("pendulum.yaml:8: gravty: unknown key; did you mean gravity?", run.stdout)
 
     def test_have_the_data_tell_what_efforts_mean(self):
         run = self.evaluate(f"robot_description:={PENDULUM}", "effort:=auto", name="auto")
@@ -196,8 +189,15 @@ class TestLaunchFiles(unittest.TestCase):
 
     def test_explain_their_arguments(self):
         arguments = {
-            "evaluate_solver": ["plugin_name", "robot_description", "root", "tip", "gravity"],
-            "live": ["plugin_name", "cutoff", "reliability", "container"],
+            "evaluate_solver": [
+                "robot",
+                "plugin_name",
+                "robot_description",
+                "root",
+                "tip",
+                "gravity",
+            ],
+            "live": ["robot", "plugin_name", "cutoff", "reliability", "container"],
             **{name: ["input_bag", "output_bag", "topic", "description"] for name in ROBOTS},
         }
         for name, expected in arguments.items():

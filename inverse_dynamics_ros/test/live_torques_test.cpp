@@ -7,7 +7,6 @@
 #include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
 #include <limits>
 
-#include "node_solver.hpp"
 #include "two_joint_solver.hpp"
 
 namespace inverse_dynamics_ros {
@@ -35,8 +34,7 @@ JointState stateAt(std::int64_t stamp) {
 
 LiveTorques make(const std::string& effort = "torque", const std::vector<double>& gains = {}) {
   const auto solver = TwoJointSolver::make();
-  const auto meaning = inverse_dynamics_evaluation::statedEffort(
-      effortOptions(effort, gains, "package/TwoJointSolver", *solver));
+  const auto meaning = inverse_dynamics_evaluation::statedEffort(effortsOfTwoJoints(effort, gains));
   return {solver, {{"a", "b"}, meaning, kCutoff, 0.5}};
 }
 

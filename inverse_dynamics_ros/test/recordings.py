@@ -111,7 +111,7 @@ def write_bag(path: Path, topics, storage="sqlite3"):
 
 
 def read_bag(path: Path, kind=JointState, storage=""):
-    """Messages and times of reception of a recording, by topic."""
+    """Messages and times of reception of a recording, by topic. kind: bytes: as they are stored."""
     reader = rosbag2_py.SequentialReader()
     storage = storage or ("mcap" if list(path.glob("*.mcap")) else "sqlite3")
     reader.open(
@@ -121,5 +121,6 @@ def read_bag(path: Path, kind=JointState, storage=""):
     topics = {}
     while reader.has_next():
         topic, raw, received = reader.read_next()
-        topics.setdefault(topic, []).append((deserialize_message(raw, kind), received))
+        message = raw if kind is bytes else deserialize_message(raw, kind)
+        topics.setdefault(topic, []).append((message, received))
     return topics

@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include <inverse_dynamics_evaluation/run_configuration.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 
@@ -35,5 +36,15 @@ class TwoJointSolver : public inverse_dynamics_solver::InverseDynamicsSolver {
   void computeGravityVector(const ConstVector&, Vector g) const override { g << 10, 20; }
   bool inertiaIsPhysicalImpl() const override { return true; }
 };
+
+/// What parameters of a node with that solver state of efforts.
+inline inverse_dynamics_evaluation::EffortOptions effortsOfTwoJoints(
+    const std::string& effort, const std::vector<double>& drive_gains) {
+  inverse_dynamics_evaluation::RunConfiguration robot;
+  robot.plugin = "package/TwoJointSolver";
+  robot.effort = effort;
+  robot.drive_gains = drive_gains;
+  return inverse_dynamics_evaluation::effortOptions(robot, *TwoJointSolver::make());
+}
 
 }  // namespace inverse_dynamics_ros

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "robot_parameters.hpp"
+
+#include <fstream>
+#include <inverse_dynamics_evaluation/joint_matching.hpp>
+#include <inverse_dynamics_solver/configuration.hpp>
+#include <inverse_dynamics_solver/solver_loader.hpp>
+#include <inverse_dynamics_solver/strict_initialization.hpp>
+#include <set>
+#include <sstream>
+
+#include "user_error.hpp"
+
+namespace inverse_dynamics_ros {
+namespace {
+
+using inverse_dynamics_evaluation::RunConfiguration;
+using inverse_dynamics_evaluation::RunConfigurationChanges;
+using inverse_dynamics_evaluation::SolverParameters;
+using inverse_dynamics_solver::InverseDynamicsSolver;
+using inverse_dynamics_solver::Parameters;
+
+// An empty text or list is one that isn't given.
+template <class T>
+std::optional<T> givenOf(const Parameters& given, const std::string& name) {
+  auto value = given.get<T>(name);
+  return value && value->empty() ? std::nullopt : value;
+}
+
+RunConfigurationChanges changesOf(const Parameters& given) {
+  RunConfigurationChanges changes;
+  changes.plugin = givenOf<std::string>(given, "plugin_name");
+  changes.joints = givenOf<std::vector<std::string>>(given, "joints");
+  changes.effort = givenOf<std::string>(given, "effort");
+  changes.drive_gains = givenOf<std::vector<double>>(given, "drive_gains");
+  changes.accelerations = givenOf<std::string>(given, "accelerations");
+  changes.cutoff = given.get<double>("cutoff");
+  if (givenOf<std::string>(given, "robot_description")) {
+    changes.urdf = "";  // nor is the model of the run configuration computed from
+  }
+  return changes;
+}
+
+// Those of the run configuration, and those given below `ids.` instead of them.
+Parameters solverParametersOf(const RunConfiguration& robot, const Parameters& given) {
+  const std::string prefix = kSolverNamespace + ".";
+  SolverParameters all;
+  for (const auto& [name, value] : inverse_dynamics_evaluation::solverParameters(robot)) {
+    all[prefix + name] = value;
+  }
+  for (const std::string& name : given.names()) {
+    if (name.rfind(prefix, 0) == 0) {
+      all[name] = *given.find(name);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+NodeRobot::NodeRobot(const Parameters& given)
+    : description_(given.get<std::string>("robot_description").value_or("")) {
+  const auto name = givenOf<std::string>(given, "robot");
+  configuration_ = inverse_dynamics_evaluation::withChanges(
+      name ? inverse_dynamics_evaluation::readRunConfiguration(*name) : RunConfiguration(),
+      changesOf(given));
+  solver_parameters_ = solverParametersOf(configuration_, given);
+}
+
+std::string NodeRobot::description() const {
+  if (configuration_.urdf.empty()) {
+    return description_;
+  }
+  std::ifstream file(configuration_.urdf);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) {
+    throw UserError(configuration_.urdf, "a robot description", "a file that can't be read",
+                    "correct its permissions");
+  }
+  return text.str();
+}
+
+std::shared_ptr<const InverseDynamicsSolver> NodeRobot::makeSolver(
+    const std::string& description) const {
+  const inverse_dynamics_solver::SolverLoader loader;
+  if (configuration_.plugin.empty()) {
+    throw UserError("parameter 'plugin_name'", "a solver, package/Class", "nothing",
+                    "set it to one of " +
+                        inverse_dynamics_evaluation::listed(loader.availableSolvers()) +
+                        ", or set 'robot' to a run configuration");
+  }
+  const auto solver = loader.load(configuration_.plugin);
+  inverse_dynamics_solver::initializeStrictly(*solver, solver_parameters_, kSolverNamespace,
+                                              description);
+  return solver;
+}
+
+std::vector<std::string> NodeRobot::torqueUnits(const std::vector<std::string>& joint_names,
+                                                const std::string& description) const {
+  std::set<std::string> prismatic;
+  if (!description.empty()) {
+    try {
+      const auto chain =
+          inverse_dynamics_solver::chainFromDescription(inverse_dynamics_solver::readConfiguration(
+              solver_parameters_, kSolverNamespace, description));
+      for (const chain_dynamics::Joint& joint : chain.joints()) {
+        if (joint.type == chain_dynamics::JointType::kPrismatic) {
+          prismatic.insert(joint.name);
+        }
+      }
+    } catch (const inverse_dynamics_solver::Exception&) {
+      // a solver with its own model takes no notice of the description either
+    }
+  }
+  std::vector<std::string> units;
+  units.reserve(joint_names.size());
+  for (const std::string& name : joint_names) {
+    units.emplace_back(prismatic.count(name) > 0 ? "N" : "N m");
+  }
+  return units;
+}
+
+}  // namespace inverse_dynamics_ros

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// A robot, as the parameters of a node say it: a run configuration by the parameter `robot`, and
+/// what is given beside it.
+///
+///     const Parameters given = ...;                       // robot: ur10_real, effort: auto, ids.tip: ...
+///     const NodeRobot robot(given);
+///     const auto solver = robot.makeSolver(robot.description());
+///
+/// What is given replaces what the run configuration says, as the options of `ids evaluate` do.
+
+#pragma once
+
+#include <inverse_dynamics_evaluation/run_configuration.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/parameters.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace inverse_dynamics_ros {
+
+/// Namespace of a solver's parameters in a node.
+inline const std::string kSolverNamespace = "ids";
+
+/// What parameters say of a robot.
+class NodeRobot {
+ public:
+  /// Parameters: robot, plugin_name, robot_description, joints, effort, drive_gains, accelerations,
+  /// cutoff, and the solver's below `ids.`.
+  ///
+  /// @param given  only what the user has set: a default would replace the run configuration's.
+  /// @throws inverse_dynamics_evaluation::ConfigurationError: what readRunConfiguration() says.
+  /// @throws inverse_dynamics_solver::InvalidParameterValueException: one of another type.
+  explicit NodeRobot(const inverse_dynamics_solver::Parameters& given);
+
+  /// With the changes; without the parameter `robot` its name and file are empty.
+  const inverse_dynamics_evaluation::RunConfiguration& configuration() const {
+    return configuration_;
+  }
+
+  /// Text of a URDF: the parameter's, else that of the run configuration's file; empty: none.
+  ///
+  /// @throws UserError: a file that can't be read.
+  std::string description() const;
+
+  /// A solver, initialized with the parameters and a description.
+  ///
+  /// @param description  text of a URDF; empty: none.
+  /// @throws UserError: no plugin name.
+  /// @throws inverse_dynamics_solver::Exception: what the loader and the solver say; a parameter
+  /// below `ids.` that the solver doesn't know.
+  std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> makeSolver(
+      const std::string& description) const;
+
+  /// Unit of each joint's torque: N for a prismatic joint of the description, else N m.
+  std::vector<std::string> torqueUnits(const std::vector<std::string>& joint_names,
+                                       const std::string& description) const;
+
+ private:
+  inverse_dynamics_evaluation::RunConfiguration configuration_;
+  std::string description_;                                // the parameter
+  inverse_dynamics_solver::Parameters solver_parameters_;  // below kSolverNamespace
+};
+
+}  // namespace inverse_dynamics_ros
