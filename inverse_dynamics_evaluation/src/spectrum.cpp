@@ -165,7 +165,7 @@ VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sa
     longest = std::max(longest, stretch.qd.cols());
     samples += stretch.qd.cols() >= kLeastStretch ? stretch.qd.cols() : 0;
   }
-  Index length = 1;
+  Index length = kLeastStretch;
   while (static_cast<double>(2 * length) <= kSegmentSeconds * sampling_frequency &&
          length < longest) {
     length *= 2;

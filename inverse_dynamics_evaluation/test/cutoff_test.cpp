@@ -170,6 +170,17 @@ TEST(ChooseCutoff, CountsNoStretchesThatAreTooShortToBeUsed) {
   EXPECT_GT(chooseCutoff(stretches, 125.0).moving, 0.99);
 }
 
+TEST(ChooseCutoff, TakesSamplesThatAreFarApart) {
+  // a segment of 20 s would have less than one sample
+  Motion motion = sines(0.04, 5000.0, {0.001});
+  addVelocityNoise(motion, 0.005, 17);
+  const CutoffChoice choice = chooseCutoff({{motion.q, motion.qd}}, 0.04);
+  EXPECT_GT(choice.agreement, 0.0);
+  EXPECT_LE(choice.agreement, choice.highest);
+  EXPECT_LT(accelerationError(motion, 0.04, choice.cutoff),
+            2.0 * accelerationError(motion, 0.04, 0.4 * 0.04));
+}
+
 TEST(ChooseCutoff, RefusesTooFewSamples) {
   const Eigen::MatrixXd few = Eigen::MatrixXd::Ones(2, 15);
   EXPECT_THAT(errorOf<EvaluationError>([&] {
