@@ -16,16 +16,23 @@ constexpr Index kAverage = 2;  // blocks to either side that are averaged
 constexpr Index kMargin = 5;   // blocks to either side of a motion that count as motion
 constexpr double kNoiseShare =
     0.1;  // of the variance of qd's noise: motion power above it is motion
-constexpr double kRateShare = 8.0;  // the same of q's, over a block squared; noise of one end: 1
+constexpr double kStepShare = 8.0;  // of the square of q's largest step, over a block squared
 constexpr double kSecondDifference = 6.0;  // variance of a second difference of white noise
 
-// Variance of white noise, from second differences about the samples from `first` to `last` - 1.
-Eigen::ArrayXd noiseVariance(const Eigen::Ref<const Eigen::MatrixXd>& x, Index first, Index last) {
-  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(x.rows());
+// Squared second differences about the samples from `first` to `last` - 1.
+struct SecondDifferences {
+  Eigen::ArrayXd mean, greatest;
+};
+
+SecondDifferences secondDifferences(const Eigen::Ref<const Eigen::MatrixXd>& x, Index first,
+                                    Index last) {
+  SecondDifferences squares{Eigen::ArrayXd::Zero(x.rows()), Eigen::ArrayXd::Zero(x.rows())};
   for (Index k = first; k < last; ++k) {
-    sum += (x.col(k + 1) - 2.0 * x.col(k) + x.col(k - 1)).array().square();
+    const Eigen::ArrayXd square = (x.col(k + 1) - 2.0 * x.col(k) + x.col(k - 1)).array().square();
+    squares.mean += square / static_cast<double>(last - first);
+    squares.greatest = squares.greatest.max(square);
   }
-  return sum / (kSecondDifference * static_cast<double>(last - first));
+  return squares;
 }
 
 // Motion power of all joints in each block of samples, and what noise may pretend; n x B.
@@ -45,12 +52,13 @@ BlockPowers blockPowers(const Stretch& stretch, double sampling_frequency, Index
     const Eigen::ArrayXd velocity = stretch.qd.middleCols(begin, count + 1).rowwise().mean();
     const Eigen::ArrayXd rate = (stretch.q.col(begin + count) - stretch.q.col(begin)) *
                                 (sampling_frequency / static_cast<double>(count));
-    powers.motion.col(b) = velocity * rate;
+    powers.motion.col(b) = (velocity * rate).min(rate.square());
     const Index first = std::max<Index>(begin, 1);
     const Index last = std::max(first + 1, begin + count);
     const double seconds = static_cast<double>(count) / sampling_frequency;
-    powers.noise.col(b) = kNoiseShare * noiseVariance(stretch.qd, first, last) +
-                          kRateShare * noiseVariance(stretch.q, first, last) / (seconds * seconds);
+    powers.noise.col(b) =
+        kNoiseShare / kSecondDifference * secondDifferences(stretch.qd, first, last).mean +
+        kStepShare / (seconds * seconds) * secondDifferences(stretch.q, first, last).greatest;
   }
   return powers;
 }

@@ -17,13 +17,14 @@ inline namespace v2 {
 /// Weight of each sample, 0 at rest to 1 in motion; smooth, and 1 for half a second beyond a
 /// motion.
 ///
-/// Over blocks of a tenth of a second the mean velocity times the mean rate of the position is
-/// motion power: noise of q and noise of qd don't agree, unless a driver made qd from q. A joint
-/// moves where that power, averaged over half a second, exceeds what noise there may pretend: a
-/// tenth of the variance of the noise of qd, and four times the variance that noise of q gives the
-/// mean rate (both variances from second differences). The arm moves where a joint does. Each
-/// weight depends on the samples within one and a half seconds only, so a recording of any length
-/// needs no second look.
+/// Over blocks of a tenth of a second, motion power is the mean velocity times the mean rate r of
+/// the position, and at most r^2, so that slow noise of qd isn't motion where q rests. A joint
+/// moves where that power, averaged over half a second, exceeds what noise may add to it: a tenth
+/// of the variance of the noise of qd (from second differences), and the square of the rate that a
+/// step of q would have if it were sqrt(8) times the largest second difference in the block. So an
+/// encoder that flips between two counts rests, even if a driver made qd from it. The arm moves
+/// where a joint does. Each weight depends on the samples within one and a half seconds only, so a
+/// recording of any length needs no second look.
 ///
 /// @return N; of the samples of the stretch.
 Eigen::ArrayXd activity(const Stretch& stretch, double sampling_frequency);

@@ -149,6 +149,36 @@ TEST(ChooseCutoff, DependsOnTheMotionNotOnTheRestAroundIt) {
   EXPECT_LT(*greatest, 1.6 * *least);
 }
 
+// Positions in steps of an encoder, with a little noise, and velocities made from them.
+void measureByEncoder(Motion& motion, double sampling_frequency, double step, std::uint32_t seed) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> noise(0.0, 0.3 * step);
+  motion.q =
+      motion.q.unaryExpr([&](double x) { return step * std::round((x + noise(generator)) / step); })
+          .eval();
+  motion.qd = derivative(motion.q, 1.0 / sampling_frequency);
+}
+
+TEST(ChooseCutoff, CountsTheFlipsOfAnEncoderAsRest) {
+  // the driver makes velocities from counts, so the noise of both agrees
+  Motion motion = restingBut(125.0, 300.0, 150.0, 0.5);
+  measureByEncoder(motion, 125.0, 1e-5, 13);
+  EXPECT_LT(chooseCutoff({{motion.q, motion.qd}}, 125.0).moving, 0.02);
+}
+
+TEST(ChooseCutoff, CountsSlowNoiseOfVelocitiesAsRest) {
+  Motion motion = restingBut(250.0, 300.0, 150.0, 0.5);
+  Motion noise = motion;
+  noise.q.setZero();
+  noise.qd.setZero();
+  addVelocityNoise(noise, 0.02, 14);
+  motion.qd += lowPass(noise.qd, 250.0, 20.0, 1);
+  std::mt19937 generator(15);
+  std::normal_distribution<double> encoder(0.0, 1e-6);
+  motion.q = motion.q.unaryExpr([&](double x) { return x + encoder(generator); }).eval();
+  EXPECT_LT(chooseCutoff({{motion.q, motion.qd}}, 250.0).moving, 0.02);
+}
+
 TEST(ChooseCutoff, UsesStretchesOfAnyLength) {
   // the only motion is in a stretch shorter than a segment
   Motion rest = restingBut(125.0, 60.0, 100.0, 1.0);

@@ -28,7 +28,8 @@
 ///
 /// Rests are left out. In 20 minutes with one motion of half a second, noise of all 20 minutes
 /// would outweigh what the filter takes from the motion. So each look sees the samples in motion
-/// and half a second around them: those where q and qd agree on a velocity above the noise.
+/// and half a second around them: those where q changes steadily, by more than steps of an encoder,
+/// and qd agrees.
 ///
 /// One cut-off serves all joints: each joint's spectra are divided by its own level of qd above
 /// f_s / 4 and added. All of this is sums over segments of at most 20 s, gathered in one pass.
