@@ -124,10 +124,10 @@ def points(rate: float, duration: float, frequency: float, random: np.random.Gen
     return Motion(rate, q, qd, qdd)
 
 
-def single(rate: float, duration: float, begin: float, length: float) -> Motion:
-    """One quintic motion in a long rest."""
+def single(rate: float, duration: float, begin: float, length: float, speed: float = 0.3) -> Motion:
+    """One quintic motion of a mean speed [rad/s] in a long rest."""
     time = np.arange(round(rate * duration) + 1)[:, None] / rate
-    way = 0.3 * length * np.linspace(1.0, -0.5, JOINTS)
+    way = speed * length * np.linspace(1.0, -0.5, JOINTS)
     p, pd, pdd = quintic((time - begin) / length)
     return Motion(rate, way * p, way / length * pd, way / length**2 * pdd)
 
@@ -237,6 +237,20 @@ def recordings(step: int) -> Iterator[Recording]:
             moving = np.flatnonzero(np.abs(motion.time - begin - length / 2) <= length / 2)
             random = np.random.default_rng(1000 + 10 * index + number)
             yield recorded("10 or 20 min of rest, one motion", motion, noise, random, moving)
+    yield from rests(step)
+
+
+def rests(step: int) -> Iterator[Recording]:
+    """Long rests of any rate, speed and length of the motion: no constant was chosen by them."""
+    for number in range(0, 60, step):
+        random = np.random.default_rng(90000 + number)
+        rate = float(random.choice((100.0, 125.0, 200.0, 250.0, 500.0, 1000.0)))
+        duration, length = 40000 / rate, random.uniform(0.4, 1.0)
+        begin, speed = random.uniform(1.0, duration - 2.0), 10 ** random.uniform(-1.0, 0.0)
+        motion = single(rate, duration, begin, length, speed)
+        moving = np.flatnonzero(np.abs(motion.time - begin - length / 2) <= length / 2)
+        noise = list(NOISES)[number % len(NOISES)]
+        yield recorded("40 to 400 s of rest, other motions", motion, noise, random, moving)
 
 
 # ---- errors --------------------------------------------------------------------------------------

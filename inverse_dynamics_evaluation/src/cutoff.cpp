@@ -8,6 +8,7 @@
 #include <string>
 
 #include "checks.hpp"
+#include "quantile.hpp"
 #include "spectrum.hpp"
 
 namespace inverse_dynamics_evaluation {
@@ -23,14 +24,24 @@ constexpr double kMostOfMotion = 0.9;   // of the power: the plateau is looked f
 constexpr double kPlateauBegin = 1.25;  // of a cut-off: the noise right above it
 constexpr double kPlateauEnd = 2.5;     // of a cut-off
 constexpr double kSlowFall = 0.25;      // in an octave: noise behind a filter of first order
-constexpr double kLeastNoise =
-    1e-4;  // of the noisiest joint's power: what a joint may be weighed by
+// of the noisiest joint's power: what a joint may be weighed by
+constexpr double kLeastNoise = 1e-4;
+constexpr int kNoiseBands = 8;          // of high frequencies, where q has white noise
+constexpr double kLowestBand = 0.125;   // of half the sampling frequency
+constexpr double kHighestBand = 0.9;    // the same
+constexpr double kQuietBands = 0.25;    // of the bands, at least, have nothing but noise
+constexpr double kSmoothing = 0.1;      // of a frequency to either side, in an average
+constexpr Eigen::Index kLeastBins = 2;  // frequencies to either side in an average
+constexpr double kMostly = 0.5;         // of a power
+constexpr int kCoherenceBands = 4;      // in which qd may have the noise of q
+constexpr double kBandWidth = 0.5;      // octaves
 
 // Spectra of all joints in one.
 struct JointSum {
   Eigen::ArrayXd frequency;
   Eigen::ArrayXd total;   // power of qd
-  Eigen::ArrayXd common;  // the share of it that q confirms: motion
+  Eigen::ArrayXd rate;    // power of the derivative of q
+  Eigen::ArrayXd common;  // what both share
 };
 
 double median(Eigen::ArrayXd values) {
@@ -53,6 +64,7 @@ Eigen::ArrayXd jointWeights(const VelocitySpectra& spectra) {
 
 JointSum sumOfJoints(const VelocitySpectra& spectra, const Eigen::ArrayXd& weights) {
   return {spectra.frequency, (spectra.total.matrix() * weights.matrix()).array(),
+          (spectra.rate.matrix() * weights.matrix()).array(),
           (spectra.common.matrix() * weights.matrix()).array()};
 }
 
@@ -82,10 +94,85 @@ class Gains {
   Eigen::ArrayXd square_;  // of tan(pi f / f_s)
 };
 
+// Averages over neighbouring frequencies.
+Eigen::ArrayXd smoothed(const Eigen::ArrayXd& power) {
+  const Eigen::Index count = power.size();
+  Eigen::ArrayXd before(count + 1);  // sums
+  before[0] = 0.0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    before[i + 1] = before[i] + power[i];
+  }
+  Eigen::ArrayXd result(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index half =
+        std::max(static_cast<Eigen::Index>(kSmoothing * static_cast<double>(i)), kLeastBins);
+    const Eigen::Index begin = std::clamp<Eigen::Index>(i - half, 1, count - 1);
+    const Eigen::Index end = std::min(i + half + 1, count);
+    result[i] = (before[end] - before[begin]) / static_cast<double>(end - begin);
+  }
+  return result;
+}
+
+// Which share of the power of the derivative of q is white noise of q: f^2 times its level.
+Eigen::ArrayXd noiseOfRate(const JointSum& sum) {
+  const auto last = static_cast<double>(sum.frequency.size() - 1);
+  const auto edge = [&](int band) {
+    const double share = kLowestBand + (kHighestBand - kLowestBand) * band / kNoiseBands;
+    return std::max<Eigen::Index>(static_cast<Eigen::Index>(share * last), 1);
+  };
+  std::vector<double> levels;
+  for (int band = 0; band < kNoiseBands; ++band) {
+    const Eigen::Index count = std::max<Eigen::Index>(edge(band + 1) - edge(band), 1);
+    levels.push_back(
+        (sum.rate.segment(edge(band), count) / sum.frequency.segment(edge(band), count).square())
+            .mean());
+  }
+  const Eigen::ArrayXd rate = smoothed(sum.rate).max(std::numeric_limits<double>::min());
+  return (quantile(levels, kQuietBands) * sum.frequency.square() / rate).min(1.0);
+}
+
+// Whether qd has the noise of q: whether both are coherent in a band from `begin` on, where q is
+// mostly noise. Independent noise leaves less than half of the coherence there.
+bool sharesNoise(const JointSum& sum, Eigen::Index begin) {
+  const Eigen::Index last = sum.frequency.size();
+  for (int band = 0; band < kCoherenceBands; ++band) {
+    const auto edge = [&](int number) {
+      const double bin = std::ceil(static_cast<double>(begin) * std::exp2(kBandWidth * number));
+      return std::min(static_cast<Eigen::Index>(bin), last);
+    };
+    const Eigen::Index count = edge(band + 1) - edge(band);
+    if (count <= kLeastBins) {
+      continue;
+    }
+    const double common = sum.common.segment(edge(band), count).sum();
+    if (common > 0 && common * common > kMostly * sum.total.segment(edge(band), count).sum() *
+                                            sum.rate.segment(edge(band), count).sum()) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Motion's share of the power of qd, as q confirms it.
+Eigen::ArrayXd confirmedMotion(const JointSum& sum) {
+  const Eigen::ArrayXd noise = noiseOfRate(sum);
+  Eigen::Index begin = 1;  // of the frequencies where q is mostly noise
+  while (begin < noise.size() && noise[begin] <= kMostly) {
+    ++begin;
+  }
+  if (begin == noise.size() || !sharesNoise(sum, begin)) {
+    return sum.common;
+  }
+  Eigen::ArrayXd motion = sum.total * (1.0 - noise);
+  motion.tail(motion.size() - begin).setZero();
+  return motion;
+}
+
 // The candidate with the least expected squared error of acceleration.
 double byAgreement(const JointSum& sum, const Eigen::ArrayXd& candidates, const Gains& gains) {
-  const Eigen::ArrayXd motion = sum.frequency.square() * sum.common;
-  const Eigen::ArrayXd noise = sum.frequency.square() * (sum.total - sum.common);
+  const Eigen::ArrayXd confirmed = confirmedMotion(sum);
+  const Eigen::ArrayXd motion = sum.frequency.square() * confirmed;
+  const Eigen::ArrayXd noise = sum.frequency.square() * (sum.total - confirmed);
   double best = candidates[0];
   double least = std::numeric_limits<double>::infinity();
   for (const double cutoff : candidates) {

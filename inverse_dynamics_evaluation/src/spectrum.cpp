@@ -110,6 +110,7 @@ class Sums {
       const Complex velocity_part = 0.5 * (here + mirrored);
       const Complex position_part = Complex(0.0, -0.5) * (here - mirrored);
       spectra_.total(i, j) += std::norm(velocity_part);
+      spectra_.rate(i, j) += std::norm(position_part);
       spectra_.common(i, j) += (velocity_part * std::conj(position_part)).real();
     }
   }
@@ -176,6 +177,7 @@ VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sa
   VelocitySpectra spectra;
   spectra.frequency = Eigen::ArrayXd::LinSpaced(frequencies, 0.0, sampling_frequency / 2.0);
   spectra.total = Eigen::ArrayXXd::Zero(frequencies, joints);
+  spectra.rate = Eigen::ArrayXXd::Zero(frequencies, joints);
   spectra.common = Eigen::ArrayXXd::Zero(frequencies, joints);
   Sums sums(spectra, length);
   for (const Stretch& stretch : stretches) {
@@ -189,7 +191,9 @@ VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sa
   // a central difference passes frequency w with the gain sin(w) / w
   for (Index i = 1; i < frequencies; ++i) {
     const double w = kPi * static_cast<double>(i) / static_cast<double>(frequencies - 1);
-    spectra.common.row(i) /= std::max(std::sin(w) / w, kLeastDifferenceGain);
+    const double gain = std::max(std::sin(w) / w, kLeastDifferenceGain);
+    spectra.rate.row(i) /= gain * gain;
+    spectra.common.row(i) /= gain;
   }
   return spectra;
 }

@@ -24,6 +24,7 @@ constexpr Eigen::Index kLeastStretch = 16;
 struct VelocitySpectra {
   Eigen::ArrayXd frequency;  ///< F; Hz
   Eigen::ArrayXXd total;     ///< F x n; power of qd
+  Eigen::ArrayXXd rate;      ///< F x n; power of the derivative of q
   Eigen::ArrayXXd common;  ///< F x n; real part of the cross-spectrum of qd and the derivative of q
   double moving = 0;       ///< share of the samples in motion
 };

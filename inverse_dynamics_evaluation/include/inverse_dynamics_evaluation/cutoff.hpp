@@ -18,8 +18,12 @@
 ///
 /// 1. **Agreement.** The derivative of q is a second measurement of the same velocity. What both
 ///    have in common, the real part of their cross-spectrum, is motion: S. What the spectrum of qd
-///    has beyond that is its noise: N. Nothing is assumed of the colour of the noise. Then E above
-///    gives the cut-off. This look is blind where a driver made qd from q: they share their noise.
+///    has beyond that is its noise: N. Nothing is assumed of the colour of that noise. Where a
+///    driver made qd from q, they share the noise of q: they are coherent at frequencies where the
+///    derivative of q is mostly noise. That noise, often the counts of an encoder, is white in q.
+///    Its level is seen at high frequencies, and its share of the derivative's power at f, which is
+///    proportional to f^2, is taken to be N's share of the power of qd, up to the frequency from
+///    which it is most of it. Then E above gives the cut-off.
 /// 2. **Plateau.** With rising frequency motion fades fast and noise slowly. For each f_c above
 ///    most of the motion, N is taken to be as strong below f_c as right above it, from 1.25 to
 ///    2.5 f_c, where the spectrum of qd must not fall faster than behind a filter of first order; S
@@ -48,7 +52,7 @@ inline namespace v2 {
 /// What was chosen, and what each look said; Hz.
 struct CutoffChoice {
   double cutoff = 0;     ///< the lower of the two
-  double agreement = 0;  ///< where E is least, noise being what q doesn't confirm
+  double agreement = 0;  ///< where E is least, noise being what q doesn't confirm or shares
   double plateau = 0;    ///< where noise as strong as right above it outweighs the motion
   double lowest = 0;     ///< least that could be chosen: two periods in the recording, or 0.25 Hz
   double highest = 0;    ///< greatest that could be chosen: 0.4 of the sampling frequency
