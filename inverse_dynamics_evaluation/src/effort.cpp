@@ -89,12 +89,12 @@ std::vector<double> driveGains(const std::vector<double>& configured, const std:
   const std::vector<std::string>& names = solver.jointNames();
   if (configured.size() != names.size()) {
     throw ConfigurationError(where + ": expected " + std::to_string(names.size()) +
-                             " figures, one per joint of the chain (" + listed(names) + "), got " +
+                             " numbers, one per joint of the chain (" + listed(names) + "), got " +
                              std::to_string(configured.size()));
   }
   if (!std::all_of(configured.begin(), configured.end(),
                    [](double gain) { return std::isfinite(gain) && gain > 0; })) {
-    throw ConfigurationError(where + ": expected figures above zero [N m/A], got " +
+    throw ConfigurationError(where + ": expected numbers above zero [N m/A], got " +
                              figures("%.4g", configured, " "));
   }
   return configured;

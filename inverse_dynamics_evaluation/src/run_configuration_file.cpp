@@ -91,7 +91,7 @@ std::vector<double> driveGainsOf(const std::optional<LocatedValue>& value) {
     }
   }
   if (gains.empty()) {
-    value->fail("a figure per joint");
+    value->fail("a number per joint");
   }
   return gains;
 }

@@ -244,11 +244,11 @@ TEST(DriveGains, AreOnePositiveNumberPerJoint) {
   EXPECT_TRUE(driveGains({}, "file.yaml: drive_gains", solver).empty());
   EXPECT_EQ(driveGains({2, 3}, "file.yaml: drive_gains", solver), (std::vector<double>{2, 3}));
   EXPECT_EQ(errorOf<ConfigurationError>([&] { driveGains({2}, "file.yaml: drive_gains", solver); }),
-            "file.yaml: drive_gains: expected 2 figures, one per joint of the chain (a, b), got 1");
+            "file.yaml: drive_gains: expected 2 numbers, one per joint of the chain (a, b), got 1");
   EXPECT_EQ(errorOf<ConfigurationError>([&] {
               driveGains({2, -3}, "file.yaml: drive_gains", solver);
             }),
-            "file.yaml: drive_gains: expected figures above zero [N m/A], got 2 -3");
+            "file.yaml: drive_gains: expected numbers above zero [N m/A], got 2 -3");
 }
 
 TEST(RulesWithout, SwitchOffTheRulesThatAreNamed) {

@@ -93,7 +93,7 @@ TEST(EffortOptions, AskForDriveGainsOfCurrents) {
   EXPECT_EQ(error("torque", {}), "no error");
   EXPECT_NE(error("current", {}).find("got none from parameter 'drive_gains' nor from package/Two"),
             std::string::npos);
-  EXPECT_NE(error("current", {2}).find("parameter 'drive_gains': expected 2 figures"),
+  EXPECT_NE(error("current", {2}).find("parameter 'drive_gains': expected 2 numbers"),
             std::string::npos);
   EXPECT_NE(error("current", {2, -3}).find("got 2 -3"), std::string::npos);
   EXPECT_NE(error("volts", {}).find("got 'volts'"), std::string::npos);

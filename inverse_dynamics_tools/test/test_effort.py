@@ -190,11 +190,11 @@ def test_nor_does_a_doubt_end_in_currents_without_drive_gains(bags, robot):
 @pytest.mark.parametrize(
     ("gains", "expected"),
     [
-        ((1.0, 2.0), r"drive_gains: expected 6 figures, one per joint .*shoulder_pan.*, got 2"),
-        ((1.0,) * 7, r"drive_gains: expected 6 figures, one per joint .*, got 7"),
-        ((1.0, 2.0, 3.0, 4.0, 5.0, 0.0), r"drive_gains: expected figures above zero .*got 1 2 3 4"),
-        ((1.0, 2.0, 3.0, 4.0, 5.0, -6.0), r"drive_gains: expected figures above zero .*-6"),
-        ((1.0, 2.0, 3.0, 4.0, 5.0, float("nan")), r"drive_gains: expected figures above .*nan"),
+        ((1.0, 2.0), r"drive_gains: expected 6 numbers, one per joint .*shoulder_pan.*, got 2"),
+        ((1.0,) * 7, r"drive_gains: expected 6 numbers, one per joint .*, got 7"),
+        ((1.0, 2.0, 3.0, 4.0, 5.0, 0.0), r"drive_gains: expected numbers above zero .*got 1 2 3 4"),
+        ((1.0, 2.0, 3.0, 4.0, 5.0, -6.0), r"drive_gains: expected numbers above zero .*-6"),
+        ((1.0, 2.0, 3.0, 4.0, 5.0, float("nan")), r"drive_gains: expected numbers above .*nan"),
     ],
 )
 def test_drive_gains_that_make_no_sense_are_an_error_whatever_efforts_mean(

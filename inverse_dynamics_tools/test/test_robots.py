@@ -123,7 +123,7 @@ def test_four_keys_are_enough(write):
         ("effort: torque", "effort: force", ":12: effort: expected one of torque, current, to"),
         ("effort: torque", "effort: [torque]", ":12: effort: expected a text, got a list of 1"),
         (GAINS, "drive_gains: 13.5", ":13: drive_gains: expected a list, got '13.5'"),
-        (GAINS, "drive_gains: []", ":13: drive_gains: expected a figure per joint, got a"),
+        (GAINS, "drive_gains: []", ":13: drive_gains: expected a number per joint, got a"),
         (GAINS, "drive_gains: [13.5, 0]", ":13: drive_gains[1]: expected a drive gain above zero"),
         (GAINS, "drive_gains: [-1, 9]", ":13: drive_gains[0]: expected a drive gain above zero"),
         (GAINS, "drive_gains: [.inf, 9]", ":13: drive_gains[0]: expected a finite number, got"),
