@@ -105,5 +105,22 @@ inline void requireFiniteStamps(const std::string& where,
   }
 }
 
+/// Samples of some joints: n x N, finite; efforts may be missing.
+inline void checkSamples(const Eigen::Ref<const Eigen::VectorXd>& time,
+                         const Eigen::Ref<const Eigen::MatrixXd>& q,
+                         const Eigen::Ref<const Eigen::MatrixXd>& qd,
+                         const Eigen::Ref<const Eigen::MatrixXd>& effort) {
+  requireSamples("samples", "qd", qd, 2);
+  requireSameSize("samples", "q", q, "qd", qd);
+  requireStampPerSample("samples", time, qd);
+  requireFiniteStamps("samples", time);
+  requireFinite("samples", "q", q);
+  requireFinite("samples", "qd", qd);
+  if (effort.size() > 0) {
+    requireSameSize("samples", "effort", effort, "qd", qd);
+    requireFinite("samples", "effort", effort);
+  }
+}
+
 }  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -228,7 +228,6 @@ double byPlateau(const JointSum& sum, const Eigen::ArrayXd& candidates, double s
 }
 
 void checkStretches(const std::vector<Stretch>& stretches) {
-  Eigen::Index longest = 0;
   for (const Stretch& stretch : stretches) {
     requireSameSize("cut-off", "q", stretch.q, "qd", stretch.qd);
     requireFinite("cut-off", "q", stretch.q);
@@ -237,16 +236,18 @@ void checkStretches(const std::vector<Stretch>& stretches) {
       throw EvaluationError("cut-off", "stretches", "the same joints in all", "different numbers",
                             "choose a cut-off for each robot");
     }
-    longest = std::max(longest, stretch.qd.cols());
   }
+}
+
+}  // namespace
+
+void requireLongEnough(Eigen::Index longest) {
   if (longest < kLeastStretch) {
     throw EvaluationError("cut-off", "samples",
                           std::to_string(kLeastStretch) + " or more without a gap",
                           std::to_string(longest), "give a cut-off, or take raw differences");
   }
 }
-
-}  // namespace
 
 CutoffChoice chooseCutoff(const std::vector<Stretch>& stretches, double sampling_frequency,
                           int order) {
@@ -255,17 +256,25 @@ CutoffChoice chooseCutoff(const std::vector<Stretch>& stretches, double sampling
   for (const Stretch& stretch : stretches) {
     longest = std::max(longest, stretch.qd.cols());
   }
+  requireLongEnough(longest);
+  SpectrumSums sums(stretches.front().qd.rows(), longest, sampling_frequency);
+  for (const Stretch& stretch : stretches) {
+    sums.add(stretch);
+  }
+  const double duration = static_cast<double>(longest - 1) / sampling_frequency;
+  return cutoffOf(sums.spectra(), duration, sampling_frequency, order);
+}
 
+CutoffChoice cutoffOf(const VelocitySpectra& spectra, double duration, double sampling_frequency,
+                      int order) {
   // cut-offs to choose from, in equal ratios
   CutoffChoice choice;
-  const double duration = static_cast<double>(longest - 1) / sampling_frequency;
   choice.highest = kHighest * sampling_frequency;
   choice.lowest = std::min(std::max(kLowest, kPeriods / duration), choice.highest);
   const Eigen::ArrayXd candidates =
       Eigen::ArrayXd::LinSpaced(kCandidates, std::log(choice.lowest), std::log(choice.highest))
           .exp();
 
-  const VelocitySpectra spectra = velocitySpectra(stretches, sampling_frequency);
   choice.moving = spectra.moving;
   const Eigen::ArrayXd weights = jointWeights(spectra);
   if (weights.isZero(0)) {  // no velocity ever changes: nothing to take away

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "accelerated_samples.hpp"
+#include "checks.hpp"
 #include "figures.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 
@@ -18,16 +20,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using inverse_dynamics_solver::InverseDynamicsSolver;
 
-// Samples that the solver gets at once: whole groups of those that it computes in parallel, and few
-// enough to stay in the cache.
-constexpr Index kBlock = 4096;
-
-template <class Visit>
-void forEachBlock(Index samples, Visit visit) {
-  for (Index first = 0; first < samples; first += kBlock) {
-    visit(first, std::min(kBlock, samples - first));
-  }
-}
+// Parts of the work, in units of a pass that looks at the samples only.
+constexpr double kLookWeight = 1.0;
+constexpr double kVerdictWeight = 2.0;
+constexpr double kTorquesWeight = 5.0;  // with whatever takes the result
 
 // Runs from where it is made.
 class Stopwatch {
@@ -43,45 +39,55 @@ class Stopwatch {
   Clock::time_point last_ = Clock::now();
 };
 
+// Another stream, whose progress is told and whose time is taken.
+class ObservedSamples : public SampleStream {
+ public:
+  ObservedSamples(SampleStream& samples, double expected, double passes, const TellProgress& tell)
+      : samples_(samples), work_(std::max(expected, 1.0) * passes), tell_(tell) {}
+
+  bool next(SampleBlock& block) override {
+    Stopwatch watch;
+    const bool found = samples_.next(block);
+    seconds_ += watch.lap();
+    if (found && tell_) {
+      done_ += weight_ * static_cast<double>(block.size());
+      tell_(std::min(done_ / work_, 1.0));
+    }
+    return found;
+  }
+  void rewind() override { samples_.rewind(); }
+  bool clockHasChanged() override { return samples_.clockHasChanged(); }
+  Clock clock() const override { return samples_.clock(); }
+  std::string where() const override { return samples_.where(); }
+  std::string frameId() const override { return samples_.frameId(); }
+
+  /// What a sample of the next passes counts for.
+  void setWeight(double weight) { weight_ = weight; }
+
+  /// How long reading took.
+  double seconds() const { return seconds_; }
+
+ private:
+  SampleStream& samples_;
+  double work_;
+  const TellProgress& tell_;
+  double weight_ = kLookWeight;
+  double done_ = 0, seconds_ = 0;
+};
+
 // Errors say which recording they are of.
-LogAccelerations accelerationsOf(const JointLogView& log, const EvaluationOptions& options) {
+template <class Call>
+auto named(const EvaluationOptions& options, Call call) {
   try {
-    return logAccelerations(log, options.method, options.cutoff, options.rules);
+    return call();
   } catch (const EvaluationError& error) {
     const std::string topic = options.topic.empty() ? "" : ": " + options.topic;
     throw EvaluationError(options.recording + topic + ": " + error.what());
   }
 }
 
-// Computed torques of a log, block by block.
-class Torques {
- public:
-  Torques(const JointLogView& log, const InverseDynamicsSolver& solver, const OwnedMatrix& qdd,
-          const EvaluationOptions& options)
-      : log_(log), solver_(solver), qdd_(qdd), options_(options) {}
-
-  MatrixXd computed(Index first, Index count) const {
-    MatrixXd torques =
-        solver_.getTorquesBatch(log_.q.middleCols(first, count), log_.qd.middleCols(first, count),
-                                qdd_.middleCols(first, count));
-    requirePossibleTorques(options_.recording, solver_.jointNames(), options_.units, torques,
-                           first);
-    return torques;
-  }
-
-  MatrixXd gravity(Index first, Index count) const {
-    return solver_.getGravityVectorBatch(log_.q.middleCols(first, count));
-  }
-
- private:
-  const JointLogView& log_;
-  const InverseDynamicsSolver& solver_;
-  const OwnedMatrix& qdd_;
-  const EvaluationOptions& options_;
-};
-
 // The columns where `mask` is true.
-MatrixXd selected(const Eigen::Ref<const MatrixXd>& columns, const Mask& mask) {
+MatrixXd selected(const Eigen::Ref<const MatrixXd>& columns, const Flags& mask) {
   MatrixXd result(columns.rows(), mask.count());
   Index next = 0;
   for (Index k = 0; k < mask.size(); ++k) {
@@ -92,75 +98,158 @@ MatrixXd selected(const Eigen::Ref<const MatrixXd>& columns, const Mask& mask) {
   return result;
 }
 
-EffortVerdict verdictOf(const Torques& torques, const JointLogView& log, const Mask& kept,
-                        const EffortOptions& options) {
-  const bool recorded = log.effort.size() > 0;
-  EffortSums sums(recorded ? kept.count() : 0, log.q.rows(), options.drive_gains);
-  forEachBlock(recorded ? log.q.cols() : 0, [&](Index first, Index count) {
-    const Mask mask = kept.segment(first, count);
-    sums.add(selected(torques.computed(first, count), mask),
-             selected(torques.gravity(first, count), mask),
-             selected(log.effort.middleCols(first, count), mask));
-  });
-  return sums.verdict();
-}
+// An evaluation of samples from wherever they come.
+class Evaluator {
+ public:
+  Evaluator(SampleStream& samples, double expected, const InverseDynamicsSolver& solver,
+            const EvaluationOptions& options)
+      : solver_(solver),
+        options_(options),
+        stated_(statedEffort(options.effort)),
+        samples_(samples, expected, passes(), options.progress) {}
 
-// Errors of the computed torques, once it is known what efforts mean; hands over the series.
-void compare(const Torques& torques, const JointLogView& log, const TakeSamples& take,
-             Evaluation& result) {
-  const Mask& kept = result.accelerations.samples.kept;
-  const bool recorded = log.effort.size() > 0;
-  ErrorSums all(log.q.rows());
-  ErrorSums of_kept(log.q.rows());
-  forEachBlock(log.q.cols(), [&](Index first, Index count) {
-    MatrixXd computed = torques.computed(first, count);
-    if (result.effort.meaning == kTorqueWithoutGravity) {
-      computed -= torques.gravity(first, count);
+  /// @param gather  whether the result gets what there is of each sample.
+  Evaluation evaluate(const TakeSamples& take, bool gather) {
+    Evaluation result;
+    result.joint_names = solver_.jointNames();
+    result.effort = stated_;
+    AccelerationOptions accelerations;
+    accelerations.method = options_.method;
+    accelerations.cutoff = options_.cutoff;
+    accelerations.rules = options_.rules;
+    plan_ = named(options_, [&] { return planAccelerations(samples_, accelerations); });
+    result.accelerations = withoutSeries(samples_, plan_);
+    acceleration_seconds_ = watch_.lap() - samples_.seconds();
+    if (stated_.meaning == kAutomatic) {
+      samples_.setWeight(kVerdictWeight);
+      result.effort = effortOfData(verdict(), options_.effort);
     }
-    OwnedMatrix measured;
-    if (recorded) {
-      measured = result.effort.torques(log.effort.middleCols(first, count));
-      all.add(computed, measured, first);
-      of_kept.add(computed, measured, first, kept.segment(first, count));
-    }
-    if (take) {
-      take({first, log.q.middleCols(first, count), log.qd.middleCols(first, count),
-            result.accelerations.qdd.middleCols(first, count), computed, measured});
-    }
-  });
-  if (recorded) {
-    result.errors = all.metrics();
-    result.errors_of_kept = of_kept.metrics();
+    samples_.setWeight(kTorquesWeight);
+    compare(take, gather, result);
+    result.reading_seconds = samples_.seconds();
+    result.acceleration_seconds = acceleration_seconds_;
+    result.torque_seconds = torque_seconds_;
+    addNotes(result);
+    return result;
   }
-}
 
-void append(std::vector<std::string>& notes, const std::vector<std::string>& more) {
-  notes.insert(notes.end(), more.begin(), more.end());
-}
+ private:
+  double passes() const {
+    return (options_.cutoff == 0 ? 3.0 : 2.0) * kLookWeight + kTorquesWeight +
+           (stated_.meaning == kAutomatic ? kVerdictWeight : 0.0);
+  }
+
+  // Calls `visit` with all samples, 4096 at a time, and their computed torques.
+  template <class Visit>
+  void forEachBlock(Visit visit) {
+    AcceleratedSamples samples(samples_, plan_);
+    TimedBlock block;
+    watch_.lap();
+    for (double read = samples_.seconds(); samples.next(block); read = samples_.seconds()) {
+      acceleration_seconds_ += watch_.lap() - (samples_.seconds() - read);
+      const MatrixXd computed = solver_.getTorquesBatch(block.q, block.qd, block.qdd);
+      requirePossibleTorques(options_.recording, solver_.jointNames(), options_.units, computed,
+                             block.first);
+      visit(block, computed);
+      watch_.lap();
+    }
+  }
+
+  MatrixXd gravity(const TimedBlock& block) const { return solver_.getGravityVectorBatch(block.q); }
+
+  EffortVerdict verdict() {
+    const bool recorded = plan_.census.efforts;
+    EffortSums sums(recorded ? plan_.found.report.counts.kept : 0, plan_.census.joints,
+                    options_.effort.drive_gains);
+    if (recorded) {
+      forEachBlock([&](const TimedBlock& block, const MatrixXd& computed) {
+        sums.add(selected(computed, block.kept), selected(gravity(block), block.kept),
+                 selected(block.effort, block.kept));
+        torque_seconds_ += watch_.lap();
+      });
+    }
+    return sums.verdict();
+  }
+
+  // Errors of the computed torques, once it is known what efforts mean; hands over the series.
+  void compare(const TakeSamples& take, bool gather, Evaluation& result) {
+    const bool recorded = plan_.census.efforts;
+    const Index all = plan_.census.counts.all;
+    OwnedMatrix qdd(plan_.census.joints, gather ? all : 0);
+    SampleSeries series(gather ? all : 0);
+    ErrorSums errors(plan_.census.joints);
+    ErrorSums of_kept(plan_.census.joints);
+    forEachBlock([&](const TimedBlock& block, MatrixXd computed) {
+      if (result.effort.meaning == kTorqueWithoutGravity) {
+        computed -= gravity(block);
+      }
+      OwnedMatrix measured;
+      if (recorded) {
+        measured = result.effort.torques(block.effort);
+        errors.add(computed, measured, block.first);
+        of_kept.add(computed, measured, block.first, Mask(block.kept));
+      }
+      torque_seconds_ += watch_.lap();
+      if (gather) {
+        qdd.middleCols(block.first, block.size()) = block.qdd;
+        series.add(block);
+      }
+      if (take) {
+        take({block.first, all, block.header_stamps, block.receive_stamps, block.time, block.q,
+              block.qd, block.qdd, block.effort, computed, measured, block.repeated,
+              block.non_increasing, block.start_transient, block.isolated, block.kept,
+              samples_.frameId()});
+      }
+    });
+    if (gather) {
+      result.accelerations.qdd = std::move(qdd);
+      series.moveTo(result.accelerations.samples);
+    }
+    if (recorded) {
+      result.errors = errors.metrics();
+      result.errors_of_kept = of_kept.metrics();
+    }
+  }
+
+  void addNotes(Evaluation& result) const {
+    const auto add = [&](const std::vector<std::string>& more) {
+      result.notes.insert(result.notes.end(), more.begin(), more.end());
+    };
+    add(solver_.warnings());
+    add(options_.notes);
+    const bool all_zero = plan_.census.efforts && plan_.census.all_zero;
+    add(effortNotes(result.effort, options_.effort, all_zero, driveGainsOf(solver_)));
+    add(result.accelerations.findings);
+  }
+
+  const InverseDynamicsSolver& solver_;
+  const EvaluationOptions& options_;
+  Effort stated_;
+  ObservedSamples samples_;
+  AccelerationPlan plan_;
+  Stopwatch watch_;
+  double acceleration_seconds_ = 0, torque_seconds_ = 0;
+};
 
 }  // namespace
 
 Evaluation evaluate(const JointLogView& log, const InverseDynamicsSolver& solver,
                     const EvaluationOptions& options, const TakeSamples& take) {
-  Evaluation result;
-  result.joint_names = solver.jointNames();
-  result.effort = statedEffort(options.effort);
-  Stopwatch watch;
-  result.accelerations = accelerationsOf(log, options);
-  result.acceleration_seconds = watch.lap();
-  const Torques torques(log, solver, result.accelerations.qdd, options);
-  if (result.effort.meaning == kAutomatic) {
-    result.effort = effortOfData(
-        verdictOf(torques, log, result.accelerations.samples.kept, options.effort), options.effort);
-  }
-  compare(torques, log, take, result);
-  result.torque_seconds = watch.lap();
+  const Eigen::VectorXd time = log.time();
+  named(options, [&] { checkSamples(time, log.q, log.qd, log.effort); });
+  SamplesInMemory samples(log, time);
+  const auto expected = static_cast<double>(time.size());
+  return Evaluator(samples, expected, solver, options).evaluate(take, true);
+}
 
-  append(result.notes, solver.warnings());
-  append(result.notes, options.notes);
-  const bool all_zero = log.effort.size() > 0 && log.effort.isZero(0);
-  append(result.notes, effortNotes(result.effort, options.effort, all_zero, driveGainsOf(solver)));
-  append(result.notes, result.accelerations.findings);
+Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
+                    const InverseDynamicsSolver& solver, const EvaluationOptions& options,
+                    const TakeSamples& take) {
+  RecordedSamples samples(source, recording.joints, recording.clock, recording.log);
+  Evaluation result =
+      Evaluator(samples, static_cast<double>(source.expectedMessages()), solver, options)
+          .evaluate(take, false);
+  result.recording = samples.about();
   return result;
 }
 

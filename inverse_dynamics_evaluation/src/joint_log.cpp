@@ -58,31 +58,45 @@ JointLogBuilder::JointLogBuilder(std::string where, std::vector<std::string> joi
     : where_(std::move(where)),
       options_(std::move(options)),
       matching_(withoutRepeats(std::move(joints))),
-      position_{"position", "joint positions are needed", {}},
-      velocity_{"velocity", "joint velocities are needed (accelerations come from them)", {}},
-      effort_{"effort", "measured efforts are what computed torques are compared with", {}},
-      acceleration_{"acceleration", "others before it have some", {}} {}
+      position_{"position", "joint positions are needed", {}, false},
+      velocity_{
+          "velocity", "joint velocities are needed (accelerations come from them)", {}, false},
+      effort_{"effort", "measured efforts are what computed torques are compared with", {}, false},
+      acceleration_{"acceleration", "others before it have some", {}, false} {}
 
 void JointLogBuilder::add(const JointSample& sample) {
   ++samples_;
   if (!matches(sample)) {
     return;
   }
-  const bool first = message_.empty();
   append(position_, sample.position, sample, true);
   append(velocity_, sample.velocity, sample, true);
-  append(effort_, sample.effort, sample,
-         options_.effort_required || (!first && effort_.numbers.size() != 0));
-  append(acceleration_, sample.acceleration, sample, !first && acceleration_.numbers.size() != 0);
-  header_stamps_.push_back(sample.header_stamp);
-  receive_stamps_.push_back(sample.receive_stamp);
+  append(effort_, sample.effort, sample, options_.effort_required || effort_.recorded);
+  append(acceleration_, sample.acceleration, sample, acceleration_.recorded);
+  if (isFirst()) {
+    position_.recorded = velocity_.recorded = true;
+    effort_.recorded = sample.effort.size() > 0;
+    acceleration_.recorded = sample.acceleration.size() > 0;
+  }
+  noteStamps(sample.header_stamp, sample.receive_stamp);
   message_.push_back(sample.message);
   if (frame_id_.empty()) {
     frame_id_ = sample.frame_id;
   }
 }
 
+void JointLogBuilder::noteStamps(std::int64_t header, std::int64_t receive) {
+  header_stamps_.push_back(header);
+  receive_stamps_.push_back(receive);
+  header_stamped_ = header_stamped_ || header != 0;
+  receive_stamped_ = receive_stamped_ || receive != 0;
+}
+
 void JointLogBuilder::add(const JointStateBlock& block) {
+  if (addWhole(block)) {
+    return;
+  }
+  // sample by sample: to decide what is recorded, or to tell what is wrong
   using Numbers = JointSample::Numbers;
   const auto row = [](const JointStateNumbers& field, std::size_t i) {
     return Numbers(field.row(i), static_cast<Index>(field.columns));
@@ -95,8 +109,50 @@ void JointLogBuilder::add(const JointStateBlock& block) {
   }
 }
 
-JointLog JointLogBuilder::finish(Clock clock) {
-  requireSamples();
+// Adds messages in which nothing is wrong; false, and none of them added, if anything may be.
+bool JointLogBuilder::addWhole(const JointStateBlock& block) {
+  const auto count = static_cast<Index>(block.size());
+  const auto fits = [&](const Column& column, const JointStateNumbers& numbers) {
+    return numbers.columns == (column.recorded ? block.joint_names.size() : 0);
+  };
+  if (isFirst() || matching_.match(block.joint_names) != JointMatching::Found::kAll ||
+      !fits(position_, block.position) || !fits(velocity_, block.velocity) ||
+      !fits(effort_, block.effort) || acceleration_.recorded ||
+      !copy(position_, block.position, count) || !copy(velocity_, block.velocity, count) ||
+      !copy(effort_, block.effort, count)) {
+    return false;
+  }
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    noteStamps(block.header_stamps[i], block.receive_stamps[i]);
+    message_.push_back(static_cast<Index>(block.first) + static_cast<Index>(i));
+  }
+  if (frame_id_.empty()) {
+    frame_id_ = block.frame_id;
+  }
+  samples_ += count;
+  return true;
+}
+
+// Copies the numbers of the joints behind those that were added; false if one isn't of a motion.
+bool JointLogBuilder::copy(Column& column, const JointStateNumbers& numbers, Index count) {
+  if (!column.recorded) {
+    return true;
+  }
+  reserve(column, count);
+  const std::vector<std::size_t>& from = matching_.columns();
+  double* to = column.numbers.col(static_cast<Index>(message_.size())).data();
+  bool possible = true;
+  for (Index k = 0; k < count; ++k) {
+    const double* const row = numbers.row(static_cast<std::size_t>(k));
+    for (const std::size_t j : from) {
+      possible = possible && std::abs(row[j]) <= kLargestNumber;
+      *to++ = row[j];
+    }
+  }
+  return possible;
+}
+
+JointLog JointLogBuilder::takeSamples() {
   JointLog log;
   log.joint_names = matching_.joints();
   log.header_stamps = takenStamps(header_stamps_);
@@ -105,19 +161,31 @@ JointLog JointLogBuilder::finish(Clock clock) {
   log.qd = taken(velocity_);
   log.effort = taken(effort_);
   log.qdd = taken(acceleration_);
-  log.frame_id = std::exchange(frame_id_, {});
   log.message = std::exchange(message_, {});
+  taken_ += static_cast<Index>(log.message.size());
+  return log;
+}
+
+JointLog JointLogBuilder::finish(Clock clock) {
+  requireSamples();
+  JointLog log = takeSamples();
+  log.frame_id = std::exchange(frame_id_, {});
   const Index samples = std::exchange(samples_, 0);
   const std::vector<std::string> others = std::exchange(other_names_, {});
-  const Index left_out = samples - static_cast<Index>(log.message.size());
+  const Index left_out = samples - std::exchange(taken_, 0);
   if (left_out > 0) {
     log.notes.push_back(std::to_string(left_out) + " of " + std::to_string(samples) +
                         " messages left out: they hold none of the joints, but " + listed(others));
   }
+  for (Column* column : {&position_, &velocity_, &effort_, &acceleration_}) {
+    column->recorded = false;
+  }
   log.clock = clock;
+  const bool no_header_stamp = !std::exchange(header_stamped_, false);
+  const bool received = std::exchange(receive_stamped_, false);
   if (clock == Clock::kAuto) {
     log.clock = Clock::kHeader;
-    if (log.header_stamps.isZero() && !log.receive_stamps.isZero()) {
+    if (no_header_stamp && received) {
       log.clock = Clock::kReceive;
       log.notes.emplace_back("no header has a stamp: the time of reception is used");
     }
@@ -126,7 +194,7 @@ JointLog JointLogBuilder::finish(Clock clock) {
 }
 
 void JointLogBuilder::requireSamples() const {
-  if (!message_.empty()) {
+  if (!isFirst()) {
     return;
   }
   if (samples_ == 0) {
@@ -172,7 +240,7 @@ bool JointLogBuilder::matches(const JointSample& sample) {
 void JointLogBuilder::append(Column& column, const JointSample::Numbers& numbers,
                              const JointSample& sample, bool required) {
   const auto names = static_cast<Index>(sample.names.size());
-  const bool late = !message_.empty() && column.numbers.size() == 0;  // absent from those before
+  const bool late = !isFirst() && !column.recorded;  // absent from those before
   if (numbers.size() == 0 && !required) {
     return;
   }
@@ -184,12 +252,8 @@ void JointLogBuilder::append(Column& column, const JointSample::Numbers& numbers
     throw RecordingError(place(sample) + ": " + column.field + ": expected " + expected + ", got " +
                          got + "; " + column.reason + ": does the driver publish them?");
   }
-  const auto n = static_cast<Index>(matching_.joints().size());
+  reserve(column, 1);
   const auto count = static_cast<Index>(message_.size());
-  if (column.numbers.cols() == count) {  // full: twice the room, by realloc, which copies no pages
-    if (count == 0) column.numbers.resize(n, 0);
-    column.numbers.conservativeResize(Eigen::NoChange, std::max<Index>(64, 2 * count));
-  }
   for (std::size_t j = 0; j < matching_.columns().size(); ++j) {
     const double number = numbers[static_cast<Index>(matching_.columns()[j])];
     if (!std::isfinite(number)) {
@@ -215,6 +279,18 @@ std::string JointLogBuilder::place(const JointSample& sample) const {
     text += ", point " + std::to_string(sample.point + 1);
   }
   return text;
+}
+
+// Makes room: twice as much if it is full, by realloc, which copies no pages.
+void JointLogBuilder::reserve(Column& column, Index more) const {
+  const auto count = static_cast<Index>(message_.size());
+  if (column.numbers.rows() == 0) {
+    column.numbers.resize(static_cast<Index>(matching_.joints().size()), 0);
+  }
+  if (column.numbers.cols() < count + more) {
+    column.numbers.conservativeResize(Eigen::NoChange,
+                                      std::max<Index>({64, 2 * count, count + more}));
+  }
 }
 
 // What was appended, in the same memory.

@@ -4,15 +4,14 @@
 
 #include <utility>
 
+#include "accelerated_samples.hpp"
+#include "checks.hpp"
 #include "figures.hpp"
-#include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
-
-using Eigen::Index;
 
 constexpr double kMostlyAtRest = 0.5;  // share of motion below which the rest is reported
 
@@ -20,30 +19,14 @@ std::string seconds(std::int64_t stamp) {
   return formatted("%.9f", static_cast<double>(stamp) * 1e-9) + " s";
 }
 
-// The first of the samples whose stamps don't increase, and the latest stamp before it.
-std::string firstBackwardStamp(const JointLogView::StampsBlock& stamps,
-                               const SampleReport& samples) {
-  Index first = 0;
-  while (!samples.non_increasing[first]) {
-    ++first;
-  }
-  return "sample " + std::to_string(first + 1) + " at " + seconds(stamps[first]) + " after " +
-         seconds(stamps.head(first).maxCoeff());
-}
-
 // How many gaps there are, and the longest.
-std::string gapFinding(const JointLogView::StampsBlock& stamps, const SampleReport& samples,
-                       bool filtered) {
-  Index behind = samples.gaps.front();
-  const auto length = [&](Index k) { return samples.time[k] - samples.time[k - 1]; };
-  for (const Index k : samples.gaps) {
-    behind = length(k) > length(behind) ? k : behind;
-  }
+std::string gapFinding(const SampleReport& samples, bool filtered) {
+  const LongestGap& longest = samples.longest_gap;
   const std::string count = std::to_string(samples.gaps.size());
   return count + (samples.gaps.size() == 1 ? " gap" : " gaps") +
-         " in the recording: no sample for " + formatted("%.3g", length(behind)) +
-         " s after sample " + std::to_string(behind) + " at " + seconds(stamps[behind - 1]) +
-         (samples.gaps.size() == 1 ? "" : " (the longest)") +
+         " in the recording: no sample for " + formatted("%.3g", longest.length) +
+         " s after sample " + std::to_string(longest.behind) + " at " +
+         seconds(longest.stamp_before) + (samples.gaps.size() == 1 ? "" : " (the longest)") +
          (filtered ? "; each side is filtered by itself" : "");
 }
 
@@ -95,18 +78,21 @@ AccelerationMethod accelerationMethod(const std::string& text) {
   throw EvaluationError("accelerations: expected one of " + listed(names) + ", got '" + text + "'");
 }
 
-std::vector<std::string> sampleFindings(const JointLogView::StampsBlock& stamps,
-                                        const std::string& clock, const SampleReport& samples,
+std::vector<std::string> sampleFindings(const std::string& clock, const SampleReport& samples,
                                         const FilterChoice* filter) {
-  const std::string of_all = " of " + std::to_string(stamps.size()) + " samples ";
+  const SampleCounts& counts = samples.counts;
+  const std::string of_all = " of " + std::to_string(counts.all) + " samples ";
   const std::string left_out = filter != nullptr ? " (left out of the differentiation)" : "";
   std::vector<std::string> found;
-  if (const Index count = samples.repeated.count(); count > 0) {
-    found.push_back(std::to_string(count) + of_all + "repeat the one before" + left_out);
+  if (counts.repeated > 0) {
+    found.push_back(std::to_string(counts.repeated) + of_all + "repeat the one before" + left_out);
   }
-  if (const Index count = samples.non_increasing.count(); count > 0) {
-    found.push_back(std::to_string(count) + of_all + "have an equal or backward " + clock +
-                    " stamp" + left_out + ": the first is " + firstBackwardStamp(stamps, samples));
+  if (counts.non_increasing > 0) {
+    const BackwardStamp& first = samples.backward;
+    found.push_back(std::to_string(counts.non_increasing) + of_all + "have an equal or backward " +
+                    clock + " stamp" + left_out + ": the first is sample " +
+                    std::to_string(first.sample + 1) + " at " + seconds(first.stamp) + " after " +
+                    seconds(first.latest));
   }
   if (filter != nullptr && samples.time_base != TimeBase::kStamps) {
     found.emplace_back(
@@ -114,14 +100,14 @@ std::vector<std::string> sampleFindings(const JointLogView::StampsBlock& stamps,
         "fit them better");
   }
   if (!samples.gaps.empty()) {
-    found.push_back(gapFinding(stamps, samples, filter != nullptr));
+    found.push_back(gapFinding(samples, filter != nullptr));
   }
-  if (const Index count = samples.isolated.count(); count > 0) {
-    found.push_back(std::to_string(count) + of_all +
+  if (counts.isolated > 0) {
+    found.push_back(std::to_string(counts.isolated) + of_all +
                     "lie between gaps, in pieces too short to be filtered");
   }
-  if (const Index count = samples.start_transient.count(); count > 0) {
-    found.push_back("the first " + std::to_string(count) + of_all +
+  if (counts.start_transient > 0) {
+    found.push_back("the first " + std::to_string(counts.start_transient) + of_all +
                     "are a start transient: efforts jump");
   }
   if (filter != nullptr) {
@@ -141,40 +127,31 @@ std::string accelerationSummary(AccelerationMethod method, double cutoff, bool c
          (chosen ? "chosen from the data" : "given") + "), then derivative";
 }
 
+LogAccelerations withoutSeries(const SampleStream& stream, const AccelerationPlan& plan) {
+  LogAccelerations result;
+  result.method = plan.method;
+  result.filter = plan.filter;
+  result.samples = plan.found.report;
+  result.summary = accelerationSummary(result.method, result.filter.cutoff, result.filter.chosen);
+  result.findings =
+      sampleFindings(name(stream.clock()), result.samples,
+                     result.method == AccelerationMethod::kLowPass ? &result.filter : nullptr);
+  return result;
+}
+
 LogAccelerations logAccelerations(const JointLogView& log, AccelerationMethod method, double cutoff,
                                   const SampleRules& rules) {
-  LogAccelerations result;
-  result.method = method;
-  if (method == AccelerationMethod::kAuto) {
-    result.method = log.qdd.size() > 0 && cutoff == 0 ? AccelerationMethod::kGiven
-                                                      : AccelerationMethod::kLowPass;
-  }
-  const bool filtered = result.method == AccelerationMethod::kLowPass;
-  if (!filtered && cutoff != 0) {
-    throw EvaluationError("accelerations: " + name(result.method) + " has no cut-off, got " +
-                          formatted("%g", cutoff) + " Hz; use low-pass");
-  }
   const Eigen::VectorXd time = log.time();
-  if (filtered) {
-    AccelerationEstimate estimate = lowPassAccelerations(time, log.q, log.qd, log.effort,
-                                                         {cutoff, LowPassOptions().order, rules});
-    result.qdd = std::move(estimate.qdd);
-    result.samples = std::move(estimate.samples);
-    result.filter = std::move(estimate.filter);
-  } else if (result.method == AccelerationMethod::kGiven && log.qdd.size() == 0) {
-    throw EvaluationError(
-        "accelerations: the recording gives none; expected another method, such as auto");
-  } else {
-    result.samples = examineSamples(time, log.q, log.qd, log.effort, rules);
-    if (result.method == AccelerationMethod::kGiven) {
-      result.qdd = log.qdd;
-    } else {
-      result.qdd = backwardDifference(time, log.qd);
-    }
-  }
-  result.summary = accelerationSummary(result.method, result.filter.cutoff, result.filter.chosen);
-  result.findings = sampleFindings(log.stamps, name(log.clock), result.samples,
-                                   filtered ? &result.filter : nullptr);
+  checkSamples(time, log.q, log.qd, log.effort);
+  SamplesInMemory stream(log, time);
+  AccelerationOptions options;
+  options.method = method;
+  options.cutoff = cutoff;
+  options.rules = rules;
+  AccelerationPlan plan = planAccelerations(stream, options);
+  OwnedMatrix qdd = gatherAccelerations(stream, plan);
+  LogAccelerations result = withoutSeries(stream, plan);
+  result.qdd = std::move(qdd);
   return result;
 }
 

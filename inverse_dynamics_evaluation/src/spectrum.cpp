@@ -82,8 +82,22 @@ Eigen::ArrayXd positionRate(const Eigen::ArrayXd& q, double sampling_frequency) 
   return sampling_frequency * rate;
 }
 
+// Where the segments of a signal begin; the last one ends where the signal ends.
+std::vector<Index> segmentBegins(Index samples, Index length) {
+  const Index spare = samples - length;
+  const Index half = std::max<Index>(length / 2, 1);
+  const Index steps = std::max<Index>((spare + half - 1) / half, 1);
+  std::vector<Index> begins = {0};
+  for (Index s = 1; s <= steps; ++s) {
+    begins.push_back(s * spare / steps);
+  }
+  return begins;
+}
+
+}  // namespace
+
 // Adds the periodograms of segments, one at a time.
-class Sums {
+class SpectrumSums::Sums {
  public:
   Sums(VelocitySpectra& spectra, Index padded)
       : spectra_(spectra), signal_(static_cast<std::size_t>(padded), Complex(0.0, 0.0)) {}
@@ -122,24 +136,33 @@ class Sums {
   std::vector<Complex> transform_;
 };
 
-// Where the segments of a signal begin; the last one ends where the signal ends.
-std::vector<Index> segmentBegins(Index samples, Index length) {
-  const Index spare = samples - length;
-  const Index half = std::max<Index>(length / 2, 1);
-  const Index steps = std::max<Index>((spare + half - 1) / half, 1);
-  std::vector<Index> begins = {0};
-  for (Index s = 1; s <= steps; ++s) {
-    begins.push_back(s * spare / steps);
+SpectrumSums::SpectrumSums(Index joints, Index longest, double sampling_frequency)
+    : sampling_frequency_(sampling_frequency), length_(kLeastStretch) {
+  while (static_cast<double>(2 * length_) <= kSegmentSeconds * sampling_frequency &&
+         length_ < longest) {
+    length_ *= 2;
   }
-  return begins;
+  const Index frequencies = length_ / 2 + 1;
+  spectra_.frequency = Eigen::ArrayXd::LinSpaced(frequencies, 0.0, sampling_frequency / 2.0);
+  spectra_.total = Eigen::ArrayXXd::Zero(frequencies, joints);
+  spectra_.rate = Eigen::ArrayXXd::Zero(frequencies, joints);
+  spectra_.common = Eigen::ArrayXXd::Zero(frequencies, joints);
+  sums_ = std::make_unique<Sums>(spectra_, length_);
 }
 
-void addStretch(const Stretch& stretch, const Eigen::ArrayXd& weight, double sampling_frequency,
-                Index longest_segment, Sums& sums) {
+SpectrumSums::~SpectrumSums() = default;
+
+void SpectrumSums::add(const Stretch& stretch) {
   const Index samples = stretch.qd.cols();
-  const Index length = std::min(longest_segment, samples);
+  if (samples < kLeastStretch) {
+    return;
+  }
+  const Eigen::ArrayXd weight = activity(stretch, sampling_frequency_);
+  moving_ += weight.sum();
+  samples_ += static_cast<double>(samples);
+  const Index length = std::min(length_, samples);
   const Index more = length / 2 - 1;
-  const Index end = std::clamp<Index>(std::llround(kEndSeconds * sampling_frequency), 3,
+  const Index end = std::clamp<Index>(std::llround(kEndSeconds * sampling_frequency_), 3,
                                       std::max<Index>(samples / 4, 3));
   const Eigen::ArrayXd shape = hann(length);
   Eigen::ArrayXd mirrored(samples + 2 * more);
@@ -149,48 +172,21 @@ void addStretch(const Stretch& stretch, const Eigen::ArrayXd& weight, double sam
   for (Index j = 0; j < stretch.qd.rows(); ++j) {
     const Signal signal = {
         reflected(stretch.qd.row(j).transpose().array(), more, end),
-        reflected(positionRate(stretch.q.row(j).transpose().array(), sampling_frequency), more,
+        reflected(positionRate(stretch.q.row(j).transpose().array(), sampling_frequency_), more,
                   end)};
     for (const Index begin : begins) {
-      sums.add(signal, j, begin, shape * mirrored.segment(begin, length));
+      sums_->add(signal, j, begin, shape * mirrored.segment(begin, length));
     }
   }
 }
 
-}  // namespace
-
-VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sampling_frequency) {
-  Index longest = 0;
-  Index samples = 0;
-  for (const Stretch& stretch : stretches) {
-    longest = std::max(longest, stretch.qd.cols());
-    samples += stretch.qd.cols() >= kLeastStretch ? stretch.qd.cols() : 0;
-  }
-  Index length = kLeastStretch;
-  while (static_cast<double>(2 * length) <= kSegmentSeconds * sampling_frequency &&
-         length < longest) {
-    length *= 2;
-  }
-
-  const Index joints = stretches.front().qd.rows();
-  const Index frequencies = length / 2 + 1;
-  VelocitySpectra spectra;
-  spectra.frequency = Eigen::ArrayXd::LinSpaced(frequencies, 0.0, sampling_frequency / 2.0);
-  spectra.total = Eigen::ArrayXXd::Zero(frequencies, joints);
-  spectra.rate = Eigen::ArrayXXd::Zero(frequencies, joints);
-  spectra.common = Eigen::ArrayXXd::Zero(frequencies, joints);
-  Sums sums(spectra, length);
-  for (const Stretch& stretch : stretches) {
-    if (stretch.qd.cols() >= kLeastStretch) {
-      const Eigen::ArrayXd weight = activity(stretch, sampling_frequency);
-      spectra.moving += weight.sum() / static_cast<double>(samples);
-      addStretch(stretch, weight, sampling_frequency, length, sums);
-    }
-  }
-
+VelocitySpectra SpectrumSums::spectra() const {
+  VelocitySpectra spectra = spectra_;
+  spectra.moving = samples_ > 0 ? moving_ / samples_ : 0.0;
   // a central difference passes frequency w with the gain sin(w) / w
-  for (Index i = 1; i < frequencies; ++i) {
-    const double w = kPi * static_cast<double>(i) / static_cast<double>(frequencies - 1);
+  const Index last = spectra.frequency.size() - 1;
+  for (Index i = 1; i <= last; ++i) {
+    const double w = kPi * static_cast<double>(i) / static_cast<double>(last);
     const double gain = std::max(std::sin(w) / w, kLeastDifferenceGain);
     spectra.rate.row(i) /= gain * gain;
     spectra.common.row(i) /= gain;

@@ -3,12 +3,14 @@
 /// @file
 /// Spectra of the measured velocities, and of what the positions confirm of them.
 ///
-///     VelocitySpectra spectra = velocitySpectra(stretches, 1000.0);
+///     SpectrumSums sums(6, longest, 1000.0);
+///     for (const Stretch& stretch : stretches) sums.add(stretch);
+///     VelocitySpectra spectra = sums.spectra();
 
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
+#include <memory>
 
 #include "inverse_dynamics_evaluation/cutoff.hpp"
 
@@ -29,13 +31,42 @@ struct VelocitySpectra {
   double moving = 0;       ///< share of the samples in motion
 };
 
+/// Sums over segments of samples, gathered stretch by stretch.
+///
 /// Hann window times activity(), linear trend removed, half overlap. A segment has a power of two
 /// of samples, 10 to 20 s; a shorter stretch is one segment, padded with zeros.
 ///
 /// Every sample of every stretch counts: each end is continued by its point reflection over half a
 /// segment, since a window that falls to zero there would hide how the motion begins and ends.
-/// Only sums over segments are kept, so the memory doesn't grow with the recording.
-VelocitySpectra velocitySpectra(const std::vector<Stretch>& stretches, double sampling_frequency);
+class SpectrumSums {
+ public:
+  /// @param joints   n.
+  /// @param longest  samples of the longest stretch that will be added.
+  SpectrumSums(Eigen::Index joints, Eigen::Index longest, double sampling_frequency);
+  ~SpectrumSums();
+  SpectrumSums(const SpectrumSums&) = delete;
+  SpectrumSums& operator=(const SpectrumSums&) = delete;
+
+  /// A stretch of fewer than kLeastStretch samples is left out.
+  void add(const Stretch& stretch);
+
+  VelocitySpectra spectra() const;
+
+ private:
+  class Sums;
+  double sampling_frequency_;
+  Eigen::Index length_;  // of a segment
+  double samples_ = 0, moving_ = 0;
+  VelocitySpectra spectra_;  // before its gains are made good
+  std::unique_ptr<Sums> sums_;
+};
+
+/// @throws EvaluationError: fewer than kLeastStretch samples.
+void requireLongEnough(Eigen::Index longest);
+
+/// The cut-off that spectra tell: see cutoff.hpp. @param duration  s; of the longest piece.
+CutoffChoice cutoffOf(const VelocitySpectra& spectra, double duration, double sampling_frequency,
+                      int order);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -29,24 +29,22 @@ double secondDifference(const Eigen::Vector3d& value, double before, double afte
 
 // Roughness of the efforts about each inner one of the samples: second differences in units of each
 // joint's median, root mean square over the joints that change.
-std::vector<double> roughness(const ConstMatrix& effort, const std::vector<Index>& sample,
-                              const Eigen::VectorXd& time, double period) {
-  const std::size_t inner = sample.size() - 2;
-  std::vector<double> sum(inner, 0.0);
+std::vector<double> roughness(const ConstMatrix& effort, const Eigen::VectorXd& instant,
+                              double period) {
+  const Index inner = instant.size() - 2;
+  std::vector<double> sum(static_cast<std::size_t>(inner), 0.0);
   double joints = 0.0;
-  std::vector<double> second(inner);
+  std::vector<double> second(sum.size());
   for (Index j = 0; j < effort.rows(); ++j) {
-    for (std::size_t i = 0; i < inner; ++i) {
-      const Index a = sample[i];
-      const Index b = sample[i + 1];
-      const Index c = sample[i + 2];
-      second[i] = std::abs(secondDifference({effort(j, a), effort(j, b), effort(j, c)},
-                                            time[b] - time[a], time[c] - time[b], period));
+    for (Index i = 0; i < inner; ++i) {
+      second[static_cast<std::size_t>(i)] = std::abs(
+          secondDifference(effort.row(j).segment<3>(i).transpose(), instant[i + 1] - instant[i],
+                           instant[i + 2] - instant[i + 1], period));
     }
     const double scale = quantile(second, 0.5);
     if (scale > 0) {
       joints += 1.0;
-      for (std::size_t i = 0; i < inner; ++i) {
+      for (std::size_t i = 0; i < second.size(); ++i) {
         sum[i] += std::pow(second[i] / scale, 2);
       }
     }
@@ -59,22 +57,20 @@ std::vector<double> roughness(const ConstMatrix& effort, const std::vector<Index
 
 }  // namespace
 
-Mask startTransient(const ConstMatrix& effort, const std::vector<Index>& sample,
-                    const Eigen::VectorXd& time, double period, double window) {
-  Mask transient = Mask::Constant(time.size(), false);
-  if (effort.size() == 0 || static_cast<Index>(sample.size()) < kLeastForTransient) {
-    return transient;
+Index startTransient(const ConstMatrix& effort, const Eigen::VectorXd& instant, double period,
+                     double window) {
+  if (instant.size() < kLeastForTransient) {
+    return 0;
   }
-  const std::vector<double> rough = roughness(effort, sample, time, period);
+  const std::vector<double> rough = roughness(effort, instant, period);
   const double limit = kTransientFactor * quantile(rough, kTransientQuantile);
   Index end = 0;
-  for (std::size_t i = 0; i < rough.size() && time[sample[i + 1]] - time[0] <= window; ++i) {
-    if (rough[i] > limit) {
-      end = sample[i + 1] + 1;  // the sample in the middle of the three
+  for (Index i = 1; i + 1 < instant.size() && instant[i] - instant[0] <= window; ++i) {
+    if (rough[static_cast<std::size_t>(i - 1)] > limit) {
+      end = i + 1;  // the sample in the middle of the three
     }
   }
-  transient.head(end).setConstant(true);
-  return transient;
+  return end;
 }
 
 }  // namespace v2

@@ -6,22 +6,21 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
-
-#include "inverse_dynamics_evaluation/samples.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
-/// Everything up to the last jump in the first `window` [s].
+/// Samples, repeats aside, in which a start transient is told from the rest: longer recordings have
+/// no more influence.
+constexpr Eigen::Index kMostForTransient = 65536;
+
+/// How many samples there are up to the last jump in the first `window` [s].
 ///
-/// @param effort  n x N; none (0 x 0): no transient is found.
-/// @param sample  the fresh ones, increasing.
-/// @param time    N; s.
-/// @param period  s; mean distance of the samples.
-Mask startTransient(const Eigen::Ref<const Eigen::MatrixXd>& effort,
-                    const std::vector<Eigen::Index>& sample, const Eigen::VectorXd& time,
-                    double period, double window);
+/// @param effort   n x N; none is a repeat.
+/// @param instant  N; s; increasing.
+/// @param period   s; mean distance of the samples.
+Eigen::Index startTransient(const Eigen::Ref<const Eigen::MatrixXd>& effort,
+                            const Eigen::VectorXd& instant, double period, double window);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_evaluation

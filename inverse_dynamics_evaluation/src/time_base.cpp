@@ -12,43 +12,11 @@ inline namespace v2 {
 namespace {
 
 using Eigen::Index;
-using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
-using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
 
 constexpr double kGapPeriods = 20.0;    // a gap is longer than this many sampling periods
 constexpr double kClearlyBetter = 0.8;  // of the stamps' disagreement: then another time base
 constexpr double kNotWorse = 1.1;       // of the stamps' disagreement in the long run
 constexpr Index kLongIntervals = 50;    // over how many intervals time bases must agree too
-
-// Root mean square of q_(i+m) - q_i - sum of (t_(i+1) - t_i) (qd_i + qd_(i+1)) / 2 over blocks of m
-// intervals; intervals over a gap are left out.
-double disagreement(const TimedSamples& samples, const ConstMatrix& q, const ConstMatrix& qd,
-                    Index intervals, double longest_gap) {
-  const auto count = static_cast<Index>(samples.sample.size()) - 1;
-  if (count < 1) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  const double gap = gapFrom(longest_gap, meanPeriod(samples.time, longest_gap));
-  const Index block = std::min(intervals, count);
-  Eigen::VectorXd error = Eigen::VectorXd::Zero(q.rows());
-  double sum = 0.0;
-  Index blocks = 0;
-  for (Index i = 0; i < count; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const double dt = samples.time[at + 1] - samples.time[at];
-    const Index from = samples.sample[at];
-    const Index to = samples.sample[at + 1];
-    if (dt <= gap) {
-      error += q.col(to) - q.col(from) - 0.5 * dt * (qd.col(from) + qd.col(to));
-    }
-    if ((i + 1) % block == 0) {
-      sum += error.squaredNorm();
-      error.setZero();
-      ++blocks;
-    }
-  }
-  return std::sqrt(sum / static_cast<double>(blocks));
-}
 
 }  // namespace
 
@@ -56,54 +24,108 @@ double gapFrom(double longest_gap, double period) {
   return std::max(longest_gap, kGapPeriods * period);
 }
 
-double meanPeriod(const std::vector<double>& time, double longest_gap) {
-  double period = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
+double meanPeriod(const DistanceCounts& distances, double unit, double longest_gap) {
+  double period = unit * distances.mean(std::numeric_limits<double>::infinity());
   for (bool changed = true; changed;) {
-    const double gap = gapFrom(longest_gap, period);
-    double sum = 0.0;
-    double count = 0.0;
-    for (std::size_t i = 1; i < time.size(); ++i) {
-      const double distance = time[i] - time[i - 1];
-      sum += distance <= gap ? distance : 0.0;
-      count += distance <= gap ? 1.0 : 0.0;
-    }
-    changed = sum / count < period;  // never empty: some distance is at most the mean
-    period = std::min(period, sum / count);
+    const double mean = unit * distances.mean(gapFrom(longest_gap, period) / unit);
+    changed = mean < period;  // some distance is at most the mean
+    period = std::min(period, mean);
   }
   return period;
 }
 
-TimedSamples timedSamples(TimeBase base, const ConstVector& time, const Mask& left_out,
-                          const Mask& non_increasing) {
-  TimedSamples result;
-  for (Index k = 0; k < time.size(); ++k) {
-    if (!left_out[k] && !(base == TimeBase::kStamps && non_increasing[k])) {
-      result.sample.push_back(k);
-      result.time.push_back(time[k]);
-    }
-  }
-  if (base == TimeBase::kStamps || result.sample.size() < 2) {
-    return result;
-  }
-  // equal distances from the first stamp to the latest one; of all samples, or of the fresh ones
-  const double begin = time[0];
-  const double duration = time.maxCoeff() - begin;
-  const auto all = static_cast<double>(time.size() - 1);
-  const auto fresh = static_cast<double>(result.sample.size() - 1);
-  for (std::size_t i = 0; i < result.sample.size(); ++i) {
-    const double share = base == TimeBase::kRegular ? static_cast<double>(result.sample[i]) / all
-                                                    : static_cast<double>(i) / fresh;
-    result.time[i] = begin + share * duration;
-  }
-  return result;
+double Timing::step() const {
+  const Index samples = base == TimeBase::kRegularFresh ? fresh : count;
+  return samples > 1 ? duration / static_cast<double>(samples - 1) : 0.0;
 }
 
-TimeBase chooseTimeBase(const std::vector<TimedSamples>& bases, const ConstMatrix& q,
-                        const ConstMatrix& qd, double longest_gap, SampleReport& report) {
+double Timing::operator()(Index k, Index i, double stamp) const {
+  if (base == TimeBase::kStamps || fresh < 2) {
+    return stamp;
+  }
+  const double share = base == TimeBase::kRegular
+                           ? static_cast<double>(k) / static_cast<double>(count - 1)
+                           : static_cast<double>(i) / static_cast<double>(fresh - 1);
+  return begin + share * duration;
+}
+
+TimeBaseSums::TimeBaseSums(const Timing& timing, double gap, Index used, Index shortest,
+                           Index joints)
+    : timing_(timing),
+      gap_(gap),
+      short_{1},
+      long_{std::clamp<Index>(used - 1, 1, kLongIntervals)},
+      q_(joints),
+      qd_(joints),
+      error_(joints),
+      shortest_(shortest) {
+  short_.error = long_.error = Eigen::ArrayXd::Zero(joints);
+}
+
+void TimeBaseSums::Disagreement::add(const Eigen::ArrayXd& next) {
+  error += next;
+  if (++added % intervals == 0) {
+    sum += error.square().sum();
+    error.setZero();
+    ++blocks;
+  }
+}
+
+double TimeBaseSums::Disagreement::rms() const {
+  return blocks > 0 ? std::sqrt(sum / static_cast<double>(blocks))
+                    : std::numeric_limits<double>::quiet_NaN();
+}
+
+void TimeBaseSums::add(Index k, double time, const double* q, const double* qd,
+                       std::int64_t stamp_before) {
+  const Eigen::Map<const Eigen::ArrayXd> next_q(q, q_.size());
+  const Eigen::Map<const Eigen::ArrayXd> next_qd(qd, qd_.size());
+  const double distance = time - time_;
+  const bool begins = piece_.used == 0 || !(distance <= gap_);
+  if (piece_.used > 0) {
+    if (begins) {
+      error_.setZero();
+    } else {
+      error_ = next_q - q_ - 0.5 * distance * (qd_ + next_qd);
+    }
+    short_.add(error_);
+    long_.add(error_);
+  }
+  if (begins) {
+    if (piece_.used > 0) {
+      endPiece(k);
+      gaps_.push_back(k);
+      if (longest_gap_.behind == 0 || distance > longest_gap_.length) {
+        longest_gap_ = {k, distance, stamp_before};
+      }
+    }
+    piece_ = {k, k, 0, time, time};
+  }
+  ++piece_.used;
+  piece_.end = time;
+  time_ = time;
+  q_ = next_q;
+  qd_ = next_qd;
+}
+
+void TimeBaseSums::endPiece(Index behind) {
+  piece_.behind = behind;
+  if (piece_.used >= shortest_) {
+    pieces_.push_back(piece_);
+  }
+}
+
+// The last piece goes on to the last sample, repeats and all.
+void TimeBaseSums::finish() {
+  if (piece_.used > 0) {
+    endPiece(timing_.count);
+  }
+}
+
+TimeBase chooseTimeBase(const std::vector<TimeBaseSums>& bases, SampleReport& report) {
   for (Index b = 0; b < 3; ++b) {
-    const TimedSamples& samples = bases[static_cast<std::size_t>(b)];
-    report.disagreement[b] = disagreement(samples, q, qd, 1, longest_gap);
-    report.long_disagreement[b] = disagreement(samples, q, qd, kLongIntervals, longest_gap);
+    report.disagreement[b] = bases[static_cast<std::size_t>(b)].disagreement();
+    report.long_disagreement[b] = bases[static_cast<std::size_t>(b)].longDisagreement();
   }
   TimeBase best = TimeBase::kStamps;
   double least = kClearlyBetter * report.disagreement[0];
@@ -116,27 +138,6 @@ TimeBase chooseTimeBase(const std::vector<TimedSamples>& bases, const ConstMatri
     }
   }
   return best;
-}
-
-Eigen::VectorXd timeOfAll(const TimedSamples& used, const Mask& repeated) {
-  Eigen::VectorXd time(repeated.size());
-  std::size_t next = 0;  // first used sample that isn't before k
-  for (Index k = 0; k < time.size(); ++k) {
-    while (next < used.sample.size() && used.sample[next] < k) {
-      ++next;
-    }
-    if (next < used.sample.size() && used.sample[next] == k) {
-      time[k] = used.time[next];
-    } else if (repeated[k] || next == used.sample.size()) {
-      time[k] = time[k - 1];
-    } else {
-      const auto before = static_cast<double>(used.sample[next - 1]);
-      const auto after = static_cast<double>(used.sample[next]);
-      const double share = (static_cast<double>(k) - before) / (after - before);
-      time[k] = used.time[next - 1] + share * (used.time[next] - used.time[next - 1]);
-    }
-  }
-  return time;
 }
 
 }  // namespace v2

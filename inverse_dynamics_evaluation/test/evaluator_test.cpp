@@ -8,6 +8,7 @@
 
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
+#include "two_joint_solver.hpp"
 
 namespace inverse_dynamics_evaluation {
 namespace {
@@ -18,31 +19,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 
 constexpr double kRounding = 1e-12;
-
-// tau = (2 qdd_1 + 10 cos q_1, 3 qdd_2 + 20).
-class TwoJointSolver : public inverse_dynamics_solver::InverseDynamicsSolver {
- public:
-  TwoJointSolver() { initialize(); }
-
- protected:
-  using ConstVector = inverse_dynamics_solver::ConstVectorRef;
-  using Vector = inverse_dynamics_solver::VectorRef;
-
-  JointInfo configure(const inverse_dynamics_solver::Configuration&) override {
-    return {{"a", "b"}, {"the solver warns"}};
-  }
-  void computeInertiaMatrix(const ConstVector&,
-                            inverse_dynamics_solver::MatrixRef H) const override {
-    H << 2, 0, 0, 3;
-  }
-  void computeCoriolisVector(const ConstVector&, const ConstVector&, Vector c) const override {
-    c.setZero();
-  }
-  void computeGravityVector(const ConstVector& q, Vector g) const override {
-    g << 10 * std::cos(q[0]), 20;
-  }
-  bool inertiaIsPhysicalImpl() const override { return true; }
-};
 
 MatrixXd gravityOf(const MatrixXd& q) {
   MatrixXd gravity = MatrixXd::Constant(2, q.cols(), 20);

@@ -4,7 +4,7 @@
 Arrays are (n,), one state, or (N, n), one state per row; results have the same shape.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from enum import Enum
 from pathlib import Path
 from typing import Any, Literal, NoReturn
@@ -348,7 +348,6 @@ def low_pass_derivative(
     samples: ArrayLike, sampling_frequency: float, cutoff: float, order: int = 2
 ) -> Floats: ...
 def sample_findings(
-    stamps: Integers,
     clock: str,
     samples: SampleReport,
     filter: FilterChoice | None = None,
@@ -403,11 +402,11 @@ class Evaluated:
     @property
     def filter(self) -> FilterChoice: ...
     @property
-    def samples(self) -> SampleReport: ...
+    def period(self) -> float: ...
     @property
-    def qdd(self) -> Floats: ...
+    def jitter(self) -> float: ...
     @property
-    def computed(self) -> Floats: ...
+    def recording(self) -> RecordedJoints: ...
     @property
     def meaning(self) -> str: ...
     @property
@@ -420,6 +419,8 @@ class Evaluated:
     def errors(self) -> list[JointMetrics]: ...
     @property
     def errors_of_kept(self) -> list[JointMetrics]: ...
+    @property
+    def reading_seconds(self) -> float: ...
     @property
     def acceleration_seconds(self) -> float: ...
     @property
@@ -439,8 +440,10 @@ def effort_summary(
 ) -> str: ...
 def evaluate(
     solver: Solver,
-    log: JointLog,
+    motion: JointLog | JointStates,
     *,
+    joints: list[str],
+    clock: str,
     method: str,
     cutoff: float | None,
     without_rules: list[str],
@@ -449,6 +452,8 @@ def evaluate(
     topic: str,
     units: list[str],
     notes: list[str],
+    take: Callable[[int, str, dict[str, NDArray[Any]]], None],
+    progress: Callable[[float], None],
 ) -> Evaluated: ...
 def acceleration_summary(method: str, cutoff: float | None, chosen: bool) -> str: ...
 def check_torques(

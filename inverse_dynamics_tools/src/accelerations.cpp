@@ -91,12 +91,9 @@ py::array lowPassDerivative(const Array& samples, double sampling_frequency, dou
   return rowsOf(std::move(result));
 }
 
-std::vector<std::string> sampleFindings(const Integers& stamps, const std::string& clock,
-                                        const SampleReport& samples,
+std::vector<std::string> sampleFindings(const std::string& clock, const SampleReport& samples,
                                         const std::optional<FilterChoice>& filter) {
-  const Eigen::Map<const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>> read(stamps.data(),
-                                                                              stamps.size());
-  return evaluation::sampleFindings(read, clock, samples, filter ? &*filter : nullptr);
+  return evaluation::sampleFindings(clock, samples, filter ? &*filter : nullptr);
 }
 
 void bindSampleReport(py::module_& module) {
@@ -170,10 +167,9 @@ void bindAccelerations(py::module_& module) {
   module.def("low_pass_derivative", &lowPassDerivative, py::arg("samples"),
              py::arg("sampling_frequency"), py::arg("cutoff"), py::arg("order") = 2,
              "Derivative of low_pass() of equidistant samples (N, n), good at both ends too.");
-  module.def(
-      "sample_findings", &sampleFindings, py::arg("stamps"), py::arg("clock"), py::arg("samples"),
-      py::arg("filter") = std::nullopt,
-      "What is odd about the samples, and what follows, one sentence each. stamps: (N,) ns.");
+  module.def("sample_findings", &sampleFindings, py::arg("clock"), py::arg("samples"),
+             py::arg("filter") = std::nullopt,
+             "What is odd about the samples, and what follows, one sentence each.");
   module.def("low_pass_gain", &evaluation::lowPassGain, py::arg("frequency"), py::arg("cutoff"),
              py::arg("sampling_frequency"), py::arg("order") = 2,
              "Gain of low_pass() at a frequency.");

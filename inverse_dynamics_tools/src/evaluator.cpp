@@ -14,6 +14,8 @@
 
 #include "arrays.hpp"
 #include "initialized.hpp"
+#include "joint_log.hpp"
+#include "joint_states.hpp"
 #include "solver.hpp"
 
 namespace inverse_dynamics_tools {
@@ -26,11 +28,7 @@ using evaluation::EffortCandidate;
 using evaluation::EffortVerdict;
 using Names = std::vector<std::string>;
 
-/// An evaluation with its series.
-struct Evaluated {
-  evaluation::Evaluation evaluation;
-  py::array qdd, computed;  // (N, n)
-};
+using Evaluated = evaluation::Evaluation;
 
 }  // namespace
 }  // namespace inverse_dynamics_tools
@@ -38,7 +36,7 @@ struct Evaluated {
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::EffortCandidate)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::EffortVerdict)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::EffortOptions)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::Evaluated)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::Evaluation)
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -67,7 +65,8 @@ std::string effortSummary(const std::string& meaning, const std::string& stated_
 /// What JointLog of joint_log.py holds of the samples.
 struct Log {
   explicit Log(const py::handle& log)
-      : stamps(log.attr("stamps").cast<Integers>()),
+      : header_stamps(log.attr("header_stamps").cast<Integers>()),
+        receive_stamps(log.attr("receive_stamps").cast<Integers>()),
         clock(log.attr("clock").cast<std::string>()),
         q(log.attr("q").cast<Array>()),
         qd(log.attr("qd").cast<Array>()),
@@ -76,10 +75,10 @@ struct Log {
   }
 
   evaluation::JointLogView view() const {
-    const Eigen::Map<const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>> read(stamps.data(),
-                                                                                stamps.size());
+    using Stamps = Eigen::Map<const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>>;
     const ConstMap none(nullptr, 0, 0);
-    return {read,
+    return {Stamps(header_stamps.data(), header_stamps.size()),
+            Stamps(receive_stamps.data(), receive_stamps.size()),
             clock == "receive" ? evaluation::Clock::kReceive : evaluation::Clock::kHeader,
             states(q, "q"),
             states(qd, "qd"),
@@ -87,18 +86,57 @@ struct Log {
             qdd ? states(*qdd, "qdd") : none};
   }
 
-  Integers stamps;
+  Integers header_stamps, receive_stamps;
   std::string clock;
   Array q, qd, effort;
   std::optional<Array> qdd;
 };
 
-Evaluated evaluate(const py::object& solver, const py::object& log, const std::string& method,
-                   const std::optional<double>& cutoff, const Names& without_rules,
-                   const evaluation::EffortOptions& effort, const std::string& recording,
-                   const std::string& topic, const Names& units, const Names& notes) {
+/// A copy (N, n), or (N,) of a vector, of samples that are columns.
+template <class Columns>
+py::array copyOf(const Columns& columns) {
+  using Scalar = typename Columns::Scalar;
+  const Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>, 0,
+                   Eigen::OuterStride<>>
+      view(columns.data(), columns.rows(), columns.cols(),
+           Eigen::OuterStride<>(columns.outerStride()));
+  std::vector<py::ssize_t> shape = {columns.cols(), columns.rows()};
+  if (Columns::ColsAtCompileTime == 1) shape = {columns.rows()};
+  py::array_t<Scalar> array(shape);
+  Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>>(
+      array.mutable_data(), columns.rows(), columns.cols()) = view;
+  return array;
+}
+
+/// The samples by the names that files of results have for them.
+py::dict seriesOf(const evaluation::EvaluatedSamples& samples) {
+  py::dict series;
+  series["time"] = copyOf(samples.time);
+  series["header_stamps"] = copyOf(samples.header_stamps);
+  series["receive_stamps"] = copyOf(samples.receive_stamps);
+  series["q"] = copyOf(samples.q);
+  series["qd"] = copyOf(samples.qd);
+  series["qdd"] = copyOf(samples.qdd);
+  series["effort"] = copyOf(samples.effort);
+  series["measured"] = copyOf(samples.measured);
+  series["computed"] = copyOf(samples.computed);
+  series["repeated"] = copyOf(samples.repeated);
+  series["non_increasing"] = copyOf(samples.non_increasing);
+  series["start_transient"] = copyOf(samples.start_transient);
+  series["isolated"] = copyOf(samples.isolated);
+  series["kept"] = copyOf(samples.kept);
+  return series;
+}
+
+/// @param motion  a JointLog, or JointStates of a recording; joints and clock are for the latter.
+evaluation::Evaluation evaluate(const py::object& solver, const py::object& motion,
+                                const Names& joints, const std::string& clock,
+                                const std::string& method, const std::optional<double>& cutoff,
+                                const Names& without_rules, const evaluation::EffortOptions& effort,
+                                const std::string& recording, const std::string& topic,
+                                const Names& units, const Names& notes, const py::function& take,
+                                const py::function& progress) {
   const auto shared = solverOf(solver);
-  const Log samples(log);
   evaluation::EvaluationOptions options;
   options.method = evaluation::accelerationMethod(method);
   options.rules = evaluation::rulesWithout(without_rules);
@@ -108,19 +146,25 @@ Evaluated evaluate(const py::object& solver, const py::object& log, const std::s
   options.topic = topic;
   options.units = units;
   options.notes = notes;
-  Evaluated result;
-  Array computed = like(samples.q);
-  Map into = columns(computed);
-  {
+  options.progress = [&](double share) {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    progress(share);
+  };
+  const auto give = [&](const evaluation::EvaluatedSamples& next) {
+    const py::gil_scoped_acquire acquire;
+    take(next.all, next.frame_id, seriesOf(next));
+  };
+  if (py::isinstance<JointStates>(motion)) {
+    auto& source = *motion.cast<JointStates&>().source;
+    const evaluation::RecordingOptions which = {joints, clockOf(clock), {true, "--joints"}};
     const py::gil_scoped_release release;
-    result.evaluation = evaluation::evaluate(
-        samples.view(), *shared, options, [&](const evaluation::EvaluatedSamples& next) {
-          into.middleCols(next.first, next.computed.cols()) = next.computed;
-        });
+    return evaluation::evaluate(source, which, *shared, options, give);
   }
-  result.computed = std::move(computed);
-  result.qdd = rowsOf(std::move(result.evaluation.accelerations.qdd));
-  return result;
+  const Log log(motion);
+  const evaluation::JointLogView view = log.view();
+  const py::gil_scoped_release release;
+  return evaluation::evaluate(view, *shared, options, give);
 }
 
 void bindEffort(py::module_& module) {
@@ -166,39 +210,40 @@ void bindEvaluator(py::module_& module) {
   bindEffort(module);
   py::class_<Evaluated>(module, "Evaluated", "What came of evaluate().")
       .def_property_readonly(
-          "method",
-          [](const Evaluated& e) { return evaluation::name(e.evaluation.accelerations.method); })
+          "method", [](const Evaluated& e) { return evaluation::name(e.accelerations.method); })
       .def_property_readonly(
-          "filter", [](const Evaluated& e) { return e.evaluation.accelerations.filter; },
+          "filter", [](const Evaluated& e) { return e.accelerations.filter; },
           "What the low-pass did, if there was one.")
-      .def_property_readonly("samples",
-                             [](const Evaluated& e) { return e.evaluation.accelerations.samples; })
-      .def_readonly("qdd", &Evaluated::qdd, "(N, n) rad/s^2 (prismatic m/s^2).")
-      .def_readonly("computed", &Evaluated::computed,
-                    "(N, n) N m (prismatic N); without gravity where the efforts are.")
-      .def_property_readonly("meaning",
-                             [](const Evaluated& e) { return e.evaluation.effort.meaning; })
-      .def_property_readonly("stated_by",
-                             [](const Evaluated& e) { return e.evaluation.effort.stated_by; })
-      .def_property_readonly("drive_gains",
-                             [](const Evaluated& e) { return e.evaluation.effort.drive_gains; })
-      .def_property_readonly("verdict",
-                             [](const Evaluated& e) { return e.evaluation.effort.verdict; })
-      .def_property_readonly("errors", [](const Evaluated& e) { return e.evaluation.errors; })
-      .def_property_readonly("errors_of_kept",
-                             [](const Evaluated& e) { return e.evaluation.errors_of_kept; })
+      .def_property_readonly("period",
+                             [](const Evaluated& e) { return e.accelerations.samples.period; })
+      .def_property_readonly("jitter",
+                             [](const Evaluated& e) { return e.accelerations.samples.jitter; })
+      .def_property_readonly(
+          "recording", [](const Evaluated& e) { return e.recording; },
+          "Names, clock and notes of a recording that was read.")
+      .def_property_readonly("meaning", [](const Evaluated& e) { return e.effort.meaning; })
+      .def_property_readonly("stated_by", [](const Evaluated& e) { return e.effort.stated_by; })
+      .def_property_readonly("drive_gains", [](const Evaluated& e) { return e.effort.drive_gains; })
+      .def_property_readonly("verdict", [](const Evaluated& e) { return e.effort.verdict; })
+      .def_property_readonly("errors", [](const Evaluated& e) { return e.errors; })
+      .def_property_readonly("errors_of_kept", [](const Evaluated& e) { return e.errors_of_kept; })
+      .def_property_readonly("reading_seconds",
+                             [](const Evaluated& e) { return e.reading_seconds; })
       .def_property_readonly("acceleration_seconds",
-                             [](const Evaluated& e) { return e.evaluation.acceleration_seconds; })
-      .def_property_readonly("torque_seconds",
-                             [](const Evaluated& e) { return e.evaluation.torque_seconds; })
-      .def_property_readonly("notes", [](const Evaluated& e) { return e.evaluation.notes; });
+                             [](const Evaluated& e) { return e.acceleration_seconds; })
+      .def_property_readonly("torque_seconds", [](const Evaluated& e) { return e.torque_seconds; })
+      .def_property_readonly("notes", [](const Evaluated& e) { return e.notes; });
   module.def(
-      "evaluate", &evaluate, py::arg("solver"), py::arg("log"), py::kw_only(), py::arg("method"),
-      py::arg("cutoff"), py::arg("without_rules"), py::arg("effort"), py::arg("recording"),
-      py::arg("topic"), py::arg("units"), py::arg("notes"),
-      "Computed torques of recorded joint states, a JointLog, and their errors.\n\n"
-      "method: auto, low-pass, given or backward-difference. cutoff: Hz; None: chosen from the\n"
-      "data. recording, topic: for errors' texts.");
+      "evaluate", &evaluate, py::arg("solver"), py::arg("motion"), py::kw_only(), py::arg("joints"),
+      py::arg("clock"), py::arg("method"), py::arg("cutoff"), py::arg("without_rules"),
+      py::arg("effort"), py::arg("recording"), py::arg("topic"), py::arg("units"), py::arg("notes"),
+      py::arg("take"), py::arg("progress"),
+      "Computed torques of recorded joint states and their errors, in bounded memory.\n\n"
+      "motion: a JointLog, or JointStates, of which joints and clock are taken. method: auto,\n"
+      "low-pass, given or backward-difference. cutoff: Hz; None: chosen from the data.\n"
+      "recording, topic: for errors' texts. take: called with how many samples there are, the\n"
+      "frame of a recording that was read, and the arrays of the next ones by name, some\n"
+      "thousand at a time. progress: called with the share that is done.");
   module.def(
       "acceleration_summary",
       [](const std::string& method, const std::optional<double>& cutoff, bool chosen) {

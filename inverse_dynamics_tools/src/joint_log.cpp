@@ -32,10 +32,7 @@ bool addNext(JointLogBuilder& builder, JointStates& states) {
 }
 
 JointLog finish(JointLogBuilder& builder, const std::string& clock) {
-  for (const auto known : {evaluation::Clock::kHeader, evaluation::Clock::kReceive}) {
-    if (clock == evaluation::name(known)) return builder.finish(known);
-  }
-  return builder.finish(evaluation::Clock::kAuto);
+  return builder.finish(clockOf(clock));
 }
 
 /// (N, n), or (N,) of a vector: memory of `log`, which the array keeps alive.
@@ -51,6 +48,13 @@ py::array view(const py::object& log) {
 }
 
 }  // namespace
+
+evaluation::Clock clockOf(const std::string& clock) {
+  for (const auto known : {evaluation::Clock::kHeader, evaluation::Clock::kReceive}) {
+    if (clock == evaluation::name(known)) return known;
+  }
+  return evaluation::Clock::kAuto;
+}
 
 void bindJointLog(py::module_& module) {
   py::class_<JointLog>(module, "RecordedJoints",

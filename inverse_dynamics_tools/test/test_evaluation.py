@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import re
 import shutil
+import sqlite3
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -20,6 +21,7 @@ from inverse_dynamics.errors import (
     PluginNotFoundError,
     RobotError,
 )
+from inverse_dynamics.results.evaluations import evaluate_into, write_evaluation
 
 UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
@@ -374,3 +376,41 @@ def test_broken_xacro_file_is_an_error_with_the_tools_words(bag, robot, xacro_fi
     xacro_file.write_text(XACRO.replace("${mass}", "${weight}"))
     with pytest.raises(RobotError, match=r"slide.urdf.xacro: xacro can't expand it: .*weight"):
         evaluate(bag, robot, urdf=xacro_file)
+
+
+@pytest.mark.parametrize("effort_is", ["torque", "auto"])
+def test_a_result_written_while_computing_is_that_of_arrays(bag, robot, tmp_path, effort_is):
+    shares = []
+    streamed = evaluate_into(
+        tmp_path / "streamed",
+        bag,
+        robot,
+        effort_is=effort_is,
+        progress=lambda what, done, total: shares.append((what, done, total)),
+    )
+    whole = evaluate(bag, robot, effort_is=effort_is)
+    write_evaluation(whole, tmp_path / "whole")
+    for name in ("series.npz", "metrics.json", "torques.png", "plotjuggler.xml", "bag/bag.db3"):
+        one, other = (tmp_path / directory / name for directory in ("streamed", "whole"))
+        assert one.read_bytes() == other.read_bytes(), name
+    np.testing.assert_array_equal(streamed.computed, whole.computed)
+    np.testing.assert_array_equal(streamed.log.q, whole.log.q)
+    assert streamed.errors == whole.errors
+    assert streamed.log.notes == whole.log.notes
+    evaluating = [done for what, done, _ in shares if what == "evaluating"]
+    assert evaluating == sorted(evaluating)
+    assert evaluating[-1] == pytest.approx(len(whole.log), rel=0.1)
+
+
+def test_a_recording_that_is_cut_off_while_it_is_read_leaves_nothing(bag, robot, tmp_path):
+    copy = shutil.copytree(bag, tmp_path / "recording")
+
+    def cut_off(what: str, done: int, total: int) -> None:
+        if what == "evaluating" and done > total / 3:
+            for file in copy.glob("*.db3"):
+                with sqlite3.connect(file) as database:
+                    database.execute("DELETE FROM messages WHERE id > 1000")
+
+    with pytest.raises(BagError, match=f"{copy}"):
+        evaluate_into(tmp_path / "result", copy, robot, progress=cut_off)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["recording"]

@@ -172,7 +172,7 @@ def test_an_older_result_is_replaced_only_on_demand(tmp_path, evaluation):
 def test_nothing_is_written_if_the_last_file_fails(tmp_path, evaluation, monkeypatch):
     from inverse_dynamics.figures import plots
 
-    def fail(*_):
+    def fail(*_, **__):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(plots, "save_torque_figure", fail)

@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from inverse_dynamics.figures.thinning import peaks
+from inverse_dynamics.figures.thinning import PeaksOfRows, peaks
 
 
 @pytest.mark.parametrize("count", [3, 10, 11, 12, 99, 1000])
@@ -23,3 +23,17 @@ def test_each_stretch_keeps_its_lowest_and_highest():
 def test_a_short_last_stretch_names_no_index_beyond_the_end():
     values = np.arange(23.0)
     assert peaks(values, 10).max() == 22
+
+
+@pytest.mark.parametrize("count", [1, 9, 10, 11, 999, 5000])
+@pytest.mark.parametrize("block", [1, 7, 1000, 5000])
+def test_peaks_of_rows_that_come_in_blocks_are_those_of_all(count, block):
+    values = np.random.default_rng(count).normal(size=(count, 2)).round(1)
+    time = np.arange(count) * 0.5
+    rows = PeaksOfRows(count, 10)
+    for begin in range(0, count, block):
+        rows.add(time[begin : begin + block], values[begin : begin + block])
+    for i in range(2):
+        kept = peaks(values[:, i], 10)
+        np.testing.assert_array_equal(rows.line(i)[0], time[kept])
+        np.testing.assert_array_equal(rows.line(i)[1], values[kept, i])

@@ -8,6 +8,11 @@
 ///     });
 ///     std::cout << evaluation.errors[0].rmse << " N m\n";
 ///
+/// A recording of any length is read from its file, several times, in bounded memory:
+///
+///     const auto source = Recording("motion").jointStates();   // inverse_dynamics_recordings
+///     Evaluation evaluation = evaluate(*source, {solver->jointNames()}, *solver, options, take);
+///
 /// The steps, in the order in which they are taken; docs/evaluation.md has the formulas:
 ///
 /// 1. What efforts mean, as it is stated (effort.hpp).
@@ -22,6 +27,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <string>
@@ -29,11 +35,15 @@
 
 #include "inverse_dynamics_evaluation/effort.hpp"
 #include "inverse_dynamics_evaluation/joint_log.hpp"
+#include "inverse_dynamics_evaluation/joint_state_source.hpp"
 #include "inverse_dynamics_evaluation/log_accelerations.hpp"
 #include "inverse_dynamics_evaluation/metrics.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
+
+/// Told what share of the work is done, 0 to 1; what it throws ends the evaluation.
+using TellProgress = std::function<void(double)>;
 
 /// How a recording is to be evaluated, and how texts name it.
 struct EvaluationOptions {
@@ -45,16 +55,32 @@ struct EvaluationOptions {
   std::string topic;               ///< in it; empty: it has none
   std::vector<std::string> units;  ///< n; of the torques: N m or N; empty: texts leave them out
   std::vector<std::string> notes;  ///< what was left out or assumed in reading: JointLog::notes
+  TellProgress progress;           ///< none: nobody is told
 };
 
-/// Some samples of a result: n x N, a sample a column, valid during a call.
+/// Which joints of a recording, and which time.
+struct RecordingOptions {
+  std::vector<std::string> joints;  ///< n; their names there, in the order of the chain
+  Clock clock = Clock::kAuto;
+  JointLogOptions log;
+};
+
+/// Some samples of a result: n x B, a sample a column, valid during a call.
 struct EvaluatedSamples {
   using Block = Eigen::Ref<const Eigen::MatrixXd>;
+  using Stamps = Eigen::Ref<const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>>;
+  using Flags = Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>;
 
-  Eigen::Index first;  ///< number of the first of them in the recording
-  Block q, qd, qdd;    ///< rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2)
-  Block computed;      ///< N m (prismatic N); without gravity where the efforts are
-  Block measured;      ///< N m (prismatic N): what efforts mean; empty if none was recorded
+  Eigen::Index first;                      ///< number of the first of them in the recording
+  Eigen::Index all;                        ///< N; how many the recording has
+  Stamps header_stamps, receive_stamps;    ///< B; ns
+  Eigen::Ref<const Eigen::VectorXd> time;  ///< B; s since the first sample
+  Block q, qd, qdd;                        ///< rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2)
+  Block effort;                            ///< as recorded; empty if none was
+  Block computed;  ///< N m (prismatic N); without gravity where the efforts are
+  Block measured;  ///< N m (prismatic N): what efforts mean; empty if none was recorded
+  Flags repeated, non_increasing, start_transient, isolated, kept;  ///< B; as in SampleReport
+  const std::string& frame_id;  ///< the first that a header has, of a recording that was read here
 };
 
 /// Takes the next samples of a result.
@@ -66,8 +92,10 @@ struct Evaluation {
   LogAccelerations accelerations;        ///< and what was found in the samples
   Effort effort;
   std::vector<JointMetrics> errors;          ///< n; over all samples; empty without efforts
-  std::vector<JointMetrics> errors_of_kept;  ///< n; over accelerations.samples.kept
-  std::vector<std::string> notes;   ///< of solver and recording, on efforts, on the samples
+  std::vector<JointMetrics> errors_of_kept;  ///< n; over those that were kept
+  std::vector<std::string> notes;  ///< of solver and recording, on efforts, on the samples
+  JointLog recording;              ///< names, clock, frame, notes of a recording that was read here
+  double reading_seconds = 0;      ///< how long reading took, all passes together
   double acceleration_seconds = 0;  ///< how long step 2 took
   double torque_seconds = 0;        ///< how long steps 3 to 5 took
 };
@@ -75,10 +103,19 @@ struct Evaluation {
 /// Torques of a recorded motion against the measured ones.
 ///
 /// @param log   without efforts there are computed torques, but no errors.
-/// @param take  gets all samples, in their order; none: nobody needs them.
+/// @param take  gets all samples, in their order, 4096 at a time; none: nobody needs them.
 /// @throws EvaluationError: samples that can't be evaluated; torques that no robot has.
 /// @throws ConfigurationError: currents without drive gains.
 Evaluation evaluate(const JointLogView& log,
+                    const inverse_dynamics_solver::InverseDynamicsSolver& solver,
+                    const EvaluationOptions& options, const TakeSamples& take = nullptr);
+
+/// The same of a recording that needn't fit into memory: three to five passes over it.
+///
+/// What the report has a number for each sample for, and accelerations, go to `take` alone.
+///
+/// @throws RecordingError: by the rules of joint_log.hpp; another pass gives other samples.
+Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
                     const inverse_dynamics_solver::InverseDynamicsSolver& solver,
                     const EvaluationOptions& options, const TakeSamples& take = nullptr);
 

@@ -107,7 +107,15 @@ class JointLogBuilder {
   /// How many samples were added, those left out too.
   Eigen::Index samples() const { return samples_; }
 
-  /// Everything added, whose memory the builder gives away: it holds no sample then.
+  /// What was added since the last call, and is given away: stamps, numbers, messages; no clock and
+  /// no notes, which take the whole recording. For recordings that don't fit into memory.
+  JointLog takeSamples();
+
+  /// How many samples that would give.
+  Eigen::Index samplesToTake() const { return static_cast<Eigen::Index>(message_.size()); }
+
+  /// Everything added that wasn't taken, whose memory the builder gives away; clock and notes are
+  /// those of all samples. The builder holds nothing then.
   ///
   /// @throws RecordingError: no sample with the joints.
   JointLog finish(Clock clock = Clock::kAuto);
@@ -117,9 +125,15 @@ class JointLogBuilder {
     const char* field;
     const char* reason;   // why it is needed
     OwnedMatrix numbers;  // with room for more samples than there are
+    bool recorded;        // by the first sample, and so by all
   };
 
+  bool addWhole(const JointStateBlock& block);
+  bool copy(Column& column, const JointStateNumbers& numbers, Eigen::Index count);
   bool matches(const JointSample& sample);
+  bool isFirst() const { return taken_ == 0 && message_.empty(); }
+  void noteStamps(std::int64_t header, std::int64_t receive);
+  void reserve(Column& column, Eigen::Index more) const;
   void append(Column& column, const JointSample::Numbers& numbers, const JointSample& sample,
               bool required);
   std::string place(const JointSample& sample) const;
@@ -131,6 +145,9 @@ class JointLogBuilder {
   JointMatching matching_;
   std::vector<std::string> other_names_;  // of the first message left out
   Eigen::Index samples_ = 0;              // all that came
+  Eigen::Index taken_ = 0;                // of those with the joints
+  bool header_stamped_ = false;           // by any sample: not zero
+  bool receive_stamped_ = false;
   std::string frame_id_;
   std::vector<std::int64_t> header_stamps_, receive_stamps_;
   std::vector<Eigen::Index> message_;

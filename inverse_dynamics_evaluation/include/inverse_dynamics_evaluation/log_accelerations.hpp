@@ -26,25 +26,33 @@ struct JointLogView {
   using Block = Eigen::Ref<const Eigen::MatrixXd>;
   using StampsBlock = Eigen::Ref<const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>>;
 
-  StampsBlock stamps;  ///< N; ns; those that are the time of the samples
-  Clock clock;         ///< whose they are
-  Block q, qd;         ///< n x N; rad, rad/s (prismatic m, m/s)
-  Block effort;        ///< n x N; as recorded; empty (0 x 0) if none was
-  Block qdd;           ///< n x N; rad/s^2 (prismatic m/s^2); empty (0 x 0) if none was
+  StampsBlock header_stamps, receive_stamps;  ///< N; ns
+  Clock clock;                                ///< which of them are the time
+  Block q, qd;                                ///< n x N; rad, rad/s (prismatic m, m/s)
+  Block effort;                               ///< n x N; as recorded; empty (0 x 0) if none was
+  Block qdd;  ///< n x N; rad/s^2 (prismatic m/s^2); empty (0 x 0) if none was
 
-  JointLogView(const StampsBlock& log_stamps, Clock log_clock, const Block& log_q,
-               const Block& log_qd, const Block& log_effort, const Block& log_qdd)
-      : stamps(log_stamps),
+  JointLogView(const StampsBlock& log_header_stamps, const StampsBlock& log_receive_stamps,
+               Clock log_clock, const Block& log_q, const Block& log_qd, const Block& log_effort,
+               const Block& log_qdd)
+      : header_stamps(log_header_stamps),
+        receive_stamps(log_receive_stamps),
         clock(log_clock),
         q(log_q),
         qd(log_qd),
         effort(log_effort),
         qdd(log_qdd) {}
   JointLogView(const JointLog& log)  // NOLINT(google-explicit-constructor)
-      : JointLogView(log.stamps(), log.clock, log.q, log.qd, log.effort, log.qdd) {}
+      : JointLogView(log.header_stamps, log.receive_stamps, log.clock, log.q, log.qd, log.effort,
+                     log.qdd) {}
+
+  /// N; those stamps that are the time of the samples.
+  const StampsBlock& stamps() const {
+    return clock == Clock::kReceive ? receive_stamps : header_stamps;
+  }
 
   /// N; s since the first sample.
-  OwnedVector time() const { return (stamps.array() - stamps[0]).cast<double>() * 1e-9; }
+  OwnedVector time() const { return (stamps().array() - stamps()[0]).cast<double>() * 1e-9; }
 };
 
 /// Where accelerations come from.
@@ -63,7 +71,7 @@ AccelerationMethod accelerationMethod(const std::string& name);
 
 /// Accelerations, how they came about, and what was found in the samples.
 struct LogAccelerations {
-  OwnedMatrix qdd;                                           ///< n x N; rad/s^2 (prismatic m/s^2)
+  OwnedMatrix qdd;  ///< n x N; rad/s^2 (prismatic m/s^2); of samples in memory, else empty
   AccelerationMethod method = AccelerationMethod::kLowPass;  ///< the one taken; not kAuto
   FilterChoice filter;                ///< what the low-pass did; all zero where there was none
   std::string summary;                ///< how they came about, in words
@@ -88,12 +96,10 @@ LogAccelerations logAccelerations(const JointLogView& log,
 
 /// What is odd about the samples of a recording, and what follows from it; one sentence each.
 ///
-/// @param stamps   N; ns; of the samples that were examined.
-/// @param clock    whose stamps they are: `header` or `receive`.
-/// @param samples  what examineSamples() found.
+/// @param clock    whose stamps they have: `header` or `receive`.
+/// @param samples  what was found.
 /// @param filter   what the low-pass did; nullptr where there was none.
-std::vector<std::string> sampleFindings(const JointLogView::StampsBlock& stamps,
-                                        const std::string& clock, const SampleReport& samples,
+std::vector<std::string> sampleFindings(const std::string& clock, const SampleReport& samples,
                                         const FilterChoice* filter);
 
 }  // namespace v2

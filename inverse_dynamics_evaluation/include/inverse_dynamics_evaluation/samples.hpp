@@ -29,8 +29,8 @@
 ///    a way that no acceleration estimate resolves. With the second differences of the efforts
 ///    (divided ones, as samples may be missing), in units of their median, as a measure, everything
 ///    up to the last sample in the first half second that exceeds 5 times the 90 % quantile of the
-///    whole recording doesn't count in the metrics over kept samples. Such samples are used in the
-///    differentiation.
+///    first 65,536 samples doesn't count in the metrics over kept samples. Such samples are used in
+///    the differentiation.
 /// 5. **Gaps.** Where nothing was recorded for more than half a second and 20 sampling periods, the
 ///    recording is cut, and each piece filtered by itself. Pieces too short to be filtered don't
 ///    count.
@@ -41,6 +41,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -70,20 +71,51 @@ enum class TimeBase {
 /// `stamps`, `regular` or `regular_fresh`.
 std::string name(TimeBase time_base);
 
+/// How many samples the rules have found.
+struct SampleCounts {
+  Eigen::Index all = 0;              ///< N
+  Eigen::Index repeated = 0;         ///< rule 1
+  Eigen::Index non_increasing = 0;   ///< rule 2
+  Eigen::Index start_transient = 0;  ///< rule 4: the first ones
+  Eigen::Index isolated = 0;         ///< rule 5: in pieces that are too short
+  Eigen::Index kept = 0;             ///< count in metrics over kept samples
+};
+
+/// The first sample whose stamp isn't later than all before it.
+struct BackwardStamp {
+  Eigen::Index sample = 0;  ///< its number; 0: there is none
+  std::int64_t stamp = 0;   ///< ns
+  std::int64_t latest = 0;  ///< ns; the latest before it
+  double time = 0;          ///< s
+  double time_before = 0;   ///< s; of the sample before it
+};
+
+/// The longest gap.
+struct LongestGap {
+  Eigen::Index behind = 0;        ///< number of the first used sample behind it; 0: there is none
+  double length = 0;              ///< s
+  std::int64_t stamp_before = 0;  ///< ns; of the sample before that one
+};
+
 /// What was found in N samples, and what follows from it.
+///
+/// What has a number for each sample is left empty by an evaluation that isn't of samples in memory.
 struct SampleReport {
+  SampleCounts counts;
   Mask repeated;         ///< N; rule 1
   Mask non_increasing;   ///< N; rule 2
   Mask start_transient;  ///< N; rule 4
   Mask isolated;         ///< N; rule 5: in a piece that is too short
   Mask used;             ///< N; enters the differentiation
   Mask kept;             ///< N; counts in metrics over kept samples
+  OwnedVector time;      ///< N; s; instant of each sample; a repeat has that of the sample it
+                         ///< repeats
 
   TimeBase time_base = TimeBase::kStamps;  ///< which one is used
-  OwnedVector time;                  ///< N; s; instant of each sample in it; a repeat has that
-                                     ///< of the sample it repeats
-  std::vector<Eigen::Index> pieces;  ///< first sample of each piece (rule 5)
-  std::vector<Eigen::Index> gaps;    ///< first used sample behind each gap (rule 5)
+  std::vector<Eigen::Index> pieces;        ///< first sample of each piece (rule 5)
+  std::vector<Eigen::Index> gaps;          ///< first used sample behind each gap (rule 5)
+  LongestGap longest_gap;
+  BackwardStamp backward;
 
   double period = 0;          ///< s; mean distance of the used samples, gaps aside
   double stamped_period = 0;  ///< s; median distance of the stamps

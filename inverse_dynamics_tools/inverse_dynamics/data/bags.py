@@ -10,8 +10,9 @@ Which messages and joints are taken, and which time: inverse_dynamics_evaluation
 from __future__ import annotations
 
 import os
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import quote
 
 from inverse_dynamics._core import JointLogBuilder, JointStateWriter, Recording
@@ -21,11 +22,12 @@ from inverse_dynamics.data.joint_log import CLOCKS, JointLog
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
+    import numpy as np
     from rosbags.rosbag2 import Writer
 
-    from inverse_dynamics._core import RecordedJoints
+    from inverse_dynamics._core import JointStates, RecordedJoints
     from inverse_dynamics.base.arrays import Floats, Integers
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Clock, Storage
@@ -81,30 +83,50 @@ def read_joint_log(
     """
     if clock not in CLOCKS:
         raise BagError(f"clock: expected one of {', '.join(CLOCKS)}, got '{clock}'")
+    opened = open_joint_states(path, topic)
+    builder = JointLogBuilder(opened.states, joints)
+    while builder.add_next(opened.states):
+        progress("reading", builder.messages, opened.states.expected_messages)
+    recorded = builder.finish(clock)
+    return opened.log(
+        recorded,
+        {
+            name: getattr(recorded, name)
+            for name in ("header_stamps", "receive_stamps", "q", "qd", "effort")
+        },
+    )
+
+
+class JointStateTopic(NamedTuple):
+    """Joint states of a recording that haven't been read."""
+
+    states: JointStates
+    topic: str
+    storage: Storage
+    effort_is: str = ""  # the format states no meaning
+
+    def log(self, recorded: RecordedJoints, arrays: Mapping[str, np.ndarray[Any, Any]]) -> JointLog:
+        """What was read: facts, and arrays by name."""
+        return JointLog(
+            joint_names=tuple(recorded.joint_names),
+            header_stamps=arrays["header_stamps"],
+            receive_stamps=arrays["receive_stamps"],
+            q=arrays["q"],
+            qd=arrays["qd"],
+            effort=arrays["effort"],
+            frame_id=recorded.frame_id,
+            clock=recorded.clock,
+            topic=self.topic,
+            storage=self.storage,
+            notes=tuple(recorded.notes),
+        )
+
+
+def open_joint_states(path: Path | str, topic: str = "") -> JointStateTopic:
+    """Joint states of a topic; none given: of the only one with any. Raises BagError."""
     recording = open_recording(path)
     topic = topic_of_type(recording, MESSAGE_TYPE, topic)
-    states = recording.joint_states(topic)
-    builder = JointLogBuilder(states, joints)
-    while builder.add_next(states):
-        progress("reading", builder.messages, states.expected_messages)
-    return _joint_log(builder.finish(clock), topic, recording.storage)
-
-
-def _joint_log(recorded: RecordedJoints, topic: str, storage: Storage) -> JointLog:
-    """The same memory, and where it comes from."""
-    return JointLog(
-        joint_names=tuple(recorded.joint_names),
-        header_stamps=recorded.header_stamps,
-        receive_stamps=recorded.receive_stamps,
-        q=recorded.q,
-        qd=recorded.qd,
-        effort=recorded.effort,
-        frame_id=recorded.frame_id,
-        clock=recorded.clock,
-        topic=topic,
-        storage=storage,
-        notes=tuple(recorded.notes),
-    )
+    return JointStateTopic(recording.joint_states(topic), topic, recording.storage)
 
 
 def write_joint_logs(
@@ -120,24 +142,54 @@ def write_joint_logs(
 
     Raises BagError if the path exists or can't be written.
     """
-    if storage not in ("sqlite3", "mcap"):
-        raise BagError(f"storage: expected one of sqlite3, mcap, got '{storage}'")
     logs = list(topics.values())
     longest = max(map(len, logs), default=0)
     done = 0
-    try:
-        about = [(topic, log.joint_names, log.frame_id) for topic, log in topics.items()]
-        writer = JointStateWriter(os.fsencode(Path(path)), storage, about)
-        for begin in range(0, longest, _BLOCK):
-            rows = slice(begin, begin + _BLOCK)
-            writer.write([_rows(log, rows) for log in logs])
-            done += sum(len(log.q[rows]) for log in logs)
-            progress("writing the bag", done, sum(map(len, logs)))
-        writer.finish()
-    except BagError:
-        raise
-    except Exception as error:  # a name that can't be encoded
-        raise unwritable(path, error) from error
+    about = {topic: (log.joint_names, log.frame_id) for topic, log in topics.items()}
+    writer = JointLogsWriter(path, storage, about)
+    for begin in range(0, longest, _BLOCK):
+        rows = slice(begin, begin + _BLOCK)
+        writer.write([_rows(log, rows) for log in logs])
+        done += sum(len(log.q[rows]) for log in logs)
+        progress("writing the bag", done, sum(map(len, logs)))
+    writer.finish()
+
+
+class JointLogsWriter:
+    """A new recording of joint states, some messages at a time. Raises BagError."""
+
+    def __init__(
+        self,
+        path: Path | str,
+        storage: Storage,
+        topics: Mapping[str, tuple[Sequence[str], str]],
+    ) -> None:
+        """topics: names to joint names and frame."""
+        if storage not in ("sqlite3", "mcap"):
+            raise BagError(f"storage: expected one of sqlite3, mcap, got '{storage}'")
+        self._path = path
+        about = [(topic, list(names), frame) for topic, (names, frame) in topics.items()]
+        with self._errors_told():
+            self._writer = JointStateWriter(os.fsencode(Path(path)), storage, about)
+
+    def write(self, rows: Sequence[tuple[Integers, Integers, Floats, Floats, Floats]]) -> None:
+        """The next messages of each topic: header and receive stamps, positions, velocities, efforts."""
+        with self._errors_told():
+            self._writer.write(list(rows))
+
+    def finish(self) -> None:
+        """Write indexes and metadata."""
+        with self._errors_told():
+            self._writer.finish()
+
+    @contextmanager
+    def _errors_told(self) -> Iterator[None]:
+        try:
+            yield
+        except BagError:
+            raise
+        except Exception as error:  # a name that can't be encoded
+            raise unwritable(self._path, error) from error
 
 
 def _rows(log: JointLog, rows: slice) -> tuple[Integers, Integers, Floats, Floats, Floats]:

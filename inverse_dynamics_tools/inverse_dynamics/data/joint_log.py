@@ -49,5 +49,10 @@ class JointLog:
         """(N,) s since the first sample."""
         return (self.stamps - self.stamps[:1]).astype("float64") * 1e-9
 
+    @property
+    def duration(self) -> float:
+        """s, from the first sample to the last one."""
+        return float(self.stamps[-1] - self.stamps[0]) * 1e-9
+
     def __len__(self) -> int:
         return len(self.q)

@@ -16,14 +16,14 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data import bags, joint_trajectories
 from inverse_dynamics.data.csv_recordings import open_table, read_csv_log
 from inverse_dynamics.data.csv_table import is_csv
-from inverse_dynamics.data.joint_log import CLOCKS
+from inverse_dynamics.data.joint_log import CLOCKS, JointLog
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from inverse_dynamics.base.progress import Progress
-    from inverse_dynamics.data.joint_log import Clock, JointLog
+    from inverse_dynamics.data.joint_log import Clock
 
 
 def read_recording(
@@ -44,6 +44,27 @@ def read_recording(
 
     Raises BagError.
     """
+    motion = open_motion(
+        path, joints, topic=topic, usual_topic=usual_topic, clock=clock, progress=progress
+    )
+    if isinstance(motion, JointLog):
+        return motion
+    return bags.read_joint_log(path, joints, topic=motion.topic, clock=clock, progress=progress)
+
+
+def open_motion(
+    path: Path | str,
+    joints: Sequence[str],
+    *,
+    topic: str,
+    usual_topic: str,
+    clock: Clock,
+    progress: Progress,
+) -> JointLog | bags.JointStateTopic:
+    """The samples, but for those of joint states, which may be too many for the memory.
+
+    The arguments are those of read_recording().
+    """
     path = Path(path)
     if clock not in CLOCKS:
         raise BagError(f"clock: expected one of {', '.join(CLOCKS)}, got '{clock}'")
@@ -56,7 +77,7 @@ def read_recording(
     if not topic:
         topic = _topic(types, usual_topic)
     if types.get(topic) != joint_trajectories.MESSAGE_TYPE:
-        return bags.read_joint_log(path, joints, topic=topic, clock=clock, progress=progress)
+        return bags.open_joint_states(path, topic)
     trajectories = joint_trajectories.read_joint_trajectories(path, topic, progress)
     return joint_trajectories.joint_log_of(trajectories, joints, clock, topic, recording.storage)
 

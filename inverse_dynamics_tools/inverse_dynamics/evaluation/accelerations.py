@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from inverse_dynamics._core import Evaluated, SampleReport
+    from inverse_dynamics._core import Evaluated
     from inverse_dynamics.base.arrays import Mask
+    from inverse_dynamics.evaluation.series import Arrays
 
 # What each rule does, as --help says it.
 RULES = {
@@ -71,7 +72,7 @@ def accelerations_of(found: Evaluated) -> Accelerations:
     return Accelerations(found.method, choice.cutoff, choice.chosen, choice.order, choice.time_base)
 
 
-def samples_of(report: SampleReport) -> Samples:
-    """What the extension module has found."""
-    masks = {name: getattr(report, name) for name in MASKS}
-    return Samples(**masks, period=report.period, jitter=report.jitter)
+def samples_of(found: Evaluated, arrays: Arrays) -> Samples:
+    """What the extension module has found. arrays: those of all samples, by name."""
+    masks = {name: arrays[name] for name in MASKS}
+    return Samples(**masks, period=found.period, jitter=found.jitter)

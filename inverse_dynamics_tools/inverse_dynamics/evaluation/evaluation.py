@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.data.recordings import read_recording
+from inverse_dynamics.data.joint_log import JointLog
+from inverse_dynamics.data.recordings import open_motion
 from inverse_dynamics.evaluation.accelerations import (
     Accelerations,
     Samples,
@@ -23,6 +24,7 @@ from inverse_dynamics.evaluation.accelerations import (
     samples_of,
 )
 from inverse_dynamics.evaluation.effort import Effort, effort_of
+from inverse_dynamics.evaluation.series import Recorded, SeriesInMemory
 from inverse_dynamics.robot.descriptions import joint_units, read_description
 from inverse_dynamics.robot.robots import Robot, load_robot, with_changes
 from inverse_dynamics.robot.solvers import description_notes, open_solver
@@ -33,7 +35,9 @@ if TYPE_CHECKING:
     from inverse_dynamics._core import JointMetrics, Parameter
     from inverse_dynamics.base.arrays import Floats, Mask
     from inverse_dynamics.base.progress import Progress
-    from inverse_dynamics.data.joint_log import Clock, JointLog
+    from inverse_dynamics.data.bags import JointStateTopic
+    from inverse_dynamics.data.joint_log import Clock
+    from inverse_dynamics.evaluation.series import Arrays, Series
 
 
 @dataclass(frozen=True)
@@ -111,6 +115,7 @@ def evaluate(
     clock: Clock = "auto",
     without_rules: Sequence[str] = (),
     progress: Progress = no_progress,
+    series: Series | None = None,
 ) -> Evaluation:
     """Compute the torques of a recorded motion and compare them with the measured ones.
 
@@ -119,7 +124,8 @@ def evaluate(
     says: see Robot; parameters, of the solver, one by one. effort_is: what recorded efforts mean, one of
     EFFORT_CHOICES.
     accelerations: one of accelerations.METHODS; cutoff: Hz, of a low-pass. clock: which stamps are
-    the time. without_rules: those of accelerations.RULES not to be acted upon.
+    the time. without_rules: those of accelerations.RULES not to be acted upon. series: where samples
+    go; none: into memory.
 
     Raises UserError: BagError, RobotError, SolverError, EvaluationError.
     """
@@ -144,7 +150,7 @@ def evaluate(
     start = time.perf_counter()
     arm = Arm(robot)
     ready = time.perf_counter()
-    log = read_recording(
+    motion = open_motion(
         bag,
         arm.recorded_names,
         topic=topic or "",
@@ -153,11 +159,20 @@ def evaluate(
         progress=progress,
     )
     seconds = {"solver": ready - start, "reading": time.perf_counter() - ready}
-    progress("computing", 0, len(log))
-    result = _compare(bag, robot, arm, log, effort_is, without_rules)
-    progress("computing", len(log), len(log))
+    result = _compare(
+        bag,
+        robot,
+        arm,
+        motion,
+        clock=clock,
+        effort_is=effort_is,
+        without_rules=without_rules,
+        progress=progress,
+        series=series or SeriesInMemory(),
+    )
+    seconds["reading"] += result.seconds["reading"]
     notes = description_notes(robot, "drawn") if urdf is not None else ()
-    return replace(result, notes=(*notes, *result.notes), seconds={**seconds, **result.seconds})
+    return replace(result, notes=(*notes, *result.notes), seconds={**result.seconds, **seconds})
 
 
 class Arm:
@@ -178,25 +193,45 @@ def _compare(
     bag: Path,
     robot: Robot,
     arm: Arm,
-    log: JointLog,
+    motion: JointLog | JointStateTopic,
+    *,
+    clock: Clock,
     effort_is: str | None,
     without_rules: Sequence[str],
+    progress: Progress,
+    series: Series,
 ) -> Evaluation:
-    """Computed torques of a log against its measured ones. Raises EvaluationError, RobotError."""
+    """Computed torques of a motion against its measured ones. Raises EvaluationError, RobotError."""
     from inverse_dynamics import _core
+
+    if isinstance(motion, JointLog):
+        expected, notes, names = len(motion), motion.notes, motion.joint_names
+    else:
+        expected, notes, names = motion.states.expected_messages, (), arm.recorded_names
+
+    def take(count: int, frame_id: str, arrays: Arrays) -> None:
+        if isinstance(motion, JointLog):
+            frame_id = motion.frame_id
+        series.take(Recorded(count, names, frame_id, motion.storage), arrays)
 
     found = _core.evaluate(
         arm.solver,
-        log,
+        motion if isinstance(motion, JointLog) else motion.states,
+        joints=list(arm.recorded_names),
+        clock=clock,
         method=robot.accelerations,
         cutoff=robot.cutoff,
         without_rules=list(without_rules),
-        effort=_core.effort_options(robot, arm.solver, effort_is, log.effort_is),
+        effort=_core.effort_options(robot, arm.solver, effort_is, motion.effort_is),
         recording=f"{bag}",
-        topic=log.topic,
+        topic=motion.topic,
         units=list(arm.units),
-        notes=list(log.notes),
+        notes=list(notes),
+        take=take,
+        progress=lambda share: progress("evaluating", round(share * expected), expected),
     )
+    arrays = series.arrays()
+    log = motion if isinstance(motion, JointLog) else motion.log(found.recording, arrays)
     return Evaluation(
         robot=replace(robot, joints=arm.recorded_names, topic=log.topic, effort=found.meaning),
         bag=bag,
@@ -204,14 +239,18 @@ def _compare(
         joint_names=arm.joint_names,
         units=arm.units,
         accelerations=accelerations_of(found),
-        samples=samples_of(found.samples),
-        qdd=found.qdd,
-        computed=found.computed,
+        samples=samples_of(found, arrays),
+        qdd=arrays["qdd"],
+        computed=arrays["computed"],
         errors=_joint_errors(arm.joint_names, arm.units, found.errors),
         errors_of_kept=_joint_errors(arm.joint_names, arm.units, found.errors_of_kept),
         effort=effort_of(found),
         notes=tuple(found.notes),
-        seconds={"accelerations": found.acceleration_seconds, "torques": found.torque_seconds},
+        seconds={
+            "reading": found.reading_seconds,
+            "accelerations": found.acceleration_seconds,
+            "torques": found.torque_seconds,
+        },
     )
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from inverse_dynamics.base.wording import printable, shown
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.figures.thinning import peaks
+from inverse_dynamics.figures.torque_lines import TorqueLines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.evaluation.comparison import Comparison
     from inverse_dynamics.evaluation.evaluation import Evaluation
 
@@ -33,8 +32,6 @@ COMPUTED: dict[str, Any] = {"color": "#d7191c", "linewidth": 1.2}
 ERROR: dict[str, Any] = {"color": "#2c5f9e", "linewidth": 0.7}
 _RUNS = ("#E69F00", "#0072B2", "#009E73", "#CC79A7", "#56B4E9")  # Okabe and Ito: for all eyes
 _MUTED = "#555555"
-
-_MOST_POINTS = 6000  # of a line
 
 FORMATS = ("png", "svg", "pdf")
 
@@ -65,9 +62,11 @@ def check_formats(figures: Sequence[str]) -> None:
         raise OutputError(f"figures: expected some of {', '.join(FORMATS)}, got {shown(wrong)}")
 
 
-def save_torque_figure(evaluation: Evaluation, *files: Path) -> None:
+def save_torque_figure(
+    evaluation: Evaluation, *files: Path, lines: TorqueLines | None = None
+) -> None:
     """Save torque_figure(); formats are those of the suffixes. The same evaluation, the same bytes."""
-    save_figure(lambda: torque_figure(evaluation), *files)
+    save_figure(lambda: torque_figure(evaluation, lines), *files)
 
 
 def save_comparison_figure(comparison: Comparison, *files: Path) -> None:
@@ -97,8 +96,11 @@ def make_printable(figure: Figure) -> None:
         text.set_text(printable(text.get_text()))
 
 
-def torque_figure(evaluation: Evaluation) -> Figure:
-    """Measured and computed torque over time, and the error, a joint a row."""
+def torque_figure(evaluation: Evaluation, lines: TorqueLines | None = None) -> Figure:
+    """Measured and computed torque over time, and the error, a joint a row.
+
+    lines: what was gathered of the samples; none: those of the evaluation.
+    """
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
@@ -106,13 +108,13 @@ def torque_figure(evaluation: Evaluation) -> Figure:
     height = 1.25 * n + 1.7
     figure = Figure(figsize=(11.0, height))
     axes = _panels(figure, n, top=1.32, bottom=0.5)
-    time = evaluation.time
+    lines = lines or TorqueLines.of(evaluation)
     for j, (left, right) in enumerate(axes):
-        _draw_torques(left, evaluation, time, j)
-        _draw_error(right, evaluation, time, j)
+        _draw_torques(left, evaluation, lines, j)
+        _draw_error(right, evaluation, lines, j)
     for axis in axes[-1]:
         axis.set_xlabel("time [s]", color=_MUTED)
-        axis.set_xlim(time[0], time[-1])
+        axis.set_xlim(lines.begin, lines.end)
 
     def at(inches_from_top: float) -> float:
         return 1 - inches_from_top / height
@@ -127,9 +129,9 @@ def torque_figure(evaluation: Evaluation) -> Figure:
         {"measured torque": MEASURED, "computed torque": COMPUTED},
         {"error: computed - measured": ERROR},
     )
-    for axis, lines in zip(axes[0], columns, strict=True):
+    for axis, column in zip(axes[0], columns, strict=True):
         figure.legend(
-            handles=[Line2D([], [], label=label, **style) for label, style in lines.items()],
+            handles=[Line2D([], [], label=label, **style) for label, style in column.items()],
             loc="upper left",
             bbox_to_anchor=(axis.get_position().x0, at(0.87)),
             borderaxespad=0,
@@ -156,30 +158,28 @@ def comparison_figure(comparison: Comparison) -> Figure:
         fontweight="bold",
     )
     axes = _panels(figure, n, top=0.55, bottom=0.8)
+    runs = [TorqueLines.of(evaluation) for evaluation in comparison.evaluations]
     for j, (left, right) in enumerate(axes):
-        for k, evaluation in enumerate(comparison.evaluations):
-            error = evaluation.computed[:, j] - evaluation.measured[:, j]
+        for k, run in enumerate(runs):
             style = {
                 "color": _RUNS[k % len(_RUNS)],
                 "linewidth": 1.1,
                 "label": comparison.labels[k],
             }
-            left.plot(*_thinned(first.time, evaluation.computed[:, j]), **style)
-            right.plot(*_thinned(first.time, error), **style)
-        left.plot(*_thinned(first.time, first.measured[:, j]), **MEASURED, label="measured")
+            left.plot(*run.computed(j), **style)
+            right.plot(*run.error(j), **style)
+        left.plot(*runs[0].measured(j), **MEASURED, label="measured")
         left.set_title(f"{comparison.joint_names[j]} [{first.units[j]}]", loc="left", fontsize=9)
         rmse = " / ".join(f"{value:.3g}" for value in comparison.rmse[:, j])
         right.set_title(
             f"error: RMSE {rmse} {first.units[j]}", loc="left", fontsize=9, color=_MUTED
         )
         right.axhline(0, color="#999999", linewidth=0.6)
-        largest = max(
-            _error_limit(e.computed[:, j] - e.measured[:, j]) for e in comparison.evaluations
-        )
+        largest = max(run.error_limit(j) for run in runs)
         right.set_ylim(-1.1 * (largest or 1.0), 1.1 * (largest or 1.0))
     for axis in axes[-1]:
         axis.set_xlabel("time [s]", color=_MUTED)
-        axis.set_xlim(first.time[0], first.time[-1])
+        axis.set_xlim(runs[0].begin, runs[0].end)
     handles, labels = axes[0][0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", ncols=len(labels), frameon=False)
     return figure
@@ -200,21 +200,21 @@ def _panels(figure: Figure, n: int, *, top: float, bottom: float) -> NDArray[np.
     return axes
 
 
-def _draw_torques(axes: Axes, evaluation: Evaluation, time: Floats, j: int) -> None:
-    axes.plot(*_thinned(time, evaluation.computed[:, j]), **COMPUTED)
-    axes.plot(*_thinned(time, evaluation.measured[:, j]), **MEASURED)
+def _draw_torques(axes: Axes, evaluation: Evaluation, lines: TorqueLines, j: int) -> None:
+    axes.plot(*lines.computed(j), **COMPUTED)
+    axes.plot(*lines.measured(j), **MEASURED)
     axes.set_title(
         f"{evaluation.joint_names[j]} [{evaluation.units[j]}]", loc="left", fontsize=9, pad=3
     )
     axes.margins(y=0.08)
 
 
-def _draw_error(axes: Axes, evaluation: Evaluation, time: Floats, j: int) -> None:
+def _draw_error(axes: Axes, evaluation: Evaluation, lines: TorqueLines, j: int) -> None:
     from matplotlib.ticker import EngFormatter
 
     error = evaluation.errors[j]
-    largest = _error_limit(evaluation.computed[:, j] - evaluation.measured[:, j]) or 1.0
-    t, difference = _thinned(time, evaluation.computed[:, j] - evaluation.measured[:, j])
+    largest = lines.error_limit(j) or 1.0
+    t, difference = lines.error(j)
     axes.axhline(0, color="#999999", linewidth=0.6)
     axes.fill_between(t, 0, difference, color=ERROR["color"], alpha=0.15, linewidth=0)
     axes.plot(t, difference, **ERROR)
@@ -227,15 +227,6 @@ def _draw_error(axes: Axes, evaluation: Evaluation, time: Floats, j: int) -> Non
     )
 
 
-def _error_limit(error: Floats) -> float:
-    """What an axis of errors (N,) must show: all of them, but for spikes that would flatten the rest.
-
-    A spike is beyond one and a half times the 99.5 % quantile of the magnitudes.
-    """
-    magnitude = np.abs(error)
-    return float(min(magnitude.max(), 1.5 * np.quantile(magnitude, 0.995) or np.inf))
-
-
 def _subtitle(evaluation: Evaluation) -> str:
     friction = "" if evaluation.robot.friction else ", friction left out"
     return f"{evaluation.robot.name}   ·   solver {evaluation.robot.plugin}{friction}"
@@ -243,11 +234,6 @@ def _subtitle(evaluation: Evaluation) -> str:
 
 def _assumptions(evaluation: Evaluation) -> str:
     return (
-        f"{evaluation.bag.name}, {len(evaluation.log)} samples, {evaluation.time[-1]:.1f} s   ·   "
+        f"{evaluation.bag.name}, {len(evaluation.log)} samples, {evaluation.log.duration:.1f} s   ·   "
         f"accelerations: {evaluation.accelerations.summary}"
     )
-
-
-def _thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    shown = peaks(y, _MOST_POINTS)
-    return x[shown], y[shown]

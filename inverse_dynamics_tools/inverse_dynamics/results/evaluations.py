@@ -25,22 +25,26 @@ import numpy as np
 from inverse_dynamics.base.files import Contents, write_text, written_whole
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.replacement import restore_interrupted
-from inverse_dynamics.data.bags import write_joint_logs
+from inverse_dynamics.data.bags import JointLogsWriter
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.evaluation.accelerations import MASKS, Accelerations, Samples
 from inverse_dynamics.evaluation.effort import Effort
 from inverse_dynamics.evaluation.effort_verdict import Candidate, Verdict
-from inverse_dynamics.evaluation.evaluation import Evaluation, JointError
+from inverse_dynamics.evaluation.evaluation import Evaluation, JointError, evaluate
+from inverse_dynamics.evaluation.series import Recorded
 from inverse_dynamics.figures.plots import FORMATS
+from inverse_dynamics.results.series_file import SeriesFile
 from inverse_dynamics.results.stated_types import check_types
-from inverse_dynamics.robot.robots import Robot
+from inverse_dynamics.robot.robots import Robot, load_robot
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Storage
+    from inverse_dynamics.evaluation.series import Arrays
+    from inverse_dynamics.figures.torque_lines import TorqueLines
 
 SCHEMA = 2
 MARK = "evaluation.json"
@@ -64,6 +68,8 @@ CONTENTS = Contents(
 COMPUTED_TOPIC = "/torques"
 MEASURED_TOPIC = "/torques_gt"
 
+_BLOCK = 4096  # samples written together
+
 
 def write_evaluation(
     evaluation: Evaluation,
@@ -80,31 +86,128 @@ def write_evaluation(
     figures: of "png", "svg", "pdf"; none of them: no figure.
     Raises OutputError, BagError.
     """
-    from inverse_dynamics.figures.plots import check_formats, save_torque_figure
+    from inverse_dynamics.figures.plots import check_formats
 
     check_formats(figures)
-    start = time.perf_counter()
     inputs = (evaluation.bag, *evaluation.robot.files)
     with written_whole(
         Path(directory), overwrite=overwrite, contents=CONTENTS, inputs=inputs
     ) as target:
-        log = evaluation.log
-        topics = {
-            COMPUTED_TOPIC: replace(log, effort=evaluation.computed),
-            MEASURED_TOPIC: replace(log, effort=evaluation.measured),
-        }
-        write_joint_logs(target / "bag", topics, storage=storage or log.storage, progress=progress)
-        layout = _layout(evaluation, target / "bag", storage or log.storage)
-        write_text(target / "plotjuggler.xml", layout)
-        _write_json(target / "metrics.json", _metrics(evaluation))
-        _write_json(target / MARK, _summary(evaluation))
-        np.savez(target / "series.npz", allow_pickle=False, **_series(evaluation))
-        written = time.perf_counter()
-        if figures:
-            progress("plotting", 0, 1)
-            save_torque_figure(evaluation, *(target / f"torques.{suffix}" for suffix in figures))
-            progress("plotting", 1, 1)
-    return {"writing": written - start, "plotting": time.perf_counter() - written}
+        written = _WrittenSeries(target, storage, bool(figures))
+        for recorded, arrays in _series(evaluation):
+            written.take(recorded, arrays)
+            progress("writing", written.count, recorded.samples)
+        written.arrays()
+        return _write_rest(evaluation, target, written, figures, progress)
+
+
+def evaluate_into(
+    directory: Path | str,
+    bag: Path | str,
+    robot: Robot | Path | str,
+    *,
+    overwrite: bool = False,
+    storage: Storage | None = None,
+    figures: Sequence[str] = ("png",),
+    progress: Progress = no_progress,
+    **options: Any,
+) -> Evaluation:
+    """evaluate() and write_evaluation() of a recording that needn't fit into memory.
+
+    options: those of evaluate(). The arrays of the result are those of series.npz, in memory only
+    where they are looked at.
+
+    Raises UserError.
+    """
+    from inverse_dynamics.figures.plots import check_formats
+
+    check_formats(figures)
+    robot = robot if isinstance(robot, Robot) else load_robot(robot)
+    inputs = (Path(bag), *robot.files, options.get("urdf"))
+    with written_whole(
+        Path(directory), overwrite=overwrite, contents=CONTENTS, inputs=inputs
+    ) as target:
+        written = _WrittenSeries(target, storage, bool(figures))
+        evaluation = evaluate(bag, robot, progress=progress, series=written, **options)
+        seconds = _write_rest(evaluation, target, written, figures, progress)
+        return replace(evaluation, seconds={**evaluation.seconds, **seconds})
+
+
+class _WrittenSeries:
+    """Writes the bag and series.npz; keeps what the figure needs."""
+
+    def __init__(self, target: Path, storage: Storage | None, figure: bool) -> None:
+        self._target = target
+        self._storage = storage
+        self._figure = figure
+        self._opened: tuple[JointLogsWriter, SeriesFile] | None = None
+        self.lines: TorqueLines | None = None
+        self.count = 0  # samples
+        self.seconds = 0.0
+
+    def take(self, recorded: Recorded, arrays: Arrays) -> None:
+        start = time.perf_counter()
+        bag, series = self._opened or self._open(recorded)
+        header, receive = arrays["header_stamps"], arrays["receive_stamps"]
+        q, qd = arrays["q"], arrays["qd"]
+        bag.write([(header, receive, q, qd, arrays[name]) for name in ("computed", "measured")])
+        series.add(arrays)
+        if self.lines:
+            self.lines.add(arrays["time"], arrays["computed"], arrays["measured"])
+        self.count += len(arrays["time"])
+        self.seconds += time.perf_counter() - start
+
+    def arrays(self) -> Arrays:
+        start = time.perf_counter()
+        if self._opened is None:
+            raise OutputError(f"{self._target}: no sample to write")
+        bag, series = self._opened
+        bag.finish()
+        series.finish()
+        self.seconds += time.perf_counter() - start
+        return series.mapped()
+
+    def _open(self, recorded: Recorded) -> tuple[JointLogsWriter, SeriesFile]:
+        from inverse_dynamics.figures.torque_lines import TorqueLines
+
+        about = (recorded.joint_names, recorded.frame_id)
+        self.storage = self._storage or recorded.storage
+        bag = JointLogsWriter(
+            self._target / "bag",
+            self.storage,
+            {COMPUTED_TOPIC: about, MEASURED_TOPIC: about},
+        )
+        self._opened = (bag, SeriesFile(self._target / "series.npz", recorded.samples))
+        if self._figure:
+            self.lines = TorqueLines(recorded.samples, len(recorded.joint_names))
+        return self._opened
+
+
+def _write_rest(
+    evaluation: Evaluation,
+    target: Path,
+    written: _WrittenSeries,
+    figures: Sequence[str],
+    progress: Progress,
+) -> dict[str, float]:
+    """All but the bag and series.npz; gives what took how long [s]."""
+    from inverse_dynamics.figures.plots import save_torque_figure
+
+    start = time.perf_counter()
+    layout = _layout(evaluation, target / "bag", written.storage)
+    write_text(target / "plotjuggler.xml", layout)
+    _write_json(target / "metrics.json", _metrics(evaluation))
+    _write_json(target / MARK, _summary(evaluation))
+    plotting = time.perf_counter()
+    if figures:
+        progress("plotting", 0, 1)
+        files = (target / f"torques.{suffix}" for suffix in figures)
+        save_torque_figure(evaluation, *files, lines=written.lines)
+        progress("plotting", 1, 1)
+    return {
+        "writing": written.seconds + plotting - start,
+        "plotting": time.perf_counter() - plotting,
+    }
 
 
 def read_evaluation(directory: Path | str) -> Evaluation:
@@ -172,10 +275,12 @@ def _layout(evaluation: Evaluation, bag: Path, storage: Storage) -> str:
     return torque_layout(evaluation.log, evaluation.units, topics, recording, storage)
 
 
-def _series(evaluation: Evaluation) -> dict[str, Any]:
+def _series(evaluation: Evaluation) -> Iterator[tuple[Recorded, Arrays]]:
+    """The samples of an evaluation in memory, as Series takes them."""
     log = evaluation.log
-    return {
-        "time": evaluation.time,
+    recorded = Recorded(len(log), log.joint_names, log.frame_id, log.storage)
+    arrays = {
+        "time": log.time,
         "header_stamps": log.header_stamps,
         "receive_stamps": log.receive_stamps,
         "q": log.q,
@@ -186,6 +291,8 @@ def _series(evaluation: Evaluation) -> dict[str, Any]:
         "computed": evaluation.computed,
         **{name: getattr(evaluation.samples, name) for name in MASKS},
     }
+    for begin in range(0, len(log), _BLOCK):
+        yield recorded, {name: array[begin : begin + _BLOCK] for name, array in arrays.items()}
 
 
 def _metrics(evaluation: Evaluation) -> dict[str, Any]:
@@ -213,7 +320,7 @@ def _summary(evaluation: Evaluation) -> dict[str, Any]:
         "schema": SCHEMA,
         "bag": str(evaluation.bag),
         "samples": len(log),
-        "duration": float(evaluation.time[-1]),
+        "duration": log.duration,
         "robot": {f.name: _plain(getattr(robot, f.name)) for f in fields(robot)},
         "joint_names": list(evaluation.joint_names),
         "units": list(evaluation.units),

@@ -203,9 +203,14 @@ def _evaluate_one(task: _Task) -> EvaluationSummary:
         check_stopped()
 
     _remove_remains(task.target)  # of an earlier try, on a cluster
-    evaluation = evaluate(task.bag, task.robot, **task.options, progress=progress)
-    evaluations.write_evaluation(
-        evaluation, task.target, storage=task.storage, figures=task.figures, progress=progress
+    evaluation = evaluations.evaluate_into(
+        task.target,
+        task.bag,
+        task.robot,
+        storage=task.storage,
+        figures=task.figures,
+        progress=progress,
+        **task.options,
     )
     if task.parquet:
         from inverse_dynamics.results.exports import export_series

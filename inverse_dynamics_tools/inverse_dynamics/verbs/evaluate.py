@@ -194,8 +194,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _run_one(arguments: argparse.Namespace, robot: Robot) -> None:
     from inverse_dynamics.base.files import check_output_directory
-    from inverse_dynamics.evaluation.evaluation import evaluate
-    from inverse_dynamics.results.evaluations import CONTENTS, write_evaluation
+    from inverse_dynamics.results.evaluations import CONTENTS, evaluate_into
 
     (bag,) = arguments.bags
     out = arguments.out or Path(f"{bag.absolute().stem}_{robot.name}")
@@ -208,14 +207,15 @@ def _run_one(arguments: argparse.Namespace, robot: Robot) -> None:
         check_pyarrow()
 
     with progress_bar() as progress:
-        evaluation = evaluate(bag, robot, **_options(arguments), progress=progress)
-        seconds = write_evaluation(
-            evaluation,
+        evaluation = evaluate_into(
             out,
+            bag,
+            robot,
             overwrite=arguments.overwrite,
             storage=arguments.storage,
             figures=arguments.figures,
             progress=progress,
+            **_options(arguments),
         )
         if arguments.parquet:
             from inverse_dynamics.results.exports import export_series
@@ -223,7 +223,7 @@ def _run_one(arguments: argparse.Namespace, robot: Robot) -> None:
             export_series(evaluation, out / "series.parquet", recording=bag.absolute().stem)
     _print(evaluation, out, arguments.figures)
     if arguments.verbose:
-        _print_times({**evaluation.seconds, **seconds}, len(evaluation.log))
+        _print_times(evaluation.seconds, len(evaluation.log))
 
 
 def _options(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -294,7 +294,7 @@ def _print(evaluation: Evaluation, out: Path, figures: Sequence[str]) -> None:
     console.print(f"solver         {robot.plugin}{friction}")
     console.print(
         f"recording      {', '.join(filter(None, (str(evaluation.bag), log.topic)))}: {len(log)} samples, "
-        f"{evaluation.time[-1]:.1f} s"
+        f"{log.duration:.1f} s"
     )
     console.print(f"accelerations  {evaluation.accelerations.summary}")
     console.print(f"effort means   {evaluation.effort.summary}")

@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""CPU per message and memory of `ids evaluate` on long recordings, in a sourced workspace.
+
+python3 benchmarks/long_recording.py                        1e6 messages, sqlite3 and MCAP
+python3 benchmarks/long_recording.py --messages 10000000    needs 8 GB of disk, and as much for results
+
+The recordings, of a Panda at 1 kHz with seven joints, are made here. CPU is user and system time of
+the process less that on a recording of 27 s, per message; memory is the greatest resident set.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from inverse_dynamics.data.bags import JointLogsWriter
+from inverse_dynamics.evaluation.evaluation import Arm
+from inverse_dynamics.robot.robots import load_robot
+
+ROBOT = "panda_real"
+RATE = 1000.0  # Hz
+SHORT = 27_000  # messages
+BLOCK = 20_000
+
+
+def write_recording(path: Path, storage: str, messages: int) -> None:
+    """Sums of sines, noise of position and velocity, torques of the model with noise."""
+    robot = load_robot(ROBOT)
+    arm = Arm(robot)
+    names = arm.recorded_names
+    random = np.random.default_rng(1)
+    frequency = np.linspace(0.11, 0.43, len(names))
+    writer = JointLogsWriter(path, storage, {robot.topic: (names, "base")})
+    for begin in range(0, messages, BLOCK):
+        k = np.arange(begin, min(begin + BLOCK, messages))
+        phase = 2 * np.pi * frequency * (k / RATE)[:, None]
+        w = 2 * np.pi * frequency
+        q, qd, qdd = 0.4 * np.sin(phase), 0.4 * w * np.cos(phase), -0.4 * w**2 * np.sin(phase)
+        effort = arm.solver.torques(q, qd, qdd) + random.normal(0, 0.2, q.shape)
+        q = q + random.normal(0, 1e-5, q.shape)
+        qd = qd + random.normal(0, 1e-3, q.shape)
+        stamps = 1_700_000_000_000_000_000 + k * int(1e9 / RATE)
+        stamps = stamps + random.integers(0, 50_000, len(k))
+        writer.write([(stamps, stamps + 100_000, q, qd, effort)])
+    writer.finish()
+
+
+def measure(recording: Path, figures: str, directory: Path) -> tuple[float, float]:
+    """CPU [s] and greatest resident set [MB] of an evaluation."""
+    command = ["ids", "evaluate", str(recording), "--robot", ROBOT, "--figures", figures]
+    command += ["--out", str(directory / "result"), "--overwrite"]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        sys.exit(f"{' '.join(command)}: exit status {process.returncode}")
+    shutil.rmtree(directory / "result")
+    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description="CPU and memory of ids on long recordings")
+    parser.add_argument("--messages", type=int, default=1_000_000)
+    parser.add_argument("--storage", choices=("sqlite3", "mcap"), action="append")
+    arguments = parser.parse_args()
+    for storage in arguments.storage or ["sqlite3", "mcap"]:
+        with tempfile.TemporaryDirectory() as name:
+            directory = Path(name)
+            for messages in (SHORT, arguments.messages):
+                write_recording(directory / f"{messages}", storage, messages)
+            least, _ = measure(directory / f"{SHORT}", "none", directory)
+            for figures in ("none", "png"):
+                seconds, memory = measure(directory / f"{arguments.messages}", figures, directory)
+                each = 1e6 * (seconds - least) / (arguments.messages - SHORT)
+                print(
+                    f"{storage:<8} {arguments.messages} messages, --figures {figures:<5}"
+                    f"{each:6.2f} us of CPU per message, {memory:5.0f} MB",
+                    flush=True,
+                )
+
+
+if __name__ == "__main__":
+    main()
