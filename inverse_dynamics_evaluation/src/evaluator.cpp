@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "accelerated_samples.hpp"
 #include "checks.hpp"
 #include "figures.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
+#include "spooled_samples.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -246,9 +248,13 @@ Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
                     const InverseDynamicsSolver& solver, const EvaluationOptions& options,
                     const TakeSamples& take) {
   RecordedSamples samples(source, recording.joints, recording.clock, recording.log);
-  Evaluation result =
-      Evaluator(samples, static_cast<double>(source.expectedMessages()), solver, options)
-          .evaluate(take, false);
+  std::optional<SpooledSamples> spooled;
+  if (!recording.scratch.empty()) {
+    spooled.emplace(samples, recording.scratch);
+  }
+  SampleStream& stream = spooled ? static_cast<SampleStream&>(*spooled) : samples;
+  const auto expected = static_cast<double>(source.expectedMessages());
+  Evaluation result = Evaluator(stream, expected, solver, options).evaluate(take, false);
   result.recording = samples.about();
   return result;
 }

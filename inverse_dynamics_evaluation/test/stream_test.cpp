@@ -166,9 +166,10 @@ struct Series {
   Index taken = 0;
 };
 
-RecordingOptions joints() {
+RecordingOptions joints(const std::string& scratch = "") {
   RecordingOptions options;
   options.joints = {"a", "b"};
+  options.scratch = scratch;
   return options;
 }
 
@@ -182,10 +183,12 @@ TEST(Stream, GivesTheBitsOfSamplesInMemoryWhateverTheBlocks) {
     EXPECT_EQ(whole.taken, count);
     for (const Index block : {Index{1}, Index{7}, Index{4096}, Index{4097}, count}) {
       SCOPED_TRACE(block);
+      const bool spooled = block == 7;
       Messages messages(log, block);
       Series series(count);
-      const Evaluation found =
-          evaluate(messages, joints(), solver, options(kAutomatic), series.take());
+      const Evaluation found = evaluate(messages, joints(spooled ? testing::TempDir() : ""), solver,
+                                        options(kAutomatic), series.take());
+      EXPECT_EQ(messages.passes, spooled ? 1 : 6);
       EXPECT_EQ(series.taken, count);
       EXPECT_EQ(series.q, whole.q);
       EXPECT_EQ(series.qdd, whole.qdd);
@@ -225,12 +228,25 @@ TEST(Stream, FindsWhatIsOdd) {
 TEST(Stream, TakesTheTimeOfReceptionIfNoHeaderHasAStamp) {
   JointLog log = logOf(noisy(125.0, 20.0));
   log.header_stamps.setZero();
+  for (const std::string& scratch : {std::string(), testing::TempDir()}) {
+    Messages messages(log, 100);
+    log.clock = Clock::kHeader;
+    const Evaluation found = evaluate(messages, joints(scratch), TwoJointSolver(), options());
+    EXPECT_EQ(found.recording.clock, Clock::kReceive);
+    EXPECT_THAT(found.recording.notes, ElementsAre(HasSubstr("time of reception")));
+    log.clock = Clock::kReceive;
+    EXPECT_EQ(found.errors[0].rmse, evaluate(log, TwoJointSolver(), options()).errors[0].rmse);
+  }
+}
+
+TEST(Stream, TellsWhyTheSamplesCannotBeKept) {
+  const JointLog log = logOf(noisy(125.0, 20.0));
   Messages messages(log, 100);
-  const Evaluation found = evaluate(messages, joints(), TwoJointSolver(), options());
-  EXPECT_EQ(found.recording.clock, Clock::kReceive);
-  EXPECT_THAT(found.recording.notes, ElementsAre(HasSubstr("time of reception")));
-  log.clock = Clock::kReceive;
-  EXPECT_EQ(found.errors[0].rmse, evaluate(log, TwoJointSolver(), options()).errors[0].rmse);
+  EXPECT_THAT(errorOf<RecordingError>([&] {
+                evaluate(messages, joints("/no/such/directory"), TwoJointSolver(), options());
+              }),
+              HasSubstr("/no/such/directory: samples can't be kept there (No such file or "
+                        "directory); free some space, or name another output"));
 }
 
 TEST(Stream, TellsOfTheProgressAndCanBeStopped) {

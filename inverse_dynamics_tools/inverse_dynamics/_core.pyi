@@ -452,6 +452,7 @@ def evaluate(
     topic: str,
     units: list[str],
     notes: list[str],
+    scratch: bytes,
     take: Callable[[int, str, dict[str, NDArray[Any]]], None],
     progress: Callable[[float], None],
 ) -> Evaluated: ...

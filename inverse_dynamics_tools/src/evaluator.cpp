@@ -134,8 +134,8 @@ evaluation::Evaluation evaluate(const py::object& solver, const py::object& moti
                                 const std::string& method, const std::optional<double>& cutoff,
                                 const Names& without_rules, const evaluation::EffortOptions& effort,
                                 const std::string& recording, const std::string& topic,
-                                const Names& units, const Names& notes, const py::function& take,
-                                const py::function& progress) {
+                                const Names& units, const Names& notes, const std::string& scratch,
+                                const py::function& take, const py::function& progress) {
   const auto shared = solverOf(solver);
   evaluation::EvaluationOptions options;
   options.method = evaluation::accelerationMethod(method);
@@ -157,7 +157,8 @@ evaluation::Evaluation evaluate(const py::object& solver, const py::object& moti
   };
   if (py::isinstance<JointStates>(motion)) {
     auto& source = *motion.cast<JointStates&>().source;
-    const evaluation::RecordingOptions which = {joints, clockOf(clock), {true, "--joints"}};
+    const evaluation::RecordingOptions which = {
+        joints, clockOf(clock), {true, "--joints"}, scratch};
     const py::gil_scoped_release release;
     return evaluation::evaluate(source, which, *shared, options, give);
   }
@@ -237,13 +238,14 @@ void bindEvaluator(py::module_& module) {
       "evaluate", &evaluate, py::arg("solver"), py::arg("motion"), py::kw_only(), py::arg("joints"),
       py::arg("clock"), py::arg("method"), py::arg("cutoff"), py::arg("without_rules"),
       py::arg("effort"), py::arg("recording"), py::arg("topic"), py::arg("units"), py::arg("notes"),
-      py::arg("take"), py::arg("progress"),
+      py::arg("scratch"), py::arg("take"), py::arg("progress"),
       "Computed torques of recorded joint states and their errors, in bounded memory.\n\n"
       "motion: a JointLog, or JointStates, of which joints and clock are taken. method: auto,\n"
       "low-pass, given or backward-difference. cutoff: Hz; None: chosen from the data.\n"
-      "recording, topic: for errors' texts. take: called with how many samples there are, the\n"
-      "frame of a recording that was read, and the arrays of the next ones by name, some\n"
-      "thousand at a time. progress: called with the share that is done.");
+      "recording, topic: for errors' texts. scratch: a directory for a file of samples, or \"\".\n"
+      "take: called with how many samples there are, the frame of a recording that was read, and\n"
+      "the arrays of the next ones by name, some thousand at a time. progress: called with the\n"
+      "share that is done.");
   module.def(
       "acceleration_summary",
       [](const std::string& method, const std::optional<double>& cutoff, bool chosen) {

@@ -402,7 +402,7 @@ def test_a_result_written_while_computing_is_that_of_arrays(bag, robot, tmp_path
     assert evaluating[-1] == pytest.approx(len(whole.log), rel=0.1)
 
 
-def test_a_recording_that_is_cut_off_while_it_is_read_leaves_nothing(bag, robot, tmp_path):
+def test_a_recording_that_is_cut_off_while_it_is_read_is_an_error(bag, robot, tmp_path):
     copy = shutil.copytree(bag, tmp_path / "recording")
 
     def cut_off(what: str, done: int, total: int) -> None:
@@ -412,5 +412,15 @@ def test_a_recording_that_is_cut_off_while_it_is_read_leaves_nothing(bag, robot,
                     database.execute("DELETE FROM messages WHERE id > 1000")
 
     with pytest.raises(BagError, match=f"{copy}"):
-        evaluate_into(tmp_path / "result", copy, robot, progress=cut_off)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["recording"]
+        evaluate(copy, robot, progress=cut_off)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.4, 0.9])
+def test_an_evaluation_that_is_stopped_leaves_nothing(bag, robot, tmp_path, share):
+    def stop(what: str, done: int, total: int) -> None:
+        if what == "evaluating" and done > share * total:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        evaluate_into(tmp_path / "result", bag, robot, progress=stop)
+    assert not list(tmp_path.iterdir())

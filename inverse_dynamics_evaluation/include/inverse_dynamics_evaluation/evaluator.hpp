@@ -63,6 +63,8 @@ struct RecordingOptions {
   std::vector<std::string> joints;  ///< n; their names there, in the order of the chain
   Clock clock = Clock::kAuto;
   JointLogOptions log;
+  std::string scratch;  ///< directory for a file without a name that keeps the samples of the first
+                        ///< pass, 184 bytes each with seven joints; empty: the source is read again
 };
 
 /// Some samples of a result: n x B, a sample a column, valid during a call.
@@ -114,7 +116,8 @@ Evaluation evaluate(const JointLogView& log,
 ///
 /// What the report has a number for each sample for, and accelerations, go to `take` alone.
 ///
-/// @throws RecordingError: by the rules of joint_log.hpp; another pass gives other samples.
+/// @throws RecordingError: by the rules of joint_log.hpp; another pass gives other samples; they
+///         don't fit into the scratch directory.
 Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
                     const inverse_dynamics_solver::InverseDynamicsSolver& solver,
                     const EvaluationOptions& options, const TakeSamples& take = nullptr);

@@ -8,6 +8,7 @@ for error in result.errors:
 
 from __future__ import annotations
 
+import os
 import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -227,6 +228,7 @@ def _compare(
         topic=motion.topic,
         units=list(arm.units),
         notes=list(notes),
+        scratch=b"" if series.scratch is None else os.fsencode(series.scratch),
         take=take,
         progress=lambda share: progress("evaluating", round(share * expected), expected),
     )

@@ -13,6 +13,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from pathlib import Path
 
     from inverse_dynamics.data.joint_log import Storage
 
@@ -31,6 +32,9 @@ class Recorded(NamedTuple):
 class Series(Protocol):
     """Takes the samples of an evaluation."""
 
+    scratch: Path | None
+    """Directory that may hold a file of samples meanwhile; None: the recording is read again."""
+
     def take(self, recorded: Recorded, arrays: Arrays) -> None:
         """The next samples."""
 
@@ -40,6 +44,8 @@ class Series(Protocol):
 
 class SeriesInMemory:
     """Keeps the samples."""
+
+    scratch: Path | None = None
 
     def __init__(self) -> None:
         self._arrays: dict[str, np.ndarray[Any, Any]] = {}

@@ -138,6 +138,7 @@ class _WrittenSeries:
 
     def __init__(self, target: Path, storage: Storage | None, figure: bool) -> None:
         self._target = target
+        self.scratch: Path | None = target
         self._storage = storage
         self._figure = figure
         self._opened: tuple[JointLogsWriter, SeriesFile] | None = None
