@@ -232,6 +232,9 @@ class JointStates:
     def expected_messages(self) -> int:
         """How many messages there are by the recording's own account."""
 
+    def keep_between(self, start: float, end: float, joints: list[str], clock: str) -> None:
+        """Leave out what isn't between two times, s since the first sample with the joints."""
+
     def __iter__(self) -> JointStates: ...
     def __next__(
         self,

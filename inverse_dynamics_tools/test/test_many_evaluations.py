@@ -161,6 +161,18 @@ def test_one_recording_goes_into_the_same_layout_where_processes_are_asked_for(i
     assert (tmp_path / "recordings_ur10_simulated/monday/metrics.json").is_file()
 
 
+def test_a_part_of_each_recording(ids, bags, tmp_path):
+    command = ("evaluate", bags, *ROBOT, *RAW, *NO_FIGURE, "--out", "week")
+    assert ids(*command, "--from", "1", "--to", "2.5")[0] == 0
+    with (tmp_path / "week/summary.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {(row["window_from"], row["window_to"], row["samples"]) for row in rows} == {
+        ("1.0", "2.5", "376")
+    }
+    assert float(rows[0]["start"]) == pytest.approx(1.004)
+    assert "<dd>from 1 s to 2.5 s</dd>" in (tmp_path / "week/report.html").read_text()
+
+
 # ---- failures --------------------------------------------------------------------------------------
 
 

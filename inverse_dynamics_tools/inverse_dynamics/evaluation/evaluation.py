@@ -18,6 +18,7 @@ from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.data.recordings import open_motion
+from inverse_dynamics.data.time_window import TimeWindow
 from inverse_dynamics.evaluation.accelerations import (
     Accelerations,
     Samples,
@@ -114,6 +115,8 @@ def evaluate(
     accelerations: str | None = None,
     cutoff: float | None = None,
     clock: Clock = "auto",
+    start: float | None = None,
+    end: float | None = None,
     without_rules: Sequence[str] = (),
     progress: Progress = no_progress,
     series: Series | None = None,
@@ -125,8 +128,8 @@ def evaluate(
     says: see Robot; parameters, of the solver, one by one. effort_is: what recorded efforts mean, one of
     EFFORT_CHOICES.
     accelerations: one of accelerations.METHODS; cutoff: Hz, of a low-pass. clock: which stamps are
-    the time. without_rules: those of accelerations.RULES not to be acted upon. series: where samples
-    go; none: into memory.
+    the time. start, end: s since the first sample; the others aren't evaluated. without_rules: those
+    of accelerations.RULES not to be acted upon. series: where samples go; none: into memory.
 
     Raises UserError: BagError, RobotError, SolverError, EvaluationError.
     """
@@ -147,8 +150,9 @@ def evaluate(
         cutoff=cutoff,
     )
     bag = Path(bag)
+    window = TimeWindow(start, end)
 
-    start = time.perf_counter()
+    begin = time.perf_counter()
     arm = Arm(robot)
     ready = time.perf_counter()
     motion = open_motion(
@@ -159,7 +163,8 @@ def evaluate(
         clock=clock,
         progress=progress,
     )
-    seconds = {"solver": ready - start, "reading": time.perf_counter() - ready}
+    motion = window.of(motion, f"{bag}", arm.recorded_names, clock)
+    seconds = {"solver": ready - begin, "reading": time.perf_counter() - ready}
     result = _compare(
         bag,
         robot,
@@ -173,6 +178,7 @@ def evaluate(
     )
     seconds["reading"] += result.seconds["reading"]
     notes = description_notes(robot, "drawn") if urdf is not None else ()
+    notes = (*window.notes, *notes)
     return replace(result, notes=(*notes, *result.notes), seconds={**result.seconds, **seconds})
 
 

@@ -7,9 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.data.time_window import TimeWindow
+
 if TYPE_CHECKING:
     from inverse_dynamics.evaluation.accelerations import Accelerations
     from inverse_dynamics.evaluation.evaluation import Evaluation, JointError
+
+EVERYTHING = TimeWindow()
 
 
 @dataclass(frozen=True)
@@ -22,6 +26,7 @@ class EvaluationSummary:
     plugin: str
     start: float  # s: stamp of the first sample
     duration: float  # s
+    window: TimeWindow  # what was asked for
     samples: int
     kept_samples: int  # those of errors_of_kept
     accelerations: Accelerations
@@ -36,8 +41,10 @@ class EvaluationSummary:
         return sum(error.rmse for error in self.errors) / len(self.errors)
 
 
-def summary_of(evaluation: Evaluation, name: str) -> EvaluationSummary:
-    """The summary of an evaluation."""
+def summary_of(
+    evaluation: Evaluation, name: str, window: TimeWindow = EVERYTHING
+) -> EvaluationSummary:
+    """The summary of an evaluation. window: of the recording, that was evaluated."""
     samples = len(evaluation.log)
     return EvaluationSummary(
         name=name,
@@ -45,7 +52,8 @@ def summary_of(evaluation: Evaluation, name: str) -> EvaluationSummary:
         robot=evaluation.robot.name,
         plugin=evaluation.robot.plugin,
         start=float(evaluation.log.stamps[0]) * 1e-9,
-        duration=float(evaluation.time[-1]),
+        duration=evaluation.log.duration,
+        window=window,
         samples=samples,
         kept_samples=samples - evaluation.samples.left_out,
         accelerations=evaluation.accelerations,

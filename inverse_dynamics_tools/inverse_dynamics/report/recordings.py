@@ -93,6 +93,7 @@ def _facts(
         ("solver", first.plugin),
         ("recordings", count),
         ("motion", f"{_duration(seconds)}, {sum(s.samples for s in summaries):,} samples"),
+        *([("part of each", str(first.window))] if first.window else []),
         ("accelerations", _accelerations(summaries)),
         ("effort means", ", ".join(efforts)),
     ]

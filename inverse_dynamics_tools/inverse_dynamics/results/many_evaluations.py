@@ -31,6 +31,7 @@ from inverse_dynamics.base.replacement import restore_interrupted
 from inverse_dynamics.base.wording import counted
 from inverse_dynamics.base.workers import Failure, cores, in_processes
 from inverse_dynamics.data.several_recordings import named_recordings
+from inverse_dynamics.data.time_window import TimeWindow
 from inverse_dynamics.errors import OutputError, UserError
 from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.evaluation.summary import EvaluationSummary, summary_of
@@ -162,6 +163,7 @@ def _check(
     if jobs is not None and jobs < 1:
         raise UserError(f"jobs: expected a number of processes above zero, got {jobs}")
     check_call(evaluate, next(iter(names.values())), robot, **options)
+    TimeWindow(options.get("start"), options.get("end"))
     if parquet:
         from inverse_dynamics.results.exports import check_pyarrow
 
@@ -221,7 +223,8 @@ def _evaluate_one(task: _Task) -> EvaluationSummary:
         from inverse_dynamics.report import report_run, write_page
 
         write_page(task.target / PAGE, task.name, [report_run(evaluation, task.name)])
-    return summary_of(evaluation, task.name)
+    window = TimeWindow(task.options.get("start"), task.options.get("end"))
+    return summary_of(evaluation, task.name, window)
 
 
 def _remove_remains(target: Path) -> None:

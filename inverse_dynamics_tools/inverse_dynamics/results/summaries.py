@@ -6,6 +6,7 @@ bag                 path of the recording
 robot plugin        the run configuration and its solver
 joint unit          a joint, and the unit of its errors
 start duration      s: stamp of the first sample, and time from it to the last
+window_from window_to    s since the recording's first sample, where a part was asked for
 samples             how many there are
 mae rmse nrmse bias r2 max_abs    over all samples: see docs/notation.md; empty where undefined
 kept_samples kept_rmse            over those that count, without a start transient, for one
@@ -32,7 +33,7 @@ Row = dict[str, Any]
 # What the columns hold, in their order.
 COLUMNS: dict[str, type] = {
     **dict.fromkeys(("recording", "bag", "robot", "plugin", "joint", "unit"), str),
-    **dict.fromkeys(("start", "duration"), float),
+    **dict.fromkeys(("start", "duration", "window_from", "window_to"), float),
     "samples": int,
     **dict.fromkeys(("mae", "rmse", "nrmse", "bias", "r2", "max_abs"), float),
     "kept_samples": int,
@@ -54,6 +55,8 @@ def summary_rows(summaries: Iterable[EvaluationSummary]) -> list[Row]:
             "plugin": summary.plugin,
             "start": summary.start,
             "duration": summary.duration,
+            "window_from": summary.window.start,
+            "window_to": summary.window.end,
             "samples": summary.samples,
             "kept_samples": summary.kept_samples,
             "accelerations": summary.accelerations.method,

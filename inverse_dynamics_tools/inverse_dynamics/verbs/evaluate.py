@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.verbs.common import positive_number, process_count, progress_bar
+from inverse_dynamics.verbs.common import number, positive_number, process_count, progress_bar
 from inverse_dynamics.verbs.options import (
     add_figures,
     add_robot,
@@ -38,6 +38,9 @@ examples:
 
   ids evaluate recording --robot panda_real --accelerations low-pass --cutoff 5
       another filter; backward-difference is the raw one
+
+  ids evaluate recording --robot ur10_real --from 10 --to 20
+      ten seconds of it
 
   ids evaluate recording --robot ur10_real --gravity 0,-9.81,0
       mounted on a wall: where things fall, in the frame of the root link
@@ -161,6 +164,16 @@ def add_parser(
         "--cutoff", metavar="HZ", type=positive_number, help="cut-off of the low-pass"
     )
     samples.add_argument(
+        "--from",
+        dest="start",
+        metavar="SECONDS",
+        type=number,
+        help="leave out the samples before that time, counted from the first one",
+    )
+    samples.add_argument(
+        "--to", dest="end", metavar="SECONDS", type=number, help="and those after that time"
+    )
+    samples.add_argument(
         "--clock",
         choices=CLOCKS,
         default="auto",
@@ -235,6 +248,8 @@ def _options(arguments: argparse.Namespace) -> dict[str, Any]:
         "accelerations": arguments.accelerations,
         "cutoff": arguments.cutoff,
         "clock": arguments.clock,
+        "start": arguments.start,
+        "end": arguments.end,
         "without_rules": arguments.without_rule,
     }
 

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "inverse_dynamics_evaluation/time_window.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "error_of.hpp"
+
+namespace inverse_dynamics_evaluation {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using Numbers = std::vector<std::int64_t>;
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+// Messages `first` to `last`, received at 100 s and each second afterwards; q is their number.
+JointStateBlock blockOf(std::int64_t first, std::int64_t last, bool with_header = true,
+                        const std::vector<std::string>& names = {"a", "b"}) {
+  JointStateBlock block;
+  block.first = first;
+  block.joint_names = names;
+  block.frame_id = "base";
+  for (std::int64_t k = first; k <= last; ++k) {
+    block.header_stamps.push_back(with_header ? k * kSecond : 0);
+    block.receive_stamps.push_back((100 + k) * kSecond);
+    for (int j = 0; j < 2; ++j) {
+      block.position.values.push_back(static_cast<double>(k));
+      block.velocity.values.push_back(10.0 * static_cast<double>(k));
+    }
+  }
+  block.position.columns = block.velocity.columns = 2;
+  return block;
+}
+
+class Blocks : public JointStateSource {
+ public:
+  explicit Blocks(std::vector<JointStateBlock> blocks) : blocks_(std::move(blocks)) {}
+  bool next(JointStateBlock& block) override {
+    if (at_ == blocks_.size()) return false;
+    block = blocks_[at_++];
+    return true;
+  }
+  void rewind() override { at_ = 0; }
+  std::int64_t expectedMessages() const override { return 7; }
+  std::string where() const override { return "bag: /joint_states"; }
+
+ private:
+  std::vector<JointStateBlock> blocks_;
+  std::size_t at_ = 0;
+};
+
+TimeWindow windowOf(std::vector<JointStateBlock> blocks, TimeSpan span,
+                    std::vector<std::string> joints = {}, Clock clock = Clock::kAuto) {
+  return {std::make_unique<Blocks>(std::move(blocks)), span, std::move(joints), clock};
+}
+
+// Numbers of the messages that a source gives, each checked to be whole.
+Numbers messagesOf(JointStateSource& source) {
+  Numbers numbers;
+  JointStateBlock block;
+  while (source.next(block)) {
+    EXPECT_GT(block.size(), 0U);
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      const std::int64_t number = block.first + static_cast<std::int64_t>(i);
+      EXPECT_EQ(block.position.row(i)[1], static_cast<double>(number));
+      EXPECT_EQ(block.velocity.row(i)[0], 10.0 * static_cast<double>(number));
+      EXPECT_EQ(block.receive_stamps[i], (100 + number) * kSecond);
+      EXPECT_THAT(block.effort.values, IsEmpty());
+      EXPECT_EQ(block.frame_id, "base");
+      numbers.push_back(number);
+    }
+    EXPECT_EQ(block.header_stamps.size(), block.size());
+    EXPECT_EQ(block.position.values.size(), 2 * block.size());
+  }
+  return numbers;
+}
+
+TEST(TimeWindow, GivesTheMessagesBetweenItsEndsBothIncluded) {
+  TimeWindow source = windowOf({blockOf(5, 7), blockOf(8, 9), blockOf(10, 13)}, {2, 6});
+  EXPECT_THAT(messagesOf(source), ElementsAre(7, 8, 9, 10, 11));
+  EXPECT_EQ(source.expectedMessages(), 7);
+  EXPECT_EQ(source.where(), "bag: /joint_states");
+}
+
+TEST(TimeWindow, MeansItsEndsToTheNanosecond) {
+  JointStateBlock block = blockOf(0, 2);
+  block.header_stamps = {0, 300'000'000, 300'000'001};  // 1e-9 * 3e8 > 0.3
+  TimeWindow to = windowOf({block}, {0, 0.3});
+  TimeWindow from = windowOf({block}, {0.300000001, 1});
+  EXPECT_THAT(messagesOf(to), ElementsAre(0, 1));
+  EXPECT_THAT(messagesOf(from), ElementsAre(2));
+}
+
+TEST(TimeWindow, GivesTheSameInEachPass) {
+  TimeWindow source = windowOf({blockOf(0, 3), blockOf(4, 6)}, {3, 5});
+  JointStateBlock block;
+  EXPECT_TRUE(source.next(block));
+  for (int pass = 0; pass < 2; ++pass) {
+    source.rewind();
+    EXPECT_THAT(messagesOf(source), ElementsAre(3, 4, 5));
+    EXPECT_FALSE(source.next(block));
+  }
+}
+
+TEST(TimeWindow, IsOpenWhereNoEndIsGiven) {
+  TimeWindow from = windowOf({blockOf(0, 2), blockOf(3, 4)}, {3, kForever});
+  TimeWindow to = windowOf({blockOf(0, 2), blockOf(3, 4)}, {-kForever, 1});
+  TimeWindow all = windowOf({blockOf(0, 2), blockOf(3, 4)}, {});
+  EXPECT_THAT(messagesOf(from), ElementsAre(3, 4));
+  EXPECT_THAT(messagesOf(to), ElementsAre(0, 1));
+  EXPECT_THAT(messagesOf(all), ElementsAre(0, 1, 2, 3, 4));
+}
+
+TEST(TimeWindow, TakesStampsThatDontIncreaseAsTheyAre) {
+  JointStateBlock block = blockOf(0, 4);
+  block.header_stamps = {0, 3 * kSecond, 1 * kSecond, 4 * kSecond, 2 * kSecond};
+  TimeWindow source = windowOf({block}, {1, 2});
+  EXPECT_THAT(messagesOf(source), ElementsAre(2, 4));
+}
+
+TEST(TimeWindow, GoesByTheHeaderIfAnyHasAStampElseByReception) {
+  TimeWindow stamped = windowOf({blockOf(0, 0), blockOf(1, 4)}, {2, 3});  // the first stamp is 0
+  EXPECT_THAT(messagesOf(stamped), ElementsAre(2, 3));
+  TimeWindow received = windowOf({blockOf(0, 1, false), blockOf(2, 4, false)}, {2, 3});
+  EXPECT_THAT(messagesOf(received), ElementsAre(2, 3));
+}
+
+TEST(TimeWindow, GoesByTheClockThatIsGiven) {
+  JointStateBlock block = blockOf(0, 3);
+  block.header_stamps = {0, 10 * kSecond, 20 * kSecond, 30 * kSecond};
+  TimeWindow header = windowOf({block}, {5, 25}, {}, Clock::kHeader);
+  TimeWindow receive = windowOf({block}, {2, 25}, {}, Clock::kReceive);
+  EXPECT_THAT(messagesOf(header), ElementsAre(1, 2));
+  EXPECT_THAT(messagesOf(receive), ElementsAre(2, 3));
+}
+
+TEST(TimeWindow, CountsFromTheFirstMessageWithTheJoints) {
+  TimeWindow source =
+      windowOf({blockOf(0, 1, true, {"gripper", "lid"}), blockOf(2, 6)}, {1, 2}, {"b", "a"});
+  EXPECT_THAT(messagesOf(source), ElementsAre(3, 4));
+}
+
+TEST(TimeWindow, LeavesARecordingWithoutTheJointsToItsReader) {
+  TimeWindow source = windowOf({blockOf(0, 1)}, {1, 2}, {"c"});
+  EXPECT_THAT(messagesOf(source), ElementsAre(0, 1));
+  TimeWindow empty = windowOf({}, {1, 2});
+  EXPECT_THAT(messagesOf(empty), IsEmpty());
+}
+
+TEST(TimeWindow, IsAnErrorThatNamesTheRecordingsSpanWhereNoSampleLiesInIt) {
+  const auto refused = [](TimeSpan span) {
+    return errorOf<RecordingError>([&] {
+      TimeWindow source = windowOf({blockOf(5, 6), blockOf(7, 9)}, span);
+      messagesOf(source);
+    });
+  };
+  EXPECT_EQ(refused({10, 20.5}),
+            "bag: /joint_states: expected samples from 10 s to 20.5 s after the first one, got "
+            "none: those of the recording go from 0 s to 4 s; choose --from and --to in between");
+  EXPECT_EQ(refused({1.25, 1.75}),
+            "bag: /joint_states: expected samples from 1.25 s to 1.75 s after the first one, got "
+            "none: those of the recording go from 0 s to 4 s; choose --from and --to in between");
+  EXPECT_EQ(refused({10, kForever}),
+            "bag: /joint_states: expected samples from 10 s after the first one, got none: those "
+            "of the recording go from 0 s to 4 s; choose --from and --to in between");
+}
+
+TEST(TimeWindow, TakesAnyTwoStamps) {
+  JointStateBlock block = blockOf(0, 1);
+  block.header_stamps = {std::numeric_limits<std::int64_t>::min(),
+                         std::numeric_limits<std::int64_t>::max()};
+  TimeWindow source = windowOf({block}, {1e10, 2e10});
+  EXPECT_THAT(messagesOf(source), ElementsAre(1));  // 1.8e10 s later
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_evaluation
