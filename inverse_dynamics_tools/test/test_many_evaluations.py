@@ -18,7 +18,9 @@ from test_evaluation import RIGID_BODY, URDF, recording
 
 import inverse_dynamics
 from inverse_dynamics import Solver, evaluate, evaluate_many, read_evaluation, write_joint_logs
+from inverse_dynamics.base.workers import outcome_of
 from inverse_dynamics.errors import ArgumentError, BagError, OutputError, UserError
+from inverse_dynamics.results import many_evaluations
 from inverse_dynamics.results.summaries import COLUMNS
 
 ROBOT = ("--robot", "ur10_simulated")
@@ -122,6 +124,20 @@ def test_parquet_files_are_one_table(bags, tmp_path):
     assert summary.column_names == list(COLUMNS)
     assert summary.to_pylist()[0]["cutoff"] is None
     assert {str(field.type) for field in summary.schema} == {"string", "double", "int64"}
+
+
+def test_a_long_recording_has_no_page_of_its_own(bags, tmp_path, monkeypatch):
+    monkeypatch.setattr(many_evaluations, "in_processes", in_this_process)
+    monkeypatch.setattr(many_evaluations, "_MOST_ON_A_PAGE", 1499)
+    evaluate_many(bags / "monday", "ur10_simulated", tmp_path / "out", figures=("png",))
+    assert (tmp_path / "out/monday/torques.png").is_file()
+    assert not (tmp_path / "out/monday/report.html").exists()
+    assert '<a href="monday/">monday</a>' in (tmp_path / "out/report.html").read_text()
+
+
+def in_this_process(function, arguments, *, jobs, done):
+    for k, argument in enumerate(arguments):
+        done(k, outcome_of(function, argument))
 
 
 def test_evaluations_can_be_read_again(bags, tmp_path):

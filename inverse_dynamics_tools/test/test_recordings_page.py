@@ -26,14 +26,13 @@ def html():
         summary("second & <b>", 4.0, start=late - 3600.0),
         summary("third", 1.5, start=late + 3600.0, notes=("odd",)),
     ]
-    return render_recordings_page(
-        "A week", summaries, {"fourth": "<i>gone</i>"}, linked="page.html"
-    )
+    links = {"first": "page.html", "second & <b>": "page.html"}
+    return render_recordings_page("A week", summaries, {"fourth": "<i>gone</i>"}, links)
 
 
 def test_the_page_needs_no_network(html):
     fetches = re.findall(r"""(?:src|href|action|data|srcset)\s*=\s*["']([^"']*)""", html)
-    links = ["first/page.html", "second%20%26%20%3Cb%3E/page.html", "third/page.html"]
+    links = ["first/page.html", "second%20%26%20%3Cb%3E/page.html", "third/"]
     assert [f for f in fetches if not f.startswith("data:")] == links
     assert "http" not in re.sub(r"<svg.*?</svg>", "", html, flags=re.DOTALL)
 
@@ -58,7 +57,7 @@ def test_each_joint_has_a_bar_per_recording(html):
 
 def test_the_start_is_shown_where_stamps_are_dates(html):
     assert "<td>2025-12-29 09:20:00</td>" in html
-    undated = render_recordings_page("A week", [summary("one"), summary("two")], {})
+    undated = render_recordings_page("A week", [summary("one"), summary("two")], {}, {})
     assert "start (UTC)" not in undated
     assert 'href="one/"' in undated
 
@@ -72,7 +71,7 @@ def test_one_recording_without_errors_or_filter_is_shown():
     """No division by a median of zero, no empty columns."""
     one = summary("alone", 0.0)
     one = replace(one, accelerations=replace(one.accelerations, cutoff=None))
-    page = render_recordings_page("One", [one], {})
+    page = render_recordings_page("One", [one], {}, {})
     assert "cut-off" not in page
     assert "--shade: " not in page
 

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.data.bags import JointStateTopic
     from inverse_dynamics.data.joint_log import Clock
 
-    _Motion = JointLog | JointStateTopic
-
 
 @dataclass(frozen=True)
 class TimeWindow:
@@ -53,7 +51,13 @@ class TimeWindow:
         ends = (("from", self.start), ("to", self.end))
         return " ".join(f"{word} {time:.9g} s" for word, time in ends if time is not None)
 
-    def of(self, motion: _Motion, where: str, joints: Sequence[str], clock: Clock) -> _Motion:
+    def of(
+        self,
+        motion: JointLog | JointStateTopic,
+        where: str,
+        joints: Sequence[str],
+        clock: Clock,
+    ) -> JointLog | JointStateTopic:
         """The samples in the window. where: the recording, for errors' texts. Raises BagError.
 
         joints, clock: what is read of joint states that haven't been read; that no sample lies in the

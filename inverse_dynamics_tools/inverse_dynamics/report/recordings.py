@@ -40,23 +40,21 @@ def write_recordings_page(
     title: str,
     summaries: Sequence[EvaluationSummary],
     failures: Mapping[str, str],
-    *,
-    linked: str = "",
+    links: Mapping[str, str],
 ) -> None:
     """Write the page, whole or not at all; what is there is replaced. Raises OutputError.
 
-    summaries: one or more, of the same joints. failures: recording to message. linked: the file in the
-    directory of a recording's name that its name leads to; "": the directory.
+    summaries: one or more, of the same joints. failures: recording to message. links: recording to the
+    file, in the directory of its name, that the name leads to; none: to the directory.
     """
-    write_text_whole(path, render_recordings_page(title, summaries, failures, linked=linked))
+    write_text_whole(path, render_recordings_page(title, summaries, failures, links))
 
 
 def render_recordings_page(
     title: str,
     summaries: Sequence[EvaluationSummary],
     failures: Mapping[str, str],
-    *,
-    linked: str = "",
+    links: Mapping[str, str],
 ) -> str:
     """The page as text."""
     middle = [median(column) for column in _columns(summaries)]
@@ -65,7 +63,7 @@ def render_recordings_page(
         facts=_facts(summaries, failures),
         failures=failures.items(),
         joints=_joints(summaries, middle),
-        rows=[_row(summary, middle, linked) for summary in summaries],
+        rows=[_row(summary, middle, links.get(summary.name, "")) for summary in summaries],
         median=middle,
         median_mean=median(summary.mean_rmse for summary in summaries),
         dated=any(summary.start > _EARLIEST for summary in summaries),

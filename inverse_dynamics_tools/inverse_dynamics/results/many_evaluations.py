@@ -65,6 +65,7 @@ CONTENTS = Contents(
 )
 
 _MOST_TOLD = 5  # failures, in a text
+_MOST_ON_A_PAGE = 1_000_000  # samples: the page of a recording holds them in memory
 
 
 @dataclass(frozen=True)
@@ -131,10 +132,11 @@ def evaluate_many(
     """Evaluate recordings of one robot, each in a process of its own, into one directory.
 
     recordings: as evaluate() takes them, or directories that hold some. out: the directory; it is
-    written whole or not at all. jobs: how many at the same time; None: one per core. scheduler: address of
-    a Dask scheduler, whose workers do it instead: they need this software, and see recordings and `out` by the
-    same paths. storage, figures: see write_evaluation(); figures: none of them, no page of each
-    recording either. parquet: write NAME/series.parquet too. options: those of evaluate().
+    written whole or not at all. jobs: how many at the same time; None: one per core. scheduler: address
+    of a Dask scheduler, whose workers do it instead: they need this software, and see recordings and
+    `out` by the same paths. storage, figures: see write_evaluation(); figures: none of them, no page of
+    each recording either, nor of one with more than a million samples. parquet: write
+    NAME/series.parquet too. options: those of evaluate().
 
     A recording that fails, or whose process dies, is among `failures`; the others are finished.
     Raises UserError: arguments, robot or output can't be used, or every recording fails.
@@ -150,7 +152,7 @@ def evaluate_many(
         tasks = [replace(task, name=n, bag=bag, target=target / n) for n, bag in names.items()]
         outcomes = _outcomes(tasks, jobs, scheduler, progress)
         result = _sorted_out(Path(out), tasks, outcomes)
-        _write(result, target, names, loaded, pages=bool(figures))
+        _write(result, target, names, loaded)
     return result
 
 
@@ -219,7 +221,7 @@ def _evaluate_one(task: _Task) -> EvaluationSummary:
 
         file = task.target / "series.parquet"
         export_series(evaluation, file, recording=task.name, progress=progress)
-    if task.figures:
+    if task.figures and len(evaluation.log) <= _MOST_ON_A_PAGE:
         from inverse_dynamics.report import report_run, write_page
 
         write_page(task.target / PAGE, task.name, [report_run(evaluation, task.name)])
@@ -260,9 +262,7 @@ def failures_told(what: str, failures: Sequence[FailedRecording]) -> str:
     return "\n".join([f"{what}:", *lines])
 
 
-def _write(
-    result: ManyEvaluations, target: Path, names: Mapping[str, Path], robot: Robot, *, pages: bool
-) -> None:
+def _write(result: ManyEvaluations, target: Path, names: Mapping[str, Path], robot: Robot) -> None:
     from inverse_dynamics.report.recordings import write_recordings_page
 
     write_summary_csv(target / "summary.csv", result.rows)
@@ -279,8 +279,8 @@ def _write(
     text = json.dumps(about, indent=2, allow_nan=False, ensure_ascii=False)
     write_text(target / MARK, text + "\n")
     title = f"{robot.description or robot.name}: {counted(len(names), 'recording')}"
-    linked = PAGE if pages else ""
-    write_recordings_page(target / PAGE, title, result.summaries, failures, linked=linked)
+    links = {s.name: PAGE for s in result.summaries if (target / s.name / PAGE).is_file()}
+    write_recordings_page(target / PAGE, title, result.summaries, failures, links)
 
 
 def _with_whole_paths(task: _Task) -> _Task:
