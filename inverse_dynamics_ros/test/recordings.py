@@ -111,7 +111,7 @@ def write_bag(path: Path, topics, storage="sqlite3"):
 
 
 def read_bag(path: Path, kind=JointState, storage=""):
-    """Messages and times of reception of a recording, by topic. kind: bytes: as they are stored."""
+    """Messages and times of reception of a recording, by topic."""
     reader = rosbag2_py.SequentialReader()
     storage = storage or ("mcap" if list(path.glob("*.mcap")) else "sqlite3")
     reader.open(
@@ -121,6 +121,16 @@ def read_bag(path: Path, kind=JointState, storage=""):
     topics = {}
     while reader.has_next():
         topic, raw, received = reader.read_next()
-        message = raw if kind is bytes else deserialize_message(raw, kind)
-        topics.setdefault(topic, []).append((message, received))
+        topics.setdefault(topic, []).append((deserialize_message(raw, kind), received))
     return topics
+
+
+def bits(messages):
+    """All that joint states hold, numbers as bytes.
+
+    Not the payload as stored: Fast DDS leaves the bytes that align numbers as they were in memory.
+    """
+    return [
+        (m.header, m.name, *(x.tobytes() for x in (m.position, m.velocity, m.effort)), received)
+        for m, received in messages
+    ]
