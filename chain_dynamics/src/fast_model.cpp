@@ -16,6 +16,7 @@ namespace {
 
 using fast::Body;
 using fast::Kernels;
+using fast::ManyKernels;
 using fast::Robot;
 
 static_assert(FastModel::kMaxJoints == fast::kMaxJoints);
@@ -29,25 +30,31 @@ constexpr Eigen::Index kSolvedJoints = 32;
 constexpr std::size_t kPack = 8;
 std::size_t padded(std::size_t joints) { return (joints + kPack - 1) / kPack * kPack; }
 
-/// The tables of kernels that run on this processor, for so many joints, the best last.
-std::vector<const Kernels*> usableKernels(int joints) {
-  std::vector<const Kernels*> usable = {&fast::kernelsPortable(joints)};
+/// The tables of one instruction set.
+struct KernelSet {
+  const Kernels* one;
+  const ManyKernels* many;
+};
+
+/// Those that run on this processor, for so many joints, the best last.
+std::vector<KernelSet> usableKernels(int joints) {
+  std::vector<KernelSet> usable = {{&fast::kernelsPortable(), &fast::manyKernelsPortable(joints)}};
 #ifdef CHAIN_DYNAMICS_X86_KERNELS
   __builtin_cpu_init();
   const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
                   __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
-  if (v3) usable.push_back(&fast::kernelsV3(joints));
+  if (v3) usable.push_back({&fast::kernelsV3(), &fast::manyKernelsV3(joints)});
   const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                   __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
                   __builtin_cpu_supports("avx512cd");
-  if (v4) usable.push_back(&fast::kernelsV4(joints));
+  if (v4) usable.push_back({&fast::kernelsV4(), &fast::manyKernelsV4(joints)});
 #endif
   return usable;
 }
 
-const Kernels& kernelsNamed(const std::string& name, int joints) {
-  for (const Kernels* kernels : usableKernels(joints)) {
-    if (name == kernels->name) return *kernels;
+KernelSet kernelsNamed(const std::string& name, int joints) {
+  for (const KernelSet& kernels : usableKernels(joints)) {
+    if (name == kernels.one->name) return kernels;
   }
   throw ModelError("fast model", "instruction set", joined(FastModel::instructionSets()), name,
                    "leave it empty for the best");
@@ -69,17 +76,6 @@ FrictionNumbers numbersOf(const CenteredSigmoid& law) {
   FrictionNumbers numbers;
   numbers << 0, 0, 0, law.A, law.alpha, law.delta, sigmoid(law.alpha * law.delta);
   return numbers;
-}
-
-fast::Samples samples(const ConstStates& states) {
-  // never written: see fast::Kernels
-  return {const_cast<double*>(states.data), states.joint_step, states.state_step};
-}
-fast::Samples samples(const States& states) {
-  return {states.data, states.joint_step, states.state_step};
-}
-fast::Matrices matrices(const StridedMatrices& H) {
-  return {H.data, H.row_step, H.column_step, H.state_step};
 }
 
 }  // namespace
@@ -158,7 +154,7 @@ struct FastModel::Data {
 
 std::vector<std::string> FastModel::instructionSets() {
   std::vector<std::string> names;
-  for (const Kernels* kernels : usableKernels(0)) names.emplace_back(kernels->name);
+  for (const KernelSet& kernels : usableKernels(0)) names.emplace_back(kernels.one->name);
   return names;
 }
 
@@ -174,21 +170,23 @@ FastModel::FastModel(const Model& model, const std::string& instruction_set) {
   if (instruction_set.empty()) {
     useBest(model);
   } else {
-    use(kernelsNamed(instruction_set, robot().joints));
+    const KernelSet kernels = kernelsNamed(instruction_set, robot().joints);
+    use(*kernels.one, *kernels.many);
   }
 }
 
 void FastModel::useBest(const Model& model) {
-  const std::vector<const Kernels*> kernels = usableKernels(robot().joints);
+  const std::vector<KernelSet> kernels = usableKernels(robot().joints);
   const auto equals = [&](std::size_t k) {
-    use(*kernels[k]);
+    use(*kernels[k].one, *kernels[k].many);
     return equalsPlain(*this, model);
   };
   warnings_ = bestEqual(model.name, instructionSets(), equals).warnings;
 }
 
-void FastModel::use(const Kernels& kernels) {
+void FastModel::use(const Kernels& kernels, const ManyKernels& many) {
   kernels_ = &kernels;
+  many_ = &many;
   structure_ = kernels.structure_of(robot());
 }
 
@@ -250,33 +248,6 @@ void FastModel::torqueDerivatives(const double* q, const double* qd, const doubl
                                   std::ptrdiff_t outer_step) const {
   kernels_->torque_derivatives(robot(), structure_, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd,
                                outer_step);
-}
-
-void FastModel::torquesBatch(ConstStates q, ConstStates qd, ConstStates qdd, States tau) const {
-  kernels_->torques_batch(robot(), structure_, q.count, samples(q), samples(qd), samples(qdd),
-                          samples(tau));
-}
-
-void FastModel::inertiaMatrixBatch(ConstStates q, StridedMatrices H) const {
-  kernels_->inertia_batch(robot(), structure_, q.count, samples(q), matrices(H));
-}
-
-void FastModel::coriolisVectorBatch(ConstStates q, ConstStates qd, States c) const {
-  kernels_->coriolis_batch(robot(), structure_, q.count, samples(q), samples(qd), samples(c));
-}
-
-void FastModel::gravityVectorBatch(ConstStates q, States g) const {
-  kernels_->gravity_batch(robot(), structure_, q.count, samples(q), samples(g));
-}
-
-void FastModel::frictionVectorBatch(ConstStates qd, States f) const {
-  kernels_->friction_batch(robot(), qd.count, samples(qd), samples(f));
-}
-
-void FastModel::dynamicComponentsBatch(ConstStates q, ConstStates qd, StridedMatrices H, States c,
-                                       States g) const {
-  kernels_->components_batch(robot(), structure_, q.count, samples(q), samples(qd), matrices(H),
-                             samples(c), samples(g));
 }
 
 }  // namespace v2

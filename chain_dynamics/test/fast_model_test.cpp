@@ -67,14 +67,14 @@ void expectEqual(const Terms& a, const Terms& b, const State<double>& x, double 
   EXPECT_TRUE(agree(a.tau, b.tau, size + largest(b.H) * speed, tolerance)) << "tau";
 }
 
-const fast::Kernels& kernelsNamed(const std::string& name) {
+const fast::ManyKernels& manyKernelsNamed(const std::string& name) {
   constexpr int kAnyJoints = 0;
 #ifdef CHAIN_DYNAMICS_X86_KERNELS
-  if (name == "v3") return fast::kernelsV3(kAnyJoints);
-  if (name == "v4") return fast::kernelsV4(kAnyJoints);
+  if (name == "v3") return fast::manyKernelsV3(kAnyJoints);
+  if (name == "v4") return fast::manyKernelsV4(kAnyJoints);
 #endif
   EXPECT_EQ(name, "portable");
-  return fast::kernelsPortable(kAnyJoints);
+  return fast::manyKernelsPortable(kAnyJoints);
 }
 
 /// Memory of one number per joint and state, in some layout.
@@ -313,7 +313,7 @@ TEST_P(FastModelOn, PlaceOfTheFirstJointMakesNoDifference) {
 constexpr double kTurnError = 1.7e-16;
 
 TEST_P(FastModelOn, SineAndCosineAreThoseOfTheLibraryAtAnyAngle) {
-  const fast::Kernels& kernels = kernelsNamed(GetParam());
+  const fast::ManyKernels& kernels = manyKernelsNamed(GetParam());
   Random random(11);
   for (const double range : {1e-9, 0.8, 3.2, 100.0, 1e4, 1.6e6, 1.7e6, 1e15, 1e300}) {
     for (int k = 0; k < 2000; ++k) {

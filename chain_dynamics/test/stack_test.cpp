@@ -126,14 +126,35 @@ TEST_P(Stack, OfManyStatesIsBounded) {
     const Index n = model.chain.jointCount();
     constexpr Index kStates = 20;
     const MatrixXd q = MatrixXd::Constant(n, kStates, 0.3);
-    MatrixXd H(n, n * kStates), c = q, g = q;
+    MatrixXd H(n, n * kStates), Y(n, 10 * n * kStates), c = q, g = q;
+    RegressorGram gram(n, 1);
     expectWithin(kManyStatesBound, GetParam(),
                  {{"torques", [&] { fast.torquesBatch(q, q, q, c); }},
                   {"H", [&] { fast.inertiaMatrixBatch(q, H); }},
                   {"c", [&] { fast.coriolisVectorBatch(q, q, c); }},
                   {"g", [&] { fast.gravityVectorBatch(q, g); }},
                   {"f", [&] { fast.frictionVectorBatch(q, c); }},
-                  {"components", [&] { fast.dynamicComponentsBatch(q, q, H, c, g); }}});
+                  {"components", [&] { fast.dynamicComponentsBatch(q, q, H, c, g); }},
+                  {"forward dynamics", [&] { fast.forwardDynamicsBatch(q, q, q, c); }},
+                  {"regressor", [&] { fast.regressorBatch(q, q, q, Y); }},
+                  {"Gram matrices", [&] {
+                     fast.addToGram({q, q, q, q, {q}}, gram);
+                   }}});
+  }
+}
+
+// Up to sixteen joints: derivatives of longer chains are those of one state.
+TEST_P(Stack, OfDerivativesOfManyStatesIsBounded) {
+  if (!kMeasurable) GTEST_SKIP() << kWhyNot;
+  constexpr Index kJoints = 16;
+  constexpr Index kStates = 20;
+  const Chain chain = randomChain(kJoints);
+  for (const Model& model : {Model(chain), identified(chain, true, true, 3)}) {
+    const FastModel fast(model, GetParam());
+    const MatrixXd q = MatrixXd::Constant(kJoints, kStates, 0.3);
+    MatrixXd by_q(kJoints, kJoints * kStates), by_qd = by_q, H = by_q;
+    expectWithin(kManyStatesBound, GetParam(),
+                 {{"derivatives", [&] { fast.torqueDerivativesBatch(q, q, q, by_q, by_qd, H); }}});
   }
 }
 

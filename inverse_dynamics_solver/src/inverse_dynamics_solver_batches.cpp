@@ -3,13 +3,15 @@
 // Batches of InverseDynamicsSolver: checks, threads, and what they compute where a solver has
 // nothing better.
 
+#include <chain_dynamics/share_states.hpp>
+
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "one_state.hpp"
-#include "share_states.hpp"
 
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
+using chain_dynamics::shareStates;
 using Eigen::Index;
 
 void InverseDynamicsSolver::getInertiaMatrixBatch(const ConstStatesRef& q,

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "chain_dynamics/model.hpp"
+#include "chain_dynamics/regressor_gram.hpp"
 #include "chain_dynamics/states.hpp"
 
 namespace chain_dynamics {
@@ -28,16 +29,54 @@ inline namespace v2 {
 
 namespace fast {
 struct Kernels;
+struct ManyKernels;
 struct Robot;
 }  // namespace fast
 
+/// An n x 10 n regressor of each of many states: entry (i, j) of state k stands at
+/// `data[i * row_step + j * column_step + k * state_step]`.
+///
+/// In Eigen's terms they stand side by side, n x (10 n N). An array N x n x 10 n, each regressor row
+/// after row (C order), is `{data, n, N, 10 * n, 1, 10 * n * n}`.
+struct StridedRegressors {
+  double* data = nullptr;
+  Eigen::Index joints = 0;  ///< n
+  Eigen::Index count = 0;   ///< N
+  std::ptrdiff_t row_step = 1;
+  std::ptrdiff_t column_step = 0;
+  std::ptrdiff_t state_step = 0;
+
+  StridedRegressors(double* first, Eigen::Index joint_count, Eigen::Index state_count,
+                    std::ptrdiff_t from_row_to_row, std::ptrdiff_t from_column_to_column,
+                    std::ptrdiff_t from_state_to_state)
+      : data(first),
+        joints(joint_count),
+        count(state_count),
+        row_step(from_row_to_row),
+        column_step(from_column_to_column),
+        state_step(from_state_to_state) {}
+
+  /// An n x (10 n N) expression whose doubles stand in memory and may be written.
+  template <typename Expression, typename = detail::RequireMemory<Expression, double>>
+  StridedRegressors(Expression&& matrices)  // NOLINT(google-explicit-constructor)
+      : StridedRegressors(const_cast<double*>(matrices.data()), matrices.rows(),
+                          matrices.rows() == 0 ? 0 : matrices.cols() / (10 * matrices.rows()),
+                          matrices.rowStride(), matrices.colStride(),
+                          10 * matrices.rows() * matrices.colStride()) {}
+
+  /// Those of the states first to first + size - 1.
+  StridedRegressors middle(Eigen::Index first, Eigen::Index size) const {
+    return {data + first * state_step, joints, size, row_step, column_step, state_step};
+  }
+};
+
 /// A model made ready for the fast kernels.
 ///
-/// Up to kMaxJoints joints. Real time: no method but the constructor allocates, locks or throws;
-/// one state needs up to 48 KiB of stack, many states up to 112 KiB [docs/real_time.md]. Threads:
-/// safe. NaN gives NaN in every entry that depends on it. A vector may be written where one of the
-/// inputs stands (tau where q does, of many states in the same layout); otherwise outputs overlap
-/// no input.
+/// Up to kMaxJoints joints. Real time: no method but the constructor, addToGram() and
+/// torqueDerivativesBatch() allocates, locks or throws; one state needs up to 48 KiB of stack, many
+/// states up to 112 KiB [docs/real_time.md]. Threads: safe. NaN gives NaN in every entry that
+/// depends on it. A vector may be written where one of the inputs stands (tau where q does, of many
+/// states in the same layout); otherwise outputs overlap no input.
 class FastModel {
  public:
   /// Longest chain.
@@ -108,16 +147,29 @@ class FastModel {
   void frictionVectorBatch(ConstStates qd, States f) const;
   void dynamicComponentsBatch(ConstStates q, ConstStates qd, StridedMatrices H, States c,
                               States g) const;
+  /// As forwardDynamics().
+  void forwardDynamicsBatch(ConstStates q, ConstStates qd, ConstStates tau, States qdd) const;
+  /// As torqueDerivatives(). Allocates for more than 16 joints.
+  void torqueDerivativesBatch(ConstStates q, ConstStates qd, ConstStates qdd,
+                              StridedMatrices dtau_dq, StridedMatrices dtau_dqd,
+                              StridedMatrices dtau_dqdd) const;
+  /// As regressor().
+  void regressorBatch(ConstStates q, ConstStates qd, ConstStates qdd, StridedRegressors Y) const;
+  /// Adds samples to the Gram matrices of the regressor's rows [regressor_gram.hpp].
+  ///
+  /// @throws ModelError  another number of joints, samples or columns.
+  void addToGram(const GramSamples& samples, RegressorGram& gram) const;
   /// @}
 
  private:
   struct Data;
   const fast::Robot& robot() const;
-  void use(const fast::Kernels& kernels);
+  void use(const fast::Kernels& kernels, const fast::ManyKernels& many);
   void useBest(const Model& model);
 
   std::unique_ptr<const Data> data_;
   const fast::Kernels* kernels_ = nullptr;
+  const fast::ManyKernels* many_ = nullptr;
   int structure_ = 0;  // of the kernels for joints of this kind
   std::vector<std::string> warnings_;
 };

@@ -3,7 +3,7 @@
 /// @file
 /// Transposing, two columns at a time.
 ///
-/// Included by kernels.cpp only [pack.hpp].
+/// Included by the kernels' two sources only [pack.hpp].
 
 #pragma once
 

@@ -3,7 +3,7 @@
 /// @file
 /// Sine, cosine and the logistic function of a pack.
 ///
-/// Included by kernels.cpp only [pack.hpp].
+/// Included by the kernels' two sources only [pack.hpp].
 
 #pragma once
 

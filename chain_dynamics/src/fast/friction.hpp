@@ -3,7 +3,7 @@
 /// @file
 /// Friction torques of all joints, of one state or of a pack of states.
 ///
-/// Included by kernels.cpp only [pack.hpp].
+/// Included by the kernels' two sources only [pack.hpp].
 
 #pragma once
 
@@ -51,18 +51,18 @@ FAST_INLINE void forEachLaw(const Robot& robot, const double* qd, double* result
   }
 }
 
-void frictionNumbers(const Robot& robot, const double* qd, double* f) {
+inline void frictionNumbers(const Robot& robot, const double* qd, double* f) {
   forEachLaw(robot, qd, f,
              [](const Short& x, const auto& number) FAST_LAMBDA { return frictionOf(x, number); });
 }
 
-void frictionSlopes(const Robot& robot, const double* qd, double* slopes) {
+inline void frictionSlopes(const Robot& robot, const double* qd, double* slopes) {
   forEachLaw(robot, qd, slopes, [](const Short& x, const auto& number) FAST_LAMBDA {
     return frictionSlopeOf(x, number);
   });
 }
 
-void frictionOfState(const Robot& robot, const double* qd, double* f) {
+inline void frictionOfState(const Robot& robot, const double* qd, double* f) {
   if (robot.friction == nullptr) {
     for (int i = 0; i < robot.joints; ++i) f[i] = 0.0 * qd[i];  // keeps a NaN
     return;
@@ -75,6 +75,11 @@ void frictionOfState(const Robot& robot, const double* qd, double* f) {
 FAST_INLINE Pack frictionOfPack(const Robot& robot, int i, const Pack& qd) {
   if (robot.friction == nullptr) return 0.0 * qd;
   return frictionOf(qd, [&](int k) { return all<Pack>(robot.friction[k * robot.stride + i]); });
+}
+
+FAST_INLINE Pack frictionSlopeOfPack(const Robot& robot, int i, const Pack& qd) {
+  return frictionSlopeOf(qd,
+                         [&](int k) { return all<Pack>(robot.friction[k * robot.stride + i]); });
 }
 
 }  // namespace

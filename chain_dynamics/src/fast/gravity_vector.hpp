@@ -3,7 +3,7 @@
 /// @file
 /// Gravity torques on one structure.
 ///
-/// Included by kernels.cpp only [pack.hpp].
+/// Included by the kernels' two sources only [pack.hpp].
 
 #pragma once
 
@@ -63,41 +63,38 @@ FAST_INLINE void gravityInLinks(const Robot& robot, const State<V>& state, Vec<V
   });
 }
 
-/// Gravity torques; one set of parameters for all rows.
+/// Gravity torques with a set of parameters for each row.
+template <typename S, typename V>
+FAST_APART void gravityByRow(const Robot& robot, const State<V>& state, V* g) {
+  using R = Rows<V>;
+  using P = typename R::P;
+  Vec<V> a[S::kJoints];
+  gravityInLinks<S>(robot, state, a);
+  S::template inSteps<R::kCount>(robot, [&](auto first) FAST_LAMBDA {
+    forEachGravity<S, V, P>(
+        robot, state, first, a,
+        [&](auto i) FAST_LAMBDA -> decltype(auto) { return R::body(robot, i, first); },
+        [&](auto i, const P& torque) FAST_LAMBDA {
+          if (i < first + R::kCount) g[i] = R::number(torque, i - first);
+        });
+  });
+}
+
+/// The same; with one set of parameters for all rows, if the robot has one: its only one, or
+/// gravity's own.
 template <typename S, typename V>
 void gravity(const Robot& robot, const State<V>& state, V* g) {
+  if constexpr (S::kRows) {
+    if (robot.rows != nullptr && robot.gravity_bodies == nullptr) {
+      return gravityByRow<S>(robot, state, g);
+    }
+  }
   const Body* bodies = robot.gravity_bodies != nullptr ? robot.gravity_bodies : robot.bodies;
   Vec<V> a[S::kJoints];
   gravityInLinks<S>(robot, state, a);
   forEachGravity<S, V, V>(
       robot, state, Constant<0>(), a, [&](auto i) FAST_LAMBDA -> const Body& { return bodies[i]; },
       [&](auto i, const V& torque) FAST_LAMBDA { g[i] = torque; });
-}
-
-/// The same with a set of parameters for each row.
-template <typename S, typename V>
-void gravityByRow(const Robot& robot, const State<V>& state, V* g) {
-  Vec<V> a[S::kJoints];
-  gravityInLinks<S>(robot, state, a);
-  if constexpr (sizeof(V) == sizeof(double)) {
-    S::template inSteps<kShortWidth>(robot, [&](auto first) FAST_LAMBDA {
-      forEachGravity<S, V, Short>(
-          robot, state, first, a,
-          [&](auto i) FAST_LAMBDA { return BodyLanes<Short>(robot, i, first); },
-          [&](auto i, const Short& torque) FAST_LAMBDA {
-            if (i < first + kShortWidth) g[i] = laneOf(torque, i - first);
-          });
-    });
-  } else {
-    S::template inSteps<1>(robot, [&](auto row) FAST_LAMBDA {
-      forEachGravity<S, V, V>(
-          robot, state, row, a,
-          [&](auto i) FAST_LAMBDA -> const Body& { return robot.rows[row][i]; },
-          [&](auto i, const V& torque) FAST_LAMBDA {
-            if (i == row) g[i] = torque;
-          });
-    });
-  }
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 /// @file
 /// Inertia matrix on one structure: composite bodies, from tip to root.
 ///
-/// Included by kernels.cpp only [pack.hpp].
+/// Included by the kernels' two sources only [pack.hpp].
 
 #pragma once
 
@@ -152,9 +152,29 @@ struct Entries {
   }
 };
 
-/// Inertia matrix; one set of parameters for all rows.
+/// Inertia matrix with a set of parameters for each row.
+template <typename S, typename V>
+FAST_APART void inertiaByRow(const Robot& robot, const State<V>& state, const Entries<V>& H) {
+  using R = Rows<V>;
+  using P = typename R::P;
+  S::template inSteps<R::kCount>(robot, [&](auto first) FAST_LAMBDA {
+    const int end = first + R::kCount;
+    forEachInertia<S, V, P>(
+        robot, state, first,
+        [&](auto i) FAST_LAMBDA -> decltype(auto) { return R::body(robot, i, first); },
+        [&](auto i, auto j, const P& value) FAST_LAMBDA {
+          if (i < end) H.set(i, j, R::number(value, i - first));
+          if (first <= j && j < end && i != j) H.set(j, i, R::number(value, j - first));
+        });
+  });
+}
+
+/// The same; with one set of parameters for all rows, if the robot has no more.
 template <typename S, typename V>
 void inertia(const Robot& robot, const State<V>& state, const Entries<V>& to) {
+  if constexpr (S::kRows) {
+    if (robot.rows != nullptr) return inertiaByRow<S>(robot, state, to);
+  }
   // packs stand side by side; that makes their places constants
   const Entries<V> H = sizeof(V) == sizeof(double) ? to : Entries<V>{to.data, 1, S::count(robot)};
   forEachInertia<S, V, V>(
@@ -164,35 +184,6 @@ void inertia(const Robot& robot, const State<V>& state, const Entries<V>& to) {
         H.set(i, j, value);
         if (i != j) H.set(j, i, value);
       });
-}
-
-/// The same with a set of parameters for each row.
-template <typename S, typename V>
-void inertiaByRow(const Robot& robot, const State<V>& state, const Entries<V>& H) {
-  if constexpr (sizeof(V) == sizeof(double)) {
-    S::template inSteps<kShortWidth>(robot, [&](auto first) FAST_LAMBDA {
-      const int end = first + kShortWidth;
-      forEachInertia<S, V, Short>(
-          robot, state, first,
-          [&](auto i) FAST_LAMBDA { return BodyLanes<Short>(robot, i, first); },
-          [&](auto i, auto j, const Short& value) FAST_LAMBDA {
-            if (i < end) H.set(i, j, laneOf(value, i - first));
-            if (first <= j && j < end && i != j) H.set(j, i, laneOf(value, j - first));
-          });
-    });
-  } else {
-    S::template inSteps<1>(robot, [&](auto row) FAST_LAMBDA {
-      forEachInertia<S, V, V>(
-          robot, state, row, [&](auto i) FAST_LAMBDA -> const Body& { return robot.rows[row][i]; },
-          [&](auto i, auto j, const V& value) FAST_LAMBDA {
-            if (i == row) {
-              H.set(row, j, value);
-            } else if (j == row) {
-              H.set(row, i, value);
-            }
-          });
-    });
-  }
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 /// @file
 /// States as lanes: from and to memory of any layout.
 ///
-/// Included by kernels.cpp only [pack.hpp].
+/// Included by the kernels' two sources only [pack.hpp].
 
 #pragma once
 

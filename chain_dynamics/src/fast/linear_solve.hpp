@@ -3,7 +3,7 @@
 /// @file
 /// Linear equations of the size of a robot, in place.
 ///
-/// Included by kernels.cpp only [pack.hpp].
+/// Included by the kernels' two sources only [pack.hpp].
 
 #pragma once
 
@@ -18,13 +18,14 @@ namespace {
 ///
 /// H = L' D L from the last row to the first [Featherstone 2008, sec. 6.5], whose D are the
 /// articulated inertias of forward dynamics in recursive form.
-void solveSymmetric(int n, double* H, double* x) {
+template <typename V>
+void solveSymmetric(int n, V* H, V* x) {
   for (int k = n - 1; k >= 0; --k) {
-    double* const row_k = H + std::ptrdiff_t{k} * n;
-    const double inverse_D = 1.0 / row_k[k];
+    V* const row_k = H + std::ptrdiff_t{k} * n;
+    const V inverse_D = 1.0 / row_k[k];
     for (int i = 0; i < k; ++i) {
-      const double factor = row_k[i] * inverse_D;
-      double* const row_i = H + std::ptrdiff_t{i} * n;
+      const V factor = row_k[i] * inverse_D;
+      V* const row_i = H + std::ptrdiff_t{i} * n;
       for (int j = 0; j <= i; ++j) row_i[j] -= factor * row_k[j];
       x[i] -= factor * x[k];
     }
@@ -32,7 +33,7 @@ void solveSymmetric(int n, double* H, double* x) {
   }
   // row k now says: H_kk x_k + sum of H_kj x_j, j < k, is what is left in x_k
   for (int k = 0; k < n; ++k) {
-    const double* const row_k = H + std::ptrdiff_t{k} * n;
+    const V* const row_k = H + std::ptrdiff_t{k} * n;
     for (int j = 0; j < k; ++j) x[k] -= row_k[j] * x[j];
     x[k] *= row_k[k];
   }
@@ -40,7 +41,7 @@ void solveSymmetric(int n, double* H, double* x) {
 
 /// x = H^-1 x for any H, H(i, j) at H[i n + j], overwritten: Gauss with the largest pivot of each
 /// column.
-void solveGeneral(int n, double* H, double* x) {
+inline void solveGeneral(int n, double* H, double* x) {
   for (int k = 0; k < n; ++k) {
     int pivot = k;
     for (int i = k + 1; i < n; ++i) {

@@ -3,8 +3,8 @@
 /// @file
 /// How the links move, from root to tip, and what each needs for it.
 ///
-/// Included by kernels.cpp only [pack.hpp]. The algorithms of this and the next files (torques,
-/// gravity, inertia) are those of the headers of the same names in this package, written out in
+/// Included by the kernels' two sources only [pack.hpp]. The algorithms of this and the next files
+/// (torques, gravity, inertia) are those of the headers of the same names in this package, written out in
 /// components for the frames and parameters of robot.hpp. V is the type of everything that depends
 /// on the state: a number, or a pack with a state in each lane. P is the type of inertial
 /// parameters: numbers, or a pack with a row's own parameters in each lane.
@@ -236,6 +236,29 @@ struct BodyLanes {
     m = number(8);
     mass_beyond = number(9);
   }
+};
+
+/// Rows with parameters of their own that are computed side by side from one motion: of a pack of
+/// states one row at a time, ...
+template <typename V>
+struct Rows {
+  using P = V;
+  static constexpr int kCount = 1;
+  static FAST_INLINE const Body& body(const Robot& robot, int i, int row) {
+    return robot.rows[row][i];
+  }
+  static FAST_INLINE const V& number(const V& value, int) { return value; }
+};
+
+/// ... and of one state a row in each lane.
+template <>
+struct Rows<double> {
+  using P = Short;
+  static constexpr int kCount = kShortWidth;
+  static FAST_INLINE BodyLanes<P> body(const Robot& robot, int i, int first_row) {
+    return BodyLanes<P>(robot, i, first_row);
+  }
+  static FAST_INLINE double number(const P& value, int row) { return laneOf(value, row); }
 };
 
 }  // namespace

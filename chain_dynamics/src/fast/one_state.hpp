@@ -40,14 +40,15 @@ void coriolisOfState(const Robot& robot, int structure, const double* q, const d
   turnsOfState(robot, q, c.values, s.values);
   leaveOutFirst(c.values, s.values);
   const State<double> state{c.values, s.values, q, qd, kAtRest};
-  coriolisOf(robot, structure, state, coriolis);
+  recursionsOf<double>(structure).torques(robot, state, kNoGravity, coriolis);
 }
 
 void gravityOfState(const Robot& robot, int structure, const double* q, double* g) {
   JointNumbers c;
   JointNumbers s;
   turnsOfState(robot, q, c.values, s.values);
-  gravityOf(robot, structure, State<double>{c.values, s.values, q, nullptr, nullptr}, g);
+  const State<double> state{c.values, s.values, q, nullptr, nullptr};
+  recursionsOf<double>(structure).gravity(robot, state, g);
 }
 
 void inertiaOfState(const Robot& robot, int structure, const double* q, Matrices H) {
@@ -55,8 +56,8 @@ void inertiaOfState(const Robot& robot, int structure, const double* q, Matrices
   JointNumbers s;
   turnsOfState(robot, q, c.values, s.values);
   const State<double> state{c.values, s.values, q, nullptr, nullptr};
-  recursionsOf<double>(robot, structure)
-      .inertia(robot, state, Entries<double>{H.data, H.row_step, H.column_step});
+  const Entries<double> entries{H.data, H.row_step, H.column_step};
+  recursionsOf<double>(structure).inertia(robot, state, entries);
 }
 
 void componentsOfState(const Robot& robot, int structure, const double* q, const double* qd,
@@ -66,11 +67,11 @@ void componentsOfState(const Robot& robot, int structure, const double* q, const
   JointNumbers gravity;  // may stand where the state does
   turnsOfState(robot, q, c.values, s.values);
   const State<double> state{c.values, s.values, q, qd, kAtRest};
-  recursionsOf<double>(robot, structure)
-      .inertia(robot, state, Entries<double>{H.data, H.row_step, H.column_step});
-  gravityOf(robot, structure, state, gravity.values);
+  const Recursions<double>& recursions = recursionsOf<double>(structure);
+  recursions.inertia(robot, state, Entries<double>{H.data, H.row_step, H.column_step});
+  recursions.gravity(robot, state, gravity.values);
   leaveOutFirst(c.values, s.values);
-  coriolisOf(robot, structure, state, coriolis);
+  recursions.torques(robot, state, kNoGravity, coriolis);
   for (int i = 0; i < robot.joints; ++i) g[i] = gravity.values[i];
 }
 
@@ -90,8 +91,8 @@ void forwardDynamicsOfState(const Robot& robot, int structure, const double* q, 
     frictionNumbers(robot, qd, bias.values);
     for (int i = 0; i < n; ++i) accelerating[i] -= bias.values[i];
   }
-  recursionsOf<double>(robot, structure).inertia(robot, state, Entries<double>{H, n, 1});
-  (robot.rows != nullptr ? solveGeneral : solveSymmetric)(n, H, accelerating);
+  recursionsOf<double>(structure).inertia(robot, state, Entries<double>{H, n, 1});
+  (robot.rows != nullptr ? solveGeneral : solveSymmetric<double>)(n, H, accelerating);
   for (int i = 0; i < n; ++i) qdd[i] = accelerating[i];
 }
 
@@ -110,10 +111,8 @@ void torqueDerivativesOfState(const Robot& robot, int structure, const double* q
   JointNumbers s;
   turnsOfState(robot, q, c.values, s.values);
   const State<double> state{c.values, s.values, q, qd, qdd};
-  const bool own_gravity = robot.gravity_bodies != nullptr;
-  kDerivatives[structure](robot, state, own_gravity ? kNoGravity : robot.root,
-                          DerivativeEntries{by_q, by_qd, by_qdd, outer_step});
-  if (own_gravity) addGravityDerivatives(robot, state, by_q, outer_step);
+  derivativesOf(robot, structure, state,
+                DerivativeEntries<double>{by_q, by_qd, by_qdd, outer_step});
   if (robot.friction != nullptr) {
     frictionSlopes(robot, qd, c.values);
     for (int i = 0; i < robot.joints; ++i) by_qd[i + i * outer_step] += c.values[i];

@@ -4,12 +4,14 @@
 /// A few numbers side by side, by the vector types of GCC and Clang: the same source for SSE, AVX,
 /// AVX-512, NEON.
 ///
-/// Included by kernels.cpp only, which is compiled once per instruction set: everything here has
-/// internal linkage, so that no function compiled for one set is linked in place of another.
+/// Included by kernels.cpp and many_kernels.cpp only, which are compiled once per instruction set:
+/// everything here has internal linkage, so that no function compiled for one set is linked in place
+/// of another.
 
 #pragma once
 
 #include <cstddef>
+#include <utility>
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -18,6 +20,7 @@ namespace {
 
 #define FAST_INLINE inline __attribute__((always_inline))
 #define FAST_LAMBDA __attribute__((always_inline))
+#define FAST_APART __attribute__((noinline))
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 constexpr int kWidth = 8;
@@ -60,15 +63,12 @@ FAST_INLINE V load(const double* from) {
 }
 
 // Numbers that don't stand side by side: from[0], from[step], ...
+template <std::size_t... Lane>
+FAST_INLINE Pack loadLanes(const double* from, std::ptrdiff_t step, std::index_sequence<Lane...>) {
+  return Pack{from[static_cast<std::ptrdiff_t>(Lane) * step]...};
+}
 FAST_INLINE Pack loadSteps(const double* from, std::ptrdiff_t step) {
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
-  return Pack{from[0],        from[step],     from[2 * step], from[3 * step],
-              from[4 * step], from[5 * step], from[6 * step], from[7 * step]};
-#elif defined(__AVX__)
-  return Pack{from[0], from[step], from[2 * step], from[3 * step]};
-#else
-  return Pack{from[0], from[step]};
-#endif
+  return loadLanes(from, step, std::make_index_sequence<kWidth>());
 }
 
 template <typename V>
@@ -76,19 +76,13 @@ FAST_INLINE void store(const V& v, double* to) {
   __builtin_memcpy(to, &v, sizeof(V));
 }
 
+template <std::size_t... Lane>
+FAST_INLINE void storeLanes(const Pack& pack, double* to, std::ptrdiff_t step,
+                            std::index_sequence<Lane...>) {
+  ((to[static_cast<std::ptrdiff_t>(Lane) * step] = pack[Lane]), ...);
+}
 FAST_INLINE void storeSteps(const Pack& pack, double* to, std::ptrdiff_t step) {
-  to[0] = pack[0];
-  to[step] = pack[1];
-#if defined(__AVX__)
-  to[2 * step] = pack[2];
-  to[3 * step] = pack[3];
-#endif
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
-  to[4 * step] = pack[4];
-  to[5 * step] = pack[5];
-  to[6 * step] = pack[6];
-  to[7 * step] = pack[7];
-#endif
+  storeLanes(pack, to, step, std::make_index_sequence<kWidth>());
 }
 
 template <typename V>

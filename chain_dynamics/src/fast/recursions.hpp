@@ -3,9 +3,11 @@
 /// @file
 /// Which structures there are, and the recursions of each.
 ///
-/// Included by kernels.cpp only [pack.hpp].
+/// Included by the kernels' two sources only [pack.hpp].
 
 #pragma once
+
+#include <type_traits>
 
 #include "gravity_vector.hpp"
 #include "inertia_matrix.hpp"
@@ -18,8 +20,8 @@ namespace fast {
 namespace {
 
 /// Joints 2, 3, 4 (the first is 1) are parallel, and right angles elsewhere: Universal Robots.
-/// Their description's right angles have nine digits.
-using ParallelWrist = Known<6, 0x020022, 0x001100, 0x010010>;
+/// Their description's right angles have nine digits. Identified models have rows of their own.
+using ParallelWrist = Known<6, 0x020022, 0x001100, 0x010010, Has::kRows>;
 
 /// Six joints, 2 and 3 parallel, right angles elsewhere: most industrial robots.
 using SphericalWrist = Known<6, 0x010111, 0x011100, 0x010110>;
@@ -32,8 +34,8 @@ using AnySix = Known<6, 0x033333, 0x011111, 0x011111>;
 using AnySeven = Known<7, 0x0333333, 0x0111111, 0x0111111>;
 
 /// Six or seven joints that turn or slide.
-using MixedSix = Known<6, 0x033333, 0x011111, 0x011111, true>;
-using MixedSeven = Known<7, 0x0333333, 0x0111111, 0x0111111, true>;
+using MixedSix = Known<6, 0x033333, 0x011111, 0x011111, Has::kSlides>;
+using MixedSeven = Known<7, 0x0333333, 0x0111111, 0x0111111, Has::kSlides>;
 
 template <typename V>
 struct Recursions {
@@ -43,75 +45,66 @@ struct Recursions {
 };
 
 template <typename V>
-constexpr Recursions<V> kRecursions[] = {
-    {torques<AnyStructure, V>, gravity<AnyStructure, V>, inertia<AnyStructure, V>},
-    {torques<ParallelWrist, V>, gravity<ParallelWrist, V>, inertia<ParallelWrist, V>},
-    {torques<SphericalWrist, V>, gravity<SphericalWrist, V>, inertia<SphericalWrist, V>},
-    {torques<RightAngles, V>, gravity<RightAngles, V>, inertia<RightAngles, V>},
-    {torques<AnySix, V>, gravity<AnySix, V>, inertia<AnySix, V>},
-    {torques<AnySeven, V>, gravity<AnySeven, V>, inertia<AnySeven, V>},
-    {torques<MixedSix, V>, gravity<MixedSix, V>, inertia<MixedSix, V>},
-    {torques<MixedSeven, V>, gravity<MixedSeven, V>, inertia<MixedSeven, V>},
-};
-
-// Identified models with parameters for each row.
-template <typename V>
-constexpr Recursions<V> kRecursionsByRow[] = {
-    {torquesByRow<AnyStructure, V>, gravityByRow<AnyStructure, V>, inertiaByRow<AnyStructure, V>},
-    {torquesByRow<ParallelWrist, V>, gravityByRow<ParallelWrist, V>,
-     inertiaByRow<ParallelWrist, V>},
-};
-
-// Of one state, with one set of parameters or one for each row.
-using Derivatives = void (*)(const Robot&, const State<double>&, const double* root,
-                             const DerivativeEntries&);
-constexpr Derivatives kDerivatives[] = {
-    torqueDerivatives<AnyStructure>,   torqueDerivatives<ParallelWrist>,
-    torqueDerivatives<SphericalWrist>, torqueDerivatives<RightAngles>,
-    torqueDerivatives<AnySix>,         torqueDerivatives<AnySeven>,
-    torqueDerivatives<AnyStructure>,   torqueDerivatives<AnyStructure>};
-
-int structureOf(const Robot& robot) {
-  if (ParallelWrist::covers(robot)) return 1;
-  if (robot.rows != nullptr) return 0;
-  if (SphericalWrist::covers(robot)) return 2;
-  if (RightAngles::covers(robot)) return 3;
-  if (AnySix::covers(robot)) return 4;
-  if (AnySeven::covers(robot)) return 5;
-  return MixedSix::covers(robot) ? 6 : MixedSeven::covers(robot) ? 7 : 0;
-}
+using Derivatives = void (*)(const Robot&, const State<V>&, const double* root,
+                             const DerivativeEntries<V>&);
 
 template <typename V>
-FAST_INLINE const Recursions<V>& recursionsOf(const Robot& robot, int structure) {
-  return robot.rows != nullptr ? kRecursionsByRow<V>[structure] : kRecursions<V>[structure];
+using AnyWithMatrices = AnyOf<sizeof(V) == sizeof(double) ? kMaxJoints : kPackedMatrixJoints>;
+
+/// Derivatives are unrolled for one state of joints that turn, and for packs of states where right
+/// angles save most: they take long to compile.
+template <typename S, typename V>
+using ForDerivatives = std::conditional_t<S::kMixed || (sizeof(V) > sizeof(double) && !S::kAligned),
+                                          AnyWithMatrices<V>, S>;
+
+/// The recursions of each structure, in the order in which a robot's is looked for.
+template <typename... S>
+struct Tables {
+  template <typename V>
+  static constexpr Recursions<V> kRecursions[] = {{torques<S, V>, gravity<S, V>, inertia<S, V>}...};
+
+  template <typename V>
+  static constexpr Derivatives<V> kDerivatives[] = {torqueDerivatives<ForDerivatives<S, V>, V>...};
+
+  /// Index of the first that has the robot's structure, or one with less zeros.
+  static int indexOf(const Robot& robot) {
+    int index = 0;
+    (void)((S::covers(robot) || (++index, false)) || ...);
+    return index;
+  }
+};
+using Structures = Tables<ParallelWrist, SphericalWrist, RightAngles, AnySix, AnySeven, MixedSix,
+                          MixedSeven, AnyStructure>;
+
+template <typename V>
+FAST_INLINE const Recursions<V>& recursionsOf(int structure) {
+  return Structures::kRecursions<V>[structure];
 }
 
 constexpr double kAtRest[kMaxJoints] = {};
 constexpr double kNoGravity[3] = {};
 
 template <typename V>
-FAST_INLINE void gravityOf(const Robot& robot, int structure, const State<V>& state, V* g) {
-  // parameters of gravity's own are those of all rows
-  const bool by_row = robot.rows != nullptr && robot.gravity_bodies == nullptr;
-  (by_row ? kRecursionsByRow<V> : kRecursions<V>)[structure].gravity(robot, state, g);
-}
-
-template <typename V>
 FAST_INLINE void torquesOf(const Robot& robot, int structure, const State<V>& state, V* tau) {
-  const Recursions<V>& recursions = recursionsOf<V>(robot, structure);
+  const Recursions<V>& recursions = recursionsOf<V>(structure);
   if (robot.gravity_bodies == nullptr) {
     recursions.torques(robot, state, robot.root, tau);
     return;
   }
   V g[kMaxJoints];  // first: tau may stand where the state does
-  gravityOf(robot, structure, state, g);
+  recursions.gravity(robot, state, g);
   recursions.torques(robot, state, kNoGravity, tau);
   for (int i = 0; i < robot.joints; ++i) tau[i] += g[i];
 }
 
 template <typename V>
-FAST_INLINE void coriolisOf(const Robot& robot, int structure, const State<V>& state, V* c) {
-  recursionsOf<V>(robot, structure).torques(robot, state, kNoGravity, c);
+FAST_INLINE void derivativesOf(const Robot& robot, int structure, const State<V>& state,
+                               const DerivativeEntries<V>& to) {
+  const bool own_gravity = robot.gravity_bodies != nullptr;
+  Structures::kDerivatives<V>[structure](robot, state, own_gravity ? kNoGravity : robot.root, to);
+  if (own_gravity) {
+    addGravityDerivatives<AnyWithMatrices<V>>(robot, state, to.by_q, to.outer_step);
+  }
 }
 
 }  // namespace

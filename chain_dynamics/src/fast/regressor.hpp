@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// Regressor of the torques: the rows of all joints as lanes.
+/// Regressor of the torques. Lanes are the rows of all joints of one state, or many states.
 ///
-/// Included by kernels.cpp only [pack.hpp]. All ten parameters of a link, in the frame that its
-/// description has: neither the few parameters nor the simple frames of the other kernels are of
-/// use. The axes of the joints go along from link to link, as motions, and meet what each link
+/// Included by the kernels' two sources only [pack.hpp]. All ten parameters of a link, in the frame
+/// that its description has: neither the few parameters nor the simple frames of the other kernels
+/// are of use. The axes of the joints go along from link to link, as motions, and meet what each link
 /// would need for one unit of each of its parameters [chain_dynamics/regressor.hpp].
 
 #pragma once
@@ -17,45 +17,54 @@ inline namespace v2 {
 namespace fast {
 namespace {
 
-/// Axes and origin of a link's frame in that of the link before.
+/// Axes and origin of a link's frame in that of the link before; z depends on no position.
+template <typename V>
 struct Pose {
-  Vec<double> x, y, z, p;
+  Vec<V> x, y;
+  Vec<double> z;
+  Vec<V> p;
 };
 
-FAST_INLINE Pose poseOf(const OwnPlacement& own, double c, double s, double q) {
+template <typename V>
+FAST_INLINE Pose<V> poseOf(const OwnPlacement& own, const V& c, const V& s, const V& q) {
   const double* const R = own.R;  // columns
-  Pose X{{R[0] * c + R[3] * s, R[1] * c + R[4] * s, R[2] * c + R[5] * s},
-         {R[3] * c - R[0] * s, R[4] * c - R[1] * s, R[5] * c - R[2] * s},
-         {R[6], R[7], R[8]},
-         {own.p[0], own.p[1], own.p[2]}};
+  const V zero{};
+  Pose<V> X{{R[0] * c + R[3] * s, R[1] * c + R[4] * s, R[2] * c + R[5] * s},
+            {R[3] * c - R[0] * s, R[4] * c - R[1] * s, R[5] * c - R[2] * s},
+            {R[6], R[7], R[8]},
+            {own.p[0] + zero, own.p[1] + zero, own.p[2] + zero}};
   if (own.prismatic) addTo(X.p, {X.z.x * q, X.z.y * q, X.z.z * q});
   return X;
 }
 
-template <typename P>
-FAST_INLINE P dot(const Vec<double>& a, const Vec<P>& b) {
+template <typename V, typename P>
+FAST_INLINE P dot(const Vec<V>& a, const Vec<P>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 /// R' v
-template <typename P>
-FAST_INLINE Vec<P> into(const Pose& X, const Vec<P>& v) {
+template <typename V, typename P>
+FAST_INLINE Vec<P> into(const Pose<V>& X, const Vec<P>& v) {
   return {dot(X.x, v), dot(X.y, v), dot(X.z, v)};
 }
 
 /// v + w x p
-template <typename P>
-FAST_INLINE Vec<P> leverOf(const Vec<P>& v, const Vec<P>& w, const Vec<double>& p) {
+template <typename V, typename P>
+FAST_INLINE Vec<P> leverOf(const Vec<P>& v, const Vec<P>& w, const Vec<V>& p) {
   return {v.x + (w.y * p.z - w.z * p.y), v.y + (w.z * p.x - w.x * p.z),
           v.z + (w.x * p.y - w.y * p.x)};
 }
 
 /// From link to link, as in forEachMotion() but between any frames.
+template <typename V>
 struct OwnMotion {
-  Vec<double> w{}, dw{}, a{};
-  LinkMotion<double> U{};
+  Vec<V> w{}, dw{}, a;
+  LinkMotion<V> U{};
 
-  FAST_INLINE void step(const Pose& X, bool prismatic, double qd, double qdd) {
+  FAST_INLINE explicit OwnMotion(const Robot& robot)
+      : a{robot.root[0] + V{}, robot.root[1] + V{}, robot.root[2] + V{}} {}
+
+  FAST_INLINE void step(const Pose<V>& X, bool prismatic, const V& qd, const V& qdd) {
     addTo(a,
           {U.xx * X.p.x + U.xy * X.p.y + U.xz * X.p.z, U.yx * X.p.x + U.yy * X.p.y + U.yz * X.p.z,
            U.zx * X.p.x + U.zy * X.p.y + U.zz * X.p.z});
@@ -74,10 +83,10 @@ struct OwnMotion {
 
 /// Ten columns of the rows whose joints' axes, seen from the link, are (w, v): power of the force
 /// that a unit of each parameter needs.
-template <typename P>
-FAST_INLINE void regressorColumns(const LinkMotion<double>& U, const Vec<P>& w, const Vec<P>& v,
+template <typename V, typename P>
+FAST_INLINE void regressorColumns(const LinkMotion<V>& U, const Vec<P>& w, const Vec<P>& v,
                                   P* columns) {
-  const Vec<double>& a = U.a;
+  const Vec<V>& a = U.a;
   // m: (0, a); mc: (mc x a, U mc)
   columns[0] = dot(a, v);
   columns[1] = (U.xx * v.x + U.yx * v.y + U.zx * v.z) + (a.y * w.z - a.z * w.y);
@@ -131,17 +140,16 @@ FAST_INLINE void storeRows(const Short* columns, int rows, double* to, std::ptrd
 }
 
 /// Y(i, j) at Y[i + j * outer_step].
-void regressor(const Robot& robot, const State<double>& state, double* Y,
-               std::ptrdiff_t outer_step) {
+inline void regressor(const Robot& robot, const State<double>& state, double* Y,
+                      std::ptrdiff_t outer_step) {
   static constexpr Short kZeros[10] = {};
   const int n = robot.joints;
   Vec<Short> w[kMaxJoints / kShortWidth];  // axes of the joints so far
   Vec<Short> v[kMaxJoints / kShortWidth];
-  OwnMotion motion;
-  motion.a = {robot.root[0], robot.root[1], robot.root[2]};
+  OwnMotion<double> motion(robot);
   for (int i = 0; i < n; ++i) {
     const OwnPlacement& own = robot.own[i];
-    const Pose X = poseOf(own, state.c[i], state.s[i], state.q[i]);
+    const Pose<double> X = poseOf(own, state.c[i], state.s[i], state.q[i]);
     motion.step(X, own.prismatic, state.qd[i], state.qdd[i]);
     double* const link = Y + std::ptrdiff_t{i} * 10 * outer_step;
     for (int first = 0, k = 0; first < n; first += kShortWidth, ++k) {
@@ -160,6 +168,33 @@ void regressor(const Robot& robot, const State<double>& state, double* Y,
       Short columns[10];
       regressorColumns(motion.U, w[k], v[k], columns);
       storeRows(columns, n - first, link + first, outer_step);
+    }
+  }
+}
+
+/// The regressors of a pack of states, in each lane its own: each(i, j, ten columns) for the entries
+/// of row j <= i that belong to link i. Row j comes times scale[j].
+template <typename V, typename Each>
+FAST_INLINE void forEachRegressorPart(const Robot& robot, const State<V>& state, const V* scale,
+                                      const Each& each) {
+  Vec<V> w[kMaxJoints];  // axes of the joints so far
+  Vec<V> v[kMaxJoints];
+  OwnMotion<V> motion(robot);
+  for (int i = 0; i < robot.joints; ++i) {
+    const OwnPlacement& own = robot.own[i];
+    const Pose<V> X = poseOf(own, state.c[i], state.s[i], state.q[i]);
+    motion.step(X, own.prismatic, state.qd[i], state.qdd[i]);
+    w[i] = Vec<V>{};
+    v[i] = Vec<V>{};
+    (own.prismatic ? v : w)[i].z = scale[i];
+    for (int j = 0; j <= i; ++j) {
+      if (j < i) {
+        v[j] = into(X, leverOf(v[j], w[j], X.p));
+        w[j] = into(X, w[j]);
+      }
+      V columns[10];
+      regressorColumns(motion.U, w[j], v[j], columns);
+      each(i, j, columns);
     }
   }
 }

@@ -86,12 +86,33 @@ struct Matrices {
   std::ptrdiff_t row_step, column_step, state_step;
 };
 
-/// The functions of one instruction set. Vectors are written where nothing is read any more: they
-/// may stand where an input does, as matrices may not. Inputs of Samples aren't written.
+/// Longest chain whose matrices of a pack of states fit on the stack: H, forward dynamics and
+/// derivatives of many states are for these only.
+constexpr int kPackedMatrixJoints = 16;
+
+/// What goes into the Gram matrices of regressor_gram.hpp.
+struct GramInputs {
+  Samples q, qd, qdd, tau;
+  const Samples* columns;  ///< a joint's own, beside those of the regressor
+  int column_count;
+  const Samples* weights;  ///< null: all one
+};
+
+/// States whose rows stand in memory at the same time.
+constexpr int kGramStates = 32;
+
+/// Numbers of a row of joint j of so many: those of its link and all after it, its own columns, its
+/// torque, and zeros to the end of a pack of any instruction set.
+constexpr std::ptrdiff_t gramRow(int joints, int j, int column_count) {
+  return (std::ptrdiff_t{10} * (joints - j) + column_count + 1 + 7) / 8 * 8;
+}
+
+/// What one instruction set computes of one state. Vectors are written where nothing is read any
+/// more: they may stand where an input does, as matrices may not.
 struct Kernels {
   const char* name;
 
-  /// Index of the structure compiled ahead of time that this robot has; 0: none, any robot's.
+  /// Index of the structure compiled ahead of time that this robot has.
   int (*structure_of)(const Robot&);
 
   void (*torques)(const Robot&, int structure, const double* q, const double* qd, const double* qdd,
@@ -106,29 +127,48 @@ struct Kernels {
                            const double* tau, double* qdd);
   void (*regressor)(const Robot&, const double* q, const double* qd, const double* qdd, double* Y,
                     std::ptrdiff_t outer_step);
+  /// The entries of a column stand side by side.
   void (*torque_derivatives)(const Robot&, int structure, const double* q, const double* qd,
                              const double* qdd, double* by_q, double* by_qd, double* by_qdd,
                              std::ptrdiff_t outer_step);
+};
 
-  void (*torques_batch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
-                        Samples qdd, Samples tau);
-  void (*coriolis_batch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
-                         Samples c);
-  void (*gravity_batch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples g);
-  void (*inertia_batch)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Matrices H);
-  void (*components_batch)(const Robot&, int structure, std::ptrdiff_t states, Samples q,
-                           Samples qd, Matrices H, Samples c, Samples g);
-  void (*friction_batch)(const Robot&, std::ptrdiff_t states, Samples qd, Samples f);
+/// What it computes of many states, with the same structures. Inputs of Samples aren't written.
+struct ManyKernels {
+  void (*torques)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                  Samples qdd, Samples tau);
+  void (*coriolis)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                   Samples c);
+  void (*gravity)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples g);
+  void (*inertia)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Matrices H);
+  /// H is left out where its data are null.
+  void (*components)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                     Matrices H, Samples c, Samples g);
+  void (*friction)(const Robot&, std::ptrdiff_t states, Samples qd, Samples f);
+  /// Of robots with one set of parameters for all rows.
+  void (*forward_dynamics)(const Robot&, int structure, std::ptrdiff_t states, Samples q,
+                           Samples qd, Samples tau, Samples qdd);
+  void (*regressor)(const Robot&, std::ptrdiff_t states, Samples q, Samples qd, Samples qdd,
+                    Matrices Y);
+  void (*torque_derivatives)(const Robot&, int structure, std::ptrdiff_t states, Samples q,
+                             Samples qd, Samples qdd, Matrices by_q, Matrices by_qd,
+                             Matrices by_qdd);
+  void (*gram)(const Robot&, std::ptrdiff_t states, const GramInputs& inputs, double* memory,
+               double* sums);
 
   /// For tests: sine and cosine of count angles plus quarter turns.
   void (*sine_cosine)(int count, const double* angle, const double* quarter_turns, double* sine,
                       double* cosine);
 };
 
-/// The tables of the instruction sets that this build has, for robots of so many joints.
-const Kernels& kernelsPortable(int joints);
-const Kernels& kernelsV3(int joints);  // x86-64 only
-const Kernels& kernelsV4(int joints);  // x86-64 only
+/// The tables of the instruction sets that this build has; of many states, for robots of so many
+/// joints.
+const Kernels& kernelsPortable();
+const Kernels& kernelsV3();  // x86-64 only
+const Kernels& kernelsV4();  // x86-64 only
+const ManyKernels& manyKernelsPortable(int joints);
+const ManyKernels& manyKernelsV3(int joints);  // x86-64 only
+const ManyKernels& manyKernelsV4(int joints);  // x86-64 only
 
 }  // namespace fast
 }  // namespace v2

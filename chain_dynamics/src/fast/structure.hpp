@@ -3,8 +3,8 @@
 /// @file
 /// What is known of a robot when the kernels are compiled: number of joints, right angles, zeros.
 ///
-/// Included by kernels.cpp only [pack.hpp]. Lengths and inertias are always read at run time; a
-/// structure saves the multiplications by zero and one, loops and branches.
+/// Included by the kernels' two sources only [pack.hpp]. Lengths and inertias are always read at run
+/// time; a structure saves the multiplications by zero and one, loops and branches.
 
 #pragma once
 
@@ -39,10 +39,13 @@ FAST_INLINE void countDown(const Step& step) {
   }
 }
 
-/// Nothing is known.
-struct AnyStructure {
+/// Nothing is known but that there are at most so many joints.
+template <int Most>
+struct AnyOf {
   static constexpr bool kMixed = true;
-  static constexpr int kJoints = kMaxJoints;
+  static constexpr bool kRows = true;
+  static constexpr bool kAligned = false;
+  static constexpr int kJoints = Most;
   static int count(const Robot& robot) { return robot.joints; }
   template <int I>
   static constexpr Twist twist(Constant<I>) {
@@ -72,16 +75,22 @@ struct AnyStructure {
   static FAST_INLINE void backwardsFrom(int from, const Step& step) {
     for (int j = from; j > 0; --j) step(j);
   }
-  static bool covers(const Robot&) { return true; }
+  static bool covers(const Robot& robot) { return robot.joints <= Most; }
 };
+using AnyStructure = AnyOf<kMaxJoints>;
 
-/// Joints that turn, or any (Mixed); hexadecimal digits stand for joints, the first joint in front.
-/// Twists: 0 none, 1 a right angle, 2 a right angle within 1e-8, 3 any. Px, Py: whether px, py may
-/// differ from zero.
+/// Which kinds of joints and parameters a known structure has.
+enum class Has { kTurns, kSlides, kRows };
+
+/// Joints that turn, or also such that slide (Has::kSlides); hexadecimal digits stand for joints,
+/// the first joint in front. Twists: 0 none, 1 a right angle, 2 a right angle within 1e-8, 3 any.
+/// Px, Py: whether px, py may differ from zero. Has::kRows: each row may have its own parameters.
 template <int N, unsigned long long Twists, unsigned long long Px, unsigned long long Py,
-          bool Mixed = false>
+          Has Kind = Has::kTurns>
 struct Known {
-  static constexpr bool kMixed = Mixed;
+  static constexpr bool kMixed = Kind == Has::kSlides;
+  static constexpr bool kRows = Kind == Has::kRows;
+  static constexpr bool kAligned = (Twists & (Twists >> 1) & 0x1111111111111111) == 0;  // no 3
   static constexpr int kJoints = N;
   static constexpr int count(const Robot&) { return N; }
   static constexpr int digit(unsigned long long digits, int i) {
@@ -116,7 +125,8 @@ struct Known {
 
   /// Whether the robot has this structure, or one with more zeros.
   static bool covers(const Robot& robot) {
-    if (robot.joints != N || (robot.mixed && !Mixed)) return false;
+    if (robot.joints != N || (robot.mixed && !kMixed)) return false;
+    if (robot.rows != nullptr && !kRows) return false;
     for (int i = 1; i < N; ++i) {
       const Placement& X = robot.placements[i];
       const bool fits = twist(i) == Twist::kNone          ? X.sin_twist == 0 && X.cos_twist == 1

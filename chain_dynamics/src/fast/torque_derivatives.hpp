@@ -3,8 +3,8 @@
 /// @file
 /// Derivatives of the torques on one structure, H among them: blocks of links from tip to root.
 ///
-/// Included by kernels.cpp only [pack.hpp]. The four forces that go from each joint to those before
-/// it stand side by side in one pack [ForceRates in chain_dynamics/torque_derivatives.hpp].
+/// Included by the kernels' two sources only [pack.hpp]. Names as in
+/// chain_dynamics/torque_derivatives.hpp, which tells why these are the derivatives.
 
 #pragma once
 
@@ -17,48 +17,51 @@ inline namespace v2 {
 namespace fast {
 namespace {
 
-/// by_q, by_qd, by_qdd, turned; not in a register of its own where the widest holds two.
-using Four __attribute__((vector_size(4 * sizeof(double)))) = double;
-
 /// What a unit of a joint's travel adds to the motion of all links after it.
+template <typename V>
 struct AxisRates {
-  Vec<double> w, v;    ///< V x S
-  Vec<double> dw, dv;  ///< A x S + V x (V x S)
+  Vec<V> w, v;    ///< V x S
+  Vec<V> dw, dv;  ///< A x S + V x (V x S)
 };
 
 /// A link's motion, with what torques alone don't need.
+template <typename V>
 struct MovingLink {
-  LinkMotion<double> U;
-  Vec<double> w, v;
-  AxisRates rates;
+  LinkMotion<V> U;
+  Vec<V> w, v;
+  AxisRates<V> rates;
 };
 
-FAST_INLINE AxisRates ratesOf(bool prismatic, const LinkMotion<double>& U, const Vec<double>& w,
-                              const Vec<double>& v) {
-  const Vec<double> w_x_z{w.y, -w.x, 0.0};
-  const Vec<double> U_z{U.xz, U.yz, U.zz};
-  if (prismatic) return {{}, w_x_z, {}, U_z};
-  const Vec<double> a_x_z{U.a.y + 2.0 * (v.z * w.x), 2.0 * (v.z * w.y) - U.a.x,
-                          -2.0 * (v.x * w.x + v.y * w.y)};
-  return {w_x_z, {v.y, -v.x, 0.0}, U_z, a_x_z};
+template <typename V>
+FAST_INLINE AxisRates<V> ratesOf(bool prismatic, const LinkMotion<V>& U, const Vec<V>& w,
+                                 const Vec<V>& v) {
+  const Vec<V> w_x_z{w.y, -w.x, V{}};
+  const Vec<V> U_z{U.xz, U.yz, U.zz};
+  if (prismatic) return {Vec<V>{}, w_x_z, Vec<V>{}, U_z};
+  const Vec<V> a_x_z{U.a.y + 2.0 * (v.z * w.x), 2.0 * (v.z * w.y) - U.a.x,
+                     -2.0 * (v.x * w.x + v.y * w.y)};
+  return {w_x_z, {v.y, -v.x, V{}}, U_z, a_x_z};
 }
 
-FAST_INLINE Vec<double> twice(const Vec<double>& v) { return {2.0 * v.x, 2.0 * v.y, 2.0 * v.z}; }
+template <typename V>
+FAST_INLINE Vec<V> twice(const Vec<V>& v) {
+  return {2.0 * v.x, 2.0 * v.y, 2.0 * v.z};
+}
 
 /// From root to tip.
-template <typename S>
-FAST_INLINE void moveLinks(const Robot& robot, const State<double>& state, const double* root,
-                           MovingLink* links) {
-  Vec<double> w{};
-  Vec<double> v{};
-  forEachMotion<S>(robot, state, root, [&](auto i, const LinkMotion<double>& U) FAST_LAMBDA {
+template <typename S, typename V>
+FAST_INLINE void moveLinks(const Robot& robot, const State<V>& state, const double* root,
+                           MovingLink<V>* links) {
+  Vec<V> w{};
+  Vec<V> v{};
+  forEachMotion<S>(robot, state, root, [&](auto i, const LinkMotion<V>& U) FAST_LAMBDA {
     const Placement& X = robot.placements[i];
     const bool prismatic = S::kMixed && X.prismatic;
     if (i != 0) {
       constexpr Twist kTwist = S::twist(decltype(i)());
-      const Turn<double> t{state.c[i], state.s[i], X};
-      if (S::px(i)) addTo(v, {0.0, w.z * X.px, -w.y * X.px});
-      if (S::py(i)) addTo(v, {-w.z * X.py, 0.0, w.x * X.py});
+      const Turn<V> t{state.c[i], state.s[i], X};
+      if (S::px(i)) addTo(v, {V{}, w.z * X.px, -w.y * X.px});
+      if (S::py(i)) addTo(v, {-w.z * X.py, V{}, w.x * X.py});
       w = into<kTwist>(t, w);
       v = into<kTwist>(t, v);
     }
@@ -73,13 +76,14 @@ FAST_INLINE void moveLinks(const Robot& robot, const State<double>& state, const
 
 /// How the mass of a link and all after it flows [chain_dynamics/mass_flow.hpp], twice: for points
 /// of mass m at r with velocity u.
+template <typename V>
 struct Flow {
-  Vec<double> p{};            ///< sum of 2 m u
-  Vec<double> x{}, y{}, z{};  ///< columns of the sum of 2 m u r'
+  Vec<V> p{};            ///< sum of 2 m u
+  Vec<V> x{}, y{}, z{};  ///< columns of the sum of 2 m u r'
 
-  FAST_INLINE void add(bool prismatic, const Body& b, const MovingLink& link) {
-    const Vec<double> w = twice(link.w);
-    const Vec<double> v = twice(link.v);
+  FAST_INLINE void add(bool prismatic, const Body& b, const MovingLink<V>& link) {
+    const Vec<V> w = twice(link.w);
+    const Vec<V> v = twice(link.v);
     addTo(p, {-(w.z * b.mcy), w.z * b.mcx, w.x * b.mcy - w.y * b.mcx});
     addTo(x, {v.x * b.mcx, v.y * b.mcx, v.z * b.mcx});
     addTo(y, {v.x * b.mcy, v.y * b.mcy, v.z * b.mcy});
@@ -95,10 +99,10 @@ struct Flow {
 
   /// On to the link before.
   template <typename S, typename I>
-  FAST_INLINE void carry(I i, const Robot& robot, const State<double>& state) {
+  FAST_INLINE void carry(I i, const Robot& robot, const State<V>& state) {
     constexpr Twist kTwist = S::twist(I());
     const Placement& X = robot.placements[i];
-    const Turn<double> t{state.c[i], state.s[i], X};
+    const Turn<V> t{state.c[i], state.s[i], X};
     if (S::kMixed && X.prismatic) {
       addTo(z, {p.x * state.q[i], p.y * state.q[i], p.z * state.q[i]});
     }
@@ -106,9 +110,9 @@ struct Flow {
     x = outOf<kTwist>(t, x);
     y = outOf<kTwist>(t, y);
     z = outOf<kTwist>(t, z);
-    const Vec<double> row_x = outOf<kTwist>(t, Vec<double>{x.x, y.x, z.x});
-    const Vec<double> row_y = outOf<kTwist>(t, Vec<double>{x.y, y.y, z.y});
-    const Vec<double> row_z = outOf<kTwist>(t, Vec<double>{x.z, y.z, z.z});
+    const Vec<V> row_x = outOf<kTwist>(t, Vec<V>{x.x, y.x, z.x});
+    const Vec<V> row_y = outOf<kTwist>(t, Vec<V>{x.y, y.y, z.y});
+    const Vec<V> row_z = outOf<kTwist>(t, Vec<V>{x.z, y.z, z.z});
     x = {row_x.x, row_y.x, row_z.x};
     y = {row_x.y, row_y.y, row_z.y};
     z = {row_x.z, row_y.z, row_z.z};
@@ -118,66 +122,138 @@ struct Flow {
 };
 
 /// I_c (w, v), w and v without z: perpendicular to the joint's axis. Mass counts if Massive.
-template <bool Massive>
-FAST_INLINE Wrench<double> timesAcross(const Composite<double>& I, double m, const Vec<double>& w,
-                                       const Vec<double>& v) {
-  Wrench<double> F{{w.y * I.mc.z, -(w.x * I.mc.z), w.x * I.mc.y - w.y * I.mc.x},
-                   {(I.yy + I.zz) * w.x - I.xy * w.y - I.mc.z * v.y,
-                    (I.xx + I.zz) * w.y - I.xy * w.x + I.mc.z * v.x,
-                    (I.mc.x * v.y - I.mc.y * v.x) - I.xz * w.x - I.yz * w.y}};
-  if constexpr (Massive) addTo(F.f, {m * v.x, m * v.y, 0.0});
+template <bool Massive, typename V>
+FAST_INLINE Wrench<V> timesAcross(const Composite<V>& I, double m, const Vec<V>& w,
+                                  const Vec<V>& v) {
+  Wrench<V> F{{w.y * I.mc.z, -(w.x * I.mc.z), w.x * I.mc.y - w.y * I.mc.x},
+              {(I.yy + I.zz) * w.x - I.xy * w.y - I.mc.z * v.y,
+               (I.xx + I.zz) * w.y - I.xy * w.x + I.mc.z * v.x,
+               (I.mc.x * v.y - I.mc.y * v.x) - I.xz * w.x - I.yz * w.y}};
+  if constexpr (Massive) addTo(F.f, {m * v.x, m * v.y, V{}});
   return F;
 }
 
 /// I_c (w, v). Mass counts if Massive.
-template <bool Massive>
-FAST_INLINE Wrench<double> timesMotion(const Composite<double>& I, double m, const Vec<double>& w,
-                                       const Vec<double>& v) {
-  Wrench<double> F = timesAcross<Massive>(I, m, w, v);
-  addTo(F.f, {-(w.z * I.mc.y), w.z * I.mc.x, 0.0});
+template <bool Massive, typename V>
+FAST_INLINE Wrench<V> timesMotion(const Composite<V>& I, double m, const Vec<V>& w,
+                                  const Vec<V>& v) {
+  Wrench<V> F = timesAcross<Massive>(I, m, w, v);
+  addTo(F.f, {-(w.z * I.mc.y), w.z * I.mc.x, V{}});
   if constexpr (Massive) F.f.z += m * v.z;
   addTo(F.n, {I.mc.y * v.z - I.xz * w.z, -(I.mc.x * v.z) - I.yz * w.z, (I.xx + I.yy) * w.z});
   return F;
 }
 
-/// The forces of joint i, side by side. `force` is what goes through it, `m` the mass of what it
-/// moves, if Massive.
-template <bool Massive>
-FAST_INLINE Wrench<Four> forceRates(bool prismatic, const Composite<double>& I, double m,
-                                    const Flow& flow, const Wrench<double>& force,
-                                    const AxisRates& r) {
-  const Wrench<double> first = timesAcross<Massive>(I, m, twice(r.w), twice(r.v));
-  const Wrench<double> second = timesMotion<Massive>(I, m, r.dw, r.dv);
-  const Vec<double>& f = force.f;
-  const Vec<double>& n = force.n;
-  if (prismatic) {
-    // nothing turns: no Coriolis' force but by what turns before
-    return {
-        {Four{second.f.x, first.f.x, 0, 0}, Four{second.f.y, first.f.y, 0, 0},
-         Four{second.f.z, first.f.z, m, 0}},
-        {Four{second.n.x - f.y, first.n.x, I.mc.y, flow.p.y},
-         Four{second.n.y + f.x, first.n.y, -I.mc.x, -flow.p.x}, Four{second.n.z, first.n.z, 0, 0}}};
+/// What joint i needs for, or does with, a small change: forces that go on to the joints before.
+template <typename V>
+struct ForceRates {
+  Wrench<V> by_q, by_qd, by_qdd;  ///< of the force through joint i, by its own travel
+  Vec<V> turned;  ///< joint i's torque by a turn of what is before it: a moment without force
+
+  template <typename S, typename I>
+  FAST_INLINE void carryAll(I i, const Robot& robot, const State<V>& state) {
+    carry<S>(i, robot, state, by_q);
+    carry<S>(i, robot, state, by_qd);
+    carry<S>(i, robot, state, by_qdd);
+    constexpr Twist kTwist = S::twist(I());
+    turned = outOf<kTwist>(Turn<V>{state.c[i], state.s[i], robot.placements[i]}, turned);
   }
-  // Coriolis' force 2 w x p and moment 2 (trace(Q) w - Q w), of w = (w.x, w.y, 0) and of z
-  const Vec<double>& w = r.w;
-  const double xx_yy = flow.x.x + flow.y.y;
-  const double c_x = (flow.y.y + flow.z.z) * w.x - flow.y.x * w.y;
-  const double c_y = (flow.x.x + flow.z.z) * w.y - flow.x.y * w.x;
-  const double c_z = flow.x.z * w.x + flow.y.z * w.y;
-  return {{Four{second.f.x - f.y + w.y * flow.p.z, first.f.x - flow.p.y, -I.mc.y, 0},
-           Four{second.f.y + f.x - w.x * flow.p.z, first.f.y + flow.p.x, I.mc.x, 0},
-           Four{second.f.z + w.x * flow.p.y - w.y * flow.p.x, first.f.z, 0, 0}},
-          {Four{second.n.x - n.y + c_x, first.n.x - flow.z.x, -I.xz, -flow.x.z},
-           Four{second.n.y + n.x + c_y, first.n.y - flow.z.y, -I.yz, -flow.y.z},
-           Four{second.n.z - c_z, first.n.z + xx_yy, I.xx + I.yy, xx_yy}}};
+  FAST_INLINE Wrench<V> inertial() const { return by_qdd; }
+  FAST_INLINE Vec<V> coriolis() const { return turned; }
+};
+
+/// Along the axis of a joint.
+template <typename V>
+struct AxialRates {
+  V by_q, by_qd, by_qdd, turned;
+};
+
+template <typename V>
+FAST_INLINE AxialRates<V> along(bool sliding, const ForceRates<V>& F) {
+  if (sliding) return {F.by_q.f.z, F.by_qd.f.z, F.by_qdd.f.z, V{}};
+  return {F.by_q.n.z, F.by_qd.n.z, F.by_qdd.n.z, F.turned.z};
 }
 
-/// Where the entries go.
+/// by_q, by_qd, by_qdd, turned; not in a register of its own where the widest holds two.
+using Four __attribute__((vector_size(4 * sizeof(double)))) = double;
+
+/// The same of one state, side by side.
+struct FourForceRates {
+  Wrench<Four> F;
+
+  FAST_INLINE explicit FourForceRates(const ForceRates<double>& r)
+      : F{{Four{r.by_q.f.x, r.by_qd.f.x, r.by_qdd.f.x, 0},
+           Four{r.by_q.f.y, r.by_qd.f.y, r.by_qdd.f.y, 0},
+           Four{r.by_q.f.z, r.by_qd.f.z, r.by_qdd.f.z, 0}},
+          {Four{r.by_q.n.x, r.by_qd.n.x, r.by_qdd.n.x, r.turned.x},
+           Four{r.by_q.n.y, r.by_qd.n.y, r.by_qdd.n.y, r.turned.y},
+           Four{r.by_q.n.z, r.by_qd.n.z, r.by_qdd.n.z, r.turned.z}}} {}
+
+  template <typename S, typename I>
+  FAST_INLINE void carryAll(I i, const Robot& robot, const State<double>& state) {
+    carry<S>(i, robot, state, F);
+  }
+  FAST_INLINE Wrench<double> inertial() const {
+    return {{F.f.x[2], F.f.y[2], F.f.z[2]}, {F.n.x[2], F.n.y[2], F.n.z[2]}};
+  }
+  FAST_INLINE Vec<double> coriolis() const { return {F.n.x[3], F.n.y[3], F.n.z[3]}; }
+};
+
+FAST_INLINE AxialRates<double> along(bool sliding, const FourForceRates& rates) {
+  const Four& force = sliding ? rates.F.f.z : rates.F.n.z;
+  return {force[0], force[1], force[2], force[3]};
+}
+
+template <typename V>
+struct CarriedOf {
+  using Type = ForceRates<V>;
+};
+template <>
+struct CarriedOf<double> {
+  using Type = FourForceRates;
+};
+
+/// The forces of joint i. `force` is what goes through it, `m` the mass of what it moves, if
+/// Massive.
+template <bool Massive, typename V>
+FAST_INLINE ForceRates<V> forceRates(bool prismatic, const Composite<V>& I, double m,
+                                     const Flow<V>& flow, const Wrench<V>& force,
+                                     const AxisRates<V>& r) {
+  const V zero{};
+  const Vec<V>& f = force.f;
+  const Vec<V>& n = force.n;
+  ForceRates<V> rates;
+  rates.by_q = timesMotion<Massive>(I, m, r.dw, r.dv);
+  rates.by_qd = timesAcross<Massive>(I, m, twice(r.w), twice(r.v));
+  if (prismatic) {
+    // nothing turns: no Coriolis' force but by what turns before
+    addTo(rates.by_q.n, {-f.y, f.x, zero});
+    rates.by_qdd = {{zero, zero, m + zero}, {I.mc.y, -I.mc.x, zero}};
+    rates.turned = {flow.p.y, -flow.p.x, zero};
+    return rates;
+  }
+  // Coriolis' force 2 w x p and moment 2 (trace(Q) w - Q w), of w = (w.x, w.y, 0) and of z
+  const Vec<V>& w = r.w;
+  const V xx_yy = flow.x.x + flow.y.y;
+  addTo(rates.by_q.f,
+        {w.y * flow.p.z - f.y, f.x - w.x * flow.p.z, w.x * flow.p.y - w.y * flow.p.x});
+  addTo(rates.by_q.n,
+        {(flow.y.y + flow.z.z) * w.x - flow.y.x * w.y - n.y,
+         (flow.x.x + flow.z.z) * w.y - flow.x.y * w.x + n.x, -(flow.x.z * w.x + flow.y.z * w.y)});
+  addTo(rates.by_qd.f, {-flow.p.y, flow.p.x, zero});
+  addTo(rates.by_qd.n, {-flow.z.x, -flow.z.y, xx_yy});
+  rates.by_qdd = {{-I.mc.y, I.mc.x, zero}, {-I.xz, -I.yz, I.xx + I.yy}};
+  rates.turned = {-flow.x.z, -flow.y.z, xx_yy};
+  return rates;
+}
+
+/// Where the entries go: (i, j) at i + j outer_step.
+template <typename V>
 struct DerivativeEntries {
-  double *by_q, *by_qd, *by_qdd;
+  V *by_q, *by_qd, *by_qdd;
   std::ptrdiff_t outer_step;
 
-  FAST_INLINE void set(int row, int column, double q, double qd, double qdd) const {
+  FAST_INLINE void set(int row, int column, const V& q, const V& qd, const V& qdd) const {
     const std::ptrdiff_t at = row + column * outer_step;
     by_q[at] = q;
     by_qd[at] = qd;
@@ -185,61 +261,65 @@ struct DerivativeEntries {
   }
 };
 
-/// Row i and column i at joint j before it, from the forces of joint i, `along` the axis of j: what
-/// moves joint j is felt by i as motion, what moves joint i by j as force.
-FAST_INLINE void setEntries(int i, int j, int first, const Wrench<Four>& F, const Four& along,
-                            const AxisRates& r, const DerivativeEntries& out) {
-  const Vec<Four>& n = F.n;
-  const Vec<Four>& f = F.f;
-  const double by_q = (r.w.x * n.x[3] + r.w.y * n.y[3]) +
-                      (r.dw.x * n.x[2] + r.dw.y * n.y[2] + r.dw.z * n.z[2]) +
-                      (r.dv.x * f.x[2] + r.dv.y * f.y[2] + r.dv.z * f.z[2]);
-  const double by_qd = r.w.x * n.x[2] + r.w.y * n.y[2] + r.v.x * f.x[2] + r.v.y * f.y[2];
-  out.set(i, j, by_q, along[3] + 2.0 * by_qd, along[2]);
-  if (j >= first) out.set(j, i, along[0], along[1], along[2]);
+/// Row i and column i at joint j before it, from the forces of joint i, `axial` along the axis of j:
+/// what moves joint j is felt by i as motion, what moves joint i by j as force.
+template <typename V, typename Forces>
+FAST_INLINE void setEntries(int i, int j, int first, const Forces& F, const AxialRates<V>& axial,
+                            const AxisRates<V>& r, const DerivativeEntries<V>& out) {
+  const Wrench<V> W = F.inertial();
+  const Vec<V> turned = F.coriolis();
+  const V by_q = (r.w.x * turned.x + r.w.y * turned.y) +
+                 (r.dw.x * W.n.x + r.dw.y * W.n.y + r.dw.z * W.n.z) +
+                 (r.dv.x * W.f.x + r.dv.y * W.f.y + r.dv.z * W.f.z);
+  const V by_qd = r.w.x * W.n.x + r.w.y * W.n.y + r.v.x * W.f.x + r.v.y * W.f.y;
+  out.set(i, j, by_q, axial.turned + 2.0 * by_qd, axial.by_qdd);
+  if (j >= first) out.set(j, i, axial.by_q, axial.by_qd, axial.by_qdd);
 }
 
 /// Rows first .. joints - 1 with one set of parameters.
-template <typename S>
-FAST_INLINE void derivativesOfMotion(const Robot& robot, const State<double>& state,
-                                     const MovingLink* links, const Body* bodies, int first,
-                                     const DerivativeEntries& out) {
-  Composite<double> I;
-  Flow flow;
-  Wrench<double> W{};
+template <typename S, typename V>
+FAST_INLINE void derivativesOfMotion(const Robot& robot, const State<V>& state,
+                                     const MovingLink<V>* links, const Body* bodies, int first,
+                                     const DerivativeEntries<V>& out) {
+  Composite<V> I;
+  Flow<V> flow;
+  Wrench<V> W{};
   S::backwards(robot, first, [&](auto i) FAST_LAMBDA {
     const Body& body = bodies[i];
     const Placement& X = robot.placements[i];
     const bool prismatic = S::kMixed && X.prismatic;
     const double m = S::kMixed ? body.mass_beyond : 0.0;  // joints that turn leave none
-    const Wrench<double> own = wrenchOfLink<S>(robot, i, links[i].U, body);
+    const Wrench<V> own = wrenchOfLink<S>(robot, i, links[i].U, body);
     addTo(W.f, own.f);
     addTo(W.n, own.n);
     I.add(body);
     flow.add(prismatic, body, links[i]);
 
-    Wrench<Four> F = forceRates<S::kMixed>(prismatic, I, m, flow, W, links[i].rates);
-    const Four& along = prismatic ? F.f.z : F.n.z;
-    out.set(i, i, along[0], along[1], along[2] + X.rotor_inertia);
+    typename CarriedOf<V>::Type F(forceRates<S::kMixed>(prismatic, I, m, flow, W, links[i].rates));
+    const AxialRates<V> own_axis = along(prismatic, F);
+    out.set(i, i, own_axis.by_q, own_axis.by_qd, own_axis.by_qdd + X.rotor_inertia);
     S::backwardsFrom(i, [&](auto j) FAST_LAMBDA {
-      carry<S>(j, robot, state, F);
+      F.template carryAll<S>(j, robot, state);
       const bool sliding = S::kMixed && robot.placements[j - 1].prismatic;
-      setEntries(i, j - 1, first, F, sliding ? F.f.z : F.n.z, links[j - 1].rates, out);
+      setEntries(i, j - 1, first, F, along(sliding, F), links[j - 1].rates, out);
     });
     if (i == first) return;
 
     // on to the link before
     carry<S>(i, robot, state, m, I);
     carry<S>(i, robot, state, W);
-    flow.carry<S>(i, robot, state);
+    flow.template carry<S>(i, robot, state);
   });
 }
 
 /// Derivatives by q, qd, qdd.
-template <typename S>
-void torqueDerivatives(const Robot& robot, const State<double>& state, const double* root,
-                       const DerivativeEntries& out) {
-  MovingLink links[S::kJoints];
+template <typename S, typename V>
+void torqueDerivatives(const Robot& robot, const State<V>& state, const double* root,
+                       const DerivativeEntries<V>& to) {
+  // packs stand side by side; that makes their places constants
+  DerivativeEntries<V> out = to;
+  if (sizeof(V) != sizeof(double)) out.outer_step = S::count(robot);
+  MovingLink<V> links[S::kJoints];
   moveLinks<S>(robot, state, root, links);
   // each set overwrites all rows but those before its own
   const int sets = robot.rows != nullptr ? robot.joints : 1;
@@ -250,28 +330,28 @@ void torqueDerivatives(const Robot& robot, const State<double>& state, const dou
 }
 
 /// dtau_dq += dg/dq with the set of gravity's own: second derivatives of potential energy.
-void addGravityDerivatives(const Robot& robot, const State<double>& state, double* dtau_dq,
+template <typename S, typename V>
+void addGravityDerivatives(const Robot& robot, const State<V>& state, V* dtau_dq,
                            std::ptrdiff_t outer_step) {
-  using S = AnyStructure;
-  Vec<double> a[kMaxJoints];
+  Vec<V> a[S::kJoints];
   gravityInLinks<S>(robot, state, a);
-  Vec<double> mc{};
+  Vec<V> mc{};
   for (int i = robot.joints - 1; i >= 0; --i) {
     const Body& body = robot.gravity_bodies[i];
     const bool prismatic = robot.placements[i].prismatic;
-    addTo(mc, {body.mcx, body.mcy, body.mcz});
+    addTo(mc, {body.mcx + V{}, body.mcy + V{}, body.mcz + V{}});
 
     // mass that joint i moves, times how it moves
-    Vec<double> f{-mc.y, mc.x, 0.0};
-    if (prismatic) f = {0.0, 0.0, body.mass_beyond};
+    Vec<V> f{-mc.y, mc.x, V{}};
+    if (prismatic) f = {V{}, V{}, body.mass_beyond + V{}};
     for (int j = i; j >= 0; --j) {
       const Placement& Y = robot.placements[j];
       if (!Y.prismatic) {
-        const double change = f.x * a[j].y - f.y * a[j].x;
+        const V change = f.x * a[j].y - f.y * a[j].x;
         dtau_dq[i + j * outer_step] += change;
         if (j < i) dtau_dq[j + i * outer_step] += change;
       }
-      f = outOf<Twist::kAny>(Turn<double>{state.c[j], state.s[j], Y}, f);
+      f = outOf<Twist::kAny>(Turn<V>{state.c[j], state.s[j], Y}, f);
     }
     carryPoint<S>(i, robot, state, body.mass_beyond, mc);
   }

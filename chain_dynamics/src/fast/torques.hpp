@@ -3,7 +3,7 @@
 /// @file
 /// Joint torques on one structure: Newton and Euler, from tip to root.
 ///
-/// Included by kernels.cpp only [pack.hpp].
+/// Included by the kernels' two sources only [pack.hpp].
 
 #pragma once
 
@@ -38,9 +38,34 @@ FAST_INLINE auto wrenchOfLink(const Robot& robot, int i, const LinkMotion<V>& U,
   return wrenchOf<false>(U, body);
 }
 
-/// tau = H qdd + C qd, and with root the gravity torques; one set of parameters for all rows.
+/// tau = H qdd + C qd, and with root the gravity torques, with a set of parameters for each row.
+template <typename S, typename V>
+FAST_APART void torquesByRow(const Robot& robot, const State<V>& state, const double* root,
+                             V* tau) {
+  using R = Rows<V>;
+  using P = typename R::P;
+  LinkMotion<V> motion[S::kJoints];
+  forEachMotion<S>(robot, state, root,
+                   [&](auto i, const LinkMotion<V>& U) FAST_LAMBDA { motion[i] = U; });
+  S::template inSteps<R::kCount>(robot, [&](auto first) FAST_LAMBDA {
+    forEachJointForce<S, V, P>(
+        robot, state, first,
+        [&](auto i)
+            FAST_LAMBDA { return wrenchOfLink<S>(robot, i, motion[i], R::body(robot, i, first)); },
+        [&](auto i, const P& force) FAST_LAMBDA {
+          if (i < first + R::kCount) {
+            tau[i] = R::number(force, i - first) + robot.placements[i].rotor_inertia * state.qdd[i];
+          }
+        });
+  });
+}
+
+/// The same; with one set of parameters for all rows, if the robot has no more.
 template <typename S, typename V>
 void torques(const Robot& robot, const State<V>& state, const double* root, V* tau) {
+  if constexpr (S::kRows) {
+    if (robot.rows != nullptr) return torquesByRow<S>(robot, state, root, tau);
+  }
   Wrench<V> own[S::kJoints];
   forEachMotion<S>(robot, state, root, [&](auto i, const LinkMotion<V>& U) FAST_LAMBDA {
     own[i] = wrenchOfLink<S>(robot, i, U, robot.bodies[i]);
@@ -49,40 +74,6 @@ void torques(const Robot& robot, const State<V>& state, const double* root, V* t
       robot, state, Constant<0>(), [&](auto i) FAST_LAMBDA { return own[i]; },
       [&](auto i, const V& force)
           FAST_LAMBDA { tau[i] = force + robot.placements[i].rotor_inertia * state.qdd[i]; });
-}
-
-/// The same with a set of parameters for each row.
-template <typename S, typename V>
-void torquesByRow(const Robot& robot, const State<V>& state, const double* root, V* tau) {
-  LinkMotion<V> motion[S::kJoints];
-  forEachMotion<S>(robot, state, root,
-                   [&](auto i, const LinkMotion<V>& U) FAST_LAMBDA { motion[i] = U; });
-  if constexpr (sizeof(V) == sizeof(double)) {
-    // rows as lanes
-    S::template inSteps<kShortWidth>(robot, [&](auto first) FAST_LAMBDA {
-      forEachJointForce<S, V, Short>(
-          robot, state, first,
-          [&](auto i) FAST_LAMBDA {
-            return wrenchOfLink<S>(robot, i, motion[i], BodyLanes<Short>(robot, i, first));
-          },
-          [&](auto i, const Short& force) FAST_LAMBDA {
-            if (i < first + kShortWidth) {
-              tau[i] = laneOf(force, i - first) + robot.placements[i].rotor_inertia * state.qdd[i];
-            }
-          });
-    });
-  } else {
-    // states as lanes, one row after the other
-    S::template inSteps<1>(robot, [&](auto row) FAST_LAMBDA {
-      forEachJointForce<S, V, V>(
-          robot, state, row,
-          [&](auto i)
-              FAST_LAMBDA { return wrenchOfLink<S>(robot, i, motion[i], robot.rows[row][i]); },
-          [&](auto i, const V& force) FAST_LAMBDA {
-            if (i == row) tau[i] = force + robot.placements[i].rotor_inertia * state.qdd[i];
-          });
-    });
-  }
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 /// @file
 /// Cosine and sine of all joints, of one state or of a pack of states.
 ///
-/// Included by kernels.cpp only [pack.hpp].
+/// Included by the kernels' two sources only [pack.hpp].
 
 #pragma once
 
@@ -33,7 +33,7 @@ FAST_INLINE int firstOfPack(int i, int joints) {
 }
 
 // Cosine and sine of all joints of one state, several joints at a time.
-void turnsOfState(const Robot& robot, const double* q, double* c, double* s) {
+inline void turnsOfState(const Robot& robot, const double* q, double* c, double* s) {
   const int n = robot.joints;
   double padded[kShortWidth] = {};
   if (n < kShortWidth) {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// Shares the states of a batch among threads.
+///
+///     shareStates(q.count, 4, [&](Eigen::Index first, Eigen::Index size) {
+///       fast.gravityVectorBatch(q.middle(first, size), g.middle(first, size));
+///     });
 #pragma once
 
 #include <Eigen/Core>
@@ -8,7 +12,7 @@
 #include <cstdint>
 #include <functional>
 
-namespace inverse_dynamics_solver {
+namespace chain_dynamics {
 inline namespace v2 {
 
 /// States of one part of a batch. A thread is worth its start from so many on: starting and joining
@@ -20,7 +24,7 @@ void shareAmongThreads(Eigen::Index count, Eigen::Index threads,
                        const std::function<void(Eigen::Index first, Eigen::Index size)>& compute);
 
 /// Calls compute(first, size) for contiguous parts of `count` states, which together are all of
-/// them, on up to `threads` threads, the caller's one of them; for one thread without allocation.
+/// them, on up to `threads` threads, including the caller's; for one thread without allocation.
 ///
 /// A thread that is done with a part takes the next one. Returns when all have ended. Where the
 /// system refuses a thread, the others do its parts. Throws what a part throws, one of several.
@@ -32,4 +36,4 @@ void shareStates(Eigen::Index count, std::int64_t threads, const Compute& comput
 }
 
 }  // namespace v2
-}  // namespace inverse_dynamics_solver
+}  // namespace chain_dynamics

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "share_states.hpp"
+#include "chain_dynamics/share_states.hpp"
 
 #include <atomic>
 #include <future>
 #include <vector>
 
-namespace inverse_dynamics_solver {
+namespace chain_dynamics {
 inline namespace v2 {
 
 void shareAmongThreads(Eigen::Index count, Eigen::Index threads,
@@ -28,4 +28,4 @@ void shareAmongThreads(Eigen::Index count, Eigen::Index threads,
 }
 
 }  // namespace v2
-}  // namespace inverse_dynamics_solver
+}  // namespace chain_dynamics

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// What a fit of inertial parameters needs of measured motions: sums that don't grow with them.
+///
+///     RegressorGram gram(n, 3);                                     // n joints, 3 friction columns
+///     const std::vector<ConstStates> friction = {qd, signs, ones};  // n x N each
+///     fast.addToGram({q, qd, qdd, tau, friction}, gram);            // any number of times
+///     gram.normalEquations(weights, A, b);                          // A x = b
+///
+/// The torque of joint j is linear in the inertial parameters p [regressor.hpp] and in whatever
+/// else is linear, as most of friction is: `tau_j = Y_j p + c_j x_j`, c_j the joint's own columns.
+/// All that least squares need of the samples are the products of the numbers of one row,
+///
+///     r_j = [Y_j | c_j | tau_j],    G_j = sum over the samples of w_j r_j' r_j
+///
+/// The regressor itself is never held: its rows are made a few states at a time, in the cache.
+/// Each joint has a matrix of its own, so joints can be weighed against each other afterwards.
+
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "chain_dynamics/states.hpp"
+
+namespace chain_dynamics {
+inline namespace v2 {
+
+/// N samples of n joints. Views: what they look at must live as long.
+struct GramSamples {
+  ConstStates q, qd, qdd;  ///< rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2)
+  ConstStates tau;         ///< N m (prismatic N)
+  /// Each joint's own columns, n x N each: velocities, their signs, ones, accelerations (for rotor
+  /// inertia), ...
+  std::vector<ConstStates> own_columns = {};
+  /// Of each joint and sample, none negative; all one where there are none.
+  std::optional<ConstStates> weights = {};
+};
+
+/// Gram matrices of the rows of all joints, which FastModel::addToGram() adds samples to.
+///
+/// A NaN among the samples makes sums NaN, even if its weight is zero. Threads: one object for each,
+/// then add().
+class RegressorGram {
+ public:
+  /// Zero, for robots of so many joints and rows with so many columns of the joint's own.
+  ///
+  /// @throws ModelError  no joint, more than 64, or a negative number of columns.
+  explicit RegressorGram(Eigen::Index joints, Eigen::Index own_columns = 0);
+
+  Eigen::Index joints() const { return joints_; }
+  Eigen::Index ownColumns() const { return own_columns_; }
+  /// How many have been added.
+  Eigen::Index samples() const { return samples_; }
+  /// Numbers of a row r_j: 10 n of the regressor, own columns, torque.
+  Eigen::Index rowSize() const { return 10 * joints_ + own_columns_ + 1; }
+  /// Unknowns of the normal equations: 10 n parameters, then each joint's own in turn.
+  Eigen::Index unknowns() const { return (10 + own_columns_) * joints_; }
+
+  /// Adds the samples of another one.
+  ///
+  /// @throws ModelError  other numbers of joints or columns.
+  void add(const RegressorGram& other);
+
+  /// G_j, symmetric; the columns of links before joint j are zero.
+  ///
+  /// @param joint   0 .. n - 1.
+  /// @param[out] G  rowSize() x rowSize(), entries in the order of r_j.
+  /// @throws ModelError  no such joint, or a matrix of another size.
+  void rowGram(Eigen::Index joint, Eigen::Ref<Eigen::MatrixXd> G) const;
+
+  /// `Y' W Y` and `Y' W tau` over all joints and samples, own columns included: A x = b is solved by
+  /// the least squares with these weights.
+  ///
+  /// @param weights  n: of each joint, times those of the samples.
+  /// @param[out] A   unknowns() x unknowns(), symmetric, in general singular: not all parameters
+  ///                 have an influence.
+  /// @param[out] b   unknowns().
+  /// @throws ModelError  another size.
+  void normalEquations(const Eigen::Ref<const Eigen::VectorXd>& weights,
+                       Eigen::Ref<Eigen::MatrixXd> A, Eigen::Ref<Eigen::VectorXd> b) const;
+
+ private:
+  friend class FastModel;
+
+  /// Entry (a, b), a <= b, of the row of a joint as it is stored: from its own link on.
+  double entry(Eigen::Index joint, Eigen::Index a, Eigen::Index b) const;
+
+  Eigen::Index joints_, own_columns_, samples_ = 0;
+  std::vector<double> sums_;  // one matrix after the other: src/fast/gram.hpp
+  std::vector<double> rows_;  // of a few states
+};
+
+}  // namespace v2
+}  // namespace chain_dynamics

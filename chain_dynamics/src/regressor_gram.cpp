@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/regressor_gram.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <string>
+
+#include "chain_dynamics/error.hpp"
+#include "fast/robot.hpp"
+
+namespace chain_dynamics {
+inline namespace v2 {
+namespace {
+
+using Eigen::Index;
+
+constexpr Index kParameters = 10;
+
+std::string sizeText(Index rows, Index cols) {
+  return std::to_string(rows) + " x " + std::to_string(cols);
+}
+
+void requireSize(const char* what, Index rows, Index cols, Index got_rows, Index got_cols) {
+  if (rows == got_rows && cols == got_cols) return;
+  throw ModelError("Gram matrix of the regressor", what, sizeText(rows, cols),
+                   sizeText(got_rows, got_cols), "");
+}
+
+}  // namespace
+
+RegressorGram::RegressorGram(Index joints, Index own_columns)
+    : joints_(joints), own_columns_(own_columns) {
+  if (joints < 1 || joints > fast::kMaxJoints) {
+    throw ModelError("Gram matrix of the regressor", "joints",
+                     "1 to " + std::to_string(fast::kMaxJoints), std::to_string(joints), "");
+  }
+  if (own_columns < 0) {
+    throw ModelError("Gram matrix of the regressor", "own columns", "0 or more",
+                     std::to_string(own_columns), "");
+  }
+  std::size_t numbers = 0;
+  std::size_t squares = 0;
+  for (Index j = 0; j < joints; ++j) {
+    const auto row = static_cast<std::size_t>(fast::gramRow(
+        static_cast<int>(joints), static_cast<int>(j), static_cast<int>(own_columns)));
+    numbers += row;
+    squares += row * row;
+  }
+  sums_.resize(squares, 0.0);
+  rows_.resize(numbers * fast::kGramStates, 0.0);
+}
+
+void RegressorGram::add(const RegressorGram& other) {
+  requireSize("joints x own columns", joints_, own_columns_, other.joints_, other.own_columns_);
+  std::transform(sums_.begin(), sums_.end(), other.sums_.begin(), sums_.begin(), std::plus<>());
+  samples_ += other.samples_;
+}
+
+double RegressorGram::entry(Index joint, Index a, Index b) const {
+  std::ptrdiff_t first = 0;
+  const auto size = [&](Index j) {
+    return fast::gramRow(static_cast<int>(joints_), static_cast<int>(j),
+                         static_cast<int>(own_columns_));
+  };
+  for (Index j = 0; j < joint; ++j) first += size(j) * size(j);
+  return sums_[static_cast<std::size_t>(first + a * size(joint) + b)];
+}
+
+void RegressorGram::rowGram(Index joint, Eigen::Ref<Eigen::MatrixXd> G) const {
+  if (joint < 0 || joint >= joints_) {
+    throw ModelError("Gram matrix of the regressor", "joint", "0 to " + std::to_string(joints_ - 1),
+                     std::to_string(joint), "");
+  }
+  requireSize("matrix", rowSize(), rowSize(), G.rows(), G.cols());
+  const Index before = kParameters * joint;
+  G.setZero();
+  for (Index a = before; a < rowSize(); ++a) {
+    for (Index b = a; b < rowSize(); ++b) {
+      G(a, b) = entry(joint, a - before, b - before);
+      G(b, a) = G(a, b);
+    }
+  }
+}
+
+void RegressorGram::normalEquations(const Eigen::Ref<const Eigen::VectorXd>& weights,
+                                    Eigen::Ref<Eigen::MatrixXd> A,
+                                    Eigen::Ref<Eigen::VectorXd> b) const {
+  requireSize("weights", joints_, 1, weights.rows(), weights.cols());
+  requireSize("A", unknowns(), unknowns(), A.rows(), A.cols());
+  requireSize("b", unknowns(), 1, b.rows(), b.cols());
+  A.setZero();
+  b.setZero();
+  Eigen::MatrixXd G(rowSize(), rowSize());
+  const Index rigid = kParameters * joints_;
+  const Index tau = rowSize() - 1;
+  for (Index j = 0; j < joints_; ++j) {
+    rowGram(j, G);
+    const double w = weights[j];
+    const Index own = rigid + j * own_columns_;
+    A.topLeftCorner(rigid, rigid) += w * G.topLeftCorner(rigid, rigid);
+    A.block(0, own, rigid, own_columns_) = w * G.block(0, rigid, rigid, own_columns_);
+    A.block(own, 0, own_columns_, rigid) = w * G.block(rigid, 0, own_columns_, rigid);
+    A.block(own, own, own_columns_, own_columns_) =
+        w * G.block(rigid, rigid, own_columns_, own_columns_);
+    b.head(rigid) += w * G.col(tau).head(rigid);
+    b.segment(own, own_columns_) = w * G.col(tau).segment(rigid, own_columns_);
+  }
+}
+
+}  // namespace v2
+}  // namespace chain_dynamics
