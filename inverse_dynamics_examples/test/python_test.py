@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from pages import REPOSITORY, Block, blocks_of, page, run
 
-from inverse_dynamics import Solver
+from inverse_dynamics import FastModel, Solver
 
 PAGE = page("docs/python.md")
 
@@ -29,8 +29,10 @@ def test_the_example_of_the_page_runs(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_every_method_is_on_the_page() -> None:
-    public = {name: value for name, value in vars(Solver).items() if not name.startswith("_")}
-    methods = {name for name, value in public.items() if not isinstance(value, property)}
+    both = [*vars(Solver).items(), *vars(FastModel).items()]
+    public = {name: value for name, value in both if not name.startswith("_")}
+    kept = (property, staticmethod)
+    methods = {name for name, value in public.items() if not isinstance(value, kept)}
     assert set(re.findall(r"^\| `(\w+)\(", PAGE, re.MULTILINE)) == methods
 
 

@@ -18,7 +18,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from inverse_dynamics._core import Solver, available_solvers
+    from inverse_dynamics._core import FastModel, Solver, available_solvers
     from inverse_dynamics.data.bags import read_joint_log, read_topics, write_joint_logs
     from inverse_dynamics.data.joint_log import JointLog
     from inverse_dynamics.data.public_recordings import fetch_recordings
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 _HOME = {
     "Evaluation": "evaluation.evaluation",
+    "FastModel": "_core",
     "JointError": "evaluation.evaluation",
     "JointLog": "data.joint_log",
     "ManyEvaluations": "results.many_evaluations",
@@ -63,6 +64,7 @@ _HOME = {
 
 __all__ = [
     "Evaluation",
+    "FastModel",
     "JointError",
     "JointLog",
     "ManyEvaluations",

@@ -87,6 +87,83 @@ class Solver:
     ) -> tuple[Floats, Floats, Floats]:
         """H(q), C(q, qd) qd, g(q)."""
 
+class FastModel:
+    """What the engine computes and no solver offers, of many states at a time. Threads: safe.
+
+    Arrays are (n,), one state, or (N, n), one row per state. threads: among how many a large batch
+    is shared.
+    """
+
+    @staticmethod
+    def from_urdf(
+        urdf: str,
+        *,
+        root: str = "",
+        tip: str = "",
+        gravity: Sequence[float] | None = None,
+        threads: int = 1,
+    ) -> FastModel:
+        """Of a URDF's text; without the friction that it states."""
+
+    @staticmethod
+    def from_file(path: str, *, threads: int = 1) -> FastModel:
+        """Of a model file, with its friction."""
+
+    @staticmethod
+    def from_joints(
+        names: Sequence[str],
+        prismatic: Sequence[bool],
+        rotations: ArrayLike,
+        offsets: ArrayLike,
+        links: ArrayLike,
+        gravity: Sequence[float],
+        *,
+        threads: int = 1,
+    ) -> FastModel:
+        """Of joints about or along z of their links' frames.
+
+        (n, 3, 3) and (n, 3), of each frame in the one before, and (n, 10) parameters of the links.
+        """
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints, from root to tip: the order of all arrays."""
+
+    @property
+    def parameters(self) -> Floats:
+        """(10 n,): m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz of each link, in its frame."""
+
+    def forward_dynamics(
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, out: Floats | None = None
+    ) -> Floats:
+        """Accelerations under these torques, friction taken off."""
+
+    def torque_derivatives(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike
+    ) -> tuple[Floats, Floats, Floats]:
+        """dtau/dq, dtau/dqd and dtau/dqdd = H, (n, n) or (N, n, n)."""
+
+    def regressor(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, out: Floats | None = None
+    ) -> Floats:
+        """Y, (n, 10 n) or (N, n, 10 n): tau = Y parameters + rotor inertia qdd + friction."""
+
+    def regressor_gram(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        qdd: ArrayLike,
+        tau: ArrayLike,
+        *,
+        own_columns: Sequence[ArrayLike] = ...,
+        weights: ArrayLike | None = None,
+    ) -> Floats:
+        """Gram matrices of the rows [Y_j, own columns, tau_j] of each joint, summed: (n, m, m).
+
+        m = 10 n + own columns + 1. own_columns: arrays like q, of what else a joint's torque is
+        linear in. weights: an array like q.
+        """
+
 class SampleRules:
     """Which rules on faults of samples are acted upon."""
 

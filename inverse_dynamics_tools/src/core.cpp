@@ -15,6 +15,7 @@
 #include "control.hpp"
 #include "errors.hpp"
 #include "evaluator.hpp"
+#include "fast_model.hpp"
 #include "joint_log.hpp"
 #include "metrics.hpp"
 #include "recordings.hpp"
@@ -25,6 +26,7 @@ PYBIND11_MODULE(_core, module) {
   module.doc() = "Solvers, samples of recordings, accelerations, metrics and control laws in C++.";
   inverse_dynamics_tools::bindErrors();
   inverse_dynamics_tools::bindSolver(module);
+  inverse_dynamics_tools::bindFastModel(module);
   inverse_dynamics_tools::bindAccelerations(module);
   inverse_dynamics_tools::bindRecordings(module);
   inverse_dynamics_tools::bindJointLog(module);

@@ -197,9 +197,9 @@ void SolverCall::vectors(const std::string& name, const py::object& out) {
   addResult(name, out, shape_);
 }
 
-void SolverCall::matrices(const std::string& name, const py::object& out) {
+void SolverCall::matrices(const std::string& name, const py::object& out, Index columns) {
   Shape shape = shape_;
-  shape.push_back(n_);
+  shape.push_back(n_ * columns);
   addResult(name, out, shape);
 }
 

@@ -26,7 +26,13 @@ class SolverCall {
  public:
   /// @param method  its name in Python: errors begin with it.
   SolverCall(const char* method, const inverse_dynamics_solver::InverseDynamicsSolver& solver)
-      : method_(method), joint_names_(solver.jointNames()), n_(solver.jointCount()) {}
+      : SolverCall(method, solver.jointNames()) {}
+
+  /// Of a class that isn't a solver; joint_names must live as long.
+  SolverCall(const char* method, const std::vector<std::string>& joint_names)
+      : method_(method),
+        joint_names_(joint_names),
+        n_(static_cast<Eigen::Index>(joint_names.size())) {}
 
   /// An argument (n,) or (N, n); all have the shape of the first.
   ///
@@ -41,8 +47,8 @@ class SolverCall {
   /// @throws InvalidParameterValueException  an array that can't be written to as it is.
   void vectors(const std::string& name, const pybind11::object& out);
 
-  /// A result of n x n numbers per state: as vectors().
-  void matrices(const std::string& name, const pybind11::object& out);
+  /// A result of n x n numbers per state, or of n x (columns n): as vectors().
+  void matrices(const std::string& name, const pybind11::object& out, Eigen::Index columns = 1);
 
   /// The i-th argument, result of vectors, result of matrices.
   inverse_dynamics_solver::ConstStates in(std::size_t i) const;
@@ -56,6 +62,7 @@ class SolverCall {
     compute();
   }
 
+  Eigen::Index count() const { return count_; }
   pybind11::object result(std::size_t i) const { return results_[i].array; }
 
  private:
