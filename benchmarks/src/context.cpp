@@ -59,6 +59,9 @@ std::vector<std::pair<std::string, std::string>> measurementContext() {
 #ifdef BENCHMARK_MUJOCO
       {"mujoco", mujocoVersion()},
 #endif
+#ifdef BENCHMARK_CASADI
+      {"casadi", casadiVersion()},
+#endif
   };
 }
 

@@ -19,7 +19,13 @@ struct Engine {
         dtau_dq(n, n),
         dtau_dqd(n, n),
         dtau_dqdd(n, n),
-        Y(n, 10 * n) {}
+        Y(n, 10 * n),
+        qdd_block(n, kBlock),
+        dtau_dq_block(n, n * kBlock),
+        dtau_dqd_block(n, n * kBlock),
+        dtau_dqdd_block(n, n * kBlock),
+        Y_block(n, 10 * n * kBlock),
+        sums(n) {}
 
   void forwardDynamics(Eigen::Index k) {
     fast.forwardDynamics(&states.q(0, k), &states.qd(0, k), &states.qdd(0, k), qdd.data());
@@ -32,11 +38,32 @@ struct Engine {
                            dtau_dqd.data(), dtau_dqdd.data(), n);
   }
 
+  void forwardDynamicsBatch() {
+    fast.forwardDynamicsBatch(q(), qd(), states.qdd.leftCols(kBlock), qdd_block);
+  }
+  void regressorBatch() { fast.regressorBatch(q(), qd(), states.qdd.leftCols(kBlock), Y_block); }
+  void derivativesBatch() {
+    fast.torqueDerivativesBatch(q(), qd(), states.qdd.leftCols(kBlock), dtau_dq_block,
+                                dtau_dqd_block, dtau_dqdd_block);
+  }
+  void gram() {
+    const Eigen::MatrixXd& tau = states.qdd;  // any numbers
+    fast.addToGram({q(), qd(), states.qdd.leftCols(kBlock), tau.leftCols(kBlock)}, sums);
+  }
+
+  chain_dynamics::ConstStates q() const { return states.q.leftCols(kBlock); }
+  chain_dynamics::ConstStates qd() const { return states.qd.leftCols(kBlock); }
+
+  /// States of a batch whose results stay in the cache.
+  static constexpr Eigen::Index kBlock = 64;
+
   chain_dynamics::FastModel fast;
   Eigen::Index n;
   States states;
   Eigen::VectorXd qdd;
   Eigen::MatrixXd dtau_dq, dtau_dqd, dtau_dqdd, Y;
+  Eigen::MatrixXd qdd_block, dtau_dq_block, dtau_dqd_block, dtau_dqdd_block, Y_block;
+  chain_dynamics::RegressorGram sums;
 };
 
 }  // namespace
@@ -52,6 +79,17 @@ void registerEngine(const std::string& robot, const chain_dynamics::Chain& chain
   add("forward_dynamics", &Engine::forwardDynamics);
   add("regressor", &Engine::regressor);
   add("derivatives", &Engine::derivatives);
+
+  const auto add_batch = [&](const char* quantity, void (Engine::*call)()) {
+    registerBatch(robot + "/" + quantity + "/ours", Engine::kBlock, [engine, call] {
+      (*engine.*call)();
+      benchmark::ClobberMemory();
+    });
+  };
+  add_batch("forward_dynamics_batch", &Engine::forwardDynamicsBatch);
+  add_batch("regressor_batch", &Engine::regressorBatch);
+  add_batch("derivatives_batch", &Engine::derivativesBatch);
+  add_batch("gram_batch", &Engine::gram);
 }
 
 }  // namespace inverse_dynamics_benchmarks

@@ -2,7 +2,7 @@
 
 // Times every solver through the public interface, into the caller's memory, and other libraries on
 // the same states. Names: ROBOT/QUANTITY/LIBRARY. `ids bench` runs it and makes tables of it; they
-// know, of the engine, `derivatives`, `forward_dynamics` and `regressor`.
+// know, of the engine, `derivatives`, `forward_dynamics`, `regressor` and `gram`.
 
 #include <benchmark/benchmark.h>
 
@@ -38,6 +38,9 @@ void registerPeers(const PeerRobot& robot) {
 #endif
 #ifdef BENCHMARK_MUJOCO
   registerMujoco(robot);
+#endif
+#ifdef BENCHMARK_CASADI
+  registerCasadi(robot);
 #endif
 }
 

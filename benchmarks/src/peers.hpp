@@ -2,8 +2,8 @@
 
 /// @file
 /// Other libraries, by their fastest calls, on the same states: benchmarks
-/// `ROBOT/QUANTITY/LIBRARY`. Pinocchio and MuJoCo are optional: without them their functions are
-/// declared only.
+/// `ROBOT/QUANTITY/LIBRARY`. Pinocchio, MuJoCo and CasADi are optional: without them their functions
+/// are declared only.
 ///
 /// Each of these functions compares the torques of one state with `expected` first, and throws
 /// std::runtime_error if the library computes something else.
@@ -38,9 +38,14 @@ void registerPinocchio(const PeerRobot& robot);
 /// Kinematics, then mj_rne or mj_makeM: what mj_inverse does for an arm without contacts.
 void registerMujoco(const PeerRobot& robot);
 
+/// Of UR10 and Panda: C that CasADi generated from two expressions, libraries `casadi_templates` and
+/// `casadi_textbook`.
+void registerCasadi(const PeerRobot& robot);
+
 /// Versions, as text.
 std::string kdlVersion();
 std::string pinocchioVersion();
 std::string mujocoVersion();
+std::string casadiVersion();
 
 }  // namespace inverse_dynamics_benchmarks

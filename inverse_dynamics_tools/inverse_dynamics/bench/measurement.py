@@ -35,6 +35,7 @@ _CONTEXT = (
     "kdl",
     "pinocchio",
     "mujoco",
+    "casadi",
 )
 _ENTRY = ("name", "run_name", "run_type", "aggregate_name", "real_time", "cpu_time", "time_unit")
 _LATENCY = (

@@ -21,6 +21,9 @@ ENGINE = {
 }
 """What the engine computes besides."""
 
+ENGINE_BATCHES = {**ENGINE, "gram": "Gram matrices of the regressor"}
+"""The same of many states."""
+
 ROBOTS = {
     "ur10": "UR10",
     "panda": "Panda",

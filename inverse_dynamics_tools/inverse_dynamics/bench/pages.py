@@ -11,7 +11,13 @@ from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.files import write_text_whole
 from inverse_dynamics.bench import asked
-from inverse_dynamics.bench.names import ENGINE, LIBRARIES, QUANTITIES, ROBOTS
+from inverse_dynamics.bench.names import (
+    ENGINE,
+    ENGINE_BATCHES,
+    LIBRARIES,
+    QUANTITIES,
+    ROBOTS,
+)
 from inverse_dynamics.errors import OutputError
 
 if TYPE_CHECKING:
@@ -142,6 +148,29 @@ def batches(result: Measurement) -> str:
     return _table(["robot", "batch of [ns]", "this library", "Pinocchio", "ratio"], rows, 2)
 
 
+def generated(result: Measurement) -> str:
+    """Beside C that CasADi generates [ns]; share: our time of the better expression's."""
+    rows = []
+    for robot in asked.REAL:
+        for quantity in asked.QUANTITIES:
+            ours = result.time(robot, quantity, "ours")
+            libraries = ("casadi_templates", "casadi_textbook")
+            times = [result.time(robot, quantity, library) for library in libraries]
+            best = asked.casadi_time(result, robot, quantity)
+            if ours is not None and best is not None:
+                cells = [_time(t) for t in (ours, *times)]
+                rows.append([ROBOTS[robot], QUANTITIES[quantity], *cells, f"{ours / best:.2f}"])
+    heads = [
+        "robot",
+        "quantity [ns]",
+        "this library",
+        "of our templates",
+        "of the textbook",
+        "share",
+    ]
+    return _table(heads, rows, 2)
+
+
 def chains(result: Measurement) -> str:
     """Time over the number of joints [ns]; ratio: KDL's time by ours."""
     rows = []
@@ -172,6 +201,18 @@ def engine(result: Measurement) -> str:
             if ours is not None:
                 rows.append([ROBOTS[robot], title, _time(ours), _time(peer), _ratio(peer, ours)])
     return _table(["robot", "quantity [ns]", "this library", "Pinocchio", "ratio"], rows, 2)
+
+
+def engine_batches(result: Measurement) -> str:
+    """Functions of the engine, 64 states a call [ns per state], beside Pinocchio's single call."""
+    rows = []
+    for robot in (*asked.REAL, *asked.GENERATED):
+        for quantity, title in ENGINE_BATCHES.items():
+            ours = result.time(robot, f"{quantity}_batch", "ours")
+            peer = result.time(robot, quantity, "pinocchio")
+            if ours is not None:
+                rows.append([ROBOTS[robot], title, _time(ours), _time(peer), _ratio(peer, ours)])
+    return _table(["robot", "batch of [ns]", "this library", "Pinocchio", "ratio"], rows, 2)
 
 
 def memory(result: Measurement) -> str:
@@ -264,9 +305,11 @@ PARTS: Mapping[str, Callable[[Measurement], str]] = {
     "machine": machine,
     "calls": calls,
     "batches": batches,
+    "generated": generated,
     "memory": memory,
     "chains": chains,
     "engine": engine,
+    "engine_batches": engine_batches,
     "latency": latency,
     "bounds": bounds,
 }
