@@ -20,9 +20,8 @@ using Eigen::Index;
 using Sizes = std::array<std::int64_t, 4>;
 
 [[noreturn]] void throwCannot(const std::string& directory, int error) {
-  throw RecordingError(directory + ": samples can't be kept there (" +
-                       std::generic_category().message(error) +
-                       "); free some space, or name another output");
+  throw RecordingError(directory + ": can't be written (" + std::generic_category().message(error) +
+                       "); free some space, or name another output with --out");
 }
 
 // A file that has no name.

@@ -245,8 +245,8 @@ TEST(Stream, TellsWhyTheSamplesCannotBeKept) {
   EXPECT_THAT(errorOf<RecordingError>([&] {
                 evaluate(messages, joints("/no/such/directory"), TwoJointSolver(), options());
               }),
-              HasSubstr("/no/such/directory: samples can't be kept there (No such file or "
-                        "directory); free some space, or name another output"));
+              HasSubstr("/no/such/directory: can't be written (No such file or directory); free "
+                        "some space, or name another output"));
 }
 
 TEST(Stream, TellsOfTheProgressAndCanBeStopped) {
