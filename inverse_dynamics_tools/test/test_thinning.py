@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
+import tracemalloc
+
 import numpy as np
 import pytest
 
 from inverse_dynamics.figures.thinning import PeaksOfRows, peaks
+from inverse_dynamics.figures.torque_lines import TorqueLines
 
 
 @pytest.mark.parametrize("count", [3, 10, 11, 12, 99, 1000])
@@ -37,3 +40,14 @@ def test_peaks_of_rows_that_come_in_blocks_are_those_of_all(count, block):
         kept = peaks(values[:, i], 10)
         np.testing.assert_array_equal(rows.line(i)[0], time[kept])
         np.testing.assert_array_equal(rows.line(i)[1], values[kept, i])
+
+
+def test_lines_of_many_samples_need_little_memory():
+    torques = np.random.default_rng(1).normal(size=(4096, 7))
+    lines = TorqueLines(10_000_000, 7)
+    tracemalloc.start()
+    for block in range(200):
+        lines.add(np.arange(4096.0) + 4096 * block, torques, 0.9 * torques)
+    held, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert held < 3e6

@@ -49,7 +49,7 @@ class TorqueLines:
         self._peaks.add(time, np.hstack([computed, measured, error]))
         magnitude = np.abs(error)
         self._largest = np.maximum(self._largest, magnitude.max(axis=0))
-        self._magnitudes.append(magnitude[-self._added % self._step :: self._step])
+        self._magnitudes.append(magnitude[-self._added % self._step :: self._step].copy())
         self.begin = float(time[0]) if self._added == 0 else self.begin
         self.end = float(time[-1])
         self._added += len(time)
