@@ -256,6 +256,9 @@ Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
   const auto expected = static_cast<double>(source.expectedMessages());
   Evaluation result = Evaluator(stream, expected, solver, options).evaluate(take, false);
   result.recording = samples.about();
+  const auto before_efforts = solver.warnings().size() + options.notes.size();
+  result.notes.insert(result.notes.begin() + static_cast<std::ptrdiff_t>(before_efforts),
+                      result.recording.notes.begin(), result.recording.notes.end());
   return result;
 }
 

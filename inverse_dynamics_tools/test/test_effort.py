@@ -114,9 +114,9 @@ def test_where_the_data_dont_tell_the_configuration_counts(tmp_path, robot, conf
 @pytest.fixture
 def currents_by_format(monkeypatch):
     """Recordings whose format says that efforts are currents."""
-    read = evaluation.read_recording
+    opened = evaluation.open_motion
     monkeypatch.setattr(
-        evaluation, "read_recording", lambda *a, **k: replace(read(*a, **k), effort_is="current")
+        evaluation, "open_motion", lambda *a, **k: opened(*a, **k)._replace(effort_is="current")
     )
 
 
