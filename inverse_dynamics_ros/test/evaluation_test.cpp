@@ -47,6 +47,17 @@ TEST(Evaluation, ComparesComputedWithMeasuredTorques) {
   EXPECT_EQ(evaluation.accelerations.summary, "given by the recording");
 }
 
+TEST(Evaluation, HoldsTheSeriesOfALongRecording) {
+  const JointLog recorded = log(10'000);  // evaluate() hands out fewer at a time
+  const Evaluation evaluation = evaluate(recorded, *TwoJointSolver::make(), options());
+  Eigen::MatrixXd expected = recorded.effort;
+  expected.row(0).array() -= 0.25;
+  expected.row(1).array() += 0.5;
+  ASSERT_EQ(evaluation.computed.cols(), 10'000);
+  EXPECT_LT((evaluation.computed - expected).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ(evaluation.measured, recorded.effort);
+}
+
 TEST(Evaluation, LeavesGravityOutOfBothWhereEffortsAreWithoutIt) {
   JointLog without = log();
   without.effort.row(0).array() -= 10;
