@@ -112,3 +112,15 @@ def test_a_name_with_control_characters_is_an_error(tmp_path):
     make(tmp_path, "a\x1bb")
     with pytest.raises(BagError, match="expected a name in UTF-8 without control characters"):
         names(tmp_path, "a\x1bb")
+
+
+def test_a_name_is_that_of_the_directory_which_dots_stand_for(tmp_path, monkeypatch):
+    make(tmp_path, "monday", "tuesday")
+    (tmp_path / "monday/notes").mkdir()
+    monkeypatch.chdir(tmp_path / "monday/notes")
+    assert list(named_recordings(["..", "../../tuesday"])) == ["monday", "tuesday"]
+
+
+def test_the_root_directory_is_not_named_twice():
+    with pytest.raises(BagError, match="/: expected a name"):
+        named_recordings(["/"])

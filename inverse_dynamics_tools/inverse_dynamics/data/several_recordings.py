@@ -43,6 +43,11 @@ def named_recordings(paths: Iterable[Path | str], *, taken: Sequence[str] = ()) 
     return dict(zip(names, found, strict=True))
 
 
+def name_of(path: Path) -> str:
+    """The name of a recording without its ending; of `..`, that of the directory it stands for."""
+    return Path(os.path.abspath(path)).stem
+
+
 def recordings_in(path: Path) -> list[Path]:
     """The recordings in a directory that is no recording itself; else the path alone.
 
@@ -82,7 +87,7 @@ def _check_once(paths: Sequence[Path]) -> None:
         places[place] = path
     for place, path in places.items():
         directory = os.path.dirname(place)
-        if directory in places:
+        if directory in places and directory != place:  # that of / is /
             raise BagError(_twice(places[directory], path))
 
 
@@ -97,8 +102,8 @@ def _twice(one: Path, other: Path) -> str:
 
 def _names(paths: Sequence[Path], taken: Sequence[str]) -> list[str]:
     """Names that differ: stems, or full names, or those of as many directories above as it takes."""
-    parts = [path.absolute().parts[1:] for path in paths]
-    names = [path.absolute().stem for path in paths]
+    parts = [Path(os.path.abspath(path)).parts[1:] for path in paths]
+    names = [name_of(path) for path in paths]
     depth = 1
     while clashes := {name for name, count in Counter([*names, *taken]).items() if count > 1}:
         if depth > max(map(len, parts)):  # /x_y/run and /x/y/run

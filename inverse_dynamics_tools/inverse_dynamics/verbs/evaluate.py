@@ -207,10 +207,11 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _run_one(arguments: argparse.Namespace, robot: Robot) -> None:
     from inverse_dynamics.base.files import check_output_directory
+    from inverse_dynamics.data.several_recordings import name_of
     from inverse_dynamics.results.evaluations import CONTENTS, evaluate_into
 
     (bag,) = arguments.bags
-    out = arguments.out or Path(f"{bag.absolute().stem}_{robot.name}")
+    out = arguments.out or Path(f"{name_of(bag)}_{robot.name}")
     inputs = (bag, arguments.urdf, *robot.files)
     # Before the work.
     check_output_directory(out, overwrite=arguments.overwrite, contents=CONTENTS, inputs=inputs)
