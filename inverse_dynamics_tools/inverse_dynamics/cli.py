@@ -136,7 +136,8 @@ def _run(given: list[str]) -> int:
     except BrokenPipeError:
         raise
     except UserError as error:
-        _say("; ".join(filter(None, (f"error: {error}", written_before()))))
+        separator = "\n" if "\n" in str(error) else "; "
+        _say(separator.join(filter(None, (f"error: {error}", written_before()))))
         return 3 if isinstance(error, PartialError) else 2
     except OSError as error:
         place = error.filename or "a file, or the standard output"

@@ -91,7 +91,8 @@ def test_the_command_names_what_fails(cluster, ids, bags, tmp_path):
     command = ("evaluate", "bad.csv", bags, *ROBOT, *RAW, *NO_FIGURE, "--out", "week")
     code, out, err = ids(*command, "--scheduler", cluster.scheduler_address)
     assert code == 3
-    assert "1 of 4 recordings failed: bad.csv: expected columns" in err.replace(f"{tmp_path}/", "")
+    failed = "1 of 4 recordings failed:\n  bad: bad.csv: expected columns"
+    assert failed in err.replace(f"{tmp_path}/", "")
     assert "wednesday" in out
     assert sorted(p.name for p in (tmp_path / "week").iterdir() if p.is_dir()) == [
         "monday",

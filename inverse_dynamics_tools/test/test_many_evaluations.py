@@ -20,7 +20,8 @@ import inverse_dynamics
 from inverse_dynamics import Solver, evaluate, evaluate_many, read_evaluation, write_joint_logs
 from inverse_dynamics.base.workers import outcome_of
 from inverse_dynamics.errors import ArgumentError, BagError, OutputError, UserError
-from inverse_dynamics.results import many_evaluations
+from inverse_dynamics.results import exports, many_evaluations
+from inverse_dynamics.results.many_evaluations import FailedRecording, failures_told
 from inverse_dynamics.results.summaries import COLUMNS
 
 ROBOT = ("--robot", "ur10_simulated")
@@ -203,14 +204,22 @@ def test_a_recording_that_fails_is_named_and_the_others_are_finished(ids, bags, 
     lines = err.splitlines()
     assert lines[0] == "ids: error: 2 of 4 recordings failed:"
     assert re.match(rf"  tuesday: {damaged}: can't be read as a rosbag2 recording", lines[1])
-    assert re.match(rf"  nowhere: {tmp_path}/nowhere: .*; written before, whole: week", lines[2])
-    assert len(lines) == 3
+    assert re.match(rf"  nowhere: {tmp_path}/nowhere: no such file", lines[2])
+    assert lines[3:] == ["  written before, whole: week"]
     recordings = json.loads((tmp_path / "week/recordings.json").read_text())["recordings"]
     assert [bool(r["error"]) for r in recordings] == [False, True, True, False]
     html = (tmp_path / "week/report.html").read_text()
     assert "Not evaluated" in html
     assert "can&#39;t be read as a rosbag2 recording" in html
     assert not (tmp_path / "week/tuesday").exists()
+
+
+def test_the_only_recording_that_fails_is_named_whatever_its_error_says():
+    killed = FailedRecording("tuesday", Path("week/tuesday"), "its process was killed")
+    assert (
+        failures_told("1 of 2 failed", [killed])
+        == "1 of 2 failed:\n  tuesday: its process was killed"
+    )
 
 
 def test_where_everything_fails_nothing_is_written(ids, tmp_path):
@@ -315,6 +324,13 @@ def test_what_no_recording_can_be_evaluated_with_is_an_error_at_once(bags, tmp_p
         evaluate_many([], "ur10_simulated", out)
     with pytest.raises(UserError, match="robot 'ur11': expected one of"):
         evaluate_many(bags, "ur11", out)
+    for wrong in (5, None, [5], b"monday"):
+        with pytest.raises(
+            ArgumentError, match="argument recordings: expected paths or a path or a t"
+        ):
+            evaluate_many(wrong, "ur10_simulated", out)
+    with pytest.raises(ArgumentError, match="evaluate_many: argument series: unknown"):
+        evaluate_many(bags, "ur10_simulated", out, series=None)
     with pytest.raises(BagError, match="expected each recording once"):
         evaluate_many([bags, bags / "monday"], "ur10_simulated", out)
     with pytest.raises(OutputError, match="lies in .*monday, which is read"):
@@ -345,6 +361,15 @@ def test_a_number_of_jobs_is_a_whole_number_above_zero(ids, bags, jobs):
     )
 
 
+@pytest.mark.parametrize("verb", ["report", "export"])
+def test_a_result_of_several_recordings_is_not_taken_for_that_of_one(ids, tmp_path, verb):
+    (tmp_path / "week").mkdir()
+    (tmp_path / "week/recordings.json").touch()
+    fails(
+        ids(verb, "week"), "week: holds results of several recordings; name one of them, week/NAME"
+    )
+
+
 def test_one_recording_alone_has_its_parquet_too(ids, bags, tmp_path):
     parquet = pytest.importorskip("pyarrow.parquet")
     command = ("evaluate", bags / "monday", *ROBOT, *RAW, *NO_FIGURE, "--out", "one", "--parquet")
@@ -352,3 +377,15 @@ def test_one_recording_alone_has_its_parquet_too(ids, bags, tmp_path):
     table = parquet.read_table(tmp_path / "one/series.parquet")
     assert table.column_names[:2] == ["recording", "time"]
     assert set(table["recording"].to_pylist()) == {"monday"}
+
+
+def test_one_recording_and_its_parquet_are_written_whole_or_not_at_all(
+    ids, bags, tmp_path, monkeypatch
+):
+    def full(*_, **__):
+        raise OutputError("no space left")
+
+    monkeypatch.setattr(exports, "export_series", full)
+    command = ("evaluate", bags / "monday", *ROBOT, *RAW, *NO_FIGURE, "--out", "one", "--parquet")
+    fails(ids(*command), "error: no space left")
+    assert os.listdir(tmp_path) == []

@@ -188,6 +188,17 @@ def _is_text(value: object) -> bool:
     return isinstance(value, str)
 
 
+def _is_path(value: object) -> bool:
+    return isinstance(value, (str, os.PathLike))
+
+
+def _are_paths(value: Any) -> bool:
+    """Whether these are paths; an iterator would be used up, so what it gives isn't looked at."""
+    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
+        return False
+    return not hasattr(value, "__len__") or all(map(_is_path, value))
+
+
 # Type in a signature or an annotation, in words, and whether a value is of it. The first that matches counts.
 _KINDS: tuple[tuple[str, str, Callable[[Any], bool]], ...] = (
     (r"None", "None", lambda value: value is None),
@@ -197,6 +208,7 @@ _KINDS: tuple[tuple[str, str, Callable[[Any], bool]], ...] = (
     (r".*ArrayLike, numpy\.bool\].*", "an array of True and False", _is_mask),
     (r".*(ArrayLike|NDArray|ndarray).*", "an array of real numbers", _is_array),
     (r".*(Sequence|[Ll]ist)\[str\].*", "a list of texts", _are(_is_text)),
+    (r"Iterable\[Path \| str\]", "paths", _are_paths),
     (
         r".*(FixedSize\(3\)|tuple\[float, float, float\]).*",
         "three numbers",

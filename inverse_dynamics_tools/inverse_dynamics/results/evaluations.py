@@ -48,6 +48,7 @@ if TYPE_CHECKING:
 
 SCHEMA = 2
 MARK = "evaluation.json"
+MARK_OF_SEVERAL = "recordings.json"  # see many_evaluations.py
 
 CONTENTS = Contents(
     MARK,
@@ -109,13 +110,14 @@ def evaluate_into(
     overwrite: bool = False,
     storage: Storage | None = None,
     figures: Sequence[str] = ("png",),
+    parquet: str | None = None,
     progress: Progress = no_progress,
     **options: Any,
 ) -> Evaluation:
     """evaluate() and write_evaluation() of a recording that needn't fit into memory.
 
-    options: those of evaluate(). The arrays of the result are those of series.npz, in memory only
-    where they are looked at.
+    parquet: name of the recording in series.parquet; None: no such file. options: those of evaluate().
+    The arrays of the result are those of series.npz, in memory only where they are looked at.
 
     Raises UserError.
     """
@@ -130,6 +132,12 @@ def evaluate_into(
         written = _WrittenSeries(target, storage, bool(figures))
         evaluation = evaluate(bag, robot, progress=progress, series=written, **options)
         seconds = _write_rest(evaluation, target, written, figures, progress)
+        if parquet is not None:
+            from inverse_dynamics.results.exports import export_series
+
+            export_series(
+                evaluation, target / "series.parquet", recording=parquet, progress=progress
+            )
         return replace(evaluation, seconds={**evaluation.seconds, **seconds})
 
 
@@ -218,9 +226,7 @@ def read_evaluation(directory: Path | str) -> Evaluation:
     if not directory.exists():
         with suppress(OSError, OutputError):
             restore_interrupted(directory.absolute())
-    if not file.is_file():
-        found = f"holds no {MARK}" if directory.is_dir() else "no such directory"
-        raise OutputError(f"{directory}: {found}; expected one written by `ids evaluate`")
+    _check_marked(directory)
     try:
         data = json.loads(file.read_text(encoding="utf-8"))
         if data["schema"] != SCHEMA:
@@ -241,6 +247,17 @@ def read_evaluation(directory: Path | str) -> Evaluation:
             f"{directory}: isn't a complete evaluation ({type(error).__name__}: {error}); evaluate "
             "again"
         ) from error
+
+
+def _check_marked(directory: Path) -> None:
+    """Raise OutputError unless it is the result of one recording."""
+    if (directory / MARK_OF_SEVERAL).is_file():
+        raise OutputError(
+            f"{directory}: holds results of several recordings; name one of them, {directory}/NAME"
+        )
+    if not (directory / MARK).is_file():
+        found = f"holds no {MARK}" if directory.is_dir() else "no such directory"
+        raise OutputError(f"{directory}: {found}; expected one written by `ids evaluate`")
 
 
 def _check_sizes(evaluation: Evaluation) -> None:

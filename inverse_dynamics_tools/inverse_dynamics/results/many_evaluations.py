@@ -32,7 +32,7 @@ from inverse_dynamics.base.wording import counted
 from inverse_dynamics.base.workers import Failure, cores, in_processes
 from inverse_dynamics.data.several_recordings import named_recordings
 from inverse_dynamics.data.time_window import TimeWindow
-from inverse_dynamics.errors import OutputError, UserError
+from inverse_dynamics.errors import ArgumentError, OutputError, UserError
 from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.evaluation.summary import EvaluationSummary, summary_of
 from inverse_dynamics.results import evaluations
@@ -45,14 +45,14 @@ from inverse_dynamics.results.summaries import (
 from inverse_dynamics.robot.robots import Robot, load_robot
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Storage
     from inverse_dynamics.evaluation.evaluation import Evaluation
 
 SCHEMA = 1
-MARK = "recordings.json"
+MARK = evaluations.MARK_OF_SEVERAL
 PAGE = "report.html"
 OWN_FILES = (MARK, "summary.csv", "summary.parquet", PAGE)
 
@@ -116,7 +116,7 @@ class _Task:
 
 @checked
 def evaluate_many(
-    recordings: Sequence[Path | str] | Path | str,
+    recordings: Iterable[Path | str] | Path | str,
     robot: Robot | Path | str,
     out: Path | str,
     *,
@@ -164,6 +164,10 @@ def _check(
         raise UserError("evaluate_many: recordings: expected one or more, got none")
     if jobs is not None and jobs < 1:
         raise UserError(f"jobs: expected a number of processes above zero, got {jobs}")
+    if "series" in options:
+        raise ArgumentError(
+            "evaluate_many: argument series: unknown; samples go into the directory"
+        )
     check_call(evaluate, next(iter(names.values())), robot, **options)
     TimeWindow(options.get("start"), options.get("end"))
     if parquet:
@@ -213,14 +217,10 @@ def _evaluate_one(task: _Task) -> EvaluationSummary:
         task.robot,
         storage=task.storage,
         figures=task.figures,
+        parquet=task.name if task.parquet else None,
         progress=progress,
         **task.options,
     )
-    if task.parquet:
-        from inverse_dynamics.results.exports import export_series
-
-        file = task.target / "series.parquet"
-        export_series(evaluation, file, recording=task.name, progress=progress)
     if task.figures and len(evaluation.log) <= _MOST_ON_A_PAGE:
         from inverse_dynamics.report import report_run, write_page
 
@@ -248,14 +248,15 @@ def _sorted_out(
         else:
             summaries.append(replace(outcome, bag=task.bag))
     if not summaries:
-        raise UserError(failures_told("none of the recordings could be evaluated", failures))
+        what = "none of the recordings could be evaluated"
+        if len({failure.error for failure in failures}) == 1:  # of the robot, say
+            raise UserError(f"{what}: {failures[0].error}")
+        raise UserError(failures_told(what, failures))
     return ManyEvaluations(out, tuple(summaries), tuple(failures))
 
 
 def failures_told(what: str, failures: Sequence[FailedRecording]) -> str:
     """Failures as a text of a few lines."""
-    if len({failure.error for failure in failures}) == 1:
-        return f"{what}: {failures[0].error}"
     lines = [f"  {failure.name}: {failure.error}" for failure in failures[:_MOST_TOLD]]
     if len(failures) > _MOST_TOLD:
         lines.append(f"  and {len(failures) - _MOST_TOLD} others")

@@ -228,13 +228,10 @@ def _run_one(arguments: argparse.Namespace, robot: Robot) -> None:
             overwrite=arguments.overwrite,
             storage=arguments.storage,
             figures=arguments.figures,
+            parquet=name_of(bag) if arguments.parquet else None,
             progress=progress,
             **_options(arguments),
         )
-        if arguments.parquet:
-            from inverse_dynamics.results.exports import export_series
-
-            export_series(evaluation, out / "series.parquet", recording=bag.absolute().stem)
     _print(evaluation, out, arguments.figures)
     if arguments.verbose:
         _print_times(evaluation.seconds, len(evaluation.log))
