@@ -104,7 +104,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = list(sys.argv[1:] if arguments is None else arguments)
     _write_any_character()
     try:
-        with _stopped_by_signals():
+        with _stopped_by_signals(), _signals_out_of_imports():
             return _run(given)
     except _Stopped as stop:
         _say(f"{stop}; {_outcome()}")
@@ -172,6 +172,20 @@ def _stopped_by_signals() -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextmanager
+def _signals_out_of_imports() -> Iterator[None]:
+    """A signal during the import of a module in C++ is the cause of an ImportError: raise the cause."""
+    try:
+        yield
+    except ImportError as error:
+        cause: BaseException | None = error
+        while isinstance(cause, Exception):
+            cause = cause.__cause__ or cause.__context__
+        if cause is None:
+            raise
+        raise cause from error
 
 
 def _outcome() -> str:

@@ -152,6 +152,26 @@ def test_a_signal_leaves_no_trace_and_tells_what_there_is(bag, result, tmp_path,
         assert CONTENTS.foreign(tmp_path / "out") == []
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_while_a_module_is_imported_is_no_fault(bag, tmp_path, number):
+    numpy = tmp_path / "first" / "numpy"  # which the module in C++ imports
+    numpy.mkdir(parents=True)
+    (numpy / "__init__.py").write_text(f"import signal\nsignal.raise_signal({int(number)})\n")
+    code = "import sys; from inverse_dynamics import cli; sys.exit(cli.main(sys.argv[1:]))"
+    paths = [f"{numpy.parent}", os.environ.get("PYTHONPATH", "")]
+    finished = subprocess.run(
+        [sys.executable, "-c", code, "evaluate", bag, "--robot", "ur10_simulated"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    what = "interrupted" if number == signal.SIGINT else f"ended by {number.name}"
+    assert finished.stderr == f"ids: {what}; nothing was written\n"
+    assert finished.returncode == 128 + number
+
+
 # ---- full disks ------------------------------------------------------------------------------------------------------
 
 
