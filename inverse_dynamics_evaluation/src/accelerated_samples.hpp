@@ -43,6 +43,10 @@ struct AccelerationOptions {
   SampleRules rules;
 };
 
+/// Refuses stamps, positions, velocities, efforts or accelerations of different lengths, and fewer
+/// than two samples. @throws EvaluationError
+void checkLog(const JointLogView& log);
+
 /// The passes that accelerations need before they are computed.
 ///
 /// @throws EvaluationError: see logAccelerations().

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "accelerated_samples.hpp"
-#include "checks.hpp"
 #include "figures.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "spooled_samples.hpp"
@@ -237,10 +236,9 @@ class Evaluator {
 
 Evaluation evaluate(const JointLogView& log, const InverseDynamicsSolver& solver,
                     const EvaluationOptions& options, const TakeSamples& take) {
-  const Eigen::VectorXd time = log.time();
-  named(options, [&] { checkSamples(time, log.q, log.qd, log.effort); });
-  SamplesInMemory samples(log, time);
-  const auto expected = static_cast<double>(time.size());
+  named(options, [&] { checkLog(log); });
+  SamplesInMemory samples(log, log.time());
+  const auto expected = static_cast<double>(log.q.cols());
   return Evaluator(samples, expected, solver, options).evaluate(take, true);
 }
 

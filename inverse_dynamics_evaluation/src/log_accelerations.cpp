@@ -139,11 +139,20 @@ LogAccelerations withoutSeries(const SampleStream& stream, const AccelerationPla
   return result;
 }
 
+void checkLog(const JointLogView& log) {
+  requireSamples("samples", "qd", log.qd, 2);
+  requireStampPerSample("samples", log.header_stamps.cast<double>(), log.qd);
+  requireStampPerSample("samples", log.receive_stamps.cast<double>(), log.qd);
+  checkSamples(log.time(), log.q, log.qd, log.effort);
+  if (log.qdd.size() > 0) {
+    requireSameSize("samples", "qdd", log.qdd, "qd", log.qd);
+  }
+}
+
 LogAccelerations logAccelerations(const JointLogView& log, AccelerationMethod method, double cutoff,
                                   const SampleRules& rules) {
-  const Eigen::VectorXd time = log.time();
-  checkSamples(time, log.q, log.qd, log.effort);
-  SamplesInMemory stream(log, time);
+  checkLog(log);
+  SamplesInMemory stream(log, log.time());
   AccelerationOptions options;
   options.method = method;
   options.cutoff = cutoff;

@@ -104,6 +104,26 @@ TEST(Evaluate, TakesAccelerationsOfTheLowPassWhereACutOffIsGiven) {
   EXPECT_EQ(evaluation.accelerations.filter.cutoff, 5.0);
 }
 
+TEST(Evaluate, RefusesSeriesOfOtherLengthsThanThePositions) {
+  const TwoJointSolver solver;
+  const auto refusal = [&](const JointLog& log) {
+    return errorOf<EvaluationError>([&] { evaluate(log, solver, options(kTorque)); });
+  };
+  JointLog log = recorded(200);
+  log.receive_stamps = Stamps::LinSpaced(100, 0, 99);
+  EXPECT_EQ(
+      refusal(log),
+      "bag: /joint_states: samples: time: expected 200 stamps, one per column of the samples, "
+      "got 100; a sample is a column");
+  log = recorded(200);
+  log.qdd.conservativeResize(Eigen::NoChange, 100);
+  EXPECT_EQ(refusal(log),
+            "bag: /joint_states: samples: qdd: expected 2 joints x 200 samples as in qd, got 2 "
+            "joints x 100 samples; a sample is a column");
+  EXPECT_THAT(errorOf<EvaluationError>([&] { logAccelerations(log); }), HasSubstr("samples: qdd"));
+  EXPECT_THAT(refusal(JointLog()), HasSubstr("expected 2 samples or more"));
+}
+
 TEST(Evaluate, LeavesSamplesOutOfTheSecondMetricsAlone) {
   JointLog log = recorded(2000);
   for (Index k = 10; k < 2000; k += 10) {  // a driver that repeats itself, with another effort
