@@ -181,9 +181,9 @@ AccelerationPlan planAccelerations(SampleStream& stream, const AccelerationOptio
   }
   plan.method = methodOf(options, plan.census);
   const bool filtered = plan.method == AccelerationMethod::kLowPass;
-  if (filtered) {  // what the filter needs, every piece must have
-    plan.rules.shortest_piece = std::max(plan.rules.shortest_piece, leastSamples(options.order));
-  }
+  // what the filter needs, every piece must have; without a filter none is too short
+  plan.rules.shortest_piece =
+      filtered ? std::max(plan.rules.shortest_piece, leastSamples(options.order)) : 1;
   plan.found = examine(stream, plan.census, plan.rules);
   if (filtered) {
     planFilter(stream, options, plan);

@@ -124,6 +124,16 @@ TEST(Evaluate, RefusesSeriesOfOtherLengthsThanThePositions) {
   EXPECT_THAT(refusal(JointLog()), HasSubstr("expected 2 samples or more"));
 }
 
+TEST(Evaluate, CountsSamplesOfShortPiecesWhereNothingIsFiltered) {
+  for (const auto method : {AccelerationMethod::kGiven, AccelerationMethod::kBackwardDifference}) {
+    EvaluationOptions unfiltered = options(kTorque);
+    unfiltered.method = method;
+    const Evaluation evaluation = evaluate(recorded(5), TwoJointSolver(), unfiltered);
+    EXPECT_EQ(evaluation.errors_of_kept[0].count, 5);
+    EXPECT_EQ(evaluation.accelerations.samples.counts.isolated, 0);
+  }
+}
+
 TEST(Evaluate, LeavesSamplesOutOfTheSecondMetricsAlone) {
   JointLog log = recorded(2000);
   for (Index k = 10; k < 2000; k += 10) {  // a driver that repeats itself, with another effort
