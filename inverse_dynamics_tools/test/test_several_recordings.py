@@ -121,6 +121,13 @@ def test_a_name_is_that_of_the_directory_which_dots_stand_for(tmp_path, monkeypa
     assert list(named_recordings(["..", "../../tuesday"])) == ["monday", "tuesday"]
 
 
+def test_an_empty_path_is_not_the_working_directory(tmp_path, monkeypatch):
+    make(tmp_path, "a")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(BagError, match="expected the name of a file or directory, got ''"):
+        named_recordings([""])
+
+
 def test_the_root_directory_is_not_named_twice():
     with pytest.raises(BagError, match="/: expected a name"):
         named_recordings(["/"])

@@ -28,9 +28,12 @@ def named_recordings(paths: Iterable[Path | str], *, taken: Sequence[str] = ()) 
 
     A directory that is no recording stands for all recordings in it, by name. A name is that of the
     recording without its ending; where several would be the same, the directories above are put
-    before it. taken: names that are in use already. Raises BagError: a recording is named twice, or a
-    directory holds other files that could be recordings too.
+    before it. taken: names that are in use already. Raises BagError: a path is empty, a recording is
+    named twice, or a directory holds other files that could be recordings too.
     """
+    paths = list(paths)
+    if "" in paths:  # Path("") is the working directory
+        raise BagError("recordings: expected the name of a file or directory, got ''")
     found = [recording for path in paths for recording in recordings_in(Path(path))]
     _check_once(found)
     names = _names(found, taken)

@@ -7,6 +7,7 @@ import argparse
 import math
 import re
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.decimals import decimal
@@ -38,6 +39,13 @@ def three_numbers(text: str) -> tuple[float, float, float]:
     if not all(math.isfinite(number) for number in (x, y, z)):
         raise argparse.ArgumentTypeError(f"expected finite numbers, got '{text}'")
     return (x, y, z)
+
+
+def file_name(text: str) -> Path:
+    """The path of an argument; not that of an unset variable, which Path takes for `.`."""
+    if not text:
+        raise argparse.ArgumentTypeError("expected the name of a file or directory, got ''")
+    return Path(text)
 
 
 def names(text: str) -> tuple[str, ...]:

@@ -8,7 +8,13 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.verbs.common import number, positive_number, process_count, progress_bar
+from inverse_dynamics.verbs.common import (
+    file_name,
+    number,
+    positive_number,
+    process_count,
+    progress_bar,
+)
 from inverse_dynamics.verbs.options import (
     add_figures,
     add_robot,
@@ -98,7 +104,7 @@ def add_parser(
     parser.add_argument(
         "bags",
         metavar="BAG",
-        type=Path,
+        type=file_name,
         nargs="+",
         help="rosbag2 recording of sensor_msgs/JointState or trajectory_msgs/JointTrajectory (a "
         "directory, or a .db3 or .mcap file), or a table of numbers (.csv or .txt); or a directory "
