@@ -7,7 +7,7 @@
 
 #pragma once
 
-#include "pack.hpp"
+#include "structure.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -56,6 +56,47 @@ FAST_INLINE void loadColumns(const double* rows, std::ptrdiff_t step, Pack& firs
 #else
   first = FAST_SHUFFLE(even, odd, 0, 2);
   second = FAST_SHUFFLE(even, odd, 1, 3);
+#endif
+}
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+template <int Half>
+FAST_INLINE Short halfOf(const Pack& pack) {
+#if __has_builtin(__builtin_shufflevector)
+  return __builtin_shufflevector(pack, pack, 4 * Half, 4 * Half + 1, 4 * Half + 2, 4 * Half + 3);
+#else
+  return load<Short>(numbersOf(&pack) + 4 * Half);
+#endif
+}
+#endif
+
+/// Of kShortWidth packs the numbers of each lane side by side: those of lane k at to + k step.
+FAST_INLINE void storeTransposed(const Pack* rows, double* to, std::ptrdiff_t step) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+  countUp<0, 2>([&](auto is_odd) FAST_LAMBDA {
+    constexpr int kOdd = is_odd;
+    const Pack low = FAST_SHUFFLE(rows[0], rows[1], kOdd, 8 + kOdd, 2 + kOdd, 10 + kOdd, 4 + kOdd,
+                                  12 + kOdd, 6 + kOdd, 14 + kOdd);
+    const Pack high = FAST_SHUFFLE(rows[2], rows[3], kOdd, 8 + kOdd, 2 + kOdd, 10 + kOdd, 4 + kOdd,
+                                   12 + kOdd, 6 + kOdd, 14 + kOdd);
+    const Pack first = FAST_SHUFFLE(low, high, 0, 1, 8, 9, 4, 5, 12, 13);
+    const Pack third = FAST_SHUFFLE(low, high, 2, 3, 10, 11, 6, 7, 14, 15);
+    store(halfOf<0>(first), to + kOdd * step);
+    store(halfOf<0>(third), to + (2 + kOdd) * step);
+    store(halfOf<1>(first), to + (4 + kOdd) * step);
+    store(halfOf<1>(third), to + (6 + kOdd) * step);
+  });
+#elif defined(__AVX__)
+  countUp<0, 2>([&](auto is_odd) FAST_LAMBDA {
+    constexpr int kOdd = is_odd;
+    const Pack low = FAST_SHUFFLE(rows[0], rows[1], kOdd, 4 + kOdd, 2 + kOdd, 6 + kOdd);
+    const Pack high = FAST_SHUFFLE(rows[2], rows[3], kOdd, 4 + kOdd, 2 + kOdd, 6 + kOdd);
+    store(FAST_SHUFFLE(low, high, 0, 1, 4, 5), to + kOdd * step);
+    store(FAST_SHUFFLE(low, high, 2, 3, 6, 7), to + (2 + kOdd) * step);
+  });
+#else
+  store(FAST_SHUFFLE(rows[0], rows[1], 0, 2), to);
+  store(FAST_SHUFFLE(rows[0], rows[1], 1, 3), to + step);
 #endif
 }
 

@@ -44,12 +44,18 @@ inline void writeRows(const Robot& robot, const GramInputs& inputs, const Lanes&
     rows[j] = memory;
     memory += kGramStates * gramRow(n, j, inputs.column_count);
   }
-  forEachRegressorPart(robot, x.state(), scale, [&](int i, int j, const Pack* columns) FAST_LAMBDA {
-    scatter<10>(columns, 10, target, rows[j] + 10 * (i - j), 1, gramRow(n, j, inputs.column_count));
-  });
+  forEachRegressorLink(robot, x.state(), scale,
+                       [&](int i, const auto& motion, const auto* w, const auto* v) FAST_LAMBDA {
+                         for (int j = 0; j <= i; ++j) {
+                           Pack columns[10];
+                           regressorColumns(motion, w[j], v[j], columns);
+                           scatter<10>(columns, 10, target, rows[j] + std::ptrdiff_t{10} * (i - j),
+                                       1, gramRow(n, j, inputs.column_count));
+                         }
+                       });
   for (int j = 0; j < n; ++j) {
     const std::ptrdiff_t size = gramRow(n, j, inputs.column_count);
-    double* const own = rows[j] + 10 * (n - j);
+    double* const own = rows[j] + std::ptrdiff_t{10} * (n - j);
     for (int k = 0; k <= inputs.column_count; ++k) {
       const Samples& from = k < inputs.column_count ? inputs.columns[k] : inputs.tau;
       const Pack numbers = scale[j] * gatherOne(from, j, lanes);
@@ -81,9 +87,10 @@ FAST_INLINE void addTile(const double* rows, int states, std::ptrdiff_t size, st
 inline void addSquares(const double* rows, int states, std::ptrdiff_t size, double* sums) {
   constexpr int kRows = 4;
   constexpr int kPacks = 3;
+  constexpr std::ptrdiff_t kStep = std::ptrdiff_t{kPacks} * kWidth;
   for (std::ptrdiff_t a = 0; a < size; a += kRows) {
     std::ptrdiff_t b = a / kWidth * kWidth;
-    for (; b + kPacks * kWidth <= size; b += kPacks * kWidth) {
+    for (; b + kStep <= size; b += kStep) {
       addTile<kRows, kPacks>(rows, states, size, a, b, sums);
     }
     for (; b < size; b += kWidth) addTile<kRows, 1>(rows, states, size, a, b, sums);

@@ -96,19 +96,8 @@ FAST_INLINE void scatter(const Pack* packs, int count, const Lanes& lanes, doubl
   } else if (state_step == 1) {
     for (int i = 0; i < count; ++i) store(packs[i], to + i * pack_step);
   } else if (pack_step == 1) {
-    inBlocks<kWidth, N>(
-        count,
-        [&](int i) FAST_LAMBDA {
-          countUp<0, kWidth / 2>([&](auto half) FAST_LAMBDA {
-            const int lane = 2 * half;
-            Pack state;
-            Pack next;
-            loadColumns(numbersOf(packs + i) + lane, kWidth, state, next);
-            store(state, to + i + lane * state_step);
-            store(next, to + i + (lane + 1) * state_step);
-          });
-        },
-        one);
+    inBlocks<kShortWidth, N>(
+        count, [&](int i) FAST_LAMBDA { storeTransposed(packs + i, to + i, state_step); }, one);
   } else {
     for (int i = 0; i < count; ++i) one(i);
   }

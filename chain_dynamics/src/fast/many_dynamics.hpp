@@ -89,16 +89,48 @@ void torqueDerivativesBatch(const Robot& robot, int structure, std::ptrdiff_t st
   });
 }
 
-/// The ten columns of link i for all rows, (j, column) at j + column n, to each state's Y.
-FAST_INLINE void scatterLink(const Pack* part, int n, int i, const Lanes& lanes,
-                             const Matrices& Y) {
-  double* const link = Y.data + 10 * i * Y.column_step;
-  if (Y.row_step == 1 && Y.column_step == n) {
-    return scatter<0>(part, 10 * n, lanes, link, 1, Y.state_step);
+/// Ten columns of link i to each Y, in rows, of which those after joint i are zero.
+FAST_INLINE void writeRows(const OwnMotion<Pack>& motion, const Vec<Pack>* w, const Vec<Pack>* v,
+                           int n, int i, const Lanes& lanes, Matrices Y) {
+  double* const link = Y.data + std::ptrdiff_t{10} * i * Y.column_step;
+  for (int j = 0; j <= i; ++j) {
+    Pack columns[10];
+    regressorColumns(motion, w[j], v[j], columns);
+    scatter<10>(columns, 10, lanes, link + j * Y.row_step, Y.column_step, Y.state_step);
   }
-  for (int column = 0; column < 10; ++column) {
-    scatter<0>(part + std::ptrdiff_t{column} * n, n, lanes, link + column * Y.column_step,
-               Y.row_step, Y.state_step);
+  for (int j = i + 1; j < n; ++j) {
+    for (int k = 0; k < lanes.count; ++k) {
+      double* const row = link + j * Y.row_step + lanes[k] * Y.state_step;
+      for (int column = 0; column < 10; ++column) row[column * Y.column_step] = 0;
+    }
+  }
+}
+
+/// Ten columns of link i to as many Y as a pack has lanes, from `to` on, whose rows stand side by
+/// side. In blocks of rows, from last to first: the last block overlaps the one before.
+FAST_INLINE void writeColumns(const OwnMotion<Pack>& motion, const Vec<Pack>* w, const Vec<Pack>* v,
+                              int n, int i, Matrices to) {
+  for (int row = (n - 1) / kShortWidth * kShortWidth; row >= 0; row -= kShortWidth) {
+    const int first = row < n - kShortWidth ? row : n - kShortWidth;
+    countUp<0, 10>([&](auto column) FAST_LAMBDA {
+      constexpr int kColumn = column;
+      Pack block[kShortWidth] = {};
+      countUp<0, kShortWidth>([&](auto k) FAST_LAMBDA {
+        if (row <= i) block[k] = regressorColumn<kColumn>(motion, w[first + k], v[first + k]);
+      });
+      storeTransposed(block, to.data + first + kColumn * to.column_step, to.state_step);
+    });
+  }
+}
+
+/// Ten columns of the first `states` matrices.
+inline void copyColumns(const Matrices& from, int n, int states, const Matrices& to) {
+  for (int k = 0; k < states; ++k) {
+    for (int column = 0; column < 10; ++column) {
+      const double* const rows = from.data + column * from.column_step + k * from.state_step;
+      double* const target = to.data + column * to.column_step + k * to.state_step;
+      for (int row = 0; row < n; ++row) target[row] = rows[row];
+    }
   }
 }
 
@@ -106,31 +138,28 @@ template <int N>
 void regressorBatch(const Robot& robot, std::ptrdiff_t states, Samples q, Samples qd, Samples qdd,
                     Matrices Y) {
   const int n = jointsOf<N>(robot);
-  const bool by_rows = Y.column_step == 1;
+  const bool by_columns = Y.row_step == 1 && n >= kShortWidth;
+  double left_over[kWidth * 10 * kMaxJoints];
   Pack one[kMaxJoints];
   for (int i = 0; i < n; ++i) one[i] = all<Pack>(1.0);
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates<> x;
-    Pack part[10 * kMaxJoints];
     x.read<N>(robot, q, qd, qdd, lanes);
-    forEachRegressorPart(robot, x.state(), one, [&](int i, int j, const Pack* columns) FAST_LAMBDA {
-      if (by_rows) {
-        scatter<10>(columns, 10, lanes, Y.data + j * Y.row_step + 10 * i, 1, Y.state_step);
-        for (int row = i + 1; j == i && row < n; ++row) {
-          for (int k = 0; k < lanes.count; ++k) {
-            double* const to = Y.data + row * Y.row_step + 10 * i + lanes[k] * Y.state_step;
-            for (int column = 0; column < 10; ++column) to[column] = 0;
-          }
-        }
-        return;
+    const auto write = [&](int i, const auto& motion, const auto* w, const auto* v) FAST_LAMBDA {
+      if (by_columns) {
+        Matrices link = Y;
+        link.data += std::ptrdiff_t{10} * i * Y.column_step + lanes.first * Y.state_step;
+        if (lanes.count == kWidth) return writeColumns(motion, w, v, n, i, link);
+        const Matrices whole{left_over, 1, n, std::ptrdiff_t{10} * n};
+        writeColumns(motion, w, v, n, i, whole);
+        copyColumns(whole, n, lanes.count, link);
+      } else if (Y.column_step == 1) {  // for the compiler to know
+        writeRows(motion, w, v, n, i, lanes, {Y.data, Y.row_step, 1, Y.state_step});
+      } else {
+        writeRows(motion, w, v, n, i, lanes, Y);
       }
-      for (int column = 0; column < 10; ++column) part[j + column * n] = columns[column];
-      if (j < i) return;
-      for (int row = i + 1; row < n; ++row) {
-        for (int column = 0; column < 10; ++column) part[row + column * n] = Pack{};
-      }
-      scatterLink(part, n, i, lanes, Y);
-    });
+    };
+    forEachRegressorLink(robot, x.state(), one, write);
   });
 }
 

@@ -60,6 +60,7 @@ template <typename V>
 struct OwnMotion {
   Vec<V> w{}, dw{}, a;
   LinkMotion<V> U{};
+  V yz{}, zx{}, xy{};  // products of w
 
   FAST_INLINE explicit OwnMotion(const Robot& robot)
       : a{robot.root[0] + V{}, robot.root[1] + V{}, robot.root[2] + V{}} {}
@@ -78,31 +79,39 @@ struct OwnMotion {
       w.z += qd;
     }
     U = motionOf(w, dw, a);
+    yz = w.y * w.z;
+    zx = w.z * w.x;
+    xy = w.x * w.y;
   }
 };
 
-/// Ten columns of the rows whose joints' axes, seen from the link, are (w, v): power of the force
-/// that a unit of each parameter needs.
-template <typename V, typename P>
-FAST_INLINE void regressorColumns(const LinkMotion<V>& U, const Vec<P>& w, const Vec<P>& v,
-                                  P* columns) {
-  const Vec<V>& a = U.a;
-  // m: (0, a); mc: (mc x a, U mc)
-  columns[0] = dot(a, v);
-  columns[1] = (U.xx * v.x + U.yx * v.y + U.zx * v.z) + (a.y * w.z - a.z * w.y);
-  columns[2] = (U.xy * v.x + U.yy * v.y + U.zy * v.z) + (a.z * w.x - a.x * w.z);
-  columns[3] = (U.xz * v.x + U.yz * v.y + U.zz * v.z) + (a.x * w.y - a.y * w.x);
+/// A link's column of the rows whose joints' axes, seen from the link, are (w, v): power of the force
+/// that a unit of the parameter needs.
+template <int Column, typename V, typename P>
+FAST_INLINE P regressorColumn(const OwnMotion<V>& motion, const Vec<P>& w, const Vec<P>& v) {
+  const LinkMotion<V>& U = motion.U;
+  const Vec<V>& a = motion.a;
+  const Vec<V>& dw = motion.dw;
+  // m: (0, a)
+  if constexpr (Column == 0) return dot(a, v);
+  // mc: (mc x a, U mc)
+  if constexpr (Column == 1) return dot(Vec<V>{U.xx, U.yx, U.zx}, v) + (a.y * w.z - a.z * w.y);
+  if constexpr (Column == 2) return dot(Vec<V>{U.xy, U.yy, U.zy}, v) + (a.z * w.x - a.x * w.z);
+  if constexpr (Column == 3) return dot(Vec<V>{U.xz, U.yz, U.zz}, v) + (a.x * w.y - a.y * w.x);
+  // I: (I dw + w x I w, 0)
+  if constexpr (Column == 4) return dw.x * w.x + motion.zx * w.y - motion.xy * w.z;
+  if constexpr (Column == 5) return U.zy * w.y - U.zx * w.x - U.yy_xx * w.z;
+  if constexpr (Column == 6) return U.yx * w.x - U.xx_zz * w.y - U.yz * w.z;
+  if constexpr (Column == 7) return dw.y * w.y + motion.xy * w.z - motion.yz * w.x;
+  if constexpr (Column == 8) return U.xz * w.z - U.zz_yy * w.x - U.xy * w.y;
+  if constexpr (Column == 9) return dw.z * w.z + motion.yz * w.x - motion.zx * w.y;
+}
 
-  // second moments of mass, and from them I = trace(S) 1 - S
-  const P xx = 0.5 * (U.yx * w.z - U.zx * w.y);
-  const P yy = 0.5 * (U.zy * w.x - U.xy * w.z);
-  const P zz = 0.5 * (U.xz * w.y - U.yz * w.x);
-  columns[4] = yy + zz - xx;
-  columns[5] = U.zy * w.y - U.zx * w.x - U.yy_xx * w.z;
-  columns[6] = U.yx * w.x - U.xx_zz * w.y - U.yz * w.z;
-  columns[7] = zz + xx - yy;
-  columns[8] = U.xz * w.z - U.zz_yy * w.x - U.xy * w.y;
-  columns[9] = xx + yy - zz;
+template <typename V, typename P>
+FAST_INLINE void regressorColumns(const OwnMotion<V>& motion, const Vec<P>& w, const Vec<P>& v,
+                                  P* columns) {
+  countUp<0, 10>([&](auto column)
+                     FAST_LAMBDA { columns[column] = regressorColumn<column>(motion, w, v); });
 }
 
 /// The axis of the joint of this lane, in the frame of its own link; lanes after it are zero.
@@ -166,36 +175,31 @@ inline void regressor(const Robot& robot, const State<double>& state, double* Y,
       }
       if (i < first + kShortWidth) startAxis(own.prismatic, i - first, w[k], v[k]);
       Short columns[10];
-      regressorColumns(motion.U, w[k], v[k], columns);
+      regressorColumns(motion, w[k], v[k], columns);
       storeRows(columns, n - first, link + first, outer_step);
     }
   }
 }
 
-/// The regressors of a pack of states, in each lane its own: each(i, j, ten columns) for the entries
-/// of row j <= i that belong to link i. Row j comes times scale[j].
+/// The links of a pack of states, in each lane its own: each(i, motion, w, v) with the axes of all
+/// joints seen from link i; those after joint i are zero. The axis of joint j comes times scale[j].
 template <typename V, typename Each>
-FAST_INLINE void forEachRegressorPart(const Robot& robot, const State<V>& state, const V* scale,
+FAST_INLINE void forEachRegressorLink(const Robot& robot, const State<V>& state, const V* scale,
                                       const Each& each) {
-  Vec<V> w[kMaxJoints];  // axes of the joints so far
+  Vec<V> w[kMaxJoints];
   Vec<V> v[kMaxJoints];
   OwnMotion<V> motion(robot);
+  for (int j = 0; j < robot.joints; ++j) w[j] = v[j] = Vec<V>{};
   for (int i = 0; i < robot.joints; ++i) {
     const OwnPlacement& own = robot.own[i];
     const Pose<V> X = poseOf(own, state.c[i], state.s[i], state.q[i]);
     motion.step(X, own.prismatic, state.qd[i], state.qdd[i]);
-    w[i] = Vec<V>{};
-    v[i] = Vec<V>{};
-    (own.prismatic ? v : w)[i].z = scale[i];
-    for (int j = 0; j <= i; ++j) {
-      if (j < i) {
-        v[j] = into(X, leverOf(v[j], w[j], X.p));
-        w[j] = into(X, w[j]);
-      }
-      V columns[10];
-      regressorColumns(motion.U, w[j], v[j], columns);
-      each(i, j, columns);
+    for (int j = 0; j < i; ++j) {
+      v[j] = into(X, leverOf(v[j], w[j], X.p));
+      w[j] = into(X, w[j]);
     }
+    (own.prismatic ? v : w)[i].z = scale[i];
+    each(i, motion, w, v);
   }
 }
 
