@@ -194,7 +194,7 @@ void bindEffort(py::module_& module) {
       .def_readonly("reason", &EffortVerdict::reason)
       .def_property_readonly("rivals", &EffortVerdict::rivals)
       .def_property_readonly("summary", &EffortVerdict::summary);
-  py::class_<evaluation::EffortOptions>(
+  const py::class_<evaluation::EffortOptions> effort_options(
       module, "EffortOptions", "What is stated of efforts, and by whom: effort_options().");
   module.def("compare_meanings", &compareMeanings, py::arg("computed"), py::arg("gravity"),
              py::arg("effort"), py::arg("drive_gains") = std::vector<double>(),
