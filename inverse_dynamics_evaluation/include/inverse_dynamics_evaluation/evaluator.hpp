@@ -64,7 +64,7 @@ struct RecordingOptions {
   Clock clock = Clock::kAuto;
   JointLogOptions log;
   std::string scratch;  ///< directory for a file without a name that keeps the samples of the first
-                        ///< pass, 184 bytes each with seven joints; empty: the source is read again
+                        ///< pass, 192 bytes each with seven joints; empty: the source is read again
 };
 
 /// Some samples of a result: n x B, a sample a column, valid during a call.
