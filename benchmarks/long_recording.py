@@ -4,15 +4,20 @@
 
 python3 benchmarks/long_recording.py                        1e6 messages, sqlite3 and MCAP
 python3 benchmarks/long_recording.py --messages 10000000    needs 8 GB of disk, and as much for results
+python3 benchmarks/long_recording.py --update docs/speed.md
+    the table of a page too, between `<!-- long_recording.py -->` and `<!-- long_recording.py: end -->`
 
 The recordings, of a Panda at 1 kHz with seven joints, are made here. CPU is user and system time of
 the process less that on a recording of 27 s, per message; memory is the greatest resident set.
+Beside it, what `recordings_benchmark` measures: reading alone, writing two messages for each one,
+and a plain copy of the bytes that were written.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -66,26 +71,54 @@ def measure(recording: Path, figures: str, directory: Path) -> tuple[float, floa
     return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
 
+def of_files() -> dict[str, list[str]]:
+    """Reading, writing two, copying [us a message] of each storage, by recordings_benchmark."""
+    lines = subprocess.check_output(["recordings_benchmark"], text=True).splitlines()[2:]
+    return {storage: times for storage, *times in map(str.split, lines)}
+
+
+def row(storage: str, messages: int, of_files: list[str]) -> str:
+    """The line of a storage in the table."""
+    with tempfile.TemporaryDirectory() as name:
+        directory = Path(name)
+        for count in (SHORT, messages):
+            write_recording(directory / f"{count}", storage, count)
+        least, _ = measure(directory / f"{SHORT}", "none", directory)
+        cells = []
+        for figures in ("none", "png"):
+            seconds, memory = measure(directory / f"{messages}", figures, directory)
+            cells.append(f"{1e6 * (seconds - least) / (messages - SHORT):.2f} | {memory:.0f}")
+    return f"| {storage} | {' | '.join([*cells, *of_files])} |\n"
+
+
+def update(page: Path, table: str) -> None:
+    """Put the table between the marks of a page."""
+    text, parts = re.subn(
+        r"(?s)(<!-- long_recording.py -->\n).*?(<!-- long_recording.py: end -->)",
+        lambda marks: f"{marks[1]}{table}{marks[2]}",
+        page.read_text(encoding="utf-8"),
+    )
+    if parts != 1:
+        sys.exit(f"{page}: {parts} parts between the marks of long_recording.py; expected one")
+    page.write_text(text, encoding="utf-8")
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description="CPU and memory of ids on long recordings")
     parser.add_argument("--messages", type=int, default=1_000_000)
-    parser.add_argument("--storage", choices=("sqlite3", "mcap"), action="append")
+    parser.add_argument("--update", type=Path, metavar="PAGE")
     arguments = parser.parse_args()
-    for storage in arguments.storage or ["sqlite3", "mcap"]:
-        with tempfile.TemporaryDirectory() as name:
-            directory = Path(name)
-            for messages in (SHORT, arguments.messages):
-                write_recording(directory / f"{messages}", storage, messages)
-            least, _ = measure(directory / f"{SHORT}", "none", directory)
-            for figures in ("none", "png"):
-                seconds, memory = measure(directory / f"{arguments.messages}", figures, directory)
-                each = 1e6 * (seconds - least) / (arguments.messages - SHORT)
-                print(
-                    f"{storage:<8} {arguments.messages} messages, --figures {figures:<5}"
-                    f"{each:6.2f} us of CPU per message, {memory:5.0f} MB",
-                    flush=True,
-                )
+    table = (
+        f"| {arguments.messages} messages | without figures [µs] | [MB] | with its PNG [µs] | [MB] "
+        "| reading [µs] | writing two [µs] | copying what was written [µs] |\n"
+        "|---|--:|--:|--:|--:|--:|--:|--:|\n"
+    )
+    for storage, times in of_files().items():
+        table += row(storage, arguments.messages, times)
+    print(table, end="")
+    if arguments.update:
+        update(arguments.update, table)
 
 
 if __name__ == "__main__":
