@@ -46,6 +46,8 @@ ComputedTorque::ComputedTorque(std::shared_ptr<const InverseDynamicsSolver> solv
   acceleration_ = Eigen::VectorXd::Zero(jointCount());
 }
 
+bool ComputedTorque::setGains(const Gains& gains) noexcept { return replaceGains(gains, gains_); }
+
 Status ComputedTorque::update(const JointState& state, const Reference& reference, double period,
                               VectorRef tau) noexcept {
   for (const Status status :

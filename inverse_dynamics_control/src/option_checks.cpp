@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "option_checks.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <sstream>
@@ -65,6 +66,13 @@ void requireJointNumbers(const std::string& where, const Eigen::Ref<const Eigen:
         where + ": joint " + joint_names[static_cast<std::size_t>(j)], "wrong value",
         std::string(inWords(range)) + " [" + unit + "]", number(values[j]), "correct this number"));
   }
+}
+
+bool areJointNumbers(const Eigen::Ref<const Eigen::VectorXd>& values, Range range,
+                     Eigen::Index n) noexcept {
+  if (values.size() != n) return false;
+  return std::all_of(values.data(), values.data() + n,
+                     [range](double value) { return isWithin(value, range); });
 }
 
 }  // namespace v2

@@ -27,5 +27,22 @@ void requireJointNumbers(const std::string& where, const Eigen::Ref<const Eigen:
                          Range range, const std::string& unit,
                          const std::vector<std::string>& joint_names);
 
+/// Whether `values` has n numbers, each in its range.
+bool areJointNumbers(const Eigen::Ref<const Eigen::VectorXd>& values, Range range,
+                     Eigen::Index n) noexcept;
+
+/// Gains Kp and Kd instead of those kept, without allocation; or, where they aren't as many, finite
+/// and >= 0, nothing and false.
+template <class PairOfGains>
+bool replaceGains(const PairOfGains& gains, PairOfGains& kept) noexcept {
+  if (!areJointNumbers(gains.Kp, Range::kNotNegative, kept.Kp.size()) ||
+      !areJointNumbers(gains.Kd, Range::kNotNegative, kept.Kd.size())) {
+    return false;
+  }
+  kept.Kp = gains.Kp;
+  kept.Kd = gains.Kd;
+  return true;
+}
+
 }  // namespace v2
 }  // namespace inverse_dynamics_control

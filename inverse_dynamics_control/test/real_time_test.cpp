@@ -28,6 +28,9 @@ TEST(RealTime, NoCycleAllocatesLocksOrThrows) {
   options.limits.rate = vec({1.0, 1.0});
   ComputedTorque computed_torque(solver, Gains::uniform(2, 20.0, 1.0), options);
   GravityCompensation gravity_compensation(solver, options);
+  PdGravityCompensation pd(solver, {vec({3.0, 2.0}), vec({0.3, 0.2})}, options);
+  const PdGains other_pd_gains{vec({4.0, 2.0}), vec({0.4, 0.2})};
+  const Gains other_gains = Gains::uniform(2, 30.0, 1.0);
   FeedForward feed_forward(solver, ModelState::kMeasured, options);
   SafeStop stop(vec({1.0, 1.0}), solver->jointNames());
   ReferenceGuard reference_guard(ReferenceLimits::none(2), vec({1.0, 1.0}), solver->jointNames());
@@ -53,6 +56,9 @@ TEST(RealTime, NoCycleAllocatesLocksOrThrows) {
     EXPECT_EQ(allocations([&] { computed_torque.update(*state, reference, kPeriod, tau); }), 0);
     EXPECT_EQ(allocations([&] { computed_torque.hold(*state, kPeriod, tau); }), 0);
     EXPECT_EQ(allocations([&] { computed_torque.start(effort); }), 0);
+    EXPECT_EQ(allocations([&] { computed_torque.setGains(other_gains); }), 0);
+    EXPECT_EQ(allocations([&] { pd.update(*state, reference, kPeriod, tau); }), 0);
+    EXPECT_EQ(allocations([&] { pd.setGains(other_pd_gains); }), 0);
     EXPECT_EQ(allocations([&] { gravity_compensation.update(*state, kPeriod, tau); }), 0);
     EXPECT_EQ(allocations([&] { gravity_compensation.update(*state, effort, kPeriod, tau); }), 0);
     EXPECT_EQ(allocations([&] { feed_forward.update(*state, reference, effort, kPeriod, tau); }),

@@ -614,6 +614,15 @@ class Gains:
     @property
     def Kd(self) -> Floats: ...
 
+class PdGains:
+    """Gains of a PD law, (n,) each: N m/rad, N m s/rad."""
+
+    def __init__(self, Kp: ArrayLike, Kd: ArrayLike) -> None: ...
+    @property
+    def Kp(self) -> Floats: ...
+    @property
+    def Kd(self) -> Floats: ...
+
 def damping_for(solver: Solver, q: ArrayLike, rate: float, period: float) -> Floats: ...
 
 class ControlLaw:
@@ -639,6 +648,21 @@ class ComputedTorque(ControlLaw):
         qdd_reference: ArrayLike,
         period: float,
     ) -> tuple[Floats, Status]: ...
+    def set_gains(self, gains: Gains) -> None: ...
+
+class PdGravityCompensation(ControlLaw):
+    """tau = g(q) + Kp e + Kd ed + f."""
+
+    def __init__(self, solver: Solver, gains: PdGains, options: LawOptions) -> None: ...
+    def update(
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        q_reference: ArrayLike,
+        qd_reference: ArrayLike,
+        period: float,
+    ) -> tuple[Floats, Status]: ...
+    def set_gains(self, gains: PdGains) -> None: ...
 
 class GravityCompensation(ControlLaw):
     """tau = g(q) - damping qd + f."""

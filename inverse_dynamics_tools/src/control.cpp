@@ -16,9 +16,11 @@ INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::Compensated)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::FrictionOptions)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::LawOptions)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::Gains)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::PdGains)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::ControlLaw)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::ComputedTorque)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::GravityCompensation)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::PdGravityCompensation)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::FeedForward)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::SafeStop)
 
@@ -67,6 +69,23 @@ Result gravityCompensation(GravityCompensation& law, const Vector& q, const Vect
   const Status status =
       qd_reference ? law.update(state, *qd_reference, period, tau) : law.update(state, period, tau);
   return {tau, status};
+}
+
+Result pdGravityCompensation(PdGravityCompensation& law, const Vector& q, const Vector& qd,
+                             const Vector& q_reference, const Vector& qd_reference, double period) {
+  Vector tau(law.jointCount());
+  const Reference reference = referenceOf(q_reference, qd_reference, Vector());
+  const Status status = law.update(stateOf(q, qd), reference, period, tau);
+  return {tau, status};
+}
+
+// The error of a constructor for the same gains, where they aren't accepted.
+template <class Law, class AnyGains>
+void setGains(Law& law, const AnyGains& gains) {
+  if (law.setGains(gains)) return;
+  throw py::value_error("set_gains: expected " + std::to_string(law.jointCount()) +
+                        " finite numbers that aren't negative for each of Kp and Kd; the gains "
+                        "are as they were");
 }
 
 Result feedForward(FeedForward& law, const Vector& q, const Vector& qd, const Vector& q_reference,
@@ -136,6 +155,13 @@ void bindOptions(py::module_& module) {
                   "Kp = w^2, Kd = 2 z w; w in rad/s.")
       .def_readonly("Kp", &Gains::Kp)
       .def_readonly("Kd", &Gains::Kd);
+  py::class_<PdGains>(module, "PdGains", "Gains of a PD law, (n,) each: N m/rad, N m s/rad.")
+      .def(py::init([](const Vector& Kp, const Vector& Kd) {
+             return PdGains{Kp, Kd};
+           }),
+           py::arg("Kp"), py::arg("Kd"))
+      .def_readonly("Kp", &PdGains::Kp)
+      .def_readonly("Kd", &PdGains::Kd);
 }
 
 void bindLaws(py::module_& module) {
@@ -161,7 +187,19 @@ void bindLaws(py::module_& module) {
            }),
            py::arg("solver"), py::arg("gains"), py::arg("options"))
       .def("update", &computedTorque, py::arg("q"), py::arg("qd"), py::arg("q_reference"),
-           py::arg("qd_reference"), py::arg("qdd_reference"), py::arg("period"), "(tau, Status).");
+           py::arg("qd_reference"), py::arg("qdd_reference"), py::arg("period"), "(tau, Status).")
+      .def("set_gains", &setGains<ComputedTorque, Gains>, py::arg("gains"),
+           "From the next update on; ValueError, and nothing changed, for bad ones.");
+  py::class_<PdGravityCompensation, ControlLaw>(module, "PdGravityCompensation",
+                                                "tau = g(q) + Kp e + Kd ed + f.")
+      .def(py::init([](const py::object& solver, const PdGains& gains, const LawOptions& options) {
+             return PdGravityCompensation(solverOf(solver), gains, options);
+           }),
+           py::arg("solver"), py::arg("gains"), py::arg("options"))
+      .def("update", &pdGravityCompensation, py::arg("q"), py::arg("qd"), py::arg("q_reference"),
+           py::arg("qd_reference"), py::arg("period"), "(tau, Status).")
+      .def("set_gains", &setGains<PdGravityCompensation, PdGains>, py::arg("gains"),
+           "From the next update on; ValueError, and nothing changed, for bad ones.");
   py::class_<GravityCompensation, ControlLaw>(module, "GravityCompensation",
                                               "tau = g(q) - damping qd + f.")
       .def(py::init([](const py::object& solver, const LawOptions& options) {

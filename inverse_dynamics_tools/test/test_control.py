@@ -16,6 +16,8 @@ from inverse_dynamics.control import (
     GravityCompensation,
     LawOptions,
     ModelState,
+    PdGains,
+    PdGravityCompensation,
     SafeStop,
     Status,
     damping_for,
@@ -68,6 +70,21 @@ def test_gravity_compensation(solver, identified):
     tau, _ = GravityCompensation(identified, guided).update(q, 0 * qd, PERIOD, qd_reference=qd_ref)
     expected = identified.gravity_vector(q) + identified.friction_vector(qd_ref)
     np.testing.assert_allclose(tau, expected, atol=ROUNDING)
+
+
+def test_pd_with_gravity_compensation(identified):
+    Kp, Kd = np.arange(10.0, 70, 10), np.arange(1.0, 7)
+    without = options(friction=FrictionOptions(FrictionSource.NONE))
+    law = PdGravityCompensation(identified, PdGains(Kp, Kd), without)
+    tau, status = law.update(q, qd, q_ref, qd_ref, PERIOD)
+    expected = identified.gravity_vector(q) + Kp * (q_ref - q) + Kd * (qd_ref - qd)
+    np.testing.assert_allclose(tau, expected, atol=ROUNDING)
+    assert status == Status.OK
+    law.set_gains(PdGains(2 * Kp, Kd))
+    tau, _ = law.update(q, qd, q_ref, qd_ref, PERIOD)
+    np.testing.assert_allclose(tau, expected + Kp * (q_ref - q), atol=ROUNDING)
+    with pytest.raises(ValueError, match="expected 6 finite numbers that aren't negative"):
+        law.set_gains(PdGains(-Kp, Kd))
 
 
 def test_feed_forward_of_an_identified_robot(identified):

@@ -53,6 +53,12 @@ class ComputedTorque : public ControlLaw {
   ComputedTorque(std::shared_ptr<const InverseDynamicsSolver> solver, Gains gains,
                  const LawOptions& options);
 
+  /// Other gains from the next update on; for the thread that calls update(). The output steps by
+  /// H times the change times the present error, within its rate limit.
+  ///
+  /// @return false, and the gains are as they were, where the constructor would throw.
+  bool setGains(const Gains& gains) noexcept;
+
   /// Torque for the next period.
   ///
   /// @param period    s since the last call of hold() or update(), for the rate limit.
