@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "chain_dynamics/energy.hpp"
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/parameter_sets.hpp"
 #include "definite_inertia.hpp"
@@ -63,6 +64,11 @@ void coriolisVector(const Model& model, const ConstVectorRef& q, const ConstVect
   coriolisVector(model.chain, setsOf(model), q, qd, c);
 }
 
+void coriolisMatrix(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                    MatrixRef C) {
+  coriolisMatrix(model.chain, setsOf(model), q, qd, C);
+}
+
 void gravityVector(const Model& model, const ConstVectorRef& q, VectorRef g) {
   gravityVector(model.chain, setsOf(model), q, g);
 }
@@ -70,6 +76,18 @@ void gravityVector(const Model& model, const ConstVectorRef& q, VectorRef g) {
 void dynamicComponents(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                        MatrixRef H, VectorRef c, VectorRef g) {
   dynamicComponents(model.chain, setsOf(model), q, qd, H, c, g);
+}
+
+double kineticEnergy(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd) {
+  assert(model.row_parameters.empty());
+  return kineticEnergy(model.chain, q, qd);
+}
+
+double potentialEnergy(const Model& model, const ConstVectorRef& q) {
+  const bool own = !model.gravity_parameters.empty();
+  assert(own || model.row_parameters.empty());
+  return internal::potentialEnergyOf(model.chain,
+                                     own ? model.gravity_parameters : model.chain.links(), q);
 }
 
 void frictionVector(const Model& model, const ConstVectorRef& qd, VectorRef f) {

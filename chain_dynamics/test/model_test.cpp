@@ -37,19 +37,20 @@ Model robotModel(const std::string& name) {
 /// All that a Model gives at one state.
 struct Values {
   explicit Values(Eigen::Index n)
-      : H(n, n), H_alone(n, n), c(n), c_alone(n), g(n), g_alone(n), f(n), tau(n) {}
+      : H(n, n), H_alone(n, n), C(n, n), c(n), c_alone(n), g(n), g_alone(n), f(n), tau(n) {}
 
   void compute(const Model& model, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
                const Eigen::VectorXd& qdd) {
     dynamicComponents(model, q, qd, H, c, g);
     inertiaMatrix(model, q, H_alone);
     coriolisVector(model, q, qd, c_alone);
+    coriolisMatrix(model, q, qd, C);
     gravityVector(model, q, g_alone);
     frictionVector(model, qd, f);
     torques(model, q, qd, qdd, tau);
   }
 
-  Eigen::MatrixXd H, H_alone;
+  Eigen::MatrixXd H, H_alone, C;
   Eigen::VectorXd c, c_alone, g, g_alone, f, tau;
 };
 
@@ -87,7 +88,38 @@ TEST(Model, TorquesAreTheSumOfTheComponents) {
     EXPECT_LT(difference(values.H, values.H_alone), kRounding) << name;
     EXPECT_LT(difference(values.c, values.c_alone), kRounding) << name;
     EXPECT_LT(difference(values.g, values.g_alone), kRounding) << name;
+    EXPECT_LT(difference(values.C * qd, values.c), kRounding) << name;
   }
+}
+
+// T = 1/2 qd' H qd; g is the gradient of U, here by central differences.
+TEST(Model, EnergiesAreThoseOfInertiaAndGravity) {
+  constexpr double kStep = 1e-5;
+  constexpr double kDifferences = 1e-7;  // third derivatives of some 100 J, times step^2; rounding
+  for (const bool own_gravity : {false, true}) {
+    Model model = robotModel("franka_gaz2019_feasible");
+    if (own_gravity) {
+      model.gravity_parameters = robotModel("franka_inria_identified").gravity_parameters;
+      ASSERT_FALSE(model.gravity_parameters.empty());
+    }
+    const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(7, -2, 1.5);
+    const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(7, 2, -1.7);
+    Values values(7);
+    values.compute(model, q, qd, qd);
+    EXPECT_NEAR(kineticEnergy(model, q, qd), 0.5 * qd.dot(values.H * qd), kRounding);
+    for (Eigen::Index i = 0; i < 7; ++i) {
+      const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(7, i);
+      const double rise = potentialEnergy(model, q + step) - potentialEnergy(model, q - step);
+      EXPECT_NEAR(rise / (2 * kStep), values.g[i], kDifferences) << i << own_gravity;
+    }
+  }
+}
+
+// Its mass hangs 1.5 m below the root frame's origin.
+TEST(Model, PotentialEnergyIsZeroAtTheRootFramesOrigin) {
+  const Model model(test::pendulum(2, 1.5, 9.81));
+  const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, -std::acos(0.0));
+  EXPECT_NEAR(potentialEnergy(model, q), -2 * 9.81 * 1.5, kRounding);
 }
 
 TEST(Model, GravityMayBeChanged) {

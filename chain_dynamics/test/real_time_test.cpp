@@ -16,6 +16,7 @@
 #include "chain_dynamics/forward_dynamics.hpp"
 #include "chain_dynamics/parameter_sets.hpp"
 #include "chain_dynamics/regressor.hpp"
+#include "chain_dynamics/tip_kinematics.hpp"
 #include "random_chains.hpp"
 
 namespace chain_dynamics {
@@ -35,6 +36,9 @@ struct Everything {
         H(chain.jointCount(), chain.jointCount()),
         dtau_dq(H),
         dtau_dqd(H),
+        C(H),
+        J(6, chain.jointCount()),
+        dJ(J),
         Y(chain.jointCount(), 10 * chain.jointCount()) {}
 
   void compute(const Chain& chain, const ParameterSets& sets) {
@@ -45,12 +49,17 @@ struct Everything {
     gravityVector(chain, q, g);
     dynamicComponents(chain, q, qd, H, c, g);
     forwardDynamics(chain, q, qd, tau, qdd);
+    coriolisMatrix(chain, q, qd, C);
+    tipJacobian(chain, q, J);
+    tipJacobianDerivative(chain, q, qd, dJ);
+    tip = tipPose(chain, q);
     regressor(chain, q, qd, a, Y);
     torqueDerivatives(chain, q, qd, a, dtau_dq, dtau_dqd, H);
     energy = kineticEnergy(chain, q, qd) + potentialEnergy(chain, q);
     torques(chain, sets, q, qd, a, tau);
     inertiaMatrix(chain, sets, q, H);
     coriolisVector(chain, sets, q, qd, c);
+    coriolisMatrix(chain, sets, q, qd, C);
     gravityVector(chain, sets, q, g);
     dynamicComponents(chain, sets, q, qd, H, c, g);
     torqueDerivatives(chain, sets, q, qd, a, dtau_dq, dtau_dqd, H);
@@ -58,7 +67,8 @@ struct Everything {
 
   State<Scalar> state;
   VectorX<Scalar> tau, c, g, qdd;
-  MatrixX<Scalar> H, dtau_dq, dtau_dqd, Y;
+  MatrixX<Scalar> H, dtau_dq, dtau_dqd, C, J, dJ, Y;
+  Transform<Scalar> tip;
   Scalar energy;
 };
 
@@ -134,6 +144,10 @@ TEST(Threads, GiveTheSameNumbersAsOneAlone) {
     EXPECT_EQ(result.H, alone.H);
     EXPECT_EQ(result.dtau_dq, alone.dtau_dq);
     EXPECT_EQ(result.dtau_dqd, alone.dtau_dqd);
+    EXPECT_EQ(result.C, alone.C);
+    EXPECT_EQ(result.J, alone.J);
+    EXPECT_EQ(result.dJ, alone.dJ);
+    EXPECT_EQ(result.tip.p, alone.tip.p);
     EXPECT_EQ(result.c, alone.c);
     EXPECT_EQ(result.g, alone.g);
     EXPECT_EQ(result.qdd, alone.qdd);

@@ -18,6 +18,7 @@
 #include "chain_dynamics/forward_dynamics.hpp"
 #include "chain_dynamics/parameter_sets.hpp"
 #include "chain_dynamics/regressor.hpp"
+#include "chain_dynamics/tip_kinematics.hpp"
 #include "example_models.hpp"
 
 namespace chain_dynamics {
@@ -173,12 +174,16 @@ TEST(StackOfPlainFunctions, IsBounded) {
   const State<double> x = randomState<double>(chain, 1);
   const VectorXd &q = x.q, &qd = x.qd, &qdd = x.qdd;
   const Index n = q.size();
-  MatrixXd H(n, n), by_q(n, n), by_qd(n, n), Y(n, 10 * n);
+  MatrixXd H(n, n), by_q(n, n), by_qd(n, n), J(6, n), Y(n, 10 * n);
   VectorXd c(n), g(n);
   expectWithin(
       kPlainBound, "plain",
       {{"torques", [&] { torques(chain, sets, q, qd, qdd, c); }},
        {"components", [&] { dynamicComponents(chain, sets, q, qd, H, c, g); }},
+       {"C", [&] { coriolisMatrix(chain, sets, q, qd, H); }},
+       {"tip", [&] { c.head(3) = tipPose(chain, q).p; }},
+       {"J", [&] { tipJacobian(chain, q, J); }},
+       {"dJ", [&] { tipJacobianDerivative(chain, q, qd, J); }},
        {"forward dynamics", [&] { forwardDynamics(chain, q, qd, qdd, c); }},
        {"regressor", [&] { regressor(chain, q, qd, qdd, Y); }},
        {"derivatives", [&] { torqueDerivatives(chain, sets, q, qd, qdd, by_q, by_qd, H); }},

@@ -19,7 +19,7 @@ inline namespace v2 {
 /// Coriolis and centrifugal torques: `C(q, qd) qd`.
 ///
 /// The recursion of torques.hpp at qdd = 0 and without gravity [Featherstone 2008, sec. 5.3], O(n).
-/// Only the product is computed, never the matrix C, which isn't unique.
+/// Only the product is computed, without the matrix [coriolis_matrix.hpp].
 ///
 /// @tparam Scalar  (of q, qd, c) float, double or a dual number.
 /// @param q,qd     n each; rad, rad/s (prismatic m, m/s); order of chain.jointNames().

@@ -16,6 +16,27 @@
 
 namespace chain_dynamics {
 inline namespace v2 {
+namespace internal {
+
+// Potential energy of gravity with one parameter set.
+template <typename Q>
+typename Q::Scalar potentialEnergyOf(const Chain& chain, const std::vector<LinkParameters>& links,
+                                     const Eigen::MatrixBase<Q>& q) {
+  using Scalar = typename Q::Scalar;
+  assert(q.size() == chain.jointCount());
+  const Vector3<Scalar> gravity = chain.gravity().template cast<Scalar>();
+
+  Transform<Scalar> X_0i = Transform<Scalar>::identity();
+  Scalar energy(0);
+  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
+    X_0i = X_0i * jointPose<Scalar>(joint(chain, i), q[i]);
+    const SpatialInertia<Scalar> I = link<Scalar>(links, i);
+    energy -= gravity.dot(X_0i.p * I.mass + X_0i.R * I.first_moment);
+  }
+  return energy;
+}
+
+}  // namespace internal
 
 /// Kinetic energy: `T(q, qd) = sum of 1/2 V' I V + 1/2 rotor_inertia qd^2`, which is `1/2 qd' H
 /// qd`.
@@ -56,18 +77,7 @@ typename Q::Scalar kineticEnergy(const Chain& chain, const Eigen::MatrixBase<Q>&
 /// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 template <typename Q>
 typename Q::Scalar potentialEnergy(const Chain& chain, const Eigen::MatrixBase<Q>& q) {
-  using Scalar = typename Q::Scalar;
-  assert(q.size() == chain.jointCount());
-  const Vector3<Scalar> gravity = chain.gravity().template cast<Scalar>();
-
-  Transform<Scalar> X_0i = Transform<Scalar>::identity();
-  Scalar energy(0);
-  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
-    X_0i = X_0i * jointPose<Scalar>(internal::joint(chain, i), q[i]);
-    const SpatialInertia<Scalar> I = internal::link<Scalar>(chain.links(), i);
-    energy -= gravity.dot(X_0i.p * I.mass + X_0i.R * I.first_moment);
-  }
-  return energy;
+  return internal::potentialEnergyOf(chain, chain.links(), q);
 }
 
 }  // namespace v2

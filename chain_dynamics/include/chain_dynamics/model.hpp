@@ -102,6 +102,17 @@ void inertiaMatrix(const Model& model, const ConstVectorRef& q, MatrixRef H);
 void coriolisVector(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                     VectorRef c);
 
+/// Coriolis matrix of Christoffel's symbols: `C(q, qd)`; row j with the parameters of row j.
+///
+/// `C qd` is that of coriolisVector(). `dH/dt = C + C'` without row parameters; with them, H isn't
+/// symmetric either. Recursion over blocks of links [coriolis_matrix.hpp], O(n^2), or once per row.
+///
+/// @param q,qd    n each; rad, rad/s (prismatic m, m/s).
+/// @param[out] C  n x n; kg m^2/s (prismatic kg/s, mixed kg m/s).
+/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+void coriolisMatrix(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                    MatrixRef C);
+
 /// Gravity torques: `g(q)`.
 ///
 /// @param q       n; rad (prismatic m).
@@ -118,6 +129,21 @@ void gravityVector(const Model& model, const ConstVectorRef& q, VectorRef g);
 /// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 void dynamicComponents(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                        MatrixRef H, VectorRef c, VectorRef g);
+
+/// Kinetic energy: `T(q, qd) = 1/2 qd' H qd`, rotors included; for models without row parameters.
+///
+/// @param q,qd  n each; rad, rad/s (prismatic m, m/s).
+/// @return      J.
+/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+double kineticEnergy(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd);
+
+/// Potential energy of gravity: `U(q)`, zero where all mass is at the root frame's origin; its
+/// gradient is gravityVector(). For models without row parameters, or with some for gravity.
+///
+/// @param q  n; rad (prismatic m).
+/// @return   J.
+/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+double potentialEnergy(const Model& model, const ConstVectorRef& q);
 
 /// Friction torques: `f(qd)`; zero where the model knows no friction, but NaN for NaN.
 ///

@@ -21,6 +21,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "chain_dynamics/coriolis_matrix.hpp"
 #include "chain_dynamics/gravity_vector.hpp"
 #include "chain_dynamics/inertia_matrix.hpp"
 #include "chain_dynamics/kinematics.hpp"
@@ -56,32 +57,33 @@ inline bool haveSizesOf(const Chain& chain, const ParameterSets& sets) {
          (sets.gravity.empty() || sets.gravity.size() == n);
 }
 
+// compute(links, first) gives rows first to n - 1 of a matrix or vector; row j is to be that of set j.
+template <typename Compute>
+void forEachSet(const Chain& chain, const ParameterSets& sets, const Compute& compute) {
+  if (sets.rows.empty()) return compute(chain.links(), Eigen::Index{0});
+  // set j gives rows j to n - 1, of which set j + 1 then overwrites all but row j
+  for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
+    compute(sets.rows[static_cast<std::size_t>(j)], j);
+  }
+}
+
 // Torques of the links' motion, row j with set j.
 template <typename Scalar, typename Tau>
 void rowTorques(const Chain& chain, const ParameterSets& sets, const Scratch<Transform<Scalar>>& X,
                 const Scratch<Motion<Scalar>>& V, const Scratch<Motion<Scalar>>& A, Tau& tau) {
-  if (sets.rows.empty()) {
-    torquesOfMotion(chain, chain.links(), X, V, A, 0, tau);
-    return;
-  }
-  // set j gives rows j to n - 1, of which set j + 1 then overwrites all but row j
-  for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
-    torquesOfMotion(chain, sets.rows[static_cast<std::size_t>(j)], X, V, A, j, tau);
-  }
+  forEachSet(chain, sets, [&](const std::vector<LinkParameters>& links, Eigen::Index first) {
+    torquesOfMotion(chain, links, X, V, A, first, tau);
+  });
 }
 
 // Gravity torques, row j with set j or all with the set for gravity.
 template <typename Scalar, typename G>
 void rowGravity(const Chain& chain, const ParameterSets& sets, const Scratch<Transform<Scalar>>& X,
                 const Scratch<Vector3<Scalar>>& a, G& g) {
-  if (sets.rows.empty() || !sets.gravity.empty()) {
-    gravityOfPoses(chain, sets.gravity.empty() ? chain.links() : sets.gravity, X, a, 0, g);
-    return;
-  }
-  // as in rowTorques: only row j of set j stays
-  for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
-    gravityOfPoses(chain, sets.rows[static_cast<std::size_t>(j)], X, a, j, g);
-  }
+  if (!sets.gravity.empty()) return gravityOfPoses(chain, sets.gravity, X, a, 0, g);
+  forEachSet(chain, sets, [&](const std::vector<LinkParameters>& links, Eigen::Index first) {
+    gravityOfPoses(chain, links, X, a, first, g);
+  });
 }
 
 // Row j of the inertia matrix with one parameter set, O(n).
@@ -126,21 +128,6 @@ void rowInertia(const Chain& chain, const ParameterSets& sets, const Scratch<Tra
   }
   for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
     inertiaRow(chain, sets.rows[static_cast<std::size_t>(j)], X, j, H);
-  }
-}
-
-// Derivatives of the torques of the links' motion, row j with set j.
-template <typename Scalar, typename Matrices>
-void rowDerivatives(const Chain& chain, const ParameterSets& sets,
-                    const Scratch<Transform<Scalar>>& X, const Scratch<Motion<Scalar>>& V,
-                    const Scratch<Motion<Scalar>>& A, const Matrices& out) {
-  if (sets.rows.empty()) {
-    derivativesOfMotion(chain, chain.links(), X, V, A, 0, out);
-    return;
-  }
-  // as in rowTorques: only row j of set j stays
-  for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
-    derivativesOfMotion(chain, sets.rows[static_cast<std::size_t>(j)], X, V, A, j, out);
   }
 }
 
@@ -208,6 +195,24 @@ void coriolisVector(const Chain& chain, const ParameterSets& sets, const Eigen::
   internal::rowTorques(chain, sets, X, V, A, c.const_cast_derived());
 }
 
+/// Coriolis matrix, as coriolisMatrix(chain, q, qd, C), with these parameters: row j with set j, so
+/// that `dH/dt = C + C'` holds for one set only.
+template <typename Q, typename Qd, typename MatrixC>
+void coriolisMatrix(const Chain& chain, const ParameterSets& sets, const Eigen::MatrixBase<Q>& q,
+                    const Eigen::MatrixBase<Qd>& qd, const Eigen::MatrixBase<MatrixC>& C) {
+  using Scalar = typename Q::Scalar;
+  const Eigen::Index n = chain.jointCount();
+  assert(C.rows() == n && C.cols() == n && internal::haveSizesOf(chain, sets));
+  Scratch<Transform<Scalar>> X(n);
+  Scratch<Motion<Scalar>> V(n);
+  internal::linkPoses(chain, q, X);
+  internal::linkVelocities(chain, X, qd, V);
+  internal::forEachSet(
+      chain, sets, [&](const std::vector<LinkParameters>& links, Eigen::Index first) {
+        internal::coriolisOfMotion(chain, links, X, V, first, C.const_cast_derived());
+      });
+}
+
 /// Gravity torques, as gravityVector(chain, q, g), with these parameters.
 template <typename Q, typename G>
 void gravityVector(const Chain& chain, const ParameterSets& sets, const Eigen::MatrixBase<Q>& q,
@@ -269,7 +274,10 @@ void torqueDerivatives(const Chain& chain, const ParameterSets& sets, const Eige
   internal::linkPoses(chain, q, X);
   internal::linkVelocities(chain, X, qd, V);
   internal::linkAccelerations(chain, X, V, qd, qdd, gravity, A);
-  internal::rowDerivatives(chain, sets, X, V, A, out);
+  internal::forEachSet(chain, sets,
+                       [&](const std::vector<LinkParameters>& links, Eigen::Index first) {
+                         internal::derivativesOfMotion(chain, links, X, V, A, first, out);
+                       });
   if (own_gravity) internal::addGravityDerivatives(chain, sets.gravity, X, out.q);
 }
 

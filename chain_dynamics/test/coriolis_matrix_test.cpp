@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "chain_dynamics/coriolis_matrix.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "chain_dynamics/coriolis_vector.hpp"
+#include "chain_dynamics/dual.hpp"
+#include "chain_dynamics/inertia_matrix.hpp"
+#include "chain_dynamics/parameter_sets.hpp"
+#include "example_robots.hpp"
+#include "lagrange.hpp"
+#include "random_chains.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+
+// A handful of operations on numbers of size one.
+constexpr double kByHand = 1e-14;
+
+template <typename Scalar>
+MatrixX<Scalar> coriolisMatrixOf(const Chain& chain, const VectorX<Scalar>& q,
+                                 const VectorX<Scalar>& qd) {
+  MatrixX<Scalar> C(chain.jointCount(), chain.jointCount());
+  C.setConstant(std::numeric_limits<Scalar>::quiet_NaN());
+  coriolisMatrix(chain, q, qd, C);
+  return C;
+}
+
+template <typename Scalar>
+MatrixX<Scalar> rates(const MatrixX<Dual<Scalar, 1>>& matrix) {
+  return matrix.unaryExpr([](const Dual<Scalar, 1>& x) { return x.derivative[0]; });
+}
+
+// dH/dt along the motion.
+template <typename Scalar>
+MatrixX<Scalar> rateOfInertia(const Chain& chain, const VectorX<Scalar>& q,
+                              const VectorX<Scalar>& qd) {
+  MatrixX<Dual<Scalar, 1>> H(chain.jointCount(), chain.jointCount());
+  inertiaMatrix(chain, moving<Scalar>(q, qd), H);
+  return rates<Scalar>(H);
+}
+
+// Half the derivative of C qd, which is what Christoffel's symbols are.
+template <typename Scalar, typename Vector>
+MatrixX<Scalar> halfDerivative(const State<Scalar>& state, const Vector& coriolis_vector) {
+  const Eigen::Index n = state.q.size();
+  const VectorX<Dual<Scalar, 1>> q = state.q.template cast<Dual<Scalar, 1>>();
+  MatrixX<Scalar> C(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    MatrixX<Dual<Scalar, 1>> c(n, 1);
+    coriolis_vector(q, variable(state.qd, j), c.col(0));
+    C.col(j) = Scalar(0.5) * rates<Scalar>(c);
+  }
+  return C;
+}
+
+// The size of the terms that C is the sum of, cancelling or not.
+template <typename Scalar>
+double termsOf(const Chain& chain, const State<Scalar>& state, const MatrixX<Scalar>& C) {
+  return largest(C) + largest(rateOfInertia(chain, state.q, state.qd));
+}
+
+template <typename Scalar>
+class CoriolisMatrixOf : public ::testing::Test {};
+using Scalars = ::testing::Types<double, float>;
+TYPED_TEST_SUITE(CoriolisMatrixOf, Scalars, );
+
+// Of H in inertia_matrix_test.cpp: with k = m2 l1 l2,
+//   C = k sin q2 [-qd2, -(qd1 + qd2); qd1, 0]
+TEST(CoriolisMatrix, OfADoublePendulumByHand) {
+  const Chain chain = doublePendulum(1.5, 0.6, 0.8, 0.4, 9.81);
+  const double k_s2 = 0.8 * 0.6 * 0.4 * std::sin(-1.1);
+  Eigen::Matrix2d expected;
+  expected << -k_s2 * 0.9, -k_s2 * (1.3 + 0.9), k_s2 * 1.3, 0;
+  EXPECT_TRUE(
+      agree(coriolisMatrixOf<double>(chain, Eigen::Vector2d(0.4, -1.1), Eigen::Vector2d(1.3, 0.9)),
+            expected, 1, kByHand));
+}
+
+// A mass at radius r on a turntable: H = diag(m r^2, m).
+TEST(CoriolisMatrix, OfATurntableWithASlideByHand) {
+  const double m = 3, r = 0.4, rd = -0.7, phid = 2;
+  Eigen::Matrix2d expected;
+  expected << m * r * rd, m * r * phid, -m * r * phid, 0;
+  EXPECT_TRUE(agree(
+      coriolisMatrixOf<double>(turntable(m), Eigen::Vector2d(0.3, r), Eigen::Vector2d(phid, rd)),
+      expected, 1, kByHand));
+}
+
+TYPED_TEST(CoriolisMatrixOf, AnyRobotIsThatOfChristoffelsSymbols) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    const MatrixX<Scalar> C = coriolisMatrixOf(chain, state.q, state.qd);
+    const MatrixX<Scalar> expected = halfDerivative(
+        state, [&](const auto& q, const auto& qd, auto c) { coriolisVector(chain, q, qd, c); });
+    EXPECT_TRUE(agree(C, expected, termsOf(chain, state, C), rounding<Scalar>(chain)));
+  });
+}
+
+TYPED_TEST(CoriolisMatrixOf, AnyRobotTimesVelocityIsTheCoriolisVector) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    const MatrixX<Scalar> C = coriolisMatrixOf(chain, state.q, state.qd);
+    VectorX<Scalar> c(chain.jointCount());
+    coriolisVector(chain, state.q, state.qd, c);
+    const double scale = termsOf(chain, state, C) * static_cast<double>(state.qd.cwiseAbs().sum());
+    EXPECT_TRUE(agree((C * state.qd).eval(), c, scale, rounding<Scalar>(chain)));
+  });
+}
+
+// dH/dt = C + C', so dH/dt - 2 C = C' - C is skew.
+TYPED_TEST(CoriolisMatrixOf, AnyRobotAndItsTransposeAreTheRateOfInertia) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    const MatrixX<Scalar> C = coriolisMatrixOf(chain, state.q, state.qd);
+    EXPECT_TRUE(agree((C + C.transpose()).eval(), rateOfInertia(chain, state.q, state.qd),
+                      termsOf(chain, state, C), rounding<Scalar>(chain)));
+  });
+}
+
+TYPED_TEST(CoriolisMatrixOf, ParameterSetsAreThatOfTheirCoriolisVector) {
+  using Scalar = TypeParam;
+  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+    if (chain.jointCount() > 9) return;
+    Random random(7);
+    std::vector<std::vector<LinkParameters>> rows(chain.links().size(), chain.links());
+    for (std::vector<LinkParameters>& row : rows) {
+      for (LinkParameters& link : row) link = randomIdentifiedLink(random);
+    }
+    const std::vector<LinkParameters> gravity = chain.links();
+    const ParameterSets sets{rows, gravity};
+    MatrixX<Scalar> C(chain.jointCount(), chain.jointCount());
+    coriolisMatrix(chain, sets, state.q, state.qd, C);
+    const MatrixX<Scalar> expected = halfDerivative(
+        state,
+        [&](const auto& q, const auto& qd, auto c) { coriolisVector(chain, sets, q, qd, c); });
+    EXPECT_TRUE(agree(C, expected, largest(C) + 1, rounding<Scalar>(chain)));
+  });
+}
+
+TEST(CoriolisMatrix, IsZeroAtRestAndIgnoresGravityAndTheFirstJoint) {
+  const Chain chain = randomChain(6);
+  const State<double> state = randomState<double>(chain, 1);
+  const MatrixX<double> C = coriolisMatrixOf(chain, state.q, state.qd);
+  EXPECT_EQ(coriolisMatrixOf<double>(chain, state.q, VectorX<double>::Zero(6)).norm(), 0);
+  EXPECT_EQ(coriolisMatrixOf(chain.withGravity({0, 0, 0}), state.q, state.qd), C);
+  VectorX<double> turned = state.q;
+  turned[0] += 1;
+  EXPECT_EQ(coriolisMatrixOf(chain, turned, state.qd), C);
+}
+
+// Powers of two are exact, so is the result.
+TEST(CoriolisMatrix, GrowsWithTheVelocity) {
+  forEachState<double>([](const Chain& chain, const State<double>& state) {
+    EXPECT_EQ(coriolisMatrixOf<double>(chain, state.q, -4 * state.qd),
+              -4 * coriolisMatrixOf(chain, state.q, state.qd));
+  });
+}
+
+TEST(CoriolisMatrix, IsNanWhereItDependsOnANan) {
+  const Chain chain = randomChain(6);
+  const State<double> state = randomState<double>(chain, 0);
+  const State<Dual<double, 1>> constants = state.cast<Dual<double, 1>>();
+  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
+    VectorX<double> nan = VectorX<double>::Zero(6);
+    nan[i] = std::numeric_limits<double>::quiet_NaN();
+    const auto by_q = coriolisMatrixOf(chain, variable(state.q, i), constants.qd);
+    const auto by_qd = coriolisMatrixOf(chain, constants.q, variable(state.qd, i));
+    const MatrixX<double> with_q = coriolisMatrixOf<double>(chain, state.q + nan, state.qd);
+    const MatrixX<double> with_qd = coriolisMatrixOf<double>(chain, state.q, state.qd + nan);
+    for (Eigen::Index k = 0; k < with_q.size(); ++k) {
+      EXPECT_TRUE(by_q(k).derivative[0] == 0 || std::isnan(with_q(k))) << k << " by q " << i;
+      EXPECT_TRUE(by_qd(k).derivative[0] == 0 || std::isnan(with_qd(k))) << k << " by qd " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chain_dynamics
