@@ -129,14 +129,12 @@ prepare_build() {
 # build_into DIRECTORY PACKAGE...
 #
 # Builds packages with `cmake_arguments` below a directory, beside the usual build, without their
-# tests, and makes them known to this shell. Tests of inverse_dynamics_tools depend on the benchmarks:
-# colcon would look for them there.
+# tests, and makes them known to this shell.
 build_into() {
   local out=$1
   shift
   colcon --log-base "$out/log" build --build-base "$out/build" --install-base "$out/install" \
-    --packages-select "$@" --packages-ignore inverse_dynamics_benchmarks \
-    --cmake-args "${cmake_arguments[@]}" -DBUILD_TESTING=OFF
+    --packages-select "$@" --cmake-args "${cmake_arguments[@]}" -DBUILD_TESTING=OFF
   # colcon's script reads variables that nobody has set
   set +u
   # shellcheck source=/dev/null

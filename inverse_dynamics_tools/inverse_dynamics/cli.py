@@ -2,10 +2,10 @@
 """The command `ids`: verbs, errors, exit codes.
 
 A verb is a module of inverse_dynamics.verbs with `add_parser(subparsers)` and `run(arguments)`; it
-imports what is heavy inside `run`. Exit code 0: done; 2: something the user can put right, named on
-stderr (without a verb: the help); 3: some of several recordings failed, the others are done; 1: an
-unexpected error, with a report in a file; 128 + n: ended by signal n (141: the reader of the output
-has gone).
+imports what is heavy inside `run`. A package that is built on request brings its verb along.
+Exit code 0: done; 2: something the user can put right, named on stderr (without a verb: the help);
+3: some of several recordings failed, the others are done; 1: an unexpected error, with a report in a
+file; 128 + n: ended by signal n (141: the reader of the output has gone).
 """
 
 from __future__ import annotations
@@ -17,16 +17,17 @@ import signal
 import sys
 from contextlib import contextmanager, suppress
 from importlib import import_module
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.crash import crash_report
-from inverse_dynamics.base.wording import did_you_mean
+from inverse_dynamics.base.wording import did_you_mean, not_built
 from inverse_dynamics.base.wording import message as _message
 from inverse_dynamics.errors import PartialError, UserError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from types import FrameType
+    from types import FrameType, ModuleType
     from typing import NoReturn
 
 VERBS = (
@@ -40,8 +41,10 @@ VERBS = (
     "report",
     "video",
     "export",
-    "bench",
 )
+
+# Packages that are built on request: their modules `verb` are verbs too, where they are built.
+BUILT_ON_REQUEST = {"bench": "inverse_dynamics_benchmarks"}
 
 _EPILOG = """\
 start here:
@@ -76,7 +79,10 @@ class _Parser(argparse.ArgumentParser):
         return options
 
     def error(self, message: str) -> NoReturn:
-        if wrong := _CHOICE.search(message):
+        wrong = _CHOICE.search(message)
+        if wrong and (package := BUILT_ON_REQUEST.get(wrong[1])):
+            message = f"verb {wrong[1]}: {not_built(package)}"
+        elif wrong:
             hint = did_you_mean(wrong[1], re.findall(r"[\w-]+", wrong[2]))
             message += hint and f"; {hint}"
         text = _message(f"{self.prog}: error: {message}; see `{self.prog} --help`")
@@ -92,11 +98,18 @@ def make_parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     subparsers = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
-    for verb in VERBS:
-        module = import_module(f"inverse_dynamics.verbs.{verb}")
+    for module in _verb_modules():
         verb_parser = module.add_parser(subparsers)
         verb_parser.set_defaults(run=module.run, parser=verb_parser)
     return parser
+
+
+def _verb_modules() -> Iterator[ModuleType]:
+    for verb in VERBS:
+        yield import_module(f"inverse_dynamics.verbs.{verb}")
+    for package in BUILT_ON_REQUEST.values():
+        if find_spec(package) is not None:
+            yield import_module(f"{package}.verb")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

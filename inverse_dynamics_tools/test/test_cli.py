@@ -351,6 +351,18 @@ def test_help_teaches_by_examples(ids, verb):
     assert re.search(rf"^  ids {verb[0] if verb else ''}", out, re.MULTILINE)
 
 
+def test_a_verb_whose_package_is_not_built_names_the_remedy(ids, monkeypatch):
+    monkeypatch.setitem(cli.BUILT_ON_REQUEST, "bench", "package_that_is_not_built")
+    build = "`./scripts/build --packages-select package_that_is_not_built` in the workspace, then "
+    for options in ((), ("--help",), ("--only", "ur10/torques")):
+        fails(
+            ids("bench", *options),
+            "ids: error: verb bench: package package_that_is_not_built: not in any sourced workspace, "
+            f"as it is built only on request: {build}`source install/local_setup.bash`; see",
+        )
+    assert "bench" not in ids("--help")[1]
+
+
 def test_help_is_quick_to_load():
     """No array, plot or recording library is loaded before it is needed."""
     program = "import sys; from inverse_dynamics.cli import make_parser; make_parser(); " + (

@@ -21,7 +21,7 @@ LAYERS = (
     ("evaluation", "simulation"),
     ("figures",),
     ("report",),
-    ("results", "bench"),
+    ("results",),
     ("verbs",),
     ("cli",),
 )

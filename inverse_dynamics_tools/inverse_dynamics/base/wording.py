@@ -43,6 +43,22 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f"did you mean {best}?" if best and 3 * distances[best] <= max(3, len(word)) else ""
 
 
+def not_built(package: str) -> str:
+    """Why a package isn't there that is built on request only, and how to build it."""
+    return (
+        f"package {package}: not in any sourced workspace, as it is built only on request: "
+        f"{how_to_build(package)}"
+    )
+
+
+def how_to_build(package: str) -> str:
+    """The commands that build a package and make it known."""
+    return (
+        f"`./scripts/build --packages-select {package}` in the workspace, then "
+        "`source install/local_setup.bash`"
+    )
+
+
 def printable(text: str) -> str:
     """The text without what a terminal acts on: control characters become escapes.
 

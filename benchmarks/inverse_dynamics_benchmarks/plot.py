@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.bench import asked
-from inverse_dynamics.bench.names import LIBRARIES, QUANTITIES, ROBOTS
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.figures.plots import save_figure
+from inverse_dynamics_benchmarks import asked
+from inverse_dynamics_benchmarks.names import LIBRARIES, QUANTITIES, ROBOTS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from inverse_dynamics.bench.measurement import Measurement
+    from inverse_dynamics_benchmarks.measurement import Measurement
 
 # Okabe and Ito: for all eyes.
 _COLORS = {

@@ -5,15 +5,22 @@ import re
 from pathlib import Path
 
 import pytest
-from conftest import fails
 
 from inverse_dynamics.base.ament import PackageNotFoundError, package_share
-from inverse_dynamics.bench import bounds, measure, page, read_measurement, write_measurement
-from inverse_dynamics.bench.measurement import measurement
-from inverse_dynamics.bench.pages import PARTS, updated
+from inverse_dynamics_benchmarks import bounds, measure, page, read_measurement, write_measurement
+from inverse_dynamics_benchmarks.measurement import measurement
+from inverse_dynamics_benchmarks.pages import PARTS, updated
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = ("speed.md", "real_time.md")
+
+
+def fails(result, *expected):
+    """The user is told, on stderr; exit code 2."""
+    code, out, err = result
+    assert (code, out) == (2, "")
+    for part in expected:
+        assert part in err
 
 
 def entry(name, time, *, real=0.0, **more):
@@ -61,6 +68,13 @@ needs_benchmarks = pytest.mark.skipif(
     not benchmarks_installed(),
     reason="without the benchmarks (./scripts/build --all; Debian: libbenchmark-dev)",
 )
+
+
+def test_help_teaches_by_examples(ids):
+    code, out, _ = ids("bench", "--help")
+    assert code == 0
+    assert "  ids bench --only ur10/torques " in out
+    assert "  bench " in ids("--help")[1]
 
 
 @needs_benchmarks
@@ -160,7 +174,7 @@ def test_a_benchmark_that_fails_is_told_by_its_last_words(tmp_path, monkeypatch)
 def test_options_that_make_no_sense_are_told_before_anything_is_measured(
     ids, tmp_path, monkeypatch, arguments, expected
 ):
-    monkeypatch.setattr("inverse_dynamics.bench.measure", lambda **_: pytest.fail("measured"))
+    monkeypatch.setattr("inverse_dynamics_benchmarks.measure", lambda **_: pytest.fail("measured"))
     (tmp_path / "text").write_text("by hand")
     fails(ids("bench", *arguments), expected)
 
@@ -172,7 +186,7 @@ def test_options_that_make_no_sense_are_told_before_anything_is_measured(
 def test_single_calls_are_timed_if_told(ids, speed_json, monkeypatch, arguments, calls):
     told = {}
     result = read_measurement(speed_json)
-    monkeypatch.setattr("inverse_dynamics.bench.measure", lambda **k: told.update(k) or result)
+    monkeypatch.setattr("inverse_dynamics_benchmarks.measure", lambda **k: told.update(k) or result)
     assert ids("bench", *arguments)[0] == 0
     assert told["latency_calls"] == calls
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from inverse_dynamics.bench.measurement import Measurement
+    from inverse_dynamics_benchmarks.measurement import Measurement
 
 REAL = ("ur10", "panda")
 GENERATED = ("mixed6", "mixed7", "turning6", "turning7")

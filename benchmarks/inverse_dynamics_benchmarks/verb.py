@@ -12,7 +12,7 @@ from inverse_dynamics.verbs.common import positive_number
 from inverse_dynamics.verbs.options import add_verb
 
 if TYPE_CHECKING:
-    from inverse_dynamics.bench import Measurement
+    from inverse_dynamics_benchmarks import Measurement
 
 _EPILOG = """\
 examples:
@@ -104,10 +104,10 @@ def _add_measuring(group: argparse._ArgumentGroup) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.base.files import write_text_whole
-    from inverse_dynamics.bench import measure, page, read_measurement, write_measurement
-    from inverse_dynamics.bench.pages import check_pages, update_pages
-    from inverse_dynamics.bench.plot import check_figure_name, save_speed_figure
     from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics_benchmarks import measure, page, read_measurement, write_measurement
+    from inverse_dynamics_benchmarks.pages import check_pages, update_pages
+    from inverse_dynamics_benchmarks.plot import check_figure_name, save_speed_figure
 
     # Before anything is measured: that may take ten minutes.
     _check_outputs(arguments)
@@ -174,8 +174,8 @@ def _check_measuring(arguments: argparse.Namespace) -> None:
 def _print(result: Measurement) -> None:
     from rich.markdown import Markdown
 
-    from inverse_dynamics.bench import page
     from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics_benchmarks import page
 
     # Numbers in full on a narrow screen too, if need be by scrolling.
     Screen(soft_wrap=False, width=max(120, Screen().width)).print(Markdown(page(result)))

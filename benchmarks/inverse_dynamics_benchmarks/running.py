@@ -11,17 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.ament import PackageNotFoundError, package_share
-from inverse_dynamics.bench.measurement import Measurement, measurement
+from inverse_dynamics.base.wording import how_to_build, not_built
 from inverse_dynamics.errors import UserError
+from inverse_dynamics_benchmarks.measurement import Measurement, measurement
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 PACKAGE = "inverse_dynamics_benchmarks"
-_BUILD = (
-    f"`./scripts/build --packages-select {PACKAGE}` in the workspace, then "
-    "`source install/local_setup.bash`"
-)
 _NAMES = (
     "; names are ROBOT/QUANTITY/LIBRARY, such as ur10/torques/ours (those of `ids bench --json`)"
 )
@@ -74,13 +71,11 @@ def _program(name: str) -> str:
     try:
         program = package_share(PACKAGE).parents[1] / "bin" / name
     except PackageNotFoundError as error:
-        raise BenchmarkError(
-            f"package {PACKAGE}: not in any sourced workspace, as it is built only on request: {_BUILD}"
-        ) from error
+        raise BenchmarkError(not_built(PACKAGE)) from error
     if not program.is_file():
         raise BenchmarkError(
             f"{program}: not there: {PACKAGE} was built without Google Benchmark; install it (Debian: "
-            f"apt install libbenchmark-dev), then {_BUILD}"
+            f"apt install libbenchmark-dev), then {how_to_build(PACKAGE)}"
         )
     return str(program)
 

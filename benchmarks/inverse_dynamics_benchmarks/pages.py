@@ -10,21 +10,21 @@ import re
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.files import write_text_whole
-from inverse_dynamics.bench import asked
-from inverse_dynamics.bench.names import (
+from inverse_dynamics.errors import OutputError
+from inverse_dynamics_benchmarks import asked
+from inverse_dynamics_benchmarks.names import (
     ENGINE,
     ENGINE_BATCHES,
     LIBRARIES,
     QUANTITIES,
     ROBOTS,
 )
-from inverse_dynamics.errors import OutputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from inverse_dynamics.bench.measurement import Measurement
+    from inverse_dynamics_benchmarks.measurement import Measurement
 
 _MARKED = re.compile(r"<!-- ids bench: (\w+) -->\n(.*?)<!-- ids bench: end -->", re.DOTALL)
 
