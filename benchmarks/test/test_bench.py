@@ -272,7 +272,9 @@ def test_bounds_that_were_not_measured_are_named(speed_json):
     assert "| 5 | not measured (Panda, identified) |  |\n" in text
     assert "| torques, batch: two threads | one thread | 1.8 | not measured |  |\n" in text
     complete = PARTS["bounds"](read_measurement(DOCS / "speed.json"))
-    assert text.count("\n") == complete.count("\n")
+    assert set(re.findall(r"^\| (.*?) \|", text, re.M)) <= set(
+        re.findall(r"^\| (.*?) \|", complete, re.M)
+    )
     assert "not measured" not in complete
 
 
