@@ -118,9 +118,9 @@ void FastModel::torqueDerivativesBatch(ConstStates q, ConstStates qd, ConstState
 }
 
 void FastModel::regressorBatch(ConstStates q, ConstStates qd, ConstStates qdd,
-                               StridedRegressors Y) const {
+                               StridedMatrices Y) const {
   many_->regressor(robot(), q.count, samples(q), samples(qd), samples(qdd),
-                   {Y.data, Y.row_step, Y.column_step, Y.state_step});
+                   matrices(Y.withColumns(10 * q.joints)));
 }
 
 void FastModel::addToGram(const GramSamples& given, RegressorGram& gram) const {

@@ -85,12 +85,8 @@ class FastModel {
     SolverCall call = motion("regressor", q, qd, qdd);
     call.matrices("out", out, kParameters);
     share(call, [&](Index first, Index size) {
-      const auto to = call.inertia(0);
-      const chain_dynamics::StridedRegressors Y(to.data, static_cast<Index>(names_.size()),
-                                                call.count(), to.row_step, to.column_step,
-                                                to.state_step);
       fast_.regressorBatch(call.in(0).middle(first, size), call.in(1).middle(first, size),
-                           call.in(2).middle(first, size), Y.middle(first, size));
+                           call.in(2).middle(first, size), call.inertia(0).middle(first, size));
     });
     return call.result(0);
   }

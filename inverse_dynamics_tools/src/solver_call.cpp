@@ -220,8 +220,8 @@ ids::States SolverCall::states(std::size_t i) const {
 ids::StridedMatrices SolverCall::inertia(std::size_t i) const {
   const py::array& array = results_[i].array;
   const py::ssize_t last = array.ndim() - 1;
-  return {numbersOf(array),       n_, count_, stepOf(array, last - 1), stepOf(array, last),
-          stepOf(array, last - 2)};
+  return {numbersOf(array),        array.shape(last - 1), array.shape(last),      count_,
+          stepOf(array, last - 1), stepOf(array, last),   stepOf(array, last - 2)};
 }
 
 }  // namespace inverse_dynamics_tools

@@ -33,43 +33,6 @@ struct ManyKernels;
 struct Robot;
 }  // namespace fast
 
-/// An n x 10 n regressor of each of many states: entry (i, j) of state k stands at
-/// `data[i * row_step + j * column_step + k * state_step]`.
-///
-/// In Eigen's terms they stand side by side, n x (10 n N). An array N x n x 10 n, each regressor row
-/// after row (C order), is `{data, n, N, 10 * n, 1, 10 * n * n}`.
-struct StridedRegressors {
-  double* data = nullptr;
-  Eigen::Index joints = 0;  ///< n
-  Eigen::Index count = 0;   ///< N
-  std::ptrdiff_t row_step = 1;
-  std::ptrdiff_t column_step = 0;
-  std::ptrdiff_t state_step = 0;
-
-  StridedRegressors(double* first, Eigen::Index joint_count, Eigen::Index state_count,
-                    std::ptrdiff_t from_row_to_row, std::ptrdiff_t from_column_to_column,
-                    std::ptrdiff_t from_state_to_state)
-      : data(first),
-        joints(joint_count),
-        count(state_count),
-        row_step(from_row_to_row),
-        column_step(from_column_to_column),
-        state_step(from_state_to_state) {}
-
-  /// An n x (10 n N) expression whose doubles stand in memory and may be written.
-  template <typename Expression, typename = detail::RequireMemory<Expression, double>>
-  StridedRegressors(Expression&& matrices)  // NOLINT(google-explicit-constructor)
-      : StridedRegressors(const_cast<double*>(matrices.data()), matrices.rows(),
-                          matrices.rows() == 0 ? 0 : matrices.cols() / (10 * matrices.rows()),
-                          matrices.rowStride(), matrices.colStride(),
-                          10 * matrices.rows() * matrices.colStride()) {}
-
-  /// Those of the states first to first + size - 1.
-  StridedRegressors middle(Eigen::Index first, Eigen::Index size) const {
-    return {data + first * state_step, joints, size, row_step, column_step, state_step};
-  }
-};
-
 /// A model made ready for the fast kernels.
 ///
 /// Up to kMaxJoints joints. Real time: no method but the constructor, addToGram() and
@@ -153,8 +116,8 @@ class FastModel {
   void torqueDerivativesBatch(ConstStates q, ConstStates qd, ConstStates qdd,
                               StridedMatrices dtau_dq, StridedMatrices dtau_dqd,
                               StridedMatrices dtau_dqdd) const;
-  /// As regressor().
-  void regressorBatch(ConstStates q, ConstStates qd, ConstStates qdd, StridedRegressors Y) const;
+  /// As regressor(); n x 10 n each.
+  void regressorBatch(ConstStates q, ConstStates qd, ConstStates qdd, StridedMatrices Y) const;
   /// Adds samples to the Gram matrices of the regressor's rows [regressor_gram.hpp].
   ///
   /// @throws ModelError  another number of joints, samples or columns.

@@ -105,46 +105,76 @@ struct StridedStates {
 using ConstStates = StridedStates<const double>;
 using States = StridedStates<double>;
 
-/// An n x n matrix of each of many states: entry (i, j) of state k stands at
+/// A matrix of each of many states: entry (i, j) of state k stands at
 /// `data[i * row_step + j * column_step + k * state_step]`.
 ///
-/// In Eigen's terms the matrices stand side by side, n x (n N). An array N x n x n, each matrix row
-/// after row (C order), is `{data, n, N, n, 1, n * n}`.
+/// In Eigen's terms the matrices stand side by side: n x n inertia matrices as n x (n N), 6 x n
+/// Jacobians as 6 x (n N), n x 10 n regressors as n x (10 n N). An array N x n x n, each matrix row
+/// after row (C order), is `{data, n, N, n, 1, n * n}`; an array N x 6 x n is
+/// `{data, 6, n, N, n, 1, 6 * n}`.
 struct StridedMatrices {
   double* data = nullptr;
-  Eigen::Index rows = 0;  ///< n
-  Eigen::Index cols = 0;  ///< n N
+  Eigen::Index rows = 0;     ///< of each matrix
+  Eigen::Index columns = 0;  ///< of each matrix
+  Eigen::Index cols = 0;     ///< of all matrices together: columns N
   std::ptrdiff_t row_step = 1;
   std::ptrdiff_t column_step = 0;
   std::ptrdiff_t state_step = 0;
+  bool side_by_side = false;  ///< an expression, which doesn't say where a matrix ends
 
+  /// Matrices `size` x `size`.
   StridedMatrices(double* first, Eigen::Index size, Eigen::Index state_count,
                   std::ptrdiff_t from_row_to_row, std::ptrdiff_t from_column_to_column,
                   std::ptrdiff_t from_state_to_state)
+      : StridedMatrices(first, size, size, state_count, from_row_to_row, from_column_to_column,
+                        from_state_to_state) {}
+
+  /// Matrices `row_count` x `column_count`.
+  StridedMatrices(double* first, Eigen::Index row_count, Eigen::Index column_count,
+                  Eigen::Index state_count, std::ptrdiff_t from_row_to_row,
+                  std::ptrdiff_t from_column_to_column, std::ptrdiff_t from_state_to_state)
       : data(first),
-        rows(size),
-        cols(size * state_count),
+        rows(row_count),
+        columns(column_count),
+        cols(column_count * state_count),
         row_step(from_row_to_row),
         column_step(from_column_to_column),
         state_step(from_state_to_state) {}
 
-  /// An n x (n N) expression whose doubles stand in memory and may be written.
+  /// An expression whose doubles stand in memory and may be written. Its matrices are square, until
+  /// a function that writes others calls withColumns().
   template <typename Expression, typename = detail::RequireMemory<Expression, double>>
   StridedMatrices(Expression&& matrices)  // NOLINT(google-explicit-constructor)
       : data(const_cast<double*>(matrices.data())),
         rows(matrices.rows()),
+        columns(matrices.rows()),
         cols(matrices.cols()),
         row_step(matrices.rowStride()),
         column_step(matrices.colStride()),
-        state_step(matrices.rows() * matrices.colStride()) {}
+        state_step(matrices.rows() * matrices.colStride()),
+        side_by_side(true) {}
 
   double& operator()(Eigen::Index row, Eigen::Index column, Eigen::Index state) const {
     return data[row * row_step + column * column_step + state * state_step];
   }
 
+  /// The same numbers as matrices of so many columns each. Where the caller has given the number of
+  /// columns and the steps, these stay.
+  StridedMatrices withColumns(Eigen::Index column_count) const {
+    StridedMatrices result = *this;
+    if (side_by_side) {
+      result.columns = column_count;
+      result.state_step = column_count * column_step;
+    }
+    return result;
+  }
+
   /// Those of the states first to first + size - 1.
   StridedMatrices middle(Eigen::Index first, Eigen::Index size) const {
-    return {data + first * state_step, rows, size, row_step, column_step, state_step};
+    StridedMatrices result = *this;
+    result.data += first * state_step;
+    result.cols = columns * size;
+    return result;
   }
 };
 
