@@ -72,7 +72,8 @@ void registerSingleCalls(const std::string& robot, const Solver& solver) {
 void registerFriction(const std::string& robot, const Solver& solver) {
   const auto subject = std::make_shared<Subject>(solver, kStates);
   registerOverStates(robot + "/friction/ours", [subject](Eigen::Index k) {
-    subject->solver->getFrictionVector(subject->states.qd.col(k), subject->tau);
+    subject->solver->getFrictionVector(subject->states.q.col(k), subject->states.qd.col(k),
+                                       subject->tau);
     benchmark::ClobberMemory();
   });
 }

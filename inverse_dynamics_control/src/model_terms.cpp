@@ -40,7 +40,7 @@ void ModelTerms::friction(const ConstVectorRef& v, VectorRef f) const {
   if (compensated_.friction) {
     f.setZero();
   } else {
-    solver_->getFrictionVector(v, f);
+    solver_->getFrictionVector(Eigen::VectorXd(), v, f);
   }
 }
 

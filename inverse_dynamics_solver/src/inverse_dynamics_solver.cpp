@@ -3,51 +3,18 @@
 
 #include <string>
 
-#include "chain_dynamics/text.hpp"
+#include "method_call.hpp"
 #include "one_state.hpp"
 
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 namespace {
 
-using chain_dynamics::joined;
 using Eigen::Index;
 
 using StackVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxStackJoints, 1>;
 using StackMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStackJoints, kMaxStackJoints>;
-
-std::string shape(Index rows, Index cols) {
-  return std::to_string(rows) + " x " + std::to_string(cols);
-}
-
-// What throws is apart from the checks, which are then small enough to be inlined.
-[[noreturn, gnu::noinline]] void throwUninitialized(const char* method) {
-  throw UninitializedException(method);
-}
-
-[[noreturn, gnu::noinline]] void throwSizeMismatch(const char* method, const char* argument,
-                                                   const std::string& expected,
-                                                   const std::string& got,
-                                                   const std::vector<std::string>& joint_names) {
-  throw SizeMismatchException(errorText(std::string(method) + ": argument " + argument,
-                                        "wrong size", expected, got,
-                                        "the joints are " + joined(joint_names)));
-}
-
-[[noreturn, gnu::noinline]] void throwVectorMismatch(const char* method, const char* argument,
-                                                     Index size,
-                                                     const std::vector<std::string>& joint_names) {
-  throwSizeMismatch(method, argument, std::to_string(joint_names.size()) + " numbers",
-                    std::to_string(size), joint_names);
-}
-
-[[noreturn, gnu::noinline]] void throwMatrixMismatch(const char* method, const char* argument,
-                                                     Index expected_cols, Index rows, Index cols,
-                                                     const std::vector<std::string>& joint_names) {
-  throwSizeMismatch(method, argument, shape(static_cast<Index>(joint_names.size()), expected_cols),
-                    shape(rows, cols), joint_names);
-}
 
 }  // namespace
 
@@ -93,82 +60,52 @@ bool InverseDynamicsSolver::inertiaIsPhysical() const {
   return inertiaIsPhysicalImpl();
 }
 
-// ---------------------------------------------------------------- checks
-
 void InverseDynamicsSolver::requireInitialized(const char* method) const {
-  if (!initialized_) throwUninitialized(method);
-}
-
-void InverseDynamicsSolver::requireVector(const char* method, const char* argument,
-                                          Index size) const {
-  if (size != static_cast<Index>(info_.joint_names.size())) {
-    throwVectorMismatch(method, argument, size, info_.joint_names);
-  }
-}
-
-void InverseDynamicsSolver::requireMatrix(const char* method, const char* argument, Index rows,
-                                          Index cols, Index expected_cols) const {
-  const auto n = static_cast<Index>(info_.joint_names.size());
-  if (rows != n || cols != expected_cols) {
-    throwMatrixMismatch(method, argument, expected_cols, rows, cols, info_.joint_names);
-  }
-}
-
-void InverseDynamicsSolver::requireStates(const char* method, const char* argument,
-                                          const ConstStates& states, Index expected_count) const {
-  requireMatrix(method, argument, states.joints, states.count, expected_count);
+  MethodCall(method, *this);
 }
 
 // ---------------------------------------------------------------- one state
 
 void InverseDynamicsSolver::getInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const {
-  requireInitialized("getInertiaMatrix");
-  requireVector("getInertiaMatrix", "q", q.size());
-  requireMatrix("getInertiaMatrix", "H", H.rows(), H.cols(), q.size());
+  MethodCall("getInertiaMatrix", *this).vector("q", q).matrix("H", H, q.size(), q.size());
   computeInertiaMatrix(q, H);
 }
 
 void InverseDynamicsSolver::getCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
                                               VectorRef c) const {
-  requireInitialized("getCoriolisVector");
-  requireVector("getCoriolisVector", "q", q.size());
-  requireVector("getCoriolisVector", "qd", qd.size());
-  requireVector("getCoriolisVector", "c", c.size());
+  MethodCall("getCoriolisVector", *this).vector("q", q).vector("qd", qd).vector("c", c);
   computeCoriolisVector(q, qd, c);
 }
 
-void InverseDynamicsSolver::getFrictionVector(const ConstVectorRef& qd, VectorRef f) const {
-  requireInitialized("getFrictionVector");
-  requireVector("getFrictionVector", "qd", qd.size());
-  requireVector("getFrictionVector", "f", f.size());
-  computeFriction(Eigen::VectorXd(), qd, f);  // positions are not known
+void InverseDynamicsSolver::getFrictionVector(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                              VectorRef f) const {
+  MethodCall("getFrictionVector", *this).vectorOrNothing("q", q).vector("qd", qd).vector("f", f);
+  computeFriction(q, qd, f);
 }
 
 void InverseDynamicsSolver::getGravityVector(const ConstVectorRef& q, VectorRef g) const {
-  requireInitialized("getGravityVector");
-  requireVector("getGravityVector", "q", q.size());
-  requireVector("getGravityVector", "g", g.size());
+  MethodCall("getGravityVector", *this).vector("q", q).vector("g", g);
   computeGravityVector(q, g);
 }
 
 void InverseDynamicsSolver::getDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd,
                                                  MatrixRef H, VectorRef c, VectorRef g) const {
-  requireInitialized("getDynamicComponents");
-  requireVector("getDynamicComponents", "q", q.size());
-  requireVector("getDynamicComponents", "qd", qd.size());
-  requireMatrix("getDynamicComponents", "H", H.rows(), H.cols(), q.size());
-  requireVector("getDynamicComponents", "c", c.size());
-  requireVector("getDynamicComponents", "g", g.size());
+  MethodCall("getDynamicComponents", *this)
+      .vector("q", q)
+      .vector("qd", qd)
+      .matrix("H", H, q.size(), q.size())
+      .vector("c", c)
+      .vector("g", g);
   computeDynamicComponents(q, qd, H, c, g);
 }
 
 void InverseDynamicsSolver::getTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
                                        const ConstVectorRef& qdd, VectorRef tau) const {
-  requireInitialized("getTorques");
-  requireVector("getTorques", "q", q.size());
-  requireVector("getTorques", "qd", qd.size());
-  requireVector("getTorques", "qdd", qdd.size());
-  requireVector("getTorques", "tau", tau.size());
+  MethodCall("getTorques", *this)
+      .vector("q", q)
+      .vector("qd", qd)
+      .vector("qdd", qdd)
+      .vector("tau", tau);
   computeTorques(q, qd, qdd, tau);
 }
 

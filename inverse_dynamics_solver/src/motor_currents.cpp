@@ -8,7 +8,7 @@ inline namespace v2 {
 MotorCurrents::~MotorCurrents() = default;
 
 MotorCurrents::Gains MotorCurrents::gains(const char* method) const {
-  if (!torqueSolver().isInitialized()) throw UninitializedException(method);
+  jointsFor(method);
   return driveGains();
 }
 
@@ -43,7 +43,7 @@ void MotorCurrents::getGravityCurrents(const ConstVectorRef& q, VectorRef i) con
 
 void MotorCurrents::getFrictionCurrents(const ConstVectorRef& qd, VectorRef i) const {
   const Gains K = gains("getFrictionCurrents");
-  torqueSolver().getFrictionVector(qd, i);
+  torqueSolver().getFrictionVector(Eigen::VectorXd(), qd, i);
   i.array() /= K.array();
 }
 

@@ -3,10 +3,8 @@
 /// One state after the other of a batch of any layout, as the functions of one state take them:
 /// contiguous, copied only where it isn't.
 ///
-///     for (k ...) {
-///       computeGravityVector(q(k), g(k));
-///       g.done(k);
-///     }
+///     eachState(q.count, [this](const auto&... of_state) { computeGravityVector(of_state...); },
+///               StateReader(q), StateWriter(g));
 #pragma once
 
 #include <Eigen/Core>
@@ -42,10 +40,12 @@ class StateReader {
 
   /// n numbers; valid until the next call.
   Eigen::Map<const Eigen::VectorXd> operator()(Eigen::Index state) {
-    if (states_.joint_step == 1) return {&states_(0, state), states_.joints};
+    // (no numbers, so perhaps no memory, where the positions aren't known)
+    if (states_.joint_step == 1) return {states_.data + state * states_.state_step, states_.joints};
     for (Eigen::Index j = 0; j < states_.joints; ++j) copy_.data()[j] = states_(j, state);
     return {copy_.data(), states_.joints};
   }
+  void done(Eigen::Index) const {}
 
  private:
   const ConstStates states_;
@@ -78,21 +78,21 @@ class StateWriter {
 class MatrixWriter {
  public:
   explicit MatrixWriter(const StridedMatrices& matrices)
-      : matrices_(matrices), copy_(isColumns() ? 0 : matrices.rows * matrices.rows) {}
+      : matrices_(matrices), copy_(isColumns() ? 0 : matrices.rows * matrices.columns) {}
 
   /// As those of StateWriter.
   Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>> operator()(Eigen::Index state) {
-    const Eigen::Index n = matrices_.rows;
+    const Eigen::Index rows = matrices_.rows, columns = matrices_.columns;
     if (isColumns()) {
-      return {&matrices_(0, 0, state), n, n, Eigen::OuterStride<>(matrices_.column_step)};
+      return {&matrices_(0, 0, state), rows, columns, Eigen::OuterStride<>(matrices_.column_step)};
     }
-    return {copy_.data(), n, n, Eigen::OuterStride<>(n)};
+    return {copy_.data(), rows, columns, Eigen::OuterStride<>(rows)};
   }
   void done(Eigen::Index state) {
     if (isColumns()) return;
-    const Eigen::Index n = matrices_.rows;
-    for (Eigen::Index j = 0; j < n; ++j) {
-      for (Eigen::Index i = 0; i < n; ++i) matrices_(i, j, state) = copy_.data()[i + j * n];
+    const Eigen::Index rows = matrices_.rows;
+    for (Eigen::Index j = 0; j < matrices_.columns; ++j) {
+      for (Eigen::Index i = 0; i < rows; ++i) matrices_(i, j, state) = copy_.data()[i + j * rows];
     }
   }
 
@@ -105,6 +105,15 @@ class MatrixWriter {
   const StridedMatrices matrices_;
   Scratch<kMaxStackJoints * kMaxStackJoints> copy_;
 };
+
+/// Calls compute() with what the readers and writers give of each state.
+template <class Compute, class... ReadersAndWriters>
+void eachState(Eigen::Index count, const Compute& compute, ReadersAndWriters&&... of) {
+  for (Eigen::Index k = 0; k < count; ++k) {
+    compute(of(k)...);
+    (of.done(k), ...);
+  }
+}
 
 }  // namespace v2
 }  // namespace inverse_dynamics_solver

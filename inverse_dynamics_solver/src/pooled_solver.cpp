@@ -48,6 +48,13 @@ void PooledSolver::computeFriction(const ConstVectorRef&, const ConstVectorRef& 
   }
 }
 
+void PooledSolver::addFrictionSlopes(const ConstVectorRef& qd, MatrixRef dtau_dqd) const {
+  for (std::size_t j = 0; j < friction_.size(); ++j) {
+    const auto i = static_cast<Eigen::Index>(j);
+    dtau_dqd(i, i) += chain_dynamics::frictionSlope(friction_[j], qd[i]);
+  }
+}
+
 void PooledSolver::computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd,
                                             MatrixRef H, VectorRef c, VectorRef g) const {
   const auto workspace = pool_->acquire();

@@ -51,9 +51,14 @@ class Solver {
     return vectors("gravity_vector", {{"q", q}}, out,
                    [&](auto& call) { get().getGravityVectorBatch(call.in(0), call.states(0)); });
   }
-  py::object frictionVector(const py::object& qd, const py::object& out) const {
-    return vectors("friction_vector", {{"qd", qd}}, out,
-                   [&](auto& call) { get().getFrictionVectorBatch(call.in(0), call.states(0)); });
+  py::object frictionVector(const py::object& qd, const py::object& q,
+                            const py::object& out) const {
+    Arguments arguments = {{"qd", qd}};
+    if (!q.is_none()) arguments.emplace_back("q", q);
+    return vectors("friction_vector", arguments, out, [&](auto& call) {
+      const ids::ConstStates unknown(call.in(0).data, 0, call.count(), 1, 0);
+      get().getFrictionVectorBatch(q.is_none() ? unknown : call.in(1), call.in(0), call.states(0));
+    });
   }
   py::object inertiaMatrix(const py::object& q, const py::object& out) const {
     SolverCall call("inertia_matrix", get());
@@ -207,8 +212,8 @@ void bindSolver(py::module_& module) {
       .def("gravity_vector", &Solver::gravityVector, py::arg("q"), py::kw_only(),
            py::arg("out") = py::none(), "g(q): what holds the robot still.")
       .def("friction_vector", &Solver::frictionVector, py::arg("qd"), py::kw_only(),
-           py::arg("out") = py::none(),
-           "f(qd); zero if the solver has no friction model or was made without.")
+           py::arg("q") = py::none(), py::arg("out") = py::none(),
+           "f(q, qd); zero if the solver has no friction model or was made without.")
       .def("dynamic_components", &Solver::dynamicComponents, py::arg("q"), py::arg("qd"),
            py::kw_only(), py::arg("out") = py::none(),
            "H(q), C(q, qd) qd, g(q); out: a tuple of three arrays.")

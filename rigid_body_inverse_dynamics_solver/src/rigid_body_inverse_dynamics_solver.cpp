@@ -241,9 +241,10 @@ void InverseDynamicsSolverRigidBody::computeCoriolisVectorBatch(const ConstState
   fast_->coriolisVectorBatch(q, qd, c);
 }
 
-void InverseDynamicsSolverRigidBody::computeFrictionBatch(const ConstStates& qd,
+void InverseDynamicsSolverRigidBody::computeFrictionBatch(const ConstStates& q,
+                                                          const ConstStates& qd,
                                                           const States& f) const {
-  if (fast_ == nullptr) return InverseDynamicsSolver::computeFrictionBatch(qd, f);
+  if (fast_ == nullptr) return InverseDynamicsSolver::computeFrictionBatch(q, qd, f);
   fast_->frictionVectorBatch(qd, f);
 }
 

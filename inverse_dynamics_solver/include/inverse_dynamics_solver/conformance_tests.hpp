@@ -16,14 +16,16 @@
 ///
 /// Parts one to four, initialization_tests.hpp, contract_tests.hpp, batch_tests.hpp and
 /// real_time_tests.hpp, are what callers are promised; part five, law_tests.hpp, is physics; part
-/// six, first_error_tests.hpp, has a process for each error. A test that doesn't apply to a solver
-/// is skipped and says why.
+/// six, capability_tests.hpp, the physics of the capabilities that the solver has; part seven,
+/// first_error_tests.hpp, has a process for each error. A test that doesn't apply to a solver is
+/// skipped and says why.
 ///
 /// The plugin is loaded by name, as users do. Random states have a fixed seed, and a failure prints
 /// its state as C++ to be pasted. Tolerances and their reasons stand in solver_fixture.hpp.
 #pragma once
 
 #include "inverse_dynamics_solver/conformance/batch_tests.hpp"
+#include "inverse_dynamics_solver/conformance/capability_tests.hpp"
 #include "inverse_dynamics_solver/conformance/contract_tests.hpp"
 #include "inverse_dynamics_solver/conformance/first_error_tests.hpp"
 #include "inverse_dynamics_solver/conformance/initialization_tests.hpp"
@@ -53,8 +55,14 @@ REGISTER_TYPED_TEST_SUITE_P(
     CoriolisTorquesAreQuadraticInVelocity, GravityTorquesAreProportionalToGravity,
     GravityPointsDownByDefault, GravityTorquesHaveASymmetricJacobian,
     PhysicalInertiaIsSymmetricPositiveDefinite, PowerIsTheRateOfKineticEnergy,
-    FrictionCanBeSwitchedOff, FrictionIsFiniteAtAnyVelocity,
-    MotorCurrentsTimesDriveGainsAreTorques);
+    FrictionCanBeSwitchedOff, FrictionIsFiniteAtAnyVelocity, MotorCurrentsTimesDriveGainsAreTorques,
+    // Capabilities.
+    CapabilitiesRefuseWrongSizes, TipJacobianIsTheDerivativeOfTheTipPose,
+    TipJacobianDerivativeIsItsRate, WrenchAddsItsPowerPerVelocity, NanInAWrenchGivesNan,
+    CoriolisMatrixIsThatOfChristoffelsSymbols, RateOfInertiaIsTheCoriolisMatrixPlusItsTranspose,
+    EnergyGrowsWithThePowerOfTheTorques, TorqueDerivativesAreThoseOfTheTorques,
+    TorqueDerivativesIncludeFriction, RegressorTimesParametersAreTheTorques,
+    AccelerationsInvertTorques);
 
 REGISTER_TYPED_TEST_SUITE_P(SolverAlone, FirstErrorOfAProcessIsReported);
 

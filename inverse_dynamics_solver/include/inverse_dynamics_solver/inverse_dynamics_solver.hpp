@@ -101,12 +101,18 @@ class InverseDynamicsSolver {
     getCoriolisVector(q, qd, c);
     return c;
   }
-  /// Friction torques `f(qd)`; zero where the solver has no friction model or the parameter
-  /// `friction` is false.
-  Eigen::VectorXd getFrictionVector(const ConstVectorRef& qd) const {
+  /// Friction torques `f(q, qd)`; zero where the solver has no friction model or the parameter
+  /// `friction` is false. No friction law of this workspace depends on q; one that depends on the
+  /// load of the joints does.
+  [[nodiscard]] Eigen::VectorXd getFrictionVector(const ConstVectorRef& q,
+                                                  const ConstVectorRef& qd) const {
     Eigen::VectorXd f = vector("getFrictionVector");
-    getFrictionVector(qd, f);
+    getFrictionVector(q, qd, f);
     return f;
+  }
+  /// The same where the position isn't known.
+  [[nodiscard]] Eigen::VectorXd getFrictionVector(const ConstVectorRef& qd) const {
+    return getFrictionVector(Eigen::VectorXd(), qd);
   }
   /// Gravity torques `g(q)`: what holds the robot still.
   Eigen::VectorXd getGravityVector(const ConstVectorRef& q) const {
@@ -140,7 +146,8 @@ class InverseDynamicsSolver {
   /// @{
   void getInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const;
   void getCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef c) const;
-  void getFrictionVector(const ConstVectorRef& qd, VectorRef f) const;
+  /// q may be empty: the position isn't known.
+  void getFrictionVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef f) const;
   void getGravityVector(const ConstVectorRef& q, VectorRef g) const;
   void getDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
                             VectorRef c, VectorRef g) const;
@@ -160,7 +167,9 @@ class InverseDynamicsSolver {
   void getInertiaMatrixBatch(const ConstStatesRef& q, const StridedMatrices& H) const;
   void getCoriolisVectorBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
                               const States& c) const;
-  void getFrictionVectorBatch(const ConstStatesRef& qd, const States& f) const;
+  /// q may be 0 x N: the positions aren't known.
+  void getFrictionVectorBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
+                              const States& f) const;
   void getGravityVectorBatch(const ConstStatesRef& q, const States& g) const;
   void getDynamicComponentsBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
                                  const StridedMatrices& H, const States& c, const States& g) const;
@@ -177,10 +186,14 @@ class InverseDynamicsSolver {
     getCoriolisVectorBatch(q, qd, c);
     return c;
   }
-  Eigen::MatrixXd getFrictionVectorBatch(const ConstStatesRef& qd) const {
+  [[nodiscard]] Eigen::MatrixXd getFrictionVectorBatch(const ConstStatesRef& q,
+                                                       const ConstStatesRef& qd) const {
     Eigen::MatrixXd f(qd.joints, qd.count);
-    getFrictionVectorBatch(qd, f);
+    getFrictionVectorBatch(q, qd, f);
     return f;
+  }
+  [[nodiscard]] Eigen::MatrixXd getFrictionVectorBatch(const ConstStatesRef& qd) const {
+    return getFrictionVectorBatch(ConstStates(qd.data, 0, qd.count, 1, 0), qd);
   }
   Eigen::MatrixXd getGravityVectorBatch(const ConstStatesRef& q) const {
     Eigen::MatrixXd g(q.joints, q.count);
@@ -229,8 +242,8 @@ class InverseDynamicsSolver {
   virtual void computeGravityVector(const ConstVectorRef& q, VectorRef g) const = 0;
 
   /// Zero by default. With Configuration::friction false it gives zero, and computeTorques() leaves
-  /// it out. q is for friction that depends on load; it is empty where getFrictionVector() asks,
-  /// which knows velocities only.
+  /// it out. q is for friction that depends on load; it is empty where the caller of
+  /// getFrictionVector() doesn't know it.
   virtual void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
                                VectorRef f) const;
 
@@ -247,7 +260,9 @@ class InverseDynamicsSolver {
   virtual void computeInertiaMatrixBatch(const ConstStates& q, const StridedMatrices& H) const;
   virtual void computeCoriolisVectorBatch(const ConstStates& q, const ConstStates& qd,
                                           const States& c) const;
-  virtual void computeFrictionBatch(const ConstStates& qd, const States& f) const;
+  /// Of friction q may have no joints, as above.
+  virtual void computeFrictionBatch(const ConstStates& q, const ConstStates& qd,
+                                    const States& f) const;
   virtual void computeGravityVectorBatch(const ConstStates& q, const States& g) const;
   virtual void computeDynamicComponentsBatch(const ConstStates& q, const ConstStates& qd,
                                              const StridedMatrices& H, const States& c,
@@ -260,12 +275,9 @@ class InverseDynamicsSolver {
   /// @}
 
  private:
+  friend class MethodCall;  // the checks of a call, for capabilities too
+
   void requireInitialized(const char* method) const;
-  void requireVector(const char* method, const char* argument, Eigen::Index size) const;
-  void requireMatrix(const char* method, const char* argument, Eigen::Index rows, Eigen::Index cols,
-                     Eigen::Index expected_cols) const;
-  void requireStates(const char* method, const char* argument, const ConstStates& states,
-                     Eigen::Index expected_count) const;
 
   // Results of the methods by value: allocated and freed by the caller's code, whatever its
   // alignment.

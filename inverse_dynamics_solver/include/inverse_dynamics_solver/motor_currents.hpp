@@ -9,19 +9,17 @@
 
 #include <Eigen/Core>
 
-#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
+#include "inverse_dynamics_solver/capability.hpp"
 
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
 /// The motor currents of each term of the dynamics: torque = K current, K the drive gains.
 ///
-/// Not a base of InverseDynamicsSolver: a solver that has it derives from both. Arguments, order,
-/// real-time and thread promises, and errors (uninitialized, wrong size) are those of the solver's
-/// method of the same term.
-class MotorCurrents {
+/// Arguments are those of the solver's method of the same term.
+class MotorCurrents : public Capability {
  public:
-  virtual ~MotorCurrents();
+  ~MotorCurrents() override;
 
   /// @name By value
   /// @{
@@ -80,19 +78,8 @@ class MotorCurrents {
  protected:
   using Gains = Eigen::Map<const Eigen::VectorXd>;
 
-  MotorCurrents() = default;
-  MotorCurrents(const MotorCurrents&) = default;
-  MotorCurrents& operator=(const MotorCurrents&) = default;
-
-  /// @name What a solver implements
-  /// @{
-
-  /// Itself: `return *this;`.
-  virtual const InverseDynamicsSolver& torqueSolver() const = 0;
-
   /// The diagonal of K, n numbers other than zero. Called after a successful initialize().
   virtual Gains driveGains() const = 0;
-  /// @}
 
  private:
   Gains gains(const char* method) const;  // throws UninitializedException

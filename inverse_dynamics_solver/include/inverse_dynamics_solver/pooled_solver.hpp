@@ -57,13 +57,37 @@ class PooledSolver : public InverseDynamicsSolver {
   /// What makes the workspaces of a chain; it is called by many threads, even at the same time.
   virtual WorkspaceMaker workspaceMaker(const chain_dynamics::Chain& chain) const = 0;
 
+  /// @name For the capabilities of a solver
+  /// @{
+
+  /// A workspace of the calling thread's own until the end of the scope, as the class that
+  /// workspaceMaker() makes: `borrow<MyWorkspace>()->tipJacobian(q, J)`. Once per call of the solver.
+  template <class MyWorkspace>
+  class Borrowed {
+   public:
+    explicit Borrowed(WorkspacePool<Workspace>& pool) : lease_(pool.acquire()) {}
+    MyWorkspace* operator->() const { return static_cast<MyWorkspace*>(lease_.operator->()); }
+
+   private:
+    WorkspacePool<Workspace>::Lease lease_;
+  };
+  template <class MyWorkspace>
+  Borrowed<MyWorkspace> borrow() const {
+    return Borrowed<MyWorkspace>(*pool_);
+  }
+
+  /// Adds the derivatives of the friction torques to the diagonal of `dtau_dqd`.
+  void addFrictionSlopes(const ConstVectorRef& qd, MatrixRef dtau_dqd) const;
+
+  void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef f) const final;
+  /// @}
+
  private:
   JointInfo configure(const Configuration& configuration) final;
   void computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const final;
   void computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
                              VectorRef c) const final;
   void computeGravityVector(const ConstVectorRef& q, VectorRef g) const final;
-  void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef f) const final;
   void computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
                                 VectorRef c, VectorRef g) const final;
   void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,

@@ -6,11 +6,10 @@
 #include <pluginlib/class_list_macros.hpp>
 #include <thread>
 
+#include "two_link_arm.hpp"
+
 namespace two_link_solver {
 namespace {
-
-// Masses [kg] and lengths [m] of the two links.
-constexpr double m1 = 3.0, m2 = 2.0, l1 = 0.7, l2 = 0.5;
 
 /// An error whose class is this library's alone.
 class OwnError : public InvalidParameterValueException {

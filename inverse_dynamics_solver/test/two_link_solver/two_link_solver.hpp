@@ -8,14 +8,33 @@
 #include <atomic>
 #include <string>
 
+#include "inverse_dynamics_solver/coriolis_matrix.hpp"
+#include "inverse_dynamics_solver/energies.hpp"
+#include "inverse_dynamics_solver/external_wrench.hpp"
+#include "inverse_dynamics_solver/forward_dynamics.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
+#include "inverse_dynamics_solver/kinematics.hpp"
 #include "inverse_dynamics_solver/motor_currents.hpp"
+#include "inverse_dynamics_solver/torque_derivatives.hpp"
 
 namespace two_link_solver {
 
 using namespace inverse_dynamics_solver;
 
-class TwoLinkSolver : public InverseDynamicsSolver, public MotorCurrents {
+class TwoLinkSolver : public InverseDynamicsSolver,
+                      public MotorCurrents,
+                      public Kinematics,
+                      public ExternalWrench,
+                      public CoriolisMatrix,
+                      public Energies,
+                      public TorqueDerivatives,
+                      public ForwardDynamics {
+ public:
+  using ExternalWrench::getTorques;
+  using ExternalWrench::getTorquesBatch;
+  using InverseDynamicsSolver::getTorques;
+  using InverseDynamicsSolver::getTorquesBatch;
+
  protected:
   JointInfo configure(const Configuration& configuration) override;
   void computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const override;
@@ -34,6 +53,22 @@ class TwoLinkSolver : public InverseDynamicsSolver, public MotorCurrents {
 
   const InverseDynamicsSolver& torqueSolver() const override { return *this; }
   Gains driveGains() const override;
+  void computeTipPose(const ConstVectorRef& q,
+                      chain_dynamics::Transform<double>& pose) const override;
+  void computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const override;
+  void computeTipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                    MatrixRef dJ) const override;
+  void computeExternalTorques(const ConstVectorRef& q, WrenchFrame frame,
+                              const ConstVectorRef& wrench, VectorRef tau) const override;
+  void computeCoriolisMatrix(const ConstVectorRef& q, const ConstVectorRef& qd,
+                             MatrixRef C) const override;
+  double computeKineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) const override;
+  double computePotentialEnergy(const ConstVectorRef& q) const override;
+  void computeTorqueDerivatives(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
+                                MatrixRef dtau_dqdd) const override;
+  void computeAccelerations(const ConstVectorRef& q, const ConstVectorRef& qd,
+                            const ConstVectorRef& tau, VectorRef qdd) const override;
 
  private:
   bool has(const char* fault) const { return fault_ == fault; }

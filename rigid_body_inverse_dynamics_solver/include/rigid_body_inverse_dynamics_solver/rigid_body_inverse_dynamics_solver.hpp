@@ -70,7 +70,8 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
   void computeInertiaMatrixBatch(const ConstStates& q, const StridedMatrices& H) const override;
   void computeCoriolisVectorBatch(const ConstStates& q, const ConstStates& qd,
                                   const States& c) const override;
-  void computeFrictionBatch(const ConstStates& qd, const States& f) const override;
+  void computeFrictionBatch(const ConstStates& q, const ConstStates& qd,
+                            const States& f) const override;
   void computeGravityVectorBatch(const ConstStates& q, const States& g) const override;
   void computeDynamicComponentsBatch(const ConstStates& q, const ConstStates& qd,
                                      const StridedMatrices& H, const States& c,

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
+#include "inverse_dynamics_solver/conformance/capabilities.hpp"
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
 
 namespace inverse_dynamics_solver::conformance {
@@ -32,7 +33,7 @@ TYPED_TEST_P(SolverConformance, ResultsHaveTheSizesOfTheRobotAndAreFinite) {
   EXPECT_EQ(this->solver_->getFrictionVector(x.qd).size(), n);
   EXPECT_EQ(this->solver_->getGravityVector(x.q).size(), n);
   EXPECT_EQ(this->solver_->getTorques(x.q, x.qd, x.qdd).size(), n);
-  for (const Quantity& quantity : quantities()) {
+  for (const Quantity& quantity : allQuantities(*this->solver_, n)) {
     EXPECT_TRUE(quantity.value(*this->solver_, x).allFinite()) << quantity.name << toString(x);
   }
 }
@@ -41,7 +42,7 @@ TYPED_TEST_P(SolverConformance, UninitializedSolverRefusesEveryMethod) {
   const auto solver = this->make();
   const State x = this->randomState();
   EXPECT_FALSE(solver->isInitialized());
-  for (const Quantity& quantity : quantities()) {
+  for (const Quantity& quantity : allQuantities(*solver, x.q.size())) {
     const std::string error = errorOf<UninitializedException>([&] { quantity.value(*solver, x); });
     EXPECT_TRUE(contains(error, {quantity.name, "initialize()"}));
   }
@@ -71,8 +72,11 @@ TYPED_TEST_P(SolverConformance, WrongSizeIsRefusedNamingArgumentExpectedAndGot) 
     refuses("getCoriolisVector", "q", [&] { s.getCoriolisVector(no, ok); });
     refuses("getCoriolisVector", "qd", [&] { s.getCoriolisVector(ok, no); });
     refuses("getCoriolisVector", "c", [&] { s.getCoriolisVector(ok, ok, short_out); });
-    refuses("getFrictionVector", "qd", [&] { s.getFrictionVector(no); });
-    refuses("getFrictionVector", "f", [&] { s.getFrictionVector(ok, short_out); });
+    refuses("getFrictionVector", "qd", [&] { return s.getFrictionVector(no); });
+    refuses("getFrictionVector", "qd", [&] { return s.getFrictionVector(ok, no); });
+    refuses("getFrictionVector", "f", [&] { s.getFrictionVector(ok, ok, short_out); });
+    // (without positions friction is that of the velocities)
+    if (size > 0) refuses("getFrictionVector", "q", [&] { return s.getFrictionVector(no, ok); });
     refuses("getGravityVector", "q", [&] { s.getGravityVector(no); });
     refuses("getGravityVector", "g", [&] { s.getGravityVector(ok, short_out); });
     refuses("getDynamicComponents", "q", [&] { s.getDynamicComponents(no, ok); });
@@ -99,12 +103,12 @@ TYPED_TEST_P(SolverConformance, ResultsByValueEqualResultsInMemoryOfTheCaller) {
     Eigen::VectorXd c = nan, f = nan, g = nan, tau = nan;
     s.getInertiaMatrix(x.q, H);
     s.getCoriolisVector(x.q, x.qd, c);
-    s.getFrictionVector(x.qd, f);
+    s.getFrictionVector(x.q, x.qd, f);
     s.getGravityVector(x.q, g);
     s.getTorques(x.q, x.qd, x.qdd, tau);
     EXPECT_TRUE(identical(flat(s.getInertiaMatrix(x.q)), flat(H)));
     EXPECT_TRUE(identical(s.getCoriolisVector(x.q, x.qd), c));
-    EXPECT_TRUE(identical(s.getFrictionVector(x.qd), f));
+    EXPECT_TRUE(identical(s.getFrictionVector(x.q, x.qd), f));
     EXPECT_TRUE(identical(s.getGravityVector(x.q), g));
     EXPECT_TRUE(identical(s.getTorques(x.q, x.qd, x.qdd), tau));
 
@@ -116,6 +120,12 @@ TYPED_TEST_P(SolverConformance, ResultsByValueEqualResultsInMemoryOfTheCaller) {
     EXPECT_TRUE(identical(flat(H_value), flat(H)));
     EXPECT_TRUE(identical(c_value, c));
     EXPECT_TRUE(identical(g_value, g));
+
+    for (const CapabilityMethod& method : capabilityMethods(s)) {
+      Matrices out = method.shapes.memory(std::numeric_limits<double>::quiet_NaN());
+      method.into_memory(x, out);
+      EXPECT_TRUE(identical(flat(method.by_value(x)), flat(out))) << method.name;
+    }
   }
 }
 
@@ -140,21 +150,26 @@ TYPED_TEST_P(SolverConformance, CallsIntoMemoryOfTheCallerDoNotAllocate) {
   };
   EXPECT_EQ(allocations([&] { s.getInertiaMatrix(x.q, H); }), 0);
   EXPECT_EQ(allocations([&] { s.getCoriolisVector(x.q, x.qd, c); }), 0);
-  EXPECT_EQ(allocations([&] { s.getFrictionVector(x.qd, f); }), 0);
+  EXPECT_EQ(allocations([&] { s.getFrictionVector(x.q, x.qd, f); }), 0);
   EXPECT_EQ(allocations([&] { s.getGravityVector(x.q, g); }), 0);
   EXPECT_EQ(allocations([&] { s.getDynamicComponents(x.q, x.qd, H, c, g); }), 0);
   EXPECT_EQ(allocations([&] { s.getTorques(x.q, x.qd, x.qdd, tau); }), 0);
+  for (const CapabilityMethod& method : capabilityMethods(s)) {
+    Matrices out = method.shapes.memory();
+    EXPECT_EQ(allocations([&] { method.into_memory(x, out); }), 0) << method.name;
+  }
 }
 
 TYPED_TEST_P(SolverConformance, ManyThreadsGetTheNumbersOfOne) {
   constexpr int kThreads = 8;
   constexpr int kRounds = 20;
   const std::vector<State> states = this->randomStates(32);
+  const std::vector<Quantity> all = allQuantities(*this->solver_, this->solver_->jointCount());
 
   // What one thread computes.
   std::vector<Eigen::VectorXd> expected;
   for (const State& x : states) {
-    for (const Quantity& quantity : quantities()) {
+    for (const Quantity& quantity : all) {
       expected.push_back(quantity.value(*this->solver_, x));
     }
   }
@@ -166,9 +181,9 @@ TYPED_TEST_P(SolverConformance, ManyThreadsGetTheNumbersOfOne) {
     for (--waiting; waiting > 0;) std::this_thread::yield();
     for (std::size_t i = 0; i < states.size() * kRounds; ++i) {
       const std::size_t k = (i + 4 * thread) % states.size();
-      for (std::size_t j = 0; j < quantities().size(); ++j) {
-        const Eigen::VectorXd value = quantities()[j].value(*this->solver_, states[k]);
-        if (!identical(value, expected[k * quantities().size() + j])) ++different;
+      for (std::size_t j = 0; j < all.size(); ++j) {
+        const Eigen::VectorXd value = all[j].value(*this->solver_, states[k]);
+        if (!identical(value, expected[k * all.size() + j])) ++different;
       }
     }
   };
@@ -181,7 +196,7 @@ TYPED_TEST_P(SolverConformance, ManyThreadsGetTheNumbersOfOne) {
 /// For each input number: the entries that change with it must become NaN with it.
 TYPED_TEST_P(SolverConformance, NanGoesToEveryEntryThatDependsOnIt) {
   const InverseDynamicsSolver& s = *this->solver_;
-  for (const Quantity& quantity : quantities()) {
+  for (const Quantity& quantity : allQuantities(s, s.jointCount())) {
     for (Eigen::VectorXd State::*argument : {&State::q, &State::qd, &State::qdd}) {
       for (Eigen::Index j = 0; j < s.jointCount(); ++j) {
         using Flags = Eigen::Array<bool, Eigen::Dynamic, 1>;

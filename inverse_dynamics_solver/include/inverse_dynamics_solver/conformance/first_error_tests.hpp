@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Conformance, part six: an error of a plugin that nothing else keeps open. Include
+/// Conformance, part seven: an error of a plugin that nothing else keeps open. Include
 /// conformance_tests.hpp, not this.
 #pragma once
 

@@ -26,7 +26,7 @@ TYPED_TEST_P(SolverConformance, TorquesAreTheSumOfTheirTerms) {
   for (const State& x : this->randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const Eigen::VectorXd inertial = s.getInertiaMatrix(x.q) * x.qdd;
-    const Eigen::VectorXd c = s.getCoriolisVector(x.q, x.qd), f = s.getFrictionVector(x.qd);
+    const Eigen::VectorXd c = s.getCoriolisVector(x.q, x.qd), f = s.getFrictionVector(x.q, x.qd);
     const Eigen::VectorXd g = s.getGravityVector(x.q);
     const double size = sizeOf(inertial) + sizeOf(c) + sizeOf(f) + sizeOf(g);
     EXPECT_TRUE(near(s.getTorques(x.q, x.qd, x.qdd), inertial + c + f + g, kRounding, size));
@@ -158,9 +158,9 @@ TYPED_TEST_P(SolverConformance, FrictionCanBeSwitchedOff) {
   const auto without = this->makeInitialized({{"friction", false}});
   for (const State& x : this->randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
-    const Eigen::VectorXd f = with->getFrictionVector(x.qd);
+    const Eigen::VectorXd f = with->getFrictionVector(x.q, x.qd);
     const Eigen::VectorXd tau = with->getTorques(x.q, x.qd, x.qdd);
-    EXPECT_TRUE(near(without->getFrictionVector(x.qd), 0 * f, 0.0, 1.0));
+    EXPECT_TRUE(near(without->getFrictionVector(x.q, x.qd), 0 * f, 0.0, 1.0));
     EXPECT_TRUE(
         near(without->getTorques(x.q, x.qd, x.qdd), tau - f, kRounding, sizeOf(tau) + sizeOf(f)));
   }

@@ -37,6 +37,15 @@ constexpr double kRounding = 1e-12;
 constexpr double kDifference = 1e-10;
 constexpr double kDifferenceStep = 1e-3;
 
+/// Forward dynamics divides by inertias of which the greatest is some hundred times the least.
+constexpr double kSolved = 1e-10;
+
+/// The same difference of a friction law, which may turn within some milliradians per second: with
+/// this step rounding is 1e-16/1e-5 = 1e-11, truncation of a sigmoid with slope 200 at most 1e-12,
+/// times its derivatives' size.
+constexpr double kSteepStep = 1e-5;
+constexpr double kSteepDifference = 1e-8;
+
 /// Number of random states in each test of a law.
 constexpr int kStates = 20;
 
@@ -88,7 +97,7 @@ inline std::string toString(const State& state) {
 
 /// A method of the solver, its result as one column of numbers.
 struct Quantity {
-  const char* name;
+  std::string name;
   std::function<Eigen::VectorXd(const InverseDynamicsSolver&, const State&)> value;
 };
 
@@ -104,7 +113,8 @@ inline const std::vector<Quantity>& quantities() {
        [](const S& s, const State& x) { return flat(s.getInertiaMatrix(x.q)); }},
       {"getCoriolisVector",
        [](const S& s, const State& x) { return s.getCoriolisVector(x.q, x.qd); }},
-      {"getFrictionVector", [](const S& s, const State& x) { return s.getFrictionVector(x.qd); }},
+      {"getFrictionVector",
+       [](const S& s, const State& x) { return s.getFrictionVector(x.q, x.qd); }},
       {"getGravityVector", [](const S& s, const State& x) { return s.getGravityVector(x.q); }},
       {"getTorques", [](const S& s, const State& x) { return s.getTorques(x.q, x.qd, x.qdd); }},
       {"getDynamicComponents", [](const S& s, const State& x) {

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What only some solvers can do: small classes beside InverseDynamicsSolver, found by dynamic_cast.
+///
+///     if (const auto* kinematics = dynamic_cast<const Kinematics*>(solver.get())) {
+///       Eigen::MatrixXd J = kinematics->getTipJacobian(q);
+///     }
+///
+/// | header                  | class              | quantities                                     |
+/// |-------------------------|--------------------|------------------------------------------------|
+/// | kinematics.hpp          | Kinematics         | pose of the tip, Jacobian and its derivative   |
+/// | external_wrench.hpp     | ExternalWrench     | torques of a wrench at the tip                 |
+/// | coriolis_matrix.hpp     | CoriolisMatrix     | `C(q, qd)`                                     |
+/// | energies.hpp            | Energies           | kinetic and potential energy                   |
+/// | torque_derivatives.hpp  | TorqueDerivatives  | derivatives of the torques                     |
+/// | regressor.hpp           | Regressor          | torques as linear in the inertial parameters   |
+/// | forward_dynamics.hpp    | ForwardDynamics    | accelerations of given torques                 |
+/// | motor_currents.hpp      | MotorCurrents      | currents of the motors                         |
+#pragma once
+
+#include <Eigen/Core>
+
+#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
+
+namespace inverse_dynamics_solver {
+inline namespace v2 {
+
+/// Base of the capabilities; not of InverseDynamicsSolver: a solver derives from it and from the
+/// capabilities it has.
+///
+/// As in InverseDynamicsSolver, public methods aren't virtual: they check, then call a protected
+/// virtual `compute...`. Every quantity comes by value, into memory of the caller, and for many
+/// states at once (`...Batch`: one state a column); joints, units, errors (uninitialized, wrong
+/// size), and the promises about NaN, real time and threads are those of InverseDynamicsSolver.
+class Capability {
+ public:
+  virtual ~Capability();
+
+ protected:
+  Capability() = default;
+  Capability(const Capability&) = default;
+  Capability& operator=(const Capability&) = default;
+
+  /// The solver that has the capability: `return *this;`. One override serves all capabilities of a
+  /// class.
+  virtual const InverseDynamicsSolver& torqueSolver() const = 0;
+
+  /// Number of joints, for results by value.
+  ///
+  /// @throws UninitializedException  naming the method.
+  Eigen::Index jointsFor(const char* method) const;
+};
+
+}  // namespace v2
+}  // namespace inverse_dynamics_solver

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/energies.hpp"
+
+#include "method_call.hpp"
+#include "one_state.hpp"
+
+namespace inverse_dynamics_solver {
+inline namespace v2 {
+
+// Out of line, so that there is one type information for dynamic_cast across plugin libraries.
+Energies::~Energies() = default;
+
+double Energies::getKineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) const {
+  MethodCall("getKineticEnergy", torqueSolver()).vector("q", q).vector("qd", qd).physicalInertia();
+  return computeKineticEnergy(q, qd);
+}
+
+double Energies::getPotentialEnergy(const ConstVectorRef& q) const {
+  MethodCall("getPotentialEnergy", torqueSolver()).vector("q", q).physicalInertia();
+  return computePotentialEnergy(q);
+}
+
+void Energies::getKineticEnergyBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
+                                     const States& T) const {
+  const BatchCall call("getKineticEnergyBatch", torqueSolver(), q.count);
+  call.states("q", q).states("qd", qd).rows("T", T, 1).physicalInertia();
+  const auto energy = [this](const ConstVectorRef& q_k, const ConstVectorRef& qd_k, VectorRef T_k) {
+    T_k[0] = computeKineticEnergy(q_k, qd_k);
+  };
+  const auto energies = [&](const ConstStates& q_part, const ConstStates& qd_part,
+                            const States& T_part) {
+    eachState(q_part.count, energy, StateReader(q_part), StateReader(qd_part), StateWriter(T_part));
+  };
+  call.share(energies, q, qd, T);
+}
+
+void Energies::getPotentialEnergyBatch(const ConstStatesRef& q, const States& U) const {
+  const BatchCall call("getPotentialEnergyBatch", torqueSolver(), q.count);
+  call.states("q", q).rows("U", U, 1).physicalInertia();
+  const auto energy = [this](const ConstVectorRef& q_k, VectorRef U_k) {
+    U_k[0] = computePotentialEnergy(q_k);
+  };
+  const auto energies = [&](const ConstStates& q_part, const States& U_part) {
+    eachState(q_part.count, energy, StateReader(q_part), StateWriter(U_part));
+  };
+  call.share(energies, q, U);
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_solver

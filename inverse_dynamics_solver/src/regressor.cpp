@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/regressor.hpp"
+
+#include "method_call.hpp"
+#include "one_state.hpp"
+
+namespace inverse_dynamics_solver {
+inline namespace v2 {
+
+// Out of line, so that there is one type information for dynamic_cast across plugin libraries.
+Regressor::~Regressor() = default;
+
+void Regressor::getRegressor(const ConstVectorRef& q, const ConstVectorRef& qd,
+                             const ConstVectorRef& qdd, MatrixRef Y) const {
+  MethodCall("getRegressor", torqueSolver())
+      .vector("q", q)
+      .vector("qd", qd)
+      .vector("qdd", qdd)
+      .matrix("Y", Y, q.size(), 10 * q.size());
+  computeRegressor(q, qd, qdd, Y);
+}
+
+void Regressor::getRegressorBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
+                                  const ConstStatesRef& qdd, const StridedMatrices& Y) const {
+  const BatchCall call("getRegressorBatch", torqueSolver(), q.count);
+  call.states("q", q).states("qd", qd).states("qdd", qdd);
+  call.matrices("Y", Y, q.joints, 10 * q.joints);
+  call.share([this](const auto&... part) { computeRegressorBatch(part...); }, q, qd, qdd,
+             Y.withColumns(10 * q.joints));
+}
+
+void Regressor::computeRegressorBatch(const ConstStates& q, const ConstStates& qd,
+                                      const ConstStates& qdd, const StridedMatrices& Y) const {
+  eachState(
+      q.count, [this](const auto&... of_state) { computeRegressor(of_state...); }, StateReader(q),
+      StateReader(qd), StateReader(qdd), MatrixWriter(Y));
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_solver
