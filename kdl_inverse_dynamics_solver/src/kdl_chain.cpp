@@ -30,11 +30,15 @@ KDL::RigidBodyInertia inertia(const chain_dynamics::LinkParameters& link) {
 
 KDL::Vector toKdl(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
+KDL::Frame toKdl(const chain_dynamics::Transform<double>& pose) {
+  return {rotation(pose.R), toKdl(pose.p)};
+}
+
 KDL::Chain toKdl(const chain_dynamics::Chain& chain) {
   KDL::Chain result;
   for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
     const chain_dynamics::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
-    const KDL::Frame X(rotation(joint.placement.R), toKdl(joint.placement.p));
+    const KDL::Frame X = toKdl(joint.placement);
 
     // The axis is z of the link's frame; KDL wants it in the frame of the link before.
     const auto type = isPrismatic(joint) ? KDL::Joint::TransAxis : KDL::Joint::RotAxis;

@@ -13,6 +13,9 @@ inline namespace v2 {
 /// The same joints, links and rotor inertias; segment i of the result ends in frame i of the chain.
 KDL::Chain toKdl(const chain_dynamics::Chain& chain);
 
+/// A pose.
+KDL::Frame toKdl(const chain_dynamics::Transform<double>& pose);
+
 /// Gravity of the chain, in its root frame [m/s^2].
 KDL::Vector toKdl(const Eigen::Vector3d& vector);
 

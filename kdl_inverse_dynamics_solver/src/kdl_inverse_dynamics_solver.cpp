@@ -9,7 +9,30 @@ inline namespace v2 {
 
 auto InverseDynamicsSolverKDL::workspaceMaker(const chain_dynamics::Chain& chain) const
     -> WorkspaceMaker {
-  return [chain] { return std::make_unique<KdlWorkspace>(toKdl(chain), toKdl(chain.gravity())); };
+  return [chain] {
+    return std::make_unique<KdlWorkspace>(toKdl(chain), toKdl(chain.gravity()), toKdl(chain.tip()));
+  };
+}
+
+void InverseDynamicsSolverKDL::computeTipPose(const ConstVectorRef& q,
+                                              chain_dynamics::Transform<double>& pose) const {
+  borrow<KdlWorkspace>()->tipPose(q, pose);
+}
+
+void InverseDynamicsSolverKDL::computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const {
+  borrow<KdlWorkspace>()->tipJacobian(q, J);
+}
+
+void InverseDynamicsSolverKDL::computeTipJacobianDerivative(const ConstVectorRef& q,
+                                                            const ConstVectorRef& qd,
+                                                            MatrixRef dJ) const {
+  borrow<KdlWorkspace>()->tipJacobianDerivative(q, qd, dJ);
+}
+
+void InverseDynamicsSolverKDL::computeExternalTorques(const ConstVectorRef& q, WrenchFrame frame,
+                                                      const ConstVectorRef& wrench,
+                                                      VectorRef tau) const {
+  borrow<KdlWorkspace>()->externalTorques(q, frame, wrench, tau);
 }
 
 }  // namespace v2

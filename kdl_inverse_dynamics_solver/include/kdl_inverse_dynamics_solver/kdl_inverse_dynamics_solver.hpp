@@ -7,16 +7,40 @@
 ///     Eigen::VectorXd tau = solver->getTorques(q, qd, qdd);
 #pragma once
 
+#include "inverse_dynamics_solver/external_wrench.hpp"
+#include "inverse_dynamics_solver/kinematics.hpp"
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 
 namespace kdl_inverse_dynamics_solver {
 inline namespace v2 {
 
+using inverse_dynamics_solver::ConstVectorRef;
+using inverse_dynamics_solver::MatrixRef;
+using inverse_dynamics_solver::VectorRef;
+
 /// Torques by KDL's recursive Newton-Euler solver, H, C qd and g by its ChainDynParam [Featherstone
-/// 2008, ch. 5 and 6]. KDL's solvers keep state: parameters and promises are those of PooledSolver.
-class InverseDynamicsSolverKDL : public inverse_dynamics_solver::PooledSolver {
+/// 2008, ch. 5 and 6], the tip by ChainFkSolverPos_recursive, ChainJntToJacSolver and
+/// ChainJntToJacDotSolver. KDL's solvers keep state: parameters and promises are those of
+/// PooledSolver. (KDL has no Coriolis matrix, derivatives or regressor.)
+class InverseDynamicsSolverKDL : public inverse_dynamics_solver::PooledSolver,
+                                 public inverse_dynamics_solver::Kinematics,
+                                 public inverse_dynamics_solver::ExternalWrench {
+ public:
+  using ExternalWrench::getTorques;
+  using ExternalWrench::getTorquesBatch;
+  using InverseDynamicsSolver::getTorques;
+  using InverseDynamicsSolver::getTorquesBatch;
+
  protected:
+  const InverseDynamicsSolver& torqueSolver() const override { return *this; }
   WorkspaceMaker workspaceMaker(const chain_dynamics::Chain& chain) const override;
+  void computeTipPose(const ConstVectorRef& q,
+                      chain_dynamics::Transform<double>& pose) const override;
+  void computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const override;
+  void computeTipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                    MatrixRef dJ) const override;
+  void computeExternalTorques(const ConstVectorRef& q, inverse_dynamics_solver::WrenchFrame frame,
+                              const ConstVectorRef& wrench, VectorRef tau) const override;
 };
 
 }  // namespace v2
