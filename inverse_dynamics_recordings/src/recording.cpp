@@ -75,8 +75,12 @@ struct Recording::Content {
     }
   }
 
+  // What is unpacked loses its name as soon as it is open.
   std::unique_ptr<StorageReader> open(const std::string& file) const {
-    return storage == Storage::kMcap ? openMcap(file) : openSqlite(file);
+    std::optional<UnpackedFile> unpacked;
+    if (compression == Compression::kFiles) unpacked.emplace(file);
+    const std::string& plain = unpacked ? unpacked->path() : file;
+    return storage == Storage::kMcap ? openMcap(plain) : openSqlite(plain);
   }
 
   std::string path;
@@ -131,10 +135,7 @@ class Recording::Source : public MessageSource {
   // Finds the connections of the file among those of the recording.
   void openNextFile() {
     const std::string file = content_->files[file_++];
-    const bool packed = content_->compression == Compression::kFiles;
-    unpacked_file_.reset();
-    if (packed) unpacked_file_.emplace(file);
-    reader_ = content_->open(packed ? unpacked_file_->path() : file);
+    reader_ = content_->open(file);
     const std::vector<Connection>& there = reader_->connections();
     connections_.assign(there.size(), 0);
     std::vector<bool> wanted(there.size(), false);
@@ -155,7 +156,6 @@ class Recording::Source : public MessageSource {
   std::shared_ptr<const Content> content_;
   std::vector<bool> wanted_;
   std::size_t file_ = 0;  // number of the next one
-  std::optional<UnpackedFile> unpacked_file_;
   std::unique_ptr<StorageReader> reader_;
   std::vector<std::size_t> connections_;  // of the recording, for those of the file
   ZstdUnpacker zstd_;
@@ -273,9 +273,7 @@ std::vector<Connection> Recording::definitions() const {
   std::vector<Connection> connections = content_->connections;
   readable(content_->path, [&] {
     for (const std::string& file : content_->files) {
-      std::optional<UnpackedFile> unpacked;
-      if (content_->compression == Compression::kFiles) unpacked.emplace(file);
-      const auto reader = content_->open(unpacked ? unpacked->path() : file);
+      const auto reader = content_->open(file);
       bool complete = true;
       for (Connection& connection : connections) {
         for (const Connection& there : reader->connections()) {

@@ -4,14 +4,18 @@
 
 #include <fcntl.h>
 #include <lz4frame.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zstd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
+#include <tuple>
+#include <utility>
 
 #include "output_file.hpp"
 
@@ -51,6 +55,35 @@ void unpackFile(const InputFile& packed, const std::string& what, OutputFile& un
     }
   }
   if (unfinished != 0) throw DamageError("compressed data ended before the end of its frame");
+}
+
+constexpr char kOpenFiles[] = "/proc/self/fd/";
+
+// A new file, and its name; none where the file system has files without one, which are gone with
+// the program however that ends.
+std::pair<int, std::string> newFile(const std::string& directory) {
+  if (::access(kOpenFiles, X_OK) == 0) {
+    const int file = ::open(directory.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
+    if (file >= 0) return {file, ""};
+  }
+  std::string path = directory + "/recording_XXXXXX";
+  const int file = ::mkostemp(path.data(), O_CLOEXEC);
+  if (file < 0) throw std::system_error(errno, std::generic_category());
+  return {file, path};
+}
+
+// Gives a file without a name one of its own.
+std::string named(int file, const std::string& directory) {
+  static std::atomic<unsigned> number{0};
+  const std::string place = kOpenFiles + std::to_string(file);
+  while (true) {
+    std::string path =
+        directory + "/recording_" + std::to_string(::getpid()) + "_" + std::to_string(number++);
+    if (::linkat(AT_FDCWD, place.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+      return path;
+    }
+    if (errno != EEXIST) throw std::system_error(errno, std::generic_category());
+  }
 }
 
 }  // namespace
@@ -141,24 +174,28 @@ UnpackedFile::UnpackedFile(const std::string& packed_path) {
   const InputFile packed(packed_path);
   std::error_code none;
   const std::string directory = fs::temp_directory_path(none);
-  path_ = directory + "/recording_XXXXXX";
-  const int descriptor = ::mkostemp(path_.data(), O_CLOEXEC);
   try {
-    if (descriptor < 0) throw std::system_error(errno, std::generic_category());
-    OutputFile unpacked(descriptor);
+    int file = -1;
+    std::tie(file, path_) = newFile(directory);
+    OutputFile unpacked(file);
     unpackFile(packed, fs::path(packed_path).filename(), unpacked);
+    if (path_.empty()) path_ = named(file, directory);
     unpacked.close();
   } catch (const std::system_error& error) {
-    if (descriptor >= 0) ::unlink(path_.c_str());
+    removeName();
     throw ReadingError("can't be unpacked into " + quoted(directory) + ": " + error.what() +
                        "; free some space, or name another directory with TMPDIR");
   } catch (...) {
-    ::unlink(path_.c_str());
+    removeName();
     throw;
   }
 }
 
-UnpackedFile::~UnpackedFile() { ::unlink(path_.c_str()); }
+UnpackedFile::~UnpackedFile() { removeName(); }
+
+void UnpackedFile::removeName() const {
+  if (!path_.empty()) ::unlink(path_.c_str());
+}
 
 }  // namespace v2
 }  // namespace inverse_dynamics_recordings

@@ -41,7 +41,10 @@ class ZstdUnpacker {
 /// Unpacks LZ4 frames. @throws DamageError, ReadingError
 void unpackLz4(const std::uint8_t* packed, std::size_t size, Bytes& out);
 
-/// A compressed file (zstd), unpacked into a temporary file that goes with the object.
+/// A compressed file (zstd), unpacked into a temporary file whose name goes with the object.
+///
+/// While it is unpacked it has no name where the file system knows such files, so that nothing is
+/// left of a program that is killed. Whoever has opened it needs the name no longer.
 class UnpackedFile {
  public:
   /// @throws DamageError, ReadingError
@@ -53,6 +56,8 @@ class UnpackedFile {
   const std::string& path() const { return path_; }
 
  private:
+  void removeName() const;
+
   std::string path_;
 };
 

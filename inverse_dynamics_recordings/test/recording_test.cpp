@@ -266,14 +266,43 @@ TEST_P(RecordingTest, OfACompressedFileIsRead) {
   EXPECT_EQ(rest(*Recording(bag).jointStates()).receive_stamps, evenly(9000));
 }
 
+// Where temporary files go, for the time of a test.
+class Scratch {
+ public:
+  explicit Scratch(const std::string& directory) {
+    if (const char* const before = std::getenv("TMPDIR")) before_ = before;
+    setenv("TMPDIR", directory.c_str(), 1);
+  }
+  ~Scratch() { before_ ? setenv("TMPDIR", before_->c_str(), 1) : unsetenv("TMPDIR"); }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+
+ private:
+  std::optional<std::string> before_;
+};
+
+TEST_P(RecordingTest, NothingWithANameIsLeftOfACompressedFileOnceItIsOpen) {
+  const std::string bag = write("bag", evenly(9000));
+  pack("bag");
+  const fs::path scratch = directory_ / "scratch";
+  fs::create_directory(scratch);
+  const Scratch there(scratch);
+  const auto source = Recording(bag).jointStates();
+  JointStateBlock block;
+  ASSERT_TRUE(source->next(block));
+  EXPECT_TRUE(fs::is_empty(scratch));
+  EXPECT_EQ(Recording(bag).definitions().size(), 1U);
+  EXPECT_TRUE(fs::is_empty(scratch));
+  source->rewind();
+  EXPECT_EQ(rest(*source).receive_stamps, evenly(9000));
+  EXPECT_TRUE(fs::is_empty(scratch));
+}
+
 TEST_P(RecordingTest, NamesTheDirectoryThatCompressedFilesCantBeUnpackedInto) {
   const std::string bag = write("bag", evenly(3));
   pack("bag");
-  const char* const before = std::getenv("TMPDIR");
-  const std::string kept = before == nullptr ? "" : before;
-  setenv("TMPDIR", "/proc", 1);
+  const Scratch nowhere("/proc");
   const std::string text = errorOfReading(bag);
-  before == nullptr ? unsetenv("TMPDIR") : setenv("TMPDIR", kept.c_str(), 1);
   EXPECT_THAT(text, StartsWith(bag + ": can't be unpacked into '/proc': "));
   EXPECT_THAT(text, HasSubstr("name another directory with TMPDIR"));
   EXPECT_THAT(text, Not(HasSubstr("damaged")));
