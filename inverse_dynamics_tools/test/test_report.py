@@ -299,6 +299,38 @@ def test_a_spike_does_not_flatten_the_plot_of_errors(opened):
     assert opened.execute_script(ask, "measured", [200.0, *values])[1] > 200.0
 
 
+@pytest.mark.parametrize("width", [980, 1400])
+def test_values_at_the_cursor_stay_clear_of_titles(opened, section, width):
+    """Extents of what is written into the first line of each plot."""
+    size = opened.get_window_size()
+    opened.set_window_size(width, 1300)
+    lines = opened.execute_script(
+        """
+        const usual = CanvasRenderingContext2D.prototype.fillText;
+        const lines = new Map();
+        CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+          const length = this.measureText(text).width;
+          const plot = this.canvas.parentElement;
+          if (!lines.has(plot)) lines.set(plot, {});
+          const low = this.textAlign === "right" ? x - length : x;
+          if (y === 12) lines.get(plot)[text] = [low, low + length];
+          usual.apply(this, arguments);
+        };
+        arguments[0].querySelector(".show-all").click();
+        CanvasRenderingContext2D.prototype.fillText = usual;
+        return [...lines.values()];
+        """,
+        section,
+    )
+    opened.set_window_size(size["width"], size["height"])
+    assert len(lines) == 12
+    for line in lines:
+        extents = sorted(line.values())
+        assert len(extents) >= (2 if width > 1000 else 1)
+        for (_, end), (begin, _) in pairwise(extents):
+            assert begin - end > 8, line
+
+
 @pytest.mark.parametrize("how", ["click", "space key"])
 def test_playing_moves_the_time_and_the_robot(opened, section, how):
     play, robot = child(section, ".play"), child(section, ".robot canvas")

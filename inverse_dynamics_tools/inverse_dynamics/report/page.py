@@ -107,15 +107,19 @@ def render_page(
 
 def template(name: str) -> Template:
     """A page to be filled in; it has the style, and the filters figure and percent."""
-    from jinja2 import Environment, StrictUndefined
+    from jinja2 import Environment, FunctionLoader, StrictUndefined
 
     environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, finalize=_printable
+        loader=FunctionLoader(_asset),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        finalize=_printable,
     )
     environment.filters["figure"] = _figure
     environment.filters["percent"] = lambda share: _figure(100.0 * share)
     environment.globals["style"] = _asset("style.css")
-    return environment.from_string(_asset(name))
+    return environment.get_template(name)
 
 
 def _printable(value: object) -> object:

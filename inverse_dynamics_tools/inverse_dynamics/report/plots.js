@@ -161,7 +161,9 @@ class Plot {
     context.textAlign = "left";
     context.textBaseline = "alphabetic";
     context.font = "600 12px system-ui, sans-serif";
-    context.fillText(`${this.options.label} [${this.options.unit}]`, kMargin.left, 12);
+    const title = `${this.options.label} [${this.options.unit}]`;
+    context.fillText(title, kMargin.left, 12);
+    this.title_end = kMargin.left + context.measureText(title).width;
   }
 
   drawSeries(context, series, width, view) {
@@ -222,16 +224,22 @@ class Plot {
     this.drawReadout(context, width, cursor);
   }
 
+  // Values at the cursor: with their names; where these would touch the title, in their colours alone; else none.
   drawReadout(context, width, cursor) {
     context.font = "11px system-ui, sans-serif";
     context.textAlign = "right";
+    const all = [...this.options.series].reverse();
+    const values = all.map((series) => short(series.values[indexAt(series.time, cursor)], 3));
+    const named = values.map((value, i) => `${all[i].name} ${value}`);
+    const length = (texts) => texts.reduce((sum, text) => sum + context.measureText(text).width + 12, 0);
+    const room = width - kMargin.right - this.title_end;
+    const texts = [named, values, []].find((candidate) => length(candidate) <= room) || [];
     let x = width - kMargin.right;
-    for (const series of [...this.options.series].reverse()) {
-      const text = `${series.name} ${short(series.values[indexAt(series.time, cursor)], 3)}`;
-      context.fillStyle = kStyles[series.style].color;
+    texts.forEach((text, i) => {
+      context.fillStyle = kStyles[all[i].style].color;
       context.fillText(text, x, 12);
       x -= context.measureText(text).width + 12;
-    }
+    });
   }
 }
 
