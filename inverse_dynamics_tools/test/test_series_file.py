@@ -4,6 +4,7 @@ import zipfile
 import numpy as np
 import pytest
 
+from inverse_dynamics.errors import OutputError
 from inverse_dynamics.results.series_file import SeriesFile
 
 
@@ -41,6 +42,8 @@ def test_sizes_may_be_beyond_32_bits(tmp_path):
     path = tmp_path / "series.npz"
     with SeriesFile(path, rows) as series:  # a sparse file
         series.add({"a": np.arange(3.0), "b": np.arange(3.0)})
+        series._done = rows - 1
+        series.add({"a": np.arange(1.0), "b": np.arange(1.0)})
     with np.load(path, mmap_mode="r") as read:
         assert read.files == ["a", "b"]
         with read.zip.open("b.npy") as member:
@@ -55,3 +58,21 @@ def test_the_same_arrays_give_the_same_bytes(tmp_path, arrays):
         with SeriesFile(tmp_path / name, 1000) as series:
             series.add(arrays)
     assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
+
+
+@pytest.mark.parametrize("count", [999, 1001])
+def test_another_number_of_rows_than_announced_is_an_error(tmp_path, count):
+    series = SeriesFile(tmp_path / "series.npz", 1000)
+    series.add({"time": np.zeros(count)})
+    with pytest.raises(OutputError, match=rf"series.npz: expected 1000 rows, got {count}"):
+        series.finish()
+
+
+def test_arrays_of_other_lengths_are_an_error(tmp_path):
+    series = SeriesFile(tmp_path / "series.npz", 1000)
+    with pytest.raises(OutputError, match=r"q: expected 3 rows .*, got .* of shape \(0, 0\)"):
+        series.add({"time": np.zeros(3), "q": np.zeros((0, 0))})
+    series.add({"time": np.zeros(3), "q": np.zeros((3, 0))})
+    with pytest.raises(OutputError, match=r"q: expected 3 rows of 0 bytes, got .* \(3, 2\)"):
+        series.add({"time": np.zeros(3), "q": np.zeros((3, 2))})
+    series.close()

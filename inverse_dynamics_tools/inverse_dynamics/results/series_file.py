@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics.errors import OutputError
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
@@ -119,16 +121,28 @@ class SeriesFile:
         """The next rows of each array; each time of the same names, types and columns."""
         if not self._members:
             self._place(arrays)
+        count = len(next(iter(arrays.values())))
         for name, array in arrays.items():
             member = self._members[name]
+            if len(array) != count or array.nbytes != count * member.row_bytes:
+                raise OutputError(
+                    f"{self._path}: {name}: expected {count} rows of {member.row_bytes} bytes, got an "
+                    f"array of {array.dtype} of shape {array.shape}"
+                )
             data = np.ascontiguousarray(array).reshape(-1).view(np.uint8).data
             self._file.seek(member.data_offset + self._done * member.row_bytes)
             self._file.write(data)
             member.crc = zlib.crc32(data, member.crc)
-        self._done += len(next(iter(arrays.values())))
+        self._done += count
 
     def finish(self) -> None:
-        """Write what tells where the arrays are."""
+        """Write what tells where the arrays are. Raises OutputError unless all rows were added."""
+        if self._done != self._rows:
+            self.close()
+            raise OutputError(
+                f"{self._path}: expected {self._rows} rows, got {self._done}; is the recording being "
+                "written? Evaluate it when it is complete"
+            )
         for member in self._members.values():
             self._file.seek(member.offset)
             self._file.write(member.local_header() + member.header)
