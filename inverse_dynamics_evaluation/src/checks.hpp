@@ -74,7 +74,7 @@ inline void requireSamples(const std::string& where, const std::string& what,
   }
 }
 
-/// No NaN, no infinity; joint (row) and sample (column) are named, counted from 0.
+/// No NaN, no infinity; joint (row) and sample (column) are named, counted from 1.
 inline void requireFinite(const std::string& where, const std::string& what,
                           const Eigen::Ref<const Eigen::MatrixXd>& samples) {
   if (samples.allFinite()) {
@@ -84,8 +84,9 @@ inline void requireFinite(const std::string& where, const std::string& what,
     for (Eigen::Index j = 0; j < samples.rows(); ++j) {
       if (!std::isfinite(samples(j, k))) {
         throw EvaluationError(where, what, "finite numbers",
-                              std::to_string(samples(j, k)) + " for joint " + std::to_string(j) +
-                                  " in sample " + std::to_string(k) + " (counted from 0)",
+                              std::to_string(samples(j, k)) + " for joint " +
+                                  std::to_string(j + 1) + " in sample " + std::to_string(k + 1) +
+                                  " (both counted from 1)",
                               "leave such samples out");
       }
     }
@@ -99,7 +100,7 @@ inline void requireFiniteStamps(const std::string& where,
     if (!std::isfinite(time[k])) {
       throw EvaluationError(
           where, "time", "finite stamps",
-          std::to_string(time[k]) + " in sample " + std::to_string(k) + " (counted from 0)",
+          std::to_string(time[k]) + " in sample " + std::to_string(k + 1) + " (counted from 1)",
           "leave such samples out");
     }
   }

@@ -48,10 +48,23 @@ std::string name(Clock clock) {
   return "unknown";
 }
 
-OwnedVector JointLog::time() const {
-  const Stamps& all = stamps();
-  return (all.array() - all[0]).cast<double>() * 1e-9;
+double nanosecondsBetween(std::int64_t from, std::int64_t to) {
+  const auto distance = [](std::int64_t less, std::int64_t more) {
+    return static_cast<double>(static_cast<std::uint64_t>(more) - static_cast<std::uint64_t>(less));
+  };
+  return from <= to ? distance(from, to) : -distance(to, from);
 }
+
+OwnedVector secondsSince(
+    std::int64_t from, const Eigen::Ref<const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>>& to) {
+  OwnedVector seconds(to.size());
+  for (Index k = 0; k < to.size(); ++k) {
+    seconds[k] = 1e-9 * nanosecondsBetween(from, to[k]);
+  }
+  return seconds;
+}
+
+OwnedVector JointLog::time() const { return secondsSince(stamps()[0], stamps()); }
 
 JointLogBuilder::JointLogBuilder(std::string where, std::vector<std::string> joints,
                                  JointLogOptions options)

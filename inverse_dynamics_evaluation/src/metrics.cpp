@@ -22,8 +22,8 @@ constexpr Index kBlock = 256;
   const bool in_computed = !std::isfinite(computed);
   throw EvaluationError("metrics", in_computed ? "computed" : "measured", "finite numbers",
                         std::to_string(in_computed ? computed : measured) + " for joint " +
-                            std::to_string(j) + " in sample " + std::to_string(k) +
-                            " (counted from 0)",
+                            std::to_string(j + 1) + " in sample " + std::to_string(k + 1) +
+                            " (both counted from 1)",
                         "leave such samples out by a mask");
 }
 

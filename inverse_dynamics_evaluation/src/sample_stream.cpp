@@ -76,7 +76,7 @@ bool RecordedSamples::next(SampleBlock& block) {
   if (samples_ == 0) {
     begin_ = log.stamps()[0];
   }
-  block.time = (log.stamps().array() - begin_).cast<double>() * 1e-9;
+  block.time = secondsSince(begin_, log.stamps());
   block.q = log.q;
   block.qd = log.qd;
   block.effort = log.effort;
@@ -89,12 +89,15 @@ bool RecordedSamples::next(SampleBlock& block) {
   return true;
 }
 
-// Takes numbers into the check sum.
+// Takes numbers into the check sum: FNV-1a, 8 bytes at a time, with the upper half mixed into the
+// lower one, which a product alone leaves as it is.
 void RecordedSamples::check(const Eigen::Ref<const Eigen::MatrixXd>& numbers) {
+  constexpr std::uint64_t kPrime = 0x100000001b3;
   for (Index i = 0; i < numbers.size(); ++i) {
     std::uint64_t bits = 0;
     std::memcpy(&bits, numbers.data() + i, sizeof bits);
-    checked_ = ((checked_ << 7) | (checked_ >> 57)) ^ bits;
+    checked_ = (checked_ ^ bits) * kPrime;
+    checked_ ^= checked_ >> 32U;
   }
 }
 

@@ -19,9 +19,15 @@ using Eigen::Index;
 // Sizes of a block in the file: samples, joints, of efforts, of accelerations.
 using Sizes = std::array<std::int64_t, 4>;
 
-[[noreturn]] void throwCannot(const std::string& directory, int error) {
+[[noreturn]] void throwCannotWrite(const std::string& directory, int error) {
   throw RecordingError(directory + ": can't be written (" + std::generic_category().message(error) +
                        "); free some space, or name another output with --out");
+}
+
+[[noreturn]] void throwCannotRead(const std::string& directory, int error) {
+  throw RecordingError(directory + ": the samples written there can't be read again (" +
+                       std::generic_category().message(error) +
+                       "); is the disk failing? Name an output on another one with --out");
 }
 
 // A file that has no name.
@@ -35,7 +41,7 @@ int openFile(const std::string& directory) {
     }
   }
   if (file < 0) {
-    throwCannot(directory, errno);
+    throwCannotWrite(directory, errno);
   }
   return file;
 }
@@ -111,7 +117,7 @@ void SpooledSamples::transfer(bool out, void* data, std::int64_t bytes) {
       continue;
     }
     if (done <= 0) {
-      throwCannot(directory_, done < 0 ? errno : EIO);
+      (out ? throwCannotWrite : throwCannotRead)(directory_, done < 0 ? errno : EIO);
     }
     next += done;
     place_ += done;

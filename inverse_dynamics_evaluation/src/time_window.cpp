@@ -38,12 +38,6 @@ void takeMessages(JointStateBlock& block, std::size_t from, std::size_t to, Join
   copyRows(block.effort, from, to, into.effort);
 }
 
-// ns from one stamp to another: exact below 100 days, unless the difference may overflow.
-double difference(std::int64_t from, std::int64_t to) {
-  if ((from < 0) == (to < 0)) return static_cast<double>(to - from);
-  return static_cast<double>(to) - static_cast<double>(from);
-}
-
 }  // namespace
 
 TimeWindow::TimeWindow(std::unique_ptr<JointStateSource> source, TimeSpan window,
@@ -111,7 +105,7 @@ bool TimeWindow::isSample(const JointStateBlock& block) {
 bool TimeWindow::holds(std::size_t i) {
   if (!start_) return true;
   const auto& stamps = clock_ == Clock::kReceive ? read_.receive_stamps : read_.header_stamps;
-  const double time = difference(*start_, stamps[i]);
+  const double time = nanosecondsBetween(*start_, stamps[i]);
   least_ = std::min(least_, time);
   greatest_ = std::max(greatest_, time);
   return std::round(1e9 * window_.from) <= time && time <= std::round(1e9 * window_.to);

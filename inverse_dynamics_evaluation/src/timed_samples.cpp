@@ -187,8 +187,8 @@ void checkStamps(const Census& census, const SampleRules& rules, TimeBase base) 
   }
   const std::string found = std::to_string(count) + " of " + std::to_string(census.counts.all) +
                             " that don't, the first in sample " +
-                            std::to_string(census.backward.sample) +
-                            " (counted from 0): " + std::to_string(census.backward.time) +
+                            std::to_string(census.backward.sample + 1) +
+                            " (counted from 1): " + std::to_string(census.backward.time) +
                             " s after " + std::to_string(census.backward.time_before) + " s";
   if (!rules.non_increasing) {
     throw EvaluationError("samples", "time", "stamps that increase", found,

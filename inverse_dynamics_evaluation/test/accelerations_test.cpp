@@ -80,7 +80,7 @@ TEST(BackwardDifference, RefusesBadInput) {
   Eigen::MatrixXd bad = Eigen::MatrixXd::Ones(2, 4);
   bad(0, 2) = -std::numeric_limits<double>::infinity();
   EXPECT_THAT(errorOf<EvaluationError>([&] { backwardDifference(time, bad); }),
-              HasSubstr("got -inf for joint 0 in sample 2"));
+              HasSubstr("got -inf for joint 1 in sample 3"));
 }
 
 TEST(Derivative, IsExactForPolynomialsOfFourthOrder) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "error_of.hpp"
+#include "inverse_dynamics_evaluation/log_accelerations.hpp"
 
 namespace inverse_dynamics_evaluation {
 namespace {
@@ -149,6 +150,24 @@ TEST(JointLog, TakesHeadersStampsAndThoseOfReceptionIfNoHeaderHasOne) {
     EXPECT_EQ(log.clock, stamped ? Clock::kHeader : Clock::kReceive);
     EXPECT_EQ(log.time(), Eigen::Vector2d(0.0, stamped ? 1.0 : 2.0));
     EXPECT_EQ(log.notes.size(), stamped ? 0U : 1U);
+  }
+}
+
+TEST(JointLog, TimesAreRightWhateverTheStamps) {
+  constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kGreatest = std::numeric_limits<std::int64_t>::max();
+  EXPECT_EQ(nanosecondsBetween(kLeast, kGreatest), 0x1p64);
+  EXPECT_EQ(nanosecondsBetween(kGreatest, kLeast), -0x1p64);
+  EXPECT_EQ(nanosecondsBetween(1'700'000'000'000'000'001, 1'700'000'000'000'000'004), 3.0);
+  EXPECT_EQ(nanosecondsBetween(2, -1), -3.0);
+  JointLog log;
+  log.header_stamps =
+      Eigen::Matrix<std::int64_t, 3, 1>(-9'000'000'000'000'000'000, 0, 9'000'000'000'000'000'000);
+  log.receive_stamps = log.header_stamps;
+  log.q = log.qd = Eigen::MatrixXd::Zero(1, 3);
+  const JointLogView view = log;
+  for (const Eigen::VectorXd& time : {Eigen::VectorXd(log.time()), Eigen::VectorXd(view.time())}) {
+    EXPECT_THAT(time, ElementsAre(0.0, 9e9, 18e9));
   }
 }
 

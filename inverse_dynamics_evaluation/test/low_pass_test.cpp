@@ -186,7 +186,7 @@ TEST(LowPass, RefusesWhatItCannotFilter) {
   Eigen::MatrixXd bad = x;
   bad(1, 17) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(errorOf<EvaluationError>([&] { lowPass(bad, 100.0, 2.0); }),
-              HasSubstr("got nan for joint 1 in sample 17"));
+              HasSubstr("got nan for joint 2 in sample 18"));
 }
 
 }  // namespace

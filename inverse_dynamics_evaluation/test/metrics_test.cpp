@@ -109,7 +109,7 @@ TEST(Metrics, RefuseWhatCannotBeCompared) {
   Eigen::MatrixXd bad = measured;
   bad(1, 2) = std::numeric_limits<double>::infinity();
   EXPECT_THAT(errorOf<EvaluationError>([&] { metrics(bad, measured); }),
-              HasSubstr("computed: expected finite numbers, got inf for joint 1 in sample 2"));
+              HasSubstr("computed: expected finite numbers, got inf for joint 2 in sample 3"));
   EXPECT_THAT(errorOf<EvaluationError>([&] { metrics(measured, bad); }),
               HasSubstr("metrics: measured: expected finite"));
 }

@@ -95,7 +95,7 @@ TEST(ExamineSamples, LeavesStampsThatDoNotIncreaseOut) {
   EXPECT_THAT(
       errorOf<EvaluationError>([&] { examine(motion, rules); }),
       HasSubstr("samples: time: expected stamps that increase, got 2 of 401 that don't, the first "
-                "in sample 50 (counted from 0)"));
+                "in sample 51 (counted from 1)"));
 }
 
 TEST(ExamineSamples, ReplacesJitteringStampsByEqualDistances) {
@@ -262,11 +262,11 @@ TEST(ExamineSamples, RefusesWhatItCannotExamine) {
   Motion bad = motion;
   bad.q(1, 7) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(errorOf<EvaluationError>([&] { examine(bad); }),
-              HasSubstr("samples: q: expected finite numbers, got nan for joint 1 in sample 7"));
+              HasSubstr("samples: q: expected finite numbers, got nan for joint 2 in sample 8"));
   bad = motion;
   bad.time[3] = std::numeric_limits<double>::infinity();
   EXPECT_THAT(errorOf<EvaluationError>([&] { examine(bad); }),
-              HasSubstr("time: expected finite stamps, got inf in sample 3"));
+              HasSubstr("time: expected finite stamps, got inf in sample 4"));
   bad = motion;
   bad.time.conservativeResize(100);
   EXPECT_THAT(errorOf<EvaluationError>([&] { examine(bad); }),

@@ -37,6 +37,13 @@ inline namespace v2 {
 /// Stamps of N samples; ns since the epoch of whoever wrote them.
 using Stamps = chain_dynamics::Owned<Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>>;
 
+/// ns from one stamp to another, whatever their signs; exact up to 104 days.
+double nanosecondsBetween(std::int64_t from, std::int64_t to);
+
+/// N; s from one stamp [ns] to each of others.
+OwnedVector secondsSince(
+    std::int64_t from, const Eigen::Ref<const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>>& to);
+
 /// Which stamps are the time: the header's, those of reception, or what is there.
 enum class Clock { kAuto, kHeader, kReceive };
 

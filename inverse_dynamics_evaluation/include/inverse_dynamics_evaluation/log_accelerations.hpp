@@ -52,7 +52,7 @@ struct JointLogView {
   }
 
   /// N; s since the first sample.
-  OwnedVector time() const { return (stamps().array() - stamps()[0]).cast<double>() * 1e-9; }
+  OwnedVector time() const { return secondsSince(stamps()[0], stamps()); }
 };
 
 /// Where accelerations come from.
