@@ -167,12 +167,21 @@ void planFilter(SampleStream& stream, const AccelerationOptions& options, Accele
 
 }  // namespace
 
-AccelerationPlan planAccelerations(SampleStream& stream, const AccelerationOptions& options) {
-  if (options.cutoff != 0 && options.method != AccelerationMethod::kAuto &&
-      options.method != AccelerationMethod::kLowPass) {
-    throw EvaluationError("accelerations: " + name(options.method) + " has no cut-off, got " +
-                          formatted("%g", options.cutoff) + " Hz; use low-pass");
+void checkCutoff(AccelerationMethod method, double cutoff) {
+  const bool filtered =
+      method == AccelerationMethod::kAuto || method == AccelerationMethod::kLowPass;
+  if (cutoff != 0 && !filtered) {
+    throw EvaluationError("accelerations: " + name(method) + " has no cut-off, got " +
+                          formatted("%g", cutoff) + " Hz; use low-pass");
   }
+  if (!(cutoff >= 0) || std::isinf(cutoff)) {
+    throw EvaluationError("low-pass", "cut-off", "above 0 and below half the sampling frequency",
+                          formatted("%g", cutoff) + " Hz", "lower it, or don't filter");
+  }
+}
+
+AccelerationPlan planAccelerations(SampleStream& stream, const AccelerationOptions& options) {
+  checkCutoff(options.method, options.cutoff);
   AccelerationPlan plan;
   plan.rules = options.rules;
   plan.census = takeCensus(stream, plan.rules);

@@ -47,6 +47,10 @@ struct AccelerationOptions {
 /// than two samples. @throws EvaluationError
 void checkLog(const JointLogView& log);
 
+/// Refuses a cut-off [Hz] that no filter has, or for a method that has none; 0: chosen from the data.
+/// @throws EvaluationError
+void checkCutoff(AccelerationMethod method, double cutoff);
+
 /// The passes that accelerations need before they are computed.
 ///
 /// @throws EvaluationError: see logAccelerations().

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -40,40 +41,117 @@ class Stopwatch {
   Clock::time_point last_ = Clock::now();
 };
 
+// Tells the share of several passes that is done.
+class Progress {
+ public:
+  /// @param passes  weights of all passes together. @param tell  must outlive it; may be empty.
+  Progress(double passes, const TellProgress& tell) : passes_(passes), tell_(tell) {}
+
+  /// What the next passes count for.
+  void setWeight(double weight) { weight_ = weight; }
+  /// A pass begins; what another one has looked at without reaching its end doesn't count.
+  void begin() { share_ = 0; }
+  /// So much of the pass is done.
+  void reach(double share) {
+    share_ = std::max(share_, std::min(share, 1.0));
+    told_ = std::max(told_, std::min((done_ + weight_ * share_) / passes_, 1.0));
+    if (tell_) {
+      tell_(told_);
+    }
+  }
+  /// The pass is at its end.
+  void end() {
+    done_ += weight_;
+    share_ = 0;
+  }
+  /// So are all.
+  void finish() {
+    if (tell_) {
+      tell_(1.0);
+    }
+  }
+
+ private:
+  double passes_;
+  const TellProgress& tell_;
+  double weight_ = kLookWeight;
+  double done_ = 0;   // weights of the passes that are at their end
+  double share_ = 0;  // of this pass
+  double told_ = 0;
+};
+
+// Another source, whose messages are counted: those before a time window take time too.
+class ObservedSource : public JointStateSource {
+ public:
+  ObservedSource(JointStateSource& source, Progress& progress)
+      : source_(source),
+        progress_(progress),
+        expected_(std::max(static_cast<double>(source.expectedMessages()), 1.0)) {}
+
+  bool next(JointStateBlock& block) override {
+    const bool found = source_.next(block);
+    if (found) {
+      read_ += static_cast<double>(block.size());
+      progress_.reach(read_ / expected_);
+    }
+    return found;
+  }
+  void rewind() override {
+    source_.rewind();
+    read_ = 0;
+  }
+  std::int64_t expectedMessages() const override { return source_.expectedMessages(); }
+  std::string where() const override { return source_.where(); }
+
+ private:
+  JointStateSource& source_;
+  Progress& progress_;
+  double expected_;
+  double read_ = 0;
+};
+
 // Another stream, whose progress is told and whose time is taken.
 class ObservedSamples : public SampleStream {
  public:
-  ObservedSamples(SampleStream& samples, double expected, double passes, const TellProgress& tell)
-      : samples_(samples), work_(std::max(expected, 1.0) * passes), tell_(tell) {}
+  ObservedSamples(SampleStream& samples, double expected, Progress& progress)
+      : samples_(samples), progress_(progress), expected_(std::max(expected, 1.0)) {}
 
   bool next(SampleBlock& block) override {
     Stopwatch watch;
     const bool found = samples_.next(block);
     seconds_ += watch.lap();
-    if (found && tell_) {
-      done_ += weight_ * static_cast<double>(block.size());
-      tell_(std::min(done_ / work_, 1.0));
+    if (found) {
+      given_ += static_cast<double>(block.size());
+      progress_.reach(given_ / expected_);
+    } else {
+      expected_ = std::max(given_, 1.0);
+      if (!std::exchange(ended_, true)) {
+        progress_.end();
+      }
     }
     return found;
   }
-  void rewind() override { samples_.rewind(); }
+  void rewind() override {
+    samples_.rewind();
+    given_ = 0;
+    ended_ = false;
+    progress_.begin();
+  }
   bool clockHasChanged() override { return samples_.clockHasChanged(); }
   Clock clock() const override { return samples_.clock(); }
   std::string where() const override { return samples_.where(); }
   std::string frameId() const override { return samples_.frameId(); }
-
-  /// What a sample of the next passes counts for.
-  void setWeight(double weight) { weight_ = weight; }
 
   /// How long reading took.
   double seconds() const { return seconds_; }
 
  private:
   SampleStream& samples_;
-  double work_;
-  const TellProgress& tell_;
-  double weight_ = kLookWeight;
-  double done_ = 0, seconds_ = 0;
+  Progress& progress_;
+  double expected_;   // samples
+  double given_ = 0;  // in this pass
+  bool ended_ = false;
+  double seconds_ = 0;
 };
 
 // Errors say which recording they are of.
@@ -99,15 +177,22 @@ MatrixXd selected(const Eigen::Ref<const MatrixXd>& columns, const Flags& mask) 
   return result;
 }
 
+// Weights of all passes together.
+double passes(const EvaluationOptions& options) {
+  return (options.cutoff == 0 ? 3.0 : 2.0) * kLookWeight + kTorquesWeight +
+         (statedEffort(options.effort).meaning == kAutomatic ? kVerdictWeight : 0.0);
+}
+
 // An evaluation of samples from wherever they come.
 class Evaluator {
  public:
   Evaluator(SampleStream& samples, double expected, const InverseDynamicsSolver& solver,
-            const EvaluationOptions& options)
+            const EvaluationOptions& options, Progress& progress)
       : solver_(solver),
         options_(options),
         stated_(statedEffort(options.effort)),
-        samples_(samples, expected, passes(), options.progress) {}
+        progress_(progress),
+        samples_(samples, expected, progress) {}
 
   /// @param gather  whether the result gets what there is of each sample.
   Evaluation evaluate(const TakeSamples& take, bool gather) {
@@ -122,24 +207,20 @@ class Evaluator {
     result.accelerations = withoutSeries(samples_, plan_);
     acceleration_seconds_ = watch_.lap() - samples_.seconds();
     if (stated_.meaning == kAutomatic) {
-      samples_.setWeight(kVerdictWeight);
+      progress_.setWeight(kVerdictWeight);
       result.effort = effortOfData(verdict(), options_.effort);
     }
-    samples_.setWeight(kTorquesWeight);
+    progress_.setWeight(kTorquesWeight);
     compare(take, gather, result);
     result.reading_seconds = samples_.seconds();
     result.acceleration_seconds = acceleration_seconds_;
     result.torque_seconds = torque_seconds_;
     addNotes(result);
+    progress_.finish();
     return result;
   }
 
  private:
-  double passes() const {
-    return (options_.cutoff == 0 ? 3.0 : 2.0) * kLookWeight + kTorquesWeight +
-           (stated_.meaning == kAutomatic ? kVerdictWeight : 0.0);
-  }
-
   // Calls `visit` with all samples, 4096 at a time, and their computed torques.
   template <class Visit>
   void forEachBlock(Visit visit) {
@@ -226,6 +307,7 @@ class Evaluator {
   const InverseDynamicsSolver& solver_;
   const EvaluationOptions& options_;
   Effort stated_;
+  Progress& progress_;
   ObservedSamples samples_;
   AccelerationPlan plan_;
   Stopwatch watch_;
@@ -238,26 +320,41 @@ Evaluation evaluate(const JointLogView& log, const InverseDynamicsSolver& solver
                     const EvaluationOptions& options, const TakeSamples& take) {
   named(options, [&] { checkLog(log); });
   SamplesInMemory samples(log, log.time());
+  Progress progress(passes(options), options.progress);
   const auto expected = static_cast<double>(log.q.cols());
-  return Evaluator(samples, expected, solver, options).evaluate(take, true);
+  return Evaluator(samples, expected, solver, options, progress).evaluate(take, true);
 }
 
 Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
                     const InverseDynamicsSolver& solver, const EvaluationOptions& options,
                     const TakeSamples& take) {
-  RecordedSamples samples(source, recording.joints, recording.clock, recording.log);
+  Progress progress(passes(options), options.progress);
+  auto observed = std::make_unique<ObservedSource>(source, progress);
+  std::unique_ptr<JointStateSource> part;
+  if (recording.window.isBounded()) {
+    part = std::make_unique<TimeWindow>(std::move(observed), recording.window, recording.joints,
+                                        recording.clock);
+  } else {
+    part = std::move(observed);
+  }
+  RecordedSamples samples(*part, recording.joints, recording.clock, recording.log);
   std::optional<SpooledSamples> spooled;
   if (!recording.scratch.empty()) {
     spooled.emplace(samples, recording.scratch);
   }
   SampleStream& stream = spooled ? static_cast<SampleStream&>(*spooled) : samples;
   const auto expected = static_cast<double>(source.expectedMessages());
-  Evaluation result = Evaluator(stream, expected, solver, options).evaluate(take, false);
+  Evaluation result = Evaluator(stream, expected, solver, options, progress).evaluate(take, false);
   result.recording = samples.about();
   const auto before_efforts = solver.warnings().size() + options.notes.size();
   result.notes.insert(result.notes.begin() + static_cast<std::ptrdiff_t>(before_efforts),
                       result.recording.notes.begin(), result.recording.notes.end());
   return result;
+}
+
+void checkOptions(const EvaluationOptions& options) {
+  checkCutoff(options.method, options.cutoff);
+  statedEffort(options.effort);
 }
 
 SampleRules rulesWithout(const std::vector<std::string>& names) {

@@ -4,13 +4,18 @@
 // memory.
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "distance_counts.hpp"
@@ -23,6 +28,7 @@
 namespace inverse_dynamics_evaluation {
 namespace {
 
+namespace fs = std::filesystem;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using ::testing::ElementsAre;
@@ -79,6 +85,13 @@ class Messages : public JointStateSource {
   Index block_;
   Index next_ = 0;
 };
+
+void flipBit(double& number, unsigned bit) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &number, sizeof bits);
+  bits ^= std::uint64_t{1} << bit;
+  std::memcpy(&number, &bits, sizeof bits);
+}
 
 JointLog logOf(const Motion& motion) {
   JointLog log;
@@ -299,7 +312,64 @@ TEST(Stream, RefusesARecordingThatChangesWhileItIsRead) {
                   messages.change = [](JointStateBlock& block) { block.position.values[0] += 0.1; };
                 }),
                 HasSubstr("expected the same samples each time it is read"));
+    EXPECT_THAT(evaluated([&](Messages& messages) {  // bits of two numbers, side by side
+                  messages.fails_in = pass;
+                  messages.ends_at = log.q.cols();
+                  messages.change = [](JointStateBlock& block) {
+                    flipBit(block.position.values[1], 3);
+                    flipBit(block.position.values[0], 10);
+                  };
+                }),
+                HasSubstr("expected the same samples each time it is read"));
   }
+}
+
+// Cuts off the file without a name in a directory.
+void truncateUnnamedFile(const std::string& directory) {
+  for (const auto& entry : fs::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    const std::string target = fs::read_symlink(entry, gone);
+    if (target.rfind(directory, 0) == 0 && target.find(" (deleted)") != std::string::npos) {
+      ASSERT_EQ(truncate(entry.path().c_str(), 0), 0);
+      return;
+    }
+  }
+  FAIL() << "no such file";
+}
+
+TEST(Stream, SaysThatItsFileOfSamplesCantBeReadAgain) {
+  const std::string directory = fs::canonical(testing::TempDir());
+  const JointLog log = logOf(noisy(125.0, 80.0));
+  Messages messages(log, 1000);
+  EvaluationOptions raw = options();
+  raw.method = AccelerationMethod::kBackwardDifference;
+  bool first = true;
+  EXPECT_THAT(errorOf<RecordingError>([&] {
+                evaluate(messages, joints(directory), TwoJointSolver(), raw,
+                         [&](const EvaluatedSamples&) {
+                           if (std::exchange(first, false)) truncateUnnamedFile(directory);
+                         });
+              }),
+              HasSubstr(directory + ": the samples written there can't be read again ("));
+}
+
+TEST(Stream, TellsTheProgressUpToATimeWindowAndItsEnd) {
+  const JointLog log = logOf(noisy(125.0, 80.0));
+  Messages messages(log, 100);
+  RecordingOptions part = joints();
+  part.window = {70.0, 75.0};
+  EvaluationOptions watched = options();
+  std::vector<double> shares;
+  watched.progress = [&](double share) { shares.push_back(share); };
+  std::size_t told_before = 0;
+  const auto take = [&](const EvaluatedSamples&) {
+    if (told_before == 0) told_before = shares.size();
+  };
+  evaluate(messages, part, TwoJointSolver(), watched, take);
+  EXPECT_GT(told_before, 300U);  // the whole recording, three times
+  EXPECT_LT(shares.front(), 0.01);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_EQ(shares.back(), 1.0);
 }
 
 TEST(DistanceCounts, AreExactForFewDifferentDistances) {

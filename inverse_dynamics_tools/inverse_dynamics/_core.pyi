@@ -309,9 +309,6 @@ class JointStates:
     def expected_messages(self) -> int:
         """How many messages there are by the recording's own account."""
 
-    def keep_between(self, start: float, end: float, joints: list[str], clock: str) -> None:
-        """Leave out what isn't between two times, s since the first sample with the joints."""
-
     def __iter__(self) -> JointStates: ...
     def __next__(
         self,
@@ -524,6 +521,8 @@ def evaluate(
     *,
     joints: list[str],
     clock: str,
+    start: float,
+    end: float,
     method: str,
     cutoff: float | None,
     without_rules: list[str],
@@ -536,6 +535,9 @@ def evaluate(
     take: Callable[[int, str, dict[str, NDArray[Any]]], None],
     progress: Callable[[float], None],
 ) -> Evaluated: ...
+def check_options(
+    method: str, cutoff: float | None, without_rules: list[str], effort_is: str | None
+) -> None: ...
 def acceleration_summary(method: str, cutoff: float | None, chosen: bool) -> str: ...
 def check_torques(
     where: str, joint_names: list[str], units: list[str], computed: ArrayLike

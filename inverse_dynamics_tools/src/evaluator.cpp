@@ -128,11 +128,13 @@ py::dict seriesOf(const evaluation::EvaluatedSamples& samples) {
   return series;
 }
 
-/// @param motion  a JointLog, or JointStates of a recording; joints and clock are for the latter.
+/// @param motion  a JointLog, or JointStates of a recording; joints, clock, start and end are for the
+///                latter.
 evaluation::Evaluation evaluate(const py::object& solver, const py::object& motion,
-                                const Names& joints, const std::string& clock,
-                                const std::string& method, const std::optional<double>& cutoff,
-                                const Names& without_rules, const evaluation::EffortOptions& effort,
+                                const Names& joints, const std::string& clock, double start,
+                                double end, const std::string& method,
+                                const std::optional<double>& cutoff, const Names& without_rules,
+                                const evaluation::EffortOptions& effort,
                                 const std::string& recording, const std::string& topic,
                                 const Names& units, const Names& notes, const std::string& scratch,
                                 const py::function& take, const py::function& progress) {
@@ -156,13 +158,18 @@ evaluation::Evaluation evaluate(const py::object& solver, const py::object& moti
     take(next.all, next.frame_id, seriesOf(next));
   };
   if (py::isinstance<JointStates>(motion)) {
-    auto& source = *motion.cast<JointStates&>().source;
+    auto& states = motion.cast<JointStates&>();
+    const InUse reader(states);
     const evaluation::RecordingOptions which = {
-        joints, clockOf(clock), {true, "--joints"}, scratch};
+        joints, clockOf(clock), {true, "--joints"}, scratch, {start, end}};
     const py::gil_scoped_release release;
-    return evaluation::evaluate(source, which, *shared, options, give);
+    return evaluation::evaluate(*states.source, which, *shared, options, give);
   }
   const Log log(motion);
+  if (log.effort.size() == 0) {
+    throw evaluation::EvaluationError(recording, "effort", "one row per sample", "none",
+                                      "torques without efforts: trajectory_torques()");
+  }
   const evaluation::JointLogView view = log.view();
   const py::gil_scoped_release release;
   return evaluation::evaluate(view, *shared, options, give);
@@ -236,16 +243,32 @@ void bindEvaluator(py::module_& module) {
       .def_property_readonly("notes", [](const Evaluated& e) { return e.notes; });
   module.def(
       "evaluate", &evaluate, py::arg("solver"), py::arg("motion"), py::kw_only(), py::arg("joints"),
-      py::arg("clock"), py::arg("method"), py::arg("cutoff"), py::arg("without_rules"),
-      py::arg("effort"), py::arg("recording"), py::arg("topic"), py::arg("units"), py::arg("notes"),
-      py::arg("scratch"), py::arg("take"), py::arg("progress"),
+      py::arg("clock"), py::arg("start"), py::arg("end"), py::arg("method"), py::arg("cutoff"),
+      py::arg("without_rules"), py::arg("effort"), py::arg("recording"), py::arg("topic"),
+      py::arg("units"), py::arg("notes"), py::arg("scratch"), py::arg("take"), py::arg("progress"),
       "Computed torques of recorded joint states and their errors, in bounded memory.\n\n"
-      "motion: a JointLog, or JointStates, of which joints and clock are taken. method: auto,\n"
-      "low-pass, given or backward-difference. cutoff: Hz; None: chosen from the data.\n"
+      "motion: a JointLog, or JointStates, of which joints, clock, and what lies between start "
+      "and\n"
+      "end, s since the first sample, are taken. method: auto, low-pass, given or\n"
+      "backward-difference. cutoff: Hz; None: chosen from the data.\n"
       "recording, topic: for errors' texts. scratch: a directory for a file of samples, or \"\".\n"
       "take: called with how many samples there are, the frame of a recording that was read, and\n"
       "the arrays of the next ones by name, some thousand at a time. progress: called with the\n"
       "share that is done.");
+  module.def(
+      "check_options",
+      [](const std::string& method, const std::optional<double>& cutoff, const Names& without_rules,
+         const std::optional<std::string>& effort_is) {
+        evaluation::EvaluationOptions options;
+        options.method = evaluation::accelerationMethod(method);
+        options.rules = evaluation::rulesWithout(without_rules);
+        options.cutoff = cutoff.value_or(0.0);
+        options.effort.option = effort_is;
+        options.effort.drive_gains = {1.0};  // whether there are any is up to the robot
+        evaluation::checkOptions(options);
+      },
+      py::arg("method"), py::arg("cutoff"), py::arg("without_rules"), py::arg("effort_is"),
+      "Raise EvaluationError for what no recording can be evaluated with.");
   module.def(
       "acceleration_summary",
       [](const std::string& method, const std::optional<double>& cutoff, bool chosen) {

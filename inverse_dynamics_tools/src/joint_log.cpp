@@ -25,6 +25,7 @@ using evaluation::JointLogBuilder;
 
 /// Adds the next messages of a recording; whether there were any.
 bool addNext(JointLogBuilder& builder, JointStates& states) {
+  const InUse reader(states);
   const py::gil_scoped_release release;
   if (!states.source->next(states.block)) return false;
   builder.add(states.block);

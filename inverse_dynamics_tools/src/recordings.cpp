@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <inverse_dynamics_evaluation/time_window.hpp>
 #include <inverse_dynamics_recordings/joint_state_writer.hpp>
 #include <inverse_dynamics_recordings/recording.hpp>
 #include <memory>
@@ -17,7 +16,6 @@
 
 #include "arrays.hpp"
 #include "initialized.hpp"
-#include "joint_log.hpp"
 #include "joint_states.hpp"
 
 namespace inverse_dynamics_tools {
@@ -106,6 +104,7 @@ Array arrayOf(const inverse_dynamics_evaluation::JointStateNumbers& numbers, std
 }
 
 py::tuple nextStates(JointStates& states) {
+  const InUse reader(states);
   auto& block = states.block;
   {
     const py::gil_scoped_release release;
@@ -161,14 +160,6 @@ void bindConnection(py::module_& module) {
                              [](const Connection& c) { return textOf(c.definition_hash); });
 }
 
-/// Leaves out what doesn't lie between two times.
-void keepBetween(JointStates& states, double start, double end,
-                 const std::vector<std::string>& joints, const std::string& clock) {
-  states.source = std::make_unique<inverse_dynamics_evaluation::TimeWindow>(
-      std::move(states.source), inverse_dynamics_evaluation::TimeSpan{start, end}, joints,
-      clockOf(clock));
-}
-
 void bindSources(py::module_& module) {
   py::class_<Messages>(module, "Messages", "Serialized messages, thousands at a time.")
       .def("__iter__", [](py::object self) { return self; })
@@ -180,10 +171,6 @@ void bindSources(py::module_& module) {
           "expected_messages",
           [](const JointStates& states) { return states.source->expectedMessages(); },
           "How many messages there are by the recording's own account.")
-      .def("keep_between", &keepBetween, py::arg("start"), py::arg("end"), py::arg("joints"),
-           py::arg("clock"),
-           "Leave out what isn't between two times, s since the first sample with the joints:\n"
-           "TimeWindow of inverse_dynamics_evaluation.")
       .def("__iter__", [](py::object self) { return self; })
       .def("__next__", &nextStates);
 }

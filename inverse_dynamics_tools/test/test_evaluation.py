@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import joint_log
 
-from inverse_dynamics import Solver, evaluate, load_robot
+from inverse_dynamics import Solver, evaluate, load_robot, read_recording
 from inverse_dynamics.base.ament import package_share
 from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
@@ -21,6 +21,7 @@ from inverse_dynamics.errors import (
     PluginNotFoundError,
     RobotError,
 )
+from inverse_dynamics.evaluation import evaluation
 from inverse_dynamics.results.evaluations import evaluate_into, write_evaluation
 
 UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
@@ -96,6 +97,13 @@ def test_backward_differences_are_computed_as_the_formula_says(bag, robot, solve
     np.testing.assert_allclose([e.rmse for e in result.errors], rmse, rtol=1e-6)
     assert result.mean_rmse == pytest.approx(rmse.mean(), rel=1e-6)
     assert result.accelerations.cutoff is None
+
+
+def test_a_motion_in_memory_without_efforts_is_refused(bag, robot, monkeypatch):
+    log = replace(read_recording(bag), effort=np.zeros((0, 0)))
+    monkeypatch.setattr(evaluation, "open_motion", lambda *_, **__: log)
+    with pytest.raises(EvaluationError, match="bag: effort: expected one row per sample, got none"):
+        evaluate(bag, robot)
 
 
 def test_nothing_is_printed(bag, robot, capfd):

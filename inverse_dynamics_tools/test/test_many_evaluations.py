@@ -338,6 +338,34 @@ def test_what_no_recording_can_be_evaluated_with_is_an_error_at_once(bags, tmp_p
     assert os.listdir(tmp_path) == []
 
 
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"accelerations": "lowpass"}, "accelerations: expected one of .*, got 'lowpass'"),
+        (
+            {"accelerations": "given", "cutoff": 3.0},
+            "accelerations: given has no cut-off, got 3 Hz",
+        ),
+        ({"cutoff": -1.0}, "cut-off: expected above 0 and .*, got -1 Hz"),
+        ({"cutoff": float("inf")}, "cut-off: expected above 0 and .*, got inf Hz"),
+        ({"cutoff": float("nan")}, "cut-off: expected above 0 and .*, got nan Hz"),
+        ({"effort_is": "volt"}, "effort, as given: expected one of .*, got 'volt'"),
+        ({"clock": "sun"}, "clock: expected one of auto, header, receive, got 'sun'"),
+        ({"without_rules": ["gaps"]}, "rules: expected some of .*, got 'gaps'"),
+        ({"start": 2.0, "end": 1.0}, "expected a time after --from"),
+        ({"storage": "tape"}, "storage: expected one of sqlite3, mcap, got 'tape'"),
+        ({"figures": ("gif",)}, "gif"),
+    ],
+)
+def test_a_wrong_value_is_told_before_any_process_starts(
+    bags, tmp_path, monkeypatch, options, text
+):
+    monkeypatch.setattr(many_evaluations, "in_processes", lambda *_, **__: pytest.fail("started"))
+    with pytest.raises(UserError, match=text):
+        evaluate_many(bags, "ur10_simulated", tmp_path / "week", **options)
+    assert os.listdir(tmp_path) == []
+
+
 def test_a_recording_in_an_older_result_is_not_replaced(bags, tmp_path):
     evaluate_many(bags, "ur10_simulated", tmp_path / "week", **QUICK)
     before = files(tmp_path)

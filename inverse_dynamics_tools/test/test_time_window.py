@@ -10,6 +10,7 @@ from test_evaluation import JOINTS, RIGID_BODY, URDF, recording
 
 from inverse_dynamics import Solver, evaluate, read_evaluation, write_joint_logs
 from inverse_dynamics.errors import ArgumentError, BagError
+from inverse_dynamics.evaluation.series import SeriesInMemory
 
 # The recordings have samples at 0, 0.004, ... 5.996 s after the first.
 
@@ -114,6 +115,56 @@ def test_tables_and_receive_stamps_have_windows_too(tmp_path, log, bag):
 def test_a_window_without_samples_is_an_error(ids, bag, tmp_path, options, text):
     fails(ids("evaluate", bag, "--robot", "ur10_simulated", *options), text)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("samples", [1, 2])
+def test_too_few_samples_in_a_window_are_an_error_that_names_the_window(
+    ids, bag, tmp_path, samples
+):
+    end = 1.002 if samples == 1 else 1.006
+    command = ("evaluate", bag, "--robot", "ur10_simulated", "--from", "1", "--to", end)
+    fails(ids(*command), f"{bag}, from 1 s to {end} s: /joint_states: ")
+    write_table(tmp_path / "table.csv", table_of(np.zeros((1500, 6))))
+    command = ("evaluate", "table.csv", "--robot", "ur10_simulated", "--from", "1", "--to", end)
+    fails(ids(*command), f"table.csv, from 1 s to {end} s: ")
+
+
+def test_what_is_before_a_window_is_part_of_the_progress(bag):
+    told = []
+    evaluate(bag, "ur10_simulated", start=4.0, progress=lambda *step: told.append(step))
+    whole = []
+    evaluate(bag, "ur10_simulated", progress=lambda *step: whole.append(step))
+    for steps in (told, whole):
+        shares = [done for _, done, _ in steps]
+        assert shares == sorted(shares)
+        assert steps[-1] == ("evaluating", 1500, 1500)
+    assert told[0][1] > 0
+
+
+def test_reading_up_to_a_window_can_be_interrupted(monkeypatch, tmp_path, log):
+    """Each block of messages is told, those that are skipped too."""
+    many = np.arange(30_000)
+    fields = {name: getattr(log, name)[many % 1500] for name in ("q", "qd", "effort")}
+    stamps = 4_000_000 * (many + 1)
+    longer = replace(log, header_stamps=stamps, receive_stamps=stamps, **fields)
+    write_joint_logs(tmp_path / "long", {log.topic: longer})
+    taken = []
+
+    class Watched(SeriesInMemory):
+        def take(self, recorded, arrays):
+            taken.append(len(steps))
+            super().take(recorded, arrays)
+
+    steps = []
+    evaluate(
+        tmp_path / "long",
+        "ur10_simulated",
+        start=118.0,
+        cutoff=10.0,
+        series=Watched(),
+        progress=lambda *step: steps.append(step),
+    )
+    assert taken[0] >= 3 * 30_000 // 4096  # three passes
 
 
 def test_what_is_no_time_is_an_error(bag):

@@ -38,6 +38,7 @@
 #include "inverse_dynamics_evaluation/joint_state_source.hpp"
 #include "inverse_dynamics_evaluation/log_accelerations.hpp"
 #include "inverse_dynamics_evaluation/metrics.hpp"
+#include "inverse_dynamics_evaluation/time_window.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -65,6 +66,7 @@ struct RecordingOptions {
   JointLogOptions log;
   std::string scratch;  ///< directory for a file without a name that keeps the samples of the first
                         ///< pass, 192 bytes each with seven joints; empty: the source is read again
+  TimeSpan window = {};  ///< the others aren't evaluated
 };
 
 /// Some samples of a result: n x B, a sample a column, valid during a call.
@@ -121,6 +123,12 @@ Evaluation evaluate(const JointLogView& log,
 Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
                     const inverse_dynamics_solver::InverseDynamicsSolver& solver,
                     const EvaluationOptions& options, const TakeSamples& take = nullptr);
+
+/// What is wrong with options whatever the recording is.
+///
+/// @throws EvaluationError: a cut-off that no filter has, or for a method that has none; no such
+///         meaning of efforts. @throws ConfigurationError: currents without drive gains.
+void checkOptions(const EvaluationOptions& options);
 
 /// All rules but those named: `repeated`, `non-increasing`, `time-base`, `start-transient`.
 ///

@@ -12,6 +12,7 @@
 
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -31,6 +32,9 @@ inline namespace v2 {
 struct TimeSpan {
   double from = -std::numeric_limits<double>::infinity();  ///< s since the first sample
   double to = std::numeric_limits<double>::infinity();     ///< s since the first sample
+
+  /// Whether it has an end.
+  bool isBounded() const { return std::isfinite(from) || std::isfinite(to); }
 };
 
 /// Another source without the messages outside of a window.

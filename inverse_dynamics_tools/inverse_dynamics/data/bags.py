@@ -18,7 +18,7 @@ from urllib.parse import quote
 from inverse_dynamics._core import JointLogBuilder, JointStateWriter, Recording
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import harmless
-from inverse_dynamics.data.joint_log import CLOCKS, JointLog
+from inverse_dynamics.data.joint_log import JointLog, check_clock, check_storage
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
@@ -81,8 +81,7 @@ def read_joint_log(
 
     Raises BagError.
     """
-    if clock not in CLOCKS:
-        raise BagError(f"clock: expected one of {', '.join(CLOCKS)}, got '{clock}'")
+    check_clock(clock)
     opened = open_joint_states(path, topic)
     builder = JointLogBuilder(opened.states, joints)
     while builder.add_next(opened.states):
@@ -165,8 +164,7 @@ class JointLogsWriter:
         topics: Mapping[str, tuple[Sequence[str], str]],
     ) -> None:
         """topics: names to joint names and frame."""
-        if storage not in ("sqlite3", "mcap"):
-            raise BagError(f"storage: expected one of sqlite3, mcap, got '{storage}'")
+        check_storage(storage)
         self._path = path
         about = [(topic, list(names), frame) for topic, (names, frame) in topics.items()]
         with self._errors_told():

@@ -6,6 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, get_args
 
+from inverse_dynamics.errors import BagError
+
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Integers
 
@@ -15,6 +17,19 @@ CLOCKS: tuple[Clock, ...] = get_args(Clock)
 
 # What rosbag2 keeps messages in.
 Storage = Literal["sqlite3", "mcap"]
+STORAGES: tuple[Storage, ...] = get_args(Storage)
+
+
+def check_clock(clock: str) -> None:
+    """Raise BagError unless it is one of CLOCKS."""
+    if clock not in CLOCKS:
+        raise BagError(f"clock: expected one of {', '.join(CLOCKS)}, got '{clock}'")
+
+
+def check_storage(storage: str) -> None:
+    """Raise BagError unless it is one of STORAGES."""
+    if storage not in STORAGES:
+        raise BagError(f"storage: expected one of {', '.join(STORAGES)}, got '{storage}'")
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,7 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data import bags, joint_trajectories
 from inverse_dynamics.data.csv_recordings import open_table, read_csv_log
 from inverse_dynamics.data.csv_table import is_csv
-from inverse_dynamics.data.joint_log import CLOCKS, JointLog
-from inverse_dynamics.errors import BagError
+from inverse_dynamics.data.joint_log import JointLog, check_clock
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,8 +65,7 @@ def open_motion(
     The arguments are those of read_recording().
     """
     path = Path(path)
-    if clock not in CLOCKS:
-        raise BagError(f"clock: expected one of {', '.join(CLOCKS)}, got '{clock}'")
+    check_clock(clock)
     if is_csv(path):
         return read_csv_log(open_table(path, topic=topic, clock=clock), joints, progress=progress)
     recording = bags.open_recording(path)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A part of a recording, by time.
 
-part = TimeWindow(10.0, 20.0).of(motion, "recording", joints, "auto")
+part = TimeWindow(10.0, 20.0).of(log, "recording")
 """
 
 from __future__ import annotations
@@ -12,14 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from inverse_dynamics.data.bags import JointStateTopic
-    from inverse_dynamics.data.joint_log import Clock
+    from inverse_dynamics.data.joint_log import JointLog
 
 
 @dataclass(frozen=True)
@@ -51,28 +47,16 @@ class TimeWindow:
         ends = (("from", self.start), ("to", self.end))
         return " ".join(f"{word} {time:.9g} s" for word, time in ends if time is not None)
 
-    def of(
-        self,
-        motion: JointLog | JointStateTopic,
-        where: str,
-        joints: Sequence[str],
-        clock: Clock,
-    ) -> JointLog | JointStateTopic:
-        """The samples in the window. where: the recording, for errors' texts. Raises BagError.
-
-        joints, clock: what is read of joint states that haven't been read; that no sample lies in the
-        window is then an error of their reader, with the same text.
-        """
-        if not self:
-            return motion
-        if isinstance(motion, JointLog):
-            return self._of_log(motion, ": ".join(filter(None, (where, motion.topic))))
+    @property
+    def span(self) -> tuple[float, float]:
+        """From when to when, s; infinite: no end."""
         start = -math.inf if self.start is None else self.start
-        end = math.inf if self.end is None else self.end
-        motion.states.keep_between(start, end, list(joints), clock)
-        return motion
+        return start, math.inf if self.end is None else self.end
 
-    def _of_log(self, log: JointLog, where: str) -> JointLog:
+    def of(self, log: JointLog, where: str) -> JointLog:
+        """The samples in the window. where: the recording, for errors' texts. Raises BagError."""
+        if not self:
+            return log
         since_first = log.stamps - log.stamps[0]
         inside = np.ones(len(log), dtype=bool)
         if self.start is not None:
@@ -81,6 +65,7 @@ class TimeWindow:
             inside &= since_first <= round(self.end * 1e9)
         if not inside.any():
             least, most = since_first.min() * 1e-9, since_first.max() * 1e-9
+            where = ": ".join(filter(None, (where, log.topic)))
             raise BagError(
                 f"{where}: expected samples {self} after the first one, got none: those of the "
                 f"recording go from {least:.9g} s to {most:.9g} s; choose --from and --to in between"

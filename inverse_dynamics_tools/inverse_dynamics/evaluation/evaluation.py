@@ -11,12 +11,13 @@ from __future__ import annotations
 import os
 import time
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.data.joint_log import JointLog
+from inverse_dynamics.data.joint_log import JointLog, check_clock
 from inverse_dynamics.data.recordings import open_motion
 from inverse_dynamics.data.time_window import TimeWindow
 from inverse_dynamics.evaluation.accelerations import (
@@ -81,7 +82,7 @@ class Evaluation:
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
     seconds: dict[str, float] = field(default_factory=dict)  # what took how long
 
-    @property
+    @cached_property
     def measured(self) -> Floats:
         """(N, n) N m or N: the torques that recorded efforts mean."""
         return self.effort.torques(self.log.effort)
@@ -163,7 +164,8 @@ def evaluate(
         clock=clock,
         progress=progress,
     )
-    motion = window.of(motion, f"{bag}", arm.recorded_names, clock)
+    if isinstance(motion, JointLog):
+        motion = window.of(motion, f"{bag}")
     seconds = {"solver": ready - begin, "reading": time.perf_counter() - ready}
     result = _compare(
         bag,
@@ -171,6 +173,7 @@ def evaluate(
         arm,
         motion,
         clock=clock,
+        window=window,
         effort_is=effort_is,
         without_rules=without_rules,
         progress=progress,
@@ -180,6 +183,27 @@ def evaluate(
     notes = description_notes(robot, "drawn") if urdf is not None else ()
     notes = (*window.notes, *notes)
     return replace(result, notes=(*notes, *result.notes), seconds={**result.seconds, **seconds})
+
+
+def check_options(
+    robot: Robot,
+    *,
+    accelerations: str | None = None,
+    cutoff: float | None = None,
+    effort_is: str | None = None,
+    clock: Clock = "auto",
+    start: float | None = None,
+    end: float | None = None,
+    without_rules: Sequence[str] = (),
+    **_others: object,
+) -> None:
+    """Raise UserError for options of evaluate() that are wrong whatever the recording is."""
+    from inverse_dynamics import _core
+
+    changed = with_changes(robot, accelerations=accelerations, cutoff=cutoff)
+    _core.check_options(changed.accelerations, changed.cutoff, list(without_rules), effort_is)
+    check_clock(clock)
+    TimeWindow(start, end)
 
 
 class Arm:
@@ -203,6 +227,7 @@ def _compare(
     motion: JointLog | JointStateTopic,
     *,
     clock: Clock,
+    window: TimeWindow,
     effort_is: str | None,
     without_rules: Sequence[str],
     progress: Progress,
@@ -221,16 +246,19 @@ def _compare(
             frame_id = motion.frame_id
         series.take(Recorded(count, names, frame_id, motion.storage), arrays)
 
+    start, end = window.span
     found = _core.evaluate(
         arm.solver,
         motion if isinstance(motion, JointLog) else motion.states,
         joints=list(arm.recorded_names),
         clock=clock,
+        start=start,
+        end=end,
         method=robot.accelerations,
         cutoff=robot.cutoff,
         without_rules=list(without_rules),
         effort=_core.effort_options(robot, arm.solver, effort_is, motion.effort_is),
-        recording=f"{bag}",
+        recording=", ".join(filter(None, (f"{bag}", f"{window}"))),
         topic=motion.topic,
         units=list(arm.units),
         notes=list(notes),

@@ -26,7 +26,7 @@ from inverse_dynamics.base.files import Contents, write_text, written_whole
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.replacement import restore_interrupted
 from inverse_dynamics.data.bags import JointLogsWriter
-from inverse_dynamics.data.joint_log import JointLog
+from inverse_dynamics.data.joint_log import JointLog, check_storage
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.evaluation.accelerations import MASKS, Accelerations, Samples
 from inverse_dynamics.evaluation.effort import Effort
@@ -87,9 +87,7 @@ def write_evaluation(
     figures: of "png", "svg", "pdf"; none of them: no figure.
     Raises OutputError, BagError.
     """
-    from inverse_dynamics.figures.plots import check_formats
-
-    check_formats(figures)
+    check_writing(storage, figures)
     inputs = (evaluation.bag, *evaluation.robot.files)
     with written_whole(
         Path(directory), overwrite=overwrite, contents=CONTENTS, inputs=inputs
@@ -121,9 +119,7 @@ def evaluate_into(
 
     Raises UserError.
     """
-    from inverse_dynamics.figures.plots import check_formats
-
-    check_formats(figures)
+    check_writing(storage, figures)
     robot = robot if isinstance(robot, Robot) else load_robot(robot)
     inputs = (Path(bag), *robot.files, options.get("urdf"))
     with written_whole(
@@ -139,6 +135,15 @@ def evaluate_into(
                 evaluation, target / "series.parquet", recording=parquet, progress=progress
             )
         return replace(evaluation, seconds={**evaluation.seconds, **seconds})
+
+
+def check_writing(storage: str | None, figures: Sequence[str]) -> None:
+    """Raise UserError for a storage or a format of figures that can't be written."""
+    from inverse_dynamics.figures.plots import check_formats
+
+    check_formats(figures)
+    if storage is not None:
+        check_storage(storage)
 
 
 class _WrittenSeries:

@@ -33,9 +33,10 @@ from inverse_dynamics.base.workers import Failure, cores, in_processes
 from inverse_dynamics.data.several_recordings import named_recordings
 from inverse_dynamics.data.time_window import TimeWindow
 from inverse_dynamics.errors import ArgumentError, OutputError, UserError
-from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.evaluation.evaluation import check_options, evaluate
 from inverse_dynamics.evaluation.summary import EvaluationSummary, summary_of
 from inverse_dynamics.results import evaluations
+from inverse_dynamics.results.evaluations import check_writing
 from inverse_dynamics.results.summaries import (
     Row,
     summary_rows,
@@ -145,6 +146,8 @@ def evaluate_many(
     names = named_recordings(given, taken=OWN_FILES)
     _check(names, jobs, parquet, robot, options)
     loaded = robot if isinstance(robot, Robot) else load_robot(robot)
+    check_options(loaded, **options)
+    check_writing(storage, figures)
     inputs = (*names.values(), options.get("urdf"), *loaded.files)
     with written_whole(Path(out), overwrite=overwrite, contents=CONTENTS, inputs=inputs) as target:
         task = _Task("", Path(), target, _for_workers(robot, loaded), options, storage,
@@ -169,7 +172,6 @@ def _check(
             "evaluate_many: argument series: unknown; samples go into the directory"
         )
     check_call(evaluate, next(iter(names.values())), robot, **options)
-    TimeWindow(options.get("start"), options.get("end"))
     if parquet:
         from inverse_dynamics.results.exports import check_pyarrow
 
