@@ -14,5 +14,69 @@ auto InverseDynamicsSolverPinocchio::workspaceMaker(const chain_dynamics::Chain&
   return [models] { return std::make_unique<PinocchioWorkspace>(models); };
 }
 
+void InverseDynamicsSolverPinocchio::computeTipPose(const ConstVectorRef& q,
+                                                    chain_dynamics::Transform<double>& pose) const {
+  borrow<PinocchioWorkspace>()->tipPose(q, pose);
+}
+
+void InverseDynamicsSolverPinocchio::computeTipJacobian(const ConstVectorRef& q,
+                                                        MatrixRef J) const {
+  borrow<PinocchioWorkspace>()->tipJacobian(q, J);
+}
+
+void InverseDynamicsSolverPinocchio::computeTipJacobianDerivative(const ConstVectorRef& q,
+                                                                  const ConstVectorRef& qd,
+                                                                  MatrixRef dJ) const {
+  borrow<PinocchioWorkspace>()->tipJacobianDerivative(q, qd, dJ);
+}
+
+void InverseDynamicsSolverPinocchio::computeExternalTorques(const ConstVectorRef& q,
+                                                            WrenchFrame frame,
+                                                            const ConstVectorRef& wrench,
+                                                            VectorRef tau) const {
+  borrow<PinocchioWorkspace>()->externalTorques(q, frame, wrench, tau);
+}
+
+void InverseDynamicsSolverPinocchio::computeCoriolisMatrix(const ConstVectorRef& q,
+                                                           const ConstVectorRef& qd,
+                                                           MatrixRef C) const {
+  borrow<PinocchioWorkspace>()->coriolisMatrix(q, qd, C);
+}
+
+double InverseDynamicsSolverPinocchio::computeKineticEnergy(const ConstVectorRef& q,
+                                                            const ConstVectorRef& qd) const {
+  return borrow<PinocchioWorkspace>()->kineticEnergy(q, qd);
+}
+
+double InverseDynamicsSolverPinocchio::computePotentialEnergy(const ConstVectorRef& q) const {
+  return borrow<PinocchioWorkspace>()->potentialEnergy(q);
+}
+
+void InverseDynamicsSolverPinocchio::computeTorqueDerivatives(const ConstVectorRef& q,
+                                                              const ConstVectorRef& qd,
+                                                              const ConstVectorRef& qdd,
+                                                              MatrixRef dtau_dq, MatrixRef dtau_dqd,
+                                                              MatrixRef dtau_dqdd) const {
+  borrow<PinocchioWorkspace>()->torqueDerivatives(q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
+  addFrictionSlopes(qd, dtau_dqd);
+}
+
+void InverseDynamicsSolverPinocchio::computeRegressor(const ConstVectorRef& q,
+                                                      const ConstVectorRef& qd,
+                                                      const ConstVectorRef& qdd,
+                                                      MatrixRef Y) const {
+  borrow<PinocchioWorkspace>()->regressor(q, qd, qdd, Y);
+}
+
+void InverseDynamicsSolverPinocchio::computeAccelerations(const ConstVectorRef& q,
+                                                          const ConstVectorRef& qd,
+                                                          const ConstVectorRef& tau,
+                                                          VectorRef qdd) const {
+  // qdd holds the torques without friction until then
+  computeFriction(q, qd, qdd);
+  qdd = tau - qdd;
+  borrow<PinocchioWorkspace>()->accelerations(q, qd, qdd, qdd);
+}
+
 }  // namespace v2
 }  // namespace pinocchio_inverse_dynamics_solver

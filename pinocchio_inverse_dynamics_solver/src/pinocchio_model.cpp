@@ -33,6 +33,8 @@ Model toPinocchio(const chain_dynamics::Chain& chain) {
     model.appendBodyToJoint(last, inertia(chain.links()[static_cast<std::size_t>(i)]));
     model.armature[i] = joint.rotor_inertia;
   }
+  const pinocchio::SE3 tip(chain.tip().R, chain.tip().p);
+  model.addFrame(Model::Frame("tip", last, tip, pinocchio::OP_FRAME));
   return model;
 }
 

@@ -10,7 +10,7 @@ namespace pinocchio_inverse_dynamics_solver {
 inline namespace v2 {
 
 /// The model of a chain: joint i is Pinocchio's joint i + 1, with its axis along z. A continuous
-/// joint is a revolute one, so that positions stay angles (nq = nv).
+/// joint is a revolute one, so that positions stay angles (nq = nv). The last frame is the tip's.
 Model toPinocchio(const chain_dynamics::Chain& chain);
 
 }  // namespace v2

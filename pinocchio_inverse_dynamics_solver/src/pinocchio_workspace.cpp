@@ -9,7 +9,10 @@ namespace pinocchio_inverse_dynamics_solver {
 inline namespace v2 {
 
 PinocchioWorkspace::PinocchioWorkspace(std::shared_ptr<const Models> models)
-    : models_(std::move(models)), data_(models_->with_gravity) {}
+    : models_(std::move(models)),
+      data_(models_->with_gravity),
+      jacobian_(Data::Matrix6x::Zero(6, models_->with_gravity.nv)),
+      zero_(Eigen::VectorXd::Zero(models_->with_gravity.nv)) {}
 
 void PinocchioWorkspace::inertiaMatrix(const ConstVectorRef& q, MatrixRef H) {
 #if PINOCCHIO_VERSION_AT_LEAST(3, 0, 0)

@@ -5,6 +5,8 @@
 
 #include <memory>
 
+#include "chain_dynamics/spatial.hpp"
+#include "inverse_dynamics_solver/external_wrench.hpp"
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 #include "pinocchio_headers.hpp"
 
@@ -14,6 +16,7 @@ inline namespace v2 {
 using inverse_dynamics_solver::ConstVectorRef;
 using inverse_dynamics_solver::MatrixRef;
 using inverse_dynamics_solver::VectorRef;
+using inverse_dynamics_solver::WrenchFrame;
 
 /// A model that all threads read.
 struct Models {
@@ -32,9 +35,33 @@ class PinocchioWorkspace : public inverse_dynamics_solver::Workspace {
   void torques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
                VectorRef tau) override;
 
+  /// @name As the compute... of the capabilities, without friction
+  /// @{
+  void tipPose(const ConstVectorRef& q, chain_dynamics::Transform<double>& pose);
+  void tipJacobian(const ConstVectorRef& q, MatrixRef J);
+  void tipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef dJ);
+  void externalTorques(const ConstVectorRef& q, WrenchFrame frame, const ConstVectorRef& wrench,
+                       VectorRef tau);
+  void coriolisMatrix(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef C);
+  double kineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd);
+  double potentialEnergy(const ConstVectorRef& q);
+  void torqueDerivatives(const ConstVectorRef& q, const ConstVectorRef& qd,
+                         const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
+                         MatrixRef dtau_dqdd);
+  void regressor(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
+                 MatrixRef Y);
+  void accelerations(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& tau,
+                     VectorRef qdd);
+  /// @}
+
  private:
+  const Model& model() const { return models_->with_gravity; }
+  pinocchio::FrameIndex tip() const { return model().frames.size() - 1; }
+
   std::shared_ptr<const Models> models_;
   Data data_;
+  Data::Matrix6x jacobian_;
+  Eigen::VectorXd zero_;
 };
 
 }  // namespace v2

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Derivatives and what is made of them, regressor, accelerations and energies by Pinocchio.
+
+#include <pinocchio/algorithm/aba.hpp>
+#include <pinocchio/algorithm/energy.hpp>
+#include <pinocchio/algorithm/regressor.hpp>
+#include <pinocchio/algorithm/rnea-derivatives.hpp>
+
+#include "pinocchio_workspace.hpp"
+
+namespace pinocchio_inverse_dynamics_solver {
+inline namespace v2 {
+
+void PinocchioWorkspace::torqueDerivatives(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                           const ConstVectorRef& qdd, MatrixRef dtau_dq,
+                                           MatrixRef dtau_dqd, MatrixRef dtau_dqdd) {
+  pinocchio::computeRNEADerivatives(model(), data_, q, qd, qdd);
+  dtau_dq = data_.dtau_dq;
+  dtau_dqd = data_.dtau_dv;
+  // Only the upper triangle is written.
+  dtau_dqdd.triangularView<Eigen::Upper>() = data_.M;
+  dtau_dqdd.triangularView<Eigen::StrictlyLower>() = data_.M.transpose();
+}
+
+/// Not Pinocchio's computeCoriolisMatrix(), whose product with qd is the same, but which isn't made
+/// of Christoffel's symbols.
+void PinocchioWorkspace::coriolisMatrix(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                        MatrixRef C) {
+  pinocchio::computeRNEADerivatives(models_->without_gravity, data_, q, qd, zero_);
+  C = 0.5 * data_.dtau_dv;
+}
+
+void PinocchioWorkspace::regressor(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                   const ConstVectorRef& qdd, MatrixRef Y) {
+  Y = pinocchio::computeJointTorqueRegressor(model(), data_, q, qd, qdd);
+  // Pinocchio's order of the moments is Ixx Ixy Iyy Ixz Iyz Izz.
+  for (Eigen::Index link = 0; link < Y.cols(); link += 10) Y.col(link + 6).swap(Y.col(link + 7));
+}
+
+void PinocchioWorkspace::accelerations(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                       const ConstVectorRef& tau, VectorRef qdd) {
+#if PINOCCHIO_VERSION_AT_LEAST(3, 0, 0)
+  qdd = pinocchio::aba(model(), data_, q, qd, tau, pinocchio::Convention::LOCAL);
+#else
+  qdd = pinocchio::aba(model(), data_, q, qd, tau);
+#endif
+}
+
+double PinocchioWorkspace::kineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) {
+  return pinocchio::computeKineticEnergy(model(), data_, q, qd);
+}
+
+double PinocchioWorkspace::potentialEnergy(const ConstVectorRef& q) {
+  return pinocchio::computePotentialEnergy(model(), data_, q);
+}
+
+}  // namespace v2
+}  // namespace pinocchio_inverse_dynamics_solver
