@@ -137,6 +137,8 @@ struct FastModel::Data {
     robot.row_lanes = rows.empty() ? nullptr : row_lanes.data();
     robot.friction = friction.empty() ? nullptr : friction.data();
     robot.stride = static_cast<int>(stride);
+    robot.base = fast::baseOf(frames, chain);
+    robot.tip = fast::tipOf(frames, chain);
   }
 
   Chain chain;
@@ -248,6 +250,24 @@ void FastModel::torqueDerivatives(const double* q, const double* qd, const doubl
                                   std::ptrdiff_t outer_step) const {
   kernels_->torque_derivatives(robot(), structure_, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd,
                                outer_step);
+}
+
+void FastModel::coriolisMatrix(const double* q, const double* qd, double* C,
+                               std::ptrdiff_t outer_step) const {
+  kernels_->coriolis_matrix(robot(), structure_, q, qd, C, outer_step);
+}
+
+void FastModel::tipPose(const double* q, double* R, double* p) const {
+  kernels_->tip_pose(robot(), structure_, q, R, p);
+}
+
+void FastModel::tipJacobian(const double* q, double* J, std::ptrdiff_t outer_step) const {
+  kernels_->tip_jacobian(robot(), structure_, q, J, outer_step);
+}
+
+void FastModel::tipJacobianDerivative(const double* q, const double* qd, double* dJ,
+                                      std::ptrdiff_t outer_step) const {
+  kernels_->tip_jacobian_derivative(robot(), structure_, q, qd, dJ, outer_step);
 }
 
 }  // namespace v2

@@ -117,6 +117,36 @@ void FastModel::torqueDerivativesBatch(ConstStates q, ConstStates qd, ConstState
   }
 }
 
+void FastModel::coriolisMatrixBatch(ConstStates q, ConstStates qd, StridedMatrices C) const {
+  if (robot().joints <= fast::kPackedMatrixJoints) {
+    many_->coriolis_matrix(robot(), structure_, q.count, samples(q), samples(qd), matrices(C));
+    return;
+  }
+  OneState position, velocity;
+  const Index n = q.joints;
+  Eigen::MatrixXd one(n, n);
+  for (Index k = 0; k < q.count; ++k) {
+    coriolisMatrix(position.read(q, k), velocity.read(qd, k), one.data(), n);
+    for (Index j = 0; j < n; ++j) {
+      for (Index i = 0; i < n; ++i) C(i, j, k) = one(i, j);
+    }
+  }
+}
+
+void FastModel::tipPoseBatch(ConstStates q, StridedMatrices R, States p) const {
+  many_->tip_pose(robot(), structure_, q.count, samples(q), matrices(R), samples(p));
+}
+
+void FastModel::tipJacobianBatch(ConstStates q, StridedMatrices J) const {
+  many_->tip_jacobian(robot(), structure_, q.count, samples(q), matrices(J.withColumns(q.joints)));
+}
+
+void FastModel::tipJacobianDerivativeBatch(ConstStates q, ConstStates qd,
+                                           StridedMatrices dJ) const {
+  many_->tip_jacobian_derivative(robot(), structure_, q.count, samples(q), samples(qd),
+                                 matrices(dJ.withColumns(q.joints)));
+}
+
 void FastModel::regressorBatch(ConstStates q, ConstStates qd, ConstStates qdd,
                                StridedMatrices Y) const {
   many_->regressor(robot(), q.count, samples(q), samples(qd), samples(qdd),

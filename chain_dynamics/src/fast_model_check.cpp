@@ -7,6 +7,7 @@
 
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/regressor.hpp"
+#include "chain_dynamics/tip_kinematics.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -34,6 +35,12 @@ class Scale {
     Vector10<double> column;
     column << length_ * length_, Eigen::Vector3d::Constant(length_), Vector6::Ones();
     return rate(q) * per_radian_ * column.replicate(q.size(), 1).transpose();
+  }
+  /// Of J: a length, and one.
+  MatrixXd jacobian(const Chain& chain, const VectorXd& q) const {
+    MatrixXd J = MatrixXd::Ones(6, q.size());
+    J.topRows(3).setConstant(length_ + chain.tip().p.norm() + q.cwiseAbs().sum());
+    return J;
   }
 
  private:
@@ -169,6 +176,45 @@ bool regressorsEqual(const FastModel& fast, const Chain& chain, const Scale& sca
   return near(fast_Y, Y, scale.regressor(q));
 }
 
+// Where the tip is and how it moves; the Coriolis matrix.
+struct Kinematics {
+  explicit Kinematics(Index n) : C(n, n), J(6, n), dJ(6, n) {}
+  Transform<double> tip;
+  MatrixXd C, J, dJ;
+};
+
+Kinematics kinematicsOf(const Model& model, const VectorXd& q) {
+  Kinematics all(q.size());
+  all.tip = tipPose(model.chain, q);
+  coriolisMatrix(model, q, q, all.C);
+  tipJacobian(model.chain, q, all.J);
+  tipJacobianDerivative(model.chain, q, q, all.dJ);
+  return all;
+}
+
+Kinematics kinematicsOf(const FastModel& fast, const VectorXd& q) {
+  Kinematics all(q.size());
+  fast.tipPose(q.data(), all.tip.R.data(), all.tip.p.data());
+  fast.coriolisMatrix(q.data(), q.data(), all.C.data(), q.size());
+  fast.tipJacobian(q.data(), all.J.data(), 6);
+  fast.tipJacobianDerivative(q.data(), q.data(), all.dJ.data(), 6);
+  return all;
+}
+
+bool near(const Kinematics& a, const Kinematics& b, const Chain& chain, const Scale& scale,
+          const VectorXd& q) {
+  const MatrixXd J = scale.jacobian(chain, q);
+  const double root = chain.joints().front().placement.p.norm();
+  return near(a.tip.R, b.tip.R, Eigen::Matrix3d::Ones()) &&
+         near(a.tip.p, b.tip.p, Eigen::Vector3d::Constant(root + J(0, 0))) && near(a.J, b.J, J) &&
+         near(a.dJ, b.dJ, J * q.cwiseAbs().sum()) && near(a.C, b.C, scale.byVelocity(q));
+}
+
+bool kinematicsEqual(const FastModel& fast, const Model& model, const Scale& scale,
+                     const VectorXd& q) {
+  return near(kinematicsOf(fast, q), kinematicsOf(model, q), model.chain, scale, q);
+}
+
 // Likewise, against single calls, which are compared with the plain functions. (Accelerations aren't:
 // an identified H may be singular.)
 bool batchesOfDynamicsEqual(const FastModel& fast, const Scale& scale, const VectorXd& q) {
@@ -197,6 +243,30 @@ bool batchesOfDynamicsEqual(const FastModel& fast, const Scale& scale, const Vec
   return true;
 }
 
+bool batchesOfKinematicsEqual(const FastModel& fast, const Chain& chain, const Scale& scale,
+                              const VectorXd& q) {
+  constexpr Index kStates = 11;
+  const Index n = q.size();
+  MatrixXd states = q.replicate(1, kStates);
+  states.rowwise() += Eigen::RowVectorXd::LinSpaced(kStates, 0.0, 1.0);
+  MatrixXd C(n, n * kStates), R(3, 3 * kStates), p(3, kStates), J(6, n * kStates), dJ(J);
+  fast.coriolisMatrixBatch(states, states, C);
+  fast.tipPoseBatch(states, R, p);
+  fast.tipJacobianBatch(states, J);
+  fast.tipJacobianDerivativeBatch(states, states, dJ);
+
+  for (Index k = 0; k < kStates; ++k) {
+    Kinematics one(n);
+    one.tip = {R.middleCols(3 * k, 3), p.col(k)};
+    one.C = C.middleCols(k * n, n);
+    one.J = J.middleCols(k * n, n);
+    one.dJ = dJ.middleCols(k * n, n);
+    const VectorXd state = states.col(k);
+    if (!near(one, kinematicsOf(fast, state), chain, scale, state)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool equalsPlain(const FastModel& fast, const Model& model) {
@@ -204,7 +274,8 @@ bool equalsPlain(const FastModel& fast, const Model& model) {
   const Scale scale(model);
   return torquesEqual(fast, model, scale, q) && batchesEqual(fast, model, scale, q) &&
          derivativesEqual(fast, model, scale, q) && regressorsEqual(fast, model.chain, scale, q) &&
-         batchesOfDynamicsEqual(fast, scale, q);
+         batchesOfDynamicsEqual(fast, scale, q) && kinematicsEqual(fast, model, scale, q) &&
+         batchesOfKinematicsEqual(fast, model.chain, scale, q);
 }
 
 Choice bestEqual(const std::string& model, const std::vector<std::string>& sets,

@@ -13,6 +13,7 @@
 #include "chain_dynamics/fast_model.hpp"
 #include "chain_dynamics/forward_dynamics.hpp"
 #include "chain_dynamics/regressor.hpp"
+#include "chain_dynamics/tip_kinematics.hpp"
 #include "example_models.hpp"
 
 namespace chain_dynamics {
@@ -35,6 +36,15 @@ void addParts(Quantities& all, const std::string& suffix, const MatrixXd& H, con
   all["g" + suffix] = g;
 }
 
+void addKinematics(Quantities& all, const MatrixXd& C, const MatrixXd& R, const MatrixXd& p,
+                   const MatrixXd& J, const MatrixXd& dJ) {
+  all["C"] = C;
+  all["R"] = R;
+  all["p"] = p;
+  all["J"] = J;
+  all["dJ"] = dJ;
+}
+
 /// By the templates. Accelerations solve H qdd = tau - c - g - f, for any parameters.
 Quantities plain(const Model& model, const State<double>& x) {
   const Index n = x.q.size();
@@ -50,6 +60,12 @@ Quantities plain(const Model& model, const State<double>& x) {
   frictionSlopes(model, x.qd, slope);
   by_qd.diagonal() += slope;
   regressor(model.chain, x.q, x.qd, x.qdd, Y);
+  MatrixXd C(n, n), J(6, n), dJ(6, n);
+  coriolisMatrix(model, x.q, x.qd, C);
+  tipJacobian(model.chain, x.q, J);
+  tipJacobianDerivative(model.chain, x.q, x.qd, dJ);
+  const Transform<double> tip = tipPose(model.chain, x.q);
+  addKinematics(all, C, tip.R, tip.p, J, dJ);
   all["f"] = f;
   all["tau"] = tau + f;
   all["by q"] = by_q;
@@ -78,6 +94,12 @@ Quantities single(const FastModel& fast, const State<double>& x) {
   fast.torqueDerivatives(q, qd, x.qdd.data(), by_q.data(), by_qd.data(), by_qdd.data(), n);
   fast.regressor(q, qd, x.qdd.data(), Y.data(), n);
   fast.forwardDynamics(q, qd, x.qdd.data(), qdd.data());
+  MatrixXd C(n, n), R(3, 3), p(3, 1), J(6, n), dJ(6, n);
+  fast.coriolisMatrix(q, qd, C.data(), n);
+  fast.tipPose(q, R.data(), p.data());
+  fast.tipJacobian(q, J.data(), 6);
+  fast.tipJacobianDerivative(q, qd, dJ.data(), 6);
+  addKinematics(all, C, R, p, J, dJ);
   all["f"] = f;
   all["tau"] = tau;
   all["by q"] = by_q;
@@ -111,11 +133,18 @@ std::vector<Quantities> batch(const FastModel& fast, const State<double>& health
   fast.dynamicComponentsBatch(q, qd, H2, c2, g2);
   fast.frictionVectorBatch(qd, f);
   fast.torquesBatch(q, qd, qdd, tau);
+  MatrixXd C = H, R(3, 3 * kStates), p(3, kStates), J(6, n * kStates), dJ = J;
+  fast.coriolisMatrixBatch(q, qd, C);
+  fast.tipPoseBatch(q, R, p);
+  fast.tipJacobianBatch(q, J);
+  fast.tipJacobianDerivativeBatch(q, qd, dJ);
   std::vector<Quantities> all(kStates);
   for (Index k = 0; k < kStates; ++k) {
     Quantities& of_state = all[static_cast<std::size_t>(k)];
     addParts(of_state, "", H.middleCols(k * n, n), c.col(k), g.col(k));
     addParts(of_state, " together", H2.middleCols(k * n, n), c2.col(k), g2.col(k));
+    addKinematics(of_state, C.middleCols(k * n, n), R.middleCols(3 * k, 3), p.col(k),
+                  J.middleCols(k * n, n), dJ.middleCols(k * n, n));
     of_state["f"] = f.col(k);
     of_state["tau"] = tau.col(k);
   }

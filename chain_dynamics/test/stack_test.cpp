@@ -103,8 +103,9 @@ TEST_P(Stack, OfOneStateIsBounded) {
     const double* const q = x.q.data();
     const double* const qd = x.qd.data();
     const double* const qdd = x.qdd.data();
-    MatrixXd H(n, n), by_q(n, n), by_qd(n, n), Y(n, 10 * n);
+    MatrixXd H(n, n), by_q(n, n), by_qd(n, n), J(6, n), Y(n, 10 * n);
     VectorXd c(n), g(n);
+    double R[9], p[3];
     expectWithin(
         kOneStateBound, GetParam(),
         {{"torques", [&] { fast.torques(q, qd, qdd, c.data()); }},
@@ -115,6 +116,10 @@ TEST_P(Stack, OfOneStateIsBounded) {
          {"components", [&] { fast.dynamicComponents(q, qd, H.data(), n, c.data(), g.data()); }},
          {"forward dynamics", [&] { fast.forwardDynamics(q, qd, qdd, c.data()); }},
          {"regressor", [&] { fast.regressor(q, qd, qdd, Y.data(), n); }},
+         {"C", [&] { fast.coriolisMatrix(q, qd, H.data(), n); }},
+         {"tip", [&] { fast.tipPose(q, R, p); }},
+         {"J", [&] { fast.tipJacobian(q, J.data(), 6); }},
+         {"dJ", [&] { fast.tipJacobianDerivative(q, qd, J.data(), 6); }},
          {"derivatives",
           [&] { fast.torqueDerivatives(q, qd, qdd, by_q.data(), by_qd.data(), H.data(), n); }}});
   }
@@ -128,6 +133,7 @@ TEST_P(Stack, OfManyStatesIsBounded) {
     constexpr Index kStates = 20;
     const MatrixXd q = MatrixXd::Constant(n, kStates, 0.3);
     MatrixXd H(n, n * kStates), Y(n, 10 * n * kStates), c = q, g = q;
+    MatrixXd R(3, 3 * kStates), p(3, kStates), J(6, n * kStates);
     RegressorGram gram(n, 1);
     expectWithin(kManyStatesBound, GetParam(),
                  {{"torques", [&] { fast.torquesBatch(q, q, q, c); }},
@@ -138,6 +144,10 @@ TEST_P(Stack, OfManyStatesIsBounded) {
                   {"components", [&] { fast.dynamicComponentsBatch(q, q, H, c, g); }},
                   {"forward dynamics", [&] { fast.forwardDynamicsBatch(q, q, q, c); }},
                   {"regressor", [&] { fast.regressorBatch(q, q, q, Y); }},
+                  {"C", [&] { fast.coriolisMatrixBatch(q, q, H); }},
+                  {"tip", [&] { fast.tipPoseBatch(q, R, p); }},
+                  {"J", [&] { fast.tipJacobianBatch(q, J); }},
+                  {"dJ", [&] { fast.tipJacobianDerivativeBatch(q, q, J); }},
                   {"Gram matrices", [&] {
                      fast.addToGram({q, q, q, q, {q}}, gram);
                    }}});
@@ -155,7 +165,8 @@ TEST_P(Stack, OfDerivativesOfManyStatesIsBounded) {
     const MatrixXd q = MatrixXd::Constant(kJoints, kStates, 0.3);
     MatrixXd by_q(kJoints, kJoints * kStates), by_qd = by_q, H = by_q;
     expectWithin(kManyStatesBound, GetParam(),
-                 {{"derivatives", [&] { fast.torqueDerivativesBatch(q, q, q, by_q, by_qd, H); }}});
+                 {{"derivatives", [&] { fast.torqueDerivativesBatch(q, q, q, by_q, by_qd, H); }},
+                  {"C", [&] { fast.coriolisMatrixBatch(q, q, H); }}});
   }
 }
 

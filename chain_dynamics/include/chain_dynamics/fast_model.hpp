@@ -35,8 +35,8 @@ struct Robot;
 
 /// A model made ready for the fast kernels.
 ///
-/// Up to kMaxJoints joints. Real time: no method but the constructor, addToGram() and
-/// torqueDerivativesBatch() allocates, locks or throws; one state needs up to 48 KiB of stack, many
+/// Up to kMaxJoints joints. Real time: no method but the constructor, addToGram(),
+/// torqueDerivativesBatch() and coriolisMatrixBatch() allocates, locks or throws; one state needs up to 48 KiB of stack, many
 /// states up to 112 KiB [docs/real_time.md]. Threads: safe. NaN gives NaN in every entry that
 /// depends on it. A vector may be written where one of the inputs stands (tau where q does, of many
 /// states in the same layout); otherwise outputs overlap no input.
@@ -97,6 +97,16 @@ class FastModel {
   /// entry (i, j), of tau_i by joint j, at [i + j * outer_step].
   void torqueDerivatives(const double* q, const double* qd, const double* qdd, double* dtau_dq,
                          double* dtau_dqd, double* dtau_dqdd, std::ptrdiff_t outer_step) const;
+  /// `C(q, qd)` of coriolis_matrix.hpp: entry (i, j) at C[i + j * outer_step].
+  void coriolisMatrix(const double* q, const double* qd, double* C,
+                      std::ptrdiff_t outer_step) const;
+  /// Pose of the tip in the root frame: the 9 entries of R column by column, the 3 of p.
+  void tipPose(const double* q, double* R, double* p) const;
+  /// `J(q)` of tip_kinematics.hpp, 6 x n: entry (i, j) at J[i + j * outer_step].
+  void tipJacobian(const double* q, double* J, std::ptrdiff_t outer_step) const;
+  /// `dJ/dt`, likewise.
+  void tipJacobianDerivative(const double* q, const double* qd, double* dJ,
+                             std::ptrdiff_t outer_step) const;
   /// @}
 
   /// @name Many states
@@ -116,6 +126,13 @@ class FastModel {
   void torqueDerivativesBatch(ConstStates q, ConstStates qd, ConstStates qdd,
                               StridedMatrices dtau_dq, StridedMatrices dtau_dqd,
                               StridedMatrices dtau_dqdd) const;
+  /// As coriolisMatrix(). Allocates for more than 16 joints.
+  void coriolisMatrixBatch(ConstStates q, ConstStates qd, StridedMatrices C) const;
+  /// R: 3 x 3 each; p: 3 numbers each.
+  void tipPoseBatch(ConstStates q, StridedMatrices R, States p) const;
+  /// 6 x n each.
+  void tipJacobianBatch(ConstStates q, StridedMatrices J) const;
+  void tipJacobianDerivativeBatch(ConstStates q, ConstStates qd, StridedMatrices dJ) const;
   /// As regressor(); n x 10 n each.
   void regressorBatch(ConstStates q, ConstStates qd, ConstStates qdd, StridedMatrices Y) const;
   /// Adds samples to the Gram matrices of the regressor's rows [regressor_gram.hpp].

@@ -22,7 +22,11 @@ constexpr Kernels kKernels = {CHAIN_DYNAMICS_KERNELS_NAME,
                               frictionOfState,
                               forwardDynamicsOfState,
                               regressorOfState,
-                              torqueDerivativesOfState};
+                              torqueDerivativesOfState,
+                              coriolisMatrixOfState,
+                              tipPoseOfState,
+                              tipJacobianOfState,
+                              tipJacobianDerivativeOfState};
 
 }  // namespace
 

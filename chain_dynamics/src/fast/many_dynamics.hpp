@@ -30,7 +30,7 @@ void forwardDynamicsBatch(const Robot& robot, int structure, std::ptrdiff_t stat
     Pack bias[kPackedMatrixJoints];
     Pack H[kPackedEntries];
     x.readAtRest<N>(robot, qd, lanes);
-    x.readPositions<N>(robot, q, lanes, true);
+    x.readPositions<N>(robot, q, lanes, FirstJoint::kForGravity);
     gather<N>(robot, tau, lanes, given);
     torquesOf(robot, structure, x.state(), bias);
     for (int i = 0; i < n; ++i) given[i] -= bias[i];
@@ -86,6 +86,20 @@ void torqueDerivativesBatch(const Robot& robot, int structure, std::ptrdiff_t st
     scatterMatrix<N>(entries[0], n, lanes, by_q);
     scatterMatrix<N>(entries[1], n, lanes, by_qd);
     scatterMatrix<N>(entries[2], n, lanes, by_qdd);
+  });
+}
+
+template <int N>
+void coriolisMatrixBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
+                         Samples qd, Matrices C) {
+  const int n = jointsOf<N>(robot);
+  forEachPack(states, [&](const Lanes& lanes) {
+    PackOfStates<kPackedMatrixJoints> x;
+    Pack entries[kPackedEntries];
+    gather<N>(robot, qd, lanes, x.qd);
+    x.readPositions<N>(robot, q, lanes, FirstJoint::kUnused);
+    coriolisMatrixOf<Pack>(robot, structure)(robot, x.state(), entries, n);
+    scatterMatrix<N>(entries, n, lanes, C);
   });
 }
 

@@ -5,6 +5,7 @@
 
 #include "gram.hpp"
 #include "many_dynamics.hpp"
+#include "many_kinematics.hpp"
 #include "many_states.hpp"
 
 namespace chain_dynamics {
@@ -28,10 +29,21 @@ void sineCosineOfEach(int count, const double* angle, const double* quarter_turn
 }
 
 template <int N>
-constexpr ManyKernels kKernels = {
-    torquesBatch<N>,           coriolisBatch<N>, gravityBatch<N>,         inertiaBatch<N>,
-    componentsBatch<N>,        frictionBatch<N>, forwardDynamicsBatch<N>, regressorBatch<N>,
-    torqueDerivativesBatch<N>, gramOfStates,     sineCosineOfEach};
+constexpr ManyKernels kKernels = {torquesBatch<N>,
+                                  coriolisBatch<N>,
+                                  gravityBatch<N>,
+                                  inertiaBatch<N>,
+                                  componentsBatch<N>,
+                                  frictionBatch<N>,
+                                  forwardDynamicsBatch<N>,
+                                  regressorBatch<N>,
+                                  torqueDerivativesBatch<N>,
+                                  coriolisMatrixBatch<N>,
+                                  tipPoseBatch<N>,
+                                  tipJacobianBatch<N>,
+                                  tipJacobianDerivativeBatch<N>,
+                                  gramOfStates,
+                                  sineCosineOfEach};
 
 }  // namespace
 

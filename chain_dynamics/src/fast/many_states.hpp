@@ -26,16 +26,16 @@ struct PackOfStates {
 
   template <int N>
   FAST_INLINE void readPositions(const Robot& robot, const Samples& from, const Lanes& lanes,
-                                 bool gravity) {
+                                 FirstJoint use) {
     gather<N>(robot, from, lanes, q);
-    turnsOfPack(robot, q, gravity, c, s);
+    turnsOfPack(robot, q, use, c, s);
   }
   template <int N>
   FAST_INLINE void read(const Robot& robot, const Samples& from_q, const Samples& from_qd,
                         const Samples& from_qdd, const Lanes& lanes) {
     gather<N>(robot, from_qd, lanes, qd);
     gather<N>(robot, from_qdd, lanes, qdd);
-    readPositions<N>(robot, from_q, lanes, true);
+    readPositions<N>(robot, from_q, lanes, FirstJoint::kForGravity);
   }
   template <int N>
   FAST_INLINE void readAtRest(const Robot& robot, const Samples& from, const Lanes& lanes) {
@@ -88,7 +88,7 @@ void coriolisBatch(const Robot& robot, int structure, std::ptrdiff_t states, Sam
     PackOfStates<> x;
     Pack result[kMaxJoints];
     x.readAtRest<N>(robot, qd, lanes);
-    x.readPositions<N>(robot, q, lanes, false);
+    x.readPositions<N>(robot, q, lanes, FirstJoint::kUnused);
     recursionsOf<Pack>(structure).torques(robot, x.state(), kNoGravity, result);
     scatter<N>(robot, result, lanes, c);
   });
@@ -99,7 +99,7 @@ void gravityBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates<> x;
     Pack result[kMaxJoints];
-    x.readPositions<N>(robot, q, lanes, true);
+    x.readPositions<N>(robot, q, lanes, FirstJoint::kForGravity);
     recursionsOf<Pack>(structure).gravity(robot, x.state(), result);
     scatter<N>(robot, result, lanes, g);
   });
@@ -109,7 +109,7 @@ template <int N>
 void inertiaBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Matrices H) {
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates<> x;
-    x.readPositions<N>(robot, q, lanes, false);
+    x.readPositions<N>(robot, q, lanes, FirstJoint::kUnused);
     inertiaOfPack<N>(robot, structure, x.state(), lanes, H);
   });
 }
@@ -121,7 +121,7 @@ void componentsBatch(const Robot& robot, int structure, std::ptrdiff_t states, S
     PackOfStates<> x;
     Pack result[kMaxJoints];
     x.readAtRest<N>(robot, qd, lanes);
-    x.readPositions<N>(robot, q, lanes, true);
+    x.readPositions<N>(robot, q, lanes, FirstJoint::kForGravity);
     if (H.data != nullptr) inertiaOfPack<N>(robot, structure, x.state(), lanes, H);
     recursionsOf<Pack>(structure).gravity(robot, x.state(), result);
     scatter<N>(robot, result, lanes, g);

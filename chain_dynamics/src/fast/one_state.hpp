@@ -119,6 +119,42 @@ void torqueDerivativesOfState(const Robot& robot, int structure, const double* q
   }
 }
 
+void coriolisMatrixOfState(const Robot& robot, int structure, const double* q, const double* qd,
+                           double* C, std::ptrdiff_t outer_step) {
+  JointNumbers c;
+  JointNumbers s;
+  turnsOfState(robot, q, c.values, s.values);
+  const State<double> state{c.values, s.values, q, qd, nullptr};
+  coriolisMatrixOf<double>(robot, structure)(robot, state, C, outer_step);
+}
+
+void tipPoseOfState(const Robot& robot, int structure, const double* q, double* R, double* p) {
+  JointNumbers c;
+  JointNumbers s;
+  turnsOfState(robot, q, c.values, s.values);
+  const State<double> state{c.values, s.values, q, nullptr, nullptr};
+  tipKinematicsOf<double>(structure).pose(robot, state, R, p);
+}
+
+void tipJacobianOfState(const Robot& robot, int structure, const double* q, double* J,
+                        std::ptrdiff_t outer_step) {
+  JointNumbers c;
+  JointNumbers s;
+  turnsOfState(robot, q, c.values, s.values);
+  const State<double> state{c.values, s.values, q, nullptr, nullptr};
+  tipKinematicsOf<double>(structure).jacobian(robot, state, JacobianEntries<double>{J, outer_step});
+}
+
+void tipJacobianDerivativeOfState(const Robot& robot, int structure, const double* q,
+                                  const double* qd, double* dJ, std::ptrdiff_t outer_step) {
+  JointNumbers c;
+  JointNumbers s;
+  turnsOfState(robot, q, c.values, s.values);
+  const State<double> state{c.values, s.values, q, qd, nullptr};
+  tipKinematicsOf<double>(structure).jacobian_derivative(robot, state,
+                                                         JacobianEntries<double>{dJ, outer_step});
+}
+
 }  // namespace
 }  // namespace fast
 }  // namespace v2

@@ -9,8 +9,10 @@
 
 #include <type_traits>
 
+#include "coriolis_matrix.hpp"
 #include "gravity_vector.hpp"
 #include "inertia_matrix.hpp"
+#include "tip_kinematics.hpp"
 #include "torque_derivatives.hpp"
 #include "torques.hpp"
 
@@ -49,13 +51,27 @@ using Derivatives = void (*)(const Robot&, const State<V>&, const double* root,
                              const DerivativeEntries<V>&);
 
 template <typename V>
+using Coriolis = void (*)(const Robot&, const State<V>&, V* C, std::ptrdiff_t outer_step);
+
+template <typename V>
+struct TipKinematics {
+  void (*pose)(const Robot&, const State<V>&, V* R, V* p);
+  void (*jacobian)(const Robot&, const State<V>&, const JacobianEntries<V>& J);
+  void (*jacobian_derivative)(const Robot&, const State<V>&, const JacobianEntries<V>& dJ);
+};
+
+template <typename V>
 using AnyWithMatrices = AnyOf<sizeof(V) == sizeof(double) ? kMaxJoints : kPackedMatrixJoints>;
 
-/// Derivatives are unrolled for one state of joints that turn, and for packs of states where right
+/// Derivatives and Coriolis matrices are unrolled for one state of joints that turn, and for packs of states where right
 /// angles save most: they take long to compile.
 template <typename S, typename V>
 using ForDerivatives = std::conditional_t<S::kMixed || (sizeof(V) > sizeof(double) && !S::kAligned),
                                           AnyWithMatrices<V>, S>;
+
+/// Kinematics are unrolled where right angles save most.
+template <typename S>
+using ForKinematics = std::conditional_t<S::kAligned, S, AnyStructure>;
 
 /// The recursions of each structure, in the order in which a robot's is looked for.
 template <typename... S>
@@ -65,6 +81,14 @@ struct Tables {
 
   template <typename V>
   static constexpr Derivatives<V> kDerivatives[] = {torqueDerivatives<ForDerivatives<S, V>, V>...};
+
+  template <typename V>
+  static constexpr Coriolis<V> kCoriolis[] = {coriolisMatrix<ForDerivatives<S, V>, V>...};
+
+  template <typename V>
+  static constexpr TipKinematics<V> kTipKinematics[] = {
+      {tipPose<ForKinematics<S>, V>, tipJacobian<ForKinematics<S>, V>,
+       tipJacobianDerivative<ForKinematics<S>, V>}...};
 
   /// Index of the first that has the robot's structure, or one with less zeros.
   static int indexOf(const Robot& robot) {
@@ -79,6 +103,17 @@ using Structures = Tables<ParallelWrist, SphericalWrist, RightAngles, AnySix, An
 template <typename V>
 FAST_INLINE const Recursions<V>& recursionsOf(int structure) {
   return Structures::kRecursions<V>[structure];
+}
+
+/// In loops where each row has a set of parameters: unrolled, it would take long to compile.
+template <typename V>
+FAST_INLINE Coriolis<V> coriolisMatrixOf(const Robot& robot, int structure) {
+  if (robot.rows != nullptr) return coriolisMatrixByRow<AnyWithMatrices<V>, V>;
+  return Structures::kCoriolis<V>[structure];
+}
+template <typename V>
+FAST_INLINE const TipKinematics<V>& tipKinematicsOf(int structure) {
+  return Structures::kTipKinematics<V>[structure];
 }
 
 constexpr double kAtRest[kMaxJoints] = {};

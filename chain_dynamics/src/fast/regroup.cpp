@@ -148,6 +148,13 @@ Matter moved(const Placement& X, const Matter& part) {
           R * part.S * R.transpose() + p_mc + p_mc.transpose() + part.m * p * p.transpose()};
 }
 
+FixedPose fixed(const Matrix3<double>& R, const Vector3<double>& p) {
+  FixedPose pose{};
+  Eigen::Map<Matrix3<double>>(pose.R) = R;
+  Eigen::Map<Vector3<double>>(pose.p) = p;
+  return pose;
+}
+
 }  // namespace
 
 Frames framesOf(const Chain& chain) {
@@ -207,6 +214,17 @@ std::vector<OwnPlacement> ownPlacements(const Frames& frames, const Chain& chain
     own[i].prismatic = frames.placements[i].prismatic;
   }
   return own;
+}
+
+FixedPose baseOf(const Frames& frames, const Chain& chain) {
+  // about the axis it turns with the angle, so all that is left is how far it is moved along it
+  const Transform<double>& X = chain.joints().front().placement;
+  return fixed(X.R, X.p - X.R * frames.moved.front().p);
+}
+
+FixedPose tipOf(const Frames& frames, const Chain& chain) {
+  const Transform<double> X = frames.moved.back() * chain.tip();
+  return fixed(X.R, X.p);
 }
 
 }  // namespace fast

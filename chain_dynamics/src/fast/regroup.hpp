@@ -41,6 +41,10 @@ std::vector<Body> regrouped(const Frames& frames, const std::vector<LinkParamete
 /// The chain's own frames, with the angles of the new ones: each is turned back by the offset.
 std::vector<OwnPlacement> ownPlacements(const Frames& frames, const Chain& chain);
 
+/// The first frame at angle zero in the root frame, and the tip in the last frame.
+FixedPose baseOf(const Frames& frames, const Chain& chain);
+FixedPose tipOf(const Frames& frames, const Chain& chain);
+
 }  // namespace fast
 }  // namespace v2
 }  // namespace chain_dynamics

@@ -56,6 +56,12 @@ struct OwnPlacement {
   bool prismatic;
 };
 
+/// A place that doesn't change.
+struct FixedPose {
+  double R[9];  ///< column by column
+  double p[3];  ///< m
+};
+
 /// All of a robot. Pointers to arrays with one entry per joint, or null.
 struct Robot {
   int joints;
@@ -71,6 +77,8 @@ struct Robot {
   const double* row_lanes;      ///< the same: [joint][number of Body][row]
   const double* friction;       ///< null: none; else [number][joint]
   int stride;                   ///< joints, and zeros to the end of a pack: rows of the last two
+  FixedPose base;               ///< of the first joint's frame at angle zero, in the root frame
+  FixedPose tip;                ///< of the tip in the last frame
 };
 
 /// Numbers of many states: joint j of state k stands at data[j joint_step + k state_step].
@@ -131,6 +139,15 @@ struct Kernels {
   void (*torque_derivatives)(const Robot&, int structure, const double* q, const double* qd,
                              const double* qdd, double* by_q, double* by_qd, double* by_qdd,
                              std::ptrdiff_t outer_step);
+  void (*coriolis_matrix)(const Robot&, int structure, const double* q, const double* qd, double* C,
+                          std::ptrdiff_t outer_step);
+  /// R column by column, p.
+  void (*tip_pose)(const Robot&, int structure, const double* q, double* R, double* p);
+  /// The six entries of a column stand side by side.
+  void (*tip_jacobian)(const Robot&, int structure, const double* q, double* J,
+                       std::ptrdiff_t outer_step);
+  void (*tip_jacobian_derivative)(const Robot&, int structure, const double* q, const double* qd,
+                                  double* dJ, std::ptrdiff_t outer_step);
 };
 
 /// What it computes of many states, with the same structures. Inputs of Samples aren't written.
@@ -153,6 +170,13 @@ struct ManyKernels {
   void (*torque_derivatives)(const Robot&, int structure, std::ptrdiff_t states, Samples q,
                              Samples qd, Samples qdd, Matrices by_q, Matrices by_qd,
                              Matrices by_qdd);
+  void (*coriolis_matrix)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                          Matrices C);
+  void (*tip_pose)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Matrices R,
+                   Samples p);
+  void (*tip_jacobian)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Matrices J);
+  void (*tip_jacobian_derivative)(const Robot&, int structure, std::ptrdiff_t states, Samples q,
+                                  Samples qd, Matrices dJ);
   void (*gram)(const Robot&, std::ptrdiff_t states, const GramInputs& inputs, double* memory,
                double* sums);
 

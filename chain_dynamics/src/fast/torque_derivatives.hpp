@@ -9,7 +9,7 @@
 #pragma once
 
 #include "gravity_vector.hpp"
-#include "inertia_matrix.hpp"
+#include "mass_flow.hpp"
 #include "torques.hpp"
 
 namespace chain_dynamics {
@@ -74,65 +74,6 @@ FAST_INLINE void moveLinks(const Robot& robot, const State<V>& state, const doub
   });
 }
 
-/// How the mass of a link and all after it flows [chain_dynamics/mass_flow.hpp], twice: for points
-/// of mass m at r with velocity u.
-template <typename V>
-struct Flow {
-  Vec<V> p{};            ///< sum of 2 m u
-  Vec<V> x{}, y{}, z{};  ///< columns of the sum of 2 m u r'
-
-  FAST_INLINE void add(bool prismatic, const Body& b, const MovingLink<V>& link) {
-    const Vec<V> w = twice(link.w);
-    const Vec<V> v = twice(link.v);
-    addTo(p, {-(w.z * b.mcy), w.z * b.mcx, w.x * b.mcy - w.y * b.mcx});
-    addTo(x, {v.x * b.mcx, v.y * b.mcx, v.z * b.mcx});
-    addTo(y, {v.x * b.mcy, v.y * b.mcy, v.z * b.mcy});
-    if (prismatic) {
-      addTo(p, {b.m * v.x + w.y * b.mcz, b.m * v.y - w.x * b.mcz, b.m * v.z});
-      addTo(z, {v.x * b.mcz, v.y * b.mcz, v.z * b.mcz});
-    } else {
-      addTo(x, {w.y * b.Sxz - w.z * b.Sxy, w.z * b.Sxx - w.x * b.Sxz, w.x * b.Sxy - w.y * b.Sxx});
-      addTo(y, {w.y * b.Syz - w.z * b.Syy, w.z * b.Sxy - w.x * b.Syz, w.x * b.Syy - w.y * b.Sxy});
-      addTo(z, {-(w.z * b.Syz), w.z * b.Sxz, w.x * b.Syz - w.y * b.Sxz});
-    }
-  }
-
-  /// On to the link before.
-  template <typename S, typename I>
-  FAST_INLINE void carry(I i, const Robot& robot, const State<V>& state) {
-    constexpr Twist kTwist = S::twist(I());
-    const Placement& X = robot.placements[i];
-    const Turn<V> t{state.c[i], state.s[i], X};
-    if (S::kMixed && X.prismatic) {
-      addTo(z, {p.x * state.q[i], p.y * state.q[i], p.z * state.q[i]});
-    }
-    p = outOf<kTwist>(t, p);
-    x = outOf<kTwist>(t, x);
-    y = outOf<kTwist>(t, y);
-    z = outOf<kTwist>(t, z);
-    const Vec<V> row_x = outOf<kTwist>(t, Vec<V>{x.x, y.x, z.x});
-    const Vec<V> row_y = outOf<kTwist>(t, Vec<V>{x.y, y.y, z.y});
-    const Vec<V> row_z = outOf<kTwist>(t, Vec<V>{x.z, y.z, z.z});
-    x = {row_x.x, row_y.x, row_z.x};
-    y = {row_x.y, row_y.y, row_z.y};
-    z = {row_x.z, row_y.z, row_z.z};
-    if (S::px(i)) addTo(x, {p.x * X.px, p.y * X.px, p.z * X.px});
-    if (S::py(i)) addTo(y, {p.x * X.py, p.y * X.py, p.z * X.py});
-  }
-};
-
-/// I_c (w, v), w and v without z: perpendicular to the joint's axis. Mass counts if Massive.
-template <bool Massive, typename V>
-FAST_INLINE Wrench<V> timesAcross(const Composite<V>& I, double m, const Vec<V>& w,
-                                  const Vec<V>& v) {
-  Wrench<V> F{{w.y * I.mc.z, -(w.x * I.mc.z), w.x * I.mc.y - w.y * I.mc.x},
-              {(I.yy + I.zz) * w.x - I.xy * w.y - I.mc.z * v.y,
-               (I.xx + I.zz) * w.y - I.xy * w.x + I.mc.z * v.x,
-               (I.mc.x * v.y - I.mc.y * v.x) - I.xz * w.x - I.yz * w.y}};
-  if constexpr (Massive) addTo(F.f, {m * v.x, m * v.y, V{}});
-  return F;
-}
-
 /// I_c (w, v). Mass counts if Massive.
 template <bool Massive, typename V>
 FAST_INLINE Wrench<V> timesMotion(const Composite<V>& I, double m, const Vec<V>& w,
@@ -174,10 +115,7 @@ FAST_INLINE AxialRates<V> along(bool sliding, const ForceRates<V>& F) {
   return {F.by_q.n.z, F.by_qd.n.z, F.by_qdd.n.z, F.turned.z};
 }
 
-/// by_q, by_qd, by_qdd, turned; not in a register of its own where the widest holds two.
-using Four __attribute__((vector_size(4 * sizeof(double)))) = double;
-
-/// The same of one state, side by side.
+/// The same of one state, side by side: by_q, by_qd, by_qdd, turned.
 struct FourForceRates {
   Wrench<Four> F;
 
@@ -214,7 +152,7 @@ struct CarriedOf<double> {
 };
 
 /// The forces of joint i. `force` is what goes through it, `m` the mass of what it moves, if
-/// Massive.
+/// Massive; `flow` is twice the flow of that mass.
 template <bool Massive, typename V>
 FAST_INLINE ForceRates<V> forceRates(bool prismatic, const Composite<V>& I, double m,
                                      const Flow<V>& flow, const Wrench<V>& force,
@@ -293,7 +231,7 @@ FAST_INLINE void derivativesOfMotion(const Robot& robot, const State<V>& state,
     addTo(W.f, own.f);
     addTo(W.n, own.n);
     I.add(body);
-    flow.add(prismatic, body, links[i]);
+    flow.add(prismatic, body, twice(links[i].w), twice(links[i].v));
 
     typename CarriedOf<V>::Type F(forceRates<S::kMixed>(prismatic, I, m, flow, W, links[i].rates));
     const AxialRates<V> own_axis = along(prismatic, F);

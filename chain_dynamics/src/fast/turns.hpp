@@ -77,11 +77,15 @@ FAST_INLINE bool gravityTurns(const Robot& robot) {
   return robot.root[0] != 0 || robot.root[1] != 0;
 }
 
-// Cosine and sine of all joints, a state in each lane. Of the first joint only where gravity is
-// asked for; one and zero, or NaN, where gravity doesn't turn.
-FAST_INLINE void turnsOfPack(const Robot& robot, const Pack* q, bool gravity, Pack* c, Pack* s) {
+/// What the first joint's position matters for: nothing, gravity alone, or everything.
+enum class FirstJoint { kUnused, kForGravity, kNeeded };
+
+// Cosine and sine of all joints, a state in each lane. Those of the first joint only where something
+// that turns with it is asked for; one and zero, or NaN, where that is gravity but it doesn't turn.
+FAST_INLINE void turnsOfPack(const Robot& robot, const Pack* q, FirstJoint use, Pack* c, Pack* s) {
   const int n = robot.joints;
-  const int first = gravity && gravityTurns(robot) ? 0 : 1;
+  const bool gravity = use == FirstJoint::kForGravity;
+  const int first = use == FirstJoint::kNeeded || (gravity && gravityTurns(robot)) ? 0 : 1;
   BitsOf<Pack> beyond{};
   leaveOutFirst(c, s);
   for (int i = gravity ? 0 : 1; i < first && i < n; ++i) {

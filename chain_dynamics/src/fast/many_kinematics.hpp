@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// The tip's pose and Jacobian of many states, a pack at a time.
+///
+/// N is the number of joints where the compiler is to know it, or zero.
+///
+/// Included by many_kernels.cpp only [pack.hpp].
+
+#pragma once
+
+#include "many_states.hpp"
+
+namespace chain_dynamics {
+inline namespace v2 {
+namespace fast {
+namespace {
+
+template <int N>
+void tipPoseBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Matrices R,
+                  Samples p) {
+  forEachPack(states, [&](const Lanes& lanes) {
+    PackOfStates<> x;
+    Pack rotation[9];
+    Pack position[3];
+    x.readPositions<N>(robot, q, lanes, FirstJoint::kNeeded);
+    tipKinematicsOf<Pack>(structure).pose(robot, x.state(), rotation, position);
+    if (R.row_step == 1 && R.column_step == 3) {
+      scatter<9>(rotation, 9, lanes, R.data, 1, R.state_step);
+    } else {
+      for (int column = 0; column < 3; ++column) {
+        scatter<3>(rotation + std::ptrdiff_t{3} * column, 3, lanes, R.data + column * R.column_step,
+                   R.row_step, R.state_step);
+      }
+    }
+    scatter<3>(position, 3, lanes, p.data, p.joint_step, p.state_step);
+  });
+}
+
+/// Packs of the entries of 6 x n matrices, (i, j) at i + 6 j, to the matrices of each state.
+template <int N>
+FAST_INLINE void scatterJacobian(const Pack* entries, int n, const Lanes& lanes,
+                                 const Matrices& to) {
+  if (to.row_step == 1 && to.column_step == 6) {
+    scatter<6 * N>(entries, 6 * n, lanes, to.data, 1, to.state_step);
+  } else if (to.column_step == 1) {
+    for (int i = 0; i < 6; ++i) {
+      Pack row[kMaxJoints];
+      for (int j = 0; j < n; ++j) row[j] = entries[i + 6 * j];
+      scatter<N>(row, n, lanes, to.data + i * to.row_step, 1, to.state_step);
+    }
+  } else {
+    for (int j = 0; j < n; ++j) {
+      scatter<6>(entries + std::ptrdiff_t{6} * j, 6, lanes, to.data + j * to.column_step,
+                 to.row_step, to.state_step);
+    }
+  }
+}
+
+template <int N>
+void tipJacobianBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
+                      Matrices J) {
+  const int n = jointsOf<N>(robot);
+  forEachPack(states, [&](const Lanes& lanes) {
+    PackOfStates<> x;
+    Pack entries[6 * kMaxJoints];
+    x.readPositions<N>(robot, q, lanes, FirstJoint::kNeeded);
+    tipKinematicsOf<Pack>(structure).jacobian(robot, x.state(), JacobianEntries<Pack>{entries, 6});
+    scatterJacobian<N>(entries, n, lanes, J);
+  });
+}
+
+template <int N>
+void tipJacobianDerivativeBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
+                                Samples qd, Matrices dJ) {
+  const int n = jointsOf<N>(robot);
+  forEachPack(states, [&](const Lanes& lanes) {
+    PackOfStates<> x;
+    Pack entries[6 * kMaxJoints];
+    gather<N>(robot, qd, lanes, x.qd);
+    x.readPositions<N>(robot, q, lanes, FirstJoint::kNeeded);
+    tipKinematicsOf<Pack>(structure).jacobian_derivative(robot, x.state(),
+                                                         JacobianEntries<Pack>{entries, 6});
+    scatterJacobian<N>(entries, n, lanes, dJ);
+  });
+}
+
+}  // namespace
+}  // namespace fast
+}  // namespace v2
+}  // namespace chain_dynamics
