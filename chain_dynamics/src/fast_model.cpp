@@ -177,6 +177,18 @@ FastModel::FastModel(const Model& model, const std::string& instruction_set) {
   }
 }
 
+FastModel::FastModel(const Model& changed, const FastModel& original) {
+  checkModel(changed);
+  const Eigen::Index n = changed.chain.jointCount();
+  if (n != original.robot().joints) {
+    throw ModelError("fast model of " + changed.name, "joints",
+                     std::to_string(original.robot().joints) + ", as the original has",
+                     std::to_string(n), "make the model without an original");
+  }
+  data_ = std::make_unique<const Data>(changed);
+  use(*original.kernels_, *original.many_);
+}
+
 void FastModel::useBest(const Model& model) {
   const std::vector<KernelSet> kernels = usableKernels(robot().joints);
   const auto equals = [&](std::size_t k) {

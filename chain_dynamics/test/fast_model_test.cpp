@@ -443,6 +443,41 @@ TEST(FastModel, RefusesAModelWhosePartsDontFit) {
               ::testing::HasSubstr("links: expected one per joint (3), got 0"));
 }
 
+TEST(FastModel, OfAChangedModelGivesTheBitsOfOneMadeForIt) {
+  const auto body = LinkParameters::fromCenterOfMass(3.1, {0.02, -0.05, 0.11},
+                                                     Eigen::Vector3d(0.1, 0.2, 0.25).asDiagonal());
+  for (const std::string& set : FastModel::instructionSets()) {
+    for (const auto& [name, model] : models()) {
+      SCOPED_TRACE(name + ", " + set);
+      const FastModel original(model, set);
+      Model changed = withBodyAtTip(model, body);
+      changed.chain = changed.chain.withGravity({1.0, -2.0, 3.0});
+      const FastModel fast(changed, original);
+      EXPECT_EQ(fast.instructionSet(), set);
+      const auto x = randomState<double>(model.chain, 1);
+      const Terms found = componentsOf(fast, x);
+      const Terms expected = componentsOf(FastModel(changed, set), x);
+      EXPECT_EQ(found.H, expected.H);
+      EXPECT_EQ(found.c, expected.c);
+      EXPECT_EQ(found.g, expected.g);
+      EXPECT_EQ(found.f, expected.f);
+      EXPECT_EQ(found.tau, expected.tau);
+      EXPECT_NE(found.g, componentsOf(original, x).g);
+    }
+  }
+}
+
+TEST(FastModel, RefusesAChangedModelWithOtherJoints) {
+  const FastModel original(Model(randomChain(3)));
+  EXPECT_THAT(errorOf([&] { const FastModel fast(Model(randomChain(4)), original); }),
+              ::testing::AllOf(::testing::HasSubstr("joints: expected 3, as the original has"),
+                               ::testing::HasSubstr("got 4")));
+  Model broken(randomChain(3));
+  broken.row_parameters.resize(3);
+  EXPECT_THAT(errorOf([&] { const FastModel fast(broken, original); }),
+              ::testing::HasSubstr("links: expected one per joint (3), got 0"));
+}
+
 TEST(FastModel, RefusesAChainThatIsTooLong) {
   const Model model(randomChain(65));
   EXPECT_THAT(errorOf([&] { const FastModel fast(model); }),

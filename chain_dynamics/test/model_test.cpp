@@ -122,6 +122,49 @@ TEST(Model, PotentialEnergyIsZeroAtTheRootFramesOrigin) {
   EXPECT_NEAR(potentialEnergy(model, q), -2 * 9.81 * 1.5, kRounding);
 }
 
+/// What the same geometry carries with nothing but the body.
+Chain bodyAlone(const Chain& chain, const LinkParameters& body) {
+  std::vector<Joint> joints = chain.joints();
+  for (Joint& joint : joints) joint.rotor_inertia = 0;
+  std::vector<LinkParameters> links(joints.size(), LinkParameters::zero());
+  links.back() = chain.tip() * body;
+  return Chain("body", joints, links, chain.gravity());
+}
+
+TEST(Model, BodyAtTheTipAddsItsOwnDynamicsToEachRow) {
+  const Eigen::Matrix3d I_c = Eigen::Vector3d(0.011, 0.02, 0.025).asDiagonal();
+  const auto body = LinkParameters::fromCenterOfMass(3.1, {0.02, -0.05, 0.11}, I_c);
+  for (const char* name : kModels) {
+    const Model bare = robotModel(name);
+    const Model loaded = withBodyAtTip(bare, body);
+    const Chain alone = bodyAlone(bare.chain, body);
+    const Eigen::Index n = alone.jointCount();
+    const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(n, -2, 1.5);
+    const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(n, 1, -0.5);
+    const Eigen::VectorXd qdd = Eigen::VectorXd::LinSpaced(n, -3, 2);
+    Values without(n), with(n), added(n);
+    without.compute(bare, q, qd, qdd);
+    with.compute(loaded, q, qd, qdd);
+    added.compute(Model(alone), q, qd, qdd);
+    ASSERT_GT(added.g.norm(), 1) << name;
+    EXPECT_LT(difference(with.H - without.H, added.H), kRounding) << name;
+    EXPECT_LT(difference(with.c - without.c, added.c), kRounding) << name;
+    EXPECT_LT(difference(with.g - without.g, added.g), kRounding) << name;
+    EXPECT_LT(difference(with.tau - without.tau, added.tau), 10 * kRounding) << name;
+    EXPECT_EQ(with.f, without.f) << name;
+    EXPECT_EQ(loaded.chain.warnings(), bare.chain.warnings()) << name;
+  }
+}
+
+TEST(Model, BodyThatTheLastLinkCantTakeIsRefused) {
+  const Model model = robotModel("franka_gaz2019_feasible");
+  auto body = LinkParameters::zero();
+  body.mass = -100;
+  EXPECT_THROW(withBodyAtTip(model, body), ModelError);
+  body.mass = kNaN;
+  EXPECT_THROW(withBodyAtTip(model, body), ModelError);
+}
+
 TEST(Model, GravityMayBeChanged) {
   Model model = robotModel("franka_inria_identified");
   const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(7, -2, 1.5);

@@ -55,6 +55,12 @@ class FastModel {
   /// @throws ModelError  longer chain, unknown instruction set, parts that don't fit together, or
   ///     no instruction set that gives these numbers (because they overflow).
   explicit FastModel(const Model& model, const std::string& instruction_set = "");
+
+  /// A model with other parameters, gravity or friction than `original` was made from, with its
+  /// instruction set: in microseconds, as nothing is compared with the functions of model.hpp.
+  ///
+  /// @throws ModelError  another number of joints, parts that don't fit together.
+  FastModel(const Model& changed, const FastModel& original);
   ~FastModel();
   FastModel(const FastModel&) = delete;
   FastModel& operator=(const FastModel&) = delete;

@@ -72,6 +72,13 @@ struct Model {
 /// @throws ModelError  naming part and joint.
 void checkModel(const Model& model);
 
+/// The model with a rigid body welded to its tip: the body is added to the last link of the chain,
+/// of every row's parameters and of those of gravity.
+///
+/// @param body  in the frame of model.chain.tip().
+/// @throws ModelError  a body with which the last link can't be: mass below zero, a NaN.
+Model withBodyAtTip(const Model& model, const LinkParameters& body);
+
 using ConstVectorRef = Eigen::Ref<const Eigen::VectorXd>;
 using VectorRef = Eigen::Ref<Eigen::VectorXd>;
 using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
