@@ -116,6 +116,10 @@ void InverseDynamicsSolver::computeFriction(const ConstVectorRef&, const ConstVe
   f.setZero();
 }
 
+void InverseDynamicsSolver::computeParts(bool, const std::function<void()>& compute) const {
+  compute();
+}
+
 void InverseDynamicsSolver::computeDynamicComponents(const ConstVectorRef& q,
                                                      const ConstVectorRef& qd, MatrixRef H,
                                                      VectorRef c, VectorRef g) const {

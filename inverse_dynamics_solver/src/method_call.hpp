@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 #include <chain_dynamics/share_states.hpp>
+#include <functional>
 
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
@@ -62,6 +63,10 @@ class MethodCall {
   [[noreturn]] void throwMismatch(const char* argument, Eigen::Index rows, Eigen::Index cols,
                                   Eigen::Index got_rows, Eigen::Index got_cols) const;
   std::int64_t batchThreads() const { return solver_.batch_threads_; }
+  template <class Compute>
+  void computeParts(bool shared, const Compute& compute) const {
+    solver_.computeParts(shared, std::cref(compute));
+  }
 
  private:
   const std::vector<std::string>& jointNames() const { return solver_.info_.joint_names; }
@@ -108,8 +113,10 @@ class BatchCall : public MethodCall {
   /// Calls compute() with parts of the views, on as many threads as `batch_threads` allows.
   template <class Compute, class... Views>
   void share(const Compute& compute, const Views&... views) const {
-    chain_dynamics::shareStates(count_, batchThreads(), [&](Eigen::Index first, Eigen::Index size) {
-      compute(views.middle(first, size)...);
+    computeParts(batchThreads() > 1, [&] {
+      chain_dynamics::shareStates(
+          count_, batchThreads(),
+          [&](Eigen::Index first, Eigen::Index size) { compute(views.middle(first, size)...); });
     });
   }
 

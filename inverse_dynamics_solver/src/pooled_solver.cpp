@@ -10,33 +10,48 @@ inline namespace v2 {
 
 auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
   // Everything that can fail, aside.
-  const chain_dynamics::Chain chain = chainFromDescription(configuration);
-  auto pool = std::make_unique<WorkspacePool<Workspace>>(readMaxThreads(configuration),
-                                                         workspaceMaker(chain));
-  const bool inertia_is_physical = chain_dynamics::Model(chain).inertiaIsPhysical();
+  auto bare = std::make_unique<const chain_dynamics::Model>(chainFromDescription(configuration));
+  const chain_dynamics::Chain& chain = bare->chain;
+  const std::size_t max_threads = readMaxThreads(configuration);
+  auto conditions = readConditions(configuration, chain.gravity());
+  auto robot = robotOf(conditions->appliedTo(*bare).chain, max_threads);
+  const bool inertia_is_physical = bare->inertiaIsPhysical();
   JointInfo info{chain.jointNames(), chain.warnings()};
   DescriptionFriction friction = descriptionFriction(configuration, chain);
   info.warnings.insert(info.warnings.end(), friction.warnings.begin(), friction.warnings.end());
   configuration.rejectOthers();
 
   // Nothing below can fail.
-  pool_ = std::move(pool);
+  beginWith(std::move(robot), std::move(conditions));
+  bare_ = std::move(bare);
+  max_threads_ = max_threads;
   friction_ = std::move(friction.laws);
   inertia_is_physical_ = inertia_is_physical;
   return info;
 }
 
+auto PooledSolver::robotOf(const chain_dynamics::Chain& chain, std::size_t max_threads) const
+    -> std::unique_ptr<const PooledRobot> {
+  return std::make_unique<const PooledRobot>(
+      PooledRobot{std::make_unique<WorkspacePool<Workspace>>(max_threads, workspaceMaker(chain))});
+}
+
+auto PooledSolver::robotUnder(const Conditions& conditions) const
+    -> std::unique_ptr<const PooledRobot> {
+  return robotOf(conditions.appliedTo(*bare_).chain, max_threads_);
+}
+
 void PooledSolver::computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const {
-  pool_->acquire()->inertiaMatrix(q, H);
+  borrow<Workspace>()->inertiaMatrix(q, H);
 }
 
 void PooledSolver::computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
                                          VectorRef c) const {
-  pool_->acquire()->coriolisVector(q, qd, c);
+  borrow<Workspace>()->coriolisVector(q, qd, c);
 }
 
 void PooledSolver::computeGravityVector(const ConstVectorRef& q, VectorRef g) const {
-  pool_->acquire()->gravityVector(q, g);
+  borrow<Workspace>()->gravityVector(q, g);
 }
 
 void PooledSolver::computeFriction(const ConstVectorRef&, const ConstVectorRef& qd,
@@ -57,7 +72,7 @@ void PooledSolver::addFrictionSlopes(const ConstVectorRef& qd, MatrixRef dtau_dq
 
 void PooledSolver::computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd,
                                             MatrixRef H, VectorRef c, VectorRef g) const {
-  const auto workspace = pool_->acquire();
+  const auto workspace = borrow<Workspace>();
   workspace->inertiaMatrix(q, H);
   workspace->coriolisVector(q, qd, c);
   workspace->gravityVector(q, g);
@@ -65,7 +80,7 @@ void PooledSolver::computeDynamicComponents(const ConstVectorRef& q, const Const
 
 void PooledSolver::computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
                                   const ConstVectorRef& qdd, VectorRef tau) const {
-  pool_->acquire()->torques(q, qd, qdd, tau);
+  borrow<Workspace>()->torques(q, qd, qdd, tau);
   for (std::size_t j = 0; j < friction_.size(); ++j) {
     const auto i = static_cast<Eigen::Index>(j);
     tau[i] += chain_dynamics::friction(friction_[j], qd[i]);

@@ -19,11 +19,12 @@ struct Fault {
 std::ostream& operator<<(std::ostream& stream, const Fault& fault) { return stream << fault.fault; }
 
 class ConformanceTests : public ::testing::TestWithParam<Fault> {};
+class ConformanceTestsOfPayloads : public ::testing::TestWithParam<Fault> {};
 
-TEST_P(ConformanceTests, FindTheFault) {
-  const Fault& fault = GetParam();
-  const std::string command = "FAULT=\"" + std::string(fault.fault) +
-                              "\" " TWO_LINK_TEST_PROGRAM " --gtest_output= --gtest_filter='*." +
+/// Runs the test that must fail, or all of them, with the fault.
+void expectFound(const std::string& program, const std::string& suite, const Fault& fault) {
+  const std::string command = "FAULT=\"" + std::string(fault.fault) + "\" " + program +
+                              " --gtest_output= --gtest_filter='*." +
                               (fault.test[0] == '\0' ? "*" : fault.test) + "' 2>&1";
   FILE* const pipe = popen(command.c_str(), "r");
   ASSERT_NE(pipe, nullptr);
@@ -33,12 +34,31 @@ TEST_P(ConformanceTests, FindTheFault) {
   ASSERT_TRUE(WIFEXITED(status)) << output;
 
   // Allocations can't be counted under a sanitizer.
-  if (fault.test[0] != '\0' && output.find("[  SKIPPED ] TwoLink") != std::string::npos) {
+  if (fault.test[0] != '\0' && output.find("[  SKIPPED ] " + suite) != std::string::npos) {
     GTEST_SKIP() << output;
   }
-  const bool found = output.find("[  FAILED  ] TwoLink") != std::string::npos;
+  const bool found = output.find("[  FAILED  ] " + suite) != std::string::npos;
   EXPECT_EQ(found, fault.test[0] != '\0') << output;
   EXPECT_EQ(WEXITSTATUS(status) != 0, found) << output;
+}
+
+/// The name of a test is its fault in letters: `NanIsSwallowed`.
+std::string nameOf(const ::testing::TestParamInfo<Fault>& fault) {
+  std::string name = fault.param.fault[0] == '\0' ? "none" : "";
+  bool upper = false;
+  for (const char* c = fault.param.fault; *c != '\0'; ++c) {
+    if (std::isalpha(*c)) name.push_back(upper ? static_cast<char>(std::toupper(*c)) : *c);
+    upper = *c == ' ';
+  }
+  return name;
+}
+
+TEST_P(ConformanceTests, FindTheFault) {
+  expectFound(TWO_LINK_TEST_PROGRAM, "TwoLink", GetParam());
+}
+
+TEST_P(ConformanceTestsOfPayloads, FindTheFault) {
+  expectFound(CARRYING_TEST_PROGRAM, "Carrying", GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -88,15 +108,23 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"derivatives lack gravity", "TorqueDerivativesAreThoseOfTheTorques"},
         Fault{"derivatives lack friction", "TorqueDerivativesIncludeFriction"},
         Fault{"accelerations without friction", "AccelerationsInvertTorques"}),
-    // The name of a test is its fault in letters: `NanIsSwallowed`.
-    [](const ::testing::TestParamInfo<Fault>& fault) {
-      std::string name = fault.param.fault[0] == '\0' ? "none" : "";
-      bool upper = false;
-      for (const char* c = fault.param.fault; *c != '\0'; ++c) {
-        if (std::isalpha(*c)) name.push_back(upper ? static_cast<char>(std::toupper(*c)) : *c);
-        upper = *c == ' ';
-      }
-      return name;
-    });
+    nameOf);
+
+INSTANTIATE_TEST_SUITE_P(
+    Faults, ConformanceTestsOfPayloads,
+    ::testing::Values(
+        Fault{"", ""},  //
+        Fault{"bodies interact", "BodiesAddWhatEachAddsAlone"},
+        Fault{"bodies leave a trace", "NumbersDependOnTheBodiesThatAreThereAlone"},
+        Fault{"parameters state no body", "BodyOfParametersEqualsOneThatIsSet"},
+        Fault{"inertia of a body is negative", "InertiaWithABodyIsAsPhysicalAsWithout"},
+        Fault{"the base accelerates backwards", "GravityThatIsSetEqualsThatOfInitialize"},
+        Fault{"allocates with a body", "CallsWithABodyNeitherAllocateNorMakeASystemCall"},
+        Fault{"a call mixes two robots",
+              "ThreadsThatComputeWhileTheRobotChangesGetOldOrNewNumbers"},
+        Fault{"states of a batch mix two robots",
+              "ThreadsThatComputeWhileTheRobotChangesGetOldOrNewNumbers"},
+        Fault{"threads of a batch mix two robots", "ThreadsThatShareABatchComputeWithOneRobot"}),
+    nameOf);
 
 }  // namespace

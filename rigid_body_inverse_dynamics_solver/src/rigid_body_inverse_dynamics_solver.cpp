@@ -91,8 +91,11 @@ Sentences attachedLinks(const Configuration& configuration, const chain_dynamics
   }
   if (bodies.empty()) return {};
   return {"the robot description attaches bodies that model " + model.name +
-          " doesn't include in its torques: " + bodies + "; if it was identified with them, set '" +
-          configuration.fullName("attached") + "' to ignore"};
+          " doesn't include in its torques: " + bodies + "; set parameters '" +
+          configuration.fullName("payload") +
+          ".NAME.mass' and so on, or call setPayload(), to add " +
+          "them; if it was identified with them, set '" + configuration.fullName("attached") +
+          "' to ignore"};
 }
 
 /// A sentence for each way in which a robot description, from which nothing is computed, is that
@@ -162,64 +165,84 @@ auto InverseDynamicsSolverRigidBody::keep(chain_dynamics::Model model,
   const bool inertia_is_physical = model.inertiaIsPhysical();
   JointInfo info{model.chain.jointNames(), warningsOf(model, inertia_is_physical)};
   for (std::string& warning : warnings) info.warnings.push_back(std::move(warning));
-  std::unique_ptr<const FastModel> fast;
+  auto conditions = readConditions(configuration, model.chain.gravity());
+  auto robot = std::make_unique<ReadyModel>(ReadyModel{conditions->appliedTo(model), nullptr});
   if (model.chain.jointCount() <= FastModel::kMaxJoints) {
-    fast = std::make_unique<const FastModel>(model);
-    info.warnings.insert(info.warnings.end(), fast->warnings().begin(), fast->warnings().end());
+    robot->fast = std::make_unique<const FastModel>(robot->model);
+    const Sentences& more = robot->fast->warnings();
+    info.warnings.insert(info.warnings.end(), more.begin(), more.end());
   }
-  auto complete = std::make_unique<const chain_dynamics::Model>(std::move(model));
+  auto bare = std::make_unique<const chain_dynamics::Model>(std::move(model));
   configuration.rejectOthers();
 
   // Keep; nothing below can throw.
-  model_ = std::move(complete);
-  fast_ = std::move(fast);
+  beginWith(std::move(robot), std::move(conditions));
+  model_ = std::move(bare);
   inertia_is_physical_ = inertia_is_physical;
   return info;
+}
+
+auto InverseDynamicsSolverRigidBody::robotUnder(const Conditions& conditions) const
+    -> std::unique_ptr<const ReadyModel> {
+  auto robot = std::make_unique<ReadyModel>(ReadyModel{conditions.appliedTo(model()), nullptr});
+  if (initialRobot().fast != nullptr) {
+    robot->fast = std::make_unique<const FastModel>(robot->model, *initialRobot().fast);
+  }
+  return robot;
 }
 
 // ---------------------------------------------------------------- one state
 
 void InverseDynamicsSolverRigidBody::computeInertiaMatrix(const ConstVectorRef& q,
                                                           MatrixRef H) const {
-  if (fast_ == nullptr) return chain_dynamics::inertiaMatrix(model(), q, H);
-  fast_->inertiaMatrix(q.data(), H.data(), H.outerStride());
+  const auto robot = currentRobot();
+  if (robot->fast == nullptr) return chain_dynamics::inertiaMatrix(robot->model, q, H);
+  robot->fast->inertiaMatrix(q.data(), H.data(), H.outerStride());
 }
 
 void InverseDynamicsSolverRigidBody::computeCoriolisVector(const ConstVectorRef& q,
                                                            const ConstVectorRef& qd,
                                                            VectorRef c) const {
-  if (fast_ == nullptr) return chain_dynamics::coriolisVector(model(), q, qd, c);
-  fast_->coriolisVector(q.data(), qd.data(), c.data());
+  const auto robot = currentRobot();
+  if (robot->fast == nullptr) return chain_dynamics::coriolisVector(robot->model, q, qd, c);
+  robot->fast->coriolisVector(q.data(), qd.data(), c.data());
 }
 
 void InverseDynamicsSolverRigidBody::computeGravityVector(const ConstVectorRef& q,
                                                           VectorRef g) const {
-  if (fast_ == nullptr) return chain_dynamics::gravityVector(model(), q, g);
-  fast_->gravityVector(q.data(), g.data());
+  const auto robot = currentRobot();
+  if (robot->fast == nullptr) return chain_dynamics::gravityVector(robot->model, q, g);
+  robot->fast->gravityVector(q.data(), g.data());
 }
 
 void InverseDynamicsSolverRigidBody::computeFriction(const ConstVectorRef&,
                                                      const ConstVectorRef& qd, VectorRef f) const {
-  if (fast_ == nullptr) return chain_dynamics::frictionVector(model(), qd, f);
-  fast_->frictionVector(qd.data(), f.data());
+  const auto robot = currentRobot();
+  if (robot->fast == nullptr) return chain_dynamics::frictionVector(robot->model, qd, f);
+  robot->fast->frictionVector(qd.data(), f.data());
 }
 
 void InverseDynamicsSolverRigidBody::computeDynamicComponents(const ConstVectorRef& q,
                                                               const ConstVectorRef& qd, MatrixRef H,
                                                               VectorRef c, VectorRef g) const {
-  if (fast_ == nullptr) return chain_dynamics::dynamicComponents(model(), q, qd, H, c, g);
-  fast_->dynamicComponents(q.data(), qd.data(), H.data(), H.outerStride(), c.data(), g.data());
+  const auto robot = currentRobot();
+  if (robot->fast == nullptr)
+    return chain_dynamics::dynamicComponents(robot->model, q, qd, H, c, g);
+  robot->fast->dynamicComponents(q.data(), qd.data(), H.data(), H.outerStride(), c.data(),
+                                 g.data());
 }
 
 void InverseDynamicsSolverRigidBody::computeTorques(const ConstVectorRef& q,
                                                     const ConstVectorRef& qd,
                                                     const ConstVectorRef& qdd,
                                                     VectorRef tau) const {
-  if (fast_ != nullptr) return fast_->torques(q.data(), qd.data(), qdd.data(), tau.data());
+  const auto robot = currentRobot();
+  if (robot->fast != nullptr)
+    return robot->fast->torques(q.data(), qd.data(), qdd.data(), tau.data());
 
   // tau = H qdd + C qd + g, and f on top
-  chain_dynamics::torques(model(), q, qd, qdd, tau);
-  const auto& laws = model().friction;
+  chain_dynamics::torques(robot->model, q, qd, qdd, tau);
+  const auto& laws = robot->model.friction;
   for (std::size_t j = 0; j < laws.size(); ++j) {
     const auto i = static_cast<Eigen::Index>(j);
     tau[i] += chain_dynamics::friction(laws[j], qd[i]);
@@ -228,30 +251,44 @@ void InverseDynamicsSolverRigidBody::computeTorques(const ConstVectorRef& q,
 
 // ---------------------------------------------------------------- many states
 
+void InverseDynamicsSolverRigidBody::computeParts(bool shared,
+                                                  const std::function<void()>& compute) const {
+  // A fast model computes all states of a part; that is the batch where nobody shares it.
+  if (!shared && initialRobot().fast != nullptr) {
+    compute();
+  } else {
+    whileUnchanged(compute);
+  }
+}
+
 void InverseDynamicsSolverRigidBody::computeInertiaMatrixBatch(const ConstStates& q,
                                                                const StridedMatrices& H) const {
-  if (fast_ == nullptr) return InverseDynamicsSolver::computeInertiaMatrixBatch(q, H);
-  fast_->inertiaMatrixBatch(q, H);
+  const auto robot = currentRobot();
+  if (robot->fast == nullptr) return InverseDynamicsSolver::computeInertiaMatrixBatch(q, H);
+  robot->fast->inertiaMatrixBatch(q, H);
 }
 
 void InverseDynamicsSolverRigidBody::computeCoriolisVectorBatch(const ConstStates& q,
                                                                 const ConstStates& qd,
                                                                 const States& c) const {
-  if (fast_ == nullptr) return InverseDynamicsSolver::computeCoriolisVectorBatch(q, qd, c);
-  fast_->coriolisVectorBatch(q, qd, c);
+  const auto robot = currentRobot();
+  if (robot->fast == nullptr) return InverseDynamicsSolver::computeCoriolisVectorBatch(q, qd, c);
+  robot->fast->coriolisVectorBatch(q, qd, c);
 }
 
 void InverseDynamicsSolverRigidBody::computeFrictionBatch(const ConstStates& q,
                                                           const ConstStates& qd,
                                                           const States& f) const {
-  if (fast_ == nullptr) return InverseDynamicsSolver::computeFrictionBatch(q, qd, f);
-  fast_->frictionVectorBatch(qd, f);
+  const auto robot = currentRobot();
+  if (robot->fast == nullptr) return InverseDynamicsSolver::computeFrictionBatch(q, qd, f);
+  robot->fast->frictionVectorBatch(qd, f);
 }
 
 void InverseDynamicsSolverRigidBody::computeGravityVectorBatch(const ConstStates& q,
                                                                const States& g) const {
-  if (fast_ == nullptr) return InverseDynamicsSolver::computeGravityVectorBatch(q, g);
-  fast_->gravityVectorBatch(q, g);
+  const auto robot = currentRobot();
+  if (robot->fast == nullptr) return InverseDynamicsSolver::computeGravityVectorBatch(q, g);
+  robot->fast->gravityVectorBatch(q, g);
 }
 
 void InverseDynamicsSolverRigidBody::computeDynamicComponentsBatch(const ConstStates& q,
@@ -259,16 +296,19 @@ void InverseDynamicsSolverRigidBody::computeDynamicComponentsBatch(const ConstSt
                                                                    const StridedMatrices& H,
                                                                    const States& c,
                                                                    const States& g) const {
-  if (fast_ == nullptr) return InverseDynamicsSolver::computeDynamicComponentsBatch(q, qd, H, c, g);
-  fast_->dynamicComponentsBatch(q, qd, H, c, g);
+  const auto robot = currentRobot();
+  if (robot->fast == nullptr)
+    return InverseDynamicsSolver::computeDynamicComponentsBatch(q, qd, H, c, g);
+  robot->fast->dynamicComponentsBatch(q, qd, H, c, g);
 }
 
 void InverseDynamicsSolverRigidBody::computeTorquesBatch(const ConstStates& q,
                                                          const ConstStates& qd,
                                                          const ConstStates& qdd,
                                                          const States& tau) const {
-  if (fast_ == nullptr) return InverseDynamicsSolver::computeTorquesBatch(q, qd, qdd, tau);
-  fast_->torquesBatch(q, qd, qdd, tau);
+  const auto robot = currentRobot();
+  if (robot->fast == nullptr) return InverseDynamicsSolver::computeTorquesBatch(q, qd, qdd, tau);
+  robot->fast->torquesBatch(q, qd, qdd, tau);
 }
 
 }  // namespace v2

@@ -148,8 +148,9 @@ TEST(RigidBody, BodiesThatADescriptionAttachesToAModelAreMentioned) {
   ASSERT_EQ(solver.warnings().size(), 1U);
   EXPECT_EQ(solver.warnings().front(),
             "the robot description attaches bodies that model franka_gaz2019_feasible doesn't "
-            "include in its torques: hand (0.73 kg); if it was identified with them, set "
-            "'attached' to ignore");
+            "include in its torques: hand (0.73 kg); set parameters 'payload.NAME.mass' and so on, "
+            "or call setPayload(), to add them; if it was identified with them, set 'attached' to "
+            "ignore");
   solver.initialize({{"model", kFeasible}, {"attached", "ignore"}}, "", with_hand);
   EXPECT_TRUE(solver.warnings().empty());
 

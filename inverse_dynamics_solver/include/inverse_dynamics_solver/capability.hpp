@@ -15,6 +15,8 @@
 /// | torque_derivatives.hpp  | TorqueDerivatives  | derivatives of the torques                     |
 /// | regressor.hpp           | Regressor          | torques as linear in the inertial parameters   |
 /// | forward_dynamics.hpp    | ForwardDynamics    | accelerations of given torques                 |
+/// | payload.hpp             | Payload            | bodies at the tip that come and go             |
+/// | variable_gravity.hpp    | VariableGravity    | gravity and an accelerating base               |
 /// | motor_currents.hpp      | MotorCurrents      | currents of the motors                         |
 #pragma once
 

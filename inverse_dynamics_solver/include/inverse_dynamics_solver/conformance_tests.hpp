@@ -17,7 +17,8 @@
 /// Parts one to four, initialization_tests.hpp, contract_tests.hpp, batch_tests.hpp and
 /// real_time_tests.hpp, are what callers are promised; part five, law_tests.hpp, is physics; part
 /// six, capability_tests.hpp, the physics of the capabilities that the solver has; part seven,
-/// first_error_tests.hpp, has a process for each error. A test that doesn't apply to a solver is
+/// first_error_tests.hpp, has a process for each error; part eight, payload_tests.hpp, is what
+/// solvers with Payload and VariableGravity promise. A test that doesn't apply to a solver is
 /// skipped and says why.
 ///
 /// The plugin is loaded by name, as users do. Random states have a fixed seed, and a failure prints
@@ -30,6 +31,7 @@
 #include "inverse_dynamics_solver/conformance/first_error_tests.hpp"
 #include "inverse_dynamics_solver/conformance/initialization_tests.hpp"
 #include "inverse_dynamics_solver/conformance/law_tests.hpp"
+#include "inverse_dynamics_solver/conformance/payload_tests.hpp"
 #include "inverse_dynamics_solver/conformance/real_time_tests.hpp"
 
 namespace inverse_dynamics_solver::conformance {
@@ -62,7 +64,15 @@ REGISTER_TYPED_TEST_SUITE_P(
     CoriolisMatrixIsThatOfChristoffelsSymbols, RateOfInertiaIsTheCoriolisMatrixPlusItsTranspose,
     EnergyGrowsWithThePowerOfTheTorques, TorqueDerivativesAreThoseOfTheTorques,
     TorqueDerivativesIncludeFriction, RegressorTimesParametersAreTheTorques,
-    AccelerationsInvertTorques);
+    AccelerationsInvertTorques,
+    // Bodies and gravity that change.
+    BodiesAddWhatEachAddsAlone, NumbersDependOnTheBodiesThatAreThereAlone,
+    BodyEqualsAFixedLinkOfTheDescription, BodyOfParametersEqualsOneThatIsSet,
+    ImpossibleBodyIsRefusedAndNothingChanges, InertiaWithABodyIsAsPhysicalAsWithout,
+    GravityThatIsSetEqualsThatOfInitialize, UninitializedSolverRefusesBodiesAndGravity,
+    CallsWithABodyNeitherAllocateNorMakeASystemCall,
+    ThreadsThatComputeWhileTheRobotChangesGetOldOrNewNumbers,
+    ThreadsThatShareABatchComputeWithOneRobot);
 
 REGISTER_TYPED_TEST_SUITE_P(SolverAlone, FirstErrorOfAProcessIsReported);
 

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -269,6 +270,11 @@ class InverseDynamicsSolver {
                                              const States& g) const;
   virtual void computeTorquesBatch(const ConstStates& q, const ConstStates& qd,
                                    const ConstStates& qdd, const States& tau) const;
+
+  /// Calls `compute`, which computes a batch part by part, on several threads where `shared`. By
+  /// default that is all. A solver whose robot may change meanwhile sees to it that all parts are
+  /// computed with one robot [changeable_robot.hpp].
+  virtual void computeParts(bool shared, const std::function<void()>& compute) const;
 
   /// Answer of inertiaIsPhysical(). No default: a wrong yes makes robots oscillate.
   virtual bool inertiaIsPhysicalImpl() const = 0;

@@ -13,6 +13,7 @@
 #include <memory>
 #include <vector>
 
+#include "inverse_dynamics_solver/changeable_robot.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "inverse_dynamics_solver/workspace_pool.hpp"
 
@@ -40,6 +41,11 @@ class Workspace {
   Workspace() = default;
 };
 
+/// A robot made ready to compute with: workspaces that all hold the same one.
+struct PooledRobot {
+  std::unique_ptr<WorkspacePool<Workspace>> pool;
+};
+
 /// Solver of the rigid-body dynamics of the chain between `root` and `tip` of a robot description,
 /// by a library that keeps state: each call borrows a workspace of its own.
 ///
@@ -50,7 +56,7 @@ class Workspace {
 /// same time are right too, but make a workspace on the heap.
 ///
 /// Real time (within max_threads): no allocation, lock, exception or system call. Threads: safe.
-class PooledSolver : public InverseDynamicsSolver {
+class PooledSolver : public InverseDynamicsSolver, public ChangeableRobot<PooledRobot> {
  protected:
   using WorkspaceMaker = std::function<std::unique_ptr<Workspace>()>;
 
@@ -65,16 +71,20 @@ class PooledSolver : public InverseDynamicsSolver {
   template <class MyWorkspace>
   class Borrowed {
    public:
-    explicit Borrowed(WorkspacePool<Workspace>& pool) : lease_(pool.acquire()) {}
+    explicit Borrowed(const PooledSolver& solver)
+        : robot_(solver.currentRobot()), lease_(robot_->pool->acquire()) {}
     MyWorkspace* operator->() const { return static_cast<MyWorkspace*>(lease_.operator->()); }
 
    private:
+    Published<PooledRobot>::Reader robot_;
     WorkspacePool<Workspace>::Lease lease_;
   };
   template <class MyWorkspace>
   Borrowed<MyWorkspace> borrow() const {
-    return Borrowed<MyWorkspace>(*pool_);
+    return Borrowed<MyWorkspace>(*this);
   }
+
+  const InverseDynamicsSolver& torqueSolver() const override { return *this; }
 
   /// Adds the derivatives of the friction torques to the diagonal of `dtau_dqd`.
   void addFrictionSlopes(const ConstVectorRef& qd, MatrixRef dtau_dqd) const;
@@ -92,9 +102,18 @@ class PooledSolver : public InverseDynamicsSolver {
                                 VectorRef c, VectorRef g) const final;
   void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
                       VectorRef tau) const final;
+  /// One state after the other, each with a workspace of its own.
+  void computeParts(bool, const std::function<void()>& compute) const final {
+    whileUnchanged(compute);
+  }
   bool inertiaIsPhysicalImpl() const final { return inertia_is_physical_; }
 
-  std::unique_ptr<WorkspacePool<Workspace>> pool_;
+  std::unique_ptr<const PooledRobot> robotUnder(const Conditions& conditions) const final;
+  std::unique_ptr<const PooledRobot> robotOf(const chain_dynamics::Chain& chain,
+                                             std::size_t max_threads) const;
+
+  std::unique_ptr<const chain_dynamics::Model> bare_;  // without payloads
+  std::size_t max_threads_ = 0;
   std::vector<chain_dynamics::FrictionLaw> friction_;  // empty: none
   bool inertia_is_physical_ = false;
 };

@@ -15,6 +15,7 @@
 
 #include "chain_dynamics/fast_model.hpp"
 #include "chain_dynamics/model.hpp"
+#include "inverse_dynamics_solver/changeable_robot.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
@@ -27,6 +28,12 @@ using inverse_dynamics_solver::MatrixRef;
 using inverse_dynamics_solver::States;
 using inverse_dynamics_solver::StridedMatrices;
 using inverse_dynamics_solver::VectorRef;
+
+/// A model made ready to compute with.
+struct ReadyModel {
+  chain_dynamics::Model model;
+  std::unique_ptr<const chain_dynamics::FastModel> fast;  ///< null: a chain too long for it
+};
 
 /// The engine as a solver.
 ///
@@ -45,7 +52,8 @@ using inverse_dynamics_solver::VectorRef;
 ///
 /// Real time and threads: as the base class promises, for up to 64 joints. There is no state but
 /// the model.
-class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDynamicsSolver {
+class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDynamicsSolver,
+                                       public inverse_dynamics_solver::ChangeableRobot<ReadyModel> {
  protected:
   JointInfo configure(const Configuration& configuration) override;
 
@@ -54,8 +62,10 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
   /// robot description that the model doesn't include. All or nothing, as configure().
   JointInfo use(chain_dynamics::Model model, const Configuration& configuration);
 
-  /// The model in use; only after a successful initialize().
+  /// The model of the bare robot, without payloads; only after a successful initialize().
   const chain_dynamics::Model& model() const { return *model_; }
+
+  const InverseDynamicsSolver& torqueSolver() const override { return *this; }
 
   void computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const override;
   void computeCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd,
@@ -78,15 +88,17 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
                                      const States& g) const override;
   void computeTorquesBatch(const ConstStates& q, const ConstStates& qd, const ConstStates& qdd,
                            const States& tau) const override;
+  void computeParts(bool shared, const std::function<void()>& compute) const override;
   bool inertiaIsPhysicalImpl() const override { return inertia_is_physical_; }
 
  private:
   JointInfo keep(chain_dynamics::Model model, const Configuration& configuration,
                  std::vector<std::string> warnings);
 
+  std::unique_ptr<const ReadyModel> robotUnder(const Conditions& conditions) const override;
+
   std::unique_ptr<const chain_dynamics::Model> model_;
-  std::unique_ptr<const chain_dynamics::FastModel> fast_;  // null: a chain too long for it
-  bool inertia_is_physical_ = false;  // known once for all: model_ doesn't change
+  bool inertia_is_physical_ = false;
 };
 
 }  // namespace v2

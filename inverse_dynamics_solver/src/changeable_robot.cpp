@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/changeable_robot.hpp"
+
+#include "chain_dynamics/error.hpp"
+#include "inverse_dynamics_solver/exceptions.hpp"
+
+namespace inverse_dynamics_solver {
+inline namespace v2 {
+
+chain_dynamics::SpatialInertia<double> ChangingConditions::Conditions::payload() const {
+  auto sum = chain_dynamics::SpatialInertia<double>::zero();
+  for (const auto& [name, body] : payloads) sum += inTipFrame(body);
+  return sum;
+}
+
+chain_dynamics::Model ChangingConditions::Conditions::appliedTo(
+    const chain_dynamics::Model& bare) const {
+  // Without bodies, the numbers are those of the bare robot, bit by bit.
+  chain_dynamics::Model model = payloads.empty() ? bare : withBodyAtTip(bare, payload());
+  model.chain = model.chain.withGravity(base.apparentGravity());
+  return model;
+}
+
+auto ChangingConditions::readConditions(const Configuration& configuration,
+                                        const Eigen::Vector3d& gravity)
+    -> std::shared_ptr<const Conditions> {
+  auto conditions = std::make_shared<Conditions>();
+  conditions->payloads = readPayloads(configuration);
+  conditions->base.gravity = gravity;
+  return conditions;
+}
+
+void ChangingConditions::beginUnder(std::shared_ptr<const Conditions> conditions) noexcept {
+  initial_ = conditions;
+  current_ = std::move(conditions);
+}
+
+bool ChangingConditions::isAsInitialized(const Conditions& conditions) const {
+  return conditions.payloads == initial_->payloads &&
+         conditions.base.gravity == initial_->base.gravity &&
+         conditions.base.acceleration == initial_->base.acceleration;
+}
+
+void ChangingConditions::whileUnchanged(const std::function<void()>& compute) const {
+  std::unique_lock<std::mutex> entrance(entrance_);
+  const std::shared_lock<std::shared_mutex> batch(batches_);
+  entrance.unlock();
+  compute();
+}
+
+void ChangingConditions::publishAlone(const std::function<void()>& publish) {
+  const std::lock_guard<std::mutex> entrance(entrance_);
+  const std::lock_guard<std::shared_mutex> no_batch(batches_);
+  publish();
+}
+
+void ChangingConditions::apply(const std::function<void(Conditions&)>& change) {
+  const std::lock_guard<std::mutex> lock(changes_);
+  const auto next = std::make_shared<Conditions>(*current_);
+  change(*next);
+  try {
+    changeTo(*next);
+  } catch (const chain_dynamics::ModelError& e) {
+    throw InvalidParameterValueException(e.what());
+  }
+  current_ = next;
+}
+
+void ChangingConditions::changePayloads(const std::function<void(Payloads&)>& change) {
+  apply([&](Conditions& conditions) { change(conditions.payloads); });
+}
+
+Payloads ChangingConditions::currentPayloads() const {
+  const std::lock_guard<std::mutex> lock(changes_);
+  return current_->payloads;
+}
+
+void ChangingConditions::changeBaseMotion(const std::function<void(BaseMotion&)>& change) {
+  apply([&](Conditions& conditions) { change(conditions.base); });
+}
+
+auto ChangingConditions::currentBaseMotion() const -> BaseMotion {
+  const std::lock_guard<std::mutex> lock(changes_);
+  return current_->base;
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_solver

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/variable_gravity.hpp"
+
+#include <sstream>
+#include <string>
+
+#include "inverse_dynamics_solver/exceptions.hpp"
+
+namespace inverse_dynamics_solver {
+inline namespace v2 {
+namespace {
+
+void requireFinite(const char* method, const char* argument, const Eigen::Vector3d& values) {
+  if (values.allFinite()) return;
+  std::ostringstream got;
+  got << values.x() << ", " << values.y() << ", " << values.z();
+  throw InvalidParameterValueException(
+      errorText(std::string(method) + ": argument " + argument, "wrong value",
+                "3 finite numbers [m/s^2] in the axes of the root link", got.str(),
+                "keep the last value where a sensor fails"));
+}
+
+}  // namespace
+
+// Out of line, so that there is one type information for dynamic_cast across plugin libraries.
+VariableGravity::~VariableGravity() = default;
+
+auto VariableGravity::required(const char* method) const -> BaseMotion {
+  jointsFor(method);
+  return currentBaseMotion();
+}
+
+void VariableGravity::setGravity(const Eigen::Vector3d& gravity) {
+  required("setGravity");
+  requireFinite("setGravity", "gravity", gravity);
+  changeBaseMotion([&](BaseMotion& base) { base.gravity = gravity; });
+}
+
+void VariableGravity::setBaseAcceleration(const Eigen::Vector3d& acceleration) {
+  required("setBaseAcceleration");
+  requireFinite("setBaseAcceleration", "acceleration", acceleration);
+  changeBaseMotion([&](BaseMotion& base) { base.acceleration = acceleration; });
+}
+
+Eigen::Vector3d VariableGravity::gravity() const { return required("gravity").gravity; }
+
+Eigen::Vector3d VariableGravity::baseAcceleration() const {
+  return required("baseAcceleration").acceleration;
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_solver
