@@ -30,29 +30,6 @@ OwnedMatrix backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time,
   return qdd;
 }
 
-OwnedMatrix derivative(const Eigen::Ref<const Eigen::MatrixXd>& samples, double period) {
-  requireSamples("derivative", "samples", samples, 2);
-  if (!(period > 0)) {
-    throw EvaluationError("derivative", "period", "a positive number of seconds",
-                          std::to_string(period), "give the distance of the samples");
-  }
-  const Index last = samples.cols() - 1;
-  Eigen::MatrixXd result(samples.rows(), samples.cols());
-  for (Index k = 0; k <= last; ++k) {
-    if (k >= 2 && k + 2 <= last) {
-      result.col(k) = (8.0 * (samples.col(k + 1) - samples.col(k - 1)) -
-                       (samples.col(k + 2) - samples.col(k - 2))) /
-                      (12.0 * period);
-    } else {
-      const Index before = std::max<Index>(k - 1, 0);
-      const Index after = std::min(k + 1, last);
-      result.col(k) = (samples.col(after) - samples.col(before)) /
-                      (static_cast<double>(after - before) * period);
-    }
-  }
-  return result;
-}
-
 OwnedMatrix lowPassDerivative(const Eigen::Ref<const Eigen::MatrixXd>& samples,
                               double sampling_frequency, double cutoff, int order) {
   requireSamples("low-pass derivative", "samples", samples, 3 * (order + 1) + 1);

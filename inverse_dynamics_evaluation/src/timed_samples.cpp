@@ -122,58 +122,85 @@ double Census::usualPeriod(TimeBase base, double gap) const {
   return regular.step();
 }
 
+namespace {
+
+// Adds samples to a census, one after another.
+class CensusTaker {
+ public:
+  CensusTaker(Census& census, const SampleRules& rules) : census_(census), rules_(rules) {}
+
+  void add(const SampleBlock& block, const SampleBlock::StampVector& stamps) {
+    faults_.examine(block, repeated_, non_increasing_);
+    if (census_.counts.all == 0) {
+      census_.joints = block.q.rows();
+      census_.efforts = block.effort.size() > 0;
+      census_.accelerations = block.qdd.size() > 0;
+      census_.timing.begin = block.time[0];
+    }
+    census_.all_zero = census_.all_zero && block.effort.isZero(0);
+    for (Index k = 0; k < block.size(); ++k) {
+      lookBack(block.first + k, block.time[k], stamps[k], non_increasing_[k]);
+      census_.counts.repeated += repeated_[k] ? 1 : 0;
+      if (!(rules_.repeated && repeated_[k])) {
+        addFresh(block.first + k, block.time[k], non_increasing_[k]);
+      }
+    }
+    census_.counts.all += block.size();
+  }
+
+  // s; the latest stamp so far.
+  double latest() const { return faults_.latest(); }
+
+ private:
+  // How far a sample is from the one before it.
+  void lookBack(Index number, double time, std::int64_t stamp, bool non_increasing) {
+    if (number > 0) {
+      census_.stamps.add(nanoseconds(time - before_));
+    }
+    if (non_increasing && census_.counts.non_increasing++ == 0) {
+      census_.backward = {number, stamp, census_.backward.latest, time, before_};
+    } else if (census_.counts.non_increasing == 0) {
+      census_.backward.latest = stamp;  // all have increased so far
+    }
+    before_ = time;
+  }
+
+  // A sample that doesn't repeat the one before it.
+  void addFresh(Index number, double time, bool non_increasing) {
+    if (census_.timing.fresh++ > 0) {
+      census_.missed.add(number - last_fresh_);
+    }
+    last_fresh_ = number;
+    if (!non_increasing) {
+      if (census_.used++ > 0) {
+        census_.of_used.add(nanoseconds(time - last_used_));
+      }
+      last_used_ = time;
+    }
+  }
+
+  Census& census_;
+  const SampleRules& rules_;
+  FaultFinder faults_;
+  Flags repeated_, non_increasing_;
+  Index last_fresh_ = 0;
+  double last_used_ = 0;  // s
+  double before_ = 0;     // s; of the sample before
+};
+
+}  // namespace
+
 Census takeCensus(SampleStream& stream, const SampleRules& rules) {
   Census census;
-  FaultFinder faults;
+  CensusTaker taker(census, rules);
   SampleBlock block;
-  Flags repeated;
-  Flags non_increasing;
-  Index last_fresh = 0;
-  double last_used = 0;  // s
-  double before = 0;     // s; of the sample before
   stream.rewind();
   while (stream.next(block)) {
-    const SampleBlock::StampVector& stamps =
-        stream.clock() == Clock::kReceive ? block.receive_stamps : block.header_stamps;
-    faults.examine(block, repeated, non_increasing);
-    if (census.counts.all == 0) {
-      census.joints = block.q.rows();
-      census.efforts = block.effort.size() > 0;
-      census.accelerations = block.qdd.size() > 0;
-      census.timing.begin = block.time[0];
-    }
-    census.all_zero = census.all_zero && block.effort.isZero(0);
-    for (Index k = 0; k < block.size(); ++k) {
-      const double time = block.time[k];
-      const Index number = block.first + k;
-      if (number > 0) {
-        census.stamps.add(nanoseconds(time - before));
-      }
-      if (non_increasing[k] && census.counts.non_increasing++ == 0) {
-        census.backward = {number, stamps[k], census.backward.latest, time, before};
-      } else if (census.counts.non_increasing == 0) {
-        census.backward.latest = stamps[k];  // all have increased so far
-      }
-      before = time;
-      census.counts.repeated += repeated[k] ? 1 : 0;
-      if (rules.repeated && repeated[k]) {
-        continue;
-      }
-      if (census.timing.fresh++ > 0) {
-        census.missed.add(number - last_fresh);
-      }
-      last_fresh = number;
-      if (!non_increasing[k]) {
-        if (census.used++ > 0) {
-          census.of_used.add(nanoseconds(time - last_used));
-        }
-        last_used = time;
-      }
-    }
-    census.counts.all += block.size();
+    taker.add(block,
+              stream.clock() == Clock::kReceive ? block.receive_stamps : block.header_stamps);
   }
   census.timing.count = census.counts.all;
-  census.timing.duration = faults.latest() - census.timing.begin;
+  census.timing.duration = taker.latest() - census.timing.begin;
   return census;
 }
 

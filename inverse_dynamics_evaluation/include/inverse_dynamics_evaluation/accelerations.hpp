@@ -37,16 +37,6 @@ inline namespace v2 {
 OwnedMatrix backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time,
                                const Eigen::Ref<const Eigen::MatrixXd>& qd);
 
-/// Derivative of equidistant samples: `x' = (x_(k-2) - 8 x_(k-1) + 8 x_(k+1) - x_(k+2)) / (12 T)`.
-///
-/// Central differences of fourth order; of second order beside the ends, one-sided at the ends.
-///
-/// @param samples  n x N, a sample a column, N >= 2.
-/// @param period   s; T above.
-/// @return n x N.
-/// @throws EvaluationError: fewer than 2 samples, a period that isn't positive.
-OwnedMatrix derivative(const Eigen::Ref<const Eigen::MatrixXd>& samples, double period);
-
 /// Derivative of equidistant samples after the zero-phase low-pass of low_pass.hpp.
 ///
 /// Before the filter both ends are continued by cubics through the last 1.2 periods of the cut-off,
