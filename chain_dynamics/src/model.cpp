@@ -6,9 +6,13 @@
 #include <cmath>
 #include <string>
 
+#include "chain_dynamics/coriolis_matrix.hpp"
+#include "chain_dynamics/coriolis_vector.hpp"
+#include "chain_dynamics/dynamic_components.hpp"
 #include "chain_dynamics/energy.hpp"
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/parameter_sets.hpp"
+#include "chain_dynamics/torque_derivatives.hpp"
 #include "definite_inertia.hpp"
 
 namespace chain_dynamics {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "allocation_guard.hpp"
+#include "chain_dynamics/coriolis_matrix.hpp"
 #include "chain_dynamics/coriolis_vector.hpp"
 #include "chain_dynamics/dual.hpp"
 #include "chain_dynamics/dynamic_components.hpp"
@@ -17,6 +18,7 @@
 #include "chain_dynamics/parameter_sets.hpp"
 #include "chain_dynamics/regressor.hpp"
 #include "chain_dynamics/tip_kinematics.hpp"
+#include "chain_dynamics/torque_derivatives.hpp"
 #include "random_chains.hpp"
 
 namespace chain_dynamics {

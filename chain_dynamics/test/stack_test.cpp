@@ -13,12 +13,15 @@
 #include <string>
 #include <vector>
 
+#include "chain_dynamics/coriolis_matrix.hpp"
+#include "chain_dynamics/dynamic_components.hpp"
 #include "chain_dynamics/energy.hpp"
 #include "chain_dynamics/fast_model.hpp"
 #include "chain_dynamics/forward_dynamics.hpp"
 #include "chain_dynamics/parameter_sets.hpp"
 #include "chain_dynamics/regressor.hpp"
 #include "chain_dynamics/tip_kinematics.hpp"
+#include "chain_dynamics/torque_derivatives.hpp"
 #include "example_models.hpp"
 
 namespace chain_dynamics {

@@ -10,6 +10,7 @@
 
 #include "chain_dynamics/dual.hpp"
 #include "chain_dynamics/parameter_sets.hpp"
+#include "chain_dynamics/torques.hpp"
 #include "example_robots.hpp"
 #include "lagrange.hpp"
 #include "random_chains.hpp"

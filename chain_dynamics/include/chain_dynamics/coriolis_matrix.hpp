@@ -27,6 +27,7 @@
 
 #include "chain_dynamics/kinematics.hpp"
 #include "chain_dynamics/mass_flow.hpp"
+#include "chain_dynamics/parameter_sets.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -83,28 +84,38 @@ void coriolisOfMotion(const Chain& chain, const std::vector<LinkParameters>& lin
 
 }  // namespace internal
 
-/// Coriolis matrix of Christoffel's symbols: `C(q, qd)`, with `dH/dt = C + C'`.
+/// Coriolis matrix of Christoffel's symbols: `C(q, qd)`, with `dH/dt = C + C'`, which doesn't hold
+/// for different sets for the rows.
 ///
 /// Recursion over blocks of links in link frames, O(n^2) [Echeandia and Wensing 2021, Numerical
 /// methods to compute the Coriolis matrix and Christoffel symbols for rigid-body systems, J. Comput.
 /// Nonlinear Dynam. 16(9)].
 ///
 /// @tparam Scalar  (of q, qd, C) float, double or a dual number.
+/// @param sets     ParameterSets [parameter_sets.hpp]; left out: chain.links().
 /// @param q,qd     n each; rad, rad/s (prismatic m, m/s); order of chain.jointNames().
 /// @param[out] C   n x n; kg m^2/s (prismatic kg/s, mixed kg m/s).
 /// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
-template <typename Q, typename Qd, typename MatrixC>
-void coriolisMatrix(const Chain& chain, const Eigen::MatrixBase<Q>& q,
+template <typename Sets, typename Q, typename Qd, typename MatrixC>
+void coriolisMatrix(const Chain& chain, const Sets& sets, const Eigen::MatrixBase<Q>& q,
                     const Eigen::MatrixBase<Qd>& qd, const Eigen::MatrixBase<MatrixC>& C) {
   using Scalar = typename Q::Scalar;
   const Eigen::Index n = chain.jointCount();
-  assert(C.rows() == n && C.cols() == n);
+  assert(C.rows() == n && C.cols() == n && internal::haveSizesOf(chain, sets));
   Scratch<Transform<Scalar>> X(n);
   Scratch<Motion<Scalar>> V(n);
 
   internal::linkPoses(chain, q, X);
   internal::linkVelocities(chain, X, qd, V);
-  internal::coriolisOfMotion(chain, chain.links(), X, V, 0, C.const_cast_derived());
+  const auto rows = [&](const std::vector<LinkParameters>& links, Eigen::Index first) {
+    internal::coriolisOfMotion(chain, links, X, V, first, C.const_cast_derived());
+  };
+  internal::forEachSet(chain, sets, rows);
+}
+template <typename Q, typename Qd, typename MatrixC>
+void coriolisMatrix(const Chain& chain, const Eigen::MatrixBase<Q>& q,
+                    const Eigen::MatrixBase<Qd>& qd, const Eigen::MatrixBase<MatrixC>& C) {
+  coriolisMatrix(chain, internal::OwnParameters(), q, qd, C);
 }
 
 }  // namespace v2

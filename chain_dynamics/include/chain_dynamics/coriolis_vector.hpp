@@ -22,15 +22,16 @@ inline namespace v2 {
 /// Only the product is computed, without the matrix [coriolis_matrix.hpp].
 ///
 /// @tparam Scalar  (of q, qd, c) float, double or a dual number.
+/// @param sets     ParameterSets [parameter_sets.hpp]; left out: chain.links().
 /// @param q,qd     n each; rad, rad/s (prismatic m, m/s); order of chain.jointNames().
 /// @param[out] c   n; N m (prismatic N).
 /// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
-template <typename Q, typename Qd, typename C>
-void coriolisVector(const Chain& chain, const Eigen::MatrixBase<Q>& q,
+template <typename Sets, typename Q, typename Qd, typename C>
+void coriolisVector(const Chain& chain, const Sets& sets, const Eigen::MatrixBase<Q>& q,
                     const Eigen::MatrixBase<Qd>& qd, const Eigen::MatrixBase<C>& c) {
   using Scalar = typename Q::Scalar;
   const Eigen::Index n = chain.jointCount();
-  assert(c.size() == n);
+  assert(c.size() == n && internal::haveSizesOf(chain, sets));
   Scratch<Transform<Scalar>> X(n);
   Scratch<Motion<Scalar>> V(n);
   Scratch<Motion<Scalar>> A(n);
@@ -41,7 +42,12 @@ void coriolisVector(const Chain& chain, const Eigen::MatrixBase<Q>& q,
   internal::velocityAccelerations(chain, X, V, qd, A);
 
   // which forces that needs, from tip to root
-  internal::torquesOfMotion(chain, chain.links(), X, V, A, 0, c.const_cast_derived());
+  internal::torquesOfMotion(chain, sets, X, V, A, c.const_cast_derived());
+}
+template <typename Q, typename Qd, typename C>
+void coriolisVector(const Chain& chain, const Eigen::MatrixBase<Q>& q,
+                    const Eigen::MatrixBase<Qd>& qd, const Eigen::MatrixBase<C>& c) {
+  coriolisVector(chain, internal::OwnParameters(), q, qd, c);
 }
 
 }  // namespace v2

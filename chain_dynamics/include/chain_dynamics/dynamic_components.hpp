@@ -24,18 +24,20 @@ inline namespace v2 {
 /// kinematics: one sine and cosine per joint, one pass from root to tip.
 ///
 /// @tparam Scalar  (of all arguments) float, double or a dual number.
+/// @param sets     ParameterSets [parameter_sets.hpp]; left out: chain.links().
 /// @param q,qd     n each; rad, rad/s (prismatic m, m/s); order of chain.jointNames().
 /// @param[out] H   n x n; kg m^2 (prismatic kg, mixed kg m).
 /// @param[out] c   n; N m (prismatic N): C(q, qd) qd.
 /// @param[out] g   n; N m (prismatic N).
 /// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
-template <typename Q, typename Qd, typename MatrixH, typename C, typename G>
-void dynamicComponents(const Chain& chain, const Eigen::MatrixBase<Q>& q,
+template <typename Sets, typename Q, typename Qd, typename MatrixH, typename C, typename G>
+void dynamicComponents(const Chain& chain, const Sets& sets, const Eigen::MatrixBase<Q>& q,
                        const Eigen::MatrixBase<Qd>& qd, const Eigen::MatrixBase<MatrixH>& H,
                        const Eigen::MatrixBase<C>& c, const Eigen::MatrixBase<G>& g) {
   using Scalar = typename Q::Scalar;
   const Eigen::Index n = chain.jointCount();
   assert(H.rows() == n && H.cols() == n && c.size() == n && g.size() == n);
+  assert(internal::haveSizesOf(chain, sets));
   Scratch<Transform<Scalar>> X(n);
   Scratch<Motion<Scalar>> V(n);
   Scratch<Motion<Scalar>> A(n);
@@ -48,9 +50,15 @@ void dynamicComponents(const Chain& chain, const Eigen::MatrixBase<Q>& q,
   internal::gravityInLinks(chain, X, a);
 
   // which forces that needs, from tip to root
-  internal::inertiaOfPoses(chain, chain.links(), X, H.const_cast_derived());
-  internal::torquesOfMotion(chain, chain.links(), X, V, A, 0, c.const_cast_derived());
-  internal::gravityOfPoses(chain, chain.links(), X, a, 0, g.const_cast_derived());
+  internal::inertiaOfPoses(chain, sets, X, H.const_cast_derived());
+  internal::torquesOfMotion(chain, sets, X, V, A, c.const_cast_derived());
+  internal::gravityOfPoses(chain, sets, X, a, g.const_cast_derived());
+}
+template <typename Q, typename Qd, typename MatrixH, typename C, typename G>
+void dynamicComponents(const Chain& chain, const Eigen::MatrixBase<Q>& q,
+                       const Eigen::MatrixBase<Qd>& qd, const Eigen::MatrixBase<MatrixH>& H,
+                       const Eigen::MatrixBase<C>& c, const Eigen::MatrixBase<G>& g) {
+  dynamicComponents(chain, internal::OwnParameters(), q, qd, H, c, g);
 }
 
 }  // namespace v2

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "chain_dynamics/kinematics.hpp"
+#include "chain_dynamics/parameter_sets.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -60,6 +61,16 @@ void gravityOfPoses(const Chain& chain, const std::vector<LinkParameters>& links
   }
 }
 
+// The gravity torques, row j with set j, or all with the set for gravity.
+template <typename Sets, typename Scalar, typename G>
+void gravityOfPoses(const Chain& chain, const Sets& sets, const Scratch<Transform<Scalar>>& X,
+                    const Scratch<Vector3<Scalar>>& a, G& g) {
+  if (const auto* own = gravitySet(sets)) return gravityOfPoses(chain, *own, X, a, 0, g);
+  forEachSet(chain, sets, [&](const std::vector<LinkParameters>& links, Eigen::Index first) {
+    gravityOfPoses(chain, links, X, a, first, g);
+  });
+}
+
 }  // namespace internal
 
 /// Gravity torques: `g(q)`, the gradient of the potential energy.
@@ -68,21 +79,27 @@ void gravityOfPoses(const Chain& chain, const std::vector<LinkParameters>& links
 /// hangs on each joint, O(n).
 ///
 /// @tparam Scalar  (of q, g) float, double or a dual number.
+/// @param sets     ParameterSets [parameter_sets.hpp]; left out: chain.links().
 /// @param q        n; rad (prismatic m); order of chain.jointNames().
 /// @param[out] g   n; N m (prismatic N).
 /// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
-template <typename Q, typename G>
-void gravityVector(const Chain& chain, const Eigen::MatrixBase<Q>& q,
+template <typename Sets, typename Q, typename G>
+void gravityVector(const Chain& chain, const Sets& sets, const Eigen::MatrixBase<Q>& q,
                    const Eigen::MatrixBase<G>& g) {
   using Scalar = typename Q::Scalar;
   const Eigen::Index n = chain.jointCount();
-  assert(g.size() == n);
+  assert(g.size() == n && internal::haveSizesOf(chain, sets));
   Scratch<Transform<Scalar>> X(n);
   Scratch<Vector3<Scalar>> a(n);
 
   internal::linkPoses(chain, q, X);
   internal::gravityInLinks(chain, X, a);
-  internal::gravityOfPoses(chain, chain.links(), X, a, 0, g.const_cast_derived());
+  internal::gravityOfPoses(chain, sets, X, a, g.const_cast_derived());
+}
+template <typename Q, typename G>
+void gravityVector(const Chain& chain, const Eigen::MatrixBase<Q>& q,
+                   const Eigen::MatrixBase<G>& g) {
+  gravityVector(chain, internal::OwnParameters(), q, g);
 }
 
 }  // namespace v2

@@ -28,6 +28,7 @@
 
 #include "chain_dynamics/kinematics.hpp"
 #include "chain_dynamics/mass_flow.hpp"
+#include "chain_dynamics/parameter_sets.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -184,12 +185,40 @@ void addGravityDerivatives(const Chain& chain, const std::vector<LinkParameters>
 /// Without friction: see frictionSlope() in friction.hpp.
 ///
 /// @tparam Scalar         (of all arguments) float, double or a dual number.
+/// @param sets            ParameterSets [parameter_sets.hpp]; left out: chain.links().
 /// @param q,qd,qdd        n each; rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2); order of
 ///                        chain.jointNames().
 /// @param[out] dtau_dq    n x n: entry (i, j) is that of tau_i by q_j; N m/rad (prismatic N, m).
 /// @param[out] dtau_dqd   n x n; N m s/rad (prismatic N, m).
 /// @param[out] dtau_dqdd  n x n: H; kg m^2 (prismatic kg, mixed kg m).
 /// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+template <typename Sets, typename Q, typename Qd, typename Qdd, typename MatrixQ, typename MatrixQd,
+          typename MatrixH>
+void torqueDerivatives(const Chain& chain, const Sets& sets, const Eigen::MatrixBase<Q>& q,
+                       const Eigen::MatrixBase<Qd>& qd, const Eigen::MatrixBase<Qdd>& qdd,
+                       const Eigen::MatrixBase<MatrixQ>& dtau_dq,
+                       const Eigen::MatrixBase<MatrixQd>& dtau_dqd,
+                       const Eigen::MatrixBase<MatrixH>& dtau_dqdd) {
+  using Scalar = typename Q::Scalar;
+  const Eigen::Index n = chain.jointCount();
+  assert(internal::haveSizesOf(chain, sets));
+  Scratch<Transform<Scalar>> X(n);
+  Scratch<Motion<Scalar>> V(n);
+  Scratch<Motion<Scalar>> A(n);
+  const auto out = internal::derivativeMatrices(chain, dtau_dq, dtau_dqd, dtau_dqdd);
+
+  // gravity with its own parameters comes on top
+  internal::linkPoses(chain, q, X);
+  internal::linkVelocities(chain, X, qd, V);
+  internal::linkAccelerations(chain, X, V, qd, qdd, internal::gravityOfMotion(chain, sets), A);
+  const auto rows = [&](const std::vector<LinkParameters>& links, Eigen::Index first) {
+    internal::derivativesOfMotion(chain, links, X, V, A, first, out);
+  };
+  internal::forEachSet(chain, sets, rows);
+  if (const auto* own = internal::gravitySet(sets)) {
+    internal::addGravityDerivatives(chain, *own, X, out.q);
+  }
+}
 template <typename Q, typename Qd, typename Qdd, typename MatrixQ, typename MatrixQd,
           typename MatrixH>
 void torqueDerivatives(const Chain& chain, const Eigen::MatrixBase<Q>& q,
@@ -197,17 +226,7 @@ void torqueDerivatives(const Chain& chain, const Eigen::MatrixBase<Q>& q,
                        const Eigen::MatrixBase<MatrixQ>& dtau_dq,
                        const Eigen::MatrixBase<MatrixQd>& dtau_dqd,
                        const Eigen::MatrixBase<MatrixH>& dtau_dqdd) {
-  using Scalar = typename Q::Scalar;
-  const Eigen::Index n = chain.jointCount();
-  Scratch<Transform<Scalar>> X(n);
-  Scratch<Motion<Scalar>> V(n);
-  Scratch<Motion<Scalar>> A(n);
-
-  internal::linkPoses(chain, q, X);
-  internal::linkVelocities(chain, X, qd, V);
-  internal::linkAccelerations(chain, X, V, qd, qdd, chain.gravity(), A);
-  internal::derivativesOfMotion(chain, chain.links(), X, V, A, 0,
-                                internal::derivativeMatrices(chain, dtau_dq, dtau_dqd, dtau_dqdd));
+  torqueDerivatives(chain, internal::OwnParameters(), q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
 }
 
 }  // namespace v2

@@ -10,7 +10,9 @@
 
 #include <Eigen/Core>
 
+#include "chain_dynamics/gravity_vector.hpp"
 #include "chain_dynamics/kinematics.hpp"
+#include "chain_dynamics/parameter_sets.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -38,6 +40,15 @@ void torquesOfMotion(const Chain& chain, const std::vector<LinkParameters>& link
   }
 }
 
+// The torques, row j with set j.
+template <typename Sets, typename Scalar, typename Tau>
+void torquesOfMotion(const Chain& chain, const Sets& sets, const Scratch<Transform<Scalar>>& X,
+                     const Scratch<Motion<Scalar>>& V, const Scratch<Motion<Scalar>>& A, Tau& tau) {
+  forEachSet(chain, sets, [&](const std::vector<LinkParameters>& links, Eigen::Index first) {
+    torquesOfMotion(chain, links, X, V, A, first, tau);
+  });
+}
+
 // What the motors' own rotors need, which no link's parameters hold: rotor_inertia qdd.
 // Kept aside until the end, so that tau may be the memory of an input.
 template <typename Qdd, typename Scalar>
@@ -55,6 +66,18 @@ void addTo(Tau& tau, const Scratch<Scalar>& other) {
   }
 }
 
+// tau += g of the set for gravity, if there is one
+template <typename Sets, typename Scalar, typename Tau>
+void addGravityOfItsSet(const Chain& chain, const Sets& sets, const Scratch<Transform<Scalar>>& X,
+                        Tau& tau) {
+  if (gravitySet(sets) == nullptr) return;
+  Scratch<Vector3<Scalar>> a(chain.jointCount());
+  Scratch<Scalar> g(chain.jointCount());
+  gravityInLinks(chain, X, a);
+  gravityOfPoses(chain, sets, X, a, g);
+  addTo(tau, g);
+}
+
 }  // namespace internal
 
 /// Joint torques of a given motion: `tau = H(q) qdd + C(q, qd) qd + g(q)`.
@@ -63,30 +86,38 @@ void addTo(Tau& tau, const Scratch<Scalar>& other) {
 /// friction: see friction.hpp.
 ///
 /// @tparam Scalar   (of q, qd, qdd, tau) float, double or a dual number.
+/// @param sets      ParameterSets [parameter_sets.hpp]; left out: chain.links().
 /// @param q,qd,qdd  n each; rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2); order of
 ///                  chain.jointNames().
 /// @param[out] tau  n; N m (prismatic N).
 /// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
-template <typename Q, typename Qd, typename Qdd, typename Tau>
-void torques(const Chain& chain, const Eigen::MatrixBase<Q>& q, const Eigen::MatrixBase<Qd>& qd,
-             const Eigen::MatrixBase<Qdd>& qdd, const Eigen::MatrixBase<Tau>& tau) {
+template <typename Sets, typename Q, typename Qd, typename Qdd, typename Tau>
+void torques(const Chain& chain, const Sets& sets, const Eigen::MatrixBase<Q>& q,
+             const Eigen::MatrixBase<Qd>& qd, const Eigen::MatrixBase<Qdd>& qdd,
+             const Eigen::MatrixBase<Tau>& tau) {
   using Scalar = typename Q::Scalar;
   const Eigen::Index n = chain.jointCount();
-  assert(tau.size() == n);
+  assert(tau.size() == n && internal::haveSizesOf(chain, sets));
   Scratch<Transform<Scalar>> X(n);
   Scratch<Motion<Scalar>> V(n);
   Scratch<Motion<Scalar>> A(n);
   Scratch<Scalar> rotor(n);
 
-  // how the links move, from root to tip
+  // how the links move, from root to tip; gravity with its own parameters comes on top
   internal::linkPoses(chain, q, X);
   internal::linkVelocities(chain, X, qd, V);
-  internal::linkAccelerations(chain, X, V, qd, qdd, chain.gravity(), A);
+  internal::linkAccelerations(chain, X, V, qd, qdd, internal::gravityOfMotion(chain, sets), A);
 
   // which forces that needs, from tip to root
   internal::rotorTorques(chain, qdd, rotor);
-  internal::torquesOfMotion(chain, chain.links(), X, V, A, 0, tau.const_cast_derived());
+  internal::torquesOfMotion(chain, sets, X, V, A, tau.const_cast_derived());
   internal::addTo(tau.const_cast_derived(), rotor);
+  internal::addGravityOfItsSet(chain, sets, X, tau.const_cast_derived());
+}
+template <typename Q, typename Qd, typename Qdd, typename Tau>
+void torques(const Chain& chain, const Eigen::MatrixBase<Q>& q, const Eigen::MatrixBase<Qd>& qd,
+             const Eigen::MatrixBase<Qdd>& qdd, const Eigen::MatrixBase<Tau>& tau) {
+  torques(chain, internal::OwnParameters(), q, qd, qdd, tau);
 }
 
 }  // namespace v2
