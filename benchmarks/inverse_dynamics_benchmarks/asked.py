@@ -19,6 +19,7 @@ QUANTITIES = ("torques", "inertia", "coriolis", "gravity", "components")
 _THREE = ("inertia", "coriolis", "gravity")
 _ENGINE = (("derivatives", 3.0), ("forward_dynamics", 1.0), ("regressor", 1.0))
 _ENGINE_BATCHES = (("derivatives", 15.0), ("forward_dynamics", 15.0), ("regressor", 10.0))
+_KINEMATICS = (("coriolis_matrix", 6.0), ("tip_jacobian", 4.0))
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,11 @@ def ratio(slow: float | None, fast: float | None) -> float | None:
 
 def bounds(result: Measurement) -> tuple[Bound, ...]:
     """All of them, those that weren't measured too, but for what older measurements or those without CasADi lack."""
-    optional = (*_beside_generated_code(result), *_engine_batches(result))
+    optional = (
+        *_beside_generated_code(result),
+        *_engine_batches(result),
+        *_kinematics(result),
+    )
     return (
         *_single_calls(result),
         *_identified(result),
@@ -114,6 +119,12 @@ def _engine_batches(result: Measurement) -> Iterator[Bound]:
     for quantity, times in _ENGINE_BATCHES:
         what = f"{quantity.replace('_', ' ')}, batch: UR10, Panda"
         yield _of_pinocchio(result, what, times, REAL, f"{quantity}_batch")
+
+
+def _kinematics(result: Measurement) -> Iterator[Bound]:
+    for quantity, times in _KINEMATICS:
+        what = f"{quantity.replace('_', ' ')}: UR10, Panda"
+        yield _of_pinocchio(result, what, times, REAL, quantity)
 
 
 def _beside_other_calls(result: Measurement) -> Iterator[Bound]:

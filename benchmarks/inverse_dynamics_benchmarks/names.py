@@ -18,6 +18,8 @@ ENGINE = {
     "derivatives": "derivatives of the torques",
     "forward_dynamics": "forward dynamics",
     "regressor": "regressor",
+    "coriolis_matrix": "C",
+    "tip_jacobian": "Jacobian of the tip",
 }
 """What the engine computes besides."""
 

@@ -9,8 +9,9 @@
 
 namespace inverse_dynamics_benchmarks {
 
-/// Forward dynamics, regressor and derivatives of torques, ROBOT/QUANTITY/ours, of one state a call
-/// and (QUANTITY_batch) of 64; Gram matrices of the regressor, of 64.
+/// Forward dynamics, regressor, derivatives of torques, Coriolis matrix, the tip's pose, Jacobian and
+/// its derivative, ROBOT/QUANTITY/ours, of one state a call and (QUANTITY_batch) of 64; Gram matrices
+/// of the regressor, of 64.
 void registerEngine(const std::string& robot, const chain_dynamics::Chain& chain);
 
 }  // namespace inverse_dynamics_benchmarks

@@ -3,11 +3,13 @@
 
 #include <kdl/chaindynparam.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
+#include <kdl/chainjnttojacsolver.hpp>
 #include <memory>
 #include <vector>
 
 #include "kdl_chain.hpp"
 #include "peers.hpp"
+#include "robots.hpp"
 #include "states.hpp"
 #include "timing.hpp"
 
@@ -28,11 +30,13 @@ struct Peer {
       : chain(kdl_inverse_dynamics_solver::toKdl(robot)),
         rne(chain, kdl_inverse_dynamics_solver::toKdl(robot.gravity())),
         components(chain, kdl_inverse_dynamics_solver::toKdl(robot.gravity())),
+        jacobian(chain),
         forces(chain.getNrOfSegments(), KDL::Wrench::Zero()),
         H(chain.getNrOfJoints()),
         c(chain.getNrOfJoints()),
         g(chain.getNrOfJoints()),
-        tau(chain.getNrOfJoints()) {
+        tau(chain.getNrOfJoints()),
+        J(chain.getNrOfJoints()) {
     const States states(robot.jointCount());
     q = columns(states.q);
     qd = columns(states.qd);
@@ -42,10 +46,12 @@ struct Peer {
   KDL::Chain chain;  // before the solvers that keep a reference to it
   KDL::ChainIdSolver_RNE rne;
   KDL::ChainDynParam components;
+  KDL::ChainJntToJacSolver jacobian;
   KDL::Wrenches forces;
   std::vector<KDL::JntArray> q, qd, qdd;
   KDL::JntSpaceInertiaMatrix H;
   KDL::JntArray c, g, tau;
+  KDL::Jacobian J;
 };
 
 }  // namespace
@@ -70,6 +76,8 @@ void registerKdl(const PeerRobot& robot) {
     p.components.JntToCoriolis(p.q[k], p.qd[k], p.c);
     p.components.JntToGravity(p.q[k], p.g);
   });
+  if (!isArm(robot.chain.jointCount())) return;
+  add("tip_jacobian", [](Peer& p, std::size_t k) { p.jacobian.JntToJac(p.q[k], p.J); });
 }
 
 std::string kdlVersion() { return KDL_VERSION_STRING; }

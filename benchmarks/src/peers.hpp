@@ -27,12 +27,12 @@ struct PeerRobot {
 void requireSameTorques(const PeerRobot& robot, const std::string& library,
                         const Eigen::VectorXd& torques);
 
-/// KDL::ChainIdSolver_RNE and KDL::ChainDynParam.
+/// KDL::ChainIdSolver_RNE and KDL::ChainDynParam; of arms also KDL::ChainJntToJacSolver.
 void registerKdl(const PeerRobot& robot);
 
 /// rnea, crba (LOCAL convention), nonLinearEffects, computeGeneralizedGravity; `components` is
-/// these last three. Of arms also aba (LOCAL), computeJointTorqueRegressor and
-/// computeRNEADerivatives, beside registerEngine().
+/// these last three. Of arms also aba (LOCAL), computeJointTorqueRegressor, computeRNEADerivatives,
+/// computeCoriolisMatrix and computeJointJacobians, beside registerEngine().
 void registerPinocchio(const PeerRobot& robot);
 
 /// Kinematics, then mj_rne or mj_makeM: what mj_inverse does for an arm without contacts.

@@ -2,6 +2,7 @@
 #include <memory>
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/crba.hpp>
+#include <pinocchio/algorithm/jacobian.hpp>
 #include <pinocchio/algorithm/regressor.hpp>
 #include <pinocchio/algorithm/rnea-derivatives.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
@@ -49,6 +50,12 @@ struct Peer {
                                       states.qdd.col(k));
     return data.dtau_dq.data();
   }
+  auto coriolisMatrix(Eigen::Index k) {
+    return pinocchio::computeCoriolisMatrix(model, data, states.q.col(k), states.qd.col(k)).data();
+  }
+  auto jacobian(Eigen::Index k) {  // in the root's origin, not the tip's
+    return pinocchio::computeJointJacobians(model, data, states.q.col(k)).data();
+  }
 
   pinocchio_inverse_dynamics_solver::Model model;
   pinocchio_inverse_dynamics_solver::Data data;
@@ -74,6 +81,8 @@ void registerPinocchio(const PeerRobot& robot) {
   add("forward_dynamics", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.forwardDynamics(k)); });
   add("regressor", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.regressor(k)); });
   add("derivatives", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.derivatives(k)); });
+  add("coriolis_matrix", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.coriolisMatrix(k)); });
+  add("tip_jacobian", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.jacobian(k)); });
 }
 
 std::string pinocchioVersion() { return PINOCCHIO_VERSION; }

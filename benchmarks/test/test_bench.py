@@ -256,6 +256,16 @@ def test_functions_of_the_engine_are_compared_for_generated_chains_too():
     assert "| 6 joints, 2 slide | derivatives of the torques | 150 | 600 | 4.0 |" in page(result)
 
 
+def test_kinematics_are_asked_for_where_they_were_measured(speed_json):
+    times = {"tip_jacobian/ours": 50.0, "tip_jacobian/pinocchio": 300.0}
+    result = measurement(document(*(entry(f"ur10/{name}", t) for name, t in times.items())), "here")
+    tip = {bound.what: bound for bound in bounds(result)}["tip jacobian: UR10, Panda"]
+    assert (tip.asked, tip.reached, tip.where) == (4.0, 6.0, "ur10")
+    assert "| UR10 | Jacobian of the tip | 50 | 300 | 6.0 |" in page(result)
+    older = {bound.what for bound in bounds(read_measurement(speed_json))}
+    assert not {"tip jacobian: UR10, Panda", "coriolis matrix: UR10, Panda"} & older
+
+
 def test_tables_say_what_was_measured(speed_json):
     text = page(read_measurement(speed_json))
     assert "| UR10 | torques | 100 | 900 | 1500 |  | 9.0 |" in text
