@@ -143,6 +143,20 @@ class FastModel:
     ) -> tuple[Floats, Floats, Floats]:
         """dtau/dq, dtau/dqd and dtau/dqdd = H, (n, n) or (N, n, n)."""
 
+    def coriolis_matrix(self, q: ArrayLike, qd: ArrayLike, *, out: Floats | None = None) -> Floats:
+        """C of Christoffel's symbols, (n, n) or (N, n, n): dH/dt = C + C'."""
+
+    def tip_pose(self, q: ArrayLike) -> tuple[Floats, Floats]:
+        """R, (3, 3) or (N, 3, 3), and p [m], (3,) or (N, 3), of the tip in the root frame."""
+
+    def tip_jacobian(self, q: ArrayLike, *, out: Floats | None = None) -> Floats:
+        """J, (6, n) or (N, 6, n): rows linear, then angular; of the tip's origin, axes of the root."""
+
+    def tip_jacobian_derivative(
+        self, q: ArrayLike, qd: ArrayLike, *, out: Floats | None = None
+    ) -> Floats:
+        """Derivative of J by time: the tip's acceleration is J qdd + dJ qd."""
+
     def regressor(
         self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, out: Floats | None = None
     ) -> Floats:

@@ -80,6 +80,56 @@ class FastModel {
     return py::make_tuple(call.result(0), call.result(1), call.result(2));
   }
 
+  py::object coriolisMatrix(const py::object& q, const py::object& qd,
+                            const py::object& out) const {
+    SolverCall call("coriolis_matrix", names_);
+    call.input("q", q);
+    call.input("qd", qd);
+    call.matrices("out", out);
+    share(call, [&](Index first, Index size) {
+      fast_.coriolisMatrixBatch(call.in(0).middle(first, size), call.in(1).middle(first, size),
+                                call.inertia(0).middle(first, size));
+    });
+    return call.result(0);
+  }
+
+  py::tuple tipPose(const py::object& q) const {
+    SolverCall call("tip_pose", names_);
+    call.input("q", q);
+    call.arrays("R", py::none(), {3, 3});
+    call.arrays("p", py::none(), {3});
+    share(call, [&](Index first, Index size) {
+      chain_dynamics::States p = call.states(1).middle(first, size);
+      p.joints = 3;
+      fast_.tipPoseBatch(call.in(0).middle(first, size), call.inertia(0).middle(first, size), p);
+    });
+    return py::make_tuple(call.result(0), call.result(1));
+  }
+
+  py::object tipJacobian(const py::object& q, const py::object& out) const {
+    SolverCall call("tip_jacobian", names_);
+    call.input("q", q);
+    call.arrays("out", out, jacobianShape());
+    share(call, [&](Index first, Index size) {
+      fast_.tipJacobianBatch(call.in(0).middle(first, size), call.inertia(0).middle(first, size));
+    });
+    return call.result(0);
+  }
+
+  py::object tipJacobianDerivative(const py::object& q, const py::object& qd,
+                                   const py::object& out) const {
+    SolverCall call("tip_jacobian_derivative", names_);
+    call.input("q", q);
+    call.input("qd", qd);
+    call.arrays("out", out, jacobianShape());
+    share(call, [&](Index first, Index size) {
+      fast_.tipJacobianDerivativeBatch(call.in(0).middle(first, size),
+                                       call.in(1).middle(first, size),
+                                       call.inertia(0).middle(first, size));
+    });
+    return call.result(0);
+  }
+
   py::object regressor(const py::object& q, const py::object& qd, const py::object& qdd,
                        const py::object& out) const {
     SolverCall call = motion("regressor", q, qd, qdd);
@@ -128,6 +178,10 @@ class FastModel {
     call.input("qd", qd);
     call.input("qdd", qdd);
     return call;
+  }
+
+  std::vector<py::ssize_t> jacobianShape() const {
+    return {6, static_cast<py::ssize_t>(names_.size())};
   }
 
   template <class Compute>
@@ -250,6 +304,21 @@ void bindFastModel(py::module_& module) {
            py::arg("qdd"),
            "dtau/dq, dtau/dqd and dtau/dqdd = H, (n, n) or (N, n, n): entry (i, j) is that of\n"
            "tau_i by joint j.")
+      .def("coriolis_matrix", &FastModel::coriolisMatrix, py::arg("q"), py::arg("qd"),
+           py::kw_only(), py::arg("out") = none,
+           "C of Christoffel's symbols, (n, n) or (N, n, n): C qd is the Coriolis vector, and\n"
+           "dH/dt = C + C'.")
+      .def(
+          "tip_pose", &FastModel::tipPose, py::arg("q"),
+          "Rotation R, (3, 3) or (N, 3, 3), and position p [m], (3,) or (N, 3), of the tip in the\n"
+          "root frame.")
+      .def("tip_jacobian", &FastModel::tipJacobian, py::arg("q"), py::kw_only(),
+           py::arg("out") = none,
+           "J, (6, n) or (N, 6, n): J qd is the velocity of the tip's origin, then its angular\n"
+           "velocity, in the axes of the root frame.")
+      .def("tip_jacobian_derivative", &FastModel::tipJacobianDerivative, py::arg("q"),
+           py::arg("qd"), py::kw_only(), py::arg("out") = none,
+           "Derivative of J by time: the tip's acceleration is J qdd + dJ qd.")
       .def("regressor", &FastModel::regressor, py::arg("q"), py::arg("qd"), py::arg("qdd"),
            py::kw_only(), py::arg("out") = none,
            "Y, (n, 10 n) or (N, n, 10 n): tau = Y parameters + rotor inertia qdd + friction.")

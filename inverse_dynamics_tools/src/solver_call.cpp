@@ -203,6 +203,12 @@ void SolverCall::matrices(const std::string& name, const py::object& out, Index 
   addResult(name, out, shape);
 }
 
+void SolverCall::arrays(const std::string& name, const py::object& out, const Shape& of_state) {
+  Shape shape(shape_.begin(), shape_.end() - 1);
+  shape.insert(shape.end(), of_state.begin(), of_state.end());
+  addResult(name, out, shape);
+}
+
 // ---------------------------------------------------------------- memory, as solvers see it
 
 ids::ConstStates SolverCall::in(std::size_t i) const {

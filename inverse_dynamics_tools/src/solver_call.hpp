@@ -50,6 +50,10 @@ class SolverCall {
   /// A result of n x n numbers per state, or of n x (columns n): as vectors().
   void matrices(const std::string& name, const pybind11::object& out, Eigen::Index columns = 1);
 
+  /// A result of an array of this shape per state: as vectors().
+  void arrays(const std::string& name, const pybind11::object& out,
+              const std::vector<pybind11::ssize_t>& of_state);
+
   /// The i-th argument, result of vectors, result of matrices.
   inverse_dynamics_solver::ConstStates in(std::size_t i) const;
   inverse_dynamics_solver::States states(std::size_t i) const;
