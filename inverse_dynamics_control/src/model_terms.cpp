@@ -16,16 +16,22 @@ ModelTerms::ModelTerms(std::shared_ptr<const InverseDynamicsSolver> solver,
   }
   const Eigen::Index n = solver_->jointCount();
   H_ = Eigen::MatrixXd::Zero(n, n);
-  c_ = Eigen::VectorXd::Zero(n);
+  bias_ = Eigen::VectorXd::Zero(n);
   g_ = Eigen::VectorXd::Zero(n);
 }
 
 void ModelTerms::torques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& a,
                          VectorRef tau) {
-  solver_->getDynamicComponents(q, qd, H_, c_, g_);
+  components(q, qd, H_, bias_);
   tau.noalias() = H_.lazyProduct(a);
-  if (!compensated_.coriolis) tau += c_;
-  if (!compensated_.gravity) tau += g_;
+  tau += bias_;
+}
+
+void ModelTerms::components(const ConstVectorRef& q, const ConstVectorRef& qd,
+                            inverse_dynamics_solver::MatrixRef H, VectorRef bias) {
+  solver_->getDynamicComponents(q, qd, H, bias, g_);
+  if (compensated_.coriolis) bias.setZero();
+  if (!compensated_.gravity) bias += g_;
 }
 
 void ModelTerms::gravity(const ConstVectorRef& q, VectorRef g) const {

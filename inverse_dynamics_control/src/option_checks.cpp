@@ -75,5 +75,12 @@ bool areJointNumbers(const Eigen::Ref<const Eigen::VectorXd>& values, Range rang
                      [range](double value) { return isWithin(value, range); });
 }
 
+void requireNumber(const std::string& where, double value, Range range, const std::string& unit) {
+  if (isWithin(value, range)) return;
+  throw inverse_dynamics_solver::InvalidParameterValueException(inverse_dynamics_solver::errorText(
+      where, "wrong value", std::string(inWords(range)) + " [" + unit + "]", number(value),
+      "correct this number"));
+}
+
 }  // namespace v2
 }  // namespace inverse_dynamics_control

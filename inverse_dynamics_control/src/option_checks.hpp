@@ -44,5 +44,8 @@ bool replaceGains(const PairOfGains& gains, PairOfGains& kept) noexcept {
   return true;
 }
 
+/// The same of one number.
+void requireNumber(const std::string& where, double value, Range range, const std::string& unit);
+
 }  // namespace v2
 }  // namespace inverse_dynamics_control

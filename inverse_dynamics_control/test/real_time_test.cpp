@@ -35,6 +35,12 @@ TEST(RealTime, NoCycleAllocatesLocksOrThrows) {
   SafeStop stop(vec({1.0, 1.0}), solver->jointNames());
   ReferenceGuard reference_guard(ReferenceLimits::none(2), vec({1.0, 1.0}), solver->jointNames());
 
+  EstimatorOptions estimator_options;
+  estimator_options.gain = vec({60.0, 60.0});
+  MomentumObserver momentum(solver, estimator_options);
+  AccelerationResidual acceleration(solver, estimator_options);
+  ContactDetector detector(vec({1.0, 1.0}), {}, solver->jointNames());
+
   JointState good = stateOf(vec({0.3, -1.0}), vec({0.7, 1.1})), bad = good;
   bad.q[0] = kNan;
   Reference reference = referenceOf(good.q, good.qd, good.qd);
@@ -63,6 +69,14 @@ TEST(RealTime, NoCycleAllocatesLocksOrThrows) {
     EXPECT_EQ(allocations([&] { gravity_compensation.update(*state, effort, kPeriod, tau); }), 0);
     EXPECT_EQ(allocations([&] { feed_forward.update(*state, reference, effort, kPeriod, tau); }),
               0);
+    for (ExternalTorqueEstimator* estimator :
+         {static_cast<ExternalTorqueEstimator*>(&momentum),
+          static_cast<ExternalTorqueEstimator*>(&acceleration)}) {
+      for (const double period : {kPeriod, 2 * kPeriod, 1.0}) {
+        EXPECT_EQ(allocations([&] { estimator->update(*state, effort, period); }), 0);
+      }
+      EXPECT_EQ(allocations([&] { detector.update(estimator->torques(), kPeriod); }), 0);
+    }
     EXPECT_EQ(allocations([&] { stop.begin(state->q, state->qd); }), 0);
     EXPECT_EQ(allocations([&] { stop.advance(kPeriod, reference); }), 0);
     EXPECT_EQ(allocations([&] { reference_guard.start(state->q); }), 0);

@@ -45,6 +45,10 @@ class ModelTerms {
   void torques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& a,
                VectorRef tau);
 
+  /// `H(q)`, n x n, and `C(q, qd) qd + g(q)`, n, without the terms that are compensated.
+  void components(const ConstVectorRef& q, const ConstVectorRef& qd,
+                  inverse_dynamics_solver::MatrixRef H, VectorRef bias);
+
   /// `g(q)`, n; zero if compensated.
   void gravity(const ConstVectorRef& q, VectorRef g) const;
 
@@ -55,7 +59,7 @@ class ModelTerms {
   std::shared_ptr<const InverseDynamicsSolver> solver_;
   Compensated compensated_;
   chain_dynamics::OwnedMatrix H_;
-  OwnedVector c_, g_;
+  OwnedVector bias_, g_;
 };
 
 }  // namespace v2

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_control/contact_thresholds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <sstream>
+
+#include "option_checks.hpp"
+
+namespace inverse_dynamics_control {
+inline namespace v2 {
+namespace {
+
+using Index = Eigen::Index;
+using Series = Eigen::VectorXd;
+
+constexpr double kMostPeaks = 100.0;
+constexpr double kLeastPeaks = 20.0;
+constexpr double kPeakShare = 0.2;  // of the independent samples
+constexpr double kApart = 3.0;      // correlation times between two peaks
+constexpr double kMostShape = 0.5;
+constexpr double kHour = 3600.0;  // s
+
+std::string number(double value) {
+  std::ostringstream stream;
+  stream << value;
+  return stream.str();
+}
+
+[[noreturn]] void refuse(const std::string& joint, const std::string& what,
+                         const std::string& expected, const std::string& got,
+                         const std::string& remedy) {
+  throw inverse_dynamics_solver::InvalidParameterValueException(inverse_dynamics_solver::errorText(
+      "contact thresholds: joint " + joint, what, expected, got, remedy));
+}
+
+/// Samples after which the autocorrelation is below 1/e; half of all if it never is.
+Index correlationLength(const Series& values) {
+  const Series x = (values.array() - values.mean()).matrix();
+  const Index count = x.size();
+  const double variance = x.squaredNorm() / static_cast<double>(count);
+  for (Index lag = 1; lag <= count / 2; lag += std::max<Index>(1, lag / 8)) {
+    const double covariance =
+        x.head(count - lag).dot(x.tail(count - lag)) / static_cast<double>(count - lag);
+    if (covariance < variance / std::exp(1.0)) return lag;
+  }
+  return std::max<Index>(1, count / 2);
+}
+
+struct Peaks {
+  double level = 0.0;
+  std::vector<double> heights;  // above the level, ascending
+};
+
+/// Peaks above the level that so many samples exceed; peaks are more than `apart` samples apart.
+Peaks peaksAbove(const Series& heights, Index exceeding, Index apart) {
+  std::vector<double> sorted(heights.data(), heights.data() + heights.size());
+  const auto at = sorted.end() - 1 - std::min(exceeding, heights.size() - 1);
+  std::nth_element(sorted.begin(), at, sorted.end());
+  Peaks peaks{*at, {}};
+  Index last = -apart - 1;
+  for (Index k = 0; k < heights.size(); ++k) {
+    const double height = heights[k] - peaks.level;
+    if (!(height > 0)) continue;
+    if (k - last > apart) {
+      peaks.heights.push_back(height);
+    } else {
+      peaks.heights.back() = std::max(peaks.heights.back(), height);
+    }
+    last = k;
+  }
+  std::sort(peaks.heights.begin(), peaks.heights.end());
+  return peaks;
+}
+
+/// About as many peaks as wanted, by the level.
+Peaks highestPeaks(const Series& heights, double wanted, Index apart) {
+  // At first as if each peak was as long as that; at high levels most are shorter.
+  double exceeding = wanted * static_cast<double>(apart);
+  Peaks peaks;
+  for (int trial = 0; trial < 20; ++trial) {
+    peaks = peaksAbove(heights, static_cast<Index>(exceeding), apart);
+    const auto found = static_cast<double>(peaks.heights.size());
+    if (found <= wanted) break;
+    exceeding *= std::min(0.95, wanted / found);
+  }
+  return peaks;
+}
+
+struct Tail {
+  double scale, shape;
+};
+
+/// Generalised Pareto distribution by its probability-weighted moments.
+Tail tailOf(const std::vector<double>& ascending) {
+  const auto count = static_cast<double>(ascending.size());
+  double a0 = 0.0, a1 = 0.0;
+  for (std::size_t i = 0; i < ascending.size(); ++i) {
+    a0 += ascending[i] / count;
+    a1 += ascending[i] * (count - 1.0 - static_cast<double>(i)) / (count - 1.0) / count;
+  }
+  const double shape = std::clamp(2.0 - a0 / (a0 - 2.0 * a1), 0.0, kMostShape);
+  return {a0 * (1.0 - shape), shape};  // so that the mean is kept
+}
+
+/// Height that is exceeded `ratio` times less often than the level.
+double heightOf(const Tail& tail, double ratio) {
+  const double log_ratio = std::log(std::max(ratio, 1.0));
+  if (tail.shape < 1e-9) return tail.scale * log_ratio;
+  return tail.scale * std::expm1(tail.shape * log_ratio) / tail.shape;
+}
+
+void requireSeries(const Eigen::Ref<const Eigen::MatrixXd>& quiet,
+                   const std::vector<std::string>& joint_names) {
+  for (Index j = 0; j < quiet.rows(); ++j) {
+    const std::string& joint = joint_names[static_cast<std::size_t>(j)];
+    if (!quiet.row(j).allFinite()) {
+      refuse(joint, "wrong value", "finite external torques", "NaN or infinity",
+             "leave out what an estimator gave without status kOk");
+    }
+    if (quiet.cols() < 2 || (quiet.row(j).array() == quiet(j, 0)).all()) {
+      refuse(
+          joint, "no noise", "external torques that vary", "the same in all samples",
+          "make thresholds from estimates without a friction band, of a robot that is switched on");
+    }
+  }
+}
+
+}  // namespace
+
+ContactThresholds contactThresholds(const Eigen::Ref<const Eigen::MatrixXd>& quiet, double period,
+                                    double false_alarms_per_hour,
+                                    const std::vector<std::string>& joint_names) {
+  const std::string name = "contact thresholds";
+  const Index n = quiet.rows(), count = quiet.cols();
+  requireJointNumbers(name + ": quiet", Series::Zero(n), Range::kAny, "N m", joint_names);
+  requireNumber(name + ": period", period, Range::kPositive, "s");
+  requireNumber(name + ": false_alarms_per_hour", false_alarms_per_hour, Range::kPositive, "1/h");
+  requireSeries(quiet, joint_names);
+
+  ContactThresholds result;
+  result.false_alarms_per_hour = false_alarms_per_hour;
+  for (OwnedVector* vector :
+       {&result.torques, &result.noise, &result.correlation_time, &result.independent,
+        &result.peaks, &result.level, &result.scale, &result.shape}) {
+    vector->setZero(n);
+  }
+  const double duration = static_cast<double>(count) * period;
+  for (Index j = 0; j < n; ++j) {
+    const Series values = quiet.row(j), heights = values.cwiseAbs();
+    const Index length = correlationLength(values);
+    const double time = static_cast<double>(length) * period, independent = duration / (2.0 * time);
+    const Peaks peaks = highestPeaks(heights, std::min(kMostPeaks, kPeakShare * independent),
+                                     static_cast<Index>(kApart * static_cast<double>(length)));
+    const auto found = static_cast<double>(peaks.heights.size());
+    if (found < kLeastPeaks) {
+      refuse(joint_names[static_cast<std::size_t>(j)], "too few independent samples",
+             number(kLeastPeaks) + " peaks at least, about " +
+                 number(std::ceil(kLeastPeaks / kPeakShare * 4.0 * time)) +
+                 " s at this correlation time of " + number(time) + " s",
+             number(found) + " in " + number(duration) + " s", "take a longer recording");
+    }
+    const Tail tail = tailOf(peaks.heights);
+    const double stated = false_alarms_per_hour / kHour / static_cast<double>(n);
+    result.torques[j] = peaks.level + heightOf(tail, found / duration / stated);
+    result.noise[j] = std::sqrt(values.squaredNorm() / static_cast<double>(count));
+    result.correlation_time[j] = time;
+    result.independent[j] = independent;
+    result.peaks[j] = found;
+    result.level[j] = peaks.level;
+    result.scale[j] = tail.scale;
+    result.shape[j] = tail.shape;
+  }
+  return result;
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_control

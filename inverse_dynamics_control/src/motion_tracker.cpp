@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_control/motion_tracker.hpp"
+
+#include <cmath>
+
+namespace inverse_dynamics_control {
+inline namespace v2 {
+
+MotionTracker::MotionTracker(Eigen::Index joints, double bandwidth) : bandwidth_(bandwidth) {
+  for (OwnedVector* vector : {&q_, &qd_, &qdd_, &dx_, &dv_, &push_, &filtered_}) {
+    vector->setZero(joints);
+  }
+}
+
+void MotionTracker::start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept {
+  for (OwnedVector* vector : {&qd_, &qdd_, &dx_, &dv_}) vector->setZero();
+  q_ = q;
+  moving_ = pushed_ = false;
+}
+
+void MotionTracker::update(const Eigen::Ref<const Eigen::VectorXd>& q, double period) noexcept {
+  if (period != period_) chooseGains(period);
+  const double T = period;
+  if (!moving_) {
+    qd_ = (q - q_) / T;
+    q_ = q;
+    moving_ = true;
+    return;
+  }
+  for (Eigen::Index j = 0; j < q_.size(); ++j) {
+    // predict, then correct by the position error
+    const double q_predicted = q_[j] + T * (qd_[j] + 0.5 * T * qdd_[j]);
+    const double error = q[j] - q_predicted;
+    q_[j] = q_predicted + g_ * error;
+    qd_[j] += T * qdd_[j] + h_ / T * error;
+    qdd_[j] += k_ / (T * T) * error;
+  }
+}
+
+const OwnedVector& MotionTracker::filter(const Eigen::Ref<const Eigen::VectorXd>& torques,
+                                         double period) noexcept {
+  if (period != period_) chooseGains(period);
+  const double T = period;
+  if (!pushed_) push_ = torques;
+  pushed_ = true;
+  for (Eigen::Index j = 0; j < push_.size(); ++j) {
+    // the same of a unit mass, in terms of true minus tracked
+    const double unknown = torques[j] - push_[j];
+    const double dx_predicted = dx_[j] + T * (dv_[j] + 0.5 * T * unknown);
+    const double dv = dv_[j] + T * unknown - h_ / T * dx_predicted;
+    filtered_[j] = torques[j] - (dv - dv_[j]) / T;
+    dx_[j] = (1.0 - g_) * dx_predicted;
+    dv_[j] = dv;
+    push_[j] += k_ / (T * T) * dx_predicted;
+  }
+  return filtered_;
+}
+
+void MotionTracker::chooseGains(double period) noexcept {
+  // three poles at z
+  const double z = std::exp(-bandwidth_ * period), w = 1.0 - z;
+  g_ = 1.0 - z * z * z;
+  h_ = 1.5 * w * w * (1.0 + z);
+  k_ = w * w * w;
+  period_ = period;
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_control
