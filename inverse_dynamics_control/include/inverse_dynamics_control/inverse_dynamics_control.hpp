@@ -15,3 +15,4 @@
 #include "inverse_dynamics_control/pd_gravity_compensation.hpp"  // IWYU pragma: export
 #include "inverse_dynamics_control/reference_guard.hpp"          // IWYU pragma: export
 #include "inverse_dynamics_control/safe_stop.hpp"                // IWYU pragma: export
+#include "inverse_dynamics_control/tip_wrench.hpp"               // IWYU pragma: export
