@@ -40,7 +40,6 @@ ExternalTorqueEstimator::ExternalTorqueEstimator(
       band_(options.friction_band),
       velocity_(options.velocity),
       longest_period_(options.longest_period),
-      settling_time_(0.0),
       tracker_(model_.jointCount(), options.tracking) {
   requireJointNumbers(name + ": gain", gain_, Range::kPositive, "1/s", model_.jointNames());
   requireNumber(name + ": longest_period", longest_period_, Range::kPositive, "s");

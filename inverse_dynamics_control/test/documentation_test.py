@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page `docs/control.md` shows the example program as it stands, and its true output."""
+"""The pages `docs/control.md` and `docs/contact.md` show example programs as they stand, and their true output."""
 
 from __future__ import annotations
 
@@ -11,22 +11,25 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).resolve().parents[1]
-PAGE = PACKAGE.parent / "docs" / "control.md"
+EXAMPLES = [("control", "track_and_stop"), ("contact", "notice_contact")]
 
 
-def blocks(language: str) -> list[str]:
-    """Code of the page's blocks in a language."""
-    if not PAGE.is_file():
-        pytest.skip(f"{PAGE} isn't there: this package was taken out of its repository")
-    return re.findall(rf"```{language}\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+def blocks(page: str, language: str) -> list[str]:
+    """Code of a page's blocks in a language."""
+    file = PACKAGE.parent / "docs" / f"{page}.md"
+    if not file.is_file():
+        pytest.skip(f"{file} isn't there: this package was taken out of its repository")
+    return re.findall(rf"```{language}\n(.*?)```", file.read_text(encoding="utf-8"), re.DOTALL)
 
 
-def test_page_shows_lines_of_the_example() -> None:
-    example = (PACKAGE / "examples" / "track_and_stop.cpp").read_text(encoding="utf-8")
-    assert len(blocks("cpp")) == 1
-    assert blocks("cpp")[0] in example
+@pytest.mark.parametrize(("page", "program"), EXAMPLES)
+def test_page_shows_lines_of_the_example(page: str, program: str) -> None:
+    example = (PACKAGE / "examples" / f"{program}.cpp").read_text(encoding="utf-8")
+    assert len(blocks(page, "cpp")) == 1
+    assert blocks(page, "cpp")[0] in example
 
 
-def test_page_shows_the_output_of_the_example() -> None:
-    run = subprocess.run([os.environ["TRACK_AND_STOP"]], capture_output=True, text=True, check=True)
-    assert blocks("text")[0] == run.stdout
+@pytest.mark.parametrize(("page", "program"), EXAMPLES)
+def test_page_shows_the_output_of_the_example(page: str, program: str) -> None:
+    run = subprocess.run([os.environ[program.upper()]], capture_output=True, text=True, check=True)
+    assert blocks(page, "text")[0] == run.stdout

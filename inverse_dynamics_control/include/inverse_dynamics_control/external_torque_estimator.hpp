@@ -139,7 +139,7 @@ class ExternalTorqueEstimator {
   ModelTerms model_;
   OwnedVector gain_, band_;
   VelocitySource velocity_;
-  double longest_period_, settling_time_;
+  double longest_period_, settling_time_ = 0.0;  // s
   MotionTracker tracker_;
 
   bool running_ = false;                // there was a first sample
