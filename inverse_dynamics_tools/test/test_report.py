@@ -326,7 +326,7 @@ def test_values_at_the_cursor_stay_clear_of_titles(opened, section, width):
     assert len(lines) == 12
     for line in lines:
         extents = sorted(line.values())
-        assert len(extents) >= (2 if width > 1000 else 1)
+        assert len(extents) >= 2
         for (_, end), (begin, _) in pairwise(extents):
             assert begin - end > 8, line
 
