@@ -34,21 +34,21 @@ inline namespace v2 {
 namespace internal {
 
 // Row i up to the diagonal, and column i of the rows from `first` to the diagonal; link i and all
-// links after it have inertia I_c and flow. dS[j] is V_j x S_j.
+// links after it have inertia I_c and flow. S_rate[j] is V_j x S_j.
 template <typename Scalar, typename MatrixC>
 void coriolisUpToDiagonal(const Chain& chain, const SpatialInertia<Scalar>& I_c,
                           const MassFlow<Scalar>& flow, const Scratch<Transform<Scalar>>& X,
-                          const Scratch<Motion<Scalar>>& dS, Eigen::Index i, Eigen::Index first,
+                          const Scratch<Motion<Scalar>>& S_rate, Eigen::Index i, Eigen::Index first,
                           MatrixC& C) {
   const Scalar half(0.5);
   const Motion<Scalar> S_i = axisMotion<Scalar>(joint(chain, i));
 
   // what the block needs for joint i's motion; joint i's part of what it needs for any motion
-  Force<Scalar> F = flow.coriolis(S_i.angular) * half + I_c * dS[i];
+  Force<Scalar> F = flow.coriolis(S_i.angular) * half + I_c * S_rate[i];
   Force<Scalar> inertial = timesAxis(I_c, joint(chain, i));
   Force<Scalar> coriolis = {flow.coriolisAlong(S_i) * half, Vector3<Scalar>::Zero()};
   for (Eigen::Index j = i; j >= 0; --j) {
-    C(i, j) = alongAxis(joint(chain, j), coriolis) + dot(dS[j], inertial);
+    C(i, j) = alongAxis(joint(chain, j), coriolis) + dot(S_rate[j], inertial);
     if (j >= first && j < i) C(j, i) = alongAxis(joint(chain, j), F);
 
     // on to the link before
@@ -64,9 +64,9 @@ void coriolisOfMotion(const Chain& chain, const std::vector<LinkParameters>& lin
                       const Scratch<Transform<Scalar>>& X, const Scratch<Motion<Scalar>>& V,
                       Eigen::Index first, MatrixC& C) {
   const Eigen::Index n = chain.jointCount();
-  Scratch<Motion<Scalar>> dS(n);
+  Scratch<Motion<Scalar>> S_rate(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    dS[i] = cross(V[i], axisMotion<Scalar>(joint(chain, i)));
+    S_rate[i] = cross(V[i], axisMotion<Scalar>(joint(chain, i)));
   }
   SpatialInertia<Scalar> I_c = SpatialInertia<Scalar>::zero();
   MassFlow<Scalar> flow = MassFlow<Scalar>::zero();
@@ -74,7 +74,7 @@ void coriolisOfMotion(const Chain& chain, const std::vector<LinkParameters>& lin
     const SpatialInertia<Scalar> I = link<Scalar>(links, i);
     I_c += I;
     flow += flowOf(I, V[i]);
-    coriolisUpToDiagonal(chain, I_c, flow, X, dS, i, first, C);
+    coriolisUpToDiagonal(chain, I_c, flow, X, S_rate, i, first, C);
 
     // on to the link before
     I_c = X[i] * I_c;
