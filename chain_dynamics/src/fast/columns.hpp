@@ -42,62 +42,46 @@ FAST_INLINE Pack loadPairs(const double* from, [[maybe_unused]] std::ptrdiff_t s
 #endif
 }
 
+// Groups of Size lanes of a and b by turns: those with even numbers of both, or those with odd ones.
+template <std::size_t Size, bool Odd, std::size_t... Lane>
+FAST_INLINE Pack groupsOf(const Pack& a, const Pack& b, std::index_sequence<Lane...>) {
+  return FAST_SHUFFLE(
+      a, b, (Lane / Size % 2 == 0 ? Lane + (Odd ? Size : 0) : kWidth + Lane - (Odd ? 0 : Size))...);
+}
+template <std::size_t Size, bool Odd>
+FAST_INLINE Pack groupsOf(const Pack& a, const Pack& b) {
+  return groupsOf<Size, Odd>(a, b, std::make_index_sequence<kWidth>());
+}
+
 /// The columns rows[0 ..] and rows[1 ..] of as many rows as a pack has lanes, `step` from one row
 /// to the next.
 FAST_INLINE void loadColumns(const double* rows, std::ptrdiff_t step, Pack& first, Pack& second) {
   const Pack even = loadPairs(rows, 2 * step);
   const Pack odd = loadPairs(rows + step, 2 * step);
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
-  first = FAST_SHUFFLE(even, odd, 0, 8, 2, 10, 4, 12, 6, 14);
-  second = FAST_SHUFFLE(even, odd, 1, 9, 3, 11, 5, 13, 7, 15);
-#elif defined(__AVX__)
-  first = FAST_SHUFFLE(even, odd, 0, 4, 2, 6);
-  second = FAST_SHUFFLE(even, odd, 1, 5, 3, 7);
-#else
-  first = FAST_SHUFFLE(even, odd, 0, 2);
-  second = FAST_SHUFFLE(even, odd, 1, 3);
-#endif
+  first = groupsOf<1, false>(even, odd);
+  second = groupsOf<1, true>(even, odd);
 }
 
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
-template <int Half>
-FAST_INLINE Short halfOf(const Pack& pack) {
-#if __has_builtin(__builtin_shufflevector)
-  return __builtin_shufflevector(pack, pack, 4 * Half, 4 * Half + 1, 4 * Half + 2, 4 * Half + 3);
-#else
-  return load<Short>(numbersOf(&pack) + 4 * Half);
-#endif
+// kShortWidth lanes of a pack after another, to each `step` after the one before.
+FAST_INLINE void storeShorts(const Pack& pack, double* to, std::ptrdiff_t step) {
+  for (int lane = 0; lane < kWidth; lane += kShortWidth, to += step) {
+    store(load<Short>(numbersOf(&pack) + lane), to);
+  }
 }
-#endif
 
 /// Of kShortWidth packs the numbers of each lane side by side: those of lane k at to + k step.
 FAST_INLINE void storeTransposed(const Pack* rows, double* to, std::ptrdiff_t step) {
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
   countUp<0, 2>([&](auto is_odd) FAST_LAMBDA {
     constexpr int kOdd = is_odd;
-    const Pack low = FAST_SHUFFLE(rows[0], rows[1], kOdd, 8 + kOdd, 2 + kOdd, 10 + kOdd, 4 + kOdd,
-                                  12 + kOdd, 6 + kOdd, 14 + kOdd);
-    const Pack high = FAST_SHUFFLE(rows[2], rows[3], kOdd, 8 + kOdd, 2 + kOdd, 10 + kOdd, 4 + kOdd,
-                                   12 + kOdd, 6 + kOdd, 14 + kOdd);
-    const Pack first = FAST_SHUFFLE(low, high, 0, 1, 8, 9, 4, 5, 12, 13);
-    const Pack third = FAST_SHUFFLE(low, high, 2, 3, 10, 11, 6, 7, 14, 15);
-    store(halfOf<0>(first), to + kOdd * step);
-    store(halfOf<0>(third), to + (2 + kOdd) * step);
-    store(halfOf<1>(first), to + (4 + kOdd) * step);
-    store(halfOf<1>(third), to + (6 + kOdd) * step);
+    const Pack low = groupsOf<1, kOdd != 0>(rows[0], rows[1]);
+    if constexpr (kWidth == 2) {
+      store(low, to + kOdd * step);
+    } else {
+      const Pack high = groupsOf<1, kOdd != 0>(rows[2], rows[3]);
+      storeShorts(groupsOf<2, false>(low, high), to + kOdd * step, 4 * step);
+      storeShorts(groupsOf<2, true>(low, high), to + (2 + kOdd) * step, 4 * step);
+    }
   });
-#elif defined(__AVX__)
-  countUp<0, 2>([&](auto is_odd) FAST_LAMBDA {
-    constexpr int kOdd = is_odd;
-    const Pack low = FAST_SHUFFLE(rows[0], rows[1], kOdd, 4 + kOdd, 2 + kOdd, 6 + kOdd);
-    const Pack high = FAST_SHUFFLE(rows[2], rows[3], kOdd, 4 + kOdd, 2 + kOdd, 6 + kOdd);
-    store(FAST_SHUFFLE(low, high, 0, 1, 4, 5), to + kOdd * step);
-    store(FAST_SHUFFLE(low, high, 2, 3, 6, 7), to + (2 + kOdd) * step);
-  });
-#else
-  store(FAST_SHUFFLE(rows[0], rows[1], 0, 2), to);
-  store(FAST_SHUFFLE(rows[0], rows[1], 1, 3), to + step);
-#endif
 }
 
 }  // namespace
