@@ -11,6 +11,9 @@ QUANTITIES = {
     "gravity": "gravity",
     "components": "H, C qd, g",
     "friction": "friction",
+    "torques_payload": "torques with a payload",
+    "set_payload": "setting a payload",
+    "set_gravity": "setting gravity",
 }
 """What solvers compute."""
 

@@ -61,6 +61,11 @@ void registerRobot(const SolverLoader& loader, const Robot& robot) {
   registerSingleCalls(robot.name, solver);
   const Eigen::Index n = solver->jointCount();
   if (isArm(n)) registerBatches(robot.name, solver);
+  if (robot.name == "ur10" || robot.name == "panda") {
+    const auto loaded = loader.load(kRigidBody);
+    loaded->initialize({}, "", robot.urdf);
+    registerPayload(robot.name, loaded);
+  }
   if (robot.name == "ur10") registerLargerBatches(loader, robot, solver);
 
   const chain_dynamics::Chain chain = chain_dynamics::chainFromUrdf(robot.urdf);
@@ -77,6 +82,9 @@ void registerIdentified(const SolverLoader& loader, const std::string& robot,
   registerSingleCalls(robot, solver);
   registerFriction(robot, solver);
   registerBatches(robot, solver);
+  const auto loaded = loader.load(plugin);
+  loaded->initialize();
+  registerPayload(robot, loaded);
 }
 
 int run(int argc, char** argv) {

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver_benchmarks.hpp"
 
+#include <inverse_dynamics_solver/payload.hpp>
+#include <inverse_dynamics_solver/variable_gravity.hpp>
+
 #include "states.hpp"
 #include "timing.hpp"
 
 namespace inverse_dynamics_benchmarks {
 namespace {
 
+using inverse_dynamics_solver::RigidBody;
 using Solver = std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>;
 
 /// A solver with its states and the memory of its results.
@@ -75,6 +79,30 @@ void registerFriction(const std::string& robot, const Solver& solver) {
     subject->solver->getFrictionVector(subject->states.q.col(k), subject->states.qd.col(k),
                                        subject->tau);
     benchmark::ClobberMemory();
+  });
+}
+
+void registerPayload(
+    const std::string& robot,
+    const std::shared_ptr<inverse_dynamics_solver::InverseDynamicsSolver>& solver) {
+  auto* const payload = dynamic_cast<inverse_dynamics_solver::Payload*>(solver.get());
+  auto* const mount = dynamic_cast<inverse_dynamics_solver::VariableGravity*>(solver.get());
+  inverse_dynamics_solver::RigidBody body{2.0};
+  body.center_of_mass = {0.0, 0.0, 0.1};
+  payload->setPayload("part", body);
+  const auto subject = std::make_shared<Subject>(solver, kStates);
+  registerOverStates(robot + "/torques_payload/ours", [subject](Eigen::Index k) {
+    const States& s = subject->states;
+    subject->solver->getTorques(s.q.col(k), s.qd.col(k), s.qdd.col(k), subject->tau);
+    benchmark::ClobberMemory();
+  });
+  registerOverStates(robot + "/set_payload/ours", [subject, payload, body](Eigen::Index k) {
+    RigidBody changed = body;
+    changed.mass += 1e-3 * static_cast<double>(k);
+    payload->setPayload("part", changed);
+  });
+  registerOverStates(robot + "/set_gravity/ours", [subject, mount](Eigen::Index k) {
+    mount->setGravity({1e-3 * static_cast<double>(k + 1), 0.0, -9.81});
   });
 }
 

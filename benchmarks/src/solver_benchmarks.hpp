@@ -43,4 +43,8 @@ void registerLargeBatch(
     const std::string& robot,
     const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver);
 
+/// Torques with a body at the tip that was set after initialize(), and setting it and gravity.
+void registerPayload(const std::string& robot,
+                     const std::shared_ptr<inverse_dynamics_solver::InverseDynamicsSolver>& solver);
+
 }  // namespace inverse_dynamics_benchmarks
