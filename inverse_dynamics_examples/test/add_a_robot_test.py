@@ -18,16 +18,29 @@ def printed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     """Where the page was followed, and what its commands printed."""
     directory = tmp_path_factory.mktemp("newcomer")
     (description,) = blocks_of(PAGE, "xml")
-    (configuration,) = blocks_of(PAGE, "yaml")
+    configuration, payload = blocks_of(PAGE, "yaml")
     (commands,) = blocks_of(PAGE, "bash")
     for name, block in (("my_arm.urdf", description), ("my_arm.yaml", configuration)):
         assert f"`{name}`" in PAGE
         (directory / name).write_text(block.code)
+    (directory / "carrying.yaml").write_text(configuration.code + payload.code)
     return directory, run(commands, directory)
 
 
 def test_the_robot_is_shown(printed: tuple[Path, str]) -> None:
     assert re.search(r"^joints +shoulder, elbow *$", printed[1], re.MULTILINE)
+
+
+def test_a_payload_is_added(printed: tuple[Path, str]) -> None:
+    from inverse_dynamics import load_robot
+    from inverse_dynamics.robot.solvers import open_solver
+
+    directory, _ = printed
+    description = (directory / "my_arm.urdf").read_text()
+    solver = open_solver(load_robot(directory / "carrying.yaml"), description)
+    assert solver.payloads["payload"]["mass"] == 2.0
+    assert solver.payloads["payload"]["frame"][2, 3] == 0.05
+    assert not solver.warnings
 
 
 def test_the_results_that_the_page_names_are_there(printed: tuple[Path, str]) -> None:

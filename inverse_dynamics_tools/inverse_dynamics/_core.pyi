@@ -87,6 +87,45 @@ class Solver:
     ) -> tuple[Floats, Floats, Floats]:
         """H(q), C(q, qd) qd, g(q)."""
 
+    def set_payload(
+        self,
+        name: str,
+        mass: float,
+        center_of_mass: ArrayLike | None = None,
+        inertia: ArrayLike | None = None,
+        frame: ArrayLike | None = None,
+    ) -> None:
+        """Add a rigid body to the tip, or replace the one of that name.
+
+        Other threads may compute meanwhile. mass: kg. center_of_mass: (3,) m, in the body's frame.
+        inertia: (3, 3) or ixx ixy ixz iyy iyz izz, kg m^2, about the center of mass, in the axes of
+        the body's frame; none: a point mass. frame: (4, 4) pose of that frame in the tip frame.
+        """
+
+    def remove_payload(self, name: str) -> bool:
+        """Take a body away; False if there is none of that name."""
+
+    def clear_payloads(self) -> None:
+        """Take all bodies away."""
+
+    @property
+    def payloads(self) -> dict[str, dict[str, Any]]:
+        """The bodies: name to the arguments of set_payload()."""
+
+    def set_gravity(self, gravity: ArrayLike) -> None:
+        """Where things fall from now on: (3,) m/s^2, in the axes of the root link."""
+
+    def set_base_acceleration(self, acceleration: ArrayLike) -> None:
+        """How the root link accelerates, (3,) m/s^2 in its axes. Not for a base that rotates."""
+
+    @property
+    def gravity(self) -> Floats:
+        """(3,) m/s^2."""
+
+    @property
+    def base_acceleration(self) -> Floats:
+        """(3,) m/s^2."""
+
 class FastModel:
     """What the engine computes and no solver offers, of many states at a time. Threads: safe.
 

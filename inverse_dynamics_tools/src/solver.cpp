@@ -16,6 +16,7 @@
 #include "initialized.hpp"
 #include "solver_call.hpp"
 #include "solver_origin.hpp"
+#include "solver_payload.hpp"
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -84,6 +85,47 @@ class Solver {
     return py::make_tuple(call.result(0), call.result(1), call.result(2));
   }
 
+  void setPayload(const std::string& name, double mass, const py::object& center_of_mass,
+                  const py::object& inertia, const py::object& frame) {
+    auto& payload = capability<ids::Payload>("set_payload");
+    const ids::RigidBody body = bodyOf(mass, center_of_mass, inertia, frame);
+    const py::gil_scoped_release release;
+    payload.setPayload(name, body);
+  }
+  bool removePayload(const std::string& name) {
+    auto& payload = capability<ids::Payload>("remove_payload");
+    const py::gil_scoped_release release;
+    return payload.removePayload(name);
+  }
+  void clearPayloads() {
+    auto& payload = capability<ids::Payload>("clear_payloads");
+    const py::gil_scoped_release release;
+    payload.clearPayloads();
+  }
+  bool isChangeable() const {
+    return dynamic_cast<const ids::Payload*>(solver_.get()) != nullptr &&
+           dynamic_cast<const ids::VariableGravity*>(solver_.get()) != nullptr;
+  }
+  py::dict payloads() { return dictionaryOf(capability<ids::Payload>("payloads").payloads()); }
+
+  void setGravity(const py::object& gravity) {
+    auto& mount = capability<ids::VariableGravity>("set_gravity");
+    const Eigen::Vector3d numbers = vectorOf("set_gravity: argument gravity", gravity);
+    const py::gil_scoped_release release;
+    mount.setGravity(numbers);
+  }
+  void setBaseAcceleration(const py::object& acceleration) {
+    auto& mount = capability<ids::VariableGravity>("set_base_acceleration");
+    const Eigen::Vector3d numbers =
+        vectorOf("set_base_acceleration: argument acceleration", acceleration);
+    const py::gil_scoped_release release;
+    mount.setBaseAcceleration(numbers);
+  }
+  py::object gravity() { return arrayOf(capability<ids::VariableGravity>("gravity").gravity()); }
+  py::object baseAcceleration() {
+    return arrayOf(capability<ids::VariableGravity>("base_acceleration").baseAcceleration());
+  }
+
   /// Drive gains of a model identified in currents; None of any other.
   py::object driveGains() const {
     const auto* motors = dynamic_cast<const ids::MotorCurrents*>(solver_.get());
@@ -94,6 +136,11 @@ class Solver {
 
  private:
   using Arguments = std::vector<std::pair<const char*, py::object>>;
+
+  template <class Capability>
+  Capability& capability(const char* method) {
+    return capabilityOf<Capability>(*solver_, method, origin_.plugin);
+  }
 
   template <class Compute>
   py::object vectors(const char* method, const Arguments& arguments, const py::object& out,
@@ -142,9 +189,15 @@ std::unique_ptr<Solver> makeSolver(const std::string& plugin, const std::string&
   return std::make_unique<Solver>(std::move(origin));
 }
 
-/// How pickle and copy make the solver again: its class and the arguments.
+/// How pickle and copy make the solver again: of the same arguments, with what was set since.
 py::tuple reduced(const py::object& self) {
-  return py::make_tuple(py::type::of(self), argumentsOf(self.cast<const Solver&>().origin()));
+  auto& solver = self.cast<Solver&>();
+  const py::tuple arguments = argumentsOf(solver.origin());
+  if (!solver.isChangeable()) return py::make_tuple(py::type::of(self), arguments);
+  return py::make_tuple(
+      py::module_::import("inverse_dynamics.base.restored").attr("restored_solver"),
+      py::make_tuple(py::type::of(self), arguments, solver.payloads(), solver.gravity(),
+                     solver.baseAcceleration()));
 }
 
 std::string represented(const Solver& solver) {
@@ -217,6 +270,25 @@ void bindSolver(py::module_& module) {
       .def("dynamic_components", &Solver::dynamicComponents, py::arg("q"), py::arg("qd"),
            py::kw_only(), py::arg("out") = py::none(),
            "H(q), C(q, qd) qd, g(q); out: a tuple of three arrays.")
+      .def("set_payload", &Solver::setPayload, py::arg("name"), py::arg("mass"),
+           py::arg("center_of_mass") = py::none(), py::arg("inertia") = py::none(),
+           py::arg("frame") = py::none(),
+           "Adds a rigid body to the tip, or replaces the one of that name, also while other\n"
+           "threads compute. mass: kg. center_of_mass: (3,) m, in the body's frame. inertia: (3, "
+           "3)\n"
+           "or ixx ixy ixz iyy iyz izz, kg m^2, about the center of mass, in the axes of the\n"
+           "body's frame; none: a point mass. frame: (4, 4) pose of that frame in the tip frame.")
+      .def("remove_payload", &Solver::removePayload, py::arg("name"),
+           "Takes a body away; False if there is none of that name.")
+      .def("clear_payloads", &Solver::clearPayloads, "Takes all bodies away.")
+      .def_property_readonly("payloads", &Solver::payloads,
+                             "The bodies: name to the arguments of set_payload().")
+      .def("set_gravity", &Solver::setGravity, py::arg("gravity"),
+           "Where things fall from now on: (3,) m/s^2, in the axes of the root link.")
+      .def("set_base_acceleration", &Solver::setBaseAcceleration, py::arg("acceleration"),
+           "How the root link accelerates, (3,) m/s^2 in its axes. Not for a base that rotates.")
+      .def_property_readonly("gravity", &Solver::gravity, "(3,) m/s^2.")
+      .def_property_readonly("base_acceleration", &Solver::baseAcceleration, "(3,) m/s^2.")
       .def("__repr__", &represented)
       .def("__reduce__", &reduced);
 }

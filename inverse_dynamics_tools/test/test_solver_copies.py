@@ -39,6 +39,18 @@ CHAIN = PENDULUM.replace(
     <origin xyz="0 0 -1"/><axis xyz="0 1 0"/></joint>
 </robot>""",
 )
+
+
+def set_since() -> Solver:
+    """A body, gravity and an acceleration that were set after the solver was made."""
+    solver = Solver(RIGID_BODY, urdf=CHAIN, parameters={"payload.old.mass": 1.0})
+    solver.clear_payloads()
+    solver.set_payload("tool", 2.0, [0.1, 0.2, 0.3], [1, 0, 0, 1, 0, 1])
+    solver.set_gravity([1, 2, 3])
+    solver.set_base_acceleration([3, 2, 1])
+    return solver
+
+
 MADE = {
     "urdf": lambda: Solver(RIGID_BODY, urdf=CHAIN),
     "tip": lambda: Solver(RIGID_BODY, urdf=CHAIN, tip="arm"),
@@ -50,6 +62,7 @@ MADE = {
     ),
     "friction": lambda: Solver(UR10, friction=False),
     "model": lambda: Solver(RIGID_BODY, model="ur10_identified"),
+    "set since": set_since,
 }
 
 

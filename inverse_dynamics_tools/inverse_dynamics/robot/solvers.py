@@ -75,8 +75,8 @@ def description_notes(robot: Robot, use: str) -> list[str]:
         return []
     return [
         f"{robot.urdf} is {use}, not computed from: {robot.plugin} brings its own model, so a tool or "
-        "payload in the description isn't included in the torques; another --plugin computes from a "
-        "description"
+        "payload in the description isn't included in the torques: give --payload for it; another "
+        "--plugin computes from a description"
     ]
 
 

@@ -7,7 +7,9 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from inverse_dynamics.errors import UserError
 from inverse_dynamics.verbs.common import figure_formats, names, parameter, three_numbers
+from inverse_dynamics.verbs.payload import payload
 
 # Options of add_robot_changes(), by the names that with_changes() has for them.
 _CHANGES = ("plugin", "friction", "urdf", "root", "tip", "gravity", "joints", "parameters")
@@ -96,6 +98,15 @@ def add_robot_changes(parser: argparse.ArgumentParser, what: str) -> argparse._A
         help=f"names of the joints in the {what}, in the order of the chain",
     )
     group.add_argument(
+        "--payload",
+        metavar="BODY",
+        type=payload,
+        help="a rigid body at the tip: MASS[,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz]], that is mass [kg], "
+        "center of mass in the tip frame [m], moments of inertia "
+        "about it [kg m^2]; or a YAML file with mass, center_of_mass, inertia and frame "
+        "(docs/add_a_robot.md)",
+    )
+    group.add_argument(
         "--parameter",
         dest="parameters",
         metavar="NAME=VALUE",
@@ -110,6 +121,12 @@ def add_robot_changes(parser: argparse.ArgumentParser, what: str) -> argparse._A
 def robot_changes(arguments: argparse.Namespace) -> dict[str, Any]:
     """What add_robot_changes() was told; None: nothing."""
     changes = {name: getattr(arguments, name) for name in _CHANGES}
-    if changes["parameters"] is not None:
-        changes["parameters"] = dict(changes["parameters"])
+    parameters = dict(changes["parameters"] or {})
+    for name, value in (arguments.payload or {}).items():
+        if name in parameters:
+            raise UserError(
+                f"--payload and --parameter {name}: expected one of them; leave out one"
+            )
+        parameters[name] = value
+    changes["parameters"] = parameters or None
     return changes
