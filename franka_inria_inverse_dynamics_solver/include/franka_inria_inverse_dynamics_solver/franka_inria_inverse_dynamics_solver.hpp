@@ -21,8 +21,9 @@ inline namespace v2 {
 /// consistent parameters of the same authors are the model franka_gaz2019_feasible of
 /// rigid_body_inverse_dynamics_solver.
 ///
-/// Parameters: `gravity` and `friction` [configuration.hpp]. Others have no meaning here, and a
-/// robot description is only compared with the model: warnings() names what isn't included.
+/// Parameters: `gravity`, `friction` [configuration.hpp] and `payload` [payload.hpp]. Others have no
+/// meaning here, and a robot description is only compared with the model: warnings() names what
+/// isn't included.
 class InverseDynamicsSolverFrankaInria
     : public rigid_body_inverse_dynamics_solver::InverseDynamicsSolverRigidBody {
  protected:

@@ -37,9 +37,9 @@ struct ReadyModel {
 
 /// The engine as a solver.
 ///
-/// Parameter in addition to those of every solver [configuration.hpp]: `model`, a string, the path
-/// of a model file or the name of one in the package inverse_dynamics_robots; empty by default: the
-/// robot description (URDF).
+/// Parameters in addition to those of every solver [configuration.hpp]: bodies at the tip
+/// [payload.hpp]; `model`, a string, the path of a model file or the name of one in the package
+/// inverse_dynamics_robots; empty by default: the robot description (URDF).
 ///
 /// A model file takes precedence over a robot description, which a node often carries for other
 /// programs. It states geometry, inertia, gravity, friction and drive gains itself; then `gravity`
@@ -50,8 +50,7 @@ struct ReadyModel {
 /// Without a model file, friction is that of the description where `urdf_friction` is true, else
 /// zero.
 ///
-/// Real time and threads: as the base class promises, for up to 64 joints. There is no state but
-/// the model.
+/// Real time and threads: as the base class promises, for up to 64 joints.
 class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDynamicsSolver,
                                        public inverse_dynamics_solver::ChangeableRobot<ReadyModel> {
  protected:

@@ -31,8 +31,9 @@ using Matrix6d = Eigen::Matrix<double, NUMBER_OF_JOINTS, NUMBER_OF_JOINTS>;
 /// inertiaIsPhysical() is false; good for feed-forward torques, unfit for forward dynamics.
 /// Friction is not zero at rest.
 ///
-/// Parameters: `gravity` and `friction` [configuration.hpp]. Others have no meaning here, and a
-/// robot description is only compared with the model: warnings() names what isn't included.
+/// Parameters: `gravity`, `friction` [configuration.hpp] and `payload` [payload.hpp]. Others have no
+/// meaning here, and a robot description is only compared with the model: warnings() names what
+/// isn't included.
 ///
 /// Real time: methods that return by value allocate the result; the others, inherited, don't.
 /// Threads: const methods are safe.
