@@ -20,6 +20,24 @@ namespace {
 using controller_manager::ControllerManager;
 using rosgraph_msgs::msg::Clock;
 
+// Tells everybody the time, and waits until the manager knows it: from ros2_control 4.22 on it gives
+// controllers its own clock's time, which follows /clock in another thread.
+void publish(const rclcpp::Time& now, rclcpp::Publisher<Clock>& publisher,
+             rclcpp::Clock& managers) {
+  using namespace std::chrono_literals;
+  Clock clock;
+  clock.clock = now;
+  auto again = std::chrono::steady_clock::now();
+  while (rclcpp::ok()) {
+    if (std::chrono::steady_clock::now() >= again) {  // messages of /clock may get lost
+      publisher.publish(clock);
+      again += 20ms;
+    }
+    if (managers.now().nanoseconds() >= now.nanoseconds()) return;
+    std::this_thread::sleep_for(20us);
+  }
+}
+
 // Cycles until the end of the program.
 void run(ControllerManager& manager, rclcpp::Publisher<Clock>& publisher) {
   const auto period = std::chrono::nanoseconds(1'000'000'000 / manager.get_update_rate());
@@ -27,10 +45,7 @@ void run(ControllerManager& manager, rclcpp::Publisher<Clock>& publisher) {
   rclcpp::Time now(0, 0, RCL_ROS_TIME);
   while (rclcpp::ok()) {
     now += rclcpp::Duration(period);
-    Clock clock;
-    clock.clock = now;
-    publisher.publish(clock);
-
+    publish(now, publisher, *manager.get_clock());
     manager.read(now, rclcpp::Duration(period));
     manager.update(now, rclcpp::Duration(period));
     manager.write(now, rclcpp::Duration(period));
