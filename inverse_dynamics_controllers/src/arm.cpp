@@ -5,8 +5,9 @@
 #include <inverse_dynamics_control/damping.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
+#include <utility>
 
-#include "robot_description.hpp"
+#include "joint_numbers.hpp"
 
 namespace inverse_dynamics_controllers {
 
@@ -35,36 +36,44 @@ FrictionSource frictionSource(const std::string& name) {
   return FrictionSource::kNone;
 }
 
-double periodOf(const ArmParameters& parameters, unsigned update_rate) {
-  if (parameters.period > 0) return parameters.period;
-  if (update_rate > 0) return 1.0 / update_rate;
+double requiredPeriod(const Setup& setup) {
+  if (const double period = setup.period(); period > 0) return period;
   throw ParameterUninitializedException(errorText(
       "parameter 'period'", "not set", "the period of the control loop [s], for damping.rate",
       "nothing", "set it, or 'update_rate' [Hz], or 'damping.values'"));
 }
 
-Eigen::VectorXd dampingOf(const Arm& arm, const ArmParameters& parameters, unsigned update_rate) {
-  if (!parameters.damping.empty()) {
-    return jointNumbers("damping.values", parameters.damping, arm.joints);
-  }
+Eigen::VectorXd dampingOf(const Setup& setup) {
+  const Arm& arm = setup.arm;
+  const auto& damping = setup.parameters.damping;
+  if (!damping.values.empty()) return jointNumbers("damping.values", damping.values, arm.joints);
   if (!arm.solver->inertiaIsPhysical()) {
     throw InvalidParameterValueException(errorText(
         "parameter 'damping.values'", "not set", "a damping of each joint [N m s/rad]", "nothing",
         "set it: damping.rate needs a solver whose inertiaIsPhysical() is true, "
         "and that of " +
-            parameters.plugin_name + " is false"));
+            setup.parameters.plugin_name + " is false"));
   }
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.solver->jointCount());
-  const Eigen::VectorXd posture =
-      jointNumbers("damping.posture", parameters.damping_posture, arm.joints, zero);
-  return inverse_dynamics_control::dampingFor(*arm.solver, posture, parameters.damping_rate,
-                                              periodOf(parameters, update_rate));
+  return inverse_dynamics_control::dampingFor(
+      *arm.solver, jointNumbers("damping.posture", damping.posture, arm.joints, zero), damping.rate,
+      requiredPeriod(setup));
 }
 
 }  // namespace
 
-Arm makeArm(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
-            const ArmParameters& parameters, const std::string& managers_description) {
+double Setup::period() const noexcept {
+  if (parameters.period > 0) return parameters.period;
+  return update_rate > 0 ? 1.0 / update_rate : 0.0;
+}
+
+ArmSource::ArmSource(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node)
+    : node_(std::move(node)),
+      parameters_(std::make_shared<arm_parameters::ParamListener>(node_)),
+      description_(node_) {}
+
+Setup ArmSource::setup(const std::string& managers_description, unsigned update_rate) const {
+  const ArmParameters parameters = parameters_->get_params();
   const inverse_dynamics_solver::SolverLoader loader;
   if (parameters.plugin_name.empty()) {
     throw ParameterUninitializedException(
@@ -73,33 +82,38 @@ Arm makeArm(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
   }
   const auto solver = loader.load(parameters.plugin_name);
   const std::string description =
-      findRobotDescription(node, parameters.robot_description, managers_description,
-                           parameters.robot_description_timeout);
-  inverse_dynamics_solver::initializeStrictly(*solver, node->get_node_parameters_interface(), "ids",
-                                              description);
+      description_.find(parameters.robot_description, managers_description);
+  inverse_dynamics_solver::initializeStrictly(*solver, node_->get_node_parameters_interface(),
+                                              "ids", description);
   for (const std::string& warning : solver->warnings()) {
-    RCLCPP_WARN(node->get_logger(), "%s: %s", parameters.plugin_name.c_str(), warning.c_str());
+    RCLCPP_WARN(node_->get_logger(), "%s: %s", parameters.plugin_name.c_str(), warning.c_str());
   }
   const std::vector<std::string> joints = hardwareNames(parameters.joints, solver->jointNames());
-  return {solver, joints, urdfLimits(description, joints)};
+  return {node_, parameters, {solver, joints, urdfLimits(description, joints)}, update_rate};
 }
 
-LawOptions lawOptions(const Arm& arm, const ArmParameters& parameters, unsigned update_rate) {
+LawOptions lawOptions(const Setup& setup, const std::string& friction_source) {
+  const Arm& arm = setup.arm;
+  const ArmParameters& parameters = setup.parameters;
   LawOptions options;
-  options.compensated = parameters.compensated;
-  options.friction = parameters.friction;
-  options.friction.source = frictionSource(parameters.friction_source);
+  options.compensated = {parameters.compensated_by_robot.gravity,
+                         parameters.compensated_by_robot.coriolis,
+                         parameters.compensated_by_robot.friction};
+  options.friction.source = frictionSource(friction_source);
+  options.friction.dead_band = parameters.friction.dead_band;
+  options.friction.blend = parameters.friction.blend;
+  options.friction.scale = parameters.friction.scale;
   options.limits.effort =
-      jointNumbers("limits.effort", parameters.effort, arm.joints, arm.limits.effort);
-  if (parameters.effort.empty() && !options.limits.effort.allFinite()) {
+      jointNumbers("limits.effort", parameters.limits.effort, arm.joints, arm.limits.effort);
+  if (parameters.limits.effort.empty() && !arm.limits.effort.allFinite()) {
     throw ParameterUninitializedException(errorText(
         "parameter 'limits.effort'", "not set",
         "limits of effort [N m], here or in the robot description", "neither for all joints",
         "set it; .inf where the robot limits its effort by itself"));
   }
-  options.limits.rate =
-      jointNumbers("limits.effort_rate", parameters.effort_rate, arm.joints, Eigen::VectorXd());
-  options.damping = dampingOf(arm, parameters, update_rate);
+  options.limits.rate = jointNumbers("limits.effort_rate", parameters.limits.effort_rate,
+                                     arm.joints, Eigen::VectorXd());
+  options.damping = dampingOf(setup);
   return options;
 }
 

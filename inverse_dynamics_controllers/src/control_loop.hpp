@@ -2,8 +2,8 @@
 /// @file
 /// A cycle of any controller: read the joints, ask the law, write efforts, note what happened.
 ///
-///     ControlLoop loop(node, arm.joints, params.tolerated_fault_time);
-///     loop.start(law, state_interfaces_, command_interfaces_);             // when activated
+///     ControlLoop loop(setup);
+///     loop.start(law, state_interfaces_, command_interfaces_);        // when activated
 ///     return loop.cycle(law, state_interfaces_, command_interfaces_, period,
 ///                       [&](const JointState& state, double dt, Eigen::VectorXd& tau) {
 ///                         return law.update(state, dt, tau);
@@ -16,10 +16,10 @@
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <memory>
 #include <rclcpp/duration.hpp>
-#include <string>
-#include <vector>
 
+#include "arm.hpp"
 #include "arm_interfaces.hpp"
+#include "state_publisher.hpp"
 #include "update_report.hpp"
 
 namespace inverse_dynamics_controllers {
@@ -27,15 +27,14 @@ namespace inverse_dynamics_controllers {
 /// What the controllers' cycles have in common. One thread at a time.
 class ControlLoop {
  public:
-  /// @param tolerated_fault_time  s; see FaultLatch.
-  ControlLoop(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
-              const std::vector<std::string>& joints, double tolerated_fault_time)
-      : interfaces_(joints),
-        state_(static_cast<Eigen::Index>(joints.size())),
+  explicit ControlLoop(const Setup& setup)
+      : interfaces_(setup.arm.joints),
+        state_(setup.arm.solver->jointCount()),
         tau_(Eigen::VectorXd::Zero(state_.q.size())),
-        fault_(tolerated_fault_time),
-        report_(std::make_shared<UpdateReport>(joints)),
-        timer_(logEverySecond(node, report_)) {}
+        fault_(setup.parameters.tolerated_fault_time),
+        report_(std::make_shared<UpdateReport>(setup.arm.joints)),
+        timer_(logEverySecond(setup.node, report_)),
+        publisher_(setup.node, setup.arm.joints, setup.parameters.state_publish_rate) {}
 
   const ArmInterfaces& interfaces() const noexcept { return interfaces_; }
   UpdateReport& report() noexcept { return *report_; }
@@ -87,6 +86,14 @@ class ControlLoop {
     return fault_.latched() ? return_type::ERROR : return_type::OK;
   }
 
+  /// Hands the last cycle's numbers to ~/controller_state. Real time: as cycle().
+  ///
+  /// @param reference  what was followed; null: nothing.
+  void publish(const rclcpp::Time& time,
+               const inverse_dynamics_control::Reference* reference) noexcept {
+    publisher_.note(time, state_, reference, tau_);
+  }
+
   /// Zero effort: what a controller leaves behind when it is deactivated.
   void stop(CommandInterfaces& commands) noexcept {
     tau_.setZero();
@@ -100,6 +107,7 @@ class ControlLoop {
   inverse_dynamics_control::FaultLatch fault_;
   std::shared_ptr<UpdateReport> report_;
   rclcpp::TimerBase::SharedPtr timer_;
+  StatePublisher publisher_;
 };
 
 /// No interface at all: what a controller claims before it is configured.

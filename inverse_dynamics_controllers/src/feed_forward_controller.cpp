@@ -4,12 +4,11 @@
 #include <inverse_dynamics_control/feed_forward.hpp>
 #include <inverse_dynamics_controllers/feed_forward_controller_parameters.hpp>
 
-#include "arm.hpp"
 #include "follower.hpp"
+#include "pd_gains.hpp"
 
 namespace inverse_dynamics_controllers {
 
-using controller_interface::CallbackReturn;
 using inverse_dynamics_control::FeedForward;
 using inverse_dynamics_control::FrictionSource;
 using inverse_dynamics_control::JointState;
@@ -35,24 +34,25 @@ void requireReferenceVelocity(const LawOptions& options, const ReferenceLayout& 
       "set one of them"));
 }
 
-/// Own gains about a reference beside the model's torque: n; N m/rad, N m s/rad.
-struct OwnGains {
-  Eigen::VectorXd P, D;
-};
+// Own gains about a reference in addition to the model's torque.
+using inverse_dynamics_control::PdGains;
 
 class FeedForwardFollower : public Follower {
  public:
-  FeedForwardFollower(ControlLoop loop, ReferenceInput input, FeedForward law, OwnGains gains)
-      : Follower(std::move(loop), std::move(input)),
+  FeedForwardFollower(const Setup& setup, ReferenceInput input, ChangingGains<PdGains> changing,
+                      FeedForward law)
+      : Follower(ControlLoop(setup), std::move(input)),
+        changing_(std::move(changing)),
+        gains_(changing_.initial()),
         law_(std::move(law)),
-        gains_(std::move(gains)),
-        effort_(Eigen::VectorXd::Zero(gains_.P.size())),
-        at_state_(gains_.P.size()) {}
+        effort_(Eigen::VectorXd::Zero(gains_.Kp.size())),
+        at_state_(gains_.Kp.size()) {}
 
   inverse_dynamics_control::ControlLaw& law() noexcept override { return law_; }
 
   Status update(const JointState& state, const std::vector<double>& references, double dt,
                 Eigen::VectorXd& tau) noexcept override {
+    if (const PdGains* const changed = changing_.changed()) gains_ = *changed;
     const auto& [P, D] = gains_;
     const bool motion = input().layout().hasMotion();
     // A stop needs feedback: own gains on a motion; else the safe torque brakes.
@@ -64,14 +64,15 @@ class FeedForwardFollower : public Follower {
       at_state_.qd = state.qd;
       return law_.update(state, at_state_, effort_, dt, tau);
     }
-    const Reference& reference = input().motion();
+    const Reference& reference = *input().motion();
     effort_ += P.cwiseProduct(reference.q - state.q) + D.cwiseProduct(reference.qd - state.qd);
     return law_.update(state, reference, effort_, dt, tau);
   }
 
  private:
+  ChangingGains<PdGains> changing_;
+  PdGains gains_;
   FeedForward law_;
-  OwnGains gains_;
   Eigen::VectorXd effort_;  // scratch
   Reference at_state_;      // scratch: the measured state, going on as it is
 };
@@ -81,25 +82,19 @@ class FeedForwardFollower : public Follower {
 FeedForwardController::FeedForwardController() = default;
 FeedForwardController::~FeedForwardController() = default;
 
-CallbackReturn FeedForwardController::on_init() {
-  return transition(get_node()->get_logger(), [this] {
-    parameters_ = std::make_shared<feed_forward_controller::ParamListener>(get_node());
-  });
+void FeedForwardController::declareParameters() {
+  parameters_ = std::make_shared<feed_forward_controller::ParamListener>(get_node());
 }
 
-std::unique_ptr<Follower> FeedForwardController::makeFollower() {
+std::unique_ptr<Follower> FeedForwardController::makeFollower(
+    const Setup& setup, const reference_parameters::Params& references) {
   const auto params = parameters_->get_params();
-  const ArmParameters arm_parameters = armParameters(params);
-  const Arm arm = makeArm(get_node(), arm_parameters, robotDescriptionOf(*this));
-  const ReferenceLayout layout(params.reference_interfaces, arm.joints);
-  const LawOptions options = lawOptions(arm, arm_parameters, get_update_rate());
+  const ReferenceLayout layout(params.reference_interfaces, setup.arm.joints);
+  const LawOptions options = lawOptions(setup, params.friction.source);
   requireReferenceVelocity(options, layout);
   return std::make_unique<FeedForwardFollower>(
-      ControlLoop(get_node(), arm.joints, params.tolerated_fault_time),
-      referenceInput(get_node(), layout, arm, params),
-      FeedForward(arm.solver, modelState(params, layout), options),
-      OwnGains{jointNumbers("gains.p", params.gains.p, arm.joints),
-               jointNumbers("gains.d", params.gains.d, arm.joints)});
+      setup, referenceInput(setup, layout, references), pdGains(setup),
+      FeedForward(setup.arm.solver, modelState(params, layout), options));
 }
 
 }  // namespace inverse_dynamics_controllers

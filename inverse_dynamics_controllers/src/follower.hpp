@@ -3,6 +3,7 @@
 /// A law with the references it follows and the loop it runs in: what configuring makes.
 #pragma once
 
+#include <inverse_dynamics_controllers/reference_parameters.hpp>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -37,13 +38,7 @@ class Follower {
 };
 
 /// References within the limits of the parameters, or of the robot description.
-template <class Params>
-ReferenceInput referenceInput(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
-                              const ReferenceLayout& layout, const Arm& arm, const Params& params) {
-  const inverse_dynamics_control::ReferenceGuard guard(
-      referenceLimits(arm, params.limits),
-      jointNumbers("stop_deceleration", params.stop_deceleration, arm.joints), arm.joints);
-  return {node, layout, arm.joints, guard, params.reference_timeout};
-}
+ReferenceInput referenceInput(const Setup& setup, const ReferenceLayout& layout,
+                              const reference_parameters::Params& params);
 
 }  // namespace inverse_dynamics_controllers

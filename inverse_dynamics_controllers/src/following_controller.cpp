@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_controllers/following_controller.hpp"
 
+#include <inverse_dynamics_controllers/reference_parameters.hpp>
+#include <limits>
+
+#include "arm.hpp"
 #include "follower.hpp"
 
 namespace inverse_dynamics_controllers {
@@ -19,15 +23,28 @@ InterfaceConfiguration FollowingController::state_interface_configuration() cons
   return follower_ ? follower_->loop().interfaces().states() : nothing();
 }
 
+CallbackReturn FollowingController::on_init() {
+  return transition(get_node()->get_logger(), [this] {
+    arm_source_ = std::make_unique<ArmSource>(get_node());
+    reference_parameters_ = std::make_shared<reference_parameters::ParamListener>(get_node());
+    declareParameters();
+  });
+}
+
 CallbackReturn FollowingController::on_configure(const rclcpp_lifecycle::State&) {
-  return transition(get_node()->get_logger(), [this] { follower_ = makeFollower(); });
+  return transition(get_node()->get_logger(), [this] {
+    follower_ = makeFollower(arm_source_->setup(robotDescriptionOf(*this), get_update_rate()),
+                             reference_parameters_->get_params());
+    references_.assign(referenceNames().size(), std::numeric_limits<double>::quiet_NaN());
+  });
 }
 
 CallbackReturn FollowingController::on_activate(const rclcpp_lifecycle::State&) {
   return transition(get_node()->get_logger(), [this] {
     requireConfigured(follower_ != nullptr);
     follower_->loop().start(follower_->law(), state_interfaces_, command_interfaces_);
-    follower_->input().start(follower_->loop().state().q, reference_interfaces_);
+    forgetReferences();
+    follower_->input().start(follower_->loop().state().q, references_);
   });
 }
 
@@ -41,30 +58,31 @@ CallbackReturn FollowingController::on_cleanup(const rclcpp_lifecycle::State&) {
   return CallbackReturn::SUCCESS;
 }
 
-std::vector<hardware_interface::CommandInterface>
-FollowingController::on_export_reference_interfaces() {
-  if (!follower_) return {};
-  return follower_->input().exported(get_node()->get_name(), reference_interfaces_);
+std::vector<std::string> FollowingController::referenceNames() const {
+  return follower_ ? follower_->input().layout().names() : std::vector<std::string>();
 }
 
 bool FollowingController::on_set_chained_mode(bool) { return true; }
 
 void FollowingController::readReferenceTopic() noexcept {
-  if (follower_) follower_->input().readTopic(reference_interfaces_);
+  if (follower_) follower_->input().readTopic(references_);
 }
 
 controller_interface::return_type FollowingController::update_and_write_commands(
-    const rclcpp::Time&, const rclcpp::Duration& period) {
+    const rclcpp::Time& time, const rclcpp::Duration& period) {
   if (!follower_) return controller_interface::return_type::ERROR;
   Follower& follower = *follower_;
+  const bool chained = is_in_chained_mode();
+  if (chained) readReferences(references_);
   const auto update = [&](const inverse_dynamics_control::JointState& state, double dt,
                           Eigen::VectorXd& tau) {
-    follower.input().advance(reference_interfaces_, is_in_chained_mode(), dt,
-                             follower.loop().report());
-    return follower.update(state, reference_interfaces_, dt, tau);
+    follower.input().advance(references_, chained, dt, follower.loop().report());
+    return follower.update(state, references_, dt, tau);
   };
-  return follower.loop().cycle(follower.law(), state_interfaces_, command_interfaces_, period,
-                               update);
+  const auto result =
+      follower.loop().cycle(follower.law(), state_interfaces_, command_interfaces_, period, update);
+  follower.loop().publish(time, follower.input().motion());
+  return result;
 }
 
 }  // namespace inverse_dynamics_controllers

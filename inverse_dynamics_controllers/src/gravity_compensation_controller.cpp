@@ -34,18 +34,18 @@ GravityCompensationController::state_interface_configuration() const {
 
 CallbackReturn GravityCompensationController::on_init() {
   return transition(get_node()->get_logger(), [this] {
+    arm_source_ = std::make_unique<ArmSource>(get_node());
     parameters_ = std::make_shared<gravity_compensation_controller::ParamListener>(get_node());
   });
 }
 
 CallbackReturn GravityCompensationController::on_configure(const rclcpp_lifecycle::State&) {
   return transition(get_node()->get_logger(), [this] {
+    const Setup setup = arm_source_->setup(robotDescriptionOf(*this), get_update_rate());
     const auto params = parameters_->get_params();
-    const ArmParameters arm_parameters = armParameters(params);
-    const Arm arm = makeArm(get_node(), arm_parameters, robotDescriptionOf(*this));
     configured_ = std::make_unique<Configured>(Configured{
-        ControlLoop(get_node(), arm.joints, params.tolerated_fault_time),
-        GravityCompensation(arm.solver, lawOptions(arm, arm_parameters, get_update_rate()))});
+        ControlLoop(setup),
+        GravityCompensation(setup.arm.solver, lawOptions(setup, params.friction.source))});
   });
 }
 
@@ -67,13 +67,15 @@ CallbackReturn GravityCompensationController::on_cleanup(const rclcpp_lifecycle:
 }
 
 controller_interface::return_type GravityCompensationController::update(
-    const rclcpp::Time&, const rclcpp::Duration& period) {
+    const rclcpp::Time& time, const rclcpp::Duration& period) {
   if (!configured_) return controller_interface::return_type::ERROR;
   auto& [loop, law] = *configured_;
   const auto update = [&law = law](const JointState& state, double dt, Eigen::VectorXd& tau) {
     return law.update(state, dt, tau);
   };
-  return loop.cycle(law, state_interfaces_, command_interfaces_, period, update);
+  const auto result = loop.cycle(law, state_interfaces_, command_interfaces_, period, update);
+  loop.publish(time, nullptr);
+  return result;
 }
 
 }  // namespace inverse_dynamics_controllers

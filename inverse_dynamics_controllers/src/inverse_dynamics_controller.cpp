@@ -3,16 +3,19 @@
 
 #include <inverse_dynamics_control/computed_torque.hpp>
 #include <inverse_dynamics_controllers/inverse_dynamics_controller_parameters.hpp>
+#include <sstream>
+#include <utility>
 
-#include "arm.hpp"
+#include "changing_gains.hpp"
 #include "follower.hpp"
+#include "joint_numbers.hpp"
 
 namespace inverse_dynamics_controllers {
 
-using controller_interface::CallbackReturn;
 using inverse_dynamics_control::ComputedTorque;
 using inverse_dynamics_control::Gains;
 using inverse_dynamics_control::JointState;
+using inverse_dynamics_control::LawOptions;
 using inverse_dynamics_control::Status;
 using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
@@ -20,40 +23,62 @@ using inverse_dynamics_solver::InvalidParameterValueException;
 namespace {
 
 // Errors go through H: a negative diagonal entry would make that joint's feedback positive.
-void requirePhysicalInertia(const Arm& arm, const std::string& plugin_name) {
-  if (arm.solver->inertiaIsPhysical()) return;
+void requirePhysicalInertia(const Setup& setup) {
+  if (setup.arm.solver->inertiaIsPhysical()) return;
   throw InvalidParameterValueException(
       errorText("parameter 'plugin_name'", "not fit for computed torque",
                 "a solver whose inertia matrix is symmetric and positive definite",
-                plugin_name + ", whose inertiaIsPhysical() is false",
+                setup.parameters.plugin_name + ", whose inertiaIsPhysical() is false",
                 "use inverse_dynamics_controllers/FeedForwardController with it, or here a solver "
                 "made from the robot's URDF"));
 }
 
-Gains gainsOf(const inverse_dynamics_controller::Params& params, const Arm& arm) {
-  if (params.gains.natural_frequency.empty()) {
+// The feedback is that of a double integrator in steps of T: it is stable for Kp T < 2 Kd < 4 / T.
+void requireStableLoop(const Gains& gains, double period, const std::vector<std::string>& joints) {
+  for (Eigen::Index j = 0; j < gains.Kp.size(); ++j) {
+    const double Kp = gains.Kp[j], Kd = gains.Kd[j];
+    if (Kp * period <= 2.0 * Kd && Kd * period < 2.0) continue;
+    std::ostringstream got;
+    got << "Kp = " << Kp << "/s^2, Kd = " << Kd << "/s every " << period << " s";
+    throw InvalidParameterValueException(
+        errorText("parameter 'gains': joint " + joints[static_cast<std::size_t>(j)],
+                  "unstable in the sampled loop", "Kp T <= 2 Kd and Kd T < 2", got.str(),
+                  "lower natural_frequency; a damping_ratio of 1 suits most arms"));
+  }
+}
+
+Gains gainsOf(const std::vector<double>& natural_frequency,
+              const std::vector<double>& damping_ratio, double period,
+              const std::vector<std::string>& joints) {
+  if (natural_frequency.empty()) {
     throw inverse_dynamics_solver::ParameterUninitializedException(
         errorText("parameter 'gains.natural_frequency'", "not set", "numbers above zero [rad/s]",
                   "nothing", "start with 10 and double it while the arm is quiet"));
   }
-  return Gains::of(
-      jointNumbers("gains.natural_frequency", params.gains.natural_frequency, arm.joints),
-      jointNumbers("gains.damping_ratio", params.gains.damping_ratio, arm.joints));
+  const Gains gains = Gains::of(jointNumbers("gains.natural_frequency", natural_frequency, joints),
+                                jointNumbers("gains.damping_ratio", damping_ratio, joints));
+  requireStableLoop(gains, period, joints);
+  return gains;
 }
 
 class ComputedTorqueFollower : public Follower {
  public:
-  ComputedTorqueFollower(ControlLoop loop, ReferenceInput input, ComputedTorque law)
-      : Follower(std::move(loop), std::move(input)), law_(std::move(law)) {}
+  ComputedTorqueFollower(const Setup& setup, ReferenceInput input, ChangingGains<Gains> gains,
+                         const LawOptions& options)
+      : Follower(ControlLoop(setup), std::move(input)),
+        gains_(std::move(gains)),
+        law_(setup.arm.solver, gains_.initial(), options) {}
 
   inverse_dynamics_control::ControlLaw& law() noexcept override { return law_; }
 
   Status update(const JointState& state, const std::vector<double>&, double dt,
                 Eigen::VectorXd& tau) noexcept override {
-    return law_.update(state, input().motion(), dt, tau);
+    if (const Gains* const changed = gains_.changed()) law_.setGains(*changed);
+    return law_.update(state, *input().motion(), dt, tau);
   }
 
  private:
+  ChangingGains<Gains> gains_;
   ComputedTorque law_;
 };
 
@@ -62,23 +87,23 @@ class ComputedTorqueFollower : public Follower {
 InverseDynamicsController::InverseDynamicsController() = default;
 InverseDynamicsController::~InverseDynamicsController() = default;
 
-CallbackReturn InverseDynamicsController::on_init() {
-  return transition(get_node()->get_logger(), [this] {
-    parameters_ = std::make_shared<inverse_dynamics_controller::ParamListener>(get_node());
-  });
+void InverseDynamicsController::declareParameters() {
+  parameters_ = std::make_shared<inverse_dynamics_controller::ParamListener>(get_node());
 }
 
-std::unique_ptr<Follower> InverseDynamicsController::makeFollower() {
+std::unique_ptr<Follower> InverseDynamicsController::makeFollower(
+    const Setup& setup, const reference_parameters::Params& references) {
   const auto params = parameters_->get_params();
-  const ArmParameters arm_parameters = armParameters(params);
-  const Arm arm = makeArm(get_node(), arm_parameters, robotDescriptionOf(*this));
-  requirePhysicalInertia(arm, params.plugin_name);
-  const ReferenceLayout layout(params.reference_interfaces, arm.joints);
+  requirePhysicalInertia(setup);
+  const ReferenceLayout layout(params.reference_interfaces, setup.arm.joints);
+  const auto make = [T = setup.period(), joints = setup.arm.joints](
+                        const std::vector<double>& frequency, const std::vector<double>& damping) {
+    return gainsOf(frequency, damping, T, joints);
+  };
   return std::make_unique<ComputedTorqueFollower>(
-      ControlLoop(get_node(), arm.joints, params.tolerated_fault_time),
-      referenceInput(get_node(), layout, arm, params),
-      ComputedTorque(arm.solver, gainsOf(params, arm),
-                     lawOptions(arm, arm_parameters, get_update_rate())));
+      setup, referenceInput(setup, layout, references),
+      ChangingGains<Gains>(setup.node, {"gains.natural_frequency", "gains.damping_ratio"}, make),
+      lawOptions(setup, params.friction.source));
 }
 
 }  // namespace inverse_dynamics_controllers

@@ -3,8 +3,9 @@
 /// What a chainable controller is asked to do: by the controller before it, or by a topic.
 ///
 ///     ReferenceInput input(node, layout, arm.joints, guard, timeout);
-///     input.start(state.q, reference_interfaces_);                    // when activated
-///     const Reference& reference = input.motion(reference_interfaces_, chained, period);
+///     input.start(state.q, references);                               // when activated
+///     input.advance(references, chained, period, report);             // in each cycle
+///     const Reference& reference = *input.motion();
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,6 @@
 #include <utility>
 #include <vector>
 
-#include "inverse_dynamics_controllers/ros2_control_compatibility.hpp"
 #include "reference_layout.hpp"
 #include "reference_topic.hpp"
 #include "update_report.hpp"
@@ -24,7 +24,7 @@ namespace inverse_dynamics_controllers {
 
 /// Reads references, guards them, and stops for good where they are lost. Not thread-safe.
 ///
-/// Real time: all methods but the constructor and exported(): no allocation, lock, exception or
+/// Real time: all methods but the constructor: no allocation, lock, exception or
 /// system call.
 class ReferenceInput {
  public:
@@ -40,23 +40,13 @@ class ReferenceInput {
 
   const ReferenceLayout& layout() const noexcept { return layout_; }
 
-  /// The reference interfaces, on `values`, which is given its size.
-  std::vector<hardware_interface::CommandInterface> exported(const std::string& controller,
-                                                             std::vector<double>& values) const {
-    values.assign(layout_.size(), std::numeric_limits<double>::quiet_NaN());
-    std::vector<hardware_interface::CommandInterface> interfaces;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      interfaces.push_back(referenceInterface(controller, layout_.names()[k], &values[k]));
-    }
-    return interfaces;
-  }
-
   /// Rest at q until somebody writes a reference; forgets an earlier stop.
   void start(const Eigen::Ref<const Eigen::VectorXd>& q, std::vector<double>& values) noexcept {
     topic_.read(values);  // an old message isn't a wish for now
     std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
     guard_.start(q);
     motion_written_ = effort_written_ = false;
+    motion_ = nullptr;
     age_ = 0.0;
   }
 
@@ -87,8 +77,11 @@ class ReferenceInput {
     if (guard_.stopped() && !was_stopped) report.noteStop(guard_.reason(), guard_.joint());
   }
 
-  /// The motion to follow in this cycle; after advance().
-  const inverse_dynamics_control::Reference& motion() const noexcept { return *motion_; }
+  /// The motion to follow in this cycle; null before the first advance() and without a motion among
+  /// the references.
+  const inverse_dynamics_control::Reference* motion() const noexcept {
+    return layout_.hasMotion() ? motion_ : nullptr;
+  }
 
   /// The effort of the controller before; zero before it has written any.
   void effort(const std::vector<double>& values, Eigen::VectorXd& effort) const noexcept {

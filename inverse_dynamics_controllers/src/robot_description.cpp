@@ -1,39 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_description.hpp"
 
-#include <chrono>
-#include <rclcpp/wait_for_message.hpp>
-#include <std_msgs/msg/string.hpp>
+#include <mutex>
+#include <utility>
 
 namespace inverse_dynamics_controllers {
 
-std::string findRobotDescription(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
-                                 const std::string& parameter, const std::string& managers,
-                                 double timeout) {
+using std_msgs::msg::String;
+
+struct RobotDescriptionTopic::Inbox {
+  void receive(const String& message) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    newest = message.data;
+  }
+
+  std::mutex mutex;
+  std::string newest;
+};
+
+RobotDescriptionTopic::RobotDescriptionTopic(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node)
+    : node_(std::move(node)),
+      inbox_(std::make_shared<Inbox>()),
+      subscription_(node_->create_subscription<String>(
+          "robot_description", rclcpp::QoS(1).transient_local(),
+          [inbox = inbox_](const String& message) { inbox->receive(message); })) {}
+
+std::string RobotDescriptionTopic::find(const std::string& parameter,
+                                        const std::string& managers) const {
   if (!parameter.empty()) return parameter;
   if (!managers.empty()) return managers;
-  if (timeout <= 0) return "";
+  // What has arrived, even if the node's executor hasn't come to it yet.
+  String arrived;
+  rclcpp::MessageInfo info;
+  while (subscription_->take(arrived, info)) inbox_->receive(arrived);
 
-  // Waited for here: no executor may take the message.
-  rclcpp::SubscriptionOptions options;
-  options.callback_group =
-      node->create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive, false);
-  const auto subscription = node->create_subscription<std_msgs::msg::String>(
-      "robot_description", rclcpp::QoS(1).transient_local(),
-      [](std_msgs::msg::String::ConstSharedPtr) {}, options);
-  std_msgs::msg::String description;
-  const auto context = node->get_node_base_interface()->get_context();
-  const auto patience = std::chrono::duration<double, std::milli>(1000.0 * timeout);
-  if (rclcpp::wait_for_message<std_msgs::msg::String>(
-          description, subscription, context,
-          std::chrono::duration_cast<std::chrono::milliseconds>(patience))) {
-    return description.data;
+  const std::lock_guard<std::mutex> lock(inbox_->mutex);
+  if (inbox_->newest.empty()) {
+    RCLCPP_WARN(node_->get_logger(),
+                "no robot description: nothing has come on %s so far; go on without, with what the "
+                "solver itself knows; configure again once it is published, or set the parameter "
+                "robot_description",
+                subscription_->get_topic_name());
   }
-  RCLCPP_WARN(node->get_logger(),
-              "no robot description: nothing came on %s within %g s; go on without, with what the "
-              "solver itself knows",
-              subscription->get_topic_name(), timeout);
-  return "";
+  return inbox_->newest;
 }
 
 }  // namespace inverse_dynamics_controllers

@@ -5,19 +5,30 @@
 
 #include <memory>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
+#include <std_msgs/msg/string.hpp>
 #include <string>
 
 namespace inverse_dynamics_controllers {
 
-/// URDF text: the parameter's, the controller manager's, or the first that comes on the topic
-/// `robot_description` (kept for late joiners, as robot_state_publisher does it). Empty: none of
-/// them; a warning says so.
-///
-/// @param parameter  value of the parameter `robot_description`.
-/// @param managers   what the controller manager has given.
-/// @param timeout    how long to wait for the topic [s].
-std::string findRobotDescription(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
-                                 const std::string& parameter, const std::string& managers,
-                                 double timeout);
+/// Listens to the topic `robot_description` (kept for late joiners, as robot_state_publisher does
+/// it) from its construction on. Threads: safe.
+class RobotDescriptionTopic {
+ public:
+  explicit RobotDescriptionTopic(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node);
+
+  /// URDF text: the parameter's, the controller manager's, or the newest that has come on the
+  /// topic. Empty: none of them; a warning says so. Waits for nothing.
+  ///
+  /// @param parameter  value of the parameter `robot_description`.
+  /// @param managers   what the controller manager has given.
+  std::string find(const std::string& parameter, const std::string& managers) const;
+
+ private:
+  struct Inbox;
+
+  std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node_;
+  std::shared_ptr<Inbox> inbox_;  // a message that is being received keeps it
+  rclcpp::Subscription<std_msgs::msg::String>::SharedPtr subscription_;
+};
 
 }  // namespace inverse_dynamics_controllers

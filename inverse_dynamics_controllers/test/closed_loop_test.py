@@ -78,11 +78,18 @@ CASES = [
 ]
 
 
-def stiff(robot):
-    """This package's parameter file with the gains STIFF."""
+def tolerance(controller, payload):
+    return LOADED_TOLERANCE if payload else TOLERANCE
+
+
+def parameter_file(robot, controller, payload):
+    """This package's, with states of all cycles, and for a payload with the gains STIFF."""
     share = Path(get_package_share_directory("inverse_dynamics_controllers"))
     parameters = yaml.safe_load((share / "config" / f"{robot}.yaml").read_text())
-    parameters["inverse_dynamics_controller"]["ros__parameters"]["gains"] = STIFF
+    of_controller = parameters[f"{controller}_controller"]["ros__parameters"]
+    of_controller["state_publish_rate"] = 1000.0
+    if payload:
+        of_controller["gains"] = STIFF
     with tempfile.NamedTemporaryFile("w", suffix=".yaml", delete=False) as file:
         yaml.safe_dump(parameters, file)
     return file.name
@@ -97,7 +104,7 @@ def generate_test_description(robot, controller, payload):
         "robot": robot,
         "controller": controller,
         "payload": str(payload),
-        "config": stiff(robot) if payload else "",
+        "config": parameter_file(robot, controller, payload),
     }
     return launch.LaunchDescription(
         [
@@ -105,6 +112,12 @@ def generate_test_description(robot, controller, payload):
             launch_testing.actions.ReadyToTest(),
         ]
     )
+
+
+def assert_times_increase(states):
+    """The clock of the simulation has gone on between all states."""
+    repeated = sum(seconds(a) >= seconds(b) for a, b in itertools.pairwise(states))
+    assert repeated == 0, f"{repeated} of {len(states)} states have the time of the one before"
 
 
 def seconds(state):
@@ -155,25 +168,25 @@ class TestFollowing(unittest.TestCase):
         assert max(map(abs, self.joint_states[-1].velocity)) < REST
 
     def test_errors_stay_small(self, proc_output, robot, controller, payload):
-        trajectory = f"trajectory_to_{controller}"
+        # Of the controller itself: a joint_trajectory_controller's are of other moments.
         states, self.joint_states = [], []
-        self.node.create_subscription(
-            JointTrajectoryControllerState, f"/{trajectory}/controller_state", states.append, 100
-        )
+        topic = f"/{controller}_controller/controller_state"
+        self.node.create_subscription(JointTrajectoryControllerState, topic, states.append, 100)
         self.node.create_subscription(JointState, "/joint_states", self.joint_states.append, 100)
-        assert self.spin_until(lambda: states), "the trajectory controller says nothing"
+        assert self.spin_until(lambda: states), "the controller publishes no state"
 
         # It moved, it followed, it came to rest, and nothing was cut.
         amplitudes = AMPLITUDES[robot]
-        since = self.move(trajectory, amplitudes)
+        since = self.move(f"trajectory_to_{controller}", amplitudes)
         self.assert_settles(since)
         first = self.joint_states[0].name.index("elbow_joint" if robot == "ur10" else "fer_joint4")
         positions = [state.position[first] for state in self.joint_states]
         wished = abs(amplitudes[self.joint_states[0].name[first]])
         assert max(positions) - min(positions) > 0.9 * wished
         error = max(abs(e) for state in states for e in state.error.positions)
+        assert_times_increase(self.joint_states)
         print(f"{robot}, {controller}, payload {payload:g} kg: greatest error {error:.2e} rad")
-        assert error < (LOADED_TOLERANCE if payload else TOLERANCE)
+        assert error < tolerance(controller, payload)
         if payload:
             assert error > TOLERANCE, "the payload isn't there"
         output = "".join(process.text.decode() for process in proc_output)

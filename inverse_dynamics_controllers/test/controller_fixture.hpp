@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <ament_index_cpp/get_package_share_directory.hpp>
+#include <chrono>
 #include <fstream>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <lifecycle_msgs/msg/state.hpp>
@@ -130,7 +131,6 @@ class ControllerFixture : public ::testing::Test {
   static Parameters good() {
     return {{"plugin_name", rclcpp::ParameterValue(kKdl)},
             {"robot_description", rclcpp::ParameterValue(ur10Description())},
-            {"robot_description_timeout", rclcpp::ParameterValue(0.0)},
             {"ids.root", rclcpp::ParameterValue("base_link")},
             {"ids.tip", rclcpp::ParameterValue("tool0")},
             {"damping.values", rclcpp::ParameterValue(std::vector<double>{4.0})}};
@@ -167,6 +167,36 @@ class ControllerFixture : public ::testing::Test {
     return controller.update(rclcpp::Time(0), rclcpp::Duration::from_seconds(kPeriod));
   }
 
+  /// Spins the controller's node, and others that were added, until something is true.
+  ///
+  /// @param patience  after which it gives up.
+  template <class Condition>
+  bool spinUntil(const Condition& condition,
+                 std::chrono::milliseconds patience = std::chrono::seconds(10)) {
+    if (!spins_) executor.add_node(controller.get_node()->get_node_base_interface());
+    spins_ = true;
+    const auto end = std::chrono::steady_clock::now() + patience;
+    while (!condition() && std::chrono::steady_clock::now() < end) {
+      executor.spin_some(std::chrono::milliseconds(10));
+    }
+    return condition();
+  }
+
+  /// Sets a parameter as `ros2 param set` does; the reason why it was refused, or "".
+  std::string set(const std::string& name, const rclcpp::ParameterValue& value) {
+    const auto result = controller.get_node()->set_parameter(rclcpp::Parameter(name, value));
+    return result.successful ? "" : result.reason;
+  }
+
+  /// Cycles until the effort isn't what it was.
+  bool effortChanges() {
+    const Eigen::VectorXd before = hardware.effort();
+    return spinUntil([&] {
+      update();
+      return hardware.effort() != before;
+    });
+  }
+
   /// The solver of good(), to compute what is expected.
   static std::shared_ptr<inverse_dynamics_solver::InverseDynamicsSolver> solver(
       const char* plugin = kKdl) {
@@ -178,6 +208,10 @@ class ControllerFixture : public ::testing::Test {
   CapturedLog log;
   FakeHardware hardware{ur10Joints()};
   Controller controller;
+  rclcpp::executors::SingleThreadedExecutor executor;
+
+ private:
+  bool spins_ = false;
 };
 
 /// The same with references before it: joint by joint, interface by interface.

@@ -113,6 +113,17 @@ TEST_F(FeedForwardControllerTest, AfterALostReferenceOwnGainsFollowTheStop) {
   EXPECT_LT((hardware.effort() - expected).norm(), kRounding);
 }
 
+TEST_F(FeedForwardControllerTest, OwnGainsChangeWhileItRuns) {
+  ASSERT_TRUE(start(with({"position", "velocity", "acceleration"}))) << log.text();
+  setMotion(q_ref, qd_ref, qdd_ref);
+  EXPECT_EQ(update(), return_type::OK);
+  EXPECT_EQ(set("gains.p", rclcpp::ParameterValue(std::vector<double>{100.0})), "");
+  ASSERT_TRUE(effortChanges()) << log.text();
+  const Eigen::VectorXd expected =
+      solver()->getTorques(q_ref, qd_ref, qdd_ref) + 100.0 * (q_ref - q);
+  EXPECT_LT((hardware.effort() - expected).norm(), kRounding);
+}
+
 TEST_F(FeedForwardControllerTest, FrictionOfAReferenceNeedsItsVelocity) {
   Parameters parameters = with({"effort"});
   parameters["friction.source"] = rclcpp::ParameterValue("reference_velocity");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
 
+#include <control_msgs/msg/joint_trajectory_controller_state.hpp>
+
 #include "controller_fixture.hpp"
 
 namespace inverse_dynamics_controllers {
@@ -20,9 +22,9 @@ class InverseDynamicsControllerTest : public ChainedFixture<InverseDynamicsContr
 
   // tau = H (qdd_ref + w^2 e + 2 w ed) + C qd + g
   Eigen::VectorXd expected(const Eigen::VectorXd& wished_q, const Eigen::VectorXd& wished_qd,
-                           const Eigen::VectorXd& wished_qdd) const {
+                           const Eigen::VectorXd& wished_qdd, double w = kFrequency) const {
     const Eigen::VectorXd acceleration =
-        wished_qdd + kFrequency * kFrequency * (wished_q - q) + 2.0 * kFrequency * (wished_qd - qd);
+        wished_qdd + w * w * (wished_q - q) + 2.0 * w * (wished_qd - qd);
     return solver()->getTorques(q, qd, acceleration);
   }
 
@@ -155,6 +157,62 @@ TEST_F(InverseDynamicsControllerTest, AShortFaultIsTolerated) {
   hardware.set(q, qd);
   EXPECT_EQ(update(), return_type::OK);
   EXPECT_LT((hardware.effort() - expected(q_ref, qd_ref, qdd_ref)).norm(), kRounding);
+}
+
+TEST_F(InverseDynamicsControllerTest, GainsChangeWhileItRuns) {
+  Parameters parameters = good();
+  parameters["period"] = rclcpp::ParameterValue(kPeriod);
+  ASSERT_TRUE(start(parameters)) << log.text();
+  setMotion(q_ref, qd_ref, qdd_ref);
+  EXPECT_EQ(update(), return_type::OK);
+  const std::string name = "gains.natural_frequency";
+  EXPECT_EQ(set(name, rclcpp::ParameterValue(std::vector<double>{8.0})), "");
+  ASSERT_TRUE(effortChanges()) << log.text();
+  EXPECT_LT((hardware.effort() - expected(q_ref, qd_ref, qdd_ref, 8.0)).norm(), kRounding);
+
+  // What doesn't fit is refused with a reason, and changes nothing.
+  EXPECT_EQ(set(name, rclcpp::ParameterValue(std::vector<double>{8.0, 9.0})),
+            "parameter 'gains.natural_frequency': wrong size: expected 6 numbers, or one for all, "
+            "got 2; give one for each of the joints shoulder_pan_joint, shoulder_lift_joint, "
+            "elbow_joint, wrist_1_joint, wrist_2_joint, wrist_3_joint");
+  EXPECT_NE(set(name, rclcpp::ParameterValue(std::vector<double>{-1.0})), "");
+  EXPECT_NE(set(name, rclcpp::ParameterValue(std::vector<double>{1e4})), "");
+  EXPECT_NE(set(name, rclcpp::ParameterValue(std::vector<double>{kNan})), "");
+  const std::string unstable =
+      set("gains.damping_ratio", rclcpp::ParameterValue(std::vector<double>{0.0}));
+  EXPECT_NE(unstable.find("unstable in the sampled loop"), std::string::npos) << unstable;
+  const auto fails = [this] { return update() != return_type::OK; };
+  EXPECT_FALSE(spinUntil(fails, std::chrono::milliseconds(300)));
+  EXPECT_LT((hardware.effort() - expected(q_ref, qd_ref, qdd_ref, 8.0)).norm(), kRounding);
+}
+
+TEST_F(InverseDynamicsControllerTest, PublishesWhatItDoes) {
+  using control_msgs::msg::JointTrajectoryControllerState;
+  ASSERT_TRUE(start(good())) << log.text();
+  const auto node = std::make_shared<rclcpp::Node>("listener");
+  JointTrajectoryControllerState::ConstSharedPtr last;
+  const auto subscription = node->create_subscription<JointTrajectoryControllerState>(
+      "under_test/controller_state", 10,
+      [&last](JointTrajectoryControllerState::ConstSharedPtr state) { last = state; });
+  executor.add_node(node);
+  setMotion(q_ref, qd_ref, qdd_ref);
+  ASSERT_TRUE(spinUntil([&] {
+    update();
+    return last != nullptr;
+  }));
+  using Numbers = std::vector<double>;
+  const auto numbers = [](const Eigen::VectorXd& v) {
+    return Numbers(v.data(), v.data() + v.size());
+  };
+  EXPECT_EQ(last->joint_names, ur10Joints());
+  EXPECT_EQ(last->reference.positions, numbers(q_ref));
+  EXPECT_EQ(last->reference.velocities, numbers(qd_ref));
+  EXPECT_EQ(last->reference.accelerations, numbers(qdd_ref));
+  EXPECT_EQ(last->feedback.positions, numbers(q));
+  EXPECT_EQ(last->feedback.velocities, numbers(qd));
+  EXPECT_EQ(last->error.positions, numbers(q_ref - q));
+  EXPECT_EQ(last->error.velocities, numbers(qd_ref - qd));
+  EXPECT_EQ(last->output.effort, hardware.tau);
 }
 
 TEST_F(InverseDynamicsControllerTest, DeactivationLeavesNoEffortBehind) {

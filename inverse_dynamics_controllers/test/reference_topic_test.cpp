@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference_topic.hpp"
 
-#include <chrono>
-
 #include "controller_fixture.hpp"
 #include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
 
@@ -70,20 +68,10 @@ class ReferenceTopicTest : public ControllerFixture<InverseDynamicsController> {
     parameters["gains.natural_frequency"] = rclcpp::ParameterValue(Numbers{5.0});
     ASSERT_TRUE(configure(parameters)) << log.text();
     interfaces_ = controller.export_reference_interfaces();
-    executor_.add_node(controller.get_node()->get_node_base_interface());
-    executor_.add_node(sender_);
+    executor.add_node(sender_);
     publisher_ = sender_->create_publisher<JointTrajectory>("under_test/reference", 1);
     ASSERT_TRUE(spinUntil([this] { return publisher_->get_subscription_count() == 1; }));
     ASSERT_TRUE(activate());
-  }
-
-  template <class Condition>
-  bool spinUntil(const Condition& condition) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-    while (!condition() && std::chrono::steady_clock::now() < end) {
-      executor_.spin_some(std::chrono::milliseconds(10));
-    }
-    return condition();
   }
 
   JointTrajectory moving() const {
@@ -95,16 +83,6 @@ class ReferenceTopicTest : public ControllerFixture<InverseDynamicsController> {
     return trajectory;
   }
 
-  // Cycles, of 1 ms by the controller's clock, until the effort is no longer what it was.
-  bool effortChanges() {
-    const Eigen::VectorXd before = hardware.effort();
-    return spinUntil([&] {
-      update();
-      return hardware.effort() != before;
-    });
-  }
-
-  rclcpp::executors::SingleThreadedExecutor executor_;
   rclcpp::Node::SharedPtr sender_ = std::make_shared<rclcpp::Node>("sender");
   rclcpp::Publisher<JointTrajectory>::SharedPtr publisher_;
   decltype(controller.export_reference_interfaces()) interfaces_;

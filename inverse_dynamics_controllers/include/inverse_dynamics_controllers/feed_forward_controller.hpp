@@ -27,10 +27,10 @@ class FeedForwardController : public FollowingController {
   FeedForwardController();
   ~FeedForwardController() override;
 
-  controller_interface::CallbackReturn on_init() override;
-
  protected:
-  std::unique_ptr<Follower> makeFollower() override;
+  void declareParameters() override;
+  std::unique_ptr<Follower> makeFollower(const Setup& setup,
+                                         const reference_parameters::Params& references) override;
 
  private:
   std::shared_ptr<feed_forward_controller::ParamListener> parameters_;

@@ -3,19 +3,27 @@
 /// What the controllers that follow references have in common: all but their law.
 ///
 ///     class MyController : public FollowingController {
-///       CallbackReturn on_init() override;                     // declare parameters
+///       void declareParameters() override;                     // its own
 ///       std::unique_ptr<Follower> makeFollower() override;     // law and references from them
 ///     };
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "inverse_dynamics_controllers/ros2_control_compatibility.hpp"
 
+namespace reference_parameters {
+class ParamListener;
+struct Params;
+}  // namespace reference_parameters
+
 namespace inverse_dynamics_controllers {
 
+class ArmSource;
 class Follower;
+struct Setup;
 
 /// A chainable controller around a law that follows references.
 ///
@@ -28,23 +36,31 @@ class FollowingController : public ChainableController {
   controller_interface::InterfaceConfiguration command_interface_configuration() const override;
   controller_interface::InterfaceConfiguration state_interface_configuration() const override;
 
+  controller_interface::CallbackReturn on_init() override;
   controller_interface::CallbackReturn on_configure(const rclcpp_lifecycle::State& state) override;
   controller_interface::CallbackReturn on_activate(const rclcpp_lifecycle::State& state) override;
   controller_interface::CallbackReturn on_deactivate(const rclcpp_lifecycle::State& state) override;
   controller_interface::CallbackReturn on_cleanup(const rclcpp_lifecycle::State& state) override;
 
  protected:
-  /// All that a configuration makes; called when configured. What it throws fails that transition.
-  virtual std::unique_ptr<Follower> makeFollower() = 0;
+  /// Declares the parameters that the controller has of its own.
+  virtual void declareParameters() = 0;
 
-  std::vector<hardware_interface::CommandInterface> on_export_reference_interfaces() override;
+  /// All that a configuration makes; called when configured. What it throws fails that transition.
+  virtual std::unique_ptr<Follower> makeFollower(
+      const Setup& setup, const reference_parameters::Params& references) = 0;
+
+  std::vector<std::string> referenceNames() const override;
   bool on_set_chained_mode(bool chained_mode) override;
   void readReferenceTopic() noexcept override;
   controller_interface::return_type update_and_write_commands(
       const rclcpp::Time& time, const rclcpp::Duration& period) override;
 
  private:
+  std::unique_ptr<ArmSource> arm_source_;
+  std::shared_ptr<reference_parameters::ParamListener> reference_parameters_;
   std::unique_ptr<Follower> follower_;  // null until configured
+  std::vector<double> references_;      // newest, in the order of referenceNames()
 };
 
 }  // namespace inverse_dynamics_controllers

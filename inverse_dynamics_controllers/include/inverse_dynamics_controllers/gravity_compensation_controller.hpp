@@ -18,6 +18,8 @@ class ParamListener;
 
 namespace inverse_dynamics_controllers {
 
+class ArmSource;
+
 /// The law GravityCompensation of inverse_dynamics_control behind ros2_control's interfaces.
 ///
 /// Real time: update(): no allocation, lock, exception or system call of its own.
@@ -46,6 +48,7 @@ class GravityCompensationController : public controller_interface::ControllerInt
  private:
   struct Configured;
 
+  std::unique_ptr<ArmSource> arm_source_;
   std::shared_ptr<gravity_compensation_controller::ParamListener> parameters_;
   std::unique_ptr<Configured> configured_;
 };

@@ -27,10 +27,10 @@ class InverseDynamicsController : public FollowingController {
   InverseDynamicsController();
   ~InverseDynamicsController() override;
 
-  controller_interface::CallbackReturn on_init() override;
-
  protected:
-  std::unique_ptr<Follower> makeFollower() override;
+  void declareParameters() override;
+  std::unique_ptr<Follower> makeFollower(const Setup& setup,
+                                         const reference_parameters::Params& references) override;
 
  private:
   std::shared_ptr<inverse_dynamics_controller::ParamListener> parameters_;

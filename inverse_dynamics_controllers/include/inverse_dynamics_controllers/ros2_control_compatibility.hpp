@@ -9,6 +9,8 @@
 #include <controller_interface/chainable_controller_interface.hpp>
 #include <hardware_interface/handle.hpp>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <rclcpp/node_options.hpp>
 #include <string>
 #include <type_traits>
@@ -31,22 +33,37 @@ struct HasRobotDescription<T,
                            std::void_t<decltype(std::declval<const T&>().get_robot_description())>>
     : std::true_type {};
 
+/// Whether references are exported as shared interfaces, which have values of their own (jazzy), or
+/// as interfaces on numbers of the controller (humble).
+struct SharedReferences : controller_interface::ChainableControllerInterface {
+  template <class T>
+  static auto find(int) -> decltype(&T::on_export_reference_interfaces_list, std::true_type());
+  template <class T>
+  static std::false_type find(...);
+};
+constexpr bool kHasSharedReferences = decltype(SharedReferences::find<SharedReferences>(0))::value;
+
 }  // namespace detail
 
-/// Value of a loaned interface; NaN where it can't be read: without a value, or while somebody else
-/// writes it. Real time: no allocation, exception or system call.
+/// Value of an interface, if it can be read: it has a value, and nobody is writing it. Real time:
+/// no allocation, exception or system call.
 template <class Interface>
-double valueOf(const Interface& interface) noexcept {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+std::optional<double> readable(const Interface& interface) noexcept {
   try {
     if constexpr (detail::HasOptional<Interface>::value) {
-      return interface.get_optional().value_or(kNan);
+      return interface.get_optional();
     } else {
       return interface.get_value();
     }
   } catch (...) {  // an interface without a value
-    return kNan;
+    return std::nullopt;
   }
+}
+
+/// The same; NaN where it can't be read.
+template <class Interface>
+double valueOf(const Interface& interface) noexcept {
+  return readable(interface).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 /// Writes a loaned command interface. Real time: no allocation, exception or system call.
@@ -95,16 +112,40 @@ inline hardware_interface::CommandInterface referenceInterface(const std::string
 
 /// Base class of the chainable controllers, the same in all releases.
 ///
-/// Of each pair of functions that take something else in another release one overrides; none says
-/// so, for the other one doesn't.
+/// Of each pair of functions that take or give something else in another release one overrides;
+/// none says so, for the other one doesn't.
 class ChainableController : public controller_interface::ChainableControllerInterface {
  public:
   // NOLINTNEXTLINE(readability-identifier-naming): the base class's name, from jazzy on
   rclcpp::NodeOptions define_custom_node_options() const { return declaringNodeOptions(); }
 
  protected:
+  /// Names of the references below the controller's; called when it is configured.
+  virtual std::vector<std::string> referenceNames() const = 0;
+
   /// Called in each cycle that isn't in chained mode, before update_and_write_commands().
   virtual void readReferenceTopic() noexcept = 0;
+
+  /// Copies what the controller before has written, in the order of referenceNames(). Real time: no
+  /// allocation, exception or system call.
+  ///
+  /// @param[in,out] values  one that somebody is writing just now stays as it is.
+  void readReferences(std::vector<double>& values) const noexcept {
+    for (std::size_t k = 0; k < values.size() && k < size(); ++k) {
+      if (shared_.empty()) {
+        values[k] = reference_interfaces_[k];
+      } else if (const std::optional<double> value = readable(*shared_[k])) {
+        values[k] = *value;
+      }
+    }
+  }
+
+  /// Nobody has written a reference: all are NaN.
+  void forgetReferences() noexcept {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    reference_interfaces_.assign(reference_interfaces_.size(), kNan);
+    for (const auto& reference : shared_) setValue(*reference, kNan);
+  }
 
   // NOLINTBEGIN(readability-identifier-naming, modernize-use-override): one overrides, one doesn't
   controller_interface::return_type update_reference_from_subscribers() {
@@ -116,7 +157,42 @@ class ChainableController : public controller_interface::ChainableControllerInte
     readReferenceTopic();
     return controller_interface::return_type::OK;
   }
+
+  std::vector<hardware_interface::CommandInterface> on_export_reference_interfaces() {
+    std::vector<hardware_interface::CommandInterface> interfaces;
+    if (detail::kHasSharedReferences) return interfaces;
+    const std::vector<std::string> names = referenceNames();
+    reference_interfaces_.assign(names.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      interfaces.push_back(
+          referenceInterface(get_node()->get_name(), names[k], &reference_interfaces_[k]));
+    }
+    return interfaces;
+  }
+  std::vector<std::shared_ptr<hardware_interface::CommandInterface>>
+  on_export_reference_interfaces_list() {
+    shared_ = sharedReferences<hardware_interface::CommandInterface>();
+    return shared_;
+  }
   // NOLINTEND(readability-identifier-naming, modernize-use-override)
+
+ private:
+  std::size_t size() const noexcept {
+    return shared_.empty() ? reference_interfaces_.size() : shared_.size();
+  }
+
+  template <class Interface>
+  std::vector<std::shared_ptr<Interface>> sharedReferences() {
+    std::vector<std::shared_ptr<Interface>> references;
+    if constexpr (detail::kHasSharedReferences) {
+      for (const std::string& name : referenceNames()) {
+        references.push_back(std::make_shared<Interface>(get_node()->get_name(), name));
+      }
+    }
+    return references;
+  }
+
+  std::vector<std::shared_ptr<hardware_interface::CommandInterface>> shared_;
 };
 
 }  // namespace inverse_dynamics_controllers

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "follower.hpp"
+
+#include "joint_numbers.hpp"
+
+namespace inverse_dynamics_controllers {
+
+using inverse_dynamics_control::ReferenceGuard;
+using inverse_dynamics_control::ReferenceLimits;
+
+ReferenceInput referenceInput(const Setup& setup, const ReferenceLayout& layout,
+                              const reference_parameters::Params& params) {
+  const std::vector<std::string>& joints = setup.arm.joints;
+  const ReferenceLimits& urdf = setup.arm.limits.reference;
+  const auto& own = params.limits;
+  const ReferenceLimits limits{
+      jointNumbers("limits.position_lower", own.position_lower, joints, urdf.lower),
+      jointNumbers("limits.position_upper", own.position_upper, joints, urdf.upper),
+      jointNumbers("limits.velocity", own.velocity, joints, urdf.velocity)};
+  const ReferenceGuard guard(
+      limits, jointNumbers("stop_deceleration", params.stop_deceleration, joints), joints);
+  return {setup.node, layout, joints, guard, params.reference_timeout};
+}
+
+}  // namespace inverse_dynamics_controllers

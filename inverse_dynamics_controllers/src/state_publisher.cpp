@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "state_publisher.hpp"
+
+#include <chrono>
+#include <control_msgs/msg/joint_trajectory_controller_state.hpp>
+#include <utility>
+
+#include "latest_value.hpp"
+
+namespace inverse_dynamics_controllers {
+
+using control_msgs::msg::JointTrajectoryControllerState;
+using inverse_dynamics_control::JointState;
+using inverse_dynamics_control::Reference;
+
+namespace {
+
+std::vector<double> numbers(const Eigen::VectorXd& values) {
+  return {values.data(), values.data() + values.size()};
+}
+
+struct Cycle {
+  explicit Cycle(Eigen::Index joints)
+      : state(joints), reference(joints), tau(Eigen::VectorXd::Zero(joints)) {}
+
+  std::int64_t nanoseconds = 0;
+  JointState state;
+  Reference reference;
+  bool has_reference = false;
+  Eigen::VectorXd tau;
+};
+
+void write(const Cycle& cycle, JointTrajectoryControllerState& message) {
+  message.header.stamp = rclcpp::Time(cycle.nanoseconds);
+  message.feedback.positions = numbers(cycle.state.q);
+  message.feedback.velocities = numbers(cycle.state.qd);
+  message.output.effort = numbers(cycle.tau);
+  if (!cycle.has_reference) return;
+  message.reference.positions = numbers(cycle.reference.q);
+  message.reference.velocities = numbers(cycle.reference.qd);
+  message.reference.accelerations = numbers(cycle.reference.qdd);
+  message.error.positions = numbers(cycle.reference.q - cycle.state.q);
+  message.error.velocities = numbers(cycle.reference.qd - cycle.state.qd);
+}
+
+}  // namespace
+
+struct StatePublisher::Outbox {
+  LatestValue<Cycle> newest;
+  JointTrajectoryControllerState message;
+  rclcpp::Publisher<JointTrajectoryControllerState>::SharedPtr publisher;
+
+  void publish() {
+    const Cycle* const cycle = newest.take();
+    if (cycle == nullptr || publisher->get_subscription_count() == 0) return;
+    write(*cycle, message);
+    publisher->publish(message);
+  }
+};
+
+StatePublisher::StatePublisher(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
+                               const std::vector<std::string>& joints, double rate) {
+  if (!(rate > 0)) return;
+  JointTrajectoryControllerState message;
+  message.joint_names = joints;
+  outbox_.reset(new Outbox{LatestValue<Cycle>(Cycle(static_cast<Eigen::Index>(joints.size()))),
+                           std::move(message),
+                           node->create_publisher<JointTrajectoryControllerState>(
+                               "~/controller_state", rclcpp::SystemDefaultsQoS())});
+  timer_ = node->create_wall_timer(std::chrono::duration<double>(1.0 / rate),
+                                   [outbox = outbox_] { outbox->publish(); });
+}
+
+void StatePublisher::note(const rclcpp::Time& time, const JointState& state,
+                          const Reference* reference, const Eigen::VectorXd& tau) noexcept {
+  if (outbox_ == nullptr) return;
+  Cycle& cycle = outbox_->newest.back();
+  cycle.nanoseconds = time.nanoseconds();
+  cycle.state.q = state.q;
+  cycle.state.qd = state.qd;
+  cycle.tau = tau;
+  cycle.has_reference = reference != nullptr;
+  if (reference != nullptr) {
+    cycle.reference.q = reference->q;
+    cycle.reference.qd = reference->qd;
+    cycle.reference.qdd = reference->qdd;
+  }
+  outbox_->newest.publish();
+}
+
+}  // namespace inverse_dynamics_controllers

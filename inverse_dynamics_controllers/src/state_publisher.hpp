@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What a controller does, on its topic ~/controller_state.
+///
+///     StatePublisher publisher(node, joints, 50.0);
+///     publisher.note(time, state, &reference, tau);      // in each cycle
+///
+/// The message is a joint_trajectory_controller's, so that the same tools show it: reference,
+/// feedback, error, and efforts as output.
+#pragma once
+
+#include <inverse_dynamics_control/signals.hpp>
+#include <memory>
+#include <rclcpp_lifecycle/lifecycle_node.hpp>
+#include <string>
+#include <vector>
+
+namespace inverse_dynamics_controllers {
+
+/// Hands the newest cycle to another thread without a lock, which publishes it.
+class StatePublisher {
+ public:
+  /// @param rate  messages per second; 0: none, and no topic.
+  StatePublisher(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
+                 const std::vector<std::string>& joints, double rate);
+
+  /// A cycle's numbers; n each. Real time: no allocation, lock, exception or system call.
+  ///
+  /// @param reference  what was followed; null: nothing.
+  void note(const rclcpp::Time& time, const inverse_dynamics_control::JointState& state,
+            const inverse_dynamics_control::Reference* reference,
+            const Eigen::VectorXd& tau) noexcept;
+
+ private:
+  struct Outbox;
+
+  std::shared_ptr<Outbox> outbox_;  // null: nothing is published
+  rclcpp::TimerBase::SharedPtr timer_;
+};
+
+}  // namespace inverse_dynamics_controllers
