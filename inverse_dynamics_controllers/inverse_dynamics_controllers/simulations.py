@@ -44,6 +44,10 @@ CONTROLLERS = {
     "inverse_dynamics": ["inverse_dynamics_controller", "trajectory_to_inverse_dynamics"],
     "feed_forward": ["feed_forward_controller", "trajectory_to_feed_forward"],
     "gravity_compensation": ["gravity_compensation_controller"],
+    "pd_gravity_compensation": [
+        "pd_gravity_compensation_controller",
+        "trajectory_to_pd_gravity_compensation",
+    ],
 }
 """What is spawned for each choice, in this order."""
 
@@ -59,7 +63,8 @@ def arguments() -> list[DeclareLaunchArgument]:
             default_value="inverse_dynamics",
             choices=list(CONTROLLERS),
             description="inverse_dynamics: computed torque after a joint_trajectory_controller; "
-            "feed_forward: PD and the model's torque after one; gravity_compensation",
+            "feed_forward: PD and the model's torque after one; gravity_compensation: hand guiding; "
+            "pd_gravity_compensation: PD and gravity after one",
         ),
         DeclareLaunchArgument(
             "config",

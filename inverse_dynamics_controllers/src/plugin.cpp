@@ -4,10 +4,13 @@
 #include "inverse_dynamics_controllers/feed_forward_controller.hpp"
 #include "inverse_dynamics_controllers/gravity_compensation_controller.hpp"
 #include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
+#include "inverse_dynamics_controllers/pd_gravity_compensation_controller.hpp"
 
 PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::InverseDynamicsController,
                        controller_interface::ChainableControllerInterface)
 PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::GravityCompensationController,
                        controller_interface::ControllerInterface)
 PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::FeedForwardController,
+                       controller_interface::ChainableControllerInterface)
+PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::PdGravityCompensationController,
                        controller_interface::ChainableControllerInterface)

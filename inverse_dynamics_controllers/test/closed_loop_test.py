@@ -49,6 +49,9 @@ DURATION = 2.4
 TOLERANCE = 2e-3
 """Greatest error that is allowed [rad]: the motions are up to 0.8 rad, at up to 1 rad/s."""
 
+PD_TOLERANCE = 0.1
+"""The same of the PD law [rad]: without the model's inertia a moving reference is followed late."""
+
 LOADED_TOLERANCE = 0.1
 """The same with PAYLOAD [rad]: the model lacks it, and the feedback has no integral."""
 
@@ -73,13 +76,17 @@ CASES = [
     ("panda", "inverse_dynamics", 0.0),
     ("ur10", "feed_forward", 0.0),
     ("panda", "feed_forward", 0.0),
+    ("ur10", "pd_gravity_compensation", 0.0),
+    ("panda", "pd_gravity_compensation", 0.0),
     ("ur10", "inverse_dynamics", PAYLOAD),
     ("panda", "inverse_dynamics", PAYLOAD),
 ]
 
 
 def tolerance(controller, payload):
-    return LOADED_TOLERANCE if payload else TOLERANCE
+    if payload:
+        return LOADED_TOLERANCE
+    return PD_TOLERANCE if controller == "pd_gravity_compensation" else TOLERANCE
 
 
 def parameter_file(robot, controller, payload):

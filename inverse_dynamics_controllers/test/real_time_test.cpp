@@ -7,6 +7,7 @@
 #include "inverse_dynamics_controllers/feed_forward_controller.hpp"
 #include "inverse_dynamics_controllers/gravity_compensation_controller.hpp"
 #include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
+#include "inverse_dynamics_controllers/pd_gravity_compensation_controller.hpp"
 
 namespace inverse_dynamics_controllers {
 namespace {
@@ -84,6 +85,30 @@ TEST_F(FeedForwardCycle, AllocatesLocksAndThrowsNothing) {
                           [this](double q) {
                             for (std::size_t j = 0; j < 6; ++j) {
                               for (std::size_t k = 0; k < 4; ++k) setReference(j, k, k ? 0 : q);
+                            }
+                          }),
+            0);
+}
+
+class PdGravityCompensationCycle : public ChainedFixture<PdGravityCompensationController> {
+ public:
+  using ControllerFixture::update;
+};
+
+TEST_F(PdGravityCompensationCycle, AllocatesLocksAndThrowsNothing) {
+  proveTheGuard();
+  if (IsSkipped() || HasFatalFailure()) return;
+  Parameters parameters = good();
+  parameters["gains.p"] = rclcpp::ParameterValue(std::vector<double>{1000.0});
+  parameters["gains.d"] = rclcpp::ParameterValue(std::vector<double>{10.0});
+  ASSERT_TRUE(start(parameters)) << log.text();
+  // New gains, already handed over by the node's thread, are taken in the first cycle.
+  EXPECT_EQ(set("gains.p", rclcpp::ParameterValue(std::vector<double>{500.0})), "");
+  spinUntil([] { return false; }, std::chrono::milliseconds(200));
+  EXPECT_EQ(allocationsOf(*this, hardware,
+                          [this](double q) {
+                            for (std::size_t j = 0; j < 6; ++j) {
+                              for (std::size_t k = 0; k < 2; ++k) setReference(j, k, k ? 0 : q);
                             }
                           }),
             0);
