@@ -5,6 +5,7 @@
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <sstream>
+#include <utility>
 
 #include "option_checks.hpp"
 
@@ -74,18 +75,17 @@ Peaks peaksAbove(const Series& heights, Index exceeding, Index apart) {
   return peaks;
 }
 
-/// About as many peaks as wanted, by the level.
+/// About as many peaks as wanted, or the most that there are, by the level.
 Peaks highestPeaks(const Series& heights, double wanted, Index apart) {
-  // At first as if each peak was as long as that; at high levels most are shorter.
-  double exceeding = wanted * static_cast<double>(apart);
-  Peaks peaks;
-  for (int trial = 0; trial < 20; ++trial) {
-    peaks = peaksAbove(heights, static_cast<Index>(exceeding), apart);
-    const auto found = static_cast<double>(peaks.heights.size());
-    if (found <= wanted) break;
-    exceeding *= std::min(0.95, wanted / found);
+  // From above: at low levels the peaks run into one another.
+  Peaks most;
+  const double half = 0.5 * static_cast<double>(heights.size());
+  for (double exceeding = wanted; exceeding < half; exceeding *= 1.2) {
+    Peaks peaks = peaksAbove(heights, static_cast<Index>(exceeding), apart);
+    if (peaks.heights.size() > most.heights.size()) most = std::move(peaks);
+    if (static_cast<double>(most.heights.size()) >= wanted) break;
   }
-  return peaks;
+  return most;
 }
 
 struct Tail {

@@ -11,7 +11,7 @@
 /// 1. Samples that follow one another are alike. The correlation time t is the time after which the
 ///    autocorrelation has fallen below 1/e; N samples, T apart, count as `N T / (2 t)` independent
 ///    ones.
-/// 2. Peaks over a level, which is such that there are 100 of them, or a fifth of the number of
+/// 2. Peaks over a level, which is such that there are about 100 of them, or a fifth of the number of
 ///    independent samples where that is less; 20 at least. What lies within 3 t is one peak.
 /// 3. The heights of peaks above the level have a generalised Pareto distribution, whatever the
 ///    noise is [Coles, An Introduction to Statistical Modeling of Extreme Values, 2001, ch. 4]. Scale
