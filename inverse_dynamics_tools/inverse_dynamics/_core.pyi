@@ -744,6 +744,153 @@ class FeedForward(ControlLaw):
         period: float,
     ) -> tuple[Floats, Status]: ...
 
+class EstimateStatus(Enum):
+    """How an update of an estimator ended; unless it is OK, the torques are zero."""
+
+    OK = 0
+    STARTING = 1
+    GAP = 2
+    STATE_NOT_FINITE = 3
+    EFFORT_NOT_FINITE = 4
+    MODEL_NOT_FINITE = 5
+    SOLVER_FAILED = 6
+    WRONG_SIZE = 7
+
+    @property
+    def text(self) -> str:
+        """What happened, in words."""
+
+class VelocitySource(Enum):
+    """Where velocities come from."""
+
+    POSITIONS = 0
+    MEASURED = 1
+
+class EstimatorOptions:
+    """gain: 1/s, (n,); tracking: rad/s; friction_band: N m, (n,) or empty; longest_period: s."""
+
+    def __init__(
+        self,
+        gain: ArrayLike,
+        *,
+        velocity: VelocitySource = VelocitySource.POSITIONS,
+        tracking: float = 200.0,
+        compensated: Compensated = ...,
+        friction_band: ArrayLike = (),
+        longest_period: float = 0.02,
+    ) -> None: ...
+
+class ExternalTorqueEstimator:
+    """External torques of each joint, N m: external_torque_estimator.hpp."""
+
+    def update(
+        self, q: ArrayLike, effort: ArrayLike, period: float, qd: ArrayLike | None = None
+    ) -> tuple[Floats, EstimateStatus]: ...
+    def run(
+        self, time: ArrayLike, q: ArrayLike, effort: ArrayLike, qd: ArrayLike | None = None
+    ) -> tuple[Floats, Mask]:
+        """(N, n) torques and (N,) whether they are estimates, of N samples."""
+
+    def reset(self) -> None: ...
+    @property
+    def torques(self) -> Floats: ...
+
+class MomentumObserver(ExternalTorqueEstimator):
+    """From the generalised momentum H(q) qd: momentum_observer.hpp."""
+
+    def __init__(self, solver: Solver, options: EstimatorOptions) -> None: ...
+
+class AccelerationResidual(ExternalTorqueEstimator):
+    """Measured minus computed torques, low-passed: acceleration_residual.hpp."""
+
+    def __init__(self, solver: Solver, options: EstimatorOptions) -> None: ...
+
+class ContactThresholds:
+    """Thresholds (n,), and how they came about: contact_thresholds.hpp."""
+
+    @property
+    def torques(self) -> Floats: ...
+    @property
+    def noise(self) -> Floats: ...
+    @property
+    def correlation_time(self) -> Floats: ...
+    @property
+    def independent(self) -> Floats: ...
+    @property
+    def peaks(self) -> Floats: ...
+    @property
+    def level(self) -> Floats: ...
+    @property
+    def scale(self) -> Floats: ...
+    @property
+    def shape(self) -> Floats: ...
+    @property
+    def false_alarms_per_hour(self) -> float: ...
+
+def contact_thresholds(
+    quiet: ArrayLike, period: float, false_alarms_per_hour: float, joint_names: Sequence[str]
+) -> ContactThresholds:
+    """From external torques (N, n) without contact, period [s] apart, all of them estimates."""
+
+class ContactDetector:
+    """Compares external torques with thresholds: contact_detector.hpp."""
+
+    def __init__(
+        self,
+        thresholds: ArrayLike,
+        joint_names: Sequence[str],
+        *,
+        release_share: float = 0.5,
+        release_time: float = 0.1,
+    ) -> None: ...
+    def update(self, torques: ArrayLike, period: float) -> bool: ...
+    def run(self, time: ArrayLike, torques: ArrayLike) -> Mask: ...
+    def reset(self) -> None: ...
+    @property
+    def contact(self) -> bool: ...
+    @property
+    def joint(self) -> int: ...
+    @property
+    def excess(self) -> float: ...
+
+class WrenchStatus(Enum):
+    """How an update of a wrench ended; unless it is OK, the wrench is zero."""
+
+    OK = 0
+    NOT_FINITE = 1
+    SOLVER_FAILED = 2
+    WRONG_SIZE = 3
+
+    @property
+    def text(self) -> str:
+        """What happened, in words."""
+
+class TipWrench:
+    """Wrench at the tip from external torques: tip_wrench.hpp.
+
+    What the tip exerts on its surroundings: force [N], torque [N m] about the tip's origin, in the
+    axes of the root. noise: (n,) N m.
+    """
+
+    def __init__(
+        self, solver: Solver, noise: ArrayLike, *, force: float = 100.0, torque: float = 10.0
+    ) -> None: ...
+    def update(self, q: ArrayLike, torques: ArrayLike) -> tuple[Floats, WrenchStatus]: ...
+    def run(self, q: ArrayLike, torques: ArrayLike) -> tuple[Floats, Integers]:
+        """(N, 6) forces and torques, (N,) how many directions can't be seen, of N samples."""
+
+    @property
+    def signal_to_noise(self) -> Floats:
+        """(6,) the greatest first."""
+
+    @property
+    def directions(self) -> Floats:
+        """(6, 6) whose columns they belong to: N, N m."""
+
+    @property
+    def unseen(self) -> int:
+        """How many of them, the last ones, are below the noise."""
+
 class SafeStop:
     """Ramps references to a standstill: safe_stop.hpp."""
 

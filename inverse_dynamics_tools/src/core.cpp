@@ -12,6 +12,7 @@
 
 #include "accelerations.hpp"
 #include "arguments.hpp"
+#include "contact.hpp"
 #include "control.hpp"
 #include "errors.hpp"
 #include "evaluator.hpp"
@@ -35,5 +36,6 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindYaml(module);
   inverse_dynamics_tools::bindRunConfiguration(module);
   inverse_dynamics_tools::bindControl(module);
+  inverse_dynamics_tools::bindContact(module);
   inverse_dynamics_tools::explainRefusedArguments(module);
 }

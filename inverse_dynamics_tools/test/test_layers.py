@@ -17,7 +17,7 @@ PACKAGE = Path(__file__).resolve().parents[1] / "inverse_dynamics"
 # From the bottom. Parts of one layer don't know each other.
 LAYERS = (
     ("base",),
-    ("data", "robot", "control"),
+    ("data", "robot", "control", "contact"),
     ("evaluation", "simulation"),
     ("figures",),
     ("report",),

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "contact.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <inverse_dynamics_control/inverse_dynamics_control.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "initialized.hpp"
+#include "solver.hpp"
+
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::EstimatorOptions)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::ExternalTorqueEstimator)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::MomentumObserver)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::AccelerationResidual)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::ContactThresholds)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::ContactDetector)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::TipWrench)
+
+namespace inverse_dynamics_tools {
+namespace {
+
+namespace py = pybind11;
+using namespace inverse_dynamics_control;
+using Vector = Eigen::VectorXd;
+using Mask = py::array_t<bool>;
+
+JointState stateOf(const Vector& q, const std::optional<Vector>& qd) {
+  JointState state(0);
+  state.q = q;
+  if (qd) {
+    state.qd = *qd;
+  } else {
+    state.qd.setZero(q.size());
+  }
+  return state;
+}
+
+std::pair<Vector, EstimateStatus> update(ExternalTorqueEstimator& estimator, const Vector& q,
+                                         const Vector& effort, double period,
+                                         const std::optional<Vector>& qd) {
+  const EstimateStatus status = estimator.update(stateOf(q, qd), effort, period);
+  return {estimator.torques(), status};
+}
+
+void requireRows(const char* name, const Array& array, py::ssize_t rows, py::ssize_t columns) {
+  const bool fits = columns < 0
+                        ? array.ndim() == 1 && array.shape(0) == rows
+                        : array.ndim() == 2 && array.shape(0) == rows && array.shape(1) == columns;
+  if (fits) return;
+  const std::string shape = columns < 0
+                                ? "(" + std::to_string(rows) + ",)"
+                                : "(" + std::to_string(rows) + ", " + std::to_string(columns) + ")";
+  throw py::value_error(std::string(name) + ": expected an array " + shape + ", got " +
+                        std::string(py::str(array.attr("shape"))));
+}
+
+/// All samples, one after the other, without the GIL.
+py::tuple runEstimator(ExternalTorqueEstimator& estimator, const Array& time, const Array& q,
+                       const Array& effort, const std::optional<Array>& qd) {
+  const py::ssize_t count = time.ndim() == 1 ? time.shape(0) : 0;
+  const auto n = static_cast<py::ssize_t>(estimator.jointCount());
+  requireRows("time", time, count, -1);
+  requireRows("q", q, count, n);
+  requireRows("effort", effort, count, n);
+  if (qd) requireRows("qd", *qd, count, n);
+  Array torques({count, n});
+  Mask valid(count);
+  const double* const t = time.data();
+  const auto rows = [n](const Array& array, py::ssize_t k) {
+    return Eigen::Map<const Vector>(array.data() + k * n, n);
+  };
+  double* const out = torques.mutable_data();
+  bool* const ok = valid.mutable_data();
+  {
+    const py::gil_scoped_release release;
+    JointState state(n);
+    for (py::ssize_t k = 0; k < count; ++k) {
+      state.q = rows(q, k);
+      if (qd) state.qd = rows(*qd, k);
+      const double period = k == 0 ? 0.0 : t[k] - t[k - 1];
+      ok[k] = estimator.update(state, rows(effort, k), period) == EstimateStatus::kOk;
+      Eigen::Map<Vector>(out + k * n, n) = estimator.torques();
+    }
+  }
+  return py::make_tuple(torques, valid);
+}
+
+Mask runDetector(ContactDetector& detector, const Array& time, const Array& torques) {
+  const py::ssize_t count = time.ndim() == 1 ? time.shape(0) : 0;
+  requireRows("time", time, count, -1);
+  requireRows("torques", torques, count, torques.ndim() == 2 ? torques.shape(1) : 0);
+  const py::ssize_t n = torques.shape(1);
+  Mask contact(count);
+  bool* const out = contact.mutable_data();
+  const double* const t = time.data();
+  const double* const in = torques.data();
+  const py::gil_scoped_release release;
+  for (py::ssize_t k = 0; k < count; ++k) {
+    const double period = k == 0 ? 0.0 : t[k] - t[k - 1];
+    out[k] = detector.update(Eigen::Map<const Vector>(in + k * n, n), period);
+  }
+  return contact;
+}
+
+Vector numbersOf(const WrenchInRoot& wrench) {
+  Vector numbers(6);
+  numbers << wrench.force, wrench.torque;
+  return numbers;
+}
+
+py::tuple runTipWrench(TipWrench& tip, const Array& q, const Array& torques) {
+  const py::ssize_t count = q.ndim() == 2 ? q.shape(0) : 0;
+  const auto n = static_cast<py::ssize_t>(tip.jointCount());
+  requireRows("q", q, count, n);
+  requireRows("torques", torques, count, n);
+  Array wrenches({count, py::ssize_t{6}});
+  py::array_t<Eigen::Index> unseen(count);
+  double* const out = wrenches.mutable_data();
+  Eigen::Index* const number = unseen.mutable_data();
+  const double* const in = q.data();
+  const double* const tau = torques.data();
+  {
+    const py::gil_scoped_release release;
+    for (py::ssize_t k = 0; k < count; ++k) {
+      tip.update(Eigen::Map<const Vector>(in + k * n, n), Eigen::Map<const Vector>(tau + k * n, n));
+      Eigen::Map<Vector>(out + k * 6, 6) = numbersOf(tip.wrench());
+      number[k] = tip.unseen();
+    }
+  }
+  return py::make_tuple(wrenches, unseen);
+}
+
+void bindEnums(py::module_& module) {
+  py::enum_<EstimateStatus>(module, "EstimateStatus",
+                            "How an update ended; unless it is OK, the torques are zero.")
+      .value("OK", EstimateStatus::kOk)
+      .value("STARTING", EstimateStatus::kStarting)
+      .value("GAP", EstimateStatus::kGap)
+      .value("STATE_NOT_FINITE", EstimateStatus::kStateNotFinite)
+      .value("EFFORT_NOT_FINITE", EstimateStatus::kEffortNotFinite)
+      .value("MODEL_NOT_FINITE", EstimateStatus::kModelNotFinite)
+      .value("SOLVER_FAILED", EstimateStatus::kSolverFailed)
+      .value("WRONG_SIZE", EstimateStatus::kWrongSize)
+      .def_property_readonly(
+          "text", [](EstimateStatus status) { return text(status); }, "What happened, in words.");
+  py::enum_<VelocitySource>(module, "VelocitySource", "Where velocities come from.")
+      .value("POSITIONS", VelocitySource::kPositions)
+      .value("MEASURED", VelocitySource::kMeasured);
+}
+
+void bindEstimators(py::module_& module) {
+  py::class_<EstimatorOptions>(module, "EstimatorOptions", "Options of both estimators.")
+      .def(py::init([](const Vector& gain, VelocitySource velocity, double tracking,
+                       const Compensated& compensated, const Vector& friction_band,
+                       double longest_period) {
+             EstimatorOptions options;
+             options.gain = gain;
+             options.velocity = velocity;
+             options.tracking = tracking;
+             options.compensated = compensated;
+             options.friction_band = friction_band;
+             options.longest_period = longest_period;
+             return options;
+           }),
+           py::arg("gain"), py::kw_only(), py::arg("velocity") = VelocitySource::kPositions,
+           py::arg("tracking") = EstimatorOptions().tracking,
+           py::arg("compensated") = Compensated(), py::arg("friction_band") = Vector(),
+           py::arg("longest_period") = EstimatorOptions().longest_period,
+           "gain: 1/s; tracking: rad/s; friction_band: N m; longest_period: s.");
+  py::class_<ExternalTorqueEstimator>(module, "ExternalTorqueEstimator",
+                                      "External torques of each joint, N m.")
+      .def("update", &update, py::arg("q"), py::arg("effort"), py::arg("period"),
+           py::arg("qd") = py::none(), "(torques, EstimateStatus).")
+      .def("run", &runEstimator, py::arg("time"), py::arg("q"), py::arg("effort"),
+           py::arg("qd") = py::none(),
+           "(N, n) torques and (N,) whether they are estimates, of N samples.")
+      .def("reset", &ExternalTorqueEstimator::reset, "The next sample is the first one.")
+      .def_property_readonly(
+          "torques", [](const ExternalTorqueEstimator& e) -> Vector { return e.torques(); },
+          "(n,) N m.");
+  py::class_<MomentumObserver, ExternalTorqueEstimator>(module, "MomentumObserver",
+                                                        "From the generalised momentum H(q) qd.")
+      .def(py::init([](const py::object& solver, const EstimatorOptions& options) {
+             return std::make_unique<MomentumObserver>(solverOf(solver), options);
+           }),
+           py::arg("solver"), py::arg("options"));
+  py::class_<AccelerationResidual, ExternalTorqueEstimator>(
+      module, "AccelerationResidual", "Measured minus computed torques, low-passed.")
+      .def(py::init([](const py::object& solver, const EstimatorOptions& options) {
+             return std::make_unique<AccelerationResidual>(solverOf(solver), options);
+           }),
+           py::arg("solver"), py::arg("options"));
+}
+
+template <OwnedVector ContactThresholds::*member>
+Vector numbersOf(const ContactThresholds& thresholds) {
+  return thresholds.*member;
+}
+
+void bindThresholds(py::module_& module) {
+  using T = ContactThresholds;
+  py::class_<T>(module, "ContactThresholds", "Thresholds (n,), and how they came about.")
+      .def_property_readonly("torques", &numbersOf<&T::torques>, "N m.")
+      .def_property_readonly("noise", &numbersOf<&T::noise>, "Root mean square, N m.")
+      .def_property_readonly("correlation_time", &numbersOf<&T::correlation_time>, "s.")
+      .def_property_readonly("independent", &numbersOf<&T::independent>,
+                             "Number of independent samples.")
+      .def_property_readonly("peaks", &numbersOf<&T::peaks>, "Number of peaks above the level.")
+      .def_property_readonly("level", &numbersOf<&T::level>, "N m.")
+      .def_property_readonly("scale", &numbersOf<&T::scale>, "N m.")
+      .def_property_readonly("shape", &numbersOf<&T::shape>)
+      .def_readonly("false_alarms_per_hour", &T::false_alarms_per_hour);
+  module.def(
+      "contact_thresholds",
+      [](const Array& quiet, double period, double false_alarms_per_hour,
+         const std::vector<std::string>& joint_names) {
+        requireRows("quiet", quiet, quiet.ndim() == 0 ? 0 : quiet.shape(0),
+                    static_cast<py::ssize_t>(joint_names.size()));
+        const ConstMap columns = states(quiet, "quiet");
+        const py::gil_scoped_release release;
+        return contactThresholds(columns, period, false_alarms_per_hour, joint_names);
+      },
+      py::arg("quiet"), py::arg("period"), py::arg("false_alarms_per_hour"), py::arg("joint_names"),
+      "From external torques (N, n) without contact, period [s] apart, all of them estimates.");
+}
+
+void bindDetector(py::module_& module) {
+  const ReleaseOptions usual;
+  py::class_<ContactDetector>(module, "ContactDetector", "Compares external torques.")
+      .def(py::init([](const Vector& thresholds, const std::vector<std::string>& joint_names,
+                       double release_share, double release_time) {
+             return ContactDetector(thresholds, {release_share, release_time}, joint_names);
+           }),
+           py::arg("thresholds"), py::arg("joint_names"), py::kw_only(),
+           py::arg("release_share") = usual.share, py::arg("release_time") = usual.time)
+      .def("update", &ContactDetector::update, py::arg("torques"), py::arg("period"),
+           "Whether something touches the robot; torques: (n,) N m, period: s.")
+      .def("run", &runDetector, py::arg("time"), py::arg("torques"), "(N,) The same of N samples.")
+      .def("reset", &ContactDetector::reset, "No contact.")
+      .def_property_readonly("contact", &ContactDetector::contact)
+      .def_property_readonly("joint", &ContactDetector::joint,
+                             "Which joint's torque began the contact; -1: none.")
+      .def_property_readonly("excess", &ContactDetector::excess,
+                             "Greatest torque by threshold of the last update.");
+}
+
+void bindTipWrench(py::module_& module) {
+  py::enum_<WrenchStatus>(module, "WrenchStatus", "Unless it is OK, the wrench is zero.")
+      .value("OK", WrenchStatus::kOk)
+      .value("NOT_FINITE", WrenchStatus::kNotFinite)
+      .value("SOLVER_FAILED", WrenchStatus::kSolverFailed)
+      .value("WRONG_SIZE", WrenchStatus::kWrongSize)
+      .def_property_readonly(
+          "text", [](WrenchStatus status) { return text(status); }, "What happened, in words.");
+  py::class_<TipWrench>(module, "TipWrench", "Wrench at the tip from external torques.")
+      .def(py::init([](const py::object& solver, const Vector& noise, double force, double torque) {
+             WrenchOptions options;
+             options.noise = noise;
+             options.force = force;
+             options.torque = torque;
+             return std::make_unique<TipWrench>(solverOf(solver), options);
+           }),
+           py::arg("solver"), py::arg("noise"), py::kw_only(),
+           py::arg("force") = WrenchOptions().force, py::arg("torque") = WrenchOptions().torque,
+           "noise: (n,) N m; force: N; torque: N m.")
+      .def(
+          "update",
+          [](TipWrench& tip, const Vector& q, const Vector& torques) {
+            const WrenchStatus status = tip.update(q, torques);
+            return std::pair{numbersOf(tip.wrench()), status};
+          },
+          py::arg("q"), py::arg("torques"), "((6,) force and torque, WrenchStatus).")
+      .def("run", &runTipWrench, py::arg("q"), py::arg("torques"),
+           "(N, 6) forces and torques, (N,) how many directions can't be seen, of N samples.")
+      .def_property_readonly(
+          "signal_to_noise", [](const TipWrench& tip) -> Vector { return tip.signalToNoise(); },
+          "(6,) the greatest first.")
+      .def_property_readonly(
+          "directions", [](const TipWrench& tip) -> Eigen::MatrixXd { return tip.directions(); },
+          "(6, 6) whose columns they belong to: N, N m.")
+      .def_property_readonly("unseen", &TipWrench::unseen,
+                             "How many of them, the last ones, are below the noise.");
+}
+
+}  // namespace
+
+void bindContact(py::module_& module) {
+  bindEnums(module);
+  bindEstimators(module);
+  bindThresholds(module);
+  bindDetector(module);
+  bindTipWrench(module);
+}
+
+}  // namespace inverse_dynamics_tools
