@@ -38,6 +38,7 @@ VERBS = (
     "evaluate",
     "compare",
     "torques",
+    "contact",
     "report",
     "video",
     "export",

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from inverse_dynamics.evaluation.comparison import Comparison
+    from inverse_dynamics.evaluation.contacts import Contacts
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.evaluation.summary import EvaluationSummary
     from inverse_dynamics.evaluation.trajectory_torques import TrajectoryTorques
@@ -56,6 +57,58 @@ def error_table(evaluation: Evaluation) -> Table:
             "",
             *([figure(_mean([e.rmse for e in evaluation.errors_of_kept]))] if left_out else []),
         )
+    return table
+
+
+def threshold_table(contacts: Contacts) -> Table:
+    """External torques that are a contact, a joint a row."""
+    thresholds, evaluation = contacts.thresholds, contacts.evaluation
+    table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
+    table.add_column("joint", overflow="fold")
+    table.add_column("unit")
+    for heading in ("noise", "threshold", "correlation [ms]", "independent", "peaks"):
+        table.add_column(heading, justify="right")
+    for j, (joint, unit) in enumerate(zip(evaluation.joint_names, evaluation.units, strict=True)):
+        table.add_row(
+            joint,
+            unit,
+            figure(float(thresholds.noise[j])),
+            figure(float(thresholds.torques[j])),
+            f"{1e3 * thresholds.correlation_time[j]:.0f}",
+            f"{thresholds.independent[j]:.0f}",
+            f"{thresholds.peaks[j]:.0f}",
+        )
+    table.caption = f"thresholds of {thresholds.false_alarms_per_hour:g} false alarms per hour"
+    return table
+
+
+def contact_table(contacts: Contacts) -> Table:
+    """A contact a row."""
+    table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
+    table.add_column("contact [s]")
+    table.add_column("joint", overflow="fold")
+    table.add_column("greatest torque", justify="right")
+    force = contacts.wrenches is not None
+    if force:
+        table.add_column("force at tip [N]", justify="right")
+        table.add_column("direction", justify="right", no_wrap=True)
+        table.caption = (
+            "as if the tip was touched; direction in the axes of the root; * some directions can't be "
+            "told there"
+        )
+    for contact in contacts.contacts:
+        row = [
+            f"{contact.begin:.3f} to {contact.end:.3f}",
+            contact.joint,
+            f"{contact.torque:+.3g} {contact.unit}",
+        ]
+        if contact.force is not None and contact.force_direction is not None:
+            x, y, z = contact.force_direction
+            row += [
+                f"{contact.force:.3g}{'*' if contact.unseen else ''}",
+                f"{x:+.2f} {y:+.2f} {z:+.2f}",
+            ]
+        table.add_row(*row)
     return table
 
 

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Contacts of a recording in a directory: contacts.json, series.npz, contacts.png."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from inverse_dynamics.base.files import Contents, write_text, written_whole
+from inverse_dynamics.figures.contacts import save_contact_figure
+from inverse_dynamics.figures.plots import FORMATS, check_formats
+from inverse_dynamics.results.series_file import SeriesFile
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics.evaluation.contacts import Contacts
+
+MARK = "contacts.json"
+CONTENTS = Contents(MARK, (MARK, "series.npz", *(f"contacts.{suffix}" for suffix in FORMATS)))
+
+
+def write_contacts(
+    contacts: Contacts,
+    out: Path | str,
+    *,
+    overwrite: bool = False,
+    figures: Sequence[str] = ("png",),
+) -> None:
+    """Write contacts into a directory, whole or not at all.
+
+    overwrite: replace an older result. figures: formats. Raises OutputError.
+    """
+    check_formats(figures)
+    out = Path(out)
+    inputs = (contacts.evaluation.bag, *contacts.evaluation.robot.files)
+    with written_whole(out, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as directory:
+        text = json.dumps(_summary(contacts), indent=2, allow_nan=False, ensure_ascii=False)
+        write_text(directory / MARK, text + "\n")
+        with SeriesFile(directory / "series.npz", len(contacts.time)) as series:
+            series.add(_series(contacts))
+        save_contact_figure(contacts, *(directory / f"contacts.{suffix}" for suffix in figures))
+
+
+def _series(contacts: Contacts) -> dict[str, Any]:
+    arrays: dict[str, Any] = {
+        "time": contacts.time,
+        "torques": contacts.torques,
+        "valid": contacts.valid,
+        "contact": contacts.contact,
+    }
+    if contacts.wrenches is not None:
+        arrays |= {"wrenches": contacts.wrenches, "unseen": contacts.unseen}
+    return arrays
+
+
+def _summary(contacts: Contacts) -> dict[str, Any]:
+    evaluation, thresholds = contacts.evaluation, contacts.thresholds
+    figures = (
+        "torques",
+        "noise",
+        "correlation_time",
+        "independent",
+        "peaks",
+        "level",
+        "scale",
+        "shape",
+    )
+    return {
+        "schema": 1,
+        "bag": str(evaluation.bag),
+        "topic": evaluation.log.topic,
+        "robot": evaluation.robot.name,
+        "plugin": evaluation.robot.plugin,
+        "estimator": contacts.estimator,
+        "gain": contacts.gain,
+        "quiet": contacts.quiet,
+        "false_alarms_per_hour": thresholds.false_alarms_per_hour,
+        "joints": [
+            {"joint": joint, "unit": unit}
+            | {figure: float(getattr(thresholds, figure)[j]) for figure in figures}
+            for j, (joint, unit) in enumerate(
+                zip(evaluation.joint_names, evaluation.units, strict=True)
+            )
+        ],
+        "contacts": [asdict(contact) for contact in contacts.contacts],
+        "notes": list(contacts.notes),
+    }

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids contact`: what touched the robot."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.base.decimals import decimal
+from inverse_dynamics.verbs.common import file_name, positive_number, progress_bar
+from inverse_dynamics.verbs.options import (
+    add_figures,
+    add_robot,
+    add_robot_changes,
+    add_verb,
+    robot_changes,
+)
+
+if TYPE_CHECKING:
+    from inverse_dynamics.evaluation.contacts import Contacts
+
+_EPILOG = """\
+examples:
+  ids contact recording --robot panda_real --quiet 0,60
+      the first minute is without contact, and shows all motions that the rest has
+
+  ids contact recording --robot panda_real --quiet-recording yesterday --false-alarms 0.1
+      thresholds from another recording; one false alarm in ten hours
+
+  ids contact recording --robot my_robot.yaml --quiet 0,60 --no-friction --friction-band 5,8,5,2,2,2
+      friction isn't known but for its greatest size [N m], joint by joint
+
+External torques are what the robot exerts on its surroundings: measured torques minus those that its
+model needs for the motion, low-passed. What the model doesn't know, a load for one, is among them.
+
+results, written whole or not at all:
+  contacts.json           each contact; thresholds, and how they came about
+  contacts.png            external torques, thresholds, contacts; with --figures also .svg, .pdf
+  series.npz              time, torques, valid, contact, wrenches, unseen, for numpy.load()
+"""
+
+
+def add_parser(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+) -> argparse.ArgumentParser:
+    """Declare the verb."""
+    parser = add_verb(
+        subparsers,
+        "contact",
+        summary="find what touched the robot in a recording, and with which force",
+        epilog=_EPILOG,
+    )
+    parser.add_argument(
+        "bag", metavar="RECORDING", type=file_name, help="as `ids evaluate` takes it"
+    )
+    add_robot(parser)
+    quiet = parser.add_argument_group("thresholds: from a part without contact")
+    quiet.add_argument(
+        "--quiet", metavar="FROM,TO", type=_span, help="that part, s since the first sample"
+    )
+    quiet.add_argument(
+        "--quiet-recording", metavar="RECORDING", type=file_name, help="of this recording"
+    )
+    quiet.add_argument(
+        "--false-alarms",
+        metavar="PER_HOUR",
+        type=positive_number,
+        default=1.0,
+        help="false alarms per hour, of all joints together (default: 1)",
+    )
+    estimator = parser.add_argument_group("estimator")
+    estimator.add_argument(
+        "--gain",
+        metavar="PER_SECOND",
+        type=positive_number,
+        default=60.0,
+        help="1 / time constant (default: 60 1/s, 17 ms)",
+    )
+    estimator.add_argument(
+        "--tracking",
+        metavar="RAD_PER_SECOND",
+        type=positive_number,
+        default=200.0,
+        help="of velocities from positions: lower for coarse encoders (default: 200 rad/s)",
+    )
+    estimator.add_argument(
+        "--measured-velocities",
+        action="store_true",
+        help="the recorded velocities, where they are good and not delayed",
+    )
+    estimator.add_argument(
+        "--friction-band",
+        metavar="A,B,...",
+        type=_numbers,
+        default=(),
+        help="what the friction model may be wrong by [N m], of each joint, or one for all: within it "
+        "there is no external torque",
+    )
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        help="where results go (default: RECORDING_ROBOT_contacts in the working directory)",
+    )
+    parser.add_argument(
+        "--overwrite", action="store_true", help="replace an older result in that directory"
+    )
+    add_figures(parser)
+    robot = add_robot_changes(parser, "recording")
+    robot.add_argument("--topic", metavar="NAME", help="topic of the joint states")
+    return parser
+
+
+def _span(text: str) -> tuple[float, float]:
+    """`from,to` of an option."""
+    numbers = _numbers(text)
+    if len(numbers) != 2 or not numbers[0] < numbers[1]:
+        raise argparse.ArgumentTypeError(f"expected two times, the later one second, got '{text}'")
+    return numbers[0], numbers[1]
+
+
+def _numbers(text: str) -> tuple[float, ...]:
+    """`a,b,c` of an option."""
+    try:
+        numbers = tuple(decimal(part) for part in text.split(","))
+    except ValueError:
+        numbers = (math.nan,)
+    if not all(math.isfinite(number) for number in numbers):
+        raise argparse.ArgumentTypeError(f"expected numbers, a,b,c, got '{text}'")
+    return numbers
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.base.files import check_output_directory
+    from inverse_dynamics.data.several_recordings import name_of
+    from inverse_dynamics.evaluation.contacts import find_contacts
+    from inverse_dynamics.results.contacts import CONTENTS, write_contacts
+    from inverse_dynamics.robot.robots import load_robot
+
+    robot = load_robot(arguments.robot)
+    out = arguments.out or Path(f"{name_of(arguments.bag)}_{robot.name}_contacts")
+    inputs = (arguments.bag, arguments.quiet_recording, arguments.urdf, *robot.files)
+    check_output_directory(out, overwrite=arguments.overwrite, contents=CONTENTS, inputs=inputs)
+    with progress_bar() as progress:
+        contacts = find_contacts(
+            arguments.bag,
+            robot,
+            quiet=arguments.quiet,
+            quiet_recording=arguments.quiet_recording,
+            false_alarms=arguments.false_alarms,
+            gain=arguments.gain,
+            tracking=arguments.tracking,
+            friction_band=arguments.friction_band,
+            measured_velocities=arguments.measured_velocities,
+            progress=progress,
+            topic=arguments.topic,
+            **robot_changes(arguments),
+        )
+    write_contacts(contacts, out, overwrite=arguments.overwrite, figures=arguments.figures)
+    _print(contacts, out, arguments.figures)
+
+
+def _print(contacts: Contacts, out: Path, figures: tuple[str, ...]) -> None:
+    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.tables import contact_table, threshold_table
+
+    console = Screen()
+    evaluation = contacts.evaluation
+    robot, log = evaluation.robot, evaluation.log
+    console.print(robot.description or robot.name, style="bold")
+    console.print(f"solver         {robot.plugin}{'' if robot.friction else ', friction left out'}")
+    console.print(
+        f"recording      {', '.join(filter(None, (str(evaluation.bag), log.topic)))}: {len(log)} "
+        f"samples, {log.duration:.1f} s"
+    )
+    console.print(f"estimator      {contacts.estimator}, {contacts.gain:g} 1/s")
+    console.print(f"quiet          {contacts.quiet}")
+    for note in contacts.notes:
+        console.print(f"note           {note}")
+    console.print(threshold_table(contacts))
+    if contacts.contacts:
+        console.print(contact_table(contacts))
+    else:
+        console.print("contacts       none")
+    for suffix in figures:
+        console.print(f"figure         {out / f'contacts.{suffix}'}")
+    console.print(f"contacts       {out / 'contacts.json'}")

@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: Apache-2.0
+"""External torques and contacts: what Python is given of them, find_contacts(), `ids contact`."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from conftest import fails
+from simulation_arms import pendulum
+
+from inverse_dynamics import Solver
+from inverse_dynamics.contact import (
+    AccelerationResidual,
+    ContactDetector,
+    EstimateStatus,
+    EstimatorOptions,
+    MomentumObserver,
+    TipWrench,
+    VelocitySource,
+    WrenchStatus,
+    contact_thresholds,
+)
+from inverse_dynamics.errors import EvaluationError, InvalidParameterError
+from inverse_dynamics.evaluation.contacts import find_contacts
+
+KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
+PERIOD = 1e-3
+PUSH = (25.0, 26.0, 5.0)  # from, to [s], N m
+
+
+@pytest.fixture(scope="module")
+def solver():
+    return Solver(KDL, urdf=pendulum(), root="base", tip="arm")
+
+
+@pytest.fixture(scope="module")
+def motion(solver):
+    """Half a minute of a swinging pendulum that somebody holds for a second."""
+    time = PERIOD * np.arange(30_000)
+    middle = (time - PERIOD / 2)[:, None]
+    effort = solver.torques(np.sin(middle), np.cos(middle), -np.sin(middle))
+    effort[(time >= PUSH[0]) & (time < PUSH[1])] += PUSH[2]
+    effort += 0.1 * np.random.default_rng(0).standard_normal(effort.shape)
+    step = 2 * np.pi / 2**19
+    return time, step * np.round(np.sin(time[:, None]) / step), effort
+
+
+@pytest.fixture
+def recording(tmp_path, motion):
+    return write_table(tmp_path / "recording.csv", *motion)
+
+
+@pytest.fixture
+def robot(tmp_path):
+    (tmp_path / "arm.urdf").write_text(pendulum())
+    file = tmp_path / "arm.yaml"
+    file.write_text(
+        f"schema: 1\nname: arm\ndescription: a pendulum\nplugin: {KDL}\nurdf: arm.urdf\n"
+    )
+    return file
+
+
+def write_table(path, time, q, effort):
+    rows = np.column_stack([time, q, np.gradient(q[:, 0], time), effort])
+    np.savetxt(
+        path,
+        rows,
+        delimiter=",",
+        fmt="%.9g",
+        header="time,position.swing,velocity.swing,effort.swing",
+        comments="",
+    )
+    return path
+
+
+@pytest.mark.parametrize("kind", [MomentumObserver, AccelerationResidual])
+def test_run_is_update_after_update(solver, motion, kind):
+    time, q, effort = (values[:200] for values in motion)
+    torques, valid = kind(solver, EstimatorOptions([60.0])).run(time, q, effort)
+    one = kind(solver, EstimatorOptions([60.0]))
+    for k in range(len(time)):
+        period = time[k] - time[k - 1] if k else 0.0
+        now, status = one.update(q[k], effort[k], period)
+        assert (now == torques[k]).all()
+        assert (status == EstimateStatus.OK) == valid[k]
+        assert (one.torques == now).all()
+    assert valid.sum() > 100
+    one.reset()
+    assert one.update(q[0], effort[0], PERIOD)[1] == EstimateStatus.STARTING
+
+
+def test_a_constant_torque_is_found(solver):
+    options = EstimatorOptions([60.0], velocity=VelocitySource.MEASURED, friction_band=[2.0])
+    observer = MomentumObserver(solver, options)
+    q, qd = np.full((500, 1), 0.3), np.zeros((500, 1))
+    effort = solver.gravity_vector(q) + 5.0
+    torques, valid = observer.run(PERIOD * np.arange(500), q, effort, qd)
+    assert not valid[0]
+    assert valid[1:].all()
+    assert torques[-1] == pytest.approx(3.0, abs=1e-9)  # less the band
+
+
+def test_statuses_have_texts(solver):
+    observer = MomentumObserver(solver, EstimatorOptions([60.0]))
+    torques, status = observer.update([np.nan], [0.0], PERIOD)
+    assert status == EstimateStatus.STATE_NOT_FINITE
+    assert "isn't finite" in status.text
+    assert torques == [0.0]
+    assert observer.update([0.0, 0.0], [0.0], PERIOD)[1] == EstimateStatus.WRONG_SIZE
+
+
+def test_wrong_shapes_and_options_are_refused(solver, motion):
+    time, q, effort = motion
+    observer = MomentumObserver(solver, EstimatorOptions([60.0]))
+    with pytest.raises(ValueError, match=r"q: expected an array \(30000, 1\), got \(30000,\)"):
+        observer.run(time, q[:, 0], effort)
+    with pytest.raises(ValueError, match="effort: expected an array"):
+        observer.run(time, q, effort[1:])
+    with pytest.raises(InvalidParameterError, match="momentum observer: gain: wrong size"):
+        MomentumObserver(solver, EstimatorOptions([1.0, 1.0]))
+    with pytest.raises(InvalidParameterError, match="tip wrench: noise: wrong size"):
+        TipWrench(solver, [1.0, 1.0])
+    with pytest.raises(ValueError, match="quiet: expected an array"):
+        contact_thresholds(effort, PERIOD, 1.0, ["a", "b"])
+
+
+def test_the_identified_ur10_has_no_momentum():
+    ur10 = Solver("ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10")
+    with pytest.raises(InvalidParameterError, match="use AccelerationResidual"):
+        MomentumObserver(ur10, EstimatorOptions(np.full(6, 60.0)))
+    AccelerationResidual(ur10, EstimatorOptions(np.full(6, 60.0)))
+
+
+def test_detector_and_thresholds(solver, motion):
+    time, q, effort = motion
+    torques, valid = MomentumObserver(solver, EstimatorOptions([60.0])).run(time, q, effort)
+    quiet = valid & (time < 20)
+    thresholds = contact_thresholds(torques[quiet], PERIOD, 1.0, solver.joint_names)
+    assert thresholds.false_alarms_per_hour == 1.0
+    assert 0 < thresholds.noise[0] < thresholds.torques[0] < 1.0
+    detector = ContactDetector(thresholds.torques, solver.joint_names)
+    contact = detector.run(time, torques)
+    assert time[np.argmax(contact)] == pytest.approx(PUSH[0], abs=0.01)
+    assert not contact[time > PUSH[1] + 0.3].any()
+    other = ContactDetector(thresholds.torques, solver.joint_names)
+    assert [other.update(row, PERIOD) for row in torques] == contact.tolist()
+    assert other.joint == 0
+
+
+def test_the_wrench_of_a_planar_arm(solver):
+    tip = TipWrench(Solver(KDL, urdf=pendulum(), root="base", tip="arm"), [0.1])
+    wrench, status = tip.update([0.0], [2.0])
+    assert status == WrenchStatus.OK
+    assert tip.unseen == 5
+    assert tip.signal_to_noise.shape == (6,)
+    assert tip.directions.shape == (6, 6)
+    # the tip is on the axis: only the torque about it can be felt
+    assert wrench == pytest.approx([0, 0, 0, 0, 2.0, 0], abs=1e-3)
+
+
+def test_contacts_of_a_recording(recording, robot):
+    found = find_contacts(recording, robot, quiet=(0.0, 20.0))
+    assert found.estimator == "MomentumObserver"
+    (contact,) = found.contacts
+    assert contact.begin == pytest.approx(PUSH[0], abs=0.01)
+    assert PUSH[1] < contact.end < PUSH[1] + 0.3
+    assert contact.joint == "swing"
+    assert contact.torque == pytest.approx(PUSH[2], rel=0.1)
+    assert contact.unseen == 5
+
+
+def test_velocities_may_be_the_measured_ones(recording, robot):
+    found = find_contacts(recording, robot, quiet=(0.0, 20.0), measured_velocities=True)
+    assert len(found.contacts) == 1
+
+
+def test_a_friction_band_is_taken_off(recording, robot):
+    found = find_contacts(
+        recording, robot, quiet_recording=recording, quiet=(0.0, 20.0), friction_band=[0.02]
+    )
+    assert found.contacts[0].torque == pytest.approx(PUSH[2] - 0.02, rel=0.1)
+
+
+def test_without_a_quiet_part_there_are_no_thresholds(recording, robot):
+    with pytest.raises(EvaluationError, match="give --quiet FROM,TO"):
+        find_contacts(recording, robot)
+    with pytest.raises(InvalidParameterError, match="recording.csv, from 0 s to 0.2 s: contact"):
+        find_contacts(recording, robot, quiet=(0.0, 0.2))
+    with pytest.raises(InvalidParameterError, match="momentum observer: friction_band"):
+        find_contacts(recording, robot, quiet=(0.0, 20.0), friction_band=[1.0, 2.0])
+
+
+def test_the_command_writes_table_figure_and_series(ids, tmp_path, recording, robot):
+    command = ("contact", recording, "--robot", robot, "--quiet", "0,20", "--out", "found")
+    code, out, err = ids(*command)
+    assert (code, err) == (0, "")
+    for part in ("25.0", "swing", "MomentumObserver, 60 1/s"):
+        assert part in out
+    assert "thresholds of 1 false alarms per hour" in out
+    files = {file.name for file in (tmp_path / "found").iterdir()}
+    assert files == {"contacts.json", "contacts.png", "series.npz"}
+    summary = json.loads((tmp_path / "found" / "contacts.json").read_text())
+    assert len(summary["contacts"]) == 1
+    assert summary["joints"][0]["torques"] > summary["joints"][0]["noise"]
+    series = np.load(tmp_path / "found" / "series.npz")
+    assert series["torques"].shape == (30_000, 1)
+    assert series["contact"].sum() > 1000
+    assert series["wrenches"].shape == (30_000, 6)
+    fails(ids(*command), "found: exists", "--overwrite")
+    assert ids(*command, "--overwrite", "--figures", "none")[0] == 0
+    assert not (tmp_path / "found" / "contacts.png").exists()
+
+
+def test_thresholds_of_another_recording(ids, tmp_path, motion, recording, robot):
+    time, q, effort = (values[:20_000] for values in motion)
+    quiet = write_table(tmp_path / "quiet.csv", time, q, effort)
+    options = ("--robot", robot, "--quiet-recording", quiet, "--gain", "30", "--figures", "none")
+    code, out, _ = ids("contact", recording, *options)
+    assert code == 0
+    assert f"quiet          {quiet}" in out
+    assert "25.0" in out
+    code, out, _ = ids("contact", quiet, *options)
+    assert code == 0
+    assert "contacts       none" in out
+
+
+def test_wrong_options_are_told(ids, tmp_path, recording, robot):
+    command = ("contact", recording, "--robot", robot, "--out", "found")
+    fails(ids(*command), "which part of the recording is without contact?")
+    fails(ids(*command, "--quiet", "20,0"), "expected two times, the later one second, got '20,0'")
+    fails(ids(*command, "--quiet", "0,1,2"), "expected two times")
+    fails(ids(*command, "--quiet", "0,20", "--friction-band", "a"), "expected numbers, a,b,c")
+    fails(ids(*command, "--quiet", "0,0.2"), "too few independent samples")
+    fails(ids(*command, "--quiet", "100,200"), "contact thresholds")
+    assert not (tmp_path / "found").exists()
+
+
+@pytest.mark.parametrize("name", ["ur10_real", "panda_real"])
+def test_half_a_minute_of_slow_motion_is_too_little(recordings, name):
+    """Errors of the models change with the posture, slowly: few of the samples are independent."""
+    folder = recordings / f"{name.removesuffix('_real')}_exciting_trajectory"
+    with pytest.raises(InvalidParameterError, match="too few independent samples: .* longer"):
+        find_contacts(folder, name, quiet_recording=folder)
