@@ -24,26 +24,27 @@ void Energies::getKineticEnergyBatch(const ConstStatesRef& q, const ConstStatesR
                                      const States& T) const {
   const BatchCall call("getKineticEnergyBatch", torqueSolver(), q.count);
   call.states("q", q).states("qd", qd).rows("T", T, 1).physicalInertia();
-  const auto energy = [this](const ConstVectorRef& q_k, const ConstVectorRef& qd_k, VectorRef T_k) {
-    T_k[0] = computeKineticEnergy(q_k, qd_k);
-  };
-  const auto energies = [&](const ConstStates& q_part, const ConstStates& qd_part,
-                            const States& T_part) {
-    eachState(q_part.count, energy, StateReader(q_part), StateReader(qd_part), StateWriter(T_part));
-  };
-  call.share(energies, q, qd, T);
+  call.share([this](const auto&... part) { computeKineticEnergyBatch(part...); }, q, qd, T);
 }
 
 void Energies::getPotentialEnergyBatch(const ConstStatesRef& q, const States& U) const {
   const BatchCall call("getPotentialEnergyBatch", torqueSolver(), q.count);
   call.states("q", q).rows("U", U, 1).physicalInertia();
-  const auto energy = [this](const ConstVectorRef& q_k, VectorRef U_k) {
+  call.share([this](const auto&... part) { computePotentialEnergyBatch(part...); }, q, U);
+}
+
+void Energies::computeKineticEnergyBatch(const ConstStates& q, const ConstStates& qd,
+                                         const States& T) const {
+  const auto of_state = [this](const ConstVectorRef& q_k, const ConstVectorRef& qd_k,
+                               VectorRef T_k) { T_k[0] = computeKineticEnergy(q_k, qd_k); };
+  eachState(q.count, of_state, StateReader(q), StateReader(qd), StateWriter(T));
+}
+
+void Energies::computePotentialEnergyBatch(const ConstStates& q, const States& U) const {
+  const auto of_state = [this](const ConstVectorRef& q_k, VectorRef U_k) {
     U_k[0] = computePotentialEnergy(q_k);
   };
-  const auto energies = [&](const ConstStates& q_part, const States& U_part) {
-    eachState(q_part.count, energy, StateReader(q_part), StateWriter(U_part));
-  };
-  call.share(energies, q, U);
+  eachState(q.count, of_state, StateReader(q), StateWriter(U));
 }
 
 }  // namespace v2

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <type_traits>
 #include <utility>
 
 #include "inverse_dynamics_solver/capability.hpp"
@@ -24,7 +25,7 @@ enum class WrenchFrame { kRoot, kTip };
 ///
 /// The frame is part of the type, so that one can't be taken for the other. It gives the axes; the
 /// reference point is the origin of the tip in both.
-template <WrenchFrame frame>
+template <WrenchFrame Frame>
 struct Wrench {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< N
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< about the tip's origin; N m
@@ -34,9 +35,10 @@ using WrenchInTip = Wrench<WrenchFrame::kTip>;
 
 /// The wrenches of many states, 6 x N: force, then torque, one state a column, of any layout. For the
 /// same in each state: `WrenchesInTip(ConstStates(six_numbers, 6, N, 1, 0))`.
-template <WrenchFrame frame>
+template <WrenchFrame Frame>
 struct Wrenches : ConstStatesRef {
-  template <class Expression>
+  template <class Expression,
+            typename = std::enable_if_t<!std::is_base_of_v<Wrenches, std::decay_t<Expression>>>>
   explicit Wrenches(Expression&& values) : ConstStatesRef(std::forward<Expression>(values)) {}
 };
 using WrenchesInRoot = Wrenches<WrenchFrame::kRoot>;
@@ -55,16 +57,16 @@ class ExternalWrench : public Capability {
   /// @{
 
   /// The torques that exert the wrench, in addition to those of the motion: `J(q)^T w`, n.
-  template <WrenchFrame frame>
-  Eigen::VectorXd getExternalTorques(const ConstVectorRef& q, const Wrench<frame>& wrench) const {
+  template <WrenchFrame Frame>
+  Eigen::VectorXd getExternalTorques(const ConstVectorRef& q, const Wrench<Frame>& wrench) const {
     Eigen::VectorXd tau(jointsFor("getExternalTorques"));
     getExternalTorques(q, wrench, tau);
     return tau;
   }
   /// Torques of a motion during which the tip exerts the wrench: `tau + J(q)^T w`, n.
-  template <WrenchFrame frame>
+  template <WrenchFrame Frame>
   Eigen::VectorXd getTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
-                             const ConstVectorRef& qdd, const Wrench<frame>& wrench) const {
+                             const ConstVectorRef& qdd, const Wrench<Frame>& wrench) const {
     Eigen::VectorXd tau(jointsFor("getTorques"));
     getTorques(q, qd, qdd, wrench, tau);
     return tau;
@@ -73,41 +75,41 @@ class ExternalWrench : public Capability {
 
   /// @name Into memory of the caller
   /// @{
-  template <WrenchFrame frame>
-  void getExternalTorques(const ConstVectorRef& q, const Wrench<frame>& wrench,
+  template <WrenchFrame Frame>
+  void getExternalTorques(const ConstVectorRef& q, const Wrench<Frame>& wrench,
                           VectorRef tau) const {
-    externalTorques(q, frame, wrench.force, wrench.torque, tau);
+    externalTorques(q, Frame, wrench.force, wrench.torque, tau);
   }
-  template <WrenchFrame frame>
+  template <WrenchFrame Frame>
   void getTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
-                  const Wrench<frame>& wrench, VectorRef tau) const {
-    torquesWithWrench(q, qd, qdd, frame, wrench.force, wrench.torque, tau);
+                  const Wrench<Frame>& wrench, VectorRef tau) const {
+    torquesWithWrench(q, qd, qdd, Frame, wrench.force, wrench.torque, tau);
   }
   /// @}
 
   /// @name Many states at once
   /// @{
-  template <WrenchFrame frame>
-  void getExternalTorquesBatch(const ConstStatesRef& q, const Wrenches<frame>& wrenches,
+  template <WrenchFrame Frame>
+  void getExternalTorquesBatch(const ConstStatesRef& q, const Wrenches<Frame>& wrenches,
                                const States& tau) const {
-    externalTorquesBatch(q, frame, wrenches, tau);
+    externalTorquesBatch(q, Frame, wrenches, tau);
   }
-  template <WrenchFrame frame>
+  template <WrenchFrame Frame>
   void getTorquesBatch(const ConstStatesRef& q, const ConstStatesRef& qd, const ConstStatesRef& qdd,
-                       const Wrenches<frame>& wrenches, const States& tau) const {
-    torquesWithWrenchBatch(q, qd, qdd, frame, wrenches, tau);
+                       const Wrenches<Frame>& wrenches, const States& tau) const {
+    torquesWithWrenchBatch(q, qd, qdd, Frame, wrenches, tau);
   }
-  template <WrenchFrame frame>
+  template <WrenchFrame Frame>
   Eigen::MatrixXd getExternalTorquesBatch(const ConstStatesRef& q,
-                                          const Wrenches<frame>& wrenches) const {
+                                          const Wrenches<Frame>& wrenches) const {
     Eigen::MatrixXd tau(q.joints, q.count);
     getExternalTorquesBatch(q, wrenches, tau);
     return tau;
   }
-  template <WrenchFrame frame>
+  template <WrenchFrame Frame>
   Eigen::MatrixXd getTorquesBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
                                   const ConstStatesRef& qdd,
-                                  const Wrenches<frame>& wrenches) const {
+                                  const Wrenches<Frame>& wrenches) const {
     Eigen::MatrixXd tau(q.joints, q.count);
     getTorquesBatch(q, qd, qdd, wrenches, tau);
     return tau;

@@ -49,4 +49,13 @@ void InverseDynamicsSolverPendulum::computeFriction(const ConstVectorRef&, const
   f[0] = damping_ * qd[0];
 }
 
+double InverseDynamicsSolverPendulum::computeKineticEnergy(const ConstVectorRef&,
+                                                           const ConstVectorRef& qd) const {
+  return 0.5 * mass_ * length_ * length_ * qd[0] * qd[0];
+}
+
+double InverseDynamicsSolverPendulum::computePotentialEnergy(const ConstVectorRef& q) const {
+  return mass_ * length_ * (gravity_.x() * std::sin(q[0]) + gravity_.z() * std::cos(q[0]));
+}
+
 }  // namespace pendulum_inverse_dynamics_solver

@@ -61,9 +61,9 @@ inline const WrenchInTip kWrenchInTip{{3.0, -4.0, 5.0}, {-0.6, 0.7, 0.8}};
 inline const double kSixNumbers[] = {3.0, -4.0, 5.0, -0.6, 0.7, 0.8};
 
 /// The wrench above in each state.
-template <class Wrenches>
-Wrenches sameWrenches(Eigen::Index count) {
-  return Wrenches(ConstStates(kSixNumbers, 6, count, 1, 0));
+template <class OfFrame>
+OfFrame sameWrenches(Eigen::Index count) {
+  return OfFrame(ConstStates(kSixNumbers, 6, count, 1, 0));
 }
 
 inline void addMethods(const Kinematics& k, Eigen::Index n, std::vector<CapabilityMethod>& all) {
@@ -99,8 +99,8 @@ inline void addMethods(const Kinematics& k, Eigen::Index n, std::vector<Capabili
        }});
 }
 
-template <WrenchFrame frame>
-void addMethods(const ExternalWrench& e, const Wrench<frame>& w, Eigen::Index n,
+template <WrenchFrame Frame>
+void addMethods(const ExternalWrench& e, const Wrench<Frame>& w, Eigen::Index n,
                 std::vector<CapabilityMethod>& all) {
   using Q = const ConstStates&;
   all.push_back(
@@ -109,7 +109,7 @@ void addMethods(const ExternalWrench& e, const Wrench<frame>& w, Eigen::Index n,
        [&e, w](const State& x) { return Matrices{e.getExternalTorques(x.q, w)}; },
        [&e, w](const State& x, Matrices& out) { e.getExternalTorques(x.q, w, out[0].col(0)); },
        [&e](Q q, Q, Q, const BatchOutputs& out) {
-         e.getExternalTorquesBatch(q, sameWrenches<Wrenches<frame>>(q.count), out.vectors[0]);
+         e.getExternalTorquesBatch(q, sameWrenches<Wrenches<Frame>>(q.count), out.vectors[0]);
        }});
   all.push_back(
       {"getTorques",
@@ -117,7 +117,7 @@ void addMethods(const ExternalWrench& e, const Wrench<frame>& w, Eigen::Index n,
        [&e, w](const State& x) { return Matrices{e.getTorques(x.q, x.qd, x.qdd, w)}; },
        [&e, w](const State& x, Matrices& out) { e.getTorques(x.q, x.qd, x.qdd, w, out[0].col(0)); },
        [&e](Q q, Q qd, Q qdd, const BatchOutputs& out) {
-         e.getTorquesBatch(q, qd, qdd, sameWrenches<Wrenches<frame>>(q.count), out.vectors[0]);
+         e.getTorquesBatch(q, qd, qdd, sameWrenches<Wrenches<Frame>>(q.count), out.vectors[0]);
        }});
 }
 

@@ -6,6 +6,7 @@
 ///     solver->initialize({{"mass", 2.0}, {"length", 0.5}});   // also: damping, gravity, friction
 #pragma once
 
+#include "inverse_dynamics_solver/energies.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
 namespace pendulum_inverse_dynamics_solver {
@@ -16,7 +17,8 @@ using inverse_dynamics_solver::MatrixRef;
 using inverse_dynamics_solver::VectorRef;
 
 /// `tau = m l^2 qdd + d qd + m l (gx cos q - gz sin q)`.
-class InverseDynamicsSolverPendulum : public inverse_dynamics_solver::InverseDynamicsSolver {
+class InverseDynamicsSolverPendulum : public inverse_dynamics_solver::InverseDynamicsSolver,
+                                      public inverse_dynamics_solver::Energies {
  protected:
   JointInfo configure(const Configuration& configuration) override;
   void computeInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const override;
@@ -26,6 +28,10 @@ class InverseDynamicsSolverPendulum : public inverse_dynamics_solver::InverseDyn
   void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
                        VectorRef f) const override;
   bool inertiaIsPhysicalImpl() const override { return true; }
+
+  const InverseDynamicsSolver& torqueSolver() const override { return *this; }
+  double computeKineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) const override;
+  double computePotentialEnergy(const ConstVectorRef& q) const override;
 
  private:
   double mass_ = 0.0;     // kg
