@@ -16,7 +16,14 @@
 #include "chain_dynamics/fast_model.hpp"
 #include "chain_dynamics/model.hpp"
 #include "inverse_dynamics_solver/changeable_robot.hpp"
+#include "inverse_dynamics_solver/coriolis_matrix.hpp"
+#include "inverse_dynamics_solver/energies.hpp"
+#include "inverse_dynamics_solver/external_wrench.hpp"
+#include "inverse_dynamics_solver/forward_dynamics.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
+#include "inverse_dynamics_solver/kinematics.hpp"
+#include "inverse_dynamics_solver/regressor.hpp"
+#include "inverse_dynamics_solver/torque_derivatives.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
 inline namespace v2 {
@@ -28,6 +35,7 @@ using inverse_dynamics_solver::MatrixRef;
 using inverse_dynamics_solver::States;
 using inverse_dynamics_solver::StridedMatrices;
 using inverse_dynamics_solver::VectorRef;
+using inverse_dynamics_solver::WrenchFrame;
 
 /// A model made ready to compute with.
 struct ReadyModel {
@@ -50,9 +58,25 @@ struct ReadyModel {
 /// Without a model file, friction is that of the description where `urdf_friction` is true, else
 /// zero.
 ///
+/// Capabilities: all of rigid bodies; where the inertia isn't physical, energies and accelerations
+/// are refused.
+///
 /// Real time and threads: as the base class promises, for up to 64 joints.
 class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDynamicsSolver,
-                                       public inverse_dynamics_solver::ChangeableRobot<ReadyModel> {
+                                       public inverse_dynamics_solver::ChangeableRobot<ReadyModel>,
+                                       public inverse_dynamics_solver::Kinematics,
+                                       public inverse_dynamics_solver::ExternalWrench,
+                                       public inverse_dynamics_solver::CoriolisMatrix,
+                                       public inverse_dynamics_solver::Energies,
+                                       public inverse_dynamics_solver::TorqueDerivatives,
+                                       public inverse_dynamics_solver::Regressor,
+                                       public inverse_dynamics_solver::ForwardDynamics {
+ public:
+  using ExternalWrench::getTorques;
+  using ExternalWrench::getTorquesBatch;
+  using InverseDynamicsSolver::getTorques;
+  using InverseDynamicsSolver::getTorquesBatch;
+
  protected:
   JointInfo configure(const Configuration& configuration) override;
 
@@ -87,6 +111,49 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
                                      const States& g) const override;
   void computeTorquesBatch(const ConstStates& q, const ConstStates& qd, const ConstStates& qdd,
                            const States& tau) const override;
+
+  /// @name Capabilities
+  /// @{
+  void computeTipPose(const ConstVectorRef& q,
+                      chain_dynamics::Transform<double>& pose) const override;
+  void computeTipJacobian(const ConstVectorRef& q, MatrixRef J) const override;
+  void computeTipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                    MatrixRef dJ) const override;
+  void computeExternalTorques(const ConstVectorRef& q, WrenchFrame frame,
+                              const ConstVectorRef& wrench, VectorRef tau) const override;
+  void computeCoriolisMatrix(const ConstVectorRef& q, const ConstVectorRef& qd,
+                             MatrixRef C) const override;
+  double computeKineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) const override;
+  double computePotentialEnergy(const ConstVectorRef& q) const override;
+  void computeTorqueDerivatives(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
+                                MatrixRef dtau_dqdd) const override;
+  void computeRegressor(const ConstVectorRef& q, const ConstVectorRef& qd,
+                        const ConstVectorRef& qdd, MatrixRef Y) const override;
+  void computeAccelerations(const ConstVectorRef& q, const ConstVectorRef& qd,
+                            const ConstVectorRef& tau, VectorRef qdd) const override;
+  void computeTipPoseBatch(const ConstStates& q, const StridedMatrices& R,
+                           const States& p) const override;
+  void computeTipJacobianBatch(const ConstStates& q, const StridedMatrices& J) const override;
+  void computeTipJacobianDerivativeBatch(const ConstStates& q, const ConstStates& qd,
+                                         const StridedMatrices& dJ) const override;
+  void computeExternalTorquesBatch(const ConstStates& q, WrenchFrame frame,
+                                   const ConstStates& wrenches, const States& tau) const override;
+  void computeCoriolisMatrixBatch(const ConstStates& q, const ConstStates& qd,
+                                  const StridedMatrices& C) const override;
+  void computeKineticEnergyBatch(const ConstStates& q, const ConstStates& qd,
+                                 const States& T) const override;
+  void computePotentialEnergyBatch(const ConstStates& q, const States& U) const override;
+  void computeTorqueDerivativesBatch(const ConstStates& q, const ConstStates& qd,
+                                     const ConstStates& qdd, const StridedMatrices& dtau_dq,
+                                     const StridedMatrices& dtau_dqd,
+                                     const StridedMatrices& dtau_dqdd) const override;
+  void computeRegressorBatch(const ConstStates& q, const ConstStates& qd, const ConstStates& qdd,
+                             const StridedMatrices& Y) const override;
+  void computeAccelerationsBatch(const ConstStates& q, const ConstStates& qd,
+                                 const ConstStates& tau, const States& qdd) const override;
+  /// @}
+
   void computeParts(bool shared, const std::function<void()>& compute) const override;
   bool inertiaIsPhysicalImpl() const override { return inertia_is_physical_; }
 
