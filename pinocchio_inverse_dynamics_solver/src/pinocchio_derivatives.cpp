@@ -23,8 +23,8 @@ void PinocchioWorkspace::torqueDerivatives(const ConstVectorRef& q, const ConstV
   dtau_dqdd.triangularView<Eigen::StrictlyLower>() = data_.M.transpose();
 }
 
-/// Not Pinocchio's computeCoriolisMatrix(), whose product with qd is the same, but which isn't made
-/// of Christoffel's symbols.
+/// By definition that of Christoffel's symbols, whatever Pinocchio's version. (For joints of one degree
+/// of freedom computeCoriolisMatrix() of Pinocchio 4 gives the same.)
 void PinocchioWorkspace::coriolisMatrix(const ConstVectorRef& q, const ConstVectorRef& qd,
                                         MatrixRef C) {
   pinocchio::computeRNEADerivatives(models_->without_gravity, data_, q, qd, zero_);
