@@ -66,9 +66,19 @@ class Solver:
         """(n,) N m/A (prismatic N/A) of a model identified in motor currents; None of any other."""
 
     def torques(
-        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, out: Floats | None = None
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        qdd: ArrayLike,
+        *,
+        wrench: ArrayLike | None = None,
+        frame: str = "root",
+        out: Floats | None = None,
     ) -> Floats:
-        """Tau = H(q) qdd + C(q, qd) qd + f(qd) + g(q)."""
+        """Tau = H(q) qdd + C(q, qd) qd + f(qd) + g(q); with a wrench + J(q)^T wrench.
+
+        wrench, frame: as in external_torques().
+        """
 
     def inertia_matrix(self, q: ArrayLike, *, out: Floats | None = None) -> Floats:
         """H(q), (n, n) or (N, n, n)."""
@@ -79,8 +89,10 @@ class Solver:
     def gravity_vector(self, q: ArrayLike, *, out: Floats | None = None) -> Floats:
         """g(q): what holds the robot still."""
 
-    def friction_vector(self, qd: ArrayLike, *, out: Floats | None = None) -> Floats:
-        """f(qd); zero if the solver has no friction model or was made without."""
+    def friction_vector(
+        self, qd: ArrayLike, *, q: ArrayLike | None = None, out: Floats | None = None
+    ) -> Floats:
+        """f(q, qd); zero if the solver has no friction model or was made without."""
 
     def dynamic_components(
         self, q: ArrayLike, qd: ArrayLike, *, out: tuple[Floats, Floats, Floats] | None = None
@@ -125,9 +137,60 @@ class Solver:
     @property
     def base_acceleration(self) -> Floats:
         """(3,) m/s^2."""
+    def tip_pose(self, q: ArrayLike) -> tuple[Floats, Floats]:
+        """Pose of the tip in the root frame: R, (3, 3) or (N, 3, 3), and p, (3,) or (N, 3)."""
+
+    def tip_jacobian(self, q: ArrayLike, *, out: Floats | None = None) -> Floats:
+        """J(q), (6, n) or (N, 6, n): [v, w] = J qd is the velocity of the tip.
+
+        That of its origin, linear first, in the axes of the root frame.
+        """
+
+    def tip_jacobian_derivative(
+        self, q: ArrayLike, qd: ArrayLike, *, out: Floats | None = None
+    ) -> Floats:
+        """dJ/dt where q moves with qd, in the shape of J."""
+
+    def external_torques(
+        self,
+        q: ArrayLike,
+        wrench: ArrayLike,
+        frame: str = "root",
+        *,
+        out: Floats | None = None,
+    ) -> Floats:
+        """J(q)^T wrench: what the joints add so that the tip exerts the wrench on its surroundings.
+
+        wrench: (6,) or (N, 6), force [N] and torque [N m] about the tip's origin, in the axes of
+        frame, "root" or "tip".
+        """
+
+    def coriolis_matrix(self, q: ArrayLike, qd: ArrayLike, *, out: Floats | None = None) -> Floats:
+        """C(q, qd) of Christoffel's symbols, (n, n) or (N, n, n)."""
+
+    def kinetic_energy(self, q: ArrayLike, qd: ArrayLike) -> np.float64 | Floats:
+        """1/2 qd^T H qd [J], a number or (N,)."""
+
+    def potential_energy(self, q: ArrayLike) -> np.float64 | Floats:
+        """Of gravity [J], a number or (N,); zero where all masses are at the root's origin."""
+
+    def torque_derivatives(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike
+    ) -> tuple[Floats, Floats, Floats]:
+        """dtau/dq, dtau/dqd and dtau/dqdd = H, (n, n) or (N, n, n) each, friction included."""
+
+    def regressor(
+        self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, *, out: Floats | None = None
+    ) -> Floats:
+        """Y, (n, 10 n) or (N, n, 10 n): torques of rigid bodies are Y p."""
+
+    def accelerations(
+        self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, out: Floats | None = None
+    ) -> Floats:
+        """Qdd under these torques, friction taken off."""
 
 class FastModel:
-    """What the engine computes and no solver offers, of many states at a time. Threads: safe.
+    """The engine without a plugin, of many states at a time, and Gram matrices. Threads: safe.
 
     Arrays are (n,), one state, or (N, n), one row per state. threads: among how many a large batch
     is shared.

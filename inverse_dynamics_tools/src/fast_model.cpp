@@ -45,6 +45,7 @@ class FastModel {
   }
 
   const std::vector<std::string>& names() const { return names_; }
+  Index jointCount() const { return chain_.jointCount(); }
   py::array_t<double> parameters() const {
     const Eigen::VectorXd p = chain_dynamics::parameters(chain_);
     return py::array_t<double>(p.size(), p.data());
@@ -69,13 +70,13 @@ class FastModel {
                               const py::object& qdd) const {
     SolverCall call = motion("torque_derivatives", q, qd, qdd);
     for (const char* name : {"dtau_dq", "dtau_dqd", "dtau_dqdd"}) {
-      call.matrices(name, py::none());
+      call.matrices(name, py::none(), jointCount(), jointCount());
     }
     share(call, [&](Index first, Index size) {
       fast_.torqueDerivativesBatch(
           call.in(0).middle(first, size), call.in(1).middle(first, size),
-          call.in(2).middle(first, size), call.inertia(0).middle(first, size),
-          call.inertia(1).middle(first, size), call.inertia(2).middle(first, size));
+          call.in(2).middle(first, size), call.matricesOf(0).middle(first, size),
+          call.matricesOf(1).middle(first, size), call.matricesOf(2).middle(first, size));
     });
     return py::make_tuple(call.result(0), call.result(1), call.result(2));
   }
@@ -85,10 +86,10 @@ class FastModel {
     SolverCall call("coriolis_matrix", names_);
     call.input("q", q);
     call.input("qd", qd);
-    call.matrices("out", out);
+    call.matrices("out", out, jointCount(), jointCount());
     share(call, [&](Index first, Index size) {
       fast_.coriolisMatrixBatch(call.in(0).middle(first, size), call.in(1).middle(first, size),
-                                call.inertia(0).middle(first, size));
+                                call.matricesOf(0).middle(first, size));
     });
     return call.result(0);
   }
@@ -96,12 +97,11 @@ class FastModel {
   py::tuple tipPose(const py::object& q) const {
     SolverCall call("tip_pose", names_);
     call.input("q", q);
-    call.arrays("R", py::none(), {3, 3});
-    call.arrays("p", py::none(), {3});
+    call.matrices("R", py::none(), 3, 3);
+    call.vectors("p", py::none(), 3);
     share(call, [&](Index first, Index size) {
-      chain_dynamics::States p = call.states(1).middle(first, size);
-      p.joints = 3;
-      fast_.tipPoseBatch(call.in(0).middle(first, size), call.inertia(0).middle(first, size), p);
+      fast_.tipPoseBatch(call.in(0).middle(first, size), call.matricesOf(0).middle(first, size),
+                         call.states(1).middle(first, size));
     });
     return py::make_tuple(call.result(0), call.result(1));
   }
@@ -109,9 +109,10 @@ class FastModel {
   py::object tipJacobian(const py::object& q, const py::object& out) const {
     SolverCall call("tip_jacobian", names_);
     call.input("q", q);
-    call.arrays("out", out, jacobianShape());
+    call.matrices("out", out, 6, jointCount());
     share(call, [&](Index first, Index size) {
-      fast_.tipJacobianBatch(call.in(0).middle(first, size), call.inertia(0).middle(first, size));
+      fast_.tipJacobianBatch(call.in(0).middle(first, size),
+                             call.matricesOf(0).middle(first, size));
     });
     return call.result(0);
   }
@@ -121,11 +122,11 @@ class FastModel {
     SolverCall call("tip_jacobian_derivative", names_);
     call.input("q", q);
     call.input("qd", qd);
-    call.arrays("out", out, jacobianShape());
+    call.matrices("out", out, 6, jointCount());
     share(call, [&](Index first, Index size) {
       fast_.tipJacobianDerivativeBatch(call.in(0).middle(first, size),
                                        call.in(1).middle(first, size),
-                                       call.inertia(0).middle(first, size));
+                                       call.matricesOf(0).middle(first, size));
     });
     return call.result(0);
   }
@@ -133,10 +134,10 @@ class FastModel {
   py::object regressor(const py::object& q, const py::object& qd, const py::object& qdd,
                        const py::object& out) const {
     SolverCall call = motion("regressor", q, qd, qdd);
-    call.matrices("out", out, kParameters);
+    call.matrices("out", out, jointCount(), kParameters * jointCount());
     share(call, [&](Index first, Index size) {
       fast_.regressorBatch(call.in(0).middle(first, size), call.in(1).middle(first, size),
-                           call.in(2).middle(first, size), call.inertia(0).middle(first, size));
+                           call.in(2).middle(first, size), call.matricesOf(0).middle(first, size));
     });
     return call.result(0);
   }
@@ -178,10 +179,6 @@ class FastModel {
     call.input("qd", qd);
     call.input("qdd", qdd);
     return call;
-  }
-
-  std::vector<py::ssize_t> jacobianShape() const {
-    return {6, static_cast<py::ssize_t>(names_.size())};
   }
 
   template <class Compute>
@@ -277,7 +274,7 @@ void bindFastModel(py::module_& module) {
   const auto none = py::none();
   py::class_<FastModel>(
       module, "FastModel",
-      "What the engine computes and no solver offers, of many states at a time.\n\n"
+      "The engine without a plugin, of many states at a time, and Gram matrices.\n\n"
       "Arrays are (n,), one state, or (N, n), one row per state.\n"
       "threads: among how many a large batch is shared. Threads: safe; the GIL\n"
       "is released.")

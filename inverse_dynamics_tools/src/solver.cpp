@@ -15,6 +15,7 @@
 
 #include "initialized.hpp"
 #include "solver_call.hpp"
+#include "solver_capabilities.hpp"
 #include "solver_origin.hpp"
 #include "solver_payload.hpp"
 
@@ -34,10 +35,13 @@ class Solver {
 
   const Origin& origin() const { return origin_; }
   const ids::InverseDynamicsSolver& get() const { return *solver_; }
+  NamedSolver named() const { return {*solver_, origin_.plugin}; }
   std::shared_ptr<const ids::InverseDynamicsSolver> shared() const { return solver_; }
 
   py::object torques(const py::object& q, const py::object& qd, const py::object& qdd,
+                     const py::object& wrench, const std::string& frame,
                      const py::object& out) const {
+    if (!wrench.is_none()) return torquesWithWrench(named(), q, qd, qdd, wrench, frame, out);
     return vectors("torques", {{"q", q}, {"qd", qd}, {"qdd", qdd}}, out, [&](auto& call) {
       get().getTorquesBatch(call.in(0), call.in(1), call.in(2), call.states(0));
     });
@@ -64,8 +68,8 @@ class Solver {
   py::object inertiaMatrix(const py::object& q, const py::object& out) const {
     SolverCall call("inertia_matrix", get());
     call.input("q", q);
-    call.matrices("out", out);
-    call.run([&] { get().getInertiaMatrixBatch(call.in(0), call.inertia(0)); });
+    call.matrices("out", out, get().jointCount(), get().jointCount());
+    call.run([&] { get().getInertiaMatrixBatch(call.in(0), call.matricesOf(0)); });
     return call.result(0);
   }
   py::tuple dynamicComponents(const py::object& q, const py::object& qd,
@@ -75,11 +79,11 @@ class Solver {
     SolverCall call(method, get());
     call.input("q", q);
     call.input("qd", qd);
-    call.matrices("out[0]", outs[0]);
+    call.matrices("out[0]", outs[0], get().jointCount(), get().jointCount());
     call.vectors("out[1]", outs[1]);
     call.vectors("out[2]", outs[2]);
     call.run([&] {
-      get().getDynamicComponentsBatch(call.in(0), call.in(1), call.inertia(0), call.states(1),
+      get().getDynamicComponentsBatch(call.in(0), call.in(1), call.matricesOf(0), call.states(1),
                                       call.states(2));
     });
     return py::make_tuple(call.result(0), call.result(1), call.result(2));
@@ -200,6 +204,43 @@ py::tuple reduced(const py::object& self) {
                      solver.baseAcceleration()));
 }
 
+/// A function of a solver as a method.
+template <class... Values>
+auto of(py::object (*function)(const NamedSolver&, Values...)) {
+  return [function](const Solver& solver, Values... values) {
+    return function(solver.named(), values...);
+  };
+}
+
+void bindCapabilities(py::class_<Solver>& solver) {
+  const py::arg q("q"), qd("qd"), qdd("qdd"), tau("tau"), wrench("wrench");
+  const py::arg_v frame = py::arg("frame") = "root", out = py::arg("out") = py::none();
+  const py::kw_only keywords;
+  solver
+      .def("tip_pose", of(&tipPose), q,
+           "Pose of the tip in the root frame: R, (3, 3) or (N, 3, 3), and p, (3,) or (N, 3).")
+      .def("tip_jacobian", of(&tipJacobian), q, keywords, out,
+           "J(q), (6, n) or (N, 6, n): [v, w] = J qd is the velocity of the tip's origin, linear\n"
+           "first, in the axes of the root frame.")
+      .def("tip_jacobian_derivative", of(&tipJacobianDerivative), q, qd, keywords, out,
+           "dJ/dt where q moves with qd, in the shape of J.")
+      .def("external_torques", of(&externalTorques), q, wrench, frame, keywords, out,
+           "J(q)^T wrench: what the joints add so that the tip exerts the wrench on its\n"
+           "surroundings. wrench: (6,) or (N, 6), force [N] and torque [N m] about the tip's\n"
+           "origin, in the axes of frame, 'root' or 'tip'.")
+      .def("coriolis_matrix", of(&coriolisMatrix), q, qd, keywords, out,
+           "C(q, qd) of Christoffel's symbols, (n, n) or (N, n, n).")
+      .def("kinetic_energy", of(&kineticEnergy), q, qd, "1/2 qd^T H qd [J], a number or (N,).")
+      .def("potential_energy", of(&potentialEnergy), q,
+           "Of gravity [J], a number or (N,); zero where all masses are at the root's origin.")
+      .def("torque_derivatives", of(&torqueDerivatives), q, qd, qdd,
+           "dtau/dq, dtau/dqd and dtau/dqdd = H, (n, n) or (N, n, n) each, friction included.")
+      .def("regressor", of(&regressor), q, qd, qdd, keywords, out,
+           "Y, (n, 10 n) or (N, n, 10 n): torques of rigid bodies are Y p.")
+      .def("accelerations", of(&accelerations), q, qd, tau, keywords, out,
+           "qdd under these torques, friction taken off.");
+}
+
 std::string represented(const Solver& solver) {
   const std::vector<std::string>& joints = solver.get().jointNames();
   const std::string number = std::to_string(joints.size());
@@ -224,14 +265,15 @@ void bindSolver(py::module_& module) {
       "available_solvers", [] { return ids::SolverLoader().availableSolvers(); },
       "Names of the installed solver plugins, sorted; none if no workspace is sourced.");
 
-  py::class_<Solver>(
+  py::class_<Solver> solver(
       module, "Solver",
       "An inverse dynamics solver, made by name and ready to compute.\n\n"
       "Arrays are (n,), one state, or (N, n), one state per row; results have the\n"
       "same shape. rad, rad/s, rad/s^2, N m (prismatic m, m/s, m/s^2, N); joints\n"
       "in the order of joint_names. out: an array of doubles that takes the result.\n"
       "Any layout, without copies. Threads: safe; the GIL is released. Pickled, it is\n"
-      "made again.")
+      "made again.");
+  solver
       .def(py::init(&makeSolver), py::arg("plugin"), py::arg("urdf") = "", py::arg("root") = "",
            py::arg("tip") = "", py::arg("gravity") = py::none(), py::arg("friction") = true,
            py::arg("attached") = "", py::arg("model") = py::none(),
@@ -257,7 +299,9 @@ void bindSolver(py::module_& module) {
                              "(n,) N m/A (prismatic N/A) of a model identified in motor\n"
                              "currents; None of any other.")
       .def("torques", &Solver::torques, py::arg("q"), py::arg("qd"), py::arg("qdd"), py::kw_only(),
-           py::arg("out") = py::none(), "tau = H(q) qdd + C(q, qd) qd + f(qd) + g(q).")
+           py::arg("wrench") = py::none(), py::arg("frame") = "root", py::arg("out") = py::none(),
+           "tau = H(q) qdd + C(q, qd) qd + f(qd) + g(q); with a wrench + J(q)^T wrench, as in\n"
+           "external_torques().")
       .def("inertia_matrix", &Solver::inertiaMatrix, py::arg("q"), py::kw_only(),
            py::arg("out") = py::none(), "H(q), (n, n) or (N, n, n).")
       .def("coriolis_vector", &Solver::coriolisVector, py::arg("q"), py::arg("qd"), py::kw_only(),
@@ -291,6 +335,7 @@ void bindSolver(py::module_& module) {
       .def_property_readonly("base_acceleration", &Solver::baseAcceleration, "(3,) m/s^2.")
       .def("__repr__", &represented)
       .def("__reduce__", &reduced);
+  bindCapabilities(solver);
 }
 
 }  // namespace inverse_dynamics_tools

@@ -47,7 +47,7 @@ bool standsAsDoubles(const py::array& array) {
 }
 
 /// For results: outOf() has made sure that they may be written.
-double* numbersOf(const py::array& array) {
+double* memoryOf(const py::array& array) {
   return static_cast<double*>(const_cast<void*>(array.data()));
 }
 
@@ -104,6 +104,13 @@ bool overlapsItself(const py::array& array) {
   });
 }
 
+/// Doubles at addresses of doubles, copied where they aren't.
+py::array asDoubles(py::array array) {
+  if (!py::isinstance<Doubles>(array)) array = py::array_t<double>(array);
+  if (!standsAsDoubles(array)) array = array.attr("copy")();
+  return array;
+}
+
 }  // namespace
 
 // ---------------------------------------------------------------- arguments
@@ -134,21 +141,39 @@ void SolverCall::requireShape(const char* name, const py::array& array) const {
   }
 }
 
-void SolverCall::input(const char* name, const py::object& values) {
+py::array SolverCall::numbersFrom(const char* name, const py::object& values) const {
   py::array array = py::array::ensure(values);
   if (!array) refuse(name, "an array of real numbers", typeName(values));
   if (std::strchr("biuf", array.dtype().kind()) == nullptr) {
     refuse(name, "an array of real numbers", py::str(array.dtype()));
   }
+  return array;
+}
+
+void SolverCall::input(const char* name, const py::object& values) {
+  py::array array = numbersFrom(name, values);
   requireShape(name, array);
-  if (!py::isinstance<Doubles>(array)) array = py::array_t<double>(array);
-  if (!standsAsDoubles(array)) array = array.attr("copy")();
+  array = asDoubles(std::move(array));
 
   if (inputs_.empty()) {
     shape_ = shapeOf(array);
     count_ = array.ndim() == 1 ? 1 : array.shape(0);
   }
   inputs_.push_back({name, array});
+}
+
+void SolverCall::wrench(const char* name, const py::object& values) {
+  py::array array = numbersFrom(name, values);
+  const Shape shape = shapeOf(array);
+  if (shape != Shape{6} && shape != perState({6})) {
+    throw ids::SizeMismatchException(
+        ids::errorText(place(name), "wrong shape",
+                       shape_.size() == 1 ? "(6,), force and torque"
+                                          : "(6,) or " + text(perState({6})) + ", force and torque",
+                       text(shape)));
+  }
+  wrench_ = inputs_.size();
+  inputs_.push_back({name, asDoubles(std::move(array))});
 }
 
 // ---------------------------------------------------------------- results
@@ -193,20 +218,28 @@ void SolverCall::addResult(const std::string& name, const py::object& out, const
   results_.push_back(std::move(result));
 }
 
+/// The shape of results that have this one for each state.
+Shape SolverCall::perState(const std::vector<Index>& of_each) const {
+  Shape shape(shape_.begin(), shape_.end() - 1);
+  shape.insert(shape.end(), of_each.begin(), of_each.end());
+  return shape;
+}
+
 void SolverCall::vectors(const std::string& name, const py::object& out) {
   addResult(name, out, shape_);
 }
 
-void SolverCall::matrices(const std::string& name, const py::object& out, Index columns) {
-  Shape shape = shape_;
-  shape.push_back(n_ * columns);
-  addResult(name, out, shape);
+void SolverCall::vectors(const std::string& name, const py::object& out, Index rows) {
+  addResult(name, out, perState({rows}));
 }
 
-void SolverCall::arrays(const std::string& name, const py::object& out, const Shape& of_state) {
-  Shape shape(shape_.begin(), shape_.end() - 1);
-  shape.insert(shape.end(), of_state.begin(), of_state.end());
-  addResult(name, out, shape);
+void SolverCall::numbers(const std::string& name, const py::object& out) {
+  addResult(name, out, perState({}));
+}
+
+void SolverCall::matrices(const std::string& name, const py::object& out, Index rows,
+                          Index columns) {
+  addResult(name, out, perState({rows, columns}));
 }
 
 // ---------------------------------------------------------------- memory, as solvers see it
@@ -217,16 +250,27 @@ ids::ConstStates SolverCall::in(std::size_t i) const {
           stepOf(array, array.ndim() - 2)};
 }
 
-ids::States SolverCall::states(std::size_t i) const {
-  const py::array& array = results_[i].array;
-  return {numbersOf(array), n_, count_, stepOf(array, array.ndim() - 1),
+ids::ConstStates SolverCall::wrenches() const {
+  const py::array& array = inputs_[wrench_].array;
+  return {static_cast<const double*>(array.data()), 6, count_, stepOf(array, array.ndim() - 1),
           stepOf(array, array.ndim() - 2)};
 }
 
-ids::StridedMatrices SolverCall::inertia(std::size_t i) const {
+ids::States SolverCall::states(std::size_t i) const {
   const py::array& array = results_[i].array;
   const py::ssize_t last = array.ndim() - 1;
-  return {numbersOf(array),        array.shape(last - 1), array.shape(last),      count_,
+  return {memoryOf(array), array.shape(last), count_, stepOf(array, last), stepOf(array, last - 1)};
+}
+
+ids::States SolverCall::numbersOf(std::size_t i) const {
+  const py::array& array = results_[i].array;
+  return {memoryOf(array), 1, count_, 1, stepOf(array, array.ndim() - 1)};
+}
+
+ids::StridedMatrices SolverCall::matricesOf(std::size_t i) const {
+  const py::array& array = results_[i].array;
+  const py::ssize_t last = array.ndim() - 1;
+  return {memoryOf(array),         array.shape(last - 1), array.shape(last),      count_,
           stepOf(array, last - 1), stepOf(array, last),   stepOf(array, last - 2)};
 }
 

@@ -40,24 +40,34 @@ class SolverCall {
   /// @throws InvalidParameterValueException  not real numbers.
   void input(const char* name, const pybind11::object& values);
 
-  /// A result of n numbers per state, in the shape of the first argument.
+  /// Six numbers for all states, (6,), or for each, (N, 6).
+  ///
+  /// @throws SizeMismatchException           another shape.
+  /// @throws InvalidParameterValueException  not real numbers.
+  void wrench(const char* name, const pybind11::object& values);
+
+  /// A result of n numbers per state, in the shape of the first argument, or of `rows`.
   ///
   /// @param out  None, or an array of doubles of any layout that shares no memory with others.
   /// @throws SizeMismatchException           another shape.
   /// @throws InvalidParameterValueException  an array that can't be written to as it is.
   void vectors(const std::string& name, const pybind11::object& out);
+  void vectors(const std::string& name, const pybind11::object& out, Eigen::Index rows);
 
-  /// A result of n x n numbers per state, or of n x (columns n): as vectors().
-  void matrices(const std::string& name, const pybind11::object& out, Eigen::Index columns = 1);
+  /// A result of one number per state, () or (N,): as vectors().
+  void numbers(const std::string& name, const pybind11::object& out);
 
-  /// A result of an array of this shape per state: as vectors().
-  void arrays(const std::string& name, const pybind11::object& out,
-              const std::vector<pybind11::ssize_t>& of_state);
+  /// A result of a matrix per state: as vectors().
+  void matrices(const std::string& name, const pybind11::object& out, Eigen::Index rows,
+                Eigen::Index columns);
 
-  /// The i-th argument, result of vectors, result of matrices.
+  /// The i-th argument; the wrenches; the i-th result, which is one of vectors, of numbers, of
+  /// matrices.
   inverse_dynamics_solver::ConstStates in(std::size_t i) const;
+  inverse_dynamics_solver::ConstStates wrenches() const;
   inverse_dynamics_solver::States states(std::size_t i) const;
-  inverse_dynamics_solver::StridedMatrices inertia(std::size_t i) const;
+  inverse_dynamics_solver::States numbersOf(std::size_t i) const;
+  inverse_dynamics_solver::StridedMatrices matricesOf(std::size_t i) const;
 
   /// Calls compute() without the GIL.
   template <class Compute>
@@ -76,6 +86,8 @@ class SolverCall {
   };
 
   std::string place(const std::string& argument) const;
+  pybind11::array numbersFrom(const char* name, const pybind11::object& values) const;
+  std::vector<pybind11::ssize_t> perState(const std::vector<Eigen::Index>& of_each) const;
   void requireShape(const char* name, const pybind11::array& array) const;
   void addResult(const std::string& name, const pybind11::object& out,
                  const std::vector<pybind11::ssize_t>& shape);
@@ -90,6 +102,7 @@ class SolverCall {
   Eigen::Index n_, count_ = 0;
   std::vector<pybind11::ssize_t> shape_;  // of the first argument
   std::vector<Argument> inputs_, results_;
+  std::size_t wrench_ = 0;  // which input it is
 };
 
 }  // namespace inverse_dynamics_tools

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The engine's functions that no solver offers, from Python."""
+"""The engine without a plugin, from Python."""
 
 from __future__ import annotations
 

@@ -11,8 +11,11 @@
 #include <inverse_dynamics_evaluation/log_accelerations.hpp>
 #include <inverse_dynamics_evaluation/online_derivative.hpp>
 #include <inverse_dynamics_solver/conformance/reference_values.hpp>
+#include <inverse_dynamics_solver/external_wrench.hpp>
+#include <inverse_dynamics_solver/kinematics.hpp>
 #include <inverse_dynamics_solver/motor_currents.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
+#include <inverse_dynamics_solver/torque_derivatives.hpp>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -158,6 +161,28 @@ TEST(UsersProgram, TakesMotorCurrentsByValue) {
   VectorXd mine(6);
   motors->getCurrents(kQ, kQd, kQdd, mine);
   EXPECT_EQ(mine, i);
+}
+
+TEST(UsersProgram, TakesWhatCapabilitiesGiveByValue) {
+  using namespace inverse_dynamics_solver;
+  const auto solver = ur10Solver();
+  const auto& kinematics = dynamic_cast<const Kinematics&>(*solver);
+  const auto& contact = dynamic_cast<const ExternalWrench&>(*solver);
+  const auto& derivatives = dynamic_cast<const TorqueDerivatives&>(*solver);
+  const MatrixXd J = kinematics.getTipJacobian(kQ);
+  const WrenchInRoot down{{0.0, 0.0, -20.0}, {0.0, 0.0, 0.0}};
+  const VectorXd external = contact.getExternalTorques(kQ, down);
+  EXPECT_LT((external + 20.0 * J.row(2).transpose()).cwiseAbs().maxCoeff(), kRounding);
+  const VectorXd tau = contact.getTorques(kQ, kQd, kQdd, down);
+  EXPECT_LT((tau - external - solver->getTorques(kQ, kQd, kQdd)).cwiseAbs().maxCoeff(), kRounding);
+
+  // The same wrench in the axes of the tip.
+  const Eigen::Matrix3d R = kinematics.getTipPose(kQ).R;
+  const WrenchInTip turned{R.transpose() * down.force, R.transpose() * down.torque};
+  EXPECT_LT((contact.getExternalTorques(kQ, turned) - external).cwiseAbs().maxCoeff(), kRounding);
+  const auto [by_q, by_qd, H] = derivatives.getTorqueDerivatives(kQ, kQd, kQdd);
+  EXPECT_LT((H - solver->getInertiaMatrix(kQ)).cwiseAbs().maxCoeff(), kRounding);
+  EXPECT_EQ(kinematics.getTipJacobianBatch(kQ.replicate(1, 3)).cols(), 18);
 }
 
 TEST(UsersProgram, DerivesASolver) {
