@@ -137,6 +137,7 @@ class Solver:
     @property
     def base_acceleration(self) -> Floats:
         """(3,) m/s^2."""
+
     def tip_pose(self, q: ArrayLike) -> tuple[Floats, Floats]:
         """Pose of the tip in the root frame: R, (3, 3) or (N, 3, 3), and p, (3,) or (N, 3)."""
 
