@@ -8,6 +8,8 @@
 
 #pragma once
 
+#include <type_traits>
+
 #include "mass_flow.hpp"
 
 namespace chain_dynamics {
@@ -98,8 +100,8 @@ struct CarriedCoriolis {
   using Type = CoriolisForces<V>;
 };
 template <>
-struct CarriedCoriolis<double> {
-  using Type = FourCoriolisForces;
+struct CarriedCoriolis<double> {  // registers of two numbers gain nothing
+  using Type = std::conditional_t<kShortWidth == 4, FourCoriolisForces, CoriolisForces<double>>;
 };
 
 /// The forces of joint i; `m` is the mass of what it moves, if Massive.
