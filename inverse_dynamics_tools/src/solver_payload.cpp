@@ -31,7 +31,7 @@ std::string shapeOf(const Array& array) {
 /// Numbers of one of these shapes.
 Array numbersOf(const std::string& where, const py::object& object, const std::string& expected,
                 const std::vector<std::vector<py::ssize_t>>& shapes) {
-  const Array array = Array::ensure(object);
+  Array array = Array::ensure(object);
   if (!array) {
     PyErr_Clear();
     refuse(where, expected, py::str(py::type::handle_of(object).attr("__name__")));

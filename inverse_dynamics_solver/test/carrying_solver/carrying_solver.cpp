@@ -9,7 +9,7 @@
 namespace carrying_solver {
 namespace {
 
-constexpr double m = 2.0, l = 0.5;  // kg, m
+constexpr double kMass = 2.0, kLength = 0.5;  // kg, m
 
 double gravityTorque(const Pendulum& pendulum, double q) {
   const double s = std::sin(q), c = std::cos(q);
@@ -46,9 +46,10 @@ auto CarryingSolver::robotUnder(const Conditions& conditions) const
 
   // At q = 0 the rod points to -z, and the direction across it to -x.
   const double z = body.first_moment.z();
-  const double inertia = m * l * l + body.inertia(1, 1) - 2.0 * l * z + body.mass * l * l;
+  const double inertia =
+      body.inertia(1, 1) - 2.0 * kLength * z + (kMass + body.mass) * kLength * kLength;
   return std::make_unique<const Pendulum>(
-      Pendulum{inertia, m * l + body.mass * l - z, -body.first_moment.x(), gravity});
+      Pendulum{inertia, (kMass + body.mass) * kLength - z, -body.first_moment.x(), gravity});
 }
 
 void CarryingSolver::computeInertiaMatrix(const ConstVectorRef&, MatrixRef H) const {
@@ -63,7 +64,9 @@ void CarryingSolver::computeCoriolisVector(const ConstVectorRef&, const ConstVec
 void CarryingSolver::computeGravityVector(const ConstVectorRef& q, VectorRef g) const {
   const auto pendulum = currentRobot();
   g[0] = gravityTorque(*pendulum, q[0]);
-  if (has("allocates with a body") && pendulum->along != m * l) g = Eigen::VectorXd(g + g) / 2.0;
+  if (has("allocates with a body") && pendulum->along != kMass * kLength) {
+    g = Eigen::VectorXd(g + g) / 2.0;
+  }
 }
 
 void CarryingSolver::computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
