@@ -87,14 +87,14 @@ WrenchStatus TipWrench::update(const Eigen::Ref<const Eigen::VectorXd>& q,
   }
   scaled_ = torques.cwiseQuotient(noise_);
   // A = U X V^T:  u = V (X^2 + 1)^-1 V^T A^T S^-1 tau_ext
-  Matrix6 AtA;
-  AtA.noalias() = A_.transpose().lazyProduct(A_);
-  Vector6 Atb;
-  Atb.noalias() = A_.transpose().lazyProduct(scaled_);
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(AtA);
+  Matrix6 normal;
+  normal.noalias() = A_.transpose().lazyProduct(A_);
+  Vector6 right;
+  right.noalias() = A_.transpose().lazyProduct(scaled_);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(normal);
   const Vector6 squares = eigen.eigenvalues().cwiseMax(0.0).reverse();
   const Matrix6 V = eigen.eigenvectors().rowwise().reverse();
-  const Vector6 along = V.transpose().lazyProduct(Atb);
+  const Vector6 along = V.transpose().lazyProduct(right);
   const Vector6 u = V.lazyProduct(along.cwiseQuotient((squares.array() + 1.0).matrix()));
   if (!u.allFinite()) return WrenchStatus::kNotFinite;
   ratio_ = squares.cwiseSqrt();
