@@ -19,6 +19,7 @@
 
 #include "arm.hpp"
 #include "arm_interfaces.hpp"
+#include "carried_body.hpp"
 #include "state_publisher.hpp"
 #include "update_report.hpp"
 
@@ -34,6 +35,7 @@ class ControlLoop {
         fault_(setup.parameters.tolerated_fault_time),
         report_(std::make_shared<UpdateReport>(setup.arm.joints)),
         timer_(logEverySecond(setup.node, report_)),
+        carried_(setup),
         publisher_(setup.node, setup.arm.joints, setup.parameters.state_publish_rate) {}
 
   const ArmInterfaces& interfaces() const noexcept { return interfaces_; }
@@ -107,6 +109,7 @@ class ControlLoop {
   inverse_dynamics_control::FaultLatch fault_;
   std::shared_ptr<UpdateReport> report_;
   rclcpp::TimerBase::SharedPtr timer_;
+  CarriedBody carried_;
   StatePublisher publisher_;
 };
 
