@@ -289,7 +289,6 @@ TEST(UsersProgram, EvaluatesALogOfItsOwn) {
       lowPassAccelerations(seconds, log.q, log.qd, log.effort, options);
   EXPECT_EQ(estimate.qdd.cols(), kSamples);
   MatrixXd smooth = lowPass(log.qd, 100.0, 10.0);
-  smooth = derivative(smooth, 0.01);
   smooth = lowPassDerivative(log.qd, 100.0, 10.0);
 
   OnlineDerivative online(1, 5.0);
