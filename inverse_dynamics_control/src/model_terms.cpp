@@ -46,7 +46,7 @@ void ModelTerms::friction(const ConstVectorRef& v, VectorRef f) const {
   if (compensated_.friction) {
     f.setZero();
   } else {
-    solver_->getFrictionVector(Eigen::VectorXd(), v, f);
+    solver_->getFrictionVector(v, f);
   }
 }
 

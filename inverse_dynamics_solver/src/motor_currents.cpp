@@ -43,7 +43,7 @@ void MotorCurrents::getGravityCurrents(const ConstVectorRef& q, VectorRef i) con
 
 void MotorCurrents::getFrictionCurrents(const ConstVectorRef& qd, VectorRef i) const {
   const Gains K = gains("getFrictionCurrents");
-  torqueSolver().getFrictionVector(Eigen::VectorXd(), qd, i);
+  torqueSolver().getFrictionVector(qd, i);
   i.array() /= K.array();
 }
 

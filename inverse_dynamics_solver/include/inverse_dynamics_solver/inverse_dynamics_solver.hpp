@@ -12,6 +12,7 @@
 #include <functional>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -102,18 +103,22 @@ class InverseDynamicsSolver {
     getCoriolisVector(q, qd, c);
     return c;
   }
-  /// Friction torques `f(q, qd)`; zero where the solver has no friction model or the parameter
-  /// `friction` is false. No friction law of this workspace depends on q; one that depends on the
-  /// load of the joints does.
-  [[nodiscard]] Eigen::VectorXd getFrictionVector(const ConstVectorRef& q,
-                                                  const ConstVectorRef& qd) const {
+  /// Friction torques `f(qd)`; zero where the solver has no friction model or the parameter
+  /// `friction` is false.
+  Eigen::VectorXd getFrictionVector(const ConstVectorRef& qd) const {
+    Eigen::VectorXd f = vector("getFrictionVector");
+    getFrictionVector(qd, f);
+    return f;
+  }
+  /// The same at a position, for friction that depends on the load of the joints (no law of this
+  /// workspace does). Not for a qd that may be written: that is the output of
+  /// `getFrictionVector(qd, f)`, so give `std::as_const(qd)`.
+  template <class Velocities,
+            typename = std::enable_if_t<!std::is_convertible_v<Velocities, States>>>
+  Eigen::VectorXd getFrictionVector(const ConstVectorRef& q, Velocities&& qd) const {
     Eigen::VectorXd f = vector("getFrictionVector");
     getFrictionVector(q, qd, f);
     return f;
-  }
-  /// The same where the position isn't known.
-  [[nodiscard]] Eigen::VectorXd getFrictionVector(const ConstVectorRef& qd) const {
-    return getFrictionVector(Eigen::VectorXd(), qd);
   }
   /// Gravity torques `g(q)`: what holds the robot still.
   Eigen::VectorXd getGravityVector(const ConstVectorRef& q) const {
@@ -147,6 +152,9 @@ class InverseDynamicsSolver {
   /// @{
   void getInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const;
   void getCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef c) const;
+  void getFrictionVector(const ConstVectorRef& qd, VectorRef f) const {
+    getFrictionVector(Eigen::VectorXd(), qd, f);
+  }
   /// q may be empty: the position isn't known.
   void getFrictionVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef f) const;
   void getGravityVector(const ConstVectorRef& q, VectorRef g) const;
@@ -169,6 +177,9 @@ class InverseDynamicsSolver {
   void getCoriolisVectorBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
                               const States& c) const;
   /// q may be 0 x N: the positions aren't known.
+  void getFrictionVectorBatch(const ConstStatesRef& qd, const States& f) const {
+    getFrictionVectorBatch(ConstStates(qd.data, 0, qd.count, 1, 0), qd, f);
+  }
   void getFrictionVectorBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
                               const States& f) const;
   void getGravityVectorBatch(const ConstStatesRef& q, const States& g) const;
@@ -187,14 +198,18 @@ class InverseDynamicsSolver {
     getCoriolisVectorBatch(q, qd, c);
     return c;
   }
-  [[nodiscard]] Eigen::MatrixXd getFrictionVectorBatch(const ConstStatesRef& q,
-                                                       const ConstStatesRef& qd) const {
+  Eigen::MatrixXd getFrictionVectorBatch(const ConstStatesRef& qd) const {
     Eigen::MatrixXd f(qd.joints, qd.count);
-    getFrictionVectorBatch(q, qd, f);
+    getFrictionVectorBatch(qd, f);
     return f;
   }
-  [[nodiscard]] Eigen::MatrixXd getFrictionVectorBatch(const ConstStatesRef& qd) const {
-    return getFrictionVectorBatch(ConstStates(qd.data, 0, qd.count, 1, 0), qd);
+  /// Not for a qd that may be written, as getFrictionVector(q, qd).
+  template <class Velocities,
+            typename = std::enable_if_t<!std::is_convertible_v<Velocities, States>>>
+  Eigen::MatrixXd getFrictionVectorBatch(const ConstStatesRef& q, Velocities&& qd) const {
+    Eigen::MatrixXd f(q.joints, q.count);
+    getFrictionVectorBatch(q, qd, f);
+    return f;
   }
   Eigen::MatrixXd getGravityVectorBatch(const ConstStatesRef& q) const {
     Eigen::MatrixXd g(q.joints, q.count);
