@@ -5,6 +5,7 @@
 #pragma once
 
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "inverse_dynamics_solver/conformance/capabilities.hpp"
@@ -213,7 +214,7 @@ TYPED_TEST_P(SolverConformance, BatchEqualsSingleCalls) {
     s.getInertiaMatrixBatch(q, H_memory.bottomRows(n));
     const Eigen::MatrixXd tau = tau_memory.bottomRows(n), H = H_memory.bottomRows(n);
     const Eigen::MatrixXd c = s.getCoriolisVectorBatch(q, qd);
-    const Eigen::MatrixXd f = s.getFrictionVectorBatch(q, qd);
+    const Eigen::MatrixXd f = s.getFrictionVectorBatch(q, std::as_const(qd));
     EXPECT_EQ(s.getFrictionVectorBatch(qd).cols(), count);
     const Eigen::MatrixXd g = s.getGravityVectorBatch(q);
     const auto [H_all, c_all, g_all] = s.getDynamicComponentsBatch(q, qd);
