@@ -53,7 +53,6 @@ int main(int argc, char** argv) {
   report("samples examined", [&] { examineSamples(time, q, qd, effort); });
   report("cut-off chosen", [&] { chooseCutoff({{q, qd}}, 1000.0); });
   report("low-pass", [&] { qdd = lowPass(qd, 1000.0, 5.0); });
-  report("derivative", [&] { qdd = derivative(qd, 1e-3); });
   report("all of it, cut-off given", [&] {
     LowPassOptions options;
     options.cutoff = 5.0;

@@ -31,22 +31,6 @@ Motion cut(const Motion& motion, double begin, double end) {
   return pick(motion, samples, motion.time.head(count));
 }
 
-// Derivative of equidistant samples: central differences of fourth order; of second order beside the
-// ends, one-sided at the ends.
-Eigen::MatrixXd derivative(const Eigen::MatrixXd& x, double period) {
-  const Eigen::Index last = x.cols() - 1;
-  Eigen::MatrixXd result(x.rows(), x.cols());
-  for (Eigen::Index k = 0; k <= last; ++k) {
-    const Eigen::Index before = std::max<Eigen::Index>(k - 1, 0), after = std::min(k + 1, last);
-    result.col(k) = (x.col(after) - x.col(before)) / (static_cast<double>(after - before) * period);
-    if (k >= 2 && k + 2 <= last) {
-      result.col(k) =
-          (8.0 * (x.col(k + 1) - x.col(k - 1)) - (x.col(k + 2) - x.col(k - 2))) / (12.0 * period);
-    }
-  }
-  return result;
-}
-
 // The least error of accelerations by lowPass() and derivative(), its ends continued by reflection,
 // over all cut-offs: what a user could reach who knows the truth. From column `first`, `count`.
 double bestFixedError(const Motion& motion, Eigen::Index first, Eigen::Index count) {

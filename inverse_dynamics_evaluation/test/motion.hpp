@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -112,6 +113,22 @@ inline Motion withRepeats(const Motion& motion, Eigen::Index step) {
 /// Root mean square of the difference.
 inline double rms(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return std::sqrt((a - b).squaredNorm() / static_cast<double>(a.size()));
+}
+
+/// Derivative of equidistant samples, a sample a column: central differences of fourth order; of
+/// second order beside the ends, one-sided at the ends.
+inline Eigen::MatrixXd derivative(const Eigen::MatrixXd& x, double period) {
+  const Eigen::Index last = x.cols() - 1;
+  Eigen::MatrixXd result(x.rows(), x.cols());
+  for (Eigen::Index k = 0; k <= last; ++k) {
+    const Eigen::Index before = std::max<Eigen::Index>(k - 1, 0), after = std::min(k + 1, last);
+    result.col(k) = (x.col(after) - x.col(before)) / (static_cast<double>(after - before) * period);
+    if (k >= 2 && k + 2 <= last) {
+      result.col(k) =
+          (8.0 * (x.col(k + 1) - x.col(k - 1)) - (x.col(k + 2) - x.col(k - 2))) / (12.0 * period);
+    }
+  }
+  return result;
 }
 
 }  // namespace inverse_dynamics_evaluation

@@ -9,6 +9,7 @@
 #include "ends.hpp"
 #include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "low_pass_differentiator.hpp"
+#include "motion.hpp"
 
 namespace inverse_dynamics_evaluation {
 namespace {
