@@ -109,6 +109,8 @@ TEST(InverseDynamicsSolver, FrictionIsWrittenWhereItMayBe) {
   solver->getFrictionVectorBatch(constant, many);
   EXPECT_EQ(many, Eigen::MatrixXd::Zero(2, 3));
   EXPECT_EQ(solver->getFrictionVectorBatch(constant, constant), many);
+  const ConstStates unknown(constant.data(), 0, 3, 1, 0);  // positions
+  EXPECT_EQ(solver->getFrictionVectorBatch(unknown, constant), many);
 }
 
 TEST(InverseDynamicsSolver, DefaultsDoNotAllocateUpToSixtyFourJoints) {

@@ -207,8 +207,9 @@ class InverseDynamicsSolver {
   template <class Velocities,
             typename = std::enable_if_t<!std::is_convertible_v<Velocities, States>>>
   Eigen::MatrixXd getFrictionVectorBatch(const ConstStatesRef& q, Velocities&& qd) const {
-    Eigen::MatrixXd f(q.joints, q.count);
-    getFrictionVectorBatch(q, qd, f);
+    const ConstStatesRef velocities(std::forward<Velocities>(qd));
+    Eigen::MatrixXd f(velocities.joints, velocities.count);
+    getFrictionVectorBatch(q, velocities, f);
     return f;
   }
   Eigen::MatrixXd getGravityVectorBatch(const ConstStatesRef& q) const {
