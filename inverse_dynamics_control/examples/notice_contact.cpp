@@ -64,7 +64,7 @@ int main() {
   // The loop.
   for (bool before = false; hardware.time < 40.0;) {
     hardware.read(period, state, effort);
-    observer.update(state, effort, period);
+    if (observer.update(state, effort, period) != EstimateStatus::kOk) continue;  // not known
     const bool contact = detector.update(observer.torques(), period);
     if (contact && !before) {
       std::cout << "contact " << std::round(1e3 * (hardware.time - 30.0)) << " ms after it began\n";

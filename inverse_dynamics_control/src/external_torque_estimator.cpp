@@ -46,6 +46,7 @@ ExternalTorqueEstimator::ExternalTorqueEstimator(
   if (velocity_ == VelocitySource::kPositions) {
     requireNumber(name + ": tracking", options.tracking, Range::kPositive, "rad/s");
     settling_time_ = tracker_.settlingTime();
+    settling_updates_ = MotionTracker::kSettlingUpdates;
   }
   const Eigen::Index n = model_.jointCount();
   if (band_.size() == 0) band_.setZero(n);
@@ -105,6 +106,7 @@ EstimateStatus ExternalTorqueEstimator::beginAt(const JointState& state, Estimat
   if (velocity_ == VelocitySource::kPositions) qd_.setZero();
   begin(q_, qd_);
   time_ = 0.0;
+  updates_ = 0;
   running_ = true;
   return status;
 }
@@ -122,8 +124,10 @@ EstimateStatus ExternalTorqueEstimator::advance(const JointState& state,
   if (velocity_ == VelocitySource::kPositions) left_ = tracker_.filter(left_, period);
   left_ -= inertial_;
   time_ += period;
-  if (time_ < settling_time_) return EstimateStatus::kStarting;
+  ++updates_;
+  if (time_ < settling_time_ || updates_ < settling_updates_) return EstimateStatus::kStarting;
   filter(period);
+  if (!filtered_.allFinite()) return refuse(EstimateStatus::kModelNotFinite);
   return EstimateStatus::kOk;
 }
 

@@ -57,6 +57,40 @@ TYPED_TEST(ExternalTorque, FollowsAStepWithItsTimeConstantAtAnyPeriod) {
   }
 }
 
+// A moving arm's first velocity is a jump from zero.
+TYPED_TEST(ExternalTorque, StartsInMotionAtAnyPeriodWithoutATorque) {
+  for (const double period : {1e-3, 0.01, 0.05}) {
+    EstimatorOptions chosen = options(1, VelocitySource::kPositions);
+    chosen.longest_period = 1.0;
+    const auto observer = this->onPendulum(chosen);
+    const double speed = 0.5;
+    int estimates = 0;
+    for (int k = 0; k < 400; ++k) {
+      const double before = speed * (k - 0.5) * period;  // efforts are means over the last period
+      const double effort = 9.81 * std::cos(before) + Pendulum::friction(speed);
+      const JointState state = stateOf(vec({speed * k * period}), vec({speed}));
+      if (observer->update(state, vec({effort}), period) != EstimateStatus::kOk) continue;
+      ++estimates;
+      ASSERT_LT(std::abs(observer->torques()[0]), 0.3) << period << " s, update " << k;
+    }
+    EXPECT_GT(estimates, 300);
+  }
+}
+
+TYPED_TEST(ExternalTorque, BeginsAgainAfterEffortsThatOverflow) {
+  const auto observer = this->onPendulum(options(1, VelocitySource::kMeasured));
+  const JointState rest = stateOf(vec({0.7}), vec({0.0}));
+  observer->update(rest, vec({holding(0.7)}), kPeriod);
+  for (const double effort : {1.7e308, -1.7e308, 1.7e308, -1.7e308}) {
+    observer->update(rest, vec({effort}), kPeriod);
+    EXPECT_TRUE(observer->torques().allFinite());
+  }
+  EstimateStatus status = EstimateStatus::kStarting;
+  for (int k = 0; k < 1000; ++k) status = observer->update(rest, vec({holding(0.7)}), kPeriod);
+  EXPECT_EQ(status, EstimateStatus::kOk);
+  EXPECT_TRUE(observer->torques().allFinite());
+}
+
 TYPED_TEST(ExternalTorque, PeriodsMayVary) {
   const auto observer = this->onPendulum(options(1, VelocitySource::kMeasured));
   const JointState rest = stateOf(vec({0.7}), vec({0.0}));

@@ -140,10 +140,12 @@ class ExternalTorqueEstimator {
   OwnedVector gain_, band_;
   VelocitySource velocity_;
   double longest_period_, settling_time_ = 0.0;  // s
+  int settling_updates_ = 0;
   MotionTracker tracker_;
 
   bool running_ = false;                // there was a first sample
   double time_ = 0.0;                   // since then [s]
+  int updates_ = 0;                     // since then
   double period_ = 0.0;                 // share_ belongs to it
   OwnedVector share_;                   // of the new torque in the filtered one
   OwnedVector q0_, qd0_;                // last sample

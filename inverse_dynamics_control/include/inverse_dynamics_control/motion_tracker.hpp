@@ -39,6 +39,10 @@ class MotionTracker {
   /// How long after start() the velocity of a joint that was moving is off by more than 0.3 % [s].
   double settlingTime() const noexcept { return 10.0 / bandwidth_; }
 
+  /// How many update() it takes at least, however long the periods are: a position is known after
+  /// one, a velocity after two, an acceleration after three.
+  static constexpr int kSettlingUpdates = 4;
+
   /// Starts at a position: n, finite; rad (prismatic m).
   void start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept;
 
