@@ -25,6 +25,13 @@ namespace {
 namespace py = pybind11;
 namespace ids = inverse_dynamics_solver;
 
+/// What a function returns that may wait for other threads, which may need the interpreter.
+template <class Read>
+auto withoutInterpreter(const Read& read) {
+  const py::gil_scoped_release release;
+  return read();
+}
+
 class Solver {
  public:
   explicit Solver(Origin origin) : origin_(std::move(origin)) {
@@ -110,7 +117,11 @@ class Solver {
     return dynamic_cast<const ids::Payload*>(solver_.get()) != nullptr &&
            dynamic_cast<const ids::VariableGravity*>(solver_.get()) != nullptr;
   }
-  py::dict payloads() { return dictionaryOf(capability<ids::Payload>("payloads").payloads()); }
+  // What is set waits for a change, which waits for batches: without the interpreter's lock.
+  py::dict payloads() {
+    auto& payload = capability<ids::Payload>("payloads");
+    return dictionaryOf(withoutInterpreter([&] { return payload.payloads(); }));
+  }
 
   void setGravity(const py::object& gravity) {
     auto& mount = capability<ids::VariableGravity>("set_gravity");
@@ -125,9 +136,13 @@ class Solver {
     const py::gil_scoped_release release;
     mount.setBaseAcceleration(numbers);
   }
-  py::object gravity() { return arrayOf(capability<ids::VariableGravity>("gravity").gravity()); }
+  py::object gravity() {
+    auto& mount = capability<ids::VariableGravity>("gravity");
+    return arrayOf(withoutInterpreter([&] { return mount.gravity(); }));
+  }
   py::object baseAcceleration() {
-    return arrayOf(capability<ids::VariableGravity>("base_acceleration").baseAcceleration());
+    auto& mount = capability<ids::VariableGravity>("base_acceleration");
+    return arrayOf(withoutInterpreter([&] { return mount.baseAcceleration(); }));
   }
 
   /// Drive gains of a model identified in currents; None of any other.
