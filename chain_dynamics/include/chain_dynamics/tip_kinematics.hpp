@@ -55,7 +55,7 @@ Vector3<Scalar> linksOnFirstJoint(const Chain& chain, const Eigen::MatrixBase<Q>
 /// @return         R, and p in m.
 /// Real time: no allocation, lock, exception or system call. Threads: safe.
 template <typename Q>
-Transform<typename Q::Scalar> tipPose(const Chain& chain, const Eigen::MatrixBase<Q>& q) {
+inline Transform<typename Q::Scalar> tipPose(const Chain& chain, const Eigen::MatrixBase<Q>& q) {
   using Scalar = typename Q::Scalar;
   assert(q.size() == chain.jointCount());
   Transform<Scalar> X_0i = Transform<Scalar>::identity();
