@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <iomanip>
 #include <set>
 #include <sstream>
 #include <string>
@@ -8,6 +11,7 @@
 
 #include "chain_dynamics/robot_description.hpp"
 #include "chain_dynamics/text.hpp"
+#include "chain_dynamics/tip_kinematics.hpp"
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
@@ -98,6 +102,29 @@ Sentences attachedLinks(const Configuration& configuration, const chain_dynamics
           "' to ignore"};
 }
 
+/// In metres and radians: more than what an identified model's lengths differ from its maker's.
+constexpr double kOtherFrame = 0.01;
+
+/// A sentence where the tip of a model isn't that of the chain between root and tip of a robot
+/// description, whose joints are the same.
+Sentences otherTip(const Chain& described, const chain_dynamics::Model& model) {
+  const Eigen::Index n = described.jointCount();
+  double distance = 0.0, angle = 0.0;
+  for (const double position : {0.0, 0.7}) {
+    const Eigen::VectorXd q = Eigen::VectorXd::Constant(n, position);
+    const auto expected = tipPose(described, q), got = tipPose(model.chain, q);
+    distance = std::max(distance, (got.p - expected.p).norm());
+    const Eigen::Matrix3d turned = expected.R.transpose() * got.R;
+    angle = std::max(angle, Eigen::AngleAxisd(turned).angle());
+  }
+  if (distance < kOtherFrame && angle < kOtherFrame) return {};
+  std::ostringstream found;
+  found << std::fixed << std::setprecision(3) << distance << " m and " << angle << " rad";
+  return {"root and tip have no effect: the tip of model " + model.name + " is up to " +
+          found.str() + " from theirs; poses, wrenches, payloads and gravity are stated in the " +
+          "model's frames"};
+}
+
 /// A sentence for each way in which a robot description, from which nothing is computed, is that
 /// of another robot than the model.
 Sentences differences(const Configuration& configuration, const chain_dynamics::Model& model) {
@@ -106,12 +133,14 @@ Sentences differences(const Configuration& configuration, const chain_dynamics::
   try {
     if (configuration.lump_attached) sentences = attachedLinks(configuration, model);
     if (configuration.root.empty() && configuration.tip.empty()) return sentences;
-    const auto joints = chainFromDescription(configuration).jointNames();
-    if (joints != model.chain.jointNames()) {
+    const Chain described = chainFromDescription(configuration);
+    if (described.jointNames() == model.chain.jointNames()) {
+      for (std::string& sentence : otherTip(described, model)) sentences.push_back(sentence);
+    } else {
       sentences.push_back(
           "root and tip have no effect: between them, the robot description has "
           "joints " +
-          joined(joints) + ", and model " + model.name + " has " +
+          joined(described.jointNames()) + ", and model " + model.name + " has " +
           joined(model.chain.jointNames()));
     }
   } catch (const std::exception& e) {

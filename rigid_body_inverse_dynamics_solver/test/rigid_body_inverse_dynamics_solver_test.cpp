@@ -164,6 +164,12 @@ TEST(RigidBody, BodiesThatADescriptionAttachesToAModelAreMentioned) {
   solver.initialize({{"model", kFeasible}, {"tip", "fer_link4"}}, "", arm);
   ASSERT_EQ(solver.warnings().size(), 1U);
   expectContains(solver.warnings().front(), {"root and tip have no effect", "fer_joint4, and"});
+
+  // The right joints, but a tip that isn't the model's: 107 mm before the flange.
+  solver.initialize({{"model", kFeasible}, {"tip", "fer_link7"}}, "", arm);
+  ASSERT_EQ(solver.warnings().size(), 1U);
+  expectContains(solver.warnings().front(),
+                 {"root and tip have no effect", "0.107 m and 0.000 rad"});
 }
 
 TEST(RigidBody, GravityOfTheModelFileIsReplacedOnlyWhereAnotherIsGiven) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ur10_inverse_dynamics_solver/ur10_inverse_dynamics_solver.hpp"
 
+#include <ament_index_cpp/get_package_share_directory.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
@@ -40,6 +42,25 @@ TEST(UR10, GivesTheValuesOfTheReferenceImplementation) {
   const auto solver = loader.load(kPlugin);
   solver->initialize();
   expectReferenceValues(*solver, "ur10.json", kTolerance);
+}
+
+// base_link and tool0: lengths differ by up to 0.7 mm each.
+TEST(UR10, HasTheFramesOfTheMakersDescription) {
+  const std::filesystem::path robots =
+      ament_index_cpp::get_package_share_directory("inverse_dynamics_robots");
+  std::ostringstream urdf;
+  urdf << std::ifstream(robots / "urdf/ur10.urdf").rdbuf();
+  const inverse_dynamics_solver::Parameters ends = {{"root", "base_link"}, {"tip", "tool0"}};
+  InverseDynamicsSolverUR10 identified;
+  rigid_body_inverse_dynamics_solver::InverseDynamicsSolverRigidBody described;
+  identified.initialize(ends, "", urdf.str());
+  described.initialize(ends, "", urdf.str());
+  for (const std::string& warning : identified.warnings()) {
+    EXPECT_EQ(warning.find("root and tip"), std::string::npos) << warning;
+  }
+  const auto expected = described.getTipPose(kQ), got = identified.getTipPose(kQ);
+  EXPECT_LT((got.p - expected.p).norm(), 2e-3);
+  EXPECT_LT((got.R - expected.R).norm(), 1e-6);
 }
 
 TEST(UR10, GivesTheCurrentsOfTheReferenceImplementation) {
