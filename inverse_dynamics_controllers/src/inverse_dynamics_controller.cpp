@@ -4,19 +4,14 @@
 #include <inverse_dynamics_control/computed_torque.hpp>
 #include <inverse_dynamics_controllers/inverse_dynamics_controller_parameters.hpp>
 #include <sstream>
-#include <utility>
 
-#include "changing_gains.hpp"
-#include "follower.hpp"
+#include "follower_with_gains.hpp"
 #include "joint_numbers.hpp"
 
 namespace inverse_dynamics_controllers {
 
 using inverse_dynamics_control::ComputedTorque;
 using inverse_dynamics_control::Gains;
-using inverse_dynamics_control::JointState;
-using inverse_dynamics_control::LawOptions;
-using inverse_dynamics_control::Status;
 using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 
@@ -61,27 +56,6 @@ Gains gainsOf(const std::vector<double>& natural_frequency,
   return gains;
 }
 
-class ComputedTorqueFollower : public Follower {
- public:
-  ComputedTorqueFollower(const Setup& setup, ReferenceInput input, ChangingGains<Gains> gains,
-                         const LawOptions& options)
-      : Follower(ControlLoop(setup), std::move(input)),
-        gains_(std::move(gains)),
-        law_(setup.arm.solver, gains_.initial(), options) {}
-
-  inverse_dynamics_control::ControlLaw& law() noexcept override { return law_; }
-
-  Status update(const JointState& state, const std::vector<double>&, double dt,
-                Eigen::VectorXd& tau) noexcept override {
-    if (const Gains* const changed = gains_.changed()) law_.setGains(*changed);
-    return law_.update(state, *input().motion(), dt, tau);
-  }
-
- private:
-  ChangingGains<Gains> gains_;
-  ComputedTorque law_;
-};
-
 }  // namespace
 
 InverseDynamicsController::InverseDynamicsController() = default;
@@ -100,7 +74,7 @@ std::unique_ptr<Follower> InverseDynamicsController::makeFollower(
                         const std::vector<double>& frequency, const std::vector<double>& damping) {
     return gainsOf(frequency, damping, T, joints);
   };
-  return std::make_unique<ComputedTorqueFollower>(
+  return std::make_unique<FollowerWithGains<ComputedTorque, Gains>>(
       setup, referenceInput(setup, layout, references),
       ChangingGains<Gains>(setup.node, {"gains.natural_frequency", "gains.damping_ratio"}, make),
       lawOptions(setup, params.friction.source));
