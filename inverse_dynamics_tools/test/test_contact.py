@@ -233,7 +233,7 @@ def test_wrong_options_are_told(ids, tmp_path, recording, robot):
     fails(ids(*command, "--quiet", "0,1,2"), "expected two times")
     fails(ids(*command, "--quiet", "0,20", "--friction-band", "a"), "expected numbers, a,b,c")
     fails(ids(*command, "--quiet", "0,0.2"), "too few independent samples")
-    fails(ids(*command, "--quiet", "100,200"), "contact thresholds")
+    fails(ids(*command, "--quiet", "100,200"), "expected a part of the recording, which ends")
     assert not (tmp_path / "found").exists()
 
 

@@ -220,6 +220,11 @@ def _thresholds(
     if quiet is not None:
         where += f", {TimeWindow(*quiet)}"
         chosen = chosen & (time >= quiet[0]) & (time <= quiet[1])
+        if not chosen.any():
+            raise EvaluationError(
+                f"{where}: expected a part of the recording, which ends at {time[-1]:.4g} s, got no "
+                "sample; give another --quiet FROM,TO"
+            )
     try:
         torques = estimates.torques[chosen]
         return where, contact_thresholds(torques, _period(time), false_alarms, solver.joint_names)

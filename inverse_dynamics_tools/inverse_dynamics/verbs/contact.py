@@ -29,8 +29,8 @@ examples:
   ids contact recording --robot panda_real --quiet-recording yesterday --false-alarms 0.1
       thresholds from another recording; one false alarm in ten hours
 
-  ids contact recording --robot my_robot.yaml --quiet 0,60 --no-friction --friction-band 5,8,5,2,2,2
-      friction isn't known but for its greatest size [N m], joint by joint
+  ids contact recording --robot my_robot.yaml --quiet 0,60 --friction-band 1,1,1,0.3,0.3,0.3
+      of each joint, what the friction model may be wrong by [N m]; smaller than what the quiet part shows
 
 External torques are what the robot exerts on its surroundings: measured torques minus those that its
 model needs for the motion, low-passed. What the model doesn't know, a load for one, is among them.
