@@ -19,6 +19,7 @@ LAYERS = (
     ("base",),
     ("data", "robot", "control", "contact"),
     ("evaluation", "simulation"),
+    ("identification",),
     ("figures",),
     ("report",),
     ("results",),

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What identification found: a model, and how good it is on data that it hasn't seen.
+
+    found = identify(["recording"], "ur10_real")
+    print(found.rmse("identified"), found.model.friction[0])
+
+n joints in the order of the chain; rad, rad/s, N m (prismatic m, m/s, N). Errors are root mean
+squares over all samples of the blocks that were held out: each block is predicted by a model that
+was fitted to the others, with everything chosen on the others too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.errors import EvaluationError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.robot.robots import Robot
+
+COLUMNS = {
+    "urdf": "the description, without friction",
+    "present": "the model of the run configuration",
+    "present_refitted": "its rigid bodies, with friction and offset fitted to the same data",
+    "identified": "the new model",
+}
+"""What held-out errors are given of, in the order of tables. Those that don't exist are left out."""
+
+LAWS = {
+    "step": "viscous friction and a step",
+    "load": "viscous friction, and a step that grows with the load of gravity",
+    "stribeck": "viscous friction, and a step that grows with the load and falls with velocity",
+}
+"""Friction laws to choose from, the simplest first: all are smooth_coulomb of the model file."""
+
+
+class IdentificationError(EvaluationError):
+    """Recordings that no model can be identified from: its text says why, and what to do.
+
+    mistake: the nearest heading of docs/why_dont_my_torques_match.md, or "".
+    """
+
+    def __init__(self, text: str, mistake: str = "") -> None:
+        super().__init__(text)
+        self.mistake = mistake
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something to know about the result, in words.
+
+    kind: floor (a link's description is unusable), filter, delay, range (offset or shift at its
+    bound), motion (a joint that hardly moves), samples, gain (no better than the starting model),
+    prior (what the data don't tell).
+    """
+
+    kind: str
+    text: str
+    joint: str = ""  # the joint or link that it is about; "": all of them
+
+
+@dataclass(frozen=True)
+class IdentifiedModel:
+    """A physically consistent model: rigid bodies in the link frames of the description's chain."""
+
+    parameters: Floats  # (n, 10): m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz about the origin
+    rotor_inertia: Floats  # (n,) kg m^2 (prismatic kg), seen at the joint
+    friction: tuple[Mapping[str, float], ...]  # figures of smooth_coulomb, by the model file's keys
+    drive_gains: Floats | None  # (n,) N m/A where efforts are currents
+    torque_deviation: Floats  # (n,) N m: half the width of the 95 % band of measured - computed
+    seen: Floats  # (3, n, 2): lowest and highest q, qd, qdd of the samples
+
+    @property
+    def joint_count(self) -> int:
+        """The number n."""
+        return len(self.rotor_inertia)
+
+
+@dataclass(frozen=True)
+class HeldOutBlock:
+    """A contiguous part of a recording, and what the models fitted to the others predict. M samples.
+
+    Everything is in N m (prismatic N), (M, n).
+    """
+
+    recording: str
+    time: Floats  # (M,) s since the recording's first sample
+    measured: Floats
+    computed: Mapping[str, Floats]  # by name of COLUMNS
+    band: Floats  # (n,) half the width of the 95 % band of this block, chosen on the others
+    law: str  # of LAWS, chosen on the others
+    prior_strength: float
+    delay: float  # s
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A number that the data tell, with its 95 % interval: an inertial combination or a friction figure."""
+
+    name: str  # as "elbow_joint fc", or of the parameters that move with it
+    unit: str
+    value: float
+    half_width: float
+    joint: str  # "" where it belongs to several
+
+
+@dataclass(frozen=True)
+class PriorDecided:
+    """A number of a link that the prior decided more than the data did."""
+
+    link: str
+    parameter: str  # m, mcx, ...
+    prior: float
+    value: float
+    share: float  # of its information that comes from the data, 0 to 1
+
+
+@dataclass(frozen=True)
+class Choice:
+    """An alternative of the final choice, compared on inner blocks."""
+
+    law: str
+    prior_strength: float
+    delay: float  # s
+    error: float  # mean over joints of the RMSE, in units of each joint's noise
+    standard_error: float  # of the difference to the best; 0 for the best
+    chosen: bool
+
+
+@dataclass(frozen=True)
+class Identification:
+    """A model from recordings, and how good it is. n joints; order of the chain."""
+
+    robot: Robot  # the run configuration that was started from
+    recordings: tuple[Path, ...]
+    joints: tuple[str, ...]
+    units: tuple[str, ...]  # N m, or N of a prismatic joint
+    links: tuple[str, ...]  # the n links that the joints move, as the description names them
+    model: IdentifiedModel
+    prior: Floats  # (n, 10): the parameters of the prior, in the same frames
+    law: str  # of LAWS
+    prior_strength: float
+    delay: float  # s by which efforts are later than positions; negative: earlier
+    cutoff: float | None  # Hz, of the low-pass of velocities; None: accelerations were given
+    filter: str  # how accelerations were estimated, in words
+    effort: str  # what recorded efforts mean, in words
+    samples: int  # that were used
+    duration: float  # s of them
+    held_out: Mapping[str, Floats]  # RMSE (n,) by name of COLUMNS
+    coverage: Floats  # (n,) share of the held-out samples within their 95 % band
+    blocks: tuple[HeldOutBlock, ...]
+    noise: Floats  # (n,) N m, RMSE of the final model on what it was fitted to
+    independent: Floats  # (n,) how many independent samples the residuals are worth
+    choices: tuple[Choice, ...]
+    intervals: tuple[Interval, ...]
+    prior_decided: tuple[PriorDecided, ...]
+    findings: tuple[Finding, ...]
+    notes: tuple[str, ...]  # of reading and differentiating, as evaluate() has them
+    seconds: Mapping[str, float]  # what took how long
+
+    def rmse(self, column: str) -> float:
+        """Held-out error of a name of COLUMNS: mean over the joints."""
+        return float(self.held_out[column].mean())
+
+    @property
+    def offsets(self) -> Floats:
+        """(n,) N m: constant part of friction, which may do work; drifts between recordings."""
+        return self._figures("fo")
+
+    @property
+    def shifts(self) -> Floats:
+        """(n,) rad/s: where the step of friction is off zero velocity."""
+        return self._figures("shift")
+
+    def _figures(self, key: str) -> Floats:
+        import numpy as np
+
+        return np.array([law.get(key, 0.0) for law in self.model.friction])
