@@ -85,11 +85,12 @@ class IdentifiedModel:
 class HeldOutBlock:
     """A contiguous part of a recording, and what the models fitted to the others predict. M samples.
 
-    Everything is in N m (prismatic N), (M, n).
+    Torques are in N m (prismatic N), (M, n).
     """
 
     recording: str
     time: Floats  # (M,) s since the recording's first sample
+    q: Floats  # (M, n) rad (prismatic m), for the page
     measured: Floats
     computed: Mapping[str, Floats]  # by name of COLUMNS
     band: Floats  # (n,) half the width of the 95 % band of this block, chosen on the others
