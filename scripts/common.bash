@@ -28,7 +28,7 @@ solver_packages=(
 )
 user_packages=(
   inverse_dynamics_evaluation inverse_dynamics_recordings inverse_dynamics_control
-  inverse_dynamics_tools
+  inverse_dynamics_identification inverse_dynamics_tools
 )
 
 # What the command line works without, so that a first build is short: a plain ./scripts/build, and

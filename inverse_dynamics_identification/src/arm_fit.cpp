@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_identification/arm_fit.hpp"
+
+#include <algorithm>
+#include <chain_dynamics/error.hpp>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace inverse_dynamics_identification {
+inline namespace v2 {
+namespace {
+
+using chain_dynamics::Chain;
+using chain_dynamics::ConstStates;
+using chain_dynamics::FastModel;
+using chain_dynamics::GramSamples;
+using chain_dynamics::Model;
+using chain_dynamics::ModelError;
+using chain_dynamics::RegressorGram;
+using chain_dynamics::States;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index kBatch = 512;      // samples whose columns are held
+constexpr double kSettled = 0.02;  // Gauss-Newton step, relative to the width, that ends it
+constexpr double kFixed = 1e-9;    // deviation of a column that is switched off
+constexpr int kNoiseIterations = 4;
+
+/// Links without motor or friction: the regressor's, and its gravity.
+Chain rigidChain(const Chain& chain, std::vector<chain_dynamics::LinkParameters> links,
+                 const OwnedVector* rotors) {
+  std::vector<chain_dynamics::Joint> joints = chain.joints();
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    joints[j].rotor_inertia = rotors == nullptr ? 0 : (*rotors)[static_cast<Index>(j)];
+  }
+  return Chain(chain.name(), std::move(joints), std::move(links), chain.gravity(), chain.tip());
+}
+
+double logRatio(double to, double from) { return std::log(to / from); }
+
+/// What width, shift and vs are drawn to, and their bounds, of one joint.
+class StepPrior {
+ public:
+  StepPrior(const FrictionPrior& prior, double greatest_velocity)
+      : prior_(prior), greatest_(std::max(greatest_velocity, 1e-6)) {}
+
+  StepFriction start() const {
+    StepFriction law;
+    law.width = prior_.width * greatest_;
+    law.vs = prior_.stribeck_velocity * greatest_;
+    return law;
+  }
+
+  /// Of the columns, with the step of width, shift and vs free or held.
+  std::vector<OwnColumn> columns(const StepFriction& law, FrictionTerms terms, bool free) const {
+    const double infinity = std::numeric_limits<double>::infinity();
+    std::vector<OwnColumn> columns(static_cast<std::size_t>(ownColumns(terms)));
+    for (const Index c : {own_column::kAcceleration, own_column::kVelocity, own_column::kStep}) {
+      columns[at(c)] = OwnColumn::positive();
+    }
+    columns[at(own_column::kOne)] = {false, infinity, 0, 1e4};  // for a joint that stands still
+    const double factor = std::log(prior_.width_factor);
+    columns[at(own_column::kShift)] = step(-law.shift, prior_.shift * greatest_, free);
+    columns[at(own_column::kWidth)] =
+        step(logRatio(prior_.width * greatest_, law.width), factor, free);
+    if (terms == FrictionTerms::kStep) return columns;
+    columns[at(own_column::kLoad)] = {true, prior_.most_load, 0, prior_.load};
+    if (terms == FrictionTerms::kLoad) return columns;
+    columns[at(own_column::kStribeck)] = OwnColumn::positive();
+    columns[at(own_column::kStribeckVelocity)] =
+        step(logRatio(prior_.stribeck_velocity * greatest_, law.vs), factor, free);
+    return columns;
+  }
+
+  /// Penalty of width, shift and vs themselves.
+  double penalty(const StepFriction& law, FrictionTerms terms) const {
+    const double factor = std::log(prior_.width_factor);
+    const double shift = law.shift / (prior_.shift * greatest_);
+    const double width = logRatio(prior_.width * greatest_, law.width) / factor;
+    const double vs = terms == FrictionTerms::kStribeck
+                          ? logRatio(prior_.stribeck_velocity * greatest_, law.vs) / factor
+                          : 0.0;
+    return shift * shift + width * width + vs * vs;
+  }
+
+  /// The law after a step of (shift, log width, log vs), within bounds.
+  StepFriction moved(StepFriction law, const Eigen::Vector3d& by) const {
+    const double most = prior_.most_shift * greatest_;
+    law.shift = std::clamp(law.shift + std::clamp(by[0], -law.width, law.width), -most, most);
+    law.width = std::clamp(law.width * std::exp(std::clamp(by[1], -1.0, 1.0)),
+                           prior_.least_width * greatest_, prior_.most_width * greatest_);
+    law.vs = std::clamp(law.vs * std::exp(std::clamp(by[2], -1.0, 1.0)), 2 * law.width, greatest_);
+    return law;
+  }
+
+ private:
+  static std::size_t at(Index column) { return static_cast<std::size_t>(column); }
+  static OwnColumn step(double center, double deviation, bool free) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    return free ? OwnColumn{false, infinity, center, deviation}
+                : OwnColumn{false, infinity, 0, kFixed * deviation};
+  }
+
+  FrictionPrior prior_;
+  double greatest_;
+};
+
+VectorXd greatestVelocities(Index joints, const std::vector<ArmSamples>& blocks) {
+  VectorXd greatest = VectorXd::Zero(joints);
+  for (const ArmSamples& block : blocks) {
+    for (Index k = 0; k < block.qd.count; ++k) {
+      for (Index j = 0; j < joints; ++j) {
+        greatest[j] = std::max(greatest[j], std::abs(block.qd(j, k)));
+      }
+    }
+  }
+  return greatest;
+}
+
+void check(Index joints, const std::vector<ArmSamples>& blocks) {
+  Index samples = 0;
+  for (const ArmSamples& block : blocks) {
+    for (const ConstStates& states : {block.q, block.qd, block.qdd, block.tau}) {
+      if (states.joints != joints || states.count != block.q.count) {
+        throw ModelError(
+            "ArmFitter: samples", "q, qd, qdd, tau",
+            std::to_string(joints) + " joints and as many samples each",
+            std::to_string(states.joints) + " joints, " + std::to_string(states.count) + " samples",
+            "pair each torque with its state");
+      }
+    }
+    samples += block.q.count;
+  }
+  if (samples == 0) throw ModelError("ArmFitter: expected samples, got none");
+}
+
+/// The fits that take turns with passes over the samples.
+class Rounds {
+ public:
+  Rounds(const ArmFitter& fitter, const std::vector<ArmSamples>& blocks,
+         const ArmFitOptions& options)
+      : fitter_(fitter), blocks_(blocks), options_(options) {
+    const Index n = fitter.description().jointCount();
+    const VectorXd greatest = greatestVelocities(n, blocks);
+    for (Index j = 0; j < n; ++j) steps_.emplace_back(options.friction, greatest[j]);
+  }
+
+  /// Of all unknowns at a fit; free: with steps of shift, width and vs.
+  Prior prior(const ArmFit& fit, bool free) const {
+    Prior prior;
+    for (const LinkPrior& link : fitter_.prior()) prior.links.push_back(link.link);
+    for (std::size_t j = 0; j < steps_.size(); ++j) {
+      const auto columns = steps_[j].columns(fit.friction[j], options_.terms, free);
+      prior.own.insert(prior.own.end(), columns.begin(), columns.end());
+    }
+    return prior;
+  }
+
+  ArmFit run(const ArmFit* start) {
+    ArmFit best = start != nullptr ? *start : beginning();
+    if (options_.terms != FrictionTerms::kStribeck) withoutStribeck(best);
+    std::vector<Eigen::Vector3d> by;
+    ArmFit tried = best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int pass = 1; pass <= options_.most_passes; ++pass) {
+      RegressorGram gram(joints(), ownColumns(options_.terms));
+      for (const ArmSamples& block : blocks_) fitter_.addToGram(tried, block, gram);
+      const Fit held = consistentFit(gram, prior(tried, false), fitOptions(), linear(tried));
+      ArmFit next = with(tried, held);
+      next.cost = cost(held, next, gram.samples());
+      next.passes = pass;
+      const bool better = next.cost < least;
+      if (!better && pass > 2 && shrink(by)) {
+        tried = moved(best, by);
+        best.passes = pass;
+        continue;
+      }
+      if (!better && pass > 2) break;
+      const double gain = least - next.cost;
+      least = next.cost;
+      best = next;
+      last_ = held;
+      const bool known = pass > 1 || start != nullptr;  // the columns' heights
+      by = known ? stepOf(gram, next, held) : std::vector<Eigen::Vector3d>(steps_.size(), zero());
+      if (known && (settled(by, next) || (pass > 2 && gain < kGain))) break;
+      tried = moved(next, by);
+    }
+    return best;
+  }
+
+ private:
+  static constexpr double kGain = 1e-1;  // of the cost, that is worth another pass
+  static Eigen::Vector3d zero() { return Eigen::Vector3d::Zero(); }
+  Index joints() const { return static_cast<Index>(steps_.size()); }
+
+  ArmFit beginning() const {
+    ArmFit fit;
+    fit.parameters.resize(10, joints());
+    for (Index j = 0; j < joints(); ++j) {
+      fit.parameters.col(j) = fitter_.prior()[static_cast<std::size_t>(j)].link.toVector();
+    }
+    fit.rotor_inertia.setZero(joints());
+    for (const StepPrior& step : steps_) fit.friction.push_back(step.start());
+    return fit;
+  }
+
+  static void withoutStribeck(ArmFit& fit) {
+    for (StepFriction& law : fit.friction) law.fs = 0;
+  }
+
+  FitOptions fitOptions() const {
+    FitOptions options;
+    options.prior_strength = options_.prior_strength;
+    options.noise_iterations = kNoiseIterations;
+    if (last_.noise.size() > 0) options.noise = last_.noise;
+    return options;
+  }
+
+  const Fit* linear(const ArmFit&) const { return last_.own.size() > 0 ? &last_ : nullptr; }
+
+  ArmFit with(const ArmFit& tried, const Fit& fit) const {
+    ArmFit next = tried;
+    next.parameters = fit.parameters;
+    next.rotor_inertia = fit.own.row(own_column::kAcceleration).transpose();
+    next.noise = fit.noise;
+    for (Index j = 0; j < joints(); ++j) {
+      StepFriction& law = next.friction[static_cast<std::size_t>(j)];
+      law.fv = fit.own(own_column::kVelocity, j);
+      law.fo = fit.own(own_column::kOne, j);
+      law.fc = fit.own(own_column::kStep, j);
+      law.fl = fit.own.rows() > own_column::kLoad ? fit.own(own_column::kLoad, j) : 0.0;
+      law.fs = fit.own.rows() > own_column::kStribeck ? fit.own(own_column::kStribeck, j) : 0.0;
+    }
+    return next;
+  }
+
+  /// Twice the negative logarithm of the likelihood, with the penalties.
+  double cost(const Fit& fit, const ArmFit& arm, Index samples) const {
+    const auto N = static_cast<double>(samples);
+    double sum = fit.cost - N * (fit.noise.array() / fit.weighed_by.array()).square().sum() +
+                 2 * N * fit.noise.array().log().sum();
+    for (std::size_t j = 0; j < steps_.size(); ++j) {
+      sum += steps_[j].penalty(arm.friction[j], options_.terms);
+    }
+    return sum;
+  }
+
+  std::vector<Eigen::Vector3d> stepOf(const RegressorGram& gram, const ArmFit& arm,
+                                      const Fit& held) const {
+    FitOptions options = fitOptions();
+    options.noise = held.noise;
+    options.noise_iterations = 1;
+    const Fit fit = consistentFit(gram, prior(arm, true), options, &held);
+    std::vector<Eigen::Vector3d> by;
+    for (Index j = 0; j < joints(); ++j) {
+      const bool stribeck = options_.terms == FrictionTerms::kStribeck;
+      by.emplace_back(fit.own(own_column::kShift, j), fit.own(own_column::kWidth, j),
+                      stribeck ? fit.own(own_column::kStribeckVelocity, j) : 0.0);
+    }
+    return by;
+  }
+
+  ArmFit moved(const ArmFit& fit, const std::vector<Eigen::Vector3d>& by) const {
+    ArmFit result = fit;
+    for (std::size_t j = 0; j < steps_.size(); ++j) {
+      result.friction[j] = steps_[j].moved(fit.friction[j], by[j]);
+    }
+    return result;
+  }
+
+  /// Whether a smaller step is worth another try.
+  bool shrink(std::vector<Eigen::Vector3d>& by) {
+    for (Eigen::Vector3d& step : by) step *= 0.3;
+    return ++shrunk_ <= 2;
+  }
+
+  static bool settled(const std::vector<Eigen::Vector3d>& by, const ArmFit& fit) {
+    for (std::size_t j = 0; j < by.size(); ++j) {
+      const Eigen::Vector3d step(by[j][0] / fit.friction[j].width, by[j][1], by[j][2]);
+      if (step.cwiseAbs().maxCoeff() > kSettled) return false;
+    }
+    return true;
+  }
+
+  const ArmFitter& fitter_;
+  const std::vector<ArmSamples>& blocks_;
+  const ArmFitOptions& options_;
+  std::vector<StepPrior> steps_;
+  Fit last_;
+  int shrunk_ = 0;
+};
+
+/// The unknowns of a fit, the steps of shift, width and vs zero.
+Fit linearPart(const ArmFit& arm, FrictionTerms terms) {
+  Fit fit;
+  fit.parameters = arm.parameters;
+  fit.weighed_by = arm.noise;
+  fit.own = MatrixXd::Zero(ownColumns(terms), arm.parameters.cols());
+  fit.own.row(own_column::kAcceleration) = arm.rotor_inertia.transpose();
+  for (Index j = 0; j < fit.own.cols(); ++j) {
+    const StepFriction& law = arm.friction[static_cast<std::size_t>(j)];
+    fit.own(own_column::kVelocity, j) = law.fv;
+    fit.own(own_column::kOne, j) = law.fo;
+    fit.own(own_column::kStep, j) = law.fc;
+    if (fit.own.rows() > own_column::kLoad) fit.own(own_column::kLoad, j) = law.fl;
+    if (fit.own.rows() > own_column::kStribeck) fit.own(own_column::kStribeck, j) = law.fs;
+  }
+  return fit;
+}
+
+std::vector<LinkPrior> priorsOf(const Chain& description, const LinkFloor& floor) {
+  std::vector<LinkPrior> priors;
+  for (const LinkParameters& link : description.links()) priors.push_back(linkPrior(link, floor));
+  return priors;
+}
+
+std::vector<LinkParameters> linksOf(const std::vector<LinkPrior>& priors) {
+  std::vector<LinkParameters> links;
+  for (const LinkPrior& prior : priors) links.push_back(prior.link);
+  return links;
+}
+
+}  // namespace
+
+ArmFitter::ArmFitter(const Chain& description, const LinkFloor& floor)
+    : chain_(description),
+      prior_(priorsOf(description, floor)),
+      fast_(Model(rigidChain(description, linksOf(prior_), nullptr))) {}
+
+Chain ArmFitter::withLinks(const OwnedMatrix& parameters, const OwnedVector* rotors) const {
+  std::vector<LinkParameters> links;
+  for (Index j = 0; j < parameters.cols(); ++j) {
+    const Eigen::Matrix<double, 10, 1> p = parameters.col(j);
+    links.push_back(LinkParameters::fromVector(p));
+  }
+  return rigidChain(chain_, std::move(links), rotors);
+}
+
+ArmFit ArmFitter::fit(const std::vector<ArmSamples>& blocks, const ArmFitOptions& options,
+                      const ArmFit* start) const {
+  check(chain_.jointCount(), blocks);
+  return Rounds(*this, blocks, options).run(start);
+}
+
+ArmInformation ArmFitter::information(const ArmFit& fit, const std::vector<ArmSamples>& blocks,
+                                      const ArmFitOptions& options) const {
+  check(chain_.jointCount(), blocks);
+  const Fit linear = linearPart(fit, options.terms);
+  RegressorGram all(chain_.jointCount(), linear.own.rows());
+  VectorXd x(all.unknowns());
+  x << Eigen::Map<const VectorXd>(linear.parameters.data(), linear.parameters.size()),
+      Eigen::Map<const VectorXd>(linear.own.data(), linear.own.size());
+  const VectorXd weights = fit.noise.array().square().inverse();
+  ArmInformation result;
+  result.scores.resize(x.size(), static_cast<Index>(blocks.size()));
+  MatrixXd A(x.size(), x.size());
+  VectorXd b(x.size());
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    RegressorGram gram(chain_.jointCount(), linear.own.rows());
+    addToGram(fit, blocks[k], gram);
+    gram.normalEquations(weights, A, b);
+    result.scores.col(static_cast<Index>(k)) = b - A * x;
+    all.add(gram);
+  }
+  FitOptions how;
+  how.prior_strength = options.prior_strength;
+  Information found = ::inverse_dynamics_identification::information(
+      all, Rounds(*this, blocks, options).prior(fit, true), how, linear);
+  result.data = std::move(found.data);
+  result.prior = std::move(found.prior);
+  return result;
+}
+
+void ArmFitter::addToGram(const ArmFit& fit, const ArmSamples& samples, RegressorGram& gram) const {
+  const Index n = chain_.jointCount(), columns = gram.ownColumns();
+  const FastModel loads(Model(withLinks(fit.parameters, nullptr)), fast_);
+  std::vector<MatrixXd> own(static_cast<std::size_t>(columns), MatrixXd(n, kBatch));
+  MatrixXd gravity(n, kBatch);
+  VectorXd row(columns);
+  for (Index first = 0; first < samples.q.count; first += kBatch) {
+    const Index size = std::min(kBatch, samples.q.count - first);
+    const ConstStates qd = samples.qd.middle(first, size), qdd = samples.qdd.middle(first, size);
+    loads.gravityVectorBatch(samples.q.middle(first, size), gravity.leftCols(size));
+    for (Index k = 0; k < size; ++k) {
+      for (Index j = 0; j < n; ++j) {
+        ownColumnsAt(fit.friction[static_cast<std::size_t>(j)], qd(j, k), qdd(j, k),
+                     std::abs(gravity(j, k)), row);
+        for (Index c = 0; c < columns; ++c) own[static_cast<std::size_t>(c)](j, k) = row[c];
+      }
+    }
+    GramSamples batch{samples.q.middle(first, size), qd, qdd, samples.tau.middle(first, size)};
+    for (const MatrixXd& column : own) batch.own_columns.emplace_back(column.leftCols(size));
+    fast_.addToGram(batch, gram);
+  }
+}
+
+void ArmFitter::torques(const ArmFit& fit, ConstStates q, ConstStates qd, ConstStates qdd,
+                        States tau) const {
+  const Index n = chain_.jointCount();
+  const FastModel model(Model(withLinks(fit.parameters, &fit.rotor_inertia)), fast_);
+  model.torquesBatch(q, qd, qdd, tau);
+  MatrixXd gravity(n, kBatch);
+  for (Index first = 0; first < q.count; first += kBatch) {
+    const Index size = std::min(kBatch, q.count - first);
+    model.gravityVectorBatch(q.middle(first, size), gravity.leftCols(size));
+    for (Index k = 0; k < size; ++k) {
+      for (Index j = 0; j < n; ++j) {
+        tau(j, first + k) += friction(fit.friction[static_cast<std::size_t>(j)], qd(j, first + k),
+                                      std::abs(gravity(j, k)));
+      }
+    }
+  }
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_identification

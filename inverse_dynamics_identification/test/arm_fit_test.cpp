@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_identification/arm_fit.hpp"
+
+#include <gmock/gmock.h>
+
+#include <Eigen/Cholesky>
+#include <chain_dynamics/error.hpp>
+#include <chain_dynamics/fast_model.hpp>
+#include <cmath>
+#include <limits>
+
+#include "arms.hpp"
+
+namespace inverse_dynamics_identification {
+namespace {
+
+using chain_dynamics::FastModel;
+using chain_dynamics::Model;
+
+constexpr double kNoise = 0.05;  // N m
+
+std::vector<StepFriction> knownFriction(FrictionTerms terms) {
+  std::vector<StepFriction> laws = {{1.5, -0.3, 2, 0, 0, 0.05, 0.02, 0.4},
+                                    {0.8, 0.2, 1, 0, 0, 0.1, -0.03, 0.4},
+                                    {0.3, 0, 0.5, 0, 0, 0.02, 0, 0.4}};
+  for (StepFriction& law : laws) {
+    if (terms != FrictionTerms::kStep) law.fl = 0.08;
+    if (terms == FrictionTerms::kStribeck) law.fs = law.fc;
+  }
+  return laws;
+}
+
+/// The motion of an arm with friction, rotor inertia and noise.
+Motion measured(FrictionTerms terms, Eigen::Index count, unsigned seed, double deviation = kNoise) {
+  const Chain arm = threeJointArm();
+  Motion motion = randomMotion(arm, count, seed);
+  Eigen::MatrixXd gravity(3, count);
+  FastModel(Model(arm)).gravityVectorBatch(motion.q, gravity);
+  const std::vector<StepFriction> laws = knownFriction(terms);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      motion.tau(j, k) +=
+          0.3 * motion.qdd(j, k) +
+          friction(laws[static_cast<std::size_t>(j)], motion.qd(j, k), std::abs(gravity(j, k)));
+    }
+  }
+  motion.tau += noise(3, count, deviation, seed + 1);
+  return motion;
+}
+
+ArmSamples samplesOf(const Motion& motion) { return {motion.q, motion.qd, motion.qdd, motion.tau}; }
+
+double errorOf(const ArmFitter& fitter, const ArmFit& fit, const Motion& motion) {
+  Eigen::MatrixXd tau(motion.q.rows(), motion.q.cols());
+  fitter.torques(fit, motion.q, motion.qd, motion.qdd, tau);
+  return std::sqrt((tau - motion.tau).array().square().mean());
+}
+
+TEST(ArmFitter, FindsAKnownRobotWithItsFriction) {
+  const ArmFitter fitter(threeJointArm(0.6));
+  for (const FrictionTerms terms :
+       {FrictionTerms::kStep, FrictionTerms::kLoad, FrictionTerms::kStribeck}) {
+    SCOPED_TRACE(static_cast<int>(terms));
+    const Motion motion = measured(terms, 4000, 1);
+    ArmFitOptions options;
+    options.terms = terms;
+    options.prior_strength = 1;
+    const ArmFit fit = fitter.fit({samplesOf(motion)}, options);
+    EXPECT_LT(errorOf(fitter, fit, measured(terms, 2000, 9)), 1.1 * kNoise) << fit.passes;
+    const std::vector<StepFriction> laws = knownFriction(terms);
+    for (std::size_t j = 0; j < 3; ++j) {
+      SCOPED_TRACE(j);
+      // 4000 samples: the noise leaves about a per cent of each figure
+      EXPECT_NEAR(fit.friction[j].fv, laws[j].fv, 0.1);
+      EXPECT_NEAR(fit.friction[j].fo, laws[j].fo, 0.02);
+      EXPECT_NEAR(fit.friction[j].shift, laws[j].shift, 0.01);
+      EXPECT_NEAR(fit.friction[j].width, laws[j].width, 0.25 * laws[j].width + 0.01);
+    }
+  }
+}
+
+TEST(ArmFitter, HasNoLoadTermWithoutLoad) {
+  // The axis of the first joint is vertical: gravity doesn't load it.
+  const ArmFitter fitter(threeJointArm());
+  ArmFitOptions options;
+  options.terms = FrictionTerms::kLoad;
+  const ArmFit fit = fitter.fit({samplesOf(measured(FrictionTerms::kStep, 1000, 1))}, options);
+  for (const StepFriction& law : fit.friction) {
+    EXPECT_GT(law.fl, 0);
+    EXPECT_LT(law.fl, options.friction.most_load);
+  }
+}
+
+TEST(ArmFitter, IsARobotWithFrictionThatBrakesWhateverTheTorquesAre) {
+  const ArmFitter fitter(threeJointArm());
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    Motion motion = randomMotion(threeJointArm(), 40, seed);
+    motion.tau = noise(3, 40, 50, seed);
+    ArmFitOptions options;
+    options.terms = FrictionTerms::kStribeck;
+    options.prior_strength = 0.01;
+    const ArmFit fit = fitter.fit({samplesOf(motion)}, options);
+    EXPECT_GT(fit.rotor_inertia.minCoeff(), 0);
+    for (const StepFriction& law : fit.friction) {
+      EXPECT_GE(law.fv, 0);
+      EXPECT_GE(law.fc, 0);
+      EXPECT_GE(law.fl, 0);
+      EXPECT_GE(law.fs, 0);
+      EXPECT_GT(law.width, 0);
+    }
+    std::vector<Joint> joints = fitter.description().joints();
+    std::vector<LinkParameters> links;
+    for (std::size_t j = 0; j < 3; ++j) {
+      joints[j].rotor_inertia = fit.rotor_inertia[static_cast<Eigen::Index>(j)];
+      const Eigen::Matrix<double, 10, 1> p = fit.parameters.col(static_cast<Eigen::Index>(j));
+      links.push_back(LinkParameters::fromVector(p));
+    }
+    const Model model(Chain("fitted", joints, links, {0, 0, -9.81}));
+    EXPECT_TRUE(model.inertiaIsPhysical());
+    const FastModel fast(model);
+    std::mt19937 random(seed);
+    const Eigen::MatrixXd q = uniform(3, 10000, 3, random);
+    Eigen::MatrixXd H(3, 30000);
+    fast.inertiaMatrixBatch(q, H);
+    for (Eigen::Index k = 0; k < 10000; ++k) {
+      const Eigen::LLT<Eigen::Matrix3d> factor(Eigen::Matrix3d(H.middleCols<3>(3 * k)));
+      ASSERT_EQ(factor.info(), Eigen::Success) << q.col(k).transpose();
+    }
+  }
+}
+
+TEST(ArmFitter, DoesNotDependOnLinkFrames) {
+  const ArmFitter here(threeJointArm(0.6)), there(withFramesMoved(threeJointArm(0.6)));
+  const Motion motion = measured(FrictionTerms::kLoad, 200, 1);
+  ArmFitOptions options;
+  options.terms = FrictionTerms::kLoad;
+  const ArmFit one = here.fit({samplesOf(motion)}, options);
+  const ArmFit other = there.fit({samplesOf(motion)}, options);
+  Eigen::MatrixXd tau(3, 200), moved(3, 200);
+  here.torques(one, motion.q, motion.qd, motion.qdd, tau);
+  there.torques(other, motion.q, motion.qd, motion.qdd, moved);
+  EXPECT_LT((tau - moved).cwiseAbs().maxCoeff(), 1e-3 * tau.cwiseAbs().maxCoeff());
+}
+
+TEST(ArmFitter, OfBlocksIsThatOfAllSamples) {
+  const ArmFitter fitter(threeJointArm(0.6));
+  const Motion motion = measured(FrictionTerms::kStep, 1500, 1);
+  const ArmSamples all = samplesOf(motion);
+  const auto part = [&](Eigen::Index first, Eigen::Index size) {
+    return ArmSamples{all.q.middle(first, size), all.qd.middle(first, size),
+                      all.qdd.middle(first, size), all.tau.middle(first, size)};
+  };
+  const ArmFit whole = fitter.fit({all}, {});
+  const ArmFit parts = fitter.fit({part(0, 700), part(700, 1), part(701, 799)}, {});
+  EXPECT_NEAR(parts.cost, whole.cost, 1e-6 * std::abs(whole.cost));
+}
+
+TEST(ArmFitter, BeginsWithAnotherFit) {
+  const ArmFitter fitter(threeJointArm(0.6));
+  const Motion motion = measured(FrictionTerms::kLoad, 1000, 1);
+  ArmFitOptions options;
+  options.terms = FrictionTerms::kLoad;
+  const ArmFit first = fitter.fit({samplesOf(motion)}, options);
+  const ArmFit again = fitter.fit({samplesOf(motion)}, options, &first);
+  EXPECT_LT(again.passes, first.passes);
+  EXPECT_NEAR(again.cost, first.cost, 1.0);  // of twice a log likelihood
+}
+
+TEST(ArmFitter, InformationHasNoSlopeAtTheMinimum) {
+  const ArmFitter fitter(threeJointArm(0.6));
+  const Motion motion = measured(FrictionTerms::kStep, 1000, 1);
+  ArmFitOptions options;
+  const ArmFit fit = fitter.fit({samplesOf(motion)}, options);
+  const ArmInformation found = fitter.information(fit, {samplesOf(motion)}, options);
+  ASSERT_EQ(found.data.rows(), 48);
+  ASSERT_EQ(found.scores.cols(), 1);
+  const Eigen::MatrixXd H = found.data + found.prior;
+  const Eigen::LLT<Eigen::MatrixXd> factor(H);
+  ASSERT_EQ(factor.info(), Eigen::Success);
+}
+
+TEST(ArmFitter, SaysWhatItHasChangedInTheDescription) {
+  std::vector<LinkParameters> links = threeJointArm().links();
+  links[1] = LinkParameters::zero();
+  const ArmFitter fitter(Chain("arm", threeJointArm().joints(), links, {0, 0, -9.81}));
+  EXPECT_EQ(fitter.prior()[0].changes, "");
+  EXPECT_NE(fitter.prior()[1].changes, "");
+}
+
+TEST(ArmFitter, RefusesSamplesThatDoNotFit) {
+  const ArmFitter fitter(threeJointArm());
+  const Motion motion = measured(FrictionTerms::kStep, 100, 1);
+  EXPECT_THROW(fitter.fit({}, {}), chain_dynamics::ModelError);
+  const Eigen::MatrixXd fewer = motion.tau.leftCols(99);
+  EXPECT_THROW(fitter.fit({{motion.q, motion.qd, motion.qdd, fewer}}, {}),
+               chain_dynamics::ModelError);
+  Motion broken = motion;
+  broken.qd(0, 3) = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(fitter.fit({samplesOf(broken)}, {}), chain_dynamics::ModelError);
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_identification

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_identification/friction_step.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace inverse_dynamics_identification {
+namespace {
+
+constexpr double kRounding = 1e-14;
+constexpr double kDifference = 1e-6;    // of central differences
+constexpr double kOfDifference = 1e-8;  // what they leave
+
+StepFriction law() { return {1.5, -0.3, 2, 0.1, 0.7, 0.05, 0.02, 0.4}; }
+
+TEST(FrictionStep, ByHand) {
+  // 1.5 * 0.08 - 0.3 + (2 + 0.1 * 3 + 0.7 exp(-0.04)) tanh(2)
+  EXPECT_NEAR(friction(law(), 0.08, 3), -0.18 + (2.3 + 0.7 * std::exp(-0.04)) * std::tanh(2.0),
+              kRounding);
+}
+
+TEST(FrictionStep, ColumnsAddUpToTheTorque) {
+  for (const FrictionTerms terms :
+       {FrictionTerms::kStep, FrictionTerms::kLoad, FrictionTerms::kStribeck}) {
+    StepFriction known = law();
+    if (terms == FrictionTerms::kStep) known.fl = 0;
+    if (terms != FrictionTerms::kStribeck) known.fs = 0;
+    Eigen::VectorXd row(ownColumns(terms));
+    for (const double qd : {-1.0, -0.02, 0.0, 0.03, 2.0}) {
+      ownColumnsAt(known, qd, 7, 3, row);
+      double sum = known.fv * row[own_column::kVelocity] + known.fo * row[own_column::kOne] +
+                   known.fc * row[own_column::kStep];
+      if (row.size() > own_column::kLoad) sum += known.fl * row[own_column::kLoad];
+      if (row.size() > own_column::kStribeck) sum += known.fs * row[own_column::kStribeck];
+      EXPECT_NEAR(sum, friction(known, qd, 3), kRounding) << qd;
+      EXPECT_EQ(row[own_column::kAcceleration], 7);
+    }
+  }
+}
+
+TEST(FrictionStep, ColumnsOfShiftWidthAndVelocityAreDerivatives) {
+  Eigen::VectorXd row(ownColumns(FrictionTerms::kStribeck));
+  for (const double qd : {-0.6, -0.02, 0.0, 0.03, 0.5}) {
+    ownColumnsAt(law(), qd, 0, 3, row);
+    const auto derivative = [&](auto change) {
+      StepFriction above = law(), below = law();
+      change(above, kDifference);
+      change(below, -kDifference);
+      return (friction(above, qd, 3) - friction(below, qd, 3)) / (2 * kDifference);
+    };
+    EXPECT_NEAR(row[own_column::kShift],
+                derivative([](StepFriction& f, double by) { f.shift += by; }), kOfDifference);
+    EXPECT_NEAR(row[own_column::kWidth],
+                derivative([](StepFriction& f, double by) { f.width *= std::exp(by); }),
+                kOfDifference);
+    EXPECT_NEAR(row[own_column::kStribeckVelocity],
+                derivative([](StepFriction& f, double by) { f.vs *= std::exp(by); }),
+                kOfDifference);
+  }
+}
+
+}  // namespace
+}  // namespace inverse_dynamics_identification
