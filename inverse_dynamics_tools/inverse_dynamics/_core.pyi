@@ -281,6 +281,79 @@ class FastModel:
         linear in. weights: an array like q.
         """
 
+class ArmFit:
+    """A model of an arm: inverse_dynamics_identification/arm_fit.hpp."""
+
+    @property
+    def parameters(self) -> Floats:
+        """(n, 10) m, mc, I of each link, in its frame and about its origin."""
+
+    @property
+    def rotor_inertia(self) -> Floats:
+        """(n,) kg m^2 (prismatic kg)."""
+
+    @property
+    def friction(self) -> list[dict[str, float]]:
+        """Figures of smooth_coulomb of each joint, by the keys of the model file."""
+
+    @property
+    def noise(self) -> Floats:
+        """(n,) root mean squares of the errors of the samples that it was fitted to."""
+
+    @property
+    def cost(self) -> float: ...
+    @property
+    def passes(self) -> int: ...
+
+Block = tuple[Floats, Floats, Floats, Floats]
+
+class ArmFitter:
+    """Fits models of one arm: inverse_dynamics_identification/arm_fit.hpp. Threads: safe.
+
+    blocks: q, qd, qdd, tau, (N, n) each. law: step, load, stribeck.
+    """
+
+    @staticmethod
+    def from_urdf(
+        urdf: str,
+        *,
+        root: str = "",
+        tip: str = "",
+        gravity: Sequence[float] | None = None,
+    ) -> ArmFitter:
+        """Of a URDF's text, whose links are the prior."""
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints, from root to tip: the order of all arrays."""
+
+    @property
+    def prior(self) -> Floats:
+        """(n, 10) parameters of the links that fits are drawn to."""
+
+    @property
+    def changes(self) -> list[str]:
+        """What the prior has changed about each described link, in words; empty: nothing."""
+
+    def fit(
+        self,
+        blocks: Sequence[Block],
+        *,
+        law: str,
+        prior_strength: float,
+        most_passes: int = 10,
+        start: ArmFit | None = None,
+    ) -> ArmFit:
+        """A fit to the samples of all blocks. start: another one to begin with."""
+
+    def torques(self, fit: ArmFit, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Floats:
+        """Torques of a fit, friction included: (n,) or (N, n)."""
+
+    def information(
+        self, fit: ArmFit, blocks: Sequence[Block], *, law: str, prior_strength: float
+    ) -> tuple[Floats, Floats, Floats]:
+        """What data and prior say of the m unknowns, (m, m) each, and scores (blocks, m)."""
+
 class SampleRules:
     """Which rules on faults of samples are acted upon."""
 

@@ -17,6 +17,7 @@
 #include "errors.hpp"
 #include "evaluator.hpp"
 #include "fast_model.hpp"
+#include "identification.hpp"
 #include "joint_log.hpp"
 #include "metrics.hpp"
 #include "recordings.hpp"
@@ -28,6 +29,7 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindErrors();
   inverse_dynamics_tools::bindSolver(module);
   inverse_dynamics_tools::bindFastModel(module);
+  inverse_dynamics_tools::bindIdentification(module);
   inverse_dynamics_tools::bindAccelerations(module);
   inverse_dynamics_tools::bindRecordings(module);
   inverse_dynamics_tools::bindJointLog(module);

@@ -12,7 +12,7 @@ from inverse_dynamics import _core
 
 STUB = Path(inverse_dynamics.__file__).with_name("_core.pyi")
 # Aliases of types, of the stub alone.
-ALIASES = {"Floats", "Integers", "Mask", "Parameter"}
+ALIASES = {"Block", "Floats", "Integers", "Mask", "Parameter"}
 # Every enum of the extension module has them, as every Enum of the stub.
 OF_ENUMS = {"name", "value"}
 

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings as contiguous blocks, each cut before any filter and differentiated by itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics import _core
+from inverse_dynamics.identification.result import IdentificationError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.evaluation.evaluation import Evaluation
+
+_FEWEST = 20  # samples that a block can be differentiated with
+
+
+@dataclass(frozen=True)
+class Block:
+    """Samples of a contiguous part of a recording. M samples, n joints."""
+
+    recording: str
+    time: Floats  # (M,) s since the recording's first sample
+    instants: Floats  # (M,) s; when samples were really taken
+    used: Mask  # (M,) samples that say something new
+    q: Floats  # (M, n)
+    qd: Floats
+    qdd: Floats  # from this block's samples alone
+    tau: Floats  # measured
+    counts: Mask  # (M,) samples to be fitted to: no repeats, no start transient
+
+    def later(self, delay: float) -> Block:
+        """The same torques with the states of `delay` [s] before: what they answer to.
+
+        States before the block's first sample aren't known: these samples don't count.
+        """
+        if delay == 0:
+            return self
+        at, known = self.instants - delay, self.instants[self.used]
+        q, qd, qdd = (_at(at, known, v[self.used]) for v in (self.q, self.qd, self.qdd))
+        within = (at >= known[0]) & (at <= known[-1])
+        return replace(self, q=q, qd=qd, qdd=qdd, counts=self.counts & within)
+
+    @property
+    def fitted(self) -> _core.Block:
+        """q, qd, qdd, tau of the samples to be fitted to."""
+        if self.counts.all():
+            return self.q, self.qd, self.qdd, self.tau
+        c = self.counts
+        return self.q[c], self.qd[c], self.qdd[c], self.tau[c]
+
+
+def _at(at: Floats, time: Floats, values: Floats) -> Floats:
+    columns = [np.interp(at, time, column) for column in values.T]
+    return np.ascontiguousarray(np.transpose(columns))
+
+
+def blocks_of(evaluation: Evaluation, count: int) -> list[Block]:
+    """A recording cut into so many blocks of equally many samples."""
+    used = ~(evaluation.samples.repeated | evaluation.samples.non_increasing)
+    edges = np.linspace(0, len(evaluation.time), count + 1).round().astype(int)
+    if np.diff(edges).min() < _FEWEST:
+        raise IdentificationError(
+            f"{evaluation.bag}: expected at least {_FEWEST * count} samples, got "
+            f"{len(evaluation.time)}; record a longer motion"
+        )
+    return [_block(evaluation, used, int(first), int(after)) for first, after in pairwise(edges)]
+
+
+def _block(evaluation: Evaluation, used: Mask, first: int, after: int) -> Block:
+    part, log = slice(first, after), evaluation.log
+    qdd, instants = _accelerations(evaluation, part)
+    return Block(
+        recording=f"{evaluation.bag}",
+        time=evaluation.time[part],
+        instants=instants,
+        used=used[part],
+        q=np.ascontiguousarray(log.q[part]),
+        qd=np.ascontiguousarray(log.qd[part]),
+        qdd=np.ascontiguousarray(qdd),
+        tau=np.ascontiguousarray(evaluation.measured[part]),
+        counts=(used & evaluation.samples.kept)[part],
+    )
+
+
+def _accelerations(evaluation: Evaluation, part: slice) -> tuple[Floats, Floats]:
+    """Of a block's samples alone, by the method of the evaluation; and when they were taken."""
+    log, how = evaluation.log, evaluation.accelerations
+    time, q, qd, effort = evaluation.time[part], log.q[part], log.qd[part], log.effort[part]
+    if how.method == "given":
+        return evaluation.qdd[part], time
+    if how.method == "backward-difference":
+        return _core.backward_difference(time, qd), time
+    cutoff = 0.0 if how.chosen else how.cutoff or 0.0  # zero: chosen from the block
+    rules = _core.SampleRules(start_transient=False)
+    qdd, _, samples = _core.low_pass_accelerations(time, q, qd, effort, cutoff, rules)
+    return qdd, samples.time
+
+
+def together(blocks: Sequence[Block]) -> list[_core.Block]:
+    """What a fit takes."""
+    return [block.fitted for block in blocks]

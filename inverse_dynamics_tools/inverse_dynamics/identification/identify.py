@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From recordings to a model, and how good it is on data that it hasn't seen."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics import _core
+from inverse_dynamics.base.arguments import checked
+from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.identification.baselines import Baselines, root_mean_squares
+from inverse_dynamics.identification.blocks import Block, blocks_of
+from inverse_dynamics.identification.cross_validation import Chosen, choose
+from inverse_dynamics.identification.knowledge import (
+    independent_samples,
+    intervals,
+    knowledge,
+    prior_decided,
+)
+from inverse_dynamics.identification.result import (
+    Finding,
+    HeldOutBlock,
+    Identification,
+    IdentificationError,
+    IdentifiedModel,
+)
+from inverse_dynamics.robot.descriptions import parse_description, read_description
+from inverse_dynamics.robot.robots import Robot, load_robot
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics._core import ArmFitter
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.evaluation.evaluation import Evaluation
+
+BLOCKS = 5
+"""Contiguous blocks that all recordings are cut into, of which each is predicted by the others."""
+
+_SHORTEST = 5.0  # s
+
+
+@checked
+def identify(
+    recordings: Sequence[Path | str],
+    robot: Robot | Path | str,
+    *,
+    blocks: int = BLOCKS,
+    progress: Progress = no_progress,
+    **options: Any,
+) -> Identification:
+    """A physically consistent model with friction, from recordings of a moving arm.
+
+    robot: as in evaluate(); its description is the prior, its model, if it has one, is compared
+    with. blocks: how many the recordings are cut into altogether, at least three. options: others
+    of evaluate(), as effort_is, start, end.
+
+    Raises UserError: those of evaluate(), IdentificationError.
+    """
+    begin = time.perf_counter()
+    if not isinstance(robot, Robot):
+        robot = load_robot(robot)
+    description = _description(robot)
+    evaluations = [evaluate(path, robot, progress=progress, **options) for path in recordings]
+    robot = evaluations[0].robot if evaluations else robot
+    _check(evaluations, blocks)
+    fitter = _core.ArmFitter.from_urdf(
+        description, root=robot.root, tip=robot.tip, gravity=robot.gravity
+    )
+    cut = _cut(evaluations, blocks)
+    seconds = {"reading": time.perf_counter() - begin}
+    begin = time.perf_counter()
+    held_out = _held_out(fitter, Baselines(robot, description), cut, progress)
+    chosen = choose(fitter, cut)
+    seconds["fitting"] = time.perf_counter() - begin
+    return _result(robot, description, evaluations, fitter, cut, held_out, chosen, seconds)
+
+
+def _description(robot: Robot) -> str:
+    if robot.urdf is None:
+        raise IdentificationError(
+            f"robot {robot.name}: urdf: expected a description, which a fit starts from, got none; "
+            "give --urdf"
+        )
+    return read_description(robot.urdf)
+
+
+def _check(evaluations: Sequence[Evaluation], blocks: int) -> None:
+    if not evaluations:
+        raise IdentificationError("recordings: expected at least one, got none")
+    if blocks < 3:
+        raise IdentificationError(f"blocks: expected at least 3, got {blocks}")
+    for evaluation in evaluations:
+        if evaluation.effort.meaning == "torque_without_gravity":
+            raise IdentificationError(
+                f"{evaluation.bag}: expected efforts with gravity, as masses show in it alone, got "
+                "torques without; record the motor currents, or torques as the motors have them",
+                "Gravity",
+            )
+    duration = sum(float(e.time[-1]) for e in evaluations)
+    if duration < _SHORTEST:
+        raise IdentificationError(
+            f"{', '.join(str(e.bag) for e in evaluations)}: expected at least {_SHORTEST:g} s of "
+            f"motion, got {duration:.3g} s; record a longer motion"
+        )
+
+
+def _cut(evaluations: Sequence[Evaluation], blocks: int) -> list[Block]:
+    """Blocks of all recordings: as many of each as its share of the time, at least one."""
+    lengths = np.array([e.time[-1] for e in evaluations])
+    counts = np.maximum(1, np.round(blocks * lengths / lengths.sum())).astype(int)
+    if len(evaluations) == 1:
+        counts[:] = blocks
+    while counts.sum() < 3:
+        counts[lengths.argmax()] += 1
+    return [
+        block
+        for evaluation, count in zip(evaluations, counts, strict=True)
+        for block in blocks_of(evaluation, int(count))
+    ]
+
+
+def _held_out(
+    fitter: ArmFitter, baselines: Baselines, cut: Sequence[Block], progress: Progress
+) -> list[tuple[HeldOutBlock, Chosen]]:
+    """Each block predicted by models fitted to, and chosen on, the others."""
+    found = []
+    for k, block in enumerate(cut):
+        progress("predicting held-out blocks", k, len(cut) + 1)
+        others = [*cut[:k], *cut[k + 1 :]]
+        chosen = choose(fitter, others)
+        computed = baselines.torques(block, others)
+        computed["identified"] = fitter.torques(chosen.fit, block.q, block.qd, block.qdd)
+        held_out = HeldOutBlock(
+            recording=block.recording,
+            time=block.time,
+            q=block.q,
+            measured=block.tau,
+            computed=computed,
+            band=chosen.band,
+            law=chosen.law,
+            prior_strength=chosen.prior_strength,
+            delay=chosen.delay,
+        )
+        found.append((held_out, chosen))
+    progress("predicting held-out blocks", len(cut), len(cut) + 1)
+    return found
+
+
+def _result(
+    robot: Robot,
+    description: str,
+    evaluations: Sequence[Evaluation],
+    fitter: ArmFitter,
+    cut: Sequence[Block],
+    held_out: Sequence[tuple[HeldOutBlock, Chosen]],
+    chosen: Chosen,
+    seconds: dict[str, float],
+) -> Identification:
+    begin = time.perf_counter()
+    first, fit = evaluations[0], chosen.fit
+    links = _links(description, fitter.joint_names)
+    errors = [b.tau - fitter.torques(fit, b.q, b.qd, b.qdd) for b in cut]
+    errors = [e[b.counts] for e, b in zip(errors, cut, strict=True)]
+    independent = independent_samples(errors)
+    samples = sum(map(len, errors))
+    known = knowledge(
+        fitter,
+        fit,
+        cut,
+        law=chosen.law,
+        prior_strength=chosen.prior_strength,
+        worth=float(independent.mean() / samples),
+    )
+    model = _core.FastModel.from_urdf(
+        description, root=robot.root, tip=robot.tip, gravity=robot.gravity
+    )
+    blocks = tuple(block for block, _ in held_out)
+    held, coverage = _held_out_errors(blocks, cut)
+    return Identification(
+        robot=robot,
+        recordings=tuple(e.bag for e in evaluations),
+        joints=fitter.joint_names,
+        units=first.units,
+        links=links,
+        model=_model(fit, chosen.band, cut, first),
+        prior=fitter.prior,
+        law=chosen.law,
+        prior_strength=chosen.prior_strength,
+        delay=chosen.delay,
+        cutoff=first.accelerations.cutoff,
+        filter=first.accelerations.summary,
+        effort=first.effort.summary,
+        samples=samples,
+        duration=float(sum(e.time[-1] for e in evaluations)),
+        held_out=held,
+        coverage=coverage,
+        blocks=blocks,
+        noise=np.sqrt((np.concatenate(errors) ** 2).mean(0)),
+        independent=independent,
+        choices=chosen.choices,
+        intervals=intervals(known, model),
+        prior_decided=prior_decided(known, fitter.prior, links),
+        findings=_findings(fitter, links, held, cut),
+        notes=tuple(note for e in evaluations for note in e.notes),
+        seconds={**seconds, "intervals": time.perf_counter() - begin},
+    )
+
+
+def _model(
+    fit: _core.ArmFit, band: Floats, cut: Sequence[Block], evaluation: Evaluation
+) -> IdentifiedModel:
+    used = [(b.q[b.counts], b.qd[b.counts], b.qdd[b.counts]) for b in cut]
+    seen = [np.concatenate(values) for values in zip(*used, strict=True)]
+    gains = evaluation.effort.drive_gains
+    return IdentifiedModel(
+        parameters=fit.parameters,
+        rotor_inertia=fit.rotor_inertia,
+        friction=tuple(fit.friction),
+        drive_gains=np.array(gains) if evaluation.effort.meaning == "current" else None,
+        torque_deviation=band,
+        seen=np.stack([np.stack([s.min(0), s.max(0)], axis=1) for s in seen]),
+    )
+
+
+def _held_out_errors(
+    blocks: Sequence[HeldOutBlock], cut: Sequence[Block]
+) -> tuple[dict[str, Floats], Floats]:
+    """RMSE (n,) of each column over the samples that count, and the share within the band."""
+    columns, within = [], []
+    for held_out, block in zip(blocks, cut, strict=True):
+        errors = {
+            name: (held_out.measured - computed)[block.counts]
+            for name, computed in held_out.computed.items()
+        }
+        columns.append(errors)
+        within.append(np.abs(errors["identified"]) <= held_out.band)
+    return root_mean_squares(columns), np.concatenate(within).mean(0)
+
+
+def _findings(
+    fitter: ArmFitter, links: Sequence[str], held: dict[str, Floats], cut: Sequence[Block]
+) -> tuple[Finding, ...]:
+    found = [
+        Finding("floor", f"link {link}: the description can't be meant: the prior has {text}", link)
+        for link, text in zip(links, fitter.changes, strict=True)
+        if text
+    ]
+    identified = held["identified"].mean()
+    baseline = min((held[c].mean(), c) for c in held if c != "identified")
+    if identified >= baseline[0]:
+        found.append(
+            Finding(
+                "gain",
+                f"no gain: {identified:.3g} N m on blocks held out, where column {baseline[1]} has "
+                f"{baseline[0]:.3g}; stay with it, or record a longer or richer motion",
+            )
+        )
+    return tuple(found)
+
+
+def _links(description: str, joints: Sequence[str]) -> tuple[str, ...]:
+    """The links that the joints move."""
+    children = {}
+    for joint in parse_description(description).iter("joint"):
+        child = joint.find("child")
+        if child is not None:
+            children[joint.get("name")] = child.get("link", "")
+    return tuple(children.get(joint, joint) for joint in joints)

@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the data tell of a model's numbers, how well, and what the prior decided.
+
+Errors of neighbouring samples are alike, so textbook intervals are far too narrow. Here the scores of
+contiguous blocks vary as they do (cluster-robust covariance with Student's t) [Cameron, Miller 2015,
+doi 10.3368/jhr.50.2.317].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics import _core
+from inverse_dynamics.identification.result import Interval, PriorDecided
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics._core import ArmFit, ArmFitter
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.identification.blocks import Block
+
+PARAMETERS = ("m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz")
+UNITS = ("kg", *["kg m"] * 3, *["kg m^2"] * 6)
+
+# Own columns of a joint [friction_step.hpp]: key and whether the step is one of the logarithm.
+_OWN = (
+    ("rotor_inertia", False),
+    ("fv", False),
+    ("fo", False),
+    ("fc", False),
+    ("shift", False),
+    ("width", True),
+    ("fl", False),
+    ("fs", False),
+    ("vs", True),
+)
+_OWN_UNITS = {
+    "rotor_inertia": "kg m^2",
+    "fv": "N m s/rad",
+    "fo": "N m",
+    "fc": "N m",
+    "shift": "rad/s",
+    "width": "rad/s",
+    "fl": "",
+    "fs": "N m",
+    "vs": "rad/s",
+}
+
+_CLUSTERS = 10
+# Student's t, 97.5 %, by degrees of freedom.
+_T = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160)
+_KNOWN = 0.5  # share of the information that must be the data's
+
+
+@dataclass(frozen=True)
+class Knowledge:
+    """Second derivatives of the cost at a fit, and how they vary from block to block. m unknowns."""
+
+    joints: tuple[str, ...]
+    values: Floats  # (m,)
+    data: Floats  # (m, m), of samples as if they were independent
+    prior: Floats  # (m, m)
+    scores: Floats  # (clusters, m)
+    worth: float  # how many independent samples one sample is worth, mean over the joints
+
+    @property
+    def covariance(self) -> Floats:
+        """(m, m), cluster-robust."""
+        bread = _inverse(self.data + self.prior)
+        centred = self.scores - self.scores.mean(0)
+        clusters = len(centred)
+        meat = centred.T @ centred * (clusters / (clusters - 1))
+        return bread @ meat @ bread
+
+    @property
+    def shares(self) -> Floats:
+        """(m,) of the information on each unknown, what comes from the data: 0 to 1."""
+        posterior = np.diag(_inverse(self.worth * self.data + self.prior))
+        shares: Floats = 1 - posterior / np.diag(_inverse(self.prior))
+        return shares
+
+
+def _inverse(matrix: Floats) -> Floats:
+    """Of a positive definite matrix whose unknowns have different units."""
+    scale = 1 / np.sqrt(np.diag(matrix))
+    return np.linalg.inv(matrix * np.outer(scale, scale)) * np.outer(scale, scale)
+
+
+def knowledge(
+    fitter: ArmFitter,
+    fit: ArmFit,
+    blocks: Sequence[Block],
+    *,
+    law: str,
+    prior_strength: float,
+    worth: float,
+) -> Knowledge:
+    """That of a fit to blocks."""
+    data, prior, scores = fitter.information(
+        fit, _clusters(blocks), law=law, prior_strength=prior_strength
+    )
+    n = len(fitter.joint_names)
+    columns = (len(data) - 10 * n) // n
+    own = [
+        [
+            fit.rotor_inertia[j] if key == "rotor_inertia" else figures.get(key, 0.0)
+            for key, _ in _OWN
+        ]
+        for j, figures in enumerate(fit.friction)
+    ]
+    values = np.concatenate([fit.parameters.ravel(), np.array(own)[:, :columns].ravel()])
+    return Knowledge(fitter.joint_names, values, data, prior, scores, worth)
+
+
+def _clusters(blocks: Sequence[Block]) -> list[_core.Block]:
+    """Blocks cut further, to about ten."""
+    parts = max(1, round(_CLUSTERS / len(blocks)))
+    found = []
+    for block in blocks:
+        pieces = [np.array_split(values, parts) for values in block.fitted]
+        found += [(q, qd, qdd, tau) for q, qd, qdd, tau in zip(*pieces, strict=True)]
+    return found
+
+
+def independent_samples(errors: Sequence[Floats]) -> Floats:
+    """(n,) how many independent samples errors (M, n) of blocks are worth.
+
+    Samples over the sum of their autocorrelations, up to the first one that is negative.
+    """
+    total = np.zeros(errors[0].shape[1])
+    for block in errors:
+        centred = block - block.mean(0)
+        size = len(centred)
+        spectrum = np.abs(np.fft.rfft(centred, 2 * size, axis=0)) ** 2
+        correlation = np.fft.irfft(spectrum, axis=0)[:size]
+        correlation = correlation / np.maximum(correlation[0], 1e-300)
+        positive = np.logical_and.accumulate(correlation > 0, axis=0)
+        total += size / np.maximum(2 * (correlation * positive).sum(0) - 1, 1)
+    return total
+
+
+def intervals(known: Knowledge, model: _core.FastModel) -> tuple[Interval, ...]:
+    """95 % intervals of friction figures, rotor inertias, and identifiable inertial combinations."""
+    n = len(known.joints)
+    covariance = known.covariance
+    clusters = len(known.scores)
+    factor: float = _T[min(clusters - 2, len(_T) - 1)]
+    found = []
+    for combination, name in _combinations(model, known.joints):
+        direction = np.zeros(len(known.values))
+        direction[: 10 * n] = combination
+        half = factor * float(np.sqrt(direction @ covariance @ direction))
+        unit = UNITS[int(np.flatnonzero(combination == 1)[-1]) % 10]
+        found.append(Interval(name, unit, float(direction @ known.values), half, ""))
+    half_widths: Floats = factor * np.sqrt(np.diag(covariance))
+    columns = (len(known.values) - 10 * n) // n
+    for j, joint in enumerate(known.joints):
+        for c, (key, logarithm) in enumerate(_OWN[:columns]):
+            at = 10 * n + columns * j + c
+            value = float(known.values[at])
+            width = float(half_widths[at]) * (value if logarithm else 1.0)
+            found.append(Interval(f"{joint} {key}", _OWN_UNITS[key], value, width, joint))
+    return tuple(found)
+
+
+def _combinations(model: _core.FastModel, joints: Sequence[str]) -> list[tuple[Floats, str]]:
+    """Inertial combinations that torques depend on: coefficients (10 n,), and their names.
+
+    One parameter of each, the last that is independent, has coefficient one; the others are those
+    that move with it [Gautier 1991, doi 10.1002/rob.4620080405].
+    """
+    n = len(joints)
+    random = np.random.default_rng(0)
+    q, qd, qdd = (random.uniform(-3, 3, (50 * n, n)) for _ in range(3))
+    Y = model.regressor(q, qd, qdd).reshape(-1, 10 * n)
+    independent: list[int] = []
+    kept = np.zeros((len(Y), 0))
+    for k in reversed(range(10 * n)):  # the distal links keep their parameters
+        column = Y[:, k] - kept @ (kept.T @ Y[:, k])
+        if np.linalg.norm(column) > 1e-8 * max(np.linalg.norm(Y[:, k]), 1.0):
+            kept = np.column_stack([kept, column / np.linalg.norm(column)])
+            independent.append(k)
+    independent.sort()
+    dependent = [k for k in range(10 * n) if k not in independent]
+    factors = np.linalg.lstsq(Y[:, independent], Y[:, dependent])[0]
+    found = []
+    for row, k in zip(factors, independent, strict=True):
+        coefficients = np.zeros(10 * n)
+        coefficients[dependent] = np.where(np.abs(row) > 1e-9, row, 0.0)
+        coefficients[k] = 1
+        found.append((coefficients, _name(coefficients, k, joints)))
+    return found
+
+
+def _name(coefficients: Floats, k: int, joints: Sequence[str]) -> str:
+    """The parameter, and those that move with it."""
+
+    def one(index: int) -> str:
+        return f"{PARAMETERS[index % 10]} of {joints[index // 10]}'s link"
+
+    others = [int(i) for i in np.flatnonzero(coefficients) if i != k]
+    if not others:
+        return one(k)
+    terms = [f"{coefficients[i]:+.3g} {one(i)}" for i in others[:2]]
+    more = f" and {len(others) - 2} more" if len(others) > 2 else ""
+    return f"{one(k)} {' '.join(terms)}{more}"
+
+
+def prior_decided(
+    known: Knowledge, prior: Floats, links: Sequence[str]
+) -> tuple[PriorDecided, ...]:
+    """Numbers of links of whose information less than half comes from the data. prior: (n, 10)."""
+    shares = known.shares
+    return tuple(
+        PriorDecided(
+            link=links[i // 10],
+            parameter=PARAMETERS[i % 10],
+            prior=float(prior.ravel()[i]),
+            value=float(known.values[i]),
+            share=float(np.clip(shares[i], 0, 1)),
+        )
+        for i in range(prior.size)
+        if shares[i] < _KNOWN
+    )

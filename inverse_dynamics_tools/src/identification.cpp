@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "identification.hpp"
+
+#include <pybind11/stl.h>
+
+#include <array>
+#include <chain_dynamics/error.hpp>
+#include <chain_dynamics/urdf.hpp>
+#include <inverse_dynamics_identification/arm_fit.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "initialized.hpp"
+
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ArmFitter)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ArmFit)
+
+namespace inverse_dynamics_tools {
+namespace {
+
+namespace py = pybind11;
+namespace identification = inverse_dynamics_identification;
+using identification::ArmFit;
+using identification::ArmFitOptions;
+using identification::ArmFitter;
+using identification::ArmSamples;
+using identification::FrictionTerms;
+using identification::LinkPrior;
+using identification::StepFriction;
+
+// q, qd, qdd, tau of a block, (N, n) each.
+using Block = std::tuple<Array, Array, Array, Array>;
+
+std::unique_ptr<ArmFitter> fromUrdf(const std::string& urdf, const std::string& root,
+                                    const std::string& tip,
+                                    const std::optional<std::array<double, 3>>& gravity) {
+  chain_dynamics::UrdfOptions options;
+  options.root = root;
+  options.tip = tip;
+  if (gravity) options.gravity = Eigen::Vector3d(gravity->data());
+  return std::make_unique<ArmFitter>(chain_dynamics::chainFromUrdf(urdf, options));
+}
+
+std::vector<ArmSamples> samplesOf(const std::vector<Block>& blocks) {
+  std::vector<ArmSamples> samples;
+  for (const auto& [q, qd, qdd, tau] : blocks) {
+    samples.push_back({states(q, "q"), states(qd, "qd"), states(qdd, "qdd"), states(tau, "tau")});
+  }
+  return samples;
+}
+
+FrictionTerms termsOf(const std::string& law) {
+  if (law == "step") return FrictionTerms::kStep;
+  if (law == "load") return FrictionTerms::kLoad;
+  if (law == "stribeck") return FrictionTerms::kStribeck;
+  throw chain_dynamics::ModelError("ArmFitter", "law", "step, load or stribeck", "'" + law + "'",
+                                   "name one of them");
+}
+
+ArmFitOptions optionsOf(const std::string& law, double prior_strength, int most_passes) {
+  ArmFitOptions options;
+  options.terms = termsOf(law);
+  options.prior_strength = prior_strength;
+  options.most_passes = most_passes;
+  return options;
+}
+
+ArmFit fit(const ArmFitter& fitter, const std::vector<Block>& blocks, const std::string& law,
+           double prior_strength, int most_passes, const ArmFit* start) {
+  const ArmFitOptions options = optionsOf(law, prior_strength, most_passes);
+  const std::vector<ArmSamples> samples = samplesOf(blocks);
+  const py::gil_scoped_release release;
+  return fitter.fit(samples, options, start);
+}
+
+Array torques(const ArmFitter& fitter, const ArmFit& of, const Array& q, const Array& qd,
+              const Array& qdd) {
+  const ConstMap q_in = states(q, "q"), qd_in = states(qd, "qd"), qdd_in = states(qdd, "qdd");
+  const auto n = fitter.description().jointCount();
+  for (const ConstMap& in : {q_in, qd_in, qdd_in}) {
+    if (in.rows() != n || in.cols() != q_in.cols()) {
+      throw chain_dynamics::ModelError(
+          "ArmFitter.torques", "q, qd, qdd", "(N, " + std::to_string(n) + ") each",
+          "(" + std::to_string(in.cols()) + ", " + std::to_string(in.rows()) + ")",
+          "give one state per row");
+    }
+  }
+  Array result = like(q);
+  Map out = columns(result);
+  const py::gil_scoped_release release;
+  fitter.torques(of, q_in, qd_in, qdd_in, out);
+  return result;
+}
+
+py::tuple information(const ArmFitter& fitter, const ArmFit& of, const std::vector<Block>& blocks,
+                      const std::string& law, double prior_strength) {
+  const ArmFitOptions options = optionsOf(law, prior_strength, 1);
+  const std::vector<ArmSamples> samples = samplesOf(blocks);
+  identification::ArmInformation found;
+  {
+    const py::gil_scoped_release release;
+    found = fitter.information(of, samples, options);
+  }
+  return py::make_tuple(rowsOf(std::move(found.data)), rowsOf(std::move(found.prior)),
+                        rowsOf(std::move(found.scores)));
+}
+
+/// (n, 10).
+py::array rowsOfLinks(const std::vector<LinkPrior>& priors) {
+  chain_dynamics::OwnedMatrix rows(10, static_cast<Eigen::Index>(priors.size()));
+  Eigen::Index i = 0;
+  for (const LinkPrior& prior : priors) rows.col(i++) = prior.link.toVector();
+  return rowsOf(std::move(rows));
+}
+
+py::dict figures(const StepFriction& law) {
+  py::dict result;
+  result["fv"] = law.fv;
+  result["fc"] = law.fc;
+  result["width"] = law.width;
+  result["shift"] = law.shift;
+  result["fo"] = law.fo;
+  if (law.fl != 0) result["fl"] = law.fl;
+  if (law.fs != 0) {
+    result["fs"] = law.fs;
+    result["vs"] = law.vs;
+  }
+  return result;
+}
+
+py::array vectorOf(const chain_dynamics::OwnedVector& vector) {
+  return py::array_t<double>(vector.size(), vector.data());
+}
+
+void bindFit(py::module_& module) {
+  py::class_<ArmFit>(module, "ArmFit", "A model of an arm: arm_fit.hpp.")
+      .def_property_readonly(
+          "parameters", [](const ArmFit& f) { return rowsOf(f.parameters); },
+          "(n, 10) m, mc, I of each link, in its frame and about its origin.")
+      .def_property_readonly(
+          "rotor_inertia", [](const ArmFit& f) { return vectorOf(f.rotor_inertia); },
+          "(n,) kg m^2 (prismatic kg).")
+      .def_property_readonly(
+          "friction",
+          [](const ArmFit& f) {
+            py::list laws;
+            for (const StepFriction& law : f.friction) laws.append(figures(law));
+            return laws;
+          },
+          "Figures of smooth_coulomb of each joint, by the keys of the model file.")
+      .def_property_readonly(
+          "noise", [](const ArmFit& f) { return vectorOf(f.noise); },
+          "(n,) root mean squares of the errors of the samples that it was fitted to.")
+      .def_readonly("cost", &ArmFit::cost, "What was minimised, up to a constant.")
+      .def_readonly("passes", &ArmFit::passes, "How often the samples were gone through.");
+}
+
+}  // namespace
+
+void bindIdentification(py::module_& module) {
+  bindFit(module);
+  py::class_<ArmFitter>(
+      module, "ArmFitter",
+      "Fits models of one arm: arm_fit.hpp. Threads: safe; the GIL is released.\n\n"
+      "blocks: tuples q, qd, qdd, tau, (N, n) each. law: step, load, stribeck.")
+      .def_static("from_urdf", &fromUrdf, py::arg("urdf"), py::kw_only(), py::arg("root") = "",
+                  py::arg("tip") = "", py::arg("gravity") = py::none(),
+                  "Of a URDF's text, whose links are the prior.")
+      .def_property_readonly(
+          "joint_names",
+          [](const ArmFitter& f) { return py::tuple(py::cast(f.description().jointNames())); },
+          "Names of the joints, from root to tip: the order of all arrays.")
+      .def_property_readonly(
+          "prior", [](const ArmFitter& f) { return rowsOfLinks(f.prior()); },
+          "(n, 10) parameters of the links that fits are drawn to.")
+      .def_property_readonly(
+          "changes",
+          [](const ArmFitter& f) {
+            std::vector<std::string> changes;
+            for (const LinkPrior& prior : f.prior()) changes.push_back(prior.changes);
+            return changes;
+          },
+          "What the prior has changed about each described link, in words; empty: nothing.")
+      .def("fit", &fit, py::arg("blocks"), py::kw_only(), py::arg("law"), py::arg("prior_strength"),
+           py::arg("most_passes") = 10, py::arg("start") = static_cast<const ArmFit*>(nullptr),
+           "A fit to the samples of all blocks. start: another one to begin with.")
+      .def("torques", &torques, py::arg("fit"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
+           "Torques of a fit, friction included: (n,) or (N, n).")
+      .def("information", &information, py::arg("fit"), py::arg("blocks"), py::kw_only(),
+           py::arg("law"), py::arg("prior_strength"),
+           "What data and prior say of the m unknowns, (m, m) each, and scores (blocks, m).");
+}
+
+}  // namespace inverse_dynamics_tools
