@@ -3,7 +3,7 @@
 
 #include <control_msgs/msg/joint_trajectory_controller_state.hpp>
 
-#include "controller_fixture.hpp"
+#include "inverse_dynamics_controllers/testing/controller_fixture.hpp"
 
 namespace inverse_dynamics_controllers {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_controllers/pd_gravity_compensation_controller.hpp"
 
-#include "controller_fixture.hpp"
+#include "inverse_dynamics_controllers/testing/controller_fixture.hpp"
 
 namespace inverse_dynamics_controllers {
 namespace {

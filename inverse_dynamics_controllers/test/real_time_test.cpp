@@ -3,11 +3,11 @@
 #include <inverse_dynamics_solver/conformance/real_time_section.hpp>
 #include <new>
 
-#include "controller_fixture.hpp"
 #include "inverse_dynamics_controllers/feed_forward_controller.hpp"
 #include "inverse_dynamics_controllers/gravity_compensation_controller.hpp"
 #include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
 #include "inverse_dynamics_controllers/pd_gravity_compensation_controller.hpp"
+#include "inverse_dynamics_controllers/testing/controller_fixture.hpp"
 
 namespace inverse_dynamics_controllers {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference_topic.hpp"
 
-#include "controller_fixture.hpp"
 #include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
+#include "inverse_dynamics_controllers/testing/controller_fixture.hpp"
 
 namespace inverse_dynamics_controllers {
 namespace {

@@ -2,8 +2,8 @@
 #include <chrono>
 #include <std_msgs/msg/string.hpp>
 
-#include "controller_fixture.hpp"
 #include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
+#include "inverse_dynamics_controllers/testing/controller_fixture.hpp"
 
 namespace inverse_dynamics_controllers {
 namespace {

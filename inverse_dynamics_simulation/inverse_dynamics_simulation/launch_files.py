@@ -79,7 +79,7 @@ def parameter_file(context: LaunchContext) -> str:
     given = text(context, "config")
     if given and not Path(given).is_file():
         raise ValueError(f"argument config: expected a parameter file, got '{given}': no such file")
-    share = Path(get_package_share_directory("inverse_dynamics_controllers"))
+    share = Path(get_package_share_directory("inverse_dynamics_simulation"))
     return given or str(share / "config" / f"{text(context, 'robot')}.yaml")
 
 

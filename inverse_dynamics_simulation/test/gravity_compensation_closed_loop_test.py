@@ -30,7 +30,7 @@ TOLERANCE = 1e-3
 @pytest.mark.launch_test
 @launch_testing.parametrize("robot", ["ur10", "panda"])
 def generate_test_description(robot):
-    share = Path(get_package_share_directory("inverse_dynamics_controllers"))
+    share = Path(get_package_share_directory("inverse_dynamics_simulation"))
     source = PythonLaunchDescriptionSource(str(share / "launch" / "simulated.launch.py"))
     arguments = {"robot": robot, "controller": "gravity_compensation"}
     return launch.LaunchDescription(

@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "captured_log.hpp"
 #include "inverse_dynamics_controllers/ros2_control_compatibility.hpp"
+#include "inverse_dynamics_controllers/testing/captured_log.hpp"
 
 #if __has_include(<controller_interface/controller_interface_params.hpp>)
 #include <controller_interface/controller_interface_params.hpp>

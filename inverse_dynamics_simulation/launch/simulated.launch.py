@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """A UR10 or a Panda in MuJoCo under ros2_control, with a controller of this package.
 
-ros2 launch inverse_dynamics_controllers simulated.launch.py robot:=ur10
-ros2 run inverse_dynamics_controllers send_motion trajectory_to_inverse_dynamics \
+ros2 launch inverse_dynamics_simulation simulated.launch.py robot:=ur10
+ros2 run inverse_dynamics_simulation send_motion trajectory_to_inverse_dynamics \
     --joints shoulder_pan_joint shoulder_lift_joint elbow_joint \
     wrist_1_joint wrist_2_joint wrist_3_joint --amplitudes 0.5 -0.4 0.6 0.5 -0.5 0.8
 """
 
 from xml.etree import ElementTree
 
-from inverse_dynamics_controllers.simulations import (
+from inverse_dynamics_ros.launch_files import failing_with_its_node, number, text
+from inverse_dynamics_simulation.launch_files import (
     LINKS,
     add_hardware,
     arguments,
@@ -18,7 +19,6 @@ from inverse_dynamics_controllers.simulations import (
     spawner,
     state_publisher,
 )
-from inverse_dynamics_ros.launch_files import failing_with_its_node, number, text
 from launch import LaunchDescription
 from launch.actions import (
     DeclareLaunchArgument,
@@ -58,7 +58,7 @@ def _processes(context):
     actions = [
         state_publisher(simulated(robot, number(context, "payload"))),
         Node(
-            package="inverse_dynamics_controllers",
+            package="inverse_dynamics_simulation",
             executable="simulated_controller_manager",
             parameters=[parameter_file(context), {"use_sim_time": True}],
             remappings=[("~/robot_description", "/robot_description")],
@@ -79,6 +79,6 @@ def simulated(robot, payload):
     """The robot's description with a simulated hardware component."""
     root = description_of(robot)
     _, tip = LINKS[robot]
-    plugin = "inverse_dynamics_controllers/SimulatedArm"
+    plugin = "inverse_dynamics_simulation/SimulatedArm"
     add_hardware(root, robot, plugin, {"payload": str(payload), "payload_link": tip})
     return ElementTree.tostring(root, encoding="unicode")

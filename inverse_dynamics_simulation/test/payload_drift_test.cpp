@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// How far an arm in MuJoCo drifts under gravity compensation with a load that the controller knows.
-#include "controller_fixture.hpp"
-#include "inverse_dynamics_controllers/gravity_compensation_controller.hpp"
-#include "simulation/mujoco_arm.hpp"
+#include <inverse_dynamics_controllers/gravity_compensation_controller.hpp>
+#include <inverse_dynamics_controllers/testing/controller_fixture.hpp>
 
-namespace inverse_dynamics_controllers {
+#include "mujoco_arm.hpp"
+
+namespace inverse_dynamics_simulation {
 namespace {
+
+using inverse_dynamics_controllers::ControllerFixture;
+using inverse_dynamics_controllers::GravityCompensationController;
+using inverse_dynamics_controllers::return_type;
+using inverse_dynamics_controllers::ur10Description;
+using inverse_dynamics_controllers::ur10Joints;
+using inverse_dynamics_controllers::vec;
 
 constexpr double kLoad = 2.0;         // kg, at the tip
 constexpr double kTime = 10.0;        // s
@@ -67,4 +75,4 @@ TEST_F(PayloadDrift, AKnownLoadDriftsNoFartherThanTheArmAlone) {
 }
 
 }  // namespace
-}  // namespace inverse_dynamics_controllers
+}  // namespace inverse_dynamics_simulation

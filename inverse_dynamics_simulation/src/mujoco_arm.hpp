@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace inverse_dynamics_controllers {
+namespace inverse_dynamics_simulation {
 
 /// A point mass at the origin of a link's frame.
 struct Payload {
@@ -63,4 +63,4 @@ class MujocoArm {
   std::vector<int> positions_, velocities_;  // of the joints, in MuJoCo's vectors
 };
 
-}  // namespace inverse_dynamics_controllers
+}  // namespace inverse_dynamics_simulation

@@ -30,18 +30,18 @@ def run(*command):
 
 
 def simulated(*arguments):
-    return run("launch", "inverse_dynamics_controllers", "simulated.launch.py", *arguments)
+    return run("launch", "inverse_dynamics_simulation", "simulated.launch.py", *arguments)
 
 
 def send_motion(*arguments):
-    return run("run", "inverse_dynamics_controllers", "send_motion", *arguments)
+    return run("run", "inverse_dynamics_simulation", "send_motion", *arguments)
 
 
 class TestAsAUser(unittest.TestCase):
     def test_launch_files_explain_their_arguments(self):
         for file, own in (("simulated", ["payload", "bag"]), ("gz", [])):
             said, code = run(
-                "launch", "inverse_dynamics_controllers", f"{file}.launch.py", "--show-args"
+                "launch", "inverse_dynamics_simulation", f"{file}.launch.py", "--show-args"
             )
             assert code == 0, said
             assert "no description given" not in said

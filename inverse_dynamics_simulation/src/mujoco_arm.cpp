@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/mujoco_arm.hpp"
+#include "mujoco_arm.hpp"
 
 #include <urdf/model.h>
 
@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
 
-namespace inverse_dynamics_controllers {
+namespace inverse_dynamics_simulation {
 namespace {
 
 using inverse_dynamics_solver::errorText;
@@ -141,4 +141,4 @@ Eigen::VectorXd MujocoArm::qdd() const {
   return qdd;
 }
 
-}  // namespace inverse_dynamics_controllers
+}  // namespace inverse_dynamics_simulation

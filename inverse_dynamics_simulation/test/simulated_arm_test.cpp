@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/simulated_arm.hpp"
+#include "simulated_arm.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <hardware_interface/component_parser.hpp>
 #include <inverse_dynamics_controllers/ros2_control_compatibility.hpp>
+#include <inverse_dynamics_controllers/testing/captured_log.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <limits>
 #include <rclcpp/duration.hpp>
 #include <rclcpp/time.hpp>
 
-#include "captured_log.hpp"
-
-namespace inverse_dynamics_controllers {
+namespace inverse_dynamics_simulation {
 namespace {
 
 using hardware_interface::CallbackReturn;
 using hardware_interface::return_type;
+using inverse_dynamics_controllers::CapturedLog;
+using inverse_dynamics_controllers::setValue;
+using inverse_dynamics_controllers::valueOf;
 
 constexpr double kPeriod = 2e-3;  // s
 
@@ -38,7 +40,7 @@ struct Description {
       <joint name="wrist" type="fixed"><parent link="rod"/><child link="tip"/>
         <origin xyz="1 0 0"/></joint>
       <ros2_control name="test" type="system"><hardware>
-        <plugin>inverse_dynamics_controllers/SimulatedArm</plugin>)" +
+        <plugin>inverse_dynamics_simulation/SimulatedArm</plugin>)" +
            parameters + R"(</hardware><joint name="swing">)" + commands +
            R"(<state_interface name="position"><param name="initial_value">)" + initial +
            R"(</param></state_interface></joint></ros2_control></robot>)";
@@ -53,7 +55,7 @@ class SimulatedArmTest : public ::testing::Test {
  protected:
   bool init(const Description& description) {
     const auto info = hardware_interface::parse_control_resources_from_urdf(description.text());
-#ifdef INVERSE_DYNAMICS_CONTROLLERS_HAS_COMPONENT_PARAMS
+#ifdef INVERSE_DYNAMICS_SIMULATION_HAS_COMPONENT_PARAMS
     hardware_interface::HardwareComponentInterfaceParams params;
     params.hardware_info = info.at(0);
     return arm.on_init(params) == CallbackReturn::SUCCESS;
@@ -175,4 +177,4 @@ TEST_F(SimulatedArmTest, RefusesAPayloadOnALinkThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace inverse_dynamics_controllers
+}  // namespace inverse_dynamics_simulation

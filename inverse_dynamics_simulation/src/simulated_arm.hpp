@@ -4,7 +4,7 @@
 ///
 ///     <ros2_control name="ur10" type="system">
 ///       <hardware>
-///         <plugin>inverse_dynamics_controllers/SimulatedArm</plugin>
+///         <plugin>inverse_dynamics_simulation/SimulatedArm</plugin>
 ///         <param name="payload">2.0</param>                  <!-- kg; none by default -->
 ///         <param name="payload_link">tool0</param>
 ///       </hardware>
@@ -27,20 +27,20 @@
 #include <string>
 #include <vector>
 
-#include "simulation/mujoco_arm.hpp"
+#include "mujoco_arm.hpp"
 
 #if __has_include(<hardware_interface/types/hardware_component_interface_params.hpp>)
 #include <hardware_interface/types/hardware_component_interface_params.hpp>
-#define INVERSE_DYNAMICS_CONTROLLERS_HAS_COMPONENT_PARAMS
+#define INVERSE_DYNAMICS_SIMULATION_HAS_COMPONENT_PARAMS
 #endif
 
-namespace inverse_dynamics_controllers {
+namespace inverse_dynamics_simulation {
 
 /// An arm of effort-controlled joints: state interfaces position, velocity, acceleration, effort;
 /// command interface effort.
 class SimulatedArm : public hardware_interface::SystemInterface {
  public:
-#ifdef INVERSE_DYNAMICS_CONTROLLERS_HAS_COMPONENT_PARAMS
+#ifdef INVERSE_DYNAMICS_SIMULATION_HAS_COMPONENT_PARAMS
   hardware_interface::CallbackReturn on_init(
       const hardware_interface::HardwareComponentInterfaceParams& params) override;
 #else
@@ -71,4 +71,4 @@ class SimulatedArm : public hardware_interface::SystemInterface {
   std::unique_ptr<MujocoArm> arm_;
 };
 
-}  // namespace inverse_dynamics_controllers
+}  // namespace inverse_dynamics_simulation

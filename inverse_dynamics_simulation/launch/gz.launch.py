@@ -5,14 +5,15 @@ Not run by this project's tests, which have no Gazebo: written after gz_ros2_con
 ros_gz_sim, ros_gz_bridge and gz_ros2_control. Gazebo refuses links whose inertia breaks the triangle
 inequality: the Panda's description has one (fer_link4).
 
-ros2 launch inverse_dynamics_controllers gz.launch.py robot:=ur10
+ros2 launch inverse_dynamics_simulation gz.launch.py robot:=ur10
 """
 
 from pathlib import Path
 from xml.etree import ElementTree
 
 from ament_index_python.packages import get_package_share_directory
-from inverse_dynamics_controllers.simulations import (
+from inverse_dynamics_ros.launch_files import failing_with_its_node, text
+from inverse_dynamics_simulation.launch_files import (
     LINKS,
     add_hardware,
     arguments,
@@ -21,7 +22,6 @@ from inverse_dynamics_controllers.simulations import (
     spawner,
     state_publisher,
 )
-from inverse_dynamics_ros.launch_files import failing_with_its_node, text
 from launch import LaunchDescription
 from launch.actions import IncludeLaunchDescription, OpaqueFunction
 from launch.launch_description_sources import PythonLaunchDescriptionSource

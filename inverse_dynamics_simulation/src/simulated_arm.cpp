@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulation/simulated_arm.hpp"
+#include "simulated_arm.hpp"
 
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
@@ -11,7 +11,7 @@
 
 #include "inverse_dynamics_controllers/ros2_control_compatibility.hpp"
 
-namespace inverse_dynamics_controllers {
+namespace inverse_dynamics_simulation {
 
 using chain_dynamics::joined;
 using hardware_interface::CallbackReturn;
@@ -20,6 +20,7 @@ using hardware_interface::HW_IF_EFFORT;
 using hardware_interface::HW_IF_POSITION;
 using hardware_interface::HW_IF_VELOCITY;
 using hardware_interface::return_type;
+using inverse_dynamics_controllers::referenceInterface;
 
 namespace {
 
@@ -71,7 +72,7 @@ void requireEffort(const hardware_interface::ComponentInfo& joint) {
 
 }  // namespace
 
-#ifdef INVERSE_DYNAMICS_CONTROLLERS_HAS_COMPONENT_PARAMS
+#ifdef INVERSE_DYNAMICS_SIMULATION_HAS_COMPONENT_PARAMS
 CallbackReturn SimulatedArm::on_init(
     const hardware_interface::HardwareComponentInterfaceParams& params) {
   const CallbackReturn base = SystemInterface::on_init(params);
@@ -184,7 +185,7 @@ return_type SimulatedArm::write(const rclcpp::Time&, const rclcpp::Duration& per
   return return_type::OK;
 }
 
-}  // namespace inverse_dynamics_controllers
+}  // namespace inverse_dynamics_simulation
 
-PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::SimulatedArm,
+PLUGINLIB_EXPORT_CLASS(inverse_dynamics_simulation::SimulatedArm,
                        hardware_interface::SystemInterface)

@@ -91,7 +91,7 @@ def tolerance(controller, payload):
 
 def parameter_file(robot, controller, payload):
     """This package's, with states of all cycles, and for a payload with the gains STIFF."""
-    share = Path(get_package_share_directory("inverse_dynamics_controllers"))
+    share = Path(get_package_share_directory("inverse_dynamics_simulation"))
     parameters = yaml.safe_load((share / "config" / f"{robot}.yaml").read_text())
     of_controller = parameters[f"{controller}_controller"]["ros__parameters"]
     of_controller["state_publish_rate"] = 1000.0
@@ -105,7 +105,7 @@ def parameter_file(robot, controller, payload):
 @pytest.mark.launch_test
 @launch_testing.parametrize("robot, controller, payload", CASES)
 def generate_test_description(robot, controller, payload):
-    share = Path(get_package_share_directory("inverse_dynamics_controllers"))
+    share = Path(get_package_share_directory("inverse_dynamics_simulation"))
     source = PythonLaunchDescriptionSource(str(share / "launch" / "simulated.launch.py"))
     arguments = {
         "robot": robot,
@@ -152,7 +152,7 @@ class TestFollowing(unittest.TestCase):
         """Sends the arm there and back; the time of the simulation when it has come back."""
         sending = subprocess.Popen(
             [
-                *("ros2", "run", "inverse_dynamics_controllers", "send_motion", trajectory),
+                *("ros2", "run", "inverse_dynamics_simulation", "send_motion", trajectory),
                 *("--joints", *amplitudes, "--amplitudes", *map(str, amplitudes.values())),
                 *("--duration", str(DURATION)),
             ],
