@@ -352,6 +352,18 @@ TEST(MomentumObserver, ASolverWhoseInertiaIsNotPhysicalIsRefused) {
   EXPECT_EQ(thrownBy([&] { AccelerationResidual(solver, chosen); }), "");
 }
 
+TEST(EstimatorFor, ASolverGetsTheEstimatorThatItAllows) {
+  const auto solver = Pendulum::make();
+  const EstimatorOptions chosen = options(1, VelocitySource::kPositions);
+  EXPECT_NE(dynamic_cast<MomentumObserver*>(estimatorFor(solver, chosen).get()), nullptr);
+  solver->physical = false;
+  EXPECT_NE(dynamic_cast<AccelerationResidual*>(estimatorFor(solver, chosen).get()), nullptr);
+  EXPECT_THROW(estimatorFor(nullptr, chosen),
+               inverse_dynamics_solver::InvalidParameterValueException);
+  EXPECT_THROW(estimatorFor(std::make_shared<Pendulum>(), chosen),
+               inverse_dynamics_solver::UninitializedException);
+}
+
 TEST(EstimateStatus, EachHasAText) {
   for (int status = 0; status <= static_cast<int>(EstimateStatus::kWrongSize); ++status) {
     EXPECT_STRNE(text(static_cast<EstimateStatus>(status)), "unknown status");

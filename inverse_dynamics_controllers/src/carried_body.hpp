@@ -6,21 +6,13 @@
 #pragma once
 
 #include <geometry_msgs/msg/inertia_stamped.hpp>
-#include <inverse_dynamics_solver/payload.hpp>
+#include <inverse_dynamics_control/payload_ramp.hpp>
 #include <memory>
 
 #include "arm.hpp"
 #include "parameter_watch.hpp"
 
 namespace inverse_dynamics_controllers {
-
-/// The body between two others: all inertial parameters change linearly, so that torques do too.
-///
-/// @param from, to  possible bodies, with the tip frame as theirs.
-/// @param part      0: from; 1: to.
-inverse_dynamics_solver::RigidBody between(const inverse_dynamics_solver::RigidBody& from,
-                                           const inverse_dynamics_solver::RigidBody& to,
-                                           double part);
 
 /// Gives the solver the body that the parameters `payload.*` or the topic ~/payload say last.
 ///
@@ -33,9 +25,8 @@ class CarriedBody {
   explicit CarriedBody(const Setup& setup);
 
  private:
-  struct Ramp;
-
-  std::shared_ptr<Ramp> ramp_;  // a message that is being received keeps it
+  // A message that is being received keeps it.
+  std::shared_ptr<inverse_dynamics_control::PayloadRamp> ramp_;
   std::unique_ptr<ParameterWatch> watch_;
   rclcpp::Subscription<geometry_msgs::msg::InertiaStamped>::SharedPtr subscription_;
   rclcpp::TimerBase::SharedPtr timer_;

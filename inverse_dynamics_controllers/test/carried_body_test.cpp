@@ -22,30 +22,6 @@ RigidBody tool() {
   return body;
 }
 
-// About the origin of the tip frame.
-Eigen::Matrix3d inertiaAboutTip(const RigidBody& body) {
-  const Eigen::Vector3d& c = body.center_of_mass;
-  return body.inertia +
-         body.mass * (c.squaredNorm() * Eigen::Matrix3d::Identity() - c * c.transpose());
-}
-
-TEST(Between, AllInertialParametersChangeLinearly) {
-  RigidBody other;
-  other.mass = 0.5;
-  other.center_of_mass << -0.2, 0.1, 0.3;
-  for (const RigidBody& from : {RigidBody(), other}) {
-    const RigidBody part = between(from, tool(), 0.3);
-    EXPECT_FALSE(inverse_dynamics_solver::defectOf(part));
-    EXPECT_NEAR(part.mass, 0.7 * from.mass + 0.3 * 2.0, 1e-15);
-    const Eigen::Vector3d moment =
-        0.7 * from.mass * from.center_of_mass + 0.3 * tool().mass * tool().center_of_mass;
-    EXPECT_LT((part.mass * part.center_of_mass - moment).norm(), 1e-15);
-    const Eigen::Matrix3d inertia = 0.7 * inertiaAboutTip(from) + 0.3 * inertiaAboutTip(tool());
-    EXPECT_LT((inertiaAboutTip(part) - inertia).norm(), 1e-15);
-  }
-  EXPECT_EQ(between(tool(), RigidBody(), 1.0).mass, 0.0);
-}
-
 class CarriedBodyTest : public ControllerFixture<GravityCompensationController> {
  protected:
   void SetUp() override { hardware.set(q, Eigen::VectorXd::Zero(6)); }

@@ -8,6 +8,7 @@
 #include "inverse_dynamics_control/contact_detector.hpp"         // IWYU pragma: export
 #include "inverse_dynamics_control/contact_thresholds.hpp"       // IWYU pragma: export
 #include "inverse_dynamics_control/damping.hpp"                  // IWYU pragma: export
+#include "inverse_dynamics_control/estimator_choice.hpp"         // IWYU pragma: export
 #include "inverse_dynamics_control/fault_latch.hpp"              // IWYU pragma: export
 #include "inverse_dynamics_control/feed_forward.hpp"             // IWYU pragma: export
 #include "inverse_dynamics_control/gravity_compensation.hpp"     // IWYU pragma: export
