@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.evaluation import Evaluation, JointError, evaluate
     from inverse_dynamics.evaluation.trajectory_torques import TrajectoryTorques, trajectory_torques
     from inverse_dynamics.figures.plots import save_torque_figure, torque_figure
+    from inverse_dynamics.identification.identify import identify
+    from inverse_dynamics.identification.result import Identification
     from inverse_dynamics.results.evaluations import read_evaluation, write_evaluation
     from inverse_dynamics.results.exports import export_series
     from inverse_dynamics.results.many_evaluations import ManyEvaluations, evaluate_many
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
 _HOME = {
     "Evaluation": "evaluation.evaluation",
     "FastModel": "_core",
+    "Identification": "identification.result",
     "JointError": "evaluation.evaluation",
     "JointLog": "data.joint_log",
     "ManyEvaluations": "results.many_evaluations",
@@ -48,6 +51,7 @@ _HOME = {
     "evaluate_many": "results.many_evaluations",
     "export_series": "results.exports",
     "fetch_recordings": "data.public_recordings",
+    "identify": "identification.identify",
     "load_robot": "robot.robots",
     "read_evaluation": "results.evaluations",
     "read_joint_log": "data.bags",
@@ -65,6 +69,7 @@ _HOME = {
 __all__ = [
     "Evaluation",
     "FastModel",
+    "Identification",
     "JointError",
     "JointLog",
     "ManyEvaluations",
@@ -77,6 +82,7 @@ __all__ = [
     "evaluate_many",
     "export_series",
     "fetch_recordings",
+    "identify",
     "load_robot",
     "read_evaluation",
     "read_joint_log",

@@ -47,6 +47,15 @@ class Block:
         within = (at >= known[0]) & (at <= known[-1])
         return replace(self, q=q, qd=qd, qdd=qdd, counts=self.counts & within)
 
+    def parts(self, count: int) -> list[Block]:
+        """The block in so many parts, with its accelerations."""
+        edges = np.linspace(0, len(self.time), count + 1).round().astype(int)
+        arrays = ("time", "instants", "used", "q", "qd", "qdd", "tau", "counts")
+        return [
+            replace(self, **{name: getattr(self, name)[first:after] for name in arrays})
+            for first, after in pairwise(edges)
+        ]
+
     @property
     def fitted(self) -> _core.Block:
         """q, qd, qdd, tau of the samples to be fitted to."""

@@ -27,6 +27,8 @@ STRENGTHS = (1000.0, 100.0, 10.0)
 
 _PASSES = 3  # over the samples, from a fit to nearly the same ones
 _BAND = 0.95
+_FOLDS = 8  # parts of blocks that are left out in turn, about
+_DELAY_LAW = "load"  # what delays are looked for with
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,10 @@ def errors_of(fitter: ArmFitter, fit: ArmFit, block: Block) -> Floats:
 
 
 def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
-    """The fit to all blocks, chosen by leaving out each in turn."""
+    """The fit to all blocks, chosen by leaving out each part in turn."""
+    delay = _delay(fitter, blocks)
+    blocks = [block.later(delay) for block in blocks]
+    parts = _parts(blocks)
     whole: dict[str, ArmFit] = {}
     alternatives: list[_Alternative] = []
     start = None
@@ -67,9 +72,9 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
         start = whole[law] = fitter.fit(
             together(blocks), law=law, prior_strength=STRENGTHS[1], start=start
         )
-        alternatives += _alternatives(fitter, blocks, law, start)
+        alternatives += _alternatives(fitter, parts, law, start)
     noise = whole["step"].noise
-    best, choices = _simplest(alternatives, noise)
+    best, choices = _simplest(alternatives, noise, delay)
     fit = fitter.fit(
         together(blocks),
         law=best.law,
@@ -77,30 +82,88 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
         start=whole[best.law],
     )
     band = np.quantile(np.abs(np.concatenate(best.errors)), _BAND, axis=0)
-    return Chosen(best.law, best.prior_strength, 0.0, fit, band, choices)
+    return Chosen(best.law, best.prior_strength, delay, fit, band, choices)
+
+
+def _parts(blocks: Sequence[Block]) -> list[Block]:
+    """Parts to be left out in turn: more and shorter ones than the blocks, for a steadier choice."""
+    each = max(1, round(_FOLDS / len(blocks)))
+    return [part for block in blocks for part in block.parts(each)]
+
+
+def _delay(fitter: ArmFitter, blocks: Sequence[Block]) -> float:
+    """By how much the torques are later than the states [s]; zero where that predicts as well.
+
+    The vertex of the parabola through three costs, gone to twice.
+    """
+    step, center = _period(blocks), 0.0
+    start = None
+    for _ in range(2):
+        costs = []
+        for delay in (center - step, center, center + step):
+            later = together([block.later(delay) for block in blocks])
+            start = fitter.fit(
+                later, law=_DELAY_LAW, prior_strength=STRENGTHS[1], most_passes=_PASSES, start=start
+            )
+            # samples at the ends of blocks are fewer where the delay is greater
+            costs.append(2 * float(np.log(start.noise).sum()))
+        curvature = costs[0] - 2 * costs[1] + costs[2]
+        if curvature <= 0:
+            return 0.0
+        center += step * float(np.clip(0.5 * (costs[0] - costs[2]) / curvature, -2, 2))
+        step *= 0.5
+    if start is None or not _predicts_better(fitter, blocks, center, start):
+        return 0.0
+    return center
+
+
+def _period(blocks: Sequence[Block]) -> float:
+    steps = np.concatenate([np.diff(block.instants[block.used]) for block in blocks])
+    return float(np.median(steps[steps > 0]))
+
+
+def _predicts_better(
+    fitter: ArmFitter, blocks: Sequence[Block], delay: float, start: ArmFit
+) -> bool:
+    """Whether parts that were left out are predicted better with a delay, by a standard error."""
+    scores = []
+    for by in (0.0, delay):
+        parts = _parts([block.later(by) for block in blocks])
+        errors = _left_out(fitter, parts, _DELAY_LAW, [STRENGTHS[1]], start)[0]
+        scores.append(_Alternative(_DELAY_LAW, STRENGTHS[1], errors).scores(start.noise))
+    gain = scores[0] - scores[1]
+    return bool(gain.mean() > gain.std(ddof=1) / np.sqrt(len(gain)))
 
 
 def _alternatives(
-    fitter: ArmFitter, blocks: Sequence[Block], law: str, start: ArmFit
+    fitter: ArmFitter, parts: Sequence[Block], law: str, start: ArmFit
 ) -> list[_Alternative]:
-    found = [_Alternative(law, strength, []) for strength in STRENGTHS]
-    for k, block in enumerate(blocks):
-        others = together([*blocks[:k], *blocks[k + 1 :]])
+    errors = _left_out(fitter, parts, law, STRENGTHS, start)
+    return [_Alternative(law, s, e) for s, e in zip(STRENGTHS, errors, strict=True)]
+
+
+def _left_out(
+    fitter: ArmFitter,
+    parts: Sequence[Block],
+    law: str,
+    strengths: Sequence[float],
+    start: ArmFit,
+) -> list[list[Floats]]:
+    """Errors of each part under fits to the others, for each prior strength."""
+    found: list[list[Floats]] = [[] for _ in strengths]
+    for k, part in enumerate(parts):
+        others = together([*parts[:k], *parts[k + 1 :]])
         fit = start
-        for alternative in found:
+        for errors, strength in zip(found, strengths, strict=True):
             fit = fitter.fit(
-                others,
-                law=law,
-                prior_strength=alternative.prior_strength,
-                most_passes=_PASSES,
-                start=fit,
+                others, law=law, prior_strength=strength, most_passes=_PASSES, start=fit
             )
-            alternative.errors.append(errors_of(fitter, fit, block))
+            errors.append(errors_of(fitter, fit, part))
     return found
 
 
 def _simplest(
-    alternatives: Sequence[_Alternative], noise: Floats
+    alternatives: Sequence[_Alternative], noise: Floats, delay: float
 ) -> tuple[_Alternative, tuple[Choice, ...]]:
     scores = np.array([a.scores(noise) for a in alternatives])  # (alternatives, blocks)
     best = scores[scores.mean(1).argmin()]
@@ -111,7 +174,7 @@ def _simplest(
         Choice(
             law=a.law,
             prior_strength=a.prior_strength,
-            delay=0.0,
+            delay=delay,
             error=float(scores[i].mean()),
             standard_error=float(deviation[i]),
             chosen=i == chosen,

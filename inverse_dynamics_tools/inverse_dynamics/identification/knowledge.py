@@ -74,7 +74,8 @@ class Knowledge:
         centred = self.scores - self.scores.mean(0)
         clusters = len(centred)
         meat = centred.T @ centred * (clusters / (clusters - 1))
-        return bread @ meat @ bread
+        covariance: Floats = bread @ meat @ bread
+        return covariance
 
     @property
     def shares(self) -> Floats:
@@ -150,27 +151,26 @@ def intervals(known: Knowledge, model: _core.FastModel) -> tuple[Interval, ...]:
     clusters = len(known.scores)
     factor: float = _T[min(clusters - 2, len(_T) - 1)]
     found = []
-    for combination, name in _combinations(model, known.joints):
+    for combination, k, name in _combinations(model, known.joints):
         direction = np.zeros(len(known.values))
         direction[: 10 * n] = combination
         half = factor * float(np.sqrt(direction @ covariance @ direction))
-        unit = UNITS[int(np.flatnonzero(combination == 1)[-1]) % 10]
-        found.append(Interval(name, unit, float(direction @ known.values), half, ""))
-    half_widths: Floats = factor * np.sqrt(np.diag(covariance))
+        found.append(Interval(name, UNITS[k % 10], float(direction @ known.values), half, ""))
+    half_widths: list[float] = (factor * np.sqrt(np.diag(covariance))).tolist()
     columns = (len(known.values) - 10 * n) // n
     for j, joint in enumerate(known.joints):
         for c, (key, logarithm) in enumerate(_OWN[:columns]):
             at = 10 * n + columns * j + c
             value = float(known.values[at])
-            width = float(half_widths[at]) * (value if logarithm else 1.0)
+            width = half_widths[at] * (value if logarithm else 1.0)
             found.append(Interval(f"{joint} {key}", _OWN_UNITS[key], value, width, joint))
     return tuple(found)
 
 
-def _combinations(model: _core.FastModel, joints: Sequence[str]) -> list[tuple[Floats, str]]:
+def _combinations(model: _core.FastModel, joints: Sequence[str]) -> list[tuple[Floats, int, str]]:
     """Inertial combinations that torques depend on: coefficients (10 n,), and their names.
 
-    One parameter of each, the last that is independent, has coefficient one; the others are those
+    Parameter k of each, the last that is independent, has coefficient one; the others are those
     that move with it [Gautier 1991, doi 10.1002/rob.4620080405].
     """
     n = len(joints)
@@ -181,7 +181,7 @@ def _combinations(model: _core.FastModel, joints: Sequence[str]) -> list[tuple[F
     kept = np.zeros((len(Y), 0))
     for k in reversed(range(10 * n)):  # the distal links keep their parameters
         column = Y[:, k] - kept @ (kept.T @ Y[:, k])
-        if np.linalg.norm(column) > 1e-8 * max(np.linalg.norm(Y[:, k]), 1.0):
+        if np.linalg.norm(column) > 1e-8 * (float(np.linalg.norm(Y[:, k])) + 1.0):
             kept = np.column_stack([kept, column / np.linalg.norm(column)])
             independent.append(k)
     independent.sort()
@@ -192,7 +192,7 @@ def _combinations(model: _core.FastModel, joints: Sequence[str]) -> list[tuple[F
         coefficients = np.zeros(10 * n)
         coefficients[dependent] = np.where(np.abs(row) > 1e-9, row, 0.0)
         coefficients[k] = 1
-        found.append((coefficients, _name(coefficients, k, joints)))
+        found.append((coefficients, k, _name(coefficients, k, joints)))
     return found
 
 
