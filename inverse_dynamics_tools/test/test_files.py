@@ -11,6 +11,7 @@ from inverse_dynamics.base.files import (
     Contents,
     check_output_directory,
     check_output_file,
+    files_written_whole,
     is_plain_name,
     write_text_whole,
     written_whole,
@@ -390,3 +391,51 @@ def test_a_directory_that_can_not_be_read_is_not_taken_for_an_empty_one(tmp_path
     with pytest.raises(OutputError, match="Permission denied"):
         write(target, overwrite=True)
     assert sorted(os.listdir(target)) == ["mine", MARK]
+
+
+def write_three(directory, text, names=("a.yaml", "b.json", "c.html")):
+    with files_written_whole([directory / name for name in names]) as fresh:
+        for file in fresh:
+            file.write_text(text)
+
+
+def test_several_files_appear_together(tmp_path):
+    target = tmp_path / "deep"
+    write_three(target, "old", ("a.yaml", "other/b.json"))
+    write_three(target, "new", ("a.yaml", "other/b.json"))
+    assert (target / "a.yaml").read_text() == (target / "other" / "b.json").read_text() == "new"
+    assert sorted(os.listdir(target)) == ["a.yaml", "other"]
+    assert os.listdir(target / "other") == ["b.json"]
+
+
+def test_none_of_several_files_is_left_after_an_error(tmp_path):
+    def write_one(error):
+        with files_written_whole([tmp_path / "a", tmp_path / "b"]) as fresh:
+            fresh[0].write_text("1")
+            if error:
+                raise error
+
+    with pytest.raises(ZeroDivisionError):
+        write_one(ZeroDivisionError())
+    with pytest.raises(OutputError, match="can't be written"):
+        write_one(None)  # b was forgotten
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("older", [(), ("a.yaml", "b.json", "c.html"), ("b.json",)])
+def test_what_was_there_is_put_back_when_the_last_of_several_fails(tmp_path, monkeypatch, older):
+    for name in older:
+        (tmp_path / name).write_text("old")
+    replaced = os.replace
+
+    def fail_at_last(source, target):
+        if Path(target).name == "c.html" and not str(source).endswith(".before"):
+            raise OSError(28, "No space left on device", str(target))
+        replaced(source, target)
+
+    monkeypatch.setattr(os, "replace", fail_at_last)
+    with pytest.raises(OutputError, match="No space left"):
+        write_three(tmp_path, "new")
+    assert {name: (tmp_path / name).read_text() for name in os.listdir(tmp_path)} == dict.fromkeys(
+        older, "old"
+    )

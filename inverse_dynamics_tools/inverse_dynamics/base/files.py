@@ -13,7 +13,7 @@ from __future__ import annotations
 import errno
 import os
 import stat
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from glob import escape
@@ -24,6 +24,7 @@ from inverse_dynamics.base.replacement import (
     WorkFolder,
     put_directory,
     put_file,
+    put_files,
     restore_interrupted,
     signals_deferred,
     sync_files,
@@ -32,7 +33,7 @@ from inverse_dynamics.base.wording import counted, listed
 from inverse_dynamics.errors import OutputError, UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
 _MOST_NAMED = 5  # files, in a text
 
@@ -152,6 +153,30 @@ def file_written_whole(target: Path) -> Iterator[Path]:
             put_file(fresh, place)
             _done(target)
             work.remove()
+
+
+@contextmanager
+def files_written_whole(targets: Sequence[Path]) -> Iterator[list[Path]]:
+    """Files to write; they become `targets` together at the end, or none of them does.
+
+    They are put in place in this order. On an error, what was there stays. A process that is killed
+    between two of them leaves some new ones. Raises OutputError.
+    """
+    for target in targets:
+        _note(target)
+    with ExitStack() as stack:
+        works = [stack.enter_context(_work(target, "name another output")) for target in targets]
+        for target in targets:
+            _check_regular(target, "output")
+        fresh = [work.new / place.name for work, place in works]
+        yield fresh
+        with signals_deferred():
+            for work, _ in works:
+                sync_files(work.new)
+            put_files(fresh, [place for _, place in works])
+            _outputs.update(dict.fromkeys(targets, True))
+            for work, _ in works:
+                work.remove()
 
 
 @contextmanager

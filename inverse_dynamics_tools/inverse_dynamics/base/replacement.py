@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING
 from inverse_dynamics.errors import OutputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 """Signals that end a program and leave it time to tidy up."""
@@ -129,6 +129,27 @@ def put_file(new: Path, target: Path) -> None:
         shutil.copymode(target, new)
     os.replace(new, target)
     _sync(target.parent)
+
+
+def put_files(new: Sequence[Path], targets: Sequence[Path]) -> None:
+    """Rename files over others, one after another; on an error, put back what was there. Raises OSError."""
+    kept: dict[Path, Path] = {}
+    for file, target in zip(new, targets, strict=True):
+        if os.path.lexists(target):
+            kept[target] = file.parent / f"{file.name}.before"
+            shutil.copy2(target, kept[target])
+    put: list[Path] = []
+    try:
+        for file, target in zip(new, targets, strict=True):
+            put.append(target)
+            put_file(file, target)
+    except BaseException:
+        for target in put:
+            if target in kept:
+                os.replace(kept[target], target)
+            else:
+                target.unlink(missing_ok=True)
+        raise
 
 
 def sync_files(directory: Path) -> None:
