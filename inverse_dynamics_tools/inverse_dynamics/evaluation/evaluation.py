@@ -26,6 +26,8 @@ from inverse_dynamics.evaluation.accelerations import (
     accelerations_of,
     samples_of,
 )
+from inverse_dynamics.evaluation.diagnosed import diagnosis_of
+from inverse_dynamics.evaluation.diagnosis import Diagnosis
 from inverse_dynamics.evaluation.effort import Effort, effort_of
 from inverse_dynamics.evaluation.series import Recorded, SeriesInMemory
 from inverse_dynamics.robot.descriptions import joint_units, read_description
@@ -81,6 +83,7 @@ class Evaluation:
     effort: Effort = field(default_factory=Effort)  # what recorded efforts mean
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
     seconds: dict[str, float] = field(default_factory=dict)  # what took how long
+    diagnosis: Diagnosis | None = None  # the last one of the notes; not in files
 
     @cached_property
     def measured(self) -> Floats:
@@ -182,7 +185,12 @@ def evaluate(
     seconds["reading"] += result.seconds["reading"]
     notes = description_notes(robot, "drawn") if urdf is not None else ()
     notes = (*window.notes, *notes)
-    return replace(result, notes=(*notes, *result.notes), seconds={**result.seconds, **seconds})
+    result = replace(result, notes=(*notes, *result.notes), seconds={**result.seconds, **seconds})
+    cause = diagnosis_of(robot, arm.solver, arm.description, result.log, result.qdd, result.effort)
+    if cause is None:
+        return result
+    note = f"likely cause of the error: {cause.text}"
+    return replace(result, notes=(*result.notes, note), diagnosis=cause)
 
 
 def check_options(
@@ -213,6 +221,7 @@ class Arm:
         from inverse_dynamics import _core
 
         description = "" if robot.urdf is None else read_description(robot.urdf)
+        self.description = description
         self.solver = open_solver(robot, description)
         self.joint_names = tuple(self.solver.joint_names)
         self.recorded_names = tuple(_core.recorded_names(robot, list(self.joint_names)))
