@@ -21,7 +21,13 @@ from inverse_dynamics.evaluation.comparison import compare
 from inverse_dynamics.evaluation.effort import DATA, Effort
 from inverse_dynamics.evaluation.effort_verdict import Candidate, Verdict
 from inverse_dynamics.report import report_comparison, report_run
-from inverse_dynamics.report.page import MAX_SAMPLES, render_page
+from inverse_dynamics.report.page import (
+    MAX_SAMPLES,
+    Band,
+    ReportSummary,
+    ReportTable,
+    render_page,
+)
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 DRIVER = shutil.which("chromedriver")
@@ -58,9 +64,19 @@ def comparison(evaluation):
 def page(evaluation, comparison, tmp_path_factory):
     """The page as a file: two runs and a comparison."""
     file = tmp_path_factory.mktemp("page") / "report.html"
-    runs = [report_run(evaluation, "first"), report_run(evaluation, "second")]
+    runs = [report_run(evaluation, "first"), _with_others(report_run(evaluation, "second"))]
     file.write_text(render_page("A page", runs, [report_comparison(comparison)], ["A note."]))
     return file
+
+
+def _with_others(run):
+    """The same with another model's torques to choose, and bands."""
+    time, half = run.time, np.arange(1.0, 7.0)
+    return replace(
+        run,
+        others={"other model": run.computed + 5.0},
+        bands=[Band(time[0], time[700], half), Band(time[700], time[-1], 2 * half)],
+    )
 
 
 def data_of(html):
@@ -191,6 +207,36 @@ def test_report_verb_writes_the_page(evaluation, tmp_path, capsys, monkeypatch):
     assert "<h2>arm</h2>" in (tmp_path / "report.html").read_text()
     assert cli.main(["report", "result"]) == 2
     assert "exists already" in capsys.readouterr().err
+
+
+def test_bands_and_other_models_are_in_the_data(page, evaluation):
+    first, second = data_of(page.read_text())
+    assert first["joints"][0]["others"] == []
+    assert first["joints"][0]["band"] == []
+    joint = second["joints"][1]
+    assert [part["half"] for part in joint["band"]] == [2.0, 4.0]
+    assert joint["band"][0]["to"] == pytest.approx(evaluation.time[700] - evaluation.time[0])
+    (other,) = joint["others"]
+    np.testing.assert_allclose(
+        floats(other["error"]["values"]), floats(joint["error"]["values"]) + 5.0, atol=1e-4
+    )
+
+
+def test_a_summary_comes_before_the_runs(evaluation):
+    table = ReportTable("Errors", ("joint", "error"), [("elbow", 0.12345), ("mean", float("nan"))])
+    more = ReportTable("More <of it>", ("x",), [(1e-9,)], note="A note.")
+    summary = ReportSummary(table, "Choices", [("law", "step")], ["Found"], [more])
+    html = render_page("A page", [report_run(evaluation)], summary=summary)
+    assert html.index("<h2>Errors</h2>") < html.index('id="run-1"')
+    for text in (
+        "<td>0.123</td>",
+        "<td>\u2013</td>",
+        "<dd>step</dd>",
+        "<li>Found</li>",
+        "1.00e-09",
+    ):
+        assert text in html
+    assert "<summary>More &lt;of it&gt;</summary>" in html
 
 
 # ---- the page in a browser -------------------------------------------------------------------------------------------
@@ -513,3 +559,17 @@ def test_demo_wants_recordings_where_they_are_said_to_be(tmp_path, capsys, monke
     assert cli.main(["demo", "--out", str(tmp_path / "demo")]) == 2
     assert "IDS_DATA_DIR: expected a directory with recordings" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_browser_draws_another_model_when_it_is_chosen(opened):
+    from selenium.webdriver.common.by import By
+
+    run = opened.find_element(By.ID, "run-2")
+    plot = child(run, '[data-joint="1"] .plot-base')
+    box = child(run, ".legend input")
+    before = pixels(opened, plot)
+    opened.execute_script("arguments[0].click();", box)
+    assert pixels(opened, plot) != before
+    opened.execute_script("arguments[0].click();", box)
+    assert pixels(opened, plot) == before
+    assert complaints(opened) == []

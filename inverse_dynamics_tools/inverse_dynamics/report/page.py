@@ -9,7 +9,7 @@ from __future__ import annotations
 import base64
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
@@ -41,6 +41,15 @@ class Figure:
 
 
 @dataclass(frozen=True)
+class Band:
+    """Between two times [s], half the width (n,) of the band about computed torques."""
+
+    start: float
+    end: float
+    half: Floats
+
+
+@dataclass(frozen=True)
 class ReportRun:
     """What the page shows of one evaluation. Arrays: time N [s], the others N x n; order of joints as `table`."""
 
@@ -58,6 +67,30 @@ class ReportRun:
     other_table_title: str = ""
     notes: Sequence[str] = ()
     figures: Sequence[Figure] = field(default_factory=list)
+    others: Mapping[str, Floats] = field(default_factory=dict)  # by title: torques to choose, N x n
+    bands: Sequence[Band] = ()
+
+
+@dataclass(frozen=True)
+class ReportTable:
+    """A table: rows of texts and figures, NaN for none; the last one of means or the like, or not."""
+
+    title: str
+    headings: Sequence[str]
+    rows: Sequence[Sequence[str | float]]
+    note: str = ""
+    total: bool = False
+
+
+@dataclass(frozen=True)
+class ReportSummary:
+    """What the page says before its runs: a table, facts beside it, notes, and tables to be unfolded."""
+
+    table: ReportTable
+    facts_title: str
+    facts: Sequence[tuple[str, str]]
+    notes: Sequence[str] = ()
+    more: Sequence[ReportTable] = ()
 
 
 @dataclass(frozen=True)
@@ -92,6 +125,7 @@ def render_page(
     runs: Sequence[ReportRun],
     comparisons: Sequence[ReportComparison] = (),
     notes: Sequence[str] = (),
+    summary: ReportSummary | None = None,
 ) -> str:
     """The page as text."""
     script = "\n".join(_asset(name) for name in ("scene.js", "plots.js", "viewer.js"))
@@ -102,6 +136,7 @@ def render_page(
         runs=[_view(run, i) for i, run in enumerate(runs)],
         comparisons=[_comparison_view(comparison, i) for i, comparison in enumerate(comparisons)],
         notes=notes,
+        summary=summary,
     )
 
 
@@ -156,6 +191,8 @@ def _view(run: ReportRun, index: int) -> dict[str, Any]:
         "notes": run.notes,
         "joints": [row.joint for row in rows],
         "figures": run.figures,
+        "others": list(run.others),
+        "has_band": bool(run.bands),
         "thinned": f"{MAX_SAMPLES:,}" if len(run.time) > MAX_SAMPLES else "",
     }
 
@@ -191,6 +228,22 @@ def _data(run: ReportRun, index: int) -> dict[str, Any]:
                 "measured": _series(time, run.measured[:, j]),
                 "computed": _series(time, run.computed[:, j]),
                 "error": _series(time, error[:, j]),
+                "others": [
+                    {
+                        "name": name,
+                        "computed": _series(time, computed[:, j]),
+                        "error": _series(time, computed[:, j] - run.measured[:, j]),
+                    }
+                    for name, computed in run.others.items()
+                ],
+                "band": [
+                    {
+                        "from": band.start - run.time[0],
+                        "to": band.end - run.time[0],
+                        "half": float(band.half[j]),
+                    }
+                    for band in run.bands
+                ],
             }
             for j, row in enumerate(run.table)
         ],

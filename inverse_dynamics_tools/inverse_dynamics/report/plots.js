@@ -5,8 +5,10 @@
 //   const group = createPlotGroup(time, {onCursor: (t) => ...});
 //   group.add(element, {label: "elbow_joint", unit: "N m", series: [{name, time, values, style: "measured"}]});
 //   group.setCursor(1.5);
+//   group.setHidden("URDF", true);
 //
-// time: s, increasing, of a series as many as its values. Dragging zooms, shift and dragging pans, a click sets
+// time: s, increasing, of a series as many as its values. A series may be hidden at first. band: [{from, to, half}], half
+// the width of a band about the first series, or about zero where there is `error`. Dragging zooms, shift and dragging pans, a click sets
 // the cursor, a double click shows everything.
 "use strict";
 
@@ -15,7 +17,11 @@ const kStyles = {
   measured: {color: "#111111", width: 1.3, dash: [5, 3]},
   computed: {color: "#D55E00", width: 1.5, dash: []},
   error: {color: "#0072B2", width: 1.2, dash: []},
+  other0: {color: "#CC79A7", width: 1.2, dash: []},
+  other1: {color: "#56B4E9", width: 1.2, dash: []},
+  other2: {color: "#009E73", width: 1.2, dash: [2, 2]},
 };
+const kBand = "rgba(213, 94, 0, 0.18)";
 const kMargin = {left: 54, right: 10, top: 18, bottom: 20};
 
 // Round numbers between low and high, about `count` of them.
@@ -54,7 +60,7 @@ function spikeLimit(all_series) {
   return 1.5 * magnitudes[Math.floor(0.995 * (magnitudes.length - 1))] || Infinity;
 }
 
-function range(all_series) {
+function range(all_series, {error = all_series.every((series) => series.style === "error"), band} = {}) {
   let low = Infinity, high = -Infinity;
   for (const series of all_series) {
     for (const value of series.values) {
@@ -62,8 +68,8 @@ function range(all_series) {
       if (value > high) high = value;
     }
   }
-  if (all_series.every((series) => series.style === "error")) {
-    const limit = spikeLimit(all_series);
+  if (error) {
+    const limit = Math.max(spikeLimit(all_series), ...(band || []).map((part) => part.half));
     low = Math.max(low, -limit);
     high = Math.min(high, limit);
   }
@@ -97,11 +103,19 @@ function prepare(canvas, least_ratio) {
 class Plot {
   constructor(element, options) {
     this.options = options;
-    this.range = range(options.series);
+    this.setRange();
     this.base = makeCanvas(element, "plot-base");
     this.overlay = makeCanvas(element, "plot-overlay");
     this.overlay.setAttribute("role", "img");
     this.overlay.setAttribute("aria-label", `${options.label} over time, ${options.unit}`);
+  }
+
+  shown() {
+    return this.options.series.filter((series) => !series.hidden);
+  }
+
+  setRange() {
+    this.range = range(this.shown(), this.options);
   }
 
   x(t, view) {
@@ -127,7 +141,8 @@ class Plot {
     context.beginPath();
     context.rect(kMargin.left, kMargin.top, width - kMargin.left - kMargin.right, height - kMargin.top - kMargin.bottom);
     context.clip();
-    for (const series of this.options.series) this.drawSeries(context, series, width, view);
+    this.drawBand(context, view);
+    for (const series of this.shown()) this.drawSeries(context, series, width, view);
     context.restore();
   }
 
@@ -164,6 +179,21 @@ class Plot {
     const title = `${this.options.label} [${this.options.unit}]`;
     context.fillText(title, kMargin.left, 12);
     this.title_end = kMargin.left + context.measureText(title).width;
+  }
+
+  drawBand(context, view) {
+    context.fillStyle = kBand;
+    const about = this.options.series[0];
+    for (const {from, to, half} of this.options.band || []) {
+      if (to < view.low || from > view.high) continue;
+      const first = this.options.error ? 0 : indexAt(about.time, Math.max(from, view.low));
+      const last = this.options.error ? 1 : Math.min(about.time.length - 1, indexAt(about.time, Math.min(to, view.high)) + 1);
+      const point = this.options.error ? (i) => [[from, to][i], 0] : (i) => [about.time[i], about.values[i]];
+      context.beginPath();
+      for (let i = first; i <= last; ++i) context.lineTo(this.x(point(i)[0], view), this.y(point(i)[1] + half));
+      for (let i = last; i >= first; --i) context.lineTo(this.x(point(i)[0], view), this.y(point(i)[1] - half));
+      context.fill();
+    }
   }
 
   drawSeries(context, series, width, view) {
@@ -228,7 +258,7 @@ class Plot {
   drawReadout(context, width, cursor) {
     context.font = "11px system-ui, sans-serif";
     context.textAlign = "right";
-    const all = [...this.options.series].reverse();
+    const all = this.shown().reverse();
     const values = all.map((series) => short(series.values[indexAt(series.time, cursor)], 3));
     const named = values.map((value, i) => `${all[i].name} ${value}`);
     const length = (texts) => texts.reduce((sum, text) => sum + context.measureText(text).width + 12, 0);
@@ -314,6 +344,13 @@ function createPlotGroup(time, {onCursor}) {
       attach(plot);
     },
     setCursor, zoom, drawAll,
+    setHidden(name, hidden) {
+      for (const plot of plots) {
+        for (const series of plot.options.series) if (series.name === name) series.hidden = hidden;
+        plot.setRange();
+      }
+      drawAll();
+    },
     showAll: () => setView(everything.low, everything.high),
     pan: (share) => setView(view.low + share * (view.high - view.low), view.high + share * (view.high - view.low)),
   };

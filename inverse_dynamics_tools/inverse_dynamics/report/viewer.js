@@ -42,14 +42,15 @@ class Player {
 
   addPlots(run) {
     // A series has times of its own where the page holds only its peaks.
-    const series = (name, data) => ({
-      name, style: name, values: decode(data.values), time: data.time ? decode(data.time) : this.time});
+    const series = (name, data, style = name, hidden = false) => ({
+      name, style, hidden, values: decode(data.values), time: data.time ? decode(data.time) : this.time});
     run.joints.forEach((joint, j) => {
       const [torque_element, error_element] = this.section.querySelectorAll(`[data-joint="${j}"] .plot`);
-      this.plots.add(torque_element, {label: joint.name, unit: joint.unit, series: [
-        series("computed", joint.computed), series("measured", joint.measured)]});
-      this.plots.add(error_element, {label: "computed - measured", unit: joint.unit, series: [
-        series("error", joint.error)]});
+      const others = (what) => joint.others.map((other, i) => series(other.name, other[what], `other${i}`, true));
+      this.plots.add(torque_element, {label: joint.name, unit: joint.unit, band: joint.band, series: [
+        series("computed", joint.computed), ...others("computed"), series("measured", joint.measured)]});
+      this.plots.add(error_element, {label: "computed - measured", unit: joint.unit, band: joint.band, error: true, series: [
+        ...others("error"), series("error", joint.error)]});
     });
   }
 
@@ -58,6 +59,9 @@ class Player {
     this.slider = this.section.querySelector(".scrub");
     this.clock = this.section.querySelector(".clock");
     this.speed = this.section.querySelector(".speed");
+    for (const box of this.section.querySelectorAll(".legend input")) {
+      box.addEventListener("change", () => this.plots.setHidden(box.value, !box.checked));
+    }
     this.slider.min = this.time[0];
     this.slider.max = this.end;
     this.button.addEventListener("click", () => this.toggle());
