@@ -34,9 +34,12 @@ def nodes(context):
     parameters = solver_parameters(context) | effort_parameters(context)
     parameters |= {
         "cutoff": number(context, "cutoff"),
+        "external_torques.enabled": text(context, "external_torques") == "true",
         "use_sim_time": text(context, "use_sim_time") == "true",
         f"qos_overrides.{topic}.subscription.reliability": string(text(context, "reliability")),
     }
+    if contacts_file := text(context, "contacts_file"):
+        parameters["external_torques.contacts_file"] = string(contacts_file)
     common = {
         "package": "inverse_dynamics_ros",
         "name": "live",
@@ -63,6 +66,18 @@ def generate_launch_description():
                 default_value="5.0",
                 description="Cut-off of the causal filter that accelerations come from [Hz]; they "
                 "come late by 1 / (pi cutoff) s",
+            ),
+            DeclareLaunchArgument(
+                "external_torques",
+                default_value="false",
+                choices=["true", "false"],
+                description="Whether external torques are estimated and published",
+            ),
+            DeclareLaunchArgument(
+                "contacts_file",
+                default_value="",
+                description="contacts.json of `ids contact`: with it, contacts and the wrench at the "
+                "tip are published, too",
             ),
             DeclareLaunchArgument(
                 "joint_states",

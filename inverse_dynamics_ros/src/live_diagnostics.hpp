@@ -13,6 +13,7 @@
 #include <diagnostic_updater/diagnostic_updater.hpp>
 #include <rclcpp/node.hpp>
 #include <string>
+#include <utility>
 
 namespace inverse_dynamics_ros {
 
@@ -36,10 +37,16 @@ struct LiveLimits {
   double min_rate = 0.0;  ///< Hz
 };
 
-/// Two tasks of a diagnostic_updater: the solver, and the joint states.
+/// Tasks of a diagnostic_updater: the solver, the joint states, and others.
 class LiveDiagnostics {
  public:
   LiveDiagnostics(rclcpp::Node& node, std::string topic, LiveLimits limits);
+
+  /// A further task.
+  template <class Report>
+  void add(const std::string& name, Report report) {
+    updater_.add(name, std::move(report));
+  }
 
   LiveCounts& counts() { return counts_; }
 

@@ -8,9 +8,12 @@
 #include <sensor_msgs/msg/joint_state.hpp>
 #include <std_msgs/msg/string.hpp>
 
+#include "live_contact_topics.hpp"
 #include "live_diagnostics.hpp"
+#include "live_load.hpp"
 #include "live_torques.hpp"
 #include "node_solver.hpp"
+#include "overridable.hpp"
 #include "user_error.hpp"
 
 namespace inverse_dynamics_ros {
@@ -31,14 +34,24 @@ std::vector<double>& assign(std::vector<double>& numbers, const Eigen::VectorXd&
 
 class LiveNode::Implementation {
  public:
+  using Status = diagnostic_updater::DiagnosticStatusWrapper;
+
   explicit Implementation(LiveNode& node)
       : node_(node),
-        params_((declareSolverParameters(node),
-                 live_node::ParamListener(node.get_node_parameters_interface(), node.get_logger())
-                     .get_params())),
+        listener_((declareSolverParameters(node),
+                   std::make_shared<live_node::ParamListener>(node.get_node_parameters_interface(),
+                                                              node.get_logger()))),
+        params_(listener_->get_params()),
         robot_(givenParameters(node)),
         diagnostics_(node, node.get_node_topics_interface()->resolve_topic_name("joint_states"),
-                     {params_.max_age, params_.min_rate}) {
+                     {params_.max_age, params_.min_rate}),
+        load_(node, listener_) {
+    diagnostics_.add("load", [this](Status& status) { load_.report(status); });
+    if (params_.external_torques.enabled) {
+      contact_ = std::make_unique<LiveContactTopics>(node, params_.external_torques,
+                                                     givenParameters(node));
+      diagnostics_.add("external torques", [this](Status& status) { contact_->report(status); });
+    }
     torques_publisher_ = node.create_publisher<JointState>("~/torques", rclcpp::QoS(10),
                                                            overridable<rclcpp::PublisherOptions>());
     residual_publisher_ = node.create_publisher<JointState>(
@@ -52,14 +65,6 @@ class LiveNode::Implementation {
   }
 
  private:
-  // History, depth and reliability may be set by parameters qos_overrides.TOPIC....
-  template <class Options>
-  static Options overridable() {
-    Options options;
-    options.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
-    return options;
-  }
-
   rclcpp::Logger logger() const { return node_.get_logger(); }
 
   // No verdict without a recording.
@@ -115,7 +120,11 @@ class LiveNode::Implementation {
     requireMeaning(options.effort);
     options.cutoff = params_.cutoff;
     options.longest_gap = params_.longest_gap;
-    live_ = std::make_unique<LiveTorques>(solver, options);
+    auto live = std::make_unique<LiveTorques>(solver, options);
+    useRobot({solver, options.joints, robot.plugin, robot_.rootLink(robot_description),
+              robot_.tipLink(robot_description),
+              options.effort.meaning == inverse_dynamics_evaluation::kTorqueWithoutGravity});
+    live_ = std::move(live);
     torques_.name = residual_.name = options.joints;
     for (const std::string& warning : solver->warnings()) {
       RCLCPP_WARN(logger(), "%s", warning.c_str());
@@ -125,6 +134,15 @@ class LiveNode::Implementation {
     diagnostics_.setSolver(true, text);
     RCLCPP_INFO(logger(), "solver: %s; accelerations late by %.0f ms", text.c_str(),
                 1e3 * live_->delay());
+  }
+
+  // All of them, or none.
+  void useRobot(const LiveRobot& robot) {
+    auto contact = contact_ == nullptr ? nullptr : contact_->make(robot);
+    load_.use(load_.make(robot), robot);
+    if (contact_ != nullptr) {
+      contact_->use(std::move(contact), robot);
+    }
   }
 
   void take(const JointState& message) {
@@ -148,6 +166,10 @@ class LiveNode::Implementation {
     }
     if (outcome == LiveTorques::Outcome::kComputed) {
       publish(message);
+    }
+    if (contact_ != nullptr && outcome != LiveTorques::Outcome::kMissing &&
+        outcome != LiveTorques::Outcome::kNoVelocities) {
+      contact_->take(message.header, stamp, *live_);
     }
     report(outcome);
     previous_stamp_ = stamp;
@@ -233,15 +255,18 @@ class LiveNode::Implementation {
   }
 
   LiveNode& node_;
+  std::shared_ptr<live_node::ParamListener> listener_;
   live_node::Params params_;
   NodeRobot robot_;
   LiveDiagnostics diagnostics_;
-  std::unique_ptr<LiveTorques> live_;      // null until there is a description
-  JointState torques_, residual_;          // reused, so that nothing is allocated per message
-  std::int64_t previous_stamp_ = 0;        // ns
-  std::int64_t received_ = 0;              // at the last reminder
-  std::string waiting_for_;                // topic of the description
-  rclcpp::Clock steady_{RCL_STEADY_TIME};  // of throttled log lines: never jumps
+  LiveLoad load_;
+  std::unique_ptr<LiveContactTopics> contact_;  // null: not enabled
+  std::unique_ptr<LiveTorques> live_;           // null until there is a description
+  JointState torques_, residual_;               // reused, so that nothing is allocated per message
+  std::int64_t previous_stamp_ = 0;             // ns
+  std::int64_t received_ = 0;                   // at the last reminder
+  std::string waiting_for_;                     // topic of the description
+  rclcpp::Clock steady_{RCL_STEADY_TIME};       // of throttled log lines: never jumps
   rclcpp::Publisher<JointState>::SharedPtr torques_publisher_, residual_publisher_;
   rclcpp::Subscription<JointState>::SharedPtr joint_states_;
   rclcpp::Subscription<String>::SharedPtr description_;

@@ -2,6 +2,7 @@
 
 #include "live_torques.hpp"
 
+#include <limits>
 #include <utility>
 
 namespace inverse_dynamics_ros {
@@ -42,6 +43,7 @@ LiveTorques::Outcome LiveTorques::process(const sensor_msgs::msg::JointState& me
       !pick(message.velocity, message.name.size(), qd_)) {
     return Outcome::kNoVelocities;
   }
+  pickMeasured(message);
   if (!q_.allFinite() || !qd_.allFinite()) {
     return Outcome::kNotFinite;
   }
@@ -57,11 +59,20 @@ LiveTorques::Outcome LiveTorques::process(const sensor_msgs::msg::JointState& me
     solver_->getGravityVector(q_, gravity_);
     computed_ -= gravity_;
   }
-  if (pick(message.effort, message.name.size(), measured_) && measured_.allFinite()) {
-    residual_ = drive_gains_.cwiseProduct(measured_) - computed_;
-    has_residual_ = true;
+  has_residual_ = measured_.allFinite();
+  if (has_residual_) {
+    residual_ = measured_ - computed_;
   }
   return Outcome::kComputed;
+}
+
+// Torques of the efforts; NaN if there isn't one per name.
+void LiveTorques::pickMeasured(const sensor_msgs::msg::JointState& message) {
+  if (pick(message.effort, message.name.size(), measured_)) {
+    measured_.array() *= drive_gains_.array();
+  } else {
+    measured_.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
 }
 
 // The numbers of the joints; false if there isn't one per name.

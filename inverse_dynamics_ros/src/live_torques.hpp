@@ -64,7 +64,11 @@ class LiveTorques {
   /// Whether the message had finite efforts, one per name.
   bool hasResidual() const { return has_residual_; }
 
-  /// n; rad, rad/s (prismatic m, m/s): the state that computed() belongs to.
+  /// n; measured torques of the message; N m (prismatic N). NaN where there is no effort per name.
+  const Eigen::VectorXd& measured() const { return measured_; }
+
+  /// n; rad, rad/s (prismatic m, m/s): the state of the message, unless it was one of kOtherJoints,
+  /// kMissing or kNoVelocities. That of computed(), after kComputed.
   const Eigen::VectorXd& position() const { return q_; }
   const Eigen::VectorXd& velocity() const { return qd_; }
 
@@ -79,6 +83,7 @@ class LiveTorques {
 
  private:
   bool pick(const std::vector<double>& numbers, std::size_t names, Eigen::VectorXd& picked) const;
+  void pickMeasured(const sensor_msgs::msg::JointState& message);
 
   std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver_;
   bool without_gravity_;         // efforts

@@ -2,11 +2,13 @@
 
 #include "robot_parameters.hpp"
 
+#include <chain_dynamics/robot_description.hpp>
 #include <fstream>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
 #include <inverse_dynamics_solver/configuration.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -57,6 +59,16 @@ Parameters solverParametersOf(const RunConfiguration& robot, const Parameters& g
   return all;
 }
 
+// Nothing where there is no description, or none that can be read.
+std::optional<chain_dynamics::RobotDescription> described(const std::string& description) {
+  try {
+    return description.empty() ? std::nullopt
+                               : std::optional(chain_dynamics::robotFromUrdf(description));
+  } catch (const chain_dynamics::ModelError&) {
+    return std::nullopt;  // a solver with its own model takes no notice of it either
+  }
+}
+
 }  // namespace
 
 NodeRobot::NodeRobot(const Parameters& given)
@@ -81,8 +93,7 @@ std::string NodeRobot::description() const {
   return text.str();
 }
 
-std::shared_ptr<const InverseDynamicsSolver> NodeRobot::makeSolver(
-    const std::string& description) const {
+std::shared_ptr<InverseDynamicsSolver> NodeRobot::makeSolver(const std::string& description) const {
   const inverse_dynamics_solver::SolverLoader loader;
   if (configuration_.plugin.empty()) {
     throw UserError("parameter 'plugin_name'", "a solver, package/Class", "nothing",
@@ -94,6 +105,35 @@ std::shared_ptr<const InverseDynamicsSolver> NodeRobot::makeSolver(
   inverse_dynamics_solver::initializeStrictly(*solver, solver_parameters_, kSolverNamespace,
                                               description);
   return solver;
+}
+
+std::string NodeRobot::statedLink(const std::string& parameter) const {
+  return solver_parameters_.get<std::string>(kSolverNamespace + "." + parameter).value_or("");
+}
+
+std::string NodeRobot::rootLink(const std::string& description) const {
+  const std::string stated = statedLink("root");
+  const auto robot = stated.empty() ? described(description) : std::nullopt;
+  return robot ? robot->links[robot->root].name : stated;
+}
+
+std::string NodeRobot::tipLink(const std::string& description) const {
+  const std::string stated = statedLink("tip");
+  const auto robot = stated.empty() ? described(description) : std::nullopt;
+  if (!robot) {
+    return stated;
+  }
+  const std::size_t root = robot->linkIndex(rootLink(description));
+  if (root == chain_dynamics::RobotDescription::kNone) {
+    return "";
+  }
+  std::vector<std::string> leaves;
+  for (const std::size_t link : robot->linksBelow(root)) {
+    if (robot->links[link].child_joints.empty()) {
+      leaves.push_back(robot->links[link].name);
+    }
+  }
+  return leaves.size() == 1 ? leaves.front() : "";
 }
 
 std::vector<std::string> NodeRobot::torqueUnits(const std::vector<std::string>& joint_names,

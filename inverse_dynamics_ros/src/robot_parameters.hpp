@@ -51,14 +51,21 @@ class NodeRobot {
   /// @throws UserError: no plugin name.
   /// @throws inverse_dynamics_solver::Exception: what the loader and the solver say; a parameter
   /// below `ids.` that the solver doesn't know.
-  std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> makeSolver(
+  std::shared_ptr<inverse_dynamics_solver::InverseDynamicsSolver> makeSolver(
       const std::string& description) const;
+
+  /// Names of the first and the last link of the chain: as stated, else the description's root and
+  /// its only leaf; empty: not known.
+  std::string rootLink(const std::string& description) const;
+  std::string tipLink(const std::string& description) const;
 
   /// Unit of each joint's torque: N for a prismatic joint of the description, else N m.
   std::vector<std::string> torqueUnits(const std::vector<std::string>& joint_names,
                                        const std::string& description) const;
 
  private:
+  std::string statedLink(const std::string& parameter) const;
+
   inverse_dynamics_evaluation::RunConfiguration configuration_;
   std::string description_;                                // the parameter
   inverse_dynamics_solver::Parameters solver_parameters_;  // below kSolverNamespace

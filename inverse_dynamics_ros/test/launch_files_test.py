@@ -197,7 +197,14 @@ class TestLaunchFiles(unittest.TestCase):
                 "tip",
                 "gravity",
             ],
-            "live": ["robot", "plugin_name", "cutoff", "reliability", "container"],
+            "live": [
+                "robot",
+                "plugin_name",
+                "cutoff",
+                "external_torques",
+                "contacts_file",
+                "container",
+            ],
             **{name: ["input_bag", "output_bag", "topic", "description"] for name in ROBOTS},
         }
         for name, expected in arguments.items():
@@ -214,6 +221,7 @@ class TestLaunchFiles(unittest.TestCase):
             f"plugin_name:={SOLVER}",
             f"robot_description:={PENDULUM}",
             "reliability:=reliable",
+            "external_torques:=true",
         ]
         process = subprocess.Popen(
             command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
@@ -225,6 +233,7 @@ class TestLaunchFiles(unittest.TestCase):
                 if "1 joints: swing" in line:
                     break
             self.assertIn("1 joints: swing", "".join(lines))
+            self.assertIn("external torques: momentum observer; wrench: none", "".join(lines))
         finally:
             process.send_signal(2)
             process.communicate(timeout=60)

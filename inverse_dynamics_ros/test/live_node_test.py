@@ -10,14 +10,33 @@ from pathlib import Path
 import launch_testing
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import InertiaStamped, Vector3Stamped, WrenchStamped
 from launch import LaunchDescription
 from launch_ros.actions import ComposableNodeContainer, LoadComposableNodes, Node
 from launch_ros.descriptions import ComposableNode
 from launch_testing.actions import ReadyToTest
+from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
+from sensor_msgs.msg import Imu
+from std_msgs.msg import Bool
 
 sys.path.insert(0, str(Path(__file__).parent))
-from recordings import PENDULUM, SOLVER, JointState, String, joint_state, motion, stamp, torque
+import itertools
+
+from recordings import (
+    GRAVITY,
+    LENGTH,
+    MASS,
+    PENDULUM,
+    SOLVER,
+    JointState,
+    String,
+    joint_state,
+    motion,
+    stamp,
+    torque,
+)
 
 UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
 CUTOFF = 20.0  # Hz: settled after 53 ms, late by 16 ms
@@ -41,6 +60,21 @@ def live(name, **parameters):
 def generate_test_description():
     nodes = {
         "arm": live("arm", plugin_name=SOLVER),
+        "touched": live(
+            "touched",
+            plugin_name=SOLVER,
+            robot_description=PENDULUM,
+            **{
+                "external_torques.enabled": True,
+                "external_torques.gain": 30.0,
+                "external_torques.tracking": 100.0,
+                "external_torques.thresholds": [1.0],
+                "external_torques.noise": [0.01],
+                "payload.ramp_time": 0.1,
+                "gravity_from_imu.use": "orientation",
+                "gravity_from_imu.time_constant": 0.05,
+            },
+        ),
         "unfed": live("unfed", plugin_name=UR10),
         "undescribed": live("undescribed", plugin_name=SOLVER),
         "unknown_plugin": live("unknown_plugin", plugin_name="no/Solver"),
@@ -49,6 +83,19 @@ def generate_test_description():
         "bad_cutoff": live("bad_cutoff", plugin_name=SOLVER, cutoff=-1.0),
         "bad_tip": live(
             "bad_tip", plugin_name=SOLVER, robot_description=PENDULUM, **{"ids.tip": "tool0"}
+        ),
+        "unknown_contacts": live(
+            "unknown_contacts",
+            plugin_name=UR10,
+            **{"external_torques.enabled": True, "external_torques.contacts_file": "none.json"},
+        ),
+        "nameless_tip": live(
+            "nameless_tip",
+            plugin_name=UR10,
+            **{"external_torques.enabled": True, "external_torques.noise": [1.0]},
+        ),
+        "bad_payload": live(
+            "bad_payload", plugin_name=UR10, **{"payload.inertia": [1.0, 0.0, 0.0, 1.0, 0.0, 3.0]}
         ),
         "misspelt": live(
             "misspelt", plugin_name=SOLVER, robot_description=PENDULUM, **{"ids.gravty": [0.0]}
@@ -250,6 +297,9 @@ class TestLiveNode(unittest.TestCase):
             "mistyped": "parameter 'min_rate' has invalid type",
             "bad_cutoff": "cutoff",
             "bad_tip": "tool0",
+            "unknown_contacts": "none.json",
+            "nameless_tip": "parameter 'ids.tip': expected the name of the link",
+            "bad_payload": "parameter payload.inertia: no possible body",
             "misspelt": "parameter 'ids.gravty': the solver doesn't know it: expected one of",
         }
         for name, text in expected.items():
@@ -259,6 +309,199 @@ class TestLiveNode(unittest.TestCase):
                 said = "".join(o.text.decode() for o in proc_output[nodes[name]])
                 self.assertIn(text, said)
                 self.assertIn("[FATAL]", said)
+
+
+class TestExternalTorques(unittest.TestCase):
+    """Of the node `touched`: what the pendulum touches, carries, and where it hangs."""
+
+    @classmethod
+    def setUpClass(cls):
+        rclpy.init()
+        cls.node = rclpy.create_node("toucher")
+        cls.states = cls.node.create_publisher(JointState, "/touched/joint_states", 10)
+        cls.payload = cls.node.create_publisher(InertiaStamped, "/touched/touched/payload", 10)
+        cls.gravity = cls.node.create_publisher(Vector3Stamped, "/touched/touched/gravity", 10)
+        cls.imu = cls.node.create_publisher(Imu, "/touched/imu", 10)
+        cls.parameters = cls.node.create_client(SetParameters, "/touched/touched/set_parameters")
+        cls.torques, cls.wrenches, cls.flags, cls.diagnostics = [], [], [], {}
+        for kind, topic, received in (
+            (JointState, "external_torques", cls.torques),
+            (WrenchStamped, "external_wrench", cls.wrenches),
+            (Bool, "contact", cls.flags),
+        ):
+            cls.node.create_subscription(
+                kind, f"/touched/touched/{topic}", received.append, qos_profile_sensor_data
+            )
+        cls.node.create_subscription(DiagnosticArray, "/diagnostics", cls.diagnose, 10)
+        cls.now = 100.0
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.node.destroy_node()
+        rclpy.shutdown()
+
+    @classmethod
+    def diagnose(cls, array):
+        for status in array.status:
+            if "touched" in status.name.split(":")[0]:
+                values = {value.key: value.value for value in status.values}
+                cls.diagnostics[status.name.split(": ")[1]] = (status, values)
+
+    def until(self, condition, what, timeout=30.0):
+        """Wait for something."""
+        end = time.monotonic() + timeout
+        while not condition():
+            self.assertLess(time.monotonic(), end, f"{what}; {self.diagnostics}")
+            rclpy.spin_once(self.node, timeout_sec=0.02)
+
+    def play(self, seconds, more_effort=0.0, change=lambda message: message, step=0.005):
+        """Joint states at 200 Hz: each stamp is one step later than the last."""
+        self.until(lambda: self.states.get_subscription_count() > 0, "no subscription")
+        for _ in range(round(seconds / step)):
+            type(self).now += step
+            self.states.publish(change(joint_state(self.now, more_effort)))
+            end = time.monotonic() + step
+            while time.monotonic() < end:
+                rclpy.spin_once(self.node, timeout_sec=0.001)
+        end = time.monotonic() + 0.3
+        while time.monotonic() < end:  # what is still under way
+            rclpy.spin_once(self.node, timeout_sec=0.01)
+
+    def play_to_the_turning_point(self, seconds=0.5):
+        """Joint states of the next swing until the pendulum is at its highest, at rest."""
+        type(self).now = 4 * math.ceil(self.now / 4) + 5 - seconds
+        self.play(seconds)
+
+    def clear(self):
+        for received in (self.torques, self.wrenches, self.flags):
+            received.clear()
+
+    def last(self):
+        return self.torques[-1].effort[0]
+
+    def set_parameter(self, name, value):
+        self.assertTrue(self.parameters.wait_for_service(timeout_sec=30))
+        future = self.parameters.call_async(
+            SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
+        )
+        self.until(future.done, "no answer")
+        return future.result().results[0]
+
+    def test_1_are_what_efforts_have_beyond_the_model(self):
+        self.play(0.5)
+        self.assertGreater(len(self.torques), 50)
+        self.assertLess(max(abs(m.effort[0]) for m in self.torques), 0.1)
+        self.assertFalse(any(m.data for m in self.flags))
+        self.clear()
+        self.play(0.5, more_effort=3.0)
+        self.assertAlmostEqual(self.last(), 3.0, delta=0.05)
+        self.assertEqual(self.torques[-1].name, ["swing"])
+        self.assertEqual(self.torques[-1].header, joint_state(self.now).header)
+        self.assertTrue(self.flags[-1].data)
+        wrench = self.wrenches[-1]
+        self.assertEqual(wrench.header.frame_id, "rod")
+        self.assertEqual(wrench.header.stamp, stamp(self.now))
+        self.assertAlmostEqual(wrench.wrench.torque.y, 3.0, delta=0.05)
+        self.assertLess(abs(wrench.wrench.force.x), 1e-9)
+        self.assertEqual(len(self.torques), len(self.flags))
+        self.assertEqual(len(self.torques), len(self.wrenches))
+
+        self.clear()
+        self.play(0.5)
+        self.assertAlmostEqual(self.last(), 0.0, delta=0.05)
+        self.assertFalse(self.flags[-1].data)
+
+    def test_2_start_softly_after_what_cannot_be_used(self):
+        def spoiled(message):
+            message.effort[1] = math.nan
+            return message
+
+        self.play(0.5, more_effort=3.0)
+        self.clear()
+        self.play(0.05, more_effort=3.0, change=spoiled)
+        self.assertEqual(self.torques, [])
+        self.assertEqual(self.flags, [])
+        self.play(0.5, more_effort=3.0)
+        efforts = [m.effort[0] for m in self.torques]
+        self.assertLess(abs(efforts[0]), 1.0)
+        steps = [abs(b - a) for a, b in itertools.pairwise(efforts)]
+        self.assertLess(max(steps), 0.6)  # 3 N m times gain and period
+        self.assertAlmostEqual(self.last(), 3.0, delta=0.05)
+        self.until(
+            lambda: "efforts not finite" in self.diagnostics["external torques"][1],
+            "no diagnostics",
+        )
+        _, values = self.diagnostics["external torques"]
+        self.assertEqual(values["estimator"], "momentum observer")
+        self.assertEqual(values["efforts not finite"], "10")
+
+    def test_3_leave_out_messages_without_some_joint(self):
+        def without(message):
+            if round(message.header.stamp.nanosec / 5e6) % 4 == 0:
+                message.name = ["gripper", "other"]
+            return message
+
+        self.play(0.3, more_effort=3.0)
+        self.clear()
+        self.play(0.5, more_effort=3.0, change=without)
+        self.assertGreater(len(self.torques), 50)
+        for message in self.torques:
+            self.assertAlmostEqual(message.effort[0], 3.0, delta=0.05)
+
+    def test_4_count_a_payload_of_the_topic(self, proc_output):
+        self.until(lambda: self.payload.get_subscription_count() > 0, "no subscription")
+        self.play(0.3)
+        message = InertiaStamped()
+        message.header.frame_id = "rod"
+        message.inertia.m = 1.0
+        message.inertia.com.z = -LENGTH
+        self.payload.publish(message)
+        self.play_to_the_turning_point()
+        q, _, qdd = motion(self.now)
+        carried = torque(q, qdd) / MASS
+        self.assertGreater(carried, 3.0)
+        self.assertAlmostEqual(self.last(), -carried, delta=0.05)
+        self.payload.publish(InertiaStamped())
+        self.play(0.5)
+        self.assertAlmostEqual(self.last(), 0.0, delta=0.05)
+        message.inertia.m = -1.0
+        self.payload.publish(message)
+        proc_output.assertWaitFor(
+            "/touched/touched/payload: ignored: inertia.mass: no possible body", timeout=30
+        )
+
+    def test_5_count_a_payload_of_parameters(self):
+        self.assertFalse(self.set_parameter("payload.mass", -1.0).successful)
+        self.assertTrue(
+            self.set_parameter("payload.center_of_mass", [0.0, 0.0, -LENGTH]).successful
+        )
+        self.assertTrue(self.set_parameter("payload.mass", 2.0).successful)
+        refused = self.set_parameter("payload.inertia", [1.0, 0.0, 0.0, 1.0, 0.0, 3.0])
+        self.assertFalse(refused.successful)
+        self.assertIn("parameter payload.inertia: no possible body", refused.reason)
+        self.play_to_the_turning_point()
+        q, _, qdd = motion(self.now)
+        self.assertAlmostEqual(self.last(), -2.0 * torque(q, qdd) / MASS, delta=0.1)
+        self.assertTrue(self.set_parameter("payload.mass", 0.0).successful)
+        self.play(0.5)
+        self.assertAlmostEqual(self.last(), 0.0, delta=0.05)
+
+    def test_6_count_gravity_of_an_imu(self, proc_output):
+        self.until(lambda: self.imu.get_subscription_count() > 0, "no subscription")
+        # The base hangs from the ceiling: half a turn about x.
+        half_a_turn = Imu()
+        half_a_turn.orientation.w = 0.0
+        half_a_turn.orientation.x = 1.0
+        for k in range(200):
+            half_a_turn.header.stamp = stamp(10 + 0.01 * k)
+            self.imu.publish(half_a_turn)
+            rclpy.spin_once(self.node, timeout_sec=0.005)
+        self.play_to_the_turning_point()
+        q, _, _ = motion(self.now)
+        gravity = MASS * GRAVITY * LENGTH * math.sin(q)
+        self.assertAlmostEqual(self.last(), 2 * gravity, delta=0.1)
+        self.gravity.publish(Vector3Stamped())
+        proc_output.assertWaitFor("/touched/touched/gravity: ignored: gravity", timeout=30)
 
 
 @launch_testing.post_shutdown_test()

@@ -71,6 +71,7 @@ TEST(LiveTorques, CompareCurrentsByDriveGainsAndEffortsWithoutGravityWithoutIt) 
   JointState state = stateAt(stamp);
   state.effort = {9, 26.0 / 4, 12.0 / 2};
   ASSERT_EQ(currents.process(state, stamp), Outcome::kComputed);
+  EXPECT_EQ(currents.measured(), Eigen::Vector2d(12, 26));
   EXPECT_NEAR(currents.residual().cwiseAbs().maxCoeff(), 0, 1e-6);
 
   LiveTorques without_gravity = make("torque_without_gravity");
@@ -88,6 +89,7 @@ TEST(LiveTorques, ComeWithoutAResidualWhereEffortsAreAbsentOrNotFinite) {
   state.effort.clear();
   EXPECT_EQ(live.process(state, stamp), Outcome::kComputed);
   EXPECT_FALSE(live.hasResidual());
+  EXPECT_TRUE(live.measured().array().isNaN().all());
   state.effort = {9, kNan, 9};
   EXPECT_EQ(live.process(state, stamp + kMillisecond), Outcome::kComputed);
   EXPECT_FALSE(live.hasResidual());

@@ -87,6 +87,29 @@ TEST_F(RobotParameters, AreEnoughWithoutARunConfiguration) {
   EXPECT_EQ(robot.makeSolver(robot.description())->jointCount(), 1);
 }
 
+TEST_F(RobotParameters, NameTheEndsOfTheChain) {
+  const NodeRobot robot(Parameters{{"robot", file()}});
+  EXPECT_EQ(robot.rootLink(robot.description()), "base");
+  EXPECT_EQ(robot.tipLink(robot.description()), "cart");
+  const NodeRobot stated(Parameters{
+      {"robot", file()}, {"ids.root", std::string("floor")}, {"ids.tip", std::string("hand")}});
+  EXPECT_EQ(stated.rootLink(robot.description()), "floor");
+  EXPECT_EQ(stated.tipLink(robot.description()), "hand");
+  const NodeRobot of_a_model(Parameters{{"plugin_name", std::string("package/Class")}});
+  EXPECT_EQ(of_a_model.rootLink(""), "");
+  EXPECT_EQ(of_a_model.tipLink("<robot"), "");
+  const std::string forked = std::string(kUrdf).replace(
+      std::string(kUrdf).find("</robot>"), 8,
+      "<link name='lamp'/><joint name='fixed' type='fixed'><parent link='cart'/><child "
+      "link='lamp'/></joint><link name='hook'/><joint name='other' type='fixed'><parent "
+      "link='cart'/><child link='hook'/></joint></robot>");
+  EXPECT_EQ(of_a_model.rootLink(forked), "base");
+  EXPECT_EQ(of_a_model.tipLink(forked), "") << "lamp or hook";
+  const NodeRobot elsewhere(Parameters{{"plugin_name", std::string("package/Class")},
+                                       {"ids.root", std::string("floor")}});
+  EXPECT_EQ(elsewhere.tipLink(forked), "");
+}
+
 TEST_F(RobotParameters, AreCheckedByWhoeverKnowsThem) {
   EXPECT_THROW(NodeRobot(Parameters{{"robot", std::string("none.yaml")}}),
                inverse_dynamics_evaluation::ConfigurationError);

@@ -6,13 +6,21 @@
 ///     ros2 run inverse_dynamics_ros live --ros-args -p plugin_name:=package/Class
 ///     ros2 component load /container inverse_dynamics_ros inverse_dynamics_ros::LiveNode
 ///
-/// | topic               | type                              | |
-/// |---------------------|-----------------------------------|-------------------------------------|
-/// | joint_states        | sensor_msgs/msg/JointState        | in: position, velocity, effort | |
-/// robot_description   | std_msgs/msg/String               | in, latched; unless the parameter is|
-/// | ~/torques           | sensor_msgs/msg/JointState        | out: effort is the computed torque |
-/// | ~/residual          | sensor_msgs/msg/JointState        | out: effort is measured - computed |
-/// | /diagnostics        | diagnostic_msgs/DiagnosticArray   | out |
+// clang-format off
+/// | topic               | type                              |                                        |
+/// |---------------------|-----------------------------------|----------------------------------------|
+/// | joint_states        | sensor_msgs/msg/JointState        | in: position, velocity, effort         |
+/// | robot_description   | std_msgs/msg/String               | in, latched; unless the parameter is   |
+/// | ~/payload           | geometry_msgs/msg/InertiaStamped  | in: what the tip carries               |
+/// | ~/gravity           | geometry_msgs/msg/Vector3Stamped  | in: where things fall                  |
+/// | imu                 | sensor_msgs/msg/Imu               | in: the same, if gravity_from_imu.use  |
+/// | ~/torques           | sensor_msgs/msg/JointState        | out: effort is the computed torque     |
+/// | ~/residual          | sensor_msgs/msg/JointState        | out: effort is measured - computed     |
+/// | ~/external_torques  | sensor_msgs/msg/JointState        | out, if external_torques.enabled       |
+/// | ~/external_wrench   | geometry_msgs/msg/WrenchStamped   | out, then: at the tip                  |
+/// | ~/contact           | std_msgs/msg/Bool                 | out, then: whether something touches   |
+/// | /diagnostics        | diagnostic_msgs/DiagnosticArray   | out                                    |
+// clang-format on
 ///
 /// Messages out have the stamp of the joint state they belong to. Accelerations come from a causal
 /// filter of the velocities, late by 1 / (pi cutoff) s: see online_derivative.hpp. While that

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "live_contact.hpp"
+
+#include <inverse_dynamics_control/estimator_choice.hpp>
+#include <utility>
+
+namespace inverse_dynamics_ros {
+
+using inverse_dynamics_control::WrenchStatus;
+using inverse_dynamics_solver::WrenchFrame;
+
+LiveContact::LiveContact(
+    std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
+    const LiveContactOptions& options)
+    : solver_(std::move(solver)),
+      estimator_(inverse_dynamics_control::estimatorFor(solver_, options.estimator)),
+      state_(solver_->jointCount()) {
+  if (options.thresholds.size() > 0) {
+    detector_.emplace(options.thresholds, inverse_dynamics_control::ReleaseOptions(),
+                      solver_->jointNames());
+  }
+  if (options.wrench.noise.size() > 0) {
+    tip_.emplace(solver_, options.wrench);
+    if (options.wrench_frame == WrenchFrame::kTip) {
+      kinematics_ = dynamic_cast<const inverse_dynamics_solver::Kinematics*>(solver_.get());
+    }
+  }
+}
+
+bool LiveContact::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
+                         const Eigen::VectorXd& effort) {
+  if (started_ && stamp == stamp_) {
+    return false;
+  }
+  const double period = started_ ? 1e-9 * static_cast<double>(stamp - stamp_) : 0.0;
+  started_ = true;
+  stamp_ = stamp;
+  state_.q = q;
+  state_.qd = qd;
+  status_ = estimator_->update(state_, effort, period);
+  ++counts_[static_cast<std::size_t>(status_)];
+  if (detector_ && period < 0) {
+    detector_->reset();
+  }
+  has_wrench_ = false;
+  if (status_ != Status::kOk) {
+    return false;
+  }
+  if (detector_) {
+    detector_->update(torques(), period);
+  }
+  if (tip_) {
+    updateWrench(q);
+  }
+  return true;
+}
+
+void LiveContact::updateWrench(const Eigen::VectorXd& q) {
+  has_wrench_ = tip_->update(q, torques()) == WrenchStatus::kOk;
+  force_ = tip_->wrench().force;
+  torque_ = tip_->wrench().torque;
+  if (has_wrench_ && kinematics_ != nullptr) {
+    chain_dynamics::Transform<double> pose;
+    kinematics_->getTipPose(q, pose);
+    force_ = pose.R.transpose() * force_;
+    torque_ = pose.R.transpose() * torque_;
+  }
+}
+
+}  // namespace inverse_dynamics_ros

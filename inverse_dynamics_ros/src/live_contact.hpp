@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// What touches the robot, of joint states as they come: the work of the live node, without topics.
+///
+///     LiveContact contact(solver, options);
+///     if (contact.update(stamp, q, qd, effort)) publish(contact.torques(), contact.wrench());
+
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <inverse_dynamics_control/contact_detector.hpp>
+#include <inverse_dynamics_control/external_torque_estimator.hpp>
+#include <inverse_dynamics_control/tip_wrench.hpp>
+#include <inverse_dynamics_solver/external_wrench.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/kinematics.hpp>
+#include <memory>
+#include <optional>
+
+namespace inverse_dynamics_ros {
+
+/// What LiveContact works with.
+struct LiveContactOptions {
+  inverse_dynamics_control::EstimatorOptions estimator;
+  Eigen::VectorXd thresholds;                      ///< n; N m (prismatic N); empty: no contact flag
+  inverse_dynamics_control::WrenchOptions wrench;  ///< without noise: no wrench
+  inverse_dynamics_solver::WrenchFrame wrench_frame = inverse_dynamics_solver::WrenchFrame::kTip;
+};
+
+/// From one sample after the other to external torques, the wrench at the tip and contacts, each
+/// exerted by the robot on its surroundings [docs/contact.md].
+///
+/// Without an estimate (see EstimateStatus) nothing is known: a contact neither begins nor ends.
+/// Real time: update() allocates nothing, takes no lock, throws nothing, if the solver keeps its
+/// promise.
+class LiveContact {
+ public:
+  using Status = inverse_dynamics_control::EstimateStatus;
+  using Counts = std::array<std::int64_t, 8>;  ///< by Status
+
+  /// @throws inverse_dynamics_solver::Exception: what estimators, detector and TipWrench say.
+  LiveContact(std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
+              const LiveContactOptions& options);
+
+  /// Takes a sample; one with the stamp of the last one is left out.
+  ///
+  /// @param stamp   ns. One that is earlier than the last begins again, without a contact.
+  /// @param effort  n; N m (prismatic N); what isn't finite is a reset.
+  /// @return whether there is a new estimate.
+  bool update(std::int64_t stamp, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
+              const Eigen::VectorXd& effort);
+
+  /// Of the last sample.
+  Status status() const { return status_; }
+
+  /// How often each happened.
+  const Counts& counts() const { return counts_; }
+
+  /// n; N m (prismatic N).
+  const chain_dynamics::OwnedVector& torques() const { return estimator_->torques(); }
+
+  /// Whether the wrench is that of the last estimate.
+  bool hasWrench() const { return has_wrench_; }
+
+  /// N, N m about the tip's origin, in the axes of LiveContactOptions::wrench_frame.
+  const Eigen::Vector3d& force() const { return force_; }
+  const Eigen::Vector3d& torque() const { return torque_; }
+
+  /// Null: no wrench.
+  const inverse_dynamics_control::TipWrench* tip() const { return tip_ ? &*tip_ : nullptr; }
+
+  /// Null: no contact flag.
+  const inverse_dynamics_control::ContactDetector* detector() const {
+    return detector_ ? &*detector_ : nullptr;
+  }
+
+ private:
+  void updateWrench(const Eigen::VectorXd& q);
+
+  std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver_;
+  std::unique_ptr<inverse_dynamics_control::ExternalTorqueEstimator> estimator_;
+  std::optional<inverse_dynamics_control::ContactDetector> detector_;
+  std::optional<inverse_dynamics_control::TipWrench> tip_;
+  const inverse_dynamics_solver::Kinematics* kinematics_ = nullptr;  // null: wrench in the root
+  inverse_dynamics_control::JointState state_;
+  bool started_ = false;
+  std::int64_t stamp_ = 0;  // ns; of the last sample
+  Status status_ = Status::kStarting;
+  Counts counts_{};
+  bool has_wrench_ = false;
+  Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), torque_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace inverse_dynamics_ros

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// External torques, wrench and contacts of the live node: parameters, topics, diagnostics.
+///
+///     LiveContactTopics topics(node, params.external_torques, given);
+///     topics.use(topics.make(robot), robot);            // a solver, or another one
+///     topics.take(message.header, stamp, live_torques); // a joint state
+
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.hpp>
+#include <geometry_msgs/msg/wrench_stamped.hpp>
+#include <inverse_dynamics_ros/live_node_parameters.hpp>
+#include <inverse_dynamics_solver/parameters.hpp>
+#include <memory>
+#include <rclcpp/rclcpp.hpp>
+#include <sensor_msgs/msg/joint_state.hpp>
+#include <std_msgs/msg/bool.hpp>
+#include <string>
+#include <vector>
+
+#include "live_contact.hpp"
+#include "live_robot.hpp"
+#include "live_torques.hpp"
+
+namespace inverse_dynamics_ros {
+
+/// ~/external_torques, ~/external_wrench, ~/contact.
+class LiveContactTopics {
+ public:
+  /// @param given  what the user has set: it replaces what the file of contacts says.
+  LiveContactTopics(rclcpp::Node& node, live_node::Params::ExternalTorques parameters,
+                    inverse_dynamics_solver::Parameters given);
+
+  /// What estimates for a robot.
+  ///
+  /// @throws UserError: a file that can't be used, a link without a name.
+  /// @throws inverse_dynamics_solver::Exception: parameters out of range.
+  std::unique_ptr<LiveContact> make(const LiveRobot& robot) const;
+
+  /// Estimates for this robot from now on.
+  void use(std::unique_ptr<LiveContact> contact, const LiveRobot& robot);
+
+  /// Takes a joint state and publishes what it tells.
+  void take(const std_msgs::msg::Header& header, std::int64_t stamp, const LiveTorques& live);
+
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+ private:
+  LiveContactOptions options(const LiveRobot& robot) const;
+  const std::string& frame(const LiveRobot& robot) const;
+  void publish();
+  void reportWrench(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void reportContact(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  rclcpp::Logger logger_;
+  live_node::Params::ExternalTorques parameters_;
+  inverse_dynamics_solver::Parameters given_;
+  std::unique_ptr<LiveContact> contact_;  // null until there is a robot
+  std::string estimator_;                 // in words
+  std::vector<std::string> joints_;       // names in messages
+  std::int64_t reported_ = 0;             // estimates at the last report
+  rclcpp::Clock steady_{RCL_STEADY_TIME};
+  // Reused, so that nothing is allocated per message.
+  sensor_msgs::msg::JointState torques_;
+  geometry_msgs::msg::WrenchStamped wrench_;
+  std_msgs::msg::Bool flag_;
+  rclcpp::Publisher<sensor_msgs::msg::JointState>::SharedPtr torques_publisher_;
+  rclcpp::Publisher<geometry_msgs::msg::WrenchStamped>::SharedPtr wrench_publisher_;
+  rclcpp::Publisher<std_msgs::msg::Bool>::SharedPtr flag_publisher_;
+};
+
+}  // namespace inverse_dynamics_ros
