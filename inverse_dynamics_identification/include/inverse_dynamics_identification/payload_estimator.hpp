@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// What the tip carries: mass, centre of mass and inertia from a few seconds of motion.
+///
+///     PayloadEstimator estimator(solver, options);                  // options.noise is required
+///     while (moving) estimator.update(time, q, qd, qdd, effort);    // each cycle
+///     PayloadEstimate found(n);
+///     if (estimator.estimate(found) == PayloadStatus::kOk) carrier->setPayload("load", found.body());
+///
+/// What is measured beyond the torques of the arm's model is linear in the ten parameters of a body
+/// in the tip frame [tip_regressor.hpp],
+///
+///     measured - computed = Y(q, qd, qdd) [m, mc, I] + offset + noise,
+///
+/// with an offset per joint and the noise of residual_noise.hpp, which a Kalman filter makes white.
+/// Of the filtered rows only sums are kept, of each joint and of blocks of time, so a recording of
+/// any length takes constant memory. The estimate minimises
+///
+///     1/2 |filtered residual|^2 + 1/2 sum_j offset_j^2 / deviation_j^2 + tr(P0^-1 P) - log det P,
+///
+/// P the 4 x 4 pseudo-inertia of the body, which stays positive definite: mass, second moments and
+/// triangle inequality are those of a real body [Wensing, Kim, Slotine 2018,
+/// doi 10.1109/LRA.2017.2729659; Lee, Park 2018, doi 10.1109/LRA.2018.2799426]. P0 has mass and
+/// centre of mass of the estimate itself and the standard deviation `extent` of mass about it, so it
+/// decides the inertia where the data don't tell, and nothing else.
+///
+/// Intervals rest on how much the estimate changes as each block of each joint is left out (the
+/// cluster-robust CR3, or jackknife [Bell, McCaffrey 2002]) and on Student's t with one degree of
+/// freedom less than there are blocks: residuals are correlated and the arm's model isn't exact, so
+/// the textbook's intervals would be far too narrow. They are never narrower than those, which have
+/// no limit in a direction that no sample tells anything of.
+///
+/// **Friction that grows with load** isn't linear in the body. Set the estimate as a payload of the
+/// solver, name it in `options.carried`, and estimate again from the same samples: two or three times.
+
+#pragma once
+
+#include <Eigen/Core>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/payload.hpp>
+#include <memory>
+
+#include "chain_dynamics/owned.hpp"
+#include "inverse_dynamics_identification/residual_noise.hpp"
+
+namespace inverse_dynamics_identification {
+inline namespace v2 {
+
+/// What the estimate rests on.
+struct PayloadOptions {
+  ResidualNoise noise;  ///< of the torques; required
+
+  /// Offsets of measured torques that are expected, n, N m; empty: zero.
+  chain_dynamics::OwnedVector offset;
+  /// Their standard deviation, n, > 0, N m; empty: one share of the noise for all joints, estimated
+  /// with the rest.
+  chain_dynamics::OwnedVector offset_deviation;
+
+  /// The part of the solver's payloads that belongs to the estimate: its torques are among those
+  /// that the solver computes.
+  inverse_dynamics_solver::RigidBody carried;
+
+  double extent = 0.04;  ///< standard deviation of mass about its centre that is expected, > 0; m
+  double block = 0.8;    ///< of time, several correlation times long, > 0; s
+};
+
+/// Result of a call.
+enum class PayloadStatus {
+  kOk,            ///< the sample was added; the estimate is one
+  kNotLater,      ///< the sample isn't later than the last one: left out
+  kNotFinite,     ///< a NaN or infinity: the sample is left out; no estimate
+  kTooShort,      ///< fewer than three blocks of time: no estimate yet
+  kSolverFailed,  ///< the solver threw: the sample is left out
+  kWrongSize,     ///< an argument hasn't one number per joint
+};
+
+/// What happened, as a sentence without a full stop. Real time: no allocation, lock, exception or
+/// system call. Threads: safe.
+const char* text(PayloadStatus status) noexcept;
+
+/// A body in the tip frame with the half widths of its 95 % intervals.
+struct PayloadEstimate {
+  /// For so many joints.
+  explicit PayloadEstimate(Eigen::Index joints);
+
+  double mass = 0.0;                                                    ///< > 0; kg
+  double mass_half_width = 0.0;                                         ///< kg
+  Eigen::Vector3d center_of_mass = Eigen::Vector3d::Zero();             ///< m
+  Eigen::Vector3d center_of_mass_half_width = Eigen::Vector3d::Zero();  ///< m
+  /// About the centre of mass, axes of the tip frame; kg m^2.
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d inertia_half_width = Eigen::Matrix3d::Zero();  ///< kg m^2, of the data alone
+  /// Whether the data tell the inertia: half widths of the three moments below half of their mean.
+  bool inertia_is_known = false;
+
+  chain_dynamics::OwnedVector offset;      ///< n; N m (prismatic N)
+  chain_dynamics::OwnedMatrix covariance;  ///< 10 x 10, of [m, mc, I] about the tip's origin
+  Eigen::Index blocks = 0;                 ///< of time that the intervals rest on
+  double duration = 0.0;                   ///< from the first sample to the last; s
+
+  /// For setPayload(): a point mass where the data don't tell the inertia.
+  inverse_dynamics_solver::RigidBody body() const;
+};
+
+/// Recursive estimate of the body at the tip. Not thread-safe; movable.
+class PayloadEstimator {
+ public:
+  /// @throws inverse_dynamics_solver::InvalidParameterValueException  a solver as TipRegressor
+  ///     refuses it, options of the wrong size or value; UninitializedException.
+  PayloadEstimator(std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
+                   const PayloadOptions& options);
+  ~PayloadEstimator();
+  PayloadEstimator(PayloadEstimator&&) noexcept;
+  PayloadEstimator& operator=(PayloadEstimator&&) noexcept;
+
+  Eigen::Index jointCount() const noexcept;
+
+  /// Adds a sample.
+  ///
+  /// @param time               s; of any origin.
+  /// @param q,qd,qdd,measured  n each; rad, rad/s, rad/s^2, N m (prismatic m, m/s, m/s^2, N).
+  /// Real time: no allocation, lock, exception or system call, with a solver that keeps the same
+  /// promise.
+  PayloadStatus update(double time, const inverse_dynamics_solver::ConstVectorRef& q,
+                       const inverse_dynamics_solver::ConstVectorRef& qd,
+                       const inverse_dynamics_solver::ConstVectorRef& qdd,
+                       const inverse_dynamics_solver::ConstVectorRef& measured) noexcept;
+
+  /// The body that all samples so far tell of, in 0.1 to 1 ms.
+  ///
+  /// @param[out] found  made for as many joints; unchanged unless the result is kOk.
+  /// Real time: no allocation, lock, exception or system call.
+  PayloadStatus estimate(PayloadEstimate& found) noexcept;
+
+  /// Forgets all samples. Real time: no allocation, lock, exception or system call.
+  void restart() noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace v2
+}  // namespace inverse_dynamics_identification

@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_identification/payload_estimator.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "inverse_dynamics_identification/tip_regressor.hpp"
+#include "payload_solution.hpp"
+#include "payload_sums.hpp"
+#include "whitening.hpp"
+
+namespace inverse_dynamics_identification {
+inline namespace v2 {
+namespace {
+
+using inverse_dynamics_solver::ConstVectorRef;
+using inverse_dynamics_solver::errorText;
+using inverse_dynamics_solver::InvalidParameterValueException;
+using inverse_dynamics_solver::InverseDynamicsSolver;
+using Index = Eigen::Index;
+
+constexpr std::size_t kLeastBlocks = 3;
+constexpr int kMostRounds = 30;
+constexpr double kSettled = 1e-7;    // relative change of the mass, and by the extent of the centre
+constexpr double kLeastMass = 1e-9;  // kg
+constexpr double kLeastOffset = 0.05, kMostOffset = 3.0;  // shares of the noise
+constexpr double kKnownInertia = 0.5;                     // half width by mean moment
+constexpr double kFirstMass = 1.0;                        // kg, to start with
+
+void require(bool fine, const std::string& option, const std::string& expected,
+             const std::string& got) {
+  if (fine) return;
+  throw InvalidParameterValueException(errorText("payload: " + option, "", expected, got));
+}
+
+void requireNumbers(const chain_dynamics::OwnedVector& values, Index n, double least,
+                    const std::string& option) {
+  require(values.size() == n, option, std::to_string(n) + " numbers, one per joint",
+          std::to_string(values.size()));
+  for (Index j = 0; j < n; ++j) {
+    require(values[j] >= least && std::isfinite(values[j]), option,
+            "finite numbers" + std::string(least == 0.0 ? " >= 0" : ""), std::to_string(values[j]));
+  }
+}
+
+void check(const PayloadOptions& options, Index n) {
+  const double any = -std::numeric_limits<double>::max();
+  requireNumbers(options.noise.white, n, 0.0, "noise.white");
+  requireNumbers(options.noise.correlated, n, 0.0, "noise.correlated");
+  for (Index j = 0; j < n; ++j) {
+    require(options.noise.total(j) > 0, "noise", "a number above zero for each joint [N m]", "0");
+  }
+  const auto positive = [](double value, const std::string& option, const std::string& unit) {
+    require(value > 0 && std::isfinite(value), option, "a finite number above zero [" + unit + "]",
+            std::to_string(value));
+  };
+  positive(options.noise.correlation_time, "noise.correlation_time", "s");
+  positive(options.extent, "extent", "m");
+  positive(options.block, "block", "s");
+  if (options.offset.size() > 0) requireNumbers(options.offset, n, any, "offset");
+  if (options.offset_deviation.size() > 0) {
+    requireNumbers(options.offset_deviation, n, 0.0, "offset_deviation");
+    require((options.offset_deviation.array() > 0).all(), "offset_deviation",
+            "numbers above zero [N m]", "0");
+  }
+  if (const auto defect = inverse_dynamics_solver::defectOf(options.carried)) {
+    require(false, "carried: " + defect->field, defect->expected, defect->got);
+  }
+}
+
+}  // namespace
+
+const char* text(PayloadStatus status) noexcept {
+  switch (status) {
+    case PayloadStatus::kOk:
+      return "an estimate";
+    case PayloadStatus::kNotLater:
+      return "the sample isn't later than the last one: left out";
+    case PayloadStatus::kNotFinite:
+      return "a number isn't finite: left out";
+    case PayloadStatus::kTooShort:
+      return "too few blocks of time for an interval: no estimate yet";
+    case PayloadStatus::kSolverFailed:
+      return "the solver failed: sample left out";
+    case PayloadStatus::kWrongSize:
+      return "an argument hasn't one number per joint";
+  }
+  return "unknown status";
+}
+
+PayloadEstimate::PayloadEstimate(Index joints) {
+  offset.setZero(joints);
+  covariance = Eigen::MatrixXd::Zero(10, 10);
+}
+
+inverse_dynamics_solver::RigidBody PayloadEstimate::body() const {
+  inverse_dynamics_solver::RigidBody body{mass};
+  body.center_of_mass = center_of_mass;
+  if (inertia_is_known) body.inertia = inertia;
+  return body;
+}
+
+struct PayloadEstimator::Impl {
+  Impl(std::shared_ptr<const InverseDynamicsSolver> arm, const PayloadOptions& given)
+      : regressor(arm), solver(std::move(arm)), sums(solver->jointCount(), given.block) {
+    const Index n = solver->jointCount();
+    check(given, n);
+    const auto joints = static_cast<std::size_t>(n);
+    extent = given.extent;
+    carried = inverse_dynamics_solver::inTipFrame(given.carried).toVector();
+    estimates_offsets = given.offset_deviation.size() == 0;
+    for (Index j = 0; j < n; ++j) {
+      const double white = given.noise.white[j], correlated = given.noise.correlated[j];
+      filters.emplace_back(white * white, correlated * correlated, given.noise.correlation_time);
+      noise.push_back(given.noise.total(j));
+      OffsetPrior prior{given.offset.size() > 0 ? given.offset[j] : 0.0, noise.back()};
+      if (!estimates_offsets) prior.variance = given.offset_deviation[j];
+      prior.variance *= prior.variance;
+      offsets.push_back(prior);
+    }
+    states.resize(joints);
+    total.resize(joints);
+    reduced.resize(joints);
+    priors.resize(joints);
+    Y = Eigen::MatrixXd::Zero(n, 10);
+    torques.setZero(n);
+    restart();
+  }
+
+  void restart() {
+    sums.restart();
+    for (auto& filter : filters) filter.restart();
+    for (auto& state : states) state.setZero();
+    samples = 0;
+  }
+
+  PayloadStatus update(double time, const ConstVectorRef& q, const ConstVectorRef& qd,
+                       const ConstVectorRef& qdd, const ConstVectorRef& measured);
+  PayloadStatus estimate(PayloadEstimate& found);
+  void addUp(std::size_t blocks);
+  Normal sumOfJoints();
+  Vector10 solve(Normal& normal, Matrix10& H);
+  Matrix10 jackknife(std::size_t blocks, const Vector10& phi, const Matrix10& H);
+  void fill(const Vector10& phi, const Matrix10& V, const Matrix10& A, const Matrix10& H,
+            std::size_t blocks, PayloadEstimate& found) const;
+
+  TipRegressor regressor;
+  std::shared_ptr<const InverseDynamicsSolver> solver;
+  PayloadSums sums;
+  double extent = 0.0;
+  Vector10 carried = Vector10::Zero();
+  bool estimates_offsets = true;
+  std::vector<NoiseFilter> filters;
+  std::vector<double> noise;         // N m
+  std::vector<OffsetPrior> offsets;  // as given
+  std::vector<OffsetPrior> priors;   // as estimated
+  std::vector<Row> states;           // of the filters
+  std::vector<Gram> total;           // of all blocks
+  std::vector<Normal> reduced;       // of each joint
+  chain_dynamics::OwnedMatrix Y;     // n x 10
+  chain_dynamics::OwnedVector torques;
+  double first = 0.0, last = 0.0;  // s
+  std::size_t samples = 0;
+};
+
+PayloadStatus PayloadEstimator::Impl::update(double time, const ConstVectorRef& q,
+                                             const ConstVectorRef& qd, const ConstVectorRef& qdd,
+                                             const ConstVectorRef& measured) {
+  const Index n = solver->jointCount();
+  if (q.size() != n || qd.size() != n || qdd.size() != n || measured.size() != n) {
+    return PayloadStatus::kWrongSize;
+  }
+  if (!std::isfinite(time)) return PayloadStatus::kNotFinite;
+  if (samples > 0 && !(time > last)) return PayloadStatus::kNotLater;
+  solver->getTorques(q, qd, qdd, torques);
+  regressor.compute(q, qd, qdd, Y);
+  torques = measured - torques;
+  torques.noalias() += Y.lazyProduct(carried);
+  if (!torques.allFinite() || !Y.allFinite()) return PayloadStatus::kNotFinite;
+  sums.begin(time);
+  for (Index j = 0; j < n; ++j) {
+    const auto joint = static_cast<std::size_t>(j);
+    Row row;
+    row << Y.row(j).transpose(), 1.0, torques[j];
+    filters[joint].advance(time - last);
+    sums.add(joint, filters[joint].innovations(row, states[joint]));
+  }
+  if (samples == 0) first = time;
+  last = time;
+  ++samples;
+  return PayloadStatus::kOk;
+}
+
+void PayloadEstimator::Impl::addUp(std::size_t blocks) {
+  for (std::size_t j = 0; j < total.size(); ++j) {
+    total[j].setZero();
+    for (std::size_t block = 0; block < blocks; ++block) total[j] += sums.of(block, j, blocks);
+  }
+}
+
+Normal PayloadEstimator::Impl::sumOfJoints() {
+  Normal sum;
+  for (std::size_t j = 0; j < total.size(); ++j) {
+    reduced[j] = withoutOffset(total[j], priors[j]);
+    sum.A += reduced[j].A;
+    sum.b += reduced[j].b;
+  }
+  return sum;
+}
+
+/// The body, with mass and centre of the prior, and the size of offsets, at those of the body. H:
+/// what data and the prior of the inertia say.
+Vector10 PayloadEstimator::Impl::solve(Normal& normal, Matrix10& H) {
+  double mass = kFirstMass;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Vector10 phi = Vector10::Zero();
+  priors = offsets;
+  for (int round = 0; round < kMostRounds; ++round) {
+    normal = sumOfJoints();
+    const BodyPrior prior(mass, center, extent);
+    phi = mostLikelyBody(normal, prior);
+    H = normal.A + prior.inertiaInformation(phi);
+    if (estimates_offsets) {
+      const Matrix10 V = H.ldlt().solve(Matrix10::Identity());
+      double squares = 0.0;
+      for (std::size_t j = 0; j < total.size(); ++j) {
+        const OffsetPrior offset = offsetOf(total[j], priors[j], phi, V);
+        const double change = offset.mean - offsets[j].mean;
+        squares += (change * change + offset.variance) / (noise[j] * noise[j]);
+      }
+      const double share = std::clamp(std::sqrt(squares / static_cast<double>(total.size())),
+                                      kLeastOffset, kMostOffset);
+      for (std::size_t j = 0; j < total.size(); ++j) {
+        priors[j].variance = share * share * noise[j] * noise[j];
+      }
+    }
+    const Eigen::Vector3d next = phi.segment<3>(1) / phi[0];
+    const bool settled =
+        std::abs(phi[0] - mass) <= kSettled * mass && (next - center).norm() <= kSettled * extent;
+    mass = std::max(phi[0], kLeastMass);
+    center = next;
+    if (settled) break;
+  }
+  return phi;
+}
+
+/// CR3: what leaving out each block of each joint changes.
+Matrix10 PayloadEstimator::Impl::jackknife(std::size_t blocks, const Vector10& phi,
+                                           const Matrix10& H) {
+  Matrix10 V = Matrix10::Zero();
+  for (std::size_t j = 0; j < total.size(); ++j) {
+    const Vector10 with = reduced[j].A * phi - reduced[j].b;
+    for (std::size_t block = 0; block < blocks; ++block) {
+      const Gram rest = total[j] - sums.of(block, j, blocks);
+      const Normal without = withoutOffset(rest, priors[j]);
+      const Matrix10 H_rest = H - reduced[j].A + without.A;
+      const Vector10 change = H_rest.ldlt().solve(without.A * phi - without.b - with);
+      V.noalias() += change * change.transpose();
+    }
+  }
+  const auto count = static_cast<double>(blocks);
+  return V * ((count - 1.0) / count);
+}
+
+/// Half widths of linear functions of the body: what leaving data out changes, but no less than
+/// independent noise gives, which is infinite where no sample tells anything.
+struct HalfWidths {
+  Matrix10 jackknife, textbook;
+  double t;
+
+  double of(const Vector10& slope) const {
+    return t * std::sqrt(std::max(slope.dot(jackknife * slope), slope.dot(textbook * slope)));
+  }
+};
+
+void fillInertia(const Vector10& phi, const Matrix10& V, const Matrix10& A, double t,
+                 PayloadEstimate& found) {
+  // Without the prior, and by as much less sure than independent noise has it as the mass and the
+  // first moments are.
+  const Matrix10 textbook = covarianceOf(A);
+  const double inflation = std::max(
+      1.0, (V.diagonal().head<4>().array() / textbook.diagonal().head<4>().array()).maxCoeff());
+  Matrix10 slopes = Matrix10::Zero();  // columns: of the six entries of the inertia
+  for (Index k = 0; k < 10; ++k) {
+    const Eigen::Matrix3d dI = centralInertiaChange(phi, Vector10::Unit(k));
+    slopes.row(k).head<6>() << dI(0, 0), dI(0, 1), dI(0, 2), dI(1, 1), dI(1, 2), dI(2, 2);
+  }
+  constexpr Index kRow[] = {0, 0, 0, 1, 1, 2}, kColumn[] = {0, 1, 2, 1, 2, 2};
+  for (Index i = 0; i < 6; ++i) {
+    const Vector10 slope = slopes.col(i);
+    const double half = t * std::sqrt(inflation * slope.dot(textbook * slope));
+    found.inertia_half_width(kRow[i], kColumn[i]) = half;
+    found.inertia_half_width(kColumn[i], kRow[i]) = half;
+  }
+  found.inertia = centralInertia(phi);
+  found.inertia_is_known =
+      found.inertia_half_width.diagonal().maxCoeff() < kKnownInertia * found.inertia.trace() / 3.0;
+}
+
+void PayloadEstimator::Impl::fill(const Vector10& phi, const Matrix10& V, const Matrix10& A,
+                                  const Matrix10& H, std::size_t blocks,
+                                  PayloadEstimate& found) const {
+  const double m = phi[0], t = studentT(static_cast<Index>(blocks) - 1);
+  const HalfWidths half_widths{V, covarianceOf(H), t};
+  found.mass = m;
+  found.mass_half_width = half_widths.of(Vector10::Unit(0));
+  found.center_of_mass = phi.segment<3>(1) / m;
+  for (Index i = 0; i < 3; ++i) {
+    Vector10 slope = Vector10::Zero();  // of c_i = h_i / m
+    slope[0] = -found.center_of_mass[i] / m;
+    slope[1 + i] = 1.0 / m;
+    found.center_of_mass_half_width[i] = half_widths.of(slope);
+  }
+  fillInertia(phi, V, A, t, found);
+  found.covariance = V;
+  for (std::size_t j = 0; j < total.size(); ++j) {
+    found.offset[static_cast<Index>(j)] = offsetOf(total[j], priors[j], phi, V).mean;
+  }
+  found.blocks = static_cast<Index>(blocks);
+  found.duration = last - first;
+}
+
+PayloadStatus PayloadEstimator::Impl::estimate(PayloadEstimate& found) {
+  if (found.offset.size() != solver->jointCount() || found.covariance.rows() != 10) {
+    return PayloadStatus::kWrongSize;
+  }
+  const std::size_t blocks = samples > 0 ? sums.blocks(last) : 0;
+  if (blocks < kLeastBlocks) return PayloadStatus::kTooShort;
+  addUp(blocks);
+  Normal normal;
+  Matrix10 H;
+  const Vector10 phi = solve(normal, H);
+  const Matrix10 V = jackknife(blocks, phi, H);
+  if (!phi.allFinite() || !V.allFinite()) return PayloadStatus::kNotFinite;
+  fill(phi, V, normal.A, H, blocks, found);
+  return PayloadStatus::kOk;
+}
+
+PayloadEstimator::PayloadEstimator(std::shared_ptr<const InverseDynamicsSolver> solver,
+                                   const PayloadOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(solver), options)) {}
+PayloadEstimator::~PayloadEstimator() = default;
+PayloadEstimator::PayloadEstimator(PayloadEstimator&&) noexcept = default;
+PayloadEstimator& PayloadEstimator::operator=(PayloadEstimator&&) noexcept = default;
+
+Index PayloadEstimator::jointCount() const noexcept { return impl_->solver->jointCount(); }
+
+PayloadStatus PayloadEstimator::update(double time, const ConstVectorRef& q,
+                                       const ConstVectorRef& qd, const ConstVectorRef& qdd,
+                                       const ConstVectorRef& measured) noexcept {
+  try {
+    return impl_->update(time, q, qd, qdd, measured);
+  } catch (...) {
+    return PayloadStatus::kSolverFailed;
+  }
+}
+
+PayloadStatus PayloadEstimator::estimate(PayloadEstimate& found) noexcept {
+  return impl_->estimate(found);
+}
+
+void PayloadEstimator::restart() noexcept { impl_->restart(); }
+
+}  // namespace v2
+}  // namespace inverse_dynamics_identification

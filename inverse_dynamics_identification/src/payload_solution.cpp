@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "payload_solution.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+#include "inverse_dynamics_identification/pseudo_inertia.hpp"
+
+namespace inverse_dynamics_identification {
+inline namespace v2 {
+namespace {
+
+constexpr int kMostSteps = 100;
+constexpr double kSmallDecrement = 1e-18;  // of Newton's decrement, squared
+constexpr double kLeastStep = 1e-12;
+constexpr double kNothing = 1e-13;  // eigenvalue by the greatest: rounding
+constexpr double kDecrease = 1e-4;  // share of the promised decrease that a step must reach
+
+Eigen::Matrix4d pseudoInertiaOf(const Vector10& phi) {
+  const Eigen::Matrix3d I =
+      (Eigen::Matrix3d() << phi[4], phi[5], phi[6], phi[5], phi[7], phi[8], phi[6], phi[8], phi[9])
+          .finished();
+  Eigen::Matrix4d P;
+  P.topLeftCorner<3, 3>() = 0.5 * I.trace() * Eigen::Matrix3d::Identity() - I;
+  P.topRightCorner<3, 1>() = phi.segment<3>(1);
+  P.bottomLeftCorner<1, 3>() = phi.segment<3>(1).transpose();
+  P(3, 3) = phi[0];
+  return P;
+}
+
+double valueOf(const Normal& normal, const Vector10& phi) {
+  return 0.5 * phi.dot(normal.A * phi) - normal.b.dot(phi);
+}
+
+}  // namespace
+
+Normal withoutOffset(const Gram& sum, const OffsetPrior& prior) {
+  const Vector10 coupling = sum.block<10, 1>(0, 10);
+  const double weight = sum(10, 10) + 1.0 / prior.variance;
+  const double right = sum(10, 11) + prior.mean / prior.variance;
+  Normal normal;
+  normal.A = sum.topLeftCorner<10, 10>() - coupling * coupling.transpose() / weight;
+  normal.b = sum.block<10, 1>(0, 11) - coupling * (right / weight);
+  return normal;
+}
+
+OffsetPrior offsetOf(const Gram& sum, const OffsetPrior& prior, const Vector10& phi,
+                     const Matrix10& V) {
+  const double weight = sum(10, 10) + 1.0 / prior.variance;
+  const Vector10 slope = sum.block<10, 1>(0, 10) / weight;
+  const double right = (sum(10, 11) + prior.mean / prior.variance) / weight;
+  return {right - slope.dot(phi), 1.0 / weight + slope.dot(V * slope)};
+}
+
+BodyPrior::BodyPrior(double mass, const Eigen::Vector3d& center, double extent) {
+  P0_.topLeftCorner<3, 3>() =
+      mass * (extent * extent * Eigen::Matrix3d::Identity() + center * center.transpose());
+  P0_.topRightCorner<3, 1>() = mass * center;
+  P0_.bottomLeftCorner<1, 3>() = mass * center.transpose();
+  P0_(3, 3) = mass;
+  // [S + c c', c; c', 1]^-1 = [S^-1, -S^-1 c; ., 1 + c' S^-1 c], S = extent^2 1
+  const double inverse = 1.0 / (mass * extent * extent);
+  Q_.topLeftCorner<3, 3>() = inverse * Eigen::Matrix3d::Identity();
+  Q_.topRightCorner<3, 1>() = -inverse * center;
+  Q_.bottomLeftCorner<1, 3>() = -inverse * center.transpose();
+  Q_(3, 3) = 1.0 / mass + inverse * center.squaredNorm();
+}
+
+Vector10 BodyPrior::body() const {
+  const Eigen::Matrix3d S = P0_.topLeftCorner<3, 3>();
+  const Eigen::Matrix3d I = S.trace() * Eigen::Matrix3d::Identity() - S;
+  Vector10 phi;
+  phi << P0_(3, 3), P0_.topRightCorner<3, 1>(), I(0, 0), I(0, 1), I(0, 2), I(1, 1), I(1, 2),
+      I(2, 2);
+  return phi;
+}
+
+double BodyPrior::value(const Vector10& phi) const {
+  const Eigen::Matrix4d P = pseudoInertiaOf(phi);
+  const Eigen::LLT<Eigen::Matrix4d> factor(P);
+  if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector4d diagonal = factor.matrixLLT().diagonal();
+  return Q_.cwiseProduct(P).sum() - 2.0 * diagonal.array().log().sum();
+}
+
+Vector10 BodyPrior::gradient(const Vector10& phi) const {
+  const Eigen::Matrix4d inverse = pseudoInertiaOf(phi).inverse();
+  return parameterGradient(Q_ - inverse);
+}
+
+Matrix10 BodyPrior::hessian(const Vector10& phi) const {
+  const Eigen::Matrix4d inverse = pseudoInertiaOf(phi).inverse();
+  Matrix10 hessian;
+  for (Eigen::Index i = 0; i < 10; ++i) {
+    const Eigen::Matrix4d change = pseudoInertiaOf(Vector10::Unit(i));
+    hessian.col(i) = parameterGradient(inverse * change * inverse);
+  }
+  return 0.5 * (hessian + hessian.transpose());
+}
+
+Matrix10 BodyPrior::inertiaInformation(const Vector10& phi) const {
+  const Matrix10 H = hessian(phi);
+  const Eigen::Matrix4d known = H.topLeftCorner<4, 4>();
+  const Eigen::Matrix<double, 4, 6> coupling = H.topRightCorner<4, 6>();
+  Matrix10 information = Matrix10::Zero();
+  information.bottomRightCorner<6, 6>() =
+      H.bottomRightCorner<6, 6>() - coupling.transpose() * known.ldlt().solve(coupling);
+  return information;
+}
+
+Vector10 mostLikelyBody(const Normal& normal, const BodyPrior& prior) {
+  Vector10 phi = prior.body();
+  double value = valueOf(normal, phi) + prior.value(phi);
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Vector10 gradient = normal.A * phi - normal.b + prior.gradient(phi);
+    const Matrix10 H = normal.A + prior.hessian(phi);
+    const Vector10 direction = -H.ldlt().solve(gradient);
+    const double decrement = -gradient.dot(direction);
+    if (!(decrement > kSmallDecrement)) break;
+    double share = 1.0, next = 0.0;
+    for (; share > kLeastStep; share *= 0.5) {
+      const Vector10 trial = phi + share * direction;
+      next = valueOf(normal, trial) + prior.value(trial);
+      if (next <= value - kDecrease * share * decrement) break;
+    }
+    if (!(share > kLeastStep)) break;  // rounding: no lower value is found
+    phi += share * direction;
+    value = next;
+  }
+  return phi;
+}
+
+Matrix10 covarianceOf(const Matrix10& information) {
+  // in units in which the numbers of a body are alike: kg, 0.1 kg m, 0.01 kg m^2
+  Vector10 units;
+  units << 1.0, 0.1, 0.1, 0.1, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01;
+  const Matrix10 scaled = units.asDiagonal() * information * units.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix10> eigen(scaled);
+  const double least = kNothing * eigen.eigenvalues().cwiseAbs().maxCoeff();
+  const Vector10 inverse = eigen.eigenvalues().cwiseMax(least).cwiseInverse();
+  const Matrix10 vectors = units.asDiagonal() * eigen.eigenvectors();
+  return vectors * inverse.asDiagonal() * vectors.transpose();
+}
+
+double studentT(Eigen::Index degrees_of_freedom) {
+  if (degrees_of_freedom < 1) return std::numeric_limits<double>::infinity();
+  constexpr double kFew[] = {12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469};
+  if (degrees_of_freedom <= 6) return kFew[degrees_of_freedom - 1];
+  // Cornish and Fisher's expansion: to 1e-4 from 7 on
+  const double z = 1.959964, n = static_cast<double>(degrees_of_freedom);
+  const double z2 = z * z;
+  return z + z * (z2 + 1) / (4 * n) + z * ((5 * z2 + 16) * z2 + 3) / (96 * n * n) +
+         z * (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n);
+}
+
+Eigen::Matrix3d centralInertia(const Vector10& phi) {
+  const Eigen::Vector3d h = phi.segment<3>(1);
+  Eigen::Matrix3d I;
+  I << phi[4], phi[5], phi[6], phi[5], phi[7], phi[8], phi[6], phi[8], phi[9];
+  return I - (h.squaredNorm() * Eigen::Matrix3d::Identity() - h * h.transpose()) / phi[0];
+}
+
+Eigen::Matrix3d centralInertiaChange(const Vector10& phi, const Vector10& d) {
+  const Eigen::Vector3d h = phi.segment<3>(1), dh = d.segment<3>(1);
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d dI;
+  dI << d[4], d[5], d[6], d[5], d[7], d[8], d[6], d[8], d[9];
+  // I_c = I - (h'h 1 - h h') / m
+  return dI - (2.0 * h.dot(dh) * one - dh * h.transpose() - h * dh.transpose()) / phi[0] +
+         (h.squaredNorm() * one - h * h.transpose()) * (d[0] / (phi[0] * phi[0]));
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_identification

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The body that sums of filtered rows tell of, and how sure it is.
+#pragma once
+
+#include <vector>
+
+#include "inverse_dynamics_identification/payload_estimator.hpp"
+#include "payload_sums.hpp"
+
+namespace inverse_dynamics_identification {
+inline namespace v2 {
+
+using Vector10 = Eigen::Matrix<double, 10, 1>;
+using Matrix10 = Eigen::Matrix<double, 10, 10>;
+
+/// Least squares in the ten numbers of the body: 1/2 phi' A phi - b' phi.
+struct Normal {
+  Matrix10 A = Matrix10::Zero();
+  Vector10 b = Vector10::Zero();
+};
+
+/// What is known of the offset of a joint before: N m, and its square.
+struct OffsetPrior {
+  double mean = 0.0;
+  double variance = 1.0;
+};
+
+/// The sum of a joint with its offset at the best value for each body.
+Normal withoutOffset(const Gram& sum, const OffsetPrior& prior);
+
+/// That offset, and its variance where the body has the covariance V.
+OffsetPrior offsetOf(const Gram& sum, const OffsetPrior& prior, const Vector10& phi,
+                     const Matrix10& V);
+
+/// The prior of the pseudo-inertia: tr(P0^-1 P) - log det P.
+class BodyPrior {
+ public:
+  /// P0: mass and centre of mass, and the standard deviation of mass about it, m.
+  BodyPrior(double mass, const Eigen::Vector3d& center, double extent);
+
+  /// The body P0.
+  Vector10 body() const;
+
+  /// Infinity where phi isn't a body; P: its pseudo-inertia.
+  double value(const Vector10& phi) const;
+  Vector10 gradient(const Vector10& phi) const;
+  Matrix10 hessian(const Vector10& phi) const;
+
+  /// What the prior says of the inertia whatever mass and first moments are: rows and columns of
+  /// those are zero, as the prior's are those of the estimate.
+  Matrix10 inertiaInformation(const Vector10& phi) const;
+
+ private:
+  Eigen::Matrix4d P0_, Q_;  // and its inverse
+};
+
+/// The minimum of least squares and prior, from the body of the prior on: damped Newton steps.
+Vector10 mostLikelyBody(const Normal& normal, const BodyPrior& prior);
+
+/// The inverse of an information matrix: very large, but finite, where it says nothing.
+Matrix10 covarianceOf(const Matrix10& information);
+
+/// The upper 97.5 % point of Student's t.
+double studentT(Eigen::Index degrees_of_freedom);
+
+/// Inertia about the centre of mass, and its derivative by phi along a direction.
+Eigen::Matrix3d centralInertia(const Vector10& phi);
+Eigen::Matrix3d centralInertiaChange(const Vector10& phi, const Vector10& direction);
+
+}  // namespace v2
+}  // namespace inverse_dynamics_identification

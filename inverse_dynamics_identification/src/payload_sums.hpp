@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Sums of filtered rows, by block of time and joint, in constant memory.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+namespace inverse_dynamics_identification {
+inline namespace v2 {
+
+using Row = Eigen::Matrix<double, 12, 1>;    // 10 of the body, 1 of the offset, the residual
+using Gram = Eigen::Matrix<double, 12, 12>;  // sum of row row'
+
+/// Gram matrices of each joint and block. Where there are too many blocks, neighbours are joined
+/// and later blocks are as long as two were.
+class PayloadSums {
+ public:
+  PayloadSums(Eigen::Index joints, double block_length)
+      : joints_(static_cast<std::size_t>(joints)),
+        first_length_(block_length),
+        sums_(kMostBlocks * static_cast<std::size_t>(joints)) {
+    restart();
+  }
+
+  void restart() {
+    blocks_ = 0;
+    length_ = first_length_;
+  }
+
+  /// A new block begins with this time if the last one is long enough.
+  void begin(double time) {
+    if (blocks_ > 0 && time - begun_ < length_) return;
+    if (blocks_ == kMostBlocks) {
+      joinNeighbours();
+      if (time - begun_ < length_) return;
+    }
+    for (std::size_t j = 0; j < joints_; ++j) at(blocks_, j).setZero();
+    ++blocks_;
+    begun_ = time;
+  }
+
+  void add(std::size_t joint, const Row& row) {
+    at(blocks_ - 1, joint).noalias() += row * row.transpose();
+  }
+
+  /// Blocks, the last one counted if it is at least half as long as the others, else as part of the
+  /// one before.
+  std::size_t blocks(double time) const {
+    const bool last_is_short = blocks_ > 1 && time - begun_ < 0.5 * length_;
+    return blocks_ - (last_is_short ? 1 : 0);
+  }
+
+  /// Of one of so many blocks.
+  Gram of(std::size_t block, std::size_t joint, std::size_t blocks) const {
+    Gram sum = at(block, joint);
+    if (block + 1 == blocks && blocks < blocks_) sum += at(blocks, joint);
+    return sum;
+  }
+
+ private:
+  static constexpr std::size_t kMostBlocks = 32;
+
+  Gram& at(std::size_t block, std::size_t joint) { return sums_[block * joints_ + joint]; }
+  const Gram& at(std::size_t block, std::size_t joint) const {
+    return sums_[block * joints_ + joint];
+  }
+
+  void joinNeighbours() {
+    for (std::size_t block = 0; block < kMostBlocks / 2; ++block) {
+      for (std::size_t j = 0; j < joints_; ++j) {
+        const Gram sum = at(2 * block, j) + at(2 * block + 1, j);
+        at(block, j) = sum;
+      }
+    }
+    blocks_ = kMostBlocks / 2;
+    begun_ -= length_;
+    length_ *= 2.0;
+  }
+
+  std::size_t joints_, blocks_ = 0;
+  double first_length_, length_ = 0.0, begun_ = 0.0;
+  std::vector<Gram> sums_;
+};
+
+}  // namespace v2
+}  // namespace inverse_dynamics_identification
