@@ -1120,3 +1120,124 @@ def package_share(package: str) -> Path:
 
 def resolved_path(path: str, directory: Path) -> Path:
     """File that a path in a configuration names; relative ones begin in the directory."""
+
+class ResidualNoise:
+    """Noise of the torques of n joints: white, and correlated in time."""
+
+    def __init__(
+        self, white: ArrayLike, correlated: ArrayLike, correlation_time: float = ...
+    ) -> None:
+        """(n,) standard deviations, N m; s."""
+
+    @property
+    def white(self) -> Floats:
+        """(n,) N m."""
+
+    @property
+    def correlated(self) -> Floats:
+        """(n,) N m."""
+
+    @property
+    def correlation_time(self) -> float:
+        """In s."""
+
+def residual_noise(
+    time: ArrayLike, residuals: ArrayLike, *, correlation_time: float = ...
+) -> ResidualNoise:
+    """Noise of measured minus computed torques (N, n) [N m], at times (N,) [s]."""
+
+class PayloadStatus(Enum):
+    """What happened to a sample, or to an estimate."""
+
+    OK = ...
+    NOT_LATER = ...
+    NOT_FINITE = ...
+    TOO_SHORT = ...
+    SOLVER_FAILED = ...
+    WRONG_SIZE = ...
+
+    @property
+    def text(self) -> str:
+        """What happened, in words."""
+
+class PayloadEstimate:
+    """A body in the tip frame, with the half widths of its 95 % intervals."""
+
+    @property
+    def mass(self) -> float:
+        """In kg."""
+
+    @property
+    def mass_half_width(self) -> float:
+        """In kg."""
+
+    @property
+    def center_of_mass(self) -> Floats:
+        """(3,) m."""
+
+    @property
+    def center_of_mass_half_width(self) -> Floats:
+        """(3,) m."""
+
+    @property
+    def inertia(self) -> Floats:
+        """(3, 3) about the center of mass, kg m^2."""
+
+    @property
+    def inertia_half_width(self) -> Floats:
+        """(3, 3) kg m^2, of what the data alone tell."""
+
+    @property
+    def inertia_is_known(self) -> bool:
+        """Whether the data tell the inertia."""
+
+    @property
+    def offset(self) -> Floats:
+        """(n,) N m."""
+
+    @property
+    def covariance(self) -> Floats:
+        """(10, 10) of m, mc, I about the origin of the tip frame."""
+
+    @property
+    def blocks(self) -> int:
+        """Of time, that the intervals rest on."""
+
+    @property
+    def duration(self) -> float:
+        """From the first sample to the last, s."""
+
+class PayloadEstimator:
+    """Mass, center of mass and inertia of what the tip carries."""
+
+    def __init__(
+        self,
+        solver: Solver,
+        noise: ResidualNoise,
+        *,
+        offset: ArrayLike | None = None,
+        offset_deviation: ArrayLike | None = None,
+        carried: dict[str, Any] | None = None,
+        extent: float = ...,
+        block: float = ...,
+    ) -> None:
+        """offset, offset_deviation: (n,) N m, what is known of the offsets.
+
+        carried: the body among solver.payloads that belongs to the estimate. extent: m; block: s.
+        """
+
+    def update(
+        self, time: float, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, measured: ArrayLike
+    ) -> PayloadStatus:
+        """Add a sample: s, (n,) each."""
+
+    def run(
+        self, time: ArrayLike, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, measured: ArrayLike
+    ) -> int:
+        """Add N samples, (N,) and (N, n); how many were added."""
+
+    def estimate(self) -> tuple[PayloadEstimate, PayloadStatus]:
+        """The body that all samples so far tell of."""
+
+    def restart(self) -> None:
+        """Forget all samples."""

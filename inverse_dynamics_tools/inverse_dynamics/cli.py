@@ -39,6 +39,7 @@ VERBS = (
     "compare",
     "torques",
     "contact",
+    "payload",
     "report",
     "video",
     "export",

@@ -20,6 +20,7 @@
 #include "identification.hpp"
 #include "joint_log.hpp"
 #include "metrics.hpp"
+#include "payload.hpp"
 #include "recordings.hpp"
 #include "run_configuration.hpp"
 #include "solver.hpp"
@@ -39,5 +40,6 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindRunConfiguration(module);
   inverse_dynamics_tools::bindControl(module);
   inverse_dynamics_tools::bindContact(module);
+  inverse_dynamics_tools::bindPayload(module);
   inverse_dynamics_tools::explainRefusedArguments(module);
 }

@@ -9,7 +9,7 @@ from typing import Any
 
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.verbs.common import figure_formats, names, parameter, three_numbers
-from inverse_dynamics.verbs.payload import payload
+from inverse_dynamics.verbs.payload_option import payload
 
 # Options of add_robot_changes(), by the names that with_changes() has for them.
 _CHANGES = ("plugin", "friction", "urdf", "root", "tip", "gravity", "joints", "parameters")

@@ -1,74 +1,135 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The option --payload: a body at the tip, as parameters of the solver."""
+"""`ids payload`: what the robot carries."""
 
 from __future__ import annotations
 
 import argparse
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.base.decimals import decimal
-from inverse_dynamics.errors import UserError
-
-if TYPE_CHECKING:
-    from inverse_dynamics._core import Parameter, YamlMap
-
-_FORMS = (
-    "MASS, MASS,x,y,z or MASS,x,y,z,Ixx,Ixy,Ixz,Iyy,Iyz,Izz (1, 4 or 10 numbers), or a YAML file with "
-    "mass, center_of_mass, inertia and frame"
+from inverse_dynamics.verbs.common import file_name, progress_bar
+from inverse_dynamics.verbs.options import (
+    add_figures,
+    add_robot,
+    add_robot_changes,
+    add_verb,
+    robot_changes,
 )
 
+if TYPE_CHECKING:
+    from inverse_dynamics.identification.payload import Payload
 
-def payload(text: str) -> dict[str, Parameter]:
-    """A body of the option: its parameters, all of them, so that none of another body is left."""
-    try:
-        numbers = [decimal(part) for part in text.split(",")]
-    except ValueError:
-        return _of_file(text)
-    if len(numbers) not in (1, 4, 10) or not all(map(math.isfinite, numbers)):
-        raise argparse.ArgumentTypeError(f"expected {_FORMS}, got '{text}'")
-    return _parameters(numbers[0], numbers[1:4], numbers[4:])
+_EPILOG = """\
+examples:
+  ids payload loaded --robot ur10_real --out payload.yaml
+  ids evaluate loaded --robot ur10_real --payload payload.yaml
+      a few seconds of motion with the load, better ten; then the errors with the load
 
+  ids payload loaded --empty before --robot my_robot.yaml --out payload.yaml
+      a recording of the same motion without the load: offsets and noise are known, which is better
 
-def _parameters(
-    mass: float,
-    center: list[float],
-    inertia: list[float],
-    xyz: list[float] | None = None,
-    rpy: list[float] | None = None,
-) -> dict[str, Parameter]:
-    zeros = [0.0, 0.0, 0.0]
-    return {
-        "payload.mass": mass,
-        "payload.center_of_mass": center or zeros,
-        "payload.inertia": inertia or 2 * zeros,
-        "payload.frame.xyz": xyz or zeros,
-        "payload.frame.rpy": rpy or zeros,
-    }
+All joints should move, and each axis of the wrist be horizontal for some time: the load is felt
+through gravity. The arm's model must be good: a URDF without friction isn't. What is found is in
+addition to a tool that the run configuration, or --payload, has at the tip.
+
+results, each written whole or not at all:
+  payload.yaml    mass, center_of_mass and, where the data tell it, inertia, in the tip frame: for
+                  --payload, for `payload:` of a run configuration, for the controllers
+  payload.json    the same with intervals, covariance, offsets, noise and errors of each joint
+  payload.png     measured minus computed torques with and without the load
+"""
 
 
-def _of_file(text: str) -> dict[str, Parameter]:
-    from inverse_dynamics.base.located_yaml import read_mapping
+def add_parser(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+) -> argparse.ArgumentParser:
+    """Declare the verb."""
+    from inverse_dynamics.robot.choices import EFFORT_CHOICES
 
-    if not Path(text).is_file():
-        raise argparse.ArgumentTypeError(f"expected {_FORMS}, got '{text}': there is no such file")
-    try:
-        body = read_mapping(Path(text), UserError)
-        mass = body.required("mass").number()
-        center, inertia = _numbers(body, "center_of_mass", 3), _numbers(body, "inertia", 6)
-        frame = body.optional("frame")
-        xyz, rpy = [], []
-        if frame is not None:
-            pose = frame.mapping()
-            xyz, rpy = _numbers(pose, "xyz", 3), _numbers(pose, "rpy", 3)
-            pose.reject_others()
-        body.reject_others()
-    except UserError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
-    return _parameters(mass, center, inertia, xyz, rpy)
+    parser = add_verb(
+        subparsers,
+        "payload",
+        summary="estimate what the robot carries in a recording: mass, center of mass, inertia",
+        epilog=_EPILOG,
+    )
+    parser.add_argument(
+        "bag", metavar="RECORDING", type=file_name, help="as `ids evaluate` takes it"
+    )
+    add_robot(parser)
+    parser.add_argument(
+        "--empty",
+        metavar="RECORDING",
+        type=file_name,
+        help="of the same robot without the load, on the same day",
+    )
+    parser.add_argument(
+        "--out",
+        metavar="FILE",
+        type=Path,
+        required=True,
+        help="the body, a YAML file; a .json and the figure are put beside it",
+    )
+    parser.add_argument(
+        "--overwrite", action="store_true", help="replace older results of these names"
+    )
+    add_figures(parser)
+    robot = add_robot_changes(parser, "recording")
+    robot.add_argument("--topic", metavar="NAME", help="topic of the joint states")
+    robot.add_argument(
+        "--effort-is",
+        metavar="MEANING",
+        choices=tuple(EFFORT_CHOICES),
+        help=f"what recorded efforts mean: {', '.join(EFFORT_CHOICES)} (`ids evaluate --help`)",
+    )
+    return parser
 
 
-def _numbers(mapping: YamlMap, key: str, count: int) -> list[float]:
-    value = mapping.optional(key)
-    return [] if value is None else [entry.number() for entry in value.entries(count)]
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.results.payload import check_payload_output, write_payload
+    from inverse_dynamics.robot.robots import load_robot
+
+    robot = load_robot(arguments.robot)
+    inputs = (arguments.bag, arguments.empty, arguments.urdf, *robot.files)
+    check_payload_output(
+        arguments.out, arguments.figures, overwrite=arguments.overwrite, inputs=inputs
+    )
+
+    from inverse_dynamics.identification.payload import estimate_payload
+
+    with progress_bar() as progress:
+        payload = estimate_payload(
+            arguments.bag,
+            robot,
+            empty=arguments.empty,
+            progress=progress,
+            topic=arguments.topic,
+            effort_is=arguments.effort_is,
+            **robot_changes(arguments),
+        )
+    write_payload(payload, arguments.out, overwrite=arguments.overwrite, figures=arguments.figures)
+    _print(payload, arguments.out, arguments.figures)
+
+
+def _print(payload: Payload, out: Path, figures: tuple[str, ...]) -> None:
+    from inverse_dynamics.results.payload import payload_files
+    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.tables import payload_table, residual_table
+
+    console = Screen()
+    evaluation = payload.evaluation
+    robot, log = evaluation.robot, evaluation.log
+    console.print(robot.description or robot.name, style="bold")
+    console.print(f"solver         {robot.plugin}{'' if robot.friction else ', friction left out'}")
+    console.print(
+        f"recording      {', '.join(filter(None, (str(evaluation.bag), log.topic)))}: "
+        f"{len(payload.time)} samples, {payload.estimate.duration:.1f} s"
+    )
+    if payload.empty is not None:
+        console.print(f"without load   {payload.empty}")
+    for note in payload.notes:
+        console.print(f"note           {note}")
+    console.print(payload_table(payload))
+    console.print(residual_table(payload))
+    for file in payload_files(out, figures):
+        console.print(f"written        {file}")

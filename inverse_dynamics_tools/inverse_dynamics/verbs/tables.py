@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.evaluation.summary import EvaluationSummary
     from inverse_dynamics.evaluation.trajectory_torques import TrajectoryTorques
+    from inverse_dynamics.identification.payload import Payload
 
 
 def error_table(evaluation: Evaluation) -> Table:
@@ -109,6 +110,48 @@ def contact_table(contacts: Contacts) -> Table:
                 f"{x:+.2f} {y:+.2f} {z:+.2f}",
             ]
         table.add_row(*row)
+    return table
+
+
+def payload_table(payload: Payload) -> Table:
+    """The load with its intervals, one number per row."""
+    found = payload.estimate
+    table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
+    table.add_column("load, in the tip frame")
+    table.add_column("unit")
+    table.add_column("estimate", justify="right")
+    table.add_column("95 % interval", justify="right")
+
+    def add(name: str, unit: str, value: float, half: float) -> None:
+        table.add_row(name, unit, f"{value:.4g}", f"+- {half:.2g}")
+
+    add("mass", "kg", found.mass, found.mass_half_width)
+    for i, axis in enumerate("xyz"):
+        center, half = found.center_of_mass[i], found.center_of_mass_half_width[i]
+        add(f"center of mass, {axis}", "mm", 1e3 * center, 1e3 * half)
+    if found.inertia_is_known:
+        for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)):
+            name = f"inertia {'xyz'[i]}{'xyz'[j]}"
+            add(name, "kg m²", found.inertia[i, j], found.inertia_half_width[i, j])
+    return table
+
+
+def residual_table(payload: Payload) -> Table:
+    """Measured minus computed torques without and with the load, one joint per row."""
+    table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
+    table.add_column("joint", overflow="fold")
+    table.add_column("unit")
+    for heading in ("RMSE without load", "RMSE with load", "offset"):
+        table.add_column(heading, justify="right")
+    before, after = payload.rmse_before, payload.rmse_after
+    for j, name in enumerate(payload.joint_names):
+        table.add_row(
+            name,
+            payload.evaluation.units[j],
+            figure(before[j]),
+            figure(after[j]),
+            f"{payload.estimate.offset[j]:+.3f}",
+        )
     return table
 
 

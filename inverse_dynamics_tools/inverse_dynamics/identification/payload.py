@@ -1,0 +1,352 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a robot carries: mass, centre of mass and inertia from a few seconds of motion.
+
+    found = estimate_payload("recording", "ur10_real", empty="recording_without_load")
+    print(found.estimate.mass, found.estimate.mass_half_width)
+
+The estimator is that of the C++ package inverse_dynamics_identification: see docs/payload.md. What is
+said here of the load is in the tip frame, in addition to what the run configuration has the robot
+carry already.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics._core import PayloadEstimator, PayloadStatus, residual_noise
+from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.base.wording import listed
+from inverse_dynamics.errors import EvaluationError
+from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate
+from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.solvers import open_solver
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from typing import Any
+
+    from inverse_dynamics._core import PayloadEstimate, ResidualNoise, Solver
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.robot.robots import Robot
+
+NAME = "estimated load"  # of the body among the solver's payloads
+
+_BLOCK = 0.8  # s, of the mean torques of an empty run
+_LEAST_MOTION = 2.0  # s
+_MOVING = 0.02  # rad/s (m/s)
+_MOST_ROUNDS = 8
+_SETTLED = 1e-3  # of the half widths
+_WORST_CENTER = 0.1  # m: half width of a centre of mass that isn't known
+_LEAST_SHARE = 0.02  # of a joint's noise: offsets aren't known better
+_MOST_UNEXPLAINED = 0.5  # of what the torques of a joint vary by
+_LEAST_VARIATION = 0.1  # of the largest torques: of joints that this is asked of
+
+
+class PayloadError(EvaluationError):
+    """A recording that tells no payload: its text says why, and what to do."""
+
+
+@dataclass(frozen=True)
+class EmptyRun:
+    """What the same arm does without a load: (n,) N m (prismatic N)."""
+
+    offset: Floats  # mean of measured minus computed
+    offset_deviation: Floats  # of that mean
+    noise: ResidualNoise
+
+
+@dataclass(frozen=True)
+class Payload:
+    """What was found. N samples, n joints; order of the chain.
+
+    estimate: its intervals are of 95 %. before, after: (N, n) N m, measured minus computed torques
+    without the load, and with it and the offsets.
+    """
+
+    evaluation: Evaluation
+    empty: Path | None
+    estimate: PayloadEstimate
+    noise: ResidualNoise
+    rounds: int  # until a friction that grows with load was settled
+    time: Floats  # (N,) s
+    before: Floats
+    after: Floats
+    notes: tuple[str, ...]
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """The n joints."""
+        return self.evaluation.joint_names
+
+    @property
+    def rmse_before(self) -> Floats:
+        """(n,) N m (prismatic N)."""
+        return _rms(self.before)
+
+    @property
+    def rmse_after(self) -> Floats:
+        """(n,) N m (prismatic N)."""
+        return _rms(self.after)
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Motion and torques of a loaded arm. (N,) s; (N, n) rad, rad/s, rad/s^2, N m."""
+
+    time: Floats
+    q: Floats
+    qd: Floats
+    qdd: Floats
+    measured: Floats
+
+
+@dataclass(frozen=True)
+class Fit:
+    """An estimate and the residuals that it leaves, (N, n) N m."""
+
+    estimate: PayloadEstimate
+    noise: ResidualNoise
+    rounds: int
+    before: Floats
+    after: Floats
+
+
+def estimate_payload(
+    bag: Path | str,
+    robot: Robot | Path | str,
+    *,
+    empty: Path | str | None = None,
+    progress: Progress = no_progress,
+    **options: Any,
+) -> Payload:
+    """Estimate what the robot carries in a recording.
+
+    empty: a recording of the same robot without the load: its torques tell offsets and noise.
+    options: others of evaluate(), for both.
+
+    Raises UserError: those of evaluate(), PayloadError.
+    """
+    evaluation = evaluate(bag, robot, progress=progress, **options)
+    _require_gravity(evaluation)
+    solver = _solver_of(evaluation)
+    alone = None
+    if empty is not None:
+        without = evaluate(empty, robot, progress=progress, **options)
+        _require_gravity(without)
+        alone = empty_run(samples_of(without), solver)
+    samples = samples_of(evaluation)
+    where = str(evaluation.bag)
+    _require_motion(samples, where)
+    found = fit_payload(samples, solver, alone, where)
+    _check(found, samples, evaluation)
+    return Payload(
+        evaluation=evaluation,
+        empty=None if empty is None else without.bag,
+        estimate=found.estimate,
+        noise=found.noise,
+        rounds=found.rounds,
+        time=samples.time,
+        before=found.before,
+        after=found.after,
+        notes=(*evaluation.notes, *_notes(found, evaluation)),
+    )
+
+
+def samples_of(evaluation: Evaluation) -> Samples:
+    """Those without a fault, in ascending time."""
+    kept, log = evaluation.samples.kept, evaluation.log
+    return Samples(
+        evaluation.time[kept],
+        log.q[kept],
+        log.qd[kept],
+        evaluation.qdd[kept],
+        evaluation.measured[kept],
+    )
+
+
+def empty_run(samples: Samples, solver: Solver) -> EmptyRun:
+    """What is known of an arm that carries nothing."""
+    residual = samples.measured - solver.torques(samples.q, samples.qd, samples.qdd)
+    offset = residual.mean(axis=0)
+    noise = residual_noise(samples.time, residual - offset)
+    blocks = np.floor((samples.time - samples.time[0]) / _BLOCK).astype(int)
+    means = [residual[blocks == block].mean(axis=0) for block in np.unique(blocks)]
+    deviation = _rms(residual - offset)
+    if len(means) > 1:
+        deviation = np.std(means, axis=0, ddof=1) / math.sqrt(len(means))
+    least = _LEAST_SHARE * np.hypot(noise.white, noise.correlated)
+    return EmptyRun(offset, np.maximum(deviation, least), noise)
+
+
+def fit_payload(
+    samples: Samples, solver: Solver, empty: EmptyRun | None = None, where: str = "payload"
+) -> Fit:
+    """Estimate the body at the tip of the solver's robot, which is as before when this returns.
+
+    Torques and estimate are computed in turns: friction may grow with the load. where: of errors.
+    Raises PayloadError.
+    """
+    before = samples.measured - solver.torques(samples.q, samples.qd, samples.qdd)
+    offset = before.mean(axis=0) if empty is None else empty.offset
+    noise = residual_noise(samples.time, before - offset) if empty is None else empty.noise
+    found, rounds, settled = _round(samples, solver, noise, empty, None, where), 1, False
+    try:
+        after = _carry(samples, solver, found) - found.offset
+        while not settled and rounds < _MOST_ROUNDS:
+            if empty is None:
+                noise = residual_noise(samples.time, after)
+            last = found
+            found = _round(samples, solver, noise, empty, solver.payloads[NAME], where)
+            after = _carry(samples, solver, found) - found.offset
+            settled, rounds = _settled(last, found), rounds + 1
+    finally:
+        solver.remove_payload(NAME)
+    return Fit(found, noise, rounds, before, after)
+
+
+def _round(
+    samples: Samples,
+    solver: Solver,
+    noise: ResidualNoise,
+    empty: EmptyRun | None,
+    carried: dict[str, Any] | None,
+    where: str,
+) -> PayloadEstimate:
+    estimator = PayloadEstimator(
+        solver,
+        noise,
+        offset=None if empty is None else empty.offset,
+        offset_deviation=None if empty is None else empty.offset_deviation,
+        carried=carried,
+    )
+    estimator.run(samples.time, samples.q, samples.qd, samples.qdd, samples.measured)
+    found, status = estimator.estimate()
+    if status == PayloadStatus.TOO_SHORT:
+        duration = samples.time[-1] - samples.time[0] if len(samples.time) else 0.0
+        raise PayloadError(
+            f"{where}: expected at least {_LEAST_MOTION:g} s of motion with the load, got "
+            f"{duration:.2g} s; record a few seconds, better ten"
+        )
+    if status != PayloadStatus.OK:
+        raise PayloadError(f"{where}: {status.text}; look at the recording with `ids evaluate`")
+    return found
+
+
+def _carry(samples: Samples, solver: Solver, found: PayloadEstimate) -> Floats:
+    """Measured minus computed torques of an arm with the body."""
+    inertia = found.inertia if found.inertia_is_known else np.zeros((3, 3))
+    solver.set_payload(NAME, found.mass, center_of_mass=found.center_of_mass, inertia=inertia)
+    return samples.measured - solver.torques(samples.q, samples.qd, samples.qdd)
+
+
+def _settled(last: PayloadEstimate, found: PayloadEstimate) -> bool:
+    change = np.append(found.center_of_mass - last.center_of_mass, found.mass - last.mass)
+    width = np.append(found.center_of_mass_half_width, found.mass_half_width)
+    return bool(np.all(np.abs(change) <= _SETTLED * width))
+
+
+def _solver_of(evaluation: Evaluation) -> Solver:
+    urdf = evaluation.robot.urdf
+    return open_solver(evaluation.robot, "" if urdf is None else read_description(urdf))
+
+
+def _rms(values: Floats) -> Floats:
+    rms: Floats = np.sqrt(np.mean(values**2, axis=0))
+    return rms
+
+
+def _require_gravity(evaluation: Evaluation) -> None:
+    if evaluation.effort.meaning != "torque_without_gravity":
+        return
+    raise PayloadError(
+        f"{evaluation.bag}: expected efforts with gravity, got torque_without_gravity "
+        f"({evaluation.effort.stated_by}): the robot's controller has taken off what the load weighs; "
+        "record currents or joint torques with gravity, or state another meaning with --effort-is"
+    )
+
+
+def _require_motion(samples: Samples, where: str) -> None:
+    if len(samples.time) < 2:
+        raise PayloadError(f"{where}: expected samples, got {len(samples.time)}; record a motion")
+    moving = np.any(np.abs(samples.qd) > _MOVING, axis=1)
+    steps = np.diff(samples.time)
+    motion = float(np.sum(np.minimum(steps, 10 * np.median(steps))[moving[1:]]))
+    if motion < _LEAST_MOTION:
+        raise PayloadError(
+            f"{where}: expected at least {_LEAST_MOTION:g} s of motion with the load, got {motion:.2g} s "
+            f"with a joint faster than {_MOVING:g} rad/s; move all joints for a few seconds, the wrist "
+            "above all"
+        )
+
+
+def _check(found: Fit, samples: Samples, evaluation: Evaluation) -> None:
+    """Refuse what isn't an estimate of a load."""
+    where, estimate = evaluation.bag, found.estimate
+    varies, left = samples.measured.std(axis=0), found.after.std(axis=0)
+    loaded = varies > _LEAST_VARIATION * _rms(samples.measured).max()
+    bad = [
+        name
+        for name, wrong in zip(
+            evaluation.joint_names, loaded & (left > _MOST_UNEXPLAINED * varies), strict=True
+        )
+        if wrong
+    ]
+    if bad:
+        raise PayloadError(
+            f"{where}: no body at the tip explains the torques of {listed(bad)}: more than half of what "
+            "they vary by is left; the model isn't this robot's, or efforts mean something else: look at "
+            "`ids evaluate` of a recording without load, and at docs/why_dont_my_torques_match.md"
+        )
+    mass, half = estimate.mass, estimate.mass_half_width
+    if half >= mass:
+        raise PayloadError(
+            f"{where}: no load is found: {mass:.3g} kg with a 95 % interval of +- {half:.2g} kg, which "
+            "holds zero; the robot carries nothing, or too little for this motion: move shoulder and "
+            "elbow further and longer, and give --empty"
+        )
+    axes = [
+        f"{axis} (+- {1e3 * width:.0f} mm)"
+        for axis, width in zip("xyz", estimate.center_of_mass_half_width, strict=True)
+        if width > _WORST_CENTER
+    ]
+    if axes:
+        raise PayloadError(
+            f"{where}: mass {mass:.3g} +- {half:.2g} kg, but where it is can't be told along {listed(axes)} "
+            "of the tip frame: gravity hardly loads the wrist in these poses; turn the wrist so that each "
+            "of its axes is horizontal for some time"
+        )
+
+
+def _notes(found: Fit, evaluation: Evaluation) -> list[str]:
+    notes = []
+    if not found.estimate.inertia_is_known:
+        notes.append(
+            "inertia: the data don't tell it, so the load is written as a point mass; faster motion of "
+            "the wrist, or a heavier load, would"
+        )
+    if not evaluation.robot.friction:
+        notes.append(
+            "friction is left out: where the robot has friction, mass and centre are wrong by more than "
+            "their intervals"
+        )
+    return notes
+
+
+def with_load(samples: Samples, solver: Solver, load: dict[str, Any]) -> Samples:
+    """The same motion with a simulated load: a body as set_payload() takes it.
+
+    The torques that the load adds by the solver's model, friction that grows with load included, are
+    put on top of the measured ones: what is wrong with the model stays as it was.
+    """
+    alone = solver.torques(samples.q, samples.qd, samples.qdd)
+    solver.set_payload(NAME, **load)
+    try:
+        loaded = solver.torques(samples.q, samples.qd, samples.qdd)
+    finally:
+        solver.remove_payload(NAME)
+    return replace(samples, measured=samples.measured + loaded - alone)

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A load in files: payload.yaml for --payload and run configurations, all figures in payload.json."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from inverse_dynamics.base.files import check_output_file, file_written_whole, write_text_whole
+from inverse_dynamics.errors import OutputError
+from inverse_dynamics.figures.payload import save_payload_figure
+from inverse_dynamics.figures.plots import check_formats
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.identification.payload import Payload
+
+_SUFFIXES = (".yaml", ".yml")
+_UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))  # ixx ixy ixz iyy iyz izz
+
+
+def payload_files(out: Path, figures: Sequence[str]) -> tuple[Path, ...]:
+    """All that write_payload() writes: the YAML, the JSON and the figures beside it."""
+    return (out, out.with_suffix(".json"), *(out.with_suffix(f".{suffix}") for suffix in figures))
+
+
+def check_payload_output(
+    out: Path,
+    figures: Sequence[str],
+    *,
+    overwrite: bool = False,
+    inputs: Iterable[Path | None] = (),
+) -> None:
+    """Raise OutputError unless write_payload() may write there."""
+    check_formats(figures)
+    if out.suffix not in _SUFFIXES:
+        raise OutputError(f"{out}: expected a name ending in .yaml; name another file with --out")
+    inputs = tuple(inputs)
+    for file in payload_files(out, figures):
+        check_output_file(file, overwrite=overwrite, inputs=inputs)
+
+
+def write_payload(
+    payload: Payload,
+    out: Path | str,
+    *,
+    overwrite: bool = False,
+    figures: Sequence[str] = ("png",),
+) -> None:
+    """Write a load, each file whole or not at all, the YAML last.
+
+    out: of the YAML; the others have its name and suffixes of their own. Raises OutputError.
+    """
+    out = Path(out)
+    inputs = (payload.evaluation.bag, payload.empty, *payload.evaluation.robot.files)
+    check_payload_output(out, figures, overwrite=overwrite, inputs=inputs)
+    for suffix in figures:
+        with file_written_whole(out.with_suffix(f".{suffix}")) as file:
+            save_payload_figure(payload, file)
+    text = json.dumps(summary(payload), indent=2, allow_nan=False, ensure_ascii=False)
+    write_text_whole(out.with_suffix(".json"), text + "\n")
+    write_text_whole(out, yaml_text(payload))
+
+
+def yaml_text(payload: Payload) -> str:
+    """What --payload takes, with the intervals as comments."""
+    found, evaluation = payload.estimate, payload.evaluation
+    center = found.center_of_mass_half_width
+    lines = [
+        f"# What {evaluation.robot.name} carries at its tip, by `ids payload`; 95 % intervals.",
+        f"mass: {_number(found.mass)}  # kg, +- {found.mass_half_width:.2g}",
+        f"center_of_mass: {_list(found.center_of_mass)}  # m, tip frame, +- "
+        + ", ".join(f"{width:.2g}" for width in center),
+    ]
+    if found.inertia_is_known:
+        widths = _upper(found.inertia_half_width)
+        lines.append("# ixx ixy ixz iyy iyz izz about center_of_mass [kg m^2]")
+        lines.append(
+            f"inertia: {_list(_upper(found.inertia))}  # +- "
+            + ", ".join(f"{width:.2g}" for width in widths)
+        )
+    else:
+        lines.append("# inertia: the data don't tell it")
+    return "\n".join(lines) + "\n"
+
+
+def summary(payload: Payload) -> dict[str, Any]:
+    """All figures, for JSON."""
+    found, evaluation = payload.estimate, payload.evaluation
+    known = found.inertia_is_known
+    return {
+        "schema": 1,
+        "bag": str(evaluation.bag),
+        "empty": None if payload.empty is None else str(payload.empty),
+        "topic": evaluation.log.topic,
+        "robot": evaluation.robot.name,
+        "plugin": evaluation.robot.plugin,
+        "mass": found.mass,
+        "mass_half_width": found.mass_half_width,
+        "center_of_mass": found.center_of_mass.tolist(),
+        "center_of_mass_half_width": found.center_of_mass_half_width.tolist(),
+        "inertia": _upper(found.inertia) if known else None,
+        "inertia_half_width": _upper(found.inertia_half_width) if known else None,
+        "covariance": found.covariance.tolist(),
+        "confidence": 0.95,
+        "blocks": found.blocks,
+        "duration": found.duration,
+        "samples": len(payload.time),
+        "rounds": payload.rounds,
+        "correlation_time": payload.noise.correlation_time,
+        "joints": [
+            {
+                "joint": name,
+                "unit": evaluation.units[j],
+                "rmse_before": float(payload.rmse_before[j]),
+                "rmse_after": float(payload.rmse_after[j]),
+                "offset": float(found.offset[j]),
+                "white_noise": float(payload.noise.white[j]),
+                "correlated_noise": float(payload.noise.correlated[j]),
+            }
+            for j, name in enumerate(payload.joint_names)
+        ],
+        "notes": list(payload.notes),
+    }
+
+
+def _upper(matrix: Floats) -> list[float]:
+    return [float(matrix[entry]) for entry in _UPPER]
+
+
+def _number(value: float) -> str:
+    return repr(float(value))
+
+
+def _list(values: Iterable[float]) -> str:
+    return f"[{', '.join(map(_number, values))}]"

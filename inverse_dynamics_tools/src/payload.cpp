@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "payload.hpp"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <inverse_dynamics_identification/payload_estimator.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "arrays.hpp"
+#include "initialized.hpp"
+#include "solver.hpp"
+#include "solver_payload.hpp"
+
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::PayloadEstimate)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::PayloadEstimator)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ResidualNoise)
+
+namespace inverse_dynamics_tools {
+namespace {
+
+namespace py = pybind11;
+using namespace inverse_dynamics_identification;
+using Vector = Eigen::VectorXd;
+
+/// A body of Solver.payloads, or none.
+inverse_dynamics_solver::RigidBody carriedBody(const py::object& carried) {
+  if (carried.is_none()) return {};
+  const auto body = carried.cast<py::dict>();
+  const auto part = [&body](const char* key) -> py::object {
+    return body.contains(key) ? py::object(body[key]) : py::object(py::none());
+  };
+  return bodyOf(part("mass").cast<double>(), part("center_of_mass"), part("inertia"),
+                part("frame"));
+}
+
+std::unique_ptr<PayloadEstimator> makeEstimator(const py::object& solver,
+                                                const ResidualNoise& noise,
+                                                const std::optional<Vector>& offset,
+                                                const std::optional<Vector>& offset_deviation,
+                                                const py::object& carried, double extent,
+                                                double block) {
+  PayloadOptions options;
+  options.noise = noise;
+  if (offset) options.offset = *offset;
+  if (offset_deviation) options.offset_deviation = *offset_deviation;
+  options.carried = carriedBody(carried);
+  options.extent = extent;
+  options.block = block;
+  return std::make_unique<PayloadEstimator>(solverOf(solver), options);
+}
+
+void requireSamples(const char* name, const Array& array, py::ssize_t count, py::ssize_t joints) {
+  if (array.ndim() == 2 && array.shape(0) == count && array.shape(1) == joints) return;
+  throw py::value_error(std::string(name) + ": expected an array (" + std::to_string(count) + ", " +
+                        std::to_string(joints) + "), got " +
+                        std::string(py::str(array.attr("shape"))));
+}
+
+/// All samples, one after the other, without the GIL; how many were added.
+Eigen::Index run(PayloadEstimator& estimator, const Array& time, const Array& q, const Array& qd,
+                 const Array& qdd, const Array& measured) {
+  const py::ssize_t count = time.ndim() == 1 ? time.shape(0) : 0;
+  const auto n = static_cast<py::ssize_t>(estimator.jointCount());
+  requireSamples("q", q, count, n);
+  requireSamples("qd", qd, count, n);
+  requireSamples("qdd", qdd, count, n);
+  requireSamples("measured", measured, count, n);
+  const ConstMap columns[] = {states(q, "q"), states(qd, "qd"), states(qdd, "qdd"),
+                              states(measured, "measured")};
+  const double* const t = time.data();
+  const py::gil_scoped_release release;
+  Eigen::Index added = 0;
+  for (py::ssize_t k = 0; k < count; ++k) {
+    const PayloadStatus status = estimator.update(t[k], columns[0].col(k), columns[1].col(k),
+                                                  columns[2].col(k), columns[3].col(k));
+    added += status == PayloadStatus::kOk ? 1 : 0;
+  }
+  return added;
+}
+
+std::pair<PayloadEstimate, PayloadStatus> estimate(PayloadEstimator& estimator) {
+  PayloadEstimate found(estimator.jointCount());
+  const PayloadStatus status = estimator.estimate(found);
+  return {std::move(found), status};
+}
+
+void bindNoise(py::module_& module) {
+  py::class_<ResidualNoise>(module, "ResidualNoise",
+                            "Noise of the torques of n joints: white, and correlated in time.")
+      .def(py::init([](const Vector& white, const Vector& correlated, double correlation_time) {
+             ResidualNoise noise;
+             noise.white = white;
+             noise.correlated = correlated;
+             noise.correlation_time = correlation_time;
+             return noise;
+           }),
+           py::arg("white"), py::arg("correlated"),
+           py::arg("correlation_time") = ResidualNoise().correlation_time,
+           "(n,) standard deviations, N m; s.")
+      .def_property_readonly(
+          "white", [](const ResidualNoise& noise) -> Vector { return noise.white; }, "(n,) N m.")
+      .def_property_readonly(
+          "correlated", [](const ResidualNoise& noise) -> Vector { return noise.correlated; },
+          "(n,) N m.")
+      .def_readonly("correlation_time", &ResidualNoise::correlation_time, "s.");
+  module.def(
+      "residual_noise",
+      [](const Vector& time, const Array& residuals, double correlation_time) {
+        const ConstMap columns = states(residuals, "residuals");
+        const py::gil_scoped_release release;
+        return residualNoise(time, columns, correlation_time);
+      },
+      py::arg("time"), py::arg("residuals"), py::kw_only(),
+      py::arg("correlation_time") = ResidualNoise().correlation_time,
+      "Noise of measured minus computed torques (N, n) [N m], at times (N,) [s].");
+}
+
+void bindEstimate(py::module_& module) {
+  py::enum_<PayloadStatus>(module, "PayloadStatus", "What happened to a sample, or to an estimate.")
+      .value("OK", PayloadStatus::kOk)
+      .value("NOT_LATER", PayloadStatus::kNotLater)
+      .value("NOT_FINITE", PayloadStatus::kNotFinite)
+      .value("TOO_SHORT", PayloadStatus::kTooShort)
+      .value("SOLVER_FAILED", PayloadStatus::kSolverFailed)
+      .value("WRONG_SIZE", PayloadStatus::kWrongSize)
+      .def_property_readonly(
+          "text", [](PayloadStatus status) { return text(status); }, "What happened, in words.");
+  using E = PayloadEstimate;
+  py::class_<E>(module, "PayloadEstimate",
+                "A body in the tip frame, with the half widths of its 95 % intervals.")
+      .def_readonly("mass", &E::mass, "kg.")
+      .def_readonly("mass_half_width", &E::mass_half_width, "kg.")
+      .def_readonly("center_of_mass", &E::center_of_mass, "(3,) m.")
+      .def_readonly("center_of_mass_half_width", &E::center_of_mass_half_width, "(3,) m.")
+      .def_readonly("inertia", &E::inertia, "(3, 3) about the center of mass, kg m^2.")
+      .def_readonly("inertia_half_width", &E::inertia_half_width,
+                    "(3, 3) kg m^2, of what the data alone tell.")
+      .def_readonly("inertia_is_known", &E::inertia_is_known, "Whether the data tell the inertia.")
+      .def_property_readonly(
+          "offset", [](const E& found) -> Vector { return found.offset; }, "(n,) N m.")
+      .def_property_readonly(
+          "covariance", [](const E& found) -> Eigen::MatrixXd { return found.covariance; },
+          "(10, 10) of m, mc, I about the origin of the tip frame.")
+      .def_readonly("blocks", &E::blocks, "Of time, that the intervals rest on.")
+      .def_readonly("duration", &E::duration, "s, from the first sample to the last.");
+}
+
+}  // namespace
+
+void bindPayload(py::module_& module) {
+  bindNoise(module);
+  bindEstimate(module);
+  const PayloadOptions usual;
+  py::class_<PayloadEstimator>(module, "PayloadEstimator",
+                               "Mass, center of mass and inertia of what the tip carries.")
+      .def(py::init(&makeEstimator), py::arg("solver"), py::arg("noise"), py::kw_only(),
+           py::arg("offset") = py::none(), py::arg("offset_deviation") = py::none(),
+           py::arg("carried") = py::none(), py::arg("extent") = usual.extent,
+           py::arg("block") = usual.block,
+           "offset, offset_deviation: (n,) N m, what is known of the offsets; carried: the body "
+           "among "
+           "solver.payloads that belongs to the estimate; extent: m; block: s.")
+      .def("update", &PayloadEstimator::update, py::arg("time"), py::arg("q"), py::arg("qd"),
+           py::arg("qdd"), py::arg("measured"), "Adds a sample: s, (n,) each; PayloadStatus.")
+      .def("run", &run, py::arg("time"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
+           py::arg("measured"), "Adds N samples, (N,) and (N, n); how many were added.")
+      .def("estimate", &estimate, "(PayloadEstimate, PayloadStatus).")
+      .def("restart", &PayloadEstimator::restart, "Forgets all samples.");
+}
+
+}  // namespace inverse_dynamics_tools

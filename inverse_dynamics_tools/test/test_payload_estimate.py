@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a robot carries: estimate_payload(), `ids payload`, and that its file is read as it is meant."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import fails
+
+from inverse_dynamics import load_robot
+from inverse_dynamics._core import PayloadEstimator, PayloadStatus, ResidualNoise, residual_noise
+from inverse_dynamics.errors import InvalidParameterError, OutputError
+from inverse_dynamics.identification.payload import (
+    PayloadError,
+    Samples,
+    empty_run,
+    estimate_payload,
+    fit_payload,
+    with_load,
+)
+from inverse_dynamics.results.payload import check_payload_output, write_payload
+from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.solvers import open_solver
+from inverse_dynamics.verbs.payload_option import payload as option
+
+JOINTS = tuple(f"fer_joint{j + 1}" for j in range(7))
+LOAD = {
+    "mass": 1.3,
+    "center_of_mass": [0.03, -0.02, 0.07],
+    "inertia": [0.004, 0.0, 0.0, 0.003, 0.0, 0.002],
+}
+NOISE = 0.05  # N m
+RATE = 200  # Hz
+
+
+def panda():
+    robot = load_robot("panda_simulated")
+    return open_solver(robot, read_description(robot.urdf))
+
+
+def motion(seconds=6.0, speed=1.0, moving=range(7)):
+    """Sines about a bent pose: time, q, qd, qdd."""
+    time = np.arange(0.0, seconds, 1 / RATE)
+    w = speed * (0.9 + 0.23 * np.arange(7))
+    amplitude = np.array([0.5 if j in moving else 0.0 for j in range(7)])
+    mean = np.array([0.0, 0.1, 0.2, -1.6, 0.4, 1.4, 0.6])
+    phase = w * time[:, None] + 1.3 * np.arange(7)
+    return (
+        time,
+        mean + amplitude * np.sin(phase),
+        amplitude * w * np.cos(phase),
+        -amplitude * w**2 * np.sin(phase),
+    )
+
+
+def moved(solver, noise=NOISE, seed=0, offset=0.0, **how):
+    time, q, qd, qdd = motion(**how)
+    measured = solver.torques(q, qd, qdd) + offset
+    measured = measured + noise * np.random.default_rng(seed).standard_normal(q.shape)
+    return Samples(time, q, qd, qdd, measured)
+
+
+def loaded(load=LOAD, **how):
+    solver = panda()
+    return with_load(moved(solver, **how), solver, load)
+
+
+def table(file: Path, samples: Samples) -> Path:
+    columns = {
+        "position": samples.q,
+        "velocity": samples.qd,
+        "acceleration": samples.qdd,
+        "effort": samples.measured,
+    }
+    names = [f"{kind}.{joint}" for kind in columns for joint in JOINTS]
+    rows = np.column_stack([samples.time, *columns.values()])
+    np.savetxt(
+        file, rows, delimiter=",", header=",".join(["time", *names]), comments="", fmt="%.17g"
+    )
+    return file
+
+
+@pytest.fixture
+def recording(tmp_path):
+    return table(tmp_path / "loaded.csv", loaded())
+
+
+def test_a_load_is_found_with_its_intervals(recording):
+    found = estimate_payload(recording, "panda_simulated").estimate
+    assert abs(found.mass - 1.3) <= found.mass_half_width < 0.1
+    error = np.abs(found.center_of_mass - LOAD["center_of_mass"])
+    assert np.all(error <= found.center_of_mass_half_width)
+    assert np.all(found.center_of_mass_half_width < 0.02)
+    assert found.blocks == 7
+
+
+def test_what_is_left_is_the_noise(recording):
+    payload = estimate_payload(recording, "panda_simulated")
+    assert payload.rmse_after == pytest.approx(np.full(7, NOISE), rel=0.1)
+    assert payload.rmse_before[1] > 2.0
+
+
+def test_the_file_is_what_the_option_and_the_run_configuration_read(recording, tmp_path):
+    payload = estimate_payload(recording, "panda_simulated")
+    out = tmp_path / "payload.yaml"
+    write_payload(payload, out, figures=())
+    robot = load_robot("panda_simulated")
+    description = read_description(robot.urdf)
+    _, q, qd, qdd = motion()
+    expected = panda()
+    found = payload.estimate
+    inertia = found.inertia if found.inertia_is_known else None
+    expected.set_payload("load", found.mass, found.center_of_mass, inertia)
+    torques = expected.torques(q, qd, qdd)
+
+    from dataclasses import replace
+
+    by_option = replace(robot, parameters=option(str(out)))
+    assert np.array_equal(open_solver(by_option, description).torques(q, qd, qdd), torques)
+
+    indented = "".join(f"    {line}\n" for line in out.read_text().splitlines())
+    configured = tmp_path / "robot.yaml"
+    configured.write_text(
+        "schema: 1\nname: carrying\ndescription: with the load\n"
+        f"plugin: {robot.plugin}\nurdf: {robot.urdf}\nroot: fer_link0\ntip: fer_link8\n"
+        f"parameters:\n  payload:\n{indented}"
+    )
+    by_configuration = open_solver(load_robot(configured), description)
+    assert np.allclose(by_configuration.torques(q, qd, qdd), torques, atol=1e-12)
+
+
+def test_inertia_is_written_where_the_data_tell_it(tmp_path):
+    load = {"mass": 4.0, "center_of_mass": [0, 0, 0.1], "inertia": [0.1, 0, 0, 0.1, 0, 0.1]}
+    file = table(tmp_path / "fast.csv", loaded(load, speed=2.5, seconds=12.0, noise=0.01))
+    payload = estimate_payload(file, "panda_simulated")
+    assert payload.estimate.inertia_is_known
+    write_payload(payload, tmp_path / "payload.yaml", figures=())
+    read = option(str(tmp_path / "payload.yaml"))["payload.inertia"]
+    assert read == pytest.approx(load["inertia"], abs=0.02)
+
+
+def test_the_verb_writes_yaml_json_and_figure(ids, recording):
+    code, out, err = ids(
+        "payload", recording, "--robot", "panda_simulated", "--out", "payload.yaml"
+    )
+    assert (code, err) == (0, "")
+    assert "mass" in out
+    assert "1.3" in out
+    assert "RMSE with load" in out
+    assert Path("payload.png").stat().st_size > 10_000
+    figures = json.loads(Path("payload.json").read_text())
+    assert figures["mass"] == pytest.approx(1.3, abs=0.05)
+    assert figures["joints"][0]["joint"] == "fer_joint1"
+    assert 0 < figures["mass_half_width"] < 0.1
+    assert option("payload.yaml")["payload.mass"] == figures["mass"]
+    code, _, err = ids("payload", recording, "--robot", "panda_simulated", "--out", "payload.yaml")
+    assert code == 2
+    assert "--overwrite" in err
+
+
+def test_an_empty_recording_tells_offsets_and_noise(ids, tmp_path):
+    offset = np.linspace(-0.8, 0.8, 7)
+    solver = panda()
+    empty = table(tmp_path / "empty.csv", moved(solver, offset=offset, seed=1))
+    file = table(tmp_path / "with.csv", with_load(moved(solver, offset=offset), solver, LOAD))
+    payload = estimate_payload(file, "panda_simulated", empty=empty)
+    alone = estimate_payload(file, "panda_simulated")
+    assert payload.estimate.offset == pytest.approx(offset, abs=0.02)
+    assert abs(payload.estimate.mass - 1.3) <= payload.estimate.mass_half_width
+    assert payload.estimate.mass_half_width < alone.estimate.mass_half_width
+    code, out, _ = ids(
+        "payload", file, "--empty", empty, "--robot", "panda_simulated", "--out", "payload.yaml"
+    )
+    assert code == 0
+    assert "without load   " in out
+
+
+def test_a_load_is_found_beside_one_that_is_known(tmp_path):
+    solver = panda()
+    solver.set_payload("tool", 0.8, [0, 0, 0.05])
+    file = table(tmp_path / "with.csv", with_load(moved(solver), solver, LOAD))
+    tool = {"payload.mass": 0.8, "payload.center_of_mass": [0.0, 0.0, 0.05]}
+    found = estimate_payload(file, "panda_simulated", parameters=tool).estimate
+    assert found.mass == pytest.approx(1.3, abs=0.03)
+
+
+def test_the_solver_is_left_as_it_was():
+    solver = panda()
+    solver.set_payload("tool", 0.8)
+    samples = with_load(moved(solver), solver, LOAD)
+    fit_payload(samples, solver)
+    assert list(solver.payloads) == ["tool"]
+    with pytest.raises(PayloadError):
+        fit_payload(Samples(*(part[:20] for part in vars(samples).values())), solver)
+    assert list(solver.payloads) == ["tool"]
+
+
+def test_nothing_carried_is_said(ids, tmp_path):
+    file = table(tmp_path / "empty.csv", moved(panda(), noise=0.3))
+    result = ids("payload", file, "--robot", "panda_simulated", "--out", "payload.yaml")
+    fails(result, "no load is found", "95 % interval", "holds zero")
+    assert not Path("payload.yaml").exists()
+
+
+@pytest.mark.parametrize(
+    ("how", "expected"),
+    [
+        ({"seconds": 1.0}, "expected at least 2 s of motion with the load, got 1 s"),
+        ({"moving": ()}, "got 0 s with a joint faster than 0.02 rad/s"),
+        ({"moving": (0,), "speed": 0.15}, "tip frame: gravity hardly loads the wrist"),
+    ],
+)
+def test_too_little_motion_is_refused(tmp_path, how, expected):
+    load = LOAD | {"mass": 3.0}
+    file = table(tmp_path / "short.csv", loaded(load, noise=0.1, **how))
+    with pytest.raises(PayloadError, match=expected):
+        estimate_payload(file, "panda_simulated")
+
+
+def test_torques_of_another_robot_are_refused(tmp_path):
+    samples = loaded()
+    other = Samples(*list(vars(samples).values())[:4], measured=-samples.measured)
+    file = table(tmp_path / "reversed.csv", other)
+    with pytest.raises(PayloadError, match="no body at the tip explains the torques of fer_joint"):
+        estimate_payload(file, "panda_simulated")
+
+
+def test_efforts_without_gravity_are_refused(recording):
+    with pytest.raises(PayloadError, match="expected efforts with gravity"):
+        estimate_payload(recording, "panda_simulated", effort_is="torque_without_gravity")
+
+
+def test_names_of_outputs_are_checked(ids, recording, tmp_path):
+    result = ids("payload", recording, "--robot", "panda_simulated", "--out", "payload.txt")
+    fails(result, "expected a name ending in .yaml")
+    with pytest.raises(OutputError, match="which is read"):
+        check_payload_output(
+            tmp_path / "a.yaml", (), inputs=[tmp_path / "a.yaml", recording.parent]
+        )
+
+
+def test_the_estimator_takes_samples_one_by_one():
+    samples = loaded()
+    noise = residual_noise(samples.time, np.random.default_rng(2).standard_normal((1200, 7)))
+    assert noise.correlation_time == 0.2
+    whole, each = (PayloadEstimator(panda(), noise) for _ in range(2))
+    assert whole.run(*vars(samples).values()) == len(samples.time)
+    assert whole.run(*vars(samples).values()) == 0
+    assert each.estimate()[1] == PayloadStatus.TOO_SHORT
+    for row in zip(*vars(samples).values(), strict=True):
+        assert each.update(*row) == PayloadStatus.OK
+    assert each.update(
+        0.0, *(part[0] for part in list(vars(samples).values())[1:])
+    ).text.startswith("the sample isn't later")
+    one, other = whole.estimate()[0], each.estimate()[0]
+    assert (one.mass, one.covariance.tolist()) == (other.mass, other.covariance.tolist())
+    each.restart()
+    assert each.estimate()[1] == PayloadStatus.TOO_SHORT
+
+
+def test_options_of_the_estimator_are_checked():
+    noise = ResidualNoise(np.full(7, 0.1), np.full(7, 0.1), 0.3)
+    assert noise.white.tolist() == [0.1] * 7
+    with pytest.raises(InvalidParameterError, match="payload: extent"):
+        PayloadEstimator(panda(), noise, extent=0.0)
+    with pytest.raises(InvalidParameterError, match="noise.white: expected 7 numbers"):
+        PayloadEstimator(panda(), ResidualNoise([1.0], [1.0]))
+    with pytest.raises(ValueError, match=r"measured: expected an array \(2, 7\)"):
+        PayloadEstimator(panda(), noise).run(
+            np.arange(2.0), *(np.zeros((2, 7)) for _ in range(3)), np.zeros((2, 6))
+        )
+
+
+def test_an_empty_run_knows_how_sure_it_is():
+    solver = panda()
+    alone = empty_run(moved(solver, offset=0.4), solver)
+    assert alone.offset == pytest.approx(np.full(7, 0.4), abs=0.01)
+    assert np.all(alone.offset_deviation >= 0.02 * NOISE * 0.9)
+    assert np.all(alone.offset_deviation < 0.02)
