@@ -41,10 +41,10 @@ ExternalTorqueEstimator::ExternalTorqueEstimator(
       velocity_(options.velocity),
       longest_period_(options.longest_period),
       tracker_(model_.jointCount(), options.tracking) {
-  requireJointNumbers(name + ": gain", gain_, Range::kPositive, "1/s", model_.jointNames());
+  requireJointNumbers(name + ": gain", gain_, Range::kRate, "1/s", model_.jointNames());
   requireNumber(name + ": longest_period", longest_period_, Range::kPositive, "s");
   if (velocity_ == VelocitySource::kPositions) {
-    requireNumber(name + ": tracking", options.tracking, Range::kPositive, "rad/s");
+    requireNumber(name + ": tracking", options.tracking, Range::kRate, "rad/s");
     settling_time_ = tracker_.settlingTime();
     settling_updates_ = MotionTracker::kSettlingUpdates;
   }

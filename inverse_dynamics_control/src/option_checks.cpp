@@ -20,6 +20,8 @@ bool isWithin(double value, Range range) {
       return std::isfinite(value) && value > 0;
     case Range::kPositiveOrAbsent:
       return value > 0;
+    case Range::kRate:
+      return value >= 1e-3 && value <= 1e6;
   }
   return false;
 }
@@ -34,6 +36,8 @@ const char* inWords(Range range) {
       return "a finite number above zero";
     case Range::kPositiveOrAbsent:
       return "a number above zero, or infinity for no limit";
+    case Range::kRate:
+      return "a number from 0.001 to 1e6";
   }
   return "";
 }

@@ -16,6 +16,7 @@ enum class Range {
   kNotNegative,       ///< finite and >= 0
   kPositive,          ///< finite and > 0
   kPositiveOrAbsent,  ///< > 0, infinity for none
+  kRate,              ///< from 0.001 to 1e6: far beyond what any arm needs, far from overflow
 };
 
 /// Throws inverse_dynamics_solver::InvalidParameterValueException unless `values` has a number per

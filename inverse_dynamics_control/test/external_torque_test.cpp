@@ -321,11 +321,15 @@ TYPED_TEST(ExternalTorque, BadOptionsAreRefused) {
                 "joints pivot");
   EXPECT_EQ(text([](Options& o) { o.gain = vec({0.0}); }),
             name +
-                ": gain: joint pivot: wrong value: expected a finite number above zero [1/s], "
+                ": gain: joint pivot: wrong value: expected a number from 0.001 to 1e6 [1/s], "
                 "got 0; correct this number");
+  for (const double extreme : {5e-324, 9e-4, 1.1e6, 1e308, kInfinity, kNan}) {
+    EXPECT_NE(text([&](Options& o) { o.gain = vec({extreme}); }), "") << extreme;
+    EXPECT_NE(text([&](Options& o) { o.tracking = extreme; }), "") << extreme;
+  }
   EXPECT_EQ(text([](Options& o) { o.tracking = kInfinity; }),
             name +
-                ": tracking: wrong value: expected a finite number above zero [rad/s], got inf; "
+                ": tracking: wrong value: expected a number from 0.001 to 1e6 [rad/s], got inf; "
                 "correct this number");
   EXPECT_EQ(text([](Options& o) { o.longest_period = -1.0; }),
             name +

@@ -53,12 +53,12 @@ enum class VelocitySource {
 
 /// Options of both estimators.
 struct EstimatorOptions {
-  /// 1 / time constant of each joint, n, finite, > 0; 1/s. Required.
+  /// 1 / time constant of each joint, n, from 0.001 to 1e6; 1/s. Required.
   OwnedVector gain;
 
   VelocitySource velocity = VelocitySource::kPositions;
 
-  /// Of the MotionTracker; finite, > 0; rad/s. Lower: less noise of encoders, and more overshoot.
+  /// Of the MotionTracker; from 0.001 to 1e6; rad/s. Lower: less noise of encoders, and more overshoot.
   double tracking = 200.0;
 
   /// What the measured efforts don't contain. A Panda's torque sensors are behind its gears:
@@ -67,7 +67,7 @@ struct EstimatorOptions {
 
   /// What the friction model may be wrong by, n, finite, >= 0; N m (prismatic N); empty: nothing.
   /// A torque within the band counts as zero, one beyond counts by what lies beyond. Where friction
-  /// isn't known at all, the band is all of it.
+  /// isn't known at all, the band is all of it. For contactThresholds(): empty.
   OwnedVector friction_band;
 
   /// Samples that are further apart than this are a gap; finite, > 0; s.
@@ -88,6 +88,9 @@ class ExternalTorqueEstimator {
 
   /// Number n of joints.
   Eigen::Index jointCount() const noexcept { return torques_.size(); }
+
+  /// Whether updates need JointState::qd.
+  VelocitySource velocitySource() const noexcept { return velocity_; }
 
   /// Takes the next sample.
   ///
