@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver_payload.hpp"
 
+#include <cstring>
 #include <vector>
 
 #include "arrays.hpp"
@@ -31,11 +32,13 @@ std::string shapeOf(const Array& array) {
 /// Numbers of one of these shapes.
 Array numbersOf(const std::string& where, const py::object& object, const std::string& expected,
                 const std::vector<std::vector<py::ssize_t>>& shapes) {
-  Array array = Array::ensure(object);
-  if (!array) {
+  const py::array given = py::array::ensure(object);
+  // A text isn't a number, although numpy would read it as one; nor is a complex number.
+  if (!given || std::strchr("biuf", given.dtype().kind()) == nullptr) {
     PyErr_Clear();
     refuse(where, expected, py::str(py::type::handle_of(object).attr("__name__")));
   }
+  const Array array = Array::ensure(given);
   const std::vector<py::ssize_t> shape(array.shape(), array.shape() + array.ndim());
   for (const auto& allowed : shapes) {
     if (shape == allowed) return array;

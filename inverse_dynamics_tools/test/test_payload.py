@@ -101,6 +101,8 @@ WRONG = [
         r"center_of_mass: expected 3 numbers, got an array of shape \(2,\)",
     ),
     (("part", 1.0, ["a", "b", "c"]), {}, "center_of_mass: expected 3 numbers, got list"),
+    (("part", 1.0, ["0", "0", "1"]), {}, "center_of_mass: expected 3 numbers, got list"),
+    (("part", 1.0), {"inertia": ["1"] * 6}, "inertia: expected an array .* 6 numbers.*, got list"),
     (("part", 1.0, [0, 0, np.inf]), {}, "center_of_mass: expected 3 finite numbers"),
     (("part", 1.0), {"inertia": [1, 1, 1]}, "inertia: expected an array .3, 3., or 6 numbers"),
     (("part", 1.0), {"inertia": np.diag([1, 1, 2.1])}, "triangle inequality"),
@@ -125,7 +127,21 @@ def test_wrong_bodies_are_refused_and_nothing_changes(arguments, named, text):
     assert list(solver.payloads) == ["part"]
 
 
-@pytest.mark.parametrize("numbers", [[1, 2], "down", [0, 0, np.nan], None, [[0, 0, -9.81]]])
+@pytest.mark.parametrize(
+    "numbers",
+    [
+        [1, 2],
+        "down",
+        [0, 0, np.nan],
+        None,
+        [[0, 0, -9.81]],
+        ["1", "0", "0"],
+        [0, 0, 1j],
+        np.array([b"1", b"0", b"0"]),
+        [0, 0, 1.1e6],
+        [0, -1e308, 0],
+    ],
+)
 def test_wrong_gravity_is_refused(numbers):
     solver = arm()
     for change in (solver.set_gravity, solver.set_base_acceleration):
