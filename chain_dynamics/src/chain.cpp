@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "chain_dynamics/gravity.hpp"
 #include "number.hpp"
 
 namespace chain_dynamics {
@@ -33,8 +34,9 @@ std::string text(const Eigen::Vector3d& value) {
 }
 
 void checkGravity(const std::string& chain, const Eigen::Vector3d& gravity) {
-  if (!gravity.allFinite()) {
-    throw ModelError(chain, "gravity", "three finite numbers [m/s^2]", text(gravity),
+  // The comparison is false for a NaN.
+  if (!(gravity.array().abs() <= kGreatestGravity).all()) {
+    throw ModelError(chain, "gravity", "three finite numbers up to 1e6 [m/s^2]", text(gravity),
                      "for example [0, 0, -9.81]");
   }
 }

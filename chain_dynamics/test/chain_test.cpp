@@ -103,9 +103,16 @@ TEST(Chain, RejectsJointsWithoutANameOrWithTheSame) {
 }
 
 TEST(Chain, RejectsNumbersThatAreNotFiniteAndNamesTheJoint) {
-  EXPECT_EQ(errorAfter([](Parts& parts) { parts.gravity.x() = kNan; }),
-            "chain arm: gravity: expected three finite numbers [m/s^2], got [nan, 0, -9.81]; for "
-            "example [0, 0, -9.81]");
+  EXPECT_EQ(
+      errorAfter([](Parts& parts) { parts.gravity.x() = kNan; }),
+      "chain arm: gravity: expected three finite numbers up to 1e6 [m/s^2], got [nan, 0, -9.81]; "
+      "for example [0, 0, -9.81]");
+  for (const double too_much : {-1.1e6, 1e50, 1e308, kInfinity}) {
+    EXPECT_NE(errorAfter([&](Parts& parts) {
+                parts.gravity.y() = too_much;
+              }).find("gravity: expected three finite numbers up to 1e6 [m/s^2], got [0, "),
+              std::string::npos);
+  }
   EXPECT_EQ(errorAfter([](Parts& parts) { parts.joints[1].placement.p.y() = kInfinity; }),
             "chain arm: joint joint2: placement: expected finite numbers, got a NaN or an "
             "infinity");

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "chain_dynamics/error.hpp"
+#include "chain_dynamics/gravity.hpp"
 #include "chain_dynamics/text.hpp"
 #include "chain_dynamics/urdf.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
@@ -26,12 +27,14 @@ void readGravity(Configuration& configuration) {
   if (!gravity) return;
 
   bool valid = gravity->size() == 3;
-  for (const double component : *gravity) valid = valid && std::isfinite(component);
+  for (const double component : *gravity) {
+    valid = valid && std::abs(component) <= chain_dynamics::kGreatestGravity;  // false for a NaN
+  }
   if (!valid) {
     throw InvalidParameterValueException(
         errorText("parameter '" + configuration.fullName("gravity") + "'", "wrong value",
-                  "3 finite numbers [m/s^2] in the frame of the root link", describe(*gravity),
-                  "for a robot that stands upright: [0.0, 0.0, -9.81]"));
+                  "3 finite numbers up to 1e6 [m/s^2] in the frame of the root link",
+                  describe(*gravity), "for a robot that stands upright: [0.0, 0.0, -9.81]"));
   }
   configuration.gravity = Eigen::Vector3d((*gravity)[0], (*gravity)[1], (*gravity)[2]);
   configuration.gravity_given = true;

@@ -4,19 +4,21 @@
 #include <sstream>
 #include <string>
 
+#include "chain_dynamics/gravity.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 namespace {
 
-void requireFinite(const char* method, const char* argument, const Eigen::Vector3d& values) {
-  if (values.allFinite()) return;
+void requireModerate(const char* method, const char* argument, const Eigen::Vector3d& values) {
+  // The comparison is false for a NaN.
+  if ((values.array().abs() <= chain_dynamics::kGreatestGravity).all()) return;
   std::ostringstream got;
   got << values.x() << ", " << values.y() << ", " << values.z();
   throw InvalidParameterValueException(
       errorText(std::string(method) + ": argument " + argument, "wrong value",
-                "3 finite numbers [m/s^2] in the axes of the root link", got.str(),
+                "3 finite numbers up to 1e6 [m/s^2] in the axes of the root link", got.str(),
                 "keep the last value where a sensor fails"));
 }
 
@@ -32,13 +34,13 @@ auto VariableGravity::required(const char* method) const -> BaseMotion {
 
 void VariableGravity::setGravity(const Eigen::Vector3d& gravity) {
   required("setGravity");
-  requireFinite("setGravity", "gravity", gravity);
+  requireModerate("setGravity", "gravity", gravity);
   changeBaseMotion([&](BaseMotion& base) { base.gravity = gravity; });
 }
 
 void VariableGravity::setBaseAcceleration(const Eigen::Vector3d& acceleration) {
   required("setBaseAcceleration");
-  requireFinite("setBaseAcceleration", "acceleration", acceleration);
+  requireModerate("setBaseAcceleration", "acceleration", acceleration);
   changeBaseMotion([&](BaseMotion& base) { base.acceleration = acceleration; });
 }
 

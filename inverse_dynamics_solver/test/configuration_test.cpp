@@ -86,9 +86,12 @@ TEST(Configuration, MistakesNameTheParameterWithItsNamespace) {
     });
   };
   EXPECT_EQ(error("gravity", std::vector<double>{1.0, 2.5}),
-            "parameter 'ids.gravity': wrong value: expected 3 finite numbers [m/s^2] in the frame "
-            "of the root link, got 2 (1, 2.5); for a robot that stands upright: [0.0, 0.0, -9.81]");
+            "parameter 'ids.gravity': wrong value: expected 3 finite numbers up to 1e6 [m/s^2] in "
+            "the frame of the root link, got 2 (1, 2.5); for a robot that stands upright: [0.0, "
+            "0.0, -9.81]");
   EXPECT_NE(error("gravity", std::vector<double>{0.0, 0.0, std::nan("")}).find("got 3 (0, 0, nan)"),
+            std::string::npos);
+  EXPECT_NE(error("gravity", std::vector<double>{0.0, 0.0, 1e308}).find("got 3 (0, 0, 1e+308)"),
             std::string::npos);
   EXPECT_EQ(error("attached", "keep"),
             "parameter 'ids.attached': wrong value: expected \"lump\" or \"ignore\", got \"keep\"; "

@@ -30,7 +30,7 @@ inline namespace v2 {
 /// parameters, or of the model, and the acceleration zero.
 ///
 /// Errors: UninitializedException before a successful initialize(); InvalidParameterValueException
-/// for a number that isn't finite: nothing has changed.
+/// for a number that isn't finite or beyond 1e6: nothing has changed.
 class VariableGravity : public Capability {
  public:
   ~VariableGravity() override;
