@@ -41,8 +41,7 @@ using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
 /// N instead of N m.
 ///
 /// Every quantity comes in three forms: by value; into memory of the caller (outputs last, sized by
-/// the caller, overlapping no input); for many states at once (`...Batch`: one state a column, n x
-/// N).
+/// the caller, overlapping no input); for many states at once (`...Batch`: one state per column).
 ///
 /// Inputs may be any Eigen expression. Of one state, one that isn't contiguous (a row of a matrix,
 /// a sum) is copied by Eigen into a temporary, and outputs must be contiguous columns. Of many
@@ -51,9 +50,10 @@ using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
 /// All methods but initialize() throw UninitializedException before a successful initialize(), and
 /// SizeMismatchException for a wrong size. A NaN in gives NaN in every entry that depends on it.
 ///
-/// Real time (up to 64 joints): calls into the caller's memory with contiguous inputs: no
-/// allocation, lock or system call, and for valid calls no exception. Threads: const methods are
-/// safe; initialize() needs the solver for itself.
+/// Real time (up to 64 joints): calls of one state into the caller's memory with contiguous inputs:
+/// no allocation, lock or system call, and for valid calls no exception. Batches may allocate, and
+/// wait for a thread that changes the robot [docs/real_time.md]. Threads: const methods are safe;
+/// initialize() needs the solver for itself.
 class InverseDynamicsSolver {
  public:
   virtual ~InverseDynamicsSolver() = default;
@@ -84,8 +84,8 @@ class InverseDynamicsSolver {
   /// What is odd about the robot but doesn't prevent computing, a sentence each.
   const std::vector<std::string>& warnings() const;
 
-  /// Whether H(q) is symmetric and positive definite by construction. Only then may a controller
-  /// invert H or feed back through it.
+  /// Whether H(q) is symmetric and positive definite by construction, without payloads, which may be
+  /// taken away. Only then may a controller invert H or feed back through it.
   bool inertiaIsPhysical() const;
 
   /// @name By value

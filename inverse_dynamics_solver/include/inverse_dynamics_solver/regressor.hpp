@@ -33,7 +33,7 @@ class Regressor : public Capability {
   void getRegressor(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
                     MatrixRef Y) const;
 
-  /// Side by side, n x (10 n N).
+  /// Side by side, n x (10 n N). Into memory whose rows don't stand side by side, it allocates.
   Eigen::MatrixXd getRegressorBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
                                     const ConstStatesRef& qdd) const {
     Eigen::MatrixXd Y(q.joints, 10 * q.joints * q.count);
