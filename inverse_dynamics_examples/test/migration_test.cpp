@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What docs/migration.md shows of C++, and what it says that it does.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <fstream>
+#include <inverse_dynamics_solver/motor_currents.hpp>
+#include <inverse_dynamics_solver/solver_loader.hpp>
+#include <iostream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace {
+
+using inverse_dynamics_solver::MotorCurrents;
+using inverse_dynamics_solver::SolverLoader;
+
+const double kRounding = 1e-10;  // of some hundred N m
+
+std::string ur10() {
+  std::ifstream file(UR10_URDF);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(Migration, CallsOfTheReferenceImplementationHaveTheirCounterparts) {
+  const std::string urdf = ur10();
+  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(6, -1.0, 1.0);
+  const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(6, 0.5, -0.5);
+  const Eigen::VectorXd qdd = Eigen::VectorXd::Constant(6, 1.0);
+  testing::internal::CaptureStdout();
+
+  // Headers end in .hpp. pluginlib::ClassLoader works as before; SolverLoader saves its arguments.
+  const auto solver = SolverLoader().load("ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10");
+
+  // Identified solvers must be initialized, too: without it, methods throw UninitializedException.
+  solver->initialize();
+
+  // getDynamicParameters()
+  const auto [H, c, g] = solver->getDynamicComponents(q, qd);
+
+  // The free function getCurrents(q, qd, qdd, i), which has no friction. Likewise getInertiaCurrents(),
+  // getCoriolisCurrents() and getGravityCurrents().
+  const auto& motors = dynamic_cast<const MotorCurrents&>(*solver);
+  const Eigen::VectorXd i = motors.getCurrents(q, qd, qdd) - motors.getFrictionCurrents(qd);
+
+  // The constants K1 to K6 and NUMBER_OF_JOINTS
+  const Eigen::VectorXd K = motors.getDriveGainsMatrix().diagonal();
+  const Eigen::Index n = solver->jointCount();
+
+  // rclcpp::exceptions::InvalidParameterValueException; all of the family are solver exceptions now,
+  // inverse_dynamics_solver::Exception, a std::runtime_error.
+  try {
+    solver->initialize({{"gravity", std::vector<double>{0.0, -9.81}}});
+  } catch (const inverse_dynamics_solver::InvalidParameterValueException& e) {
+    std::cout << e.what() << "\n";
+  }
+
+  // A description as an argument, parameters from a map instead of a node; the parameter `tip` may be
+  // left out: it is then the leaf of the URDF. Bodies fixed beyond the tip, or beside the chain, count,
+  // unless they are ignored, as by KDL there.
+  const auto kdl = SolverLoader().load("kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL");
+  kdl->initialize({{"tip", "tool0"}, {"attached", "ignore"}}, "", urdf);
+
+  EXPECT_NE(testing::internal::GetCapturedStdout().find("parameter 'gravity': wrong value"),
+            std::string::npos);
+  const Eigen::VectorXd f = solver->getFrictionVector(qd);
+  EXPECT_TRUE((K.cwiseProduct(i) + f).isApprox(solver->getTorques(q, qd, qdd), kRounding));
+  EXPECT_TRUE((H * qdd + c + g + f).isApprox(solver->getTorques(q, qd, qdd), kRounding));
+  EXPECT_EQ(n, 6);
+  EXPECT_NEAR(K[0], 13.5841, 1e-12);
+  EXPECT_TRUE(kdl->getFrictionVector(qd).isZero(0.0));
+}
+
+TEST(Migration, NothingWorksBeforeInitialize) {
+  const auto solver = SolverLoader().load("ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10");
+  EXPECT_THROW(solver->getGravityVector(Eigen::VectorXd::Zero(6)),
+               inverse_dynamics_solver::UninitializedException);
+}
+
+TEST(Migration, RootAndTipAreThoseOfTheUrdfWhereNothingIsSaid) {
+  const auto gravity = [](const inverse_dynamics_solver::Parameters& parameters) {
+    const auto kdl = SolverLoader().load("kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL");
+    const std::string chain =
+        "<robot name='a'><link name='base'/><link name='arm'><inertial><origin xyz='0.5 0 "
+        "0'/><mass "
+        "value='2'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' "
+        "izz='0'/></inertial></link><joint "
+        "name='hinge' type='continuous'><parent link='base'/><child link='arm'/><axis xyz='0 -1 "
+        "0'/></joint></robot>";
+    kdl->initialize(parameters, "", chain);
+    return kdl->getGravityVector(Eigen::VectorXd::Zero(1))[0];
+  };
+  EXPECT_NEAR(gravity({}), 2 * 9.81 * 0.5, kRounding);
+  EXPECT_EQ(gravity({}), gravity({{"root", ""}, {"tip", ""}}));
+  EXPECT_EQ(gravity({}), gravity({{"root", "base"}, {"tip", "arm"}}));
+}
+
+TEST(Migration, BodiesBeyondTheTipCountUnlessTheyAreIgnored) {
+  std::string urdf = ur10();
+  const std::string load =
+      "<link name='load'><inertial><mass value='5'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' "
+      "iyz='0' izz='0.01'/></inertial></link><joint name='to_load' type='fixed'><parent "
+      "link='tool0'/><child link='load'/></joint></robot>";
+  urdf.replace(urdf.rfind("</robot>"), std::string::npos, load);
+  const auto shoulder = [&](const std::string& attached) {
+    const auto kdl = SolverLoader().load("kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL");
+    kdl->initialize({{"tip", "tool0"}, {"attached", attached}}, "", urdf);
+    return kdl->getGravityVector(Eigen::VectorXd::Zero(6))[1];  // stretched out
+  };
+  EXPECT_NEAR(shoulder("ignore"), -119.172, 1e-3);
+  EXPECT_NEAR(shoulder("lump"), -177.262, 1e-3);
+  EXPECT_NEAR(shoulder("lump") - shoulder("ignore"), -5 * 9.81 * (0.612 + 0.5723), kRounding);
+}
+
+}  // namespace
