@@ -28,22 +28,27 @@ namespace {
 namespace py = pybind11;
 using namespace inverse_dynamics_control;
 using Vector = Eigen::VectorXd;
-using Mask = py::array_t<bool>;
+using Mask = py::array_t<bool, py::array::c_style | py::array::forcecast>;
+
+/// A velocity that isn't given would be taken for zero.
+void requireVelocities(const ExternalTorqueEstimator& estimator, const char* method, bool given) {
+  if (given || estimator.velocitySource() != VelocitySource::kMeasured) return;
+  throw inverse_dynamics_solver::InvalidParameterValueException(inverse_dynamics_solver::errorText(
+      method, "argument qd", "velocities, as the estimator takes measured ones", "none",
+      "give qd, or make the estimator with velocity=VelocitySource.POSITIONS"));
+}
 
 JointState stateOf(const Vector& q, const std::optional<Vector>& qd) {
   JointState state(0);
   state.q = q;
-  if (qd) {
-    state.qd = *qd;
-  } else {
-    state.qd.setZero(q.size());
-  }
+  if (qd) state.qd = *qd;
   return state;
 }
 
 std::pair<Vector, EstimateStatus> update(ExternalTorqueEstimator& estimator, const Vector& q,
                                          const Vector& effort, double period,
                                          const std::optional<Vector>& qd) {
+  requireVelocities(estimator, "update", qd.has_value());
   const EstimateStatus status = estimator.update(stateOf(q, qd), effort, period);
   return {estimator.torques(), status};
 }
@@ -63,6 +68,7 @@ void requireRows(const char* name, const Array& array, py::ssize_t rows, py::ssi
 /// All samples, one after the other, without the GIL.
 py::tuple runEstimator(ExternalTorqueEstimator& estimator, const Array& time, const Array& q,
                        const Array& effort, const std::optional<Array>& qd) {
+  requireVelocities(estimator, "run", qd.has_value());
   const py::ssize_t count = time.ndim() == 1 ? time.shape(0) : 0;
   const auto n = static_cast<py::ssize_t>(estimator.jointCount());
   requireRows("time", time, count, -1);
@@ -91,11 +97,18 @@ py::tuple runEstimator(ExternalTorqueEstimator& estimator, const Array& time, co
   return py::make_tuple(torques, valid);
 }
 
-Mask runDetector(ContactDetector& detector, const Array& time, const Array& torques) {
+/// What isn't an estimate isn't looked at: neither as a torque nor as time without contact.
+Mask runDetector(ContactDetector& detector, const Array& time, const Array& torques,
+                 const std::optional<Mask>& valid) {
   const py::ssize_t count = time.ndim() == 1 ? time.shape(0) : 0;
   requireRows("time", time, count, -1);
   requireRows("torques", torques, count, torques.ndim() == 2 ? torques.shape(1) : 0);
+  if (valid && (valid->ndim() != 1 || valid->shape(0) != count)) {
+    throw py::value_error("valid: expected an array (" + std::to_string(count) + ",), got " +
+                          std::string(py::str(valid->attr("shape"))));
+  }
   const py::ssize_t n = torques.shape(1);
+  const bool* const looked_at = valid ? valid->data() : nullptr;
   Mask contact(count);
   bool* const out = contact.mutable_data();
   const double* const t = time.data();
@@ -103,7 +116,9 @@ Mask runDetector(ContactDetector& detector, const Array& time, const Array& torq
   const py::gil_scoped_release release;
   for (py::ssize_t k = 0; k < count; ++k) {
     const double period = k == 0 ? 0.0 : t[k] - t[k - 1];
-    out[k] = detector.update(Eigen::Map<const Vector>(in + k * n, n), period);
+    out[k] = looked_at != nullptr && !looked_at[k]
+                 ? detector.contact()
+                 : detector.update(Eigen::Map<const Vector>(in + k * n, n), period);
   }
   return contact;
 }
@@ -215,6 +230,8 @@ void bindThresholds(py::module_& module) {
       .def_property_readonly("level", &numbersOf<&T::level>, "N m.")
       .def_property_readonly("scale", &numbersOf<&T::scale>, "N m.")
       .def_property_readonly("shape", &numbersOf<&T::shape>)
+      .def_property_readonly("low", &numbersOf<&T::low>, "Of the range, N m.")
+      .def_property_readonly("high", &numbersOf<&T::high>, "Of the range, N m.")
       .def_readonly("false_alarms_per_hour", &T::false_alarms_per_hour);
   module.def(
       "contact_thresholds",
@@ -241,7 +258,10 @@ void bindDetector(py::module_& module) {
            py::arg("release_share") = usual.share, py::arg("release_time") = usual.time)
       .def("update", &ContactDetector::update, py::arg("torques"), py::arg("period"),
            "Whether something touches the robot; torques: (n,) N m, period: s.")
-      .def("run", &runDetector, py::arg("time"), py::arg("torques"), "(N,) The same of N samples.")
+      .def("run", &runDetector, py::arg("time"), py::arg("torques"), py::arg("valid") = py::none(),
+           "(N,) The same of N samples. valid: (N,) those that are looked at; in the others a "
+           "contact\n"
+           "stays as it is. None: all.")
       .def("reset", &ContactDetector::reset, "No contact.")
       .def_property_readonly("contact", &ContactDetector::contact)
       .def_property_readonly("joint", &ContactDetector::joint,

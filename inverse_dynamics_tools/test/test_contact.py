@@ -165,7 +165,12 @@ def test_contacts_of_a_recording(recording, robot):
     assert found.estimator == "MomentumObserver"
     (contact,) = found.contacts
     assert contact.begin == pytest.approx(PUSH[0], abs=0.01)
-    assert PUSH[1] < contact.end < PUSH[1] + 0.3
+    above = np.abs(found.torques[:, 0]) > found.thresholds.torques[0]
+    assert contact.end == found.time[above][-1]  # not when the detector is sure that it is over
+    assert PUSH[1] < contact.end < PUSH[1] + 0.1
+    assert found.time[found.contact][[0, -1]].tolist() == [contact.begin, contact.end]
+    assert contact.unknown == 0
+    assert found.interruptions == ()
     assert contact.joint == "swing"
     assert contact.torque == pytest.approx(PUSH[2], rel=0.1)
     assert contact.unseen == 5
@@ -176,11 +181,102 @@ def test_velocities_may_be_the_measured_ones(recording, robot):
     assert len(found.contacts) == 1
 
 
-def test_a_friction_band_is_taken_off(recording, robot):
+@pytest.mark.parametrize("band", [0.02, 1.0])
+def test_a_friction_band_is_what_the_quiet_part_does_not_show(recording, robot, band):
+    """So it leaves the thresholds as they are, and may be wider than all that the quiet part shows."""
+    without = find_contacts(recording, robot, quiet=(0.0, 20.0))
     found = find_contacts(
-        recording, robot, quiet_recording=recording, quiet=(0.0, 20.0), friction_band=[0.02]
+        recording, robot, quiet_recording=recording, quiet=(0.0, 20.0), friction_band=[band]
     )
-    assert found.contacts[0].torque == pytest.approx(PUSH[2] - 0.02, rel=0.1)
+    assert found.thresholds.torques == without.thresholds.torques
+    assert found.contacts[0].torque == pytest.approx(without.contacts[0].torque - band)
+
+
+def test_a_gap_interrupts_the_estimate_and_not_the_contact(ids, tmp_path, motion, robot):
+    time, q, effort = motion
+    kept = ~((time >= 25.4) & (time < 25.6)) & ~((time >= 10.0) & (time < 10.03))
+    recording = write_table(tmp_path / "gaps.csv", time[kept], q[kept], effort[kept])
+    found = find_contacts(recording, robot, quiet=(0.0, 20.0))
+    (contact,) = found.contacts
+    assert (contact.begin, contact.end) == pytest.approx((PUSH[0], PUSH[1] + 0.06), abs=0.03)
+    (first, second) = found.interruptions
+    assert first == pytest.approx((9.999, 10.08), abs=2e-3)  # until the velocity is known
+    assert second == pytest.approx((25.399, 25.65), abs=2e-3)
+    assert contact.unknown == pytest.approx(0.251, abs=2e-3)
+    code, out, _ = ids("contact", recording, "--robot", robot, "--quiet", "0,20", "--out", "found")
+    assert code == 0
+    text = " ".join(out.split())
+    assert "interrupted 2 times, 0.333 s in all, the longest from 25.399 s to 25.65 s" in text
+    assert "no estimate for 0.25" in text
+    summary = json.loads((tmp_path / "found" / "contacts.json").read_text())
+    assert len(summary["interruptions"]) == 2
+
+
+def test_what_is_not_an_estimate_leaves_the_detector_as_it_is(solver):
+    time = PERIOD * np.arange(1000)
+    torques = np.zeros((1000, 1))
+    torques[100:200] = 1.0
+    valid = np.ones(1000, dtype=bool)
+    valid[200:800] = False
+    detector = ContactDetector([0.5], ["swing"])
+    assert np.flatnonzero(detector.run(time, torques))[[0, -1]].tolist() in ([100, 298], [100, 299])
+    detector.reset()
+    contact = detector.run(time, torques, valid)
+    assert np.flatnonzero(contact)[[0, -1]].tolist() in ([100, 898], [100, 899])
+    assert (
+        ContactDetector([0.5], ["swing"]).run(time, torques, valid[::-1][::-1]) == contact
+    ).all()
+    with pytest.raises(ValueError, match=r"valid: expected an array \(1000,\), got \(999,\)"):
+        detector.run(time, torques, valid[1:])
+
+
+def test_thresholds_that_say_little_are_noted(tmp_path, motion, recording, robot):
+    assert find_contacts(recording, robot, quiet=(0.0, 20.0)).notes == ()
+    found = find_contacts(recording, robot, quiet=(0.0, 6.0), false_alarms=1e-6)
+    (note,) = found.notes
+    assert note.startswith("uncertain thresholds: swing (")
+    assert found.thresholds.low[0] <= found.thresholds.torques[0] <= found.thresholds.high[0]
+
+    limit = '<limit lower="-3" upper="3" velocity="2" effort="{}"/>'
+    (tmp_path / "arm.urdf").write_text(pendulum(limit=limit.format(0.5)))
+    (note,) = find_contacts(recording, robot, quiet=(0.0, 20.0)).notes
+    assert "high thresholds: swing (" in note
+    assert "% of its effort limit): weaker contacts aren't found" in note
+
+    (tmp_path / "arm.urdf").write_text(pendulum(limit=limit.format(0)))  # none is stated
+    time, q = (values[:10_000] for values in motion[:2])
+    held = np.repeat(np.random.default_rng(1).standard_normal((200, 1)), 50, axis=0)
+    slow = write_table(tmp_path / "slow.csv", time, np.full_like(q, np.pi / 2), held)
+    notes = find_contacts(slow, robot, quiet=(0.0, 10.0), false_alarms=1e-6).notes
+    assert any("more than any torque recorded): weaker contacts" in note for note in notes)
+
+
+def test_efforts_mean_what_they_mean_in_an_evaluation(ids, tmp_path, solver, motion, robot):
+    time, q, effort = motion
+    table = write_table(tmp_path / "other.csv", time, q, effort - solver.gravity_vector(q))
+    options = ("--robot", robot, "--quiet", "0,20", "--figures", "none", "--out", "found")
+    meaning = ("--effort-is", "torque_without_gravity")
+    code, out, _ = ids("contact", table, *options, *meaning)
+    assert code == 0
+    assert "effort means   torque without gravity, as given" in out
+    summary = json.loads((tmp_path / "found" / "contacts.json").read_text())
+    assert summary["effort"] == "torque_without_gravity"
+    assert len(summary["contacts"]) == 1
+    fails(ids("contact", table, *options, "--effort-is", "current", "--overwrite"), "drive_gains")
+    fails(ids("contact", table, *options, "--effort-is", "force"), "invalid choice: 'force'")
+
+
+def test_measured_velocities_must_be_given(solver, motion):
+    options = EstimatorOptions([60.0], velocity=VelocitySource.MEASURED)
+    for kind in (MomentumObserver, AccelerationResidual):
+        estimator = kind(solver, options)
+        expected = (
+            "argument qd: expected velocities, as the estimator takes measured ones, got none"
+        )
+        with pytest.raises(InvalidParameterError, match=f"update: {expected}; give qd, or make"):
+            estimator.update([0.0], [0.0], PERIOD)
+        with pytest.raises(InvalidParameterError, match=f"run: {expected}"):
+            estimator.run(*motion)
 
 
 def test_without_a_quiet_part_there_are_no_thresholds(recording, robot):
@@ -198,7 +294,7 @@ def test_the_command_writes_table_figure_and_series(ids, tmp_path, recording, ro
     assert (code, err) == (0, "")
     for part in ("25.0", "swing", "MomentumObserver, 60 1/s"):
         assert part in out
-    assert "thresholds of 1 false alarms per hour" in out
+    assert "thresholds for 1 false alarm per hour" in out
     files = {file.name for file in (tmp_path / "found").iterdir()}
     assert files == {"contacts.json", "contacts.png", "series.npz"}
     summary = json.loads((tmp_path / "found" / "contacts.json").read_text())
@@ -234,6 +330,23 @@ def test_wrong_options_are_told(ids, tmp_path, recording, robot):
     fails(ids(*command, "--quiet", "0,20", "--friction-band", "a"), "expected numbers, a,b,c")
     fails(ids(*command, "--quiet", "0,0.2"), "too few independent samples")
     fails(ids(*command, "--quiet", "100,200"), "expected a part of the recording, which ends")
+    for span in ("-5,1e300", "1e300,2e300"):
+        fails(
+            ids(*command, f"--quiet={span}"),
+            f"--quiet (quiet=): expected two times in s since the first sample, the later one second, "
+            f"got {span.replace('e', 'e+')}",
+        )
+    quiet = (*command, "--quiet", "0,20")
+    fails(
+        ids(*quiet, "--false-alarms", "1e-323"), "at least 1e-06 (one in a century) [1/h], got 9."
+    )
+    fails(ids(*quiet, "--false-alarms", "1e9"), "too many false alarms: expected at most")
+    for name in ("gain", "tracking"):
+        for extreme in ("1e-300", "1e300"):
+            fails(ids(*quiet, f"--{name}", extreme), f"{name}:", "from 0.001 to 1e6")
+    fails(
+        ids(*quiet, "--tracking", "0.01"), "expected a stretch of 1e+03 s without a gap of 0.02 s"
+    )
     assert not (tmp_path / "found").exists()
 
 

@@ -12,6 +12,7 @@ from inverse_dynamics.figures.thinning import peaks
 
 if TYPE_CHECKING:
     from pathlib import Path
+    from typing import Any
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -20,8 +21,18 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.contacts import Contacts
 
 _MOST_POINTS = 6000
-_LINE, _THRESHOLD, _CONTACT = "#2c5f9e", "black", "#E69F00"
+_LINE: dict[str, Any] = {"color": "#2c5f9e", "linewidth": 0.8}
+_THRESHOLD: dict[str, Any] = {"color": "black", "linestyle": (0, (3.0, 1.6)), "linewidth": 0.8}
+_CONTACT: dict[str, Any] = {"color": "#E69F00", "alpha": 0.35, "linewidth": 0}
+_QUIET: dict[str, Any] = {"color": "#009E73", "alpha": 0.1, "linewidth": 0}
+_UNKNOWN: dict[str, Any] = {
+    "facecolor": "none",
+    "edgecolor": "#888888",
+    "hatch": "////",
+    "linewidth": 0,
+}
 _MUTED = "#555555"
+_MARK = 0.002  # of the time shown: a shorter contact would be no pixel
 
 
 def save_contact_figure(contacts: Contacts, *files: Path) -> None:
@@ -30,33 +41,81 @@ def save_contact_figure(contacts: Contacts, *files: Path) -> None:
 
 
 def contact_figure(contacts: Contacts) -> Figure:
-    """External torques over time, a joint a row, and the force at the tip; contacts are shaded."""
+    """External torques over time, one row per joint, and the force at the tip; contacts are shaded."""
     from matplotlib.figure import Figure
 
-    names, units = contacts.evaluation.joint_names, contacts.evaluation.units
-    force = contacts.wrenches is not None
-    rows = len(names) + force
-    figure = Figure(figsize=(11.0, 1.15 * rows + 1.2), layout="constrained")
+    evaluation, thresholds = contacts.evaluation, contacts.thresholds.torques
+    rows = len(evaluation.joint_names) + (contacts.wrenches is not None)
+    height = 1.2 * rows + 1.55
+    figure = Figure(figsize=(11.0, height))
     axes = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
-    for j, axis in enumerate(axes[: len(names)]):
+    figure.subplots_adjust(
+        left=0.06, right=0.985, top=1 - 1.17 / height, bottom=0.45 / height, hspace=0.42
+    )
+    for j, axis in enumerate(axes[: len(evaluation.joint_names)]):
         _draw(axis, contacts, contacts.torques[:, j])
         for sign in (-1, 1):
-            level = sign * contacts.thresholds.torques[j]
-            axis.axhline(level, color=_THRESHOLD, linestyle=(0, (3.0, 1.6)), linewidth=0.8)
-        axis.set_ylabel(f"{names[j]}\n[{units[j]}]", color=_MUTED)
+            axis.axhline(sign * thresholds[j], **_THRESHOLD)
+        unit = evaluation.units[j]
+        title = f"{evaluation.joint_names[j]} [{unit}], threshold {thresholds[j]:.3g} {unit}"
+        axis.set_title(title, loc="left", fontsize=9, pad=3)
     if contacts.wrenches is not None:
         _draw(axes[-1], contacts, np.linalg.norm(contacts.wrenches[:, :3], axis=1))
-        axes[-1].set_ylabel("force at tip\n[N]", color=_MUTED)
+        axes[-1].set_title(
+            "force at the tip, as if only it was touched [N]", loc="left", fontsize=9, pad=3
+        )
     axes[-1].set_xlabel("time [s]", color=_MUTED)
-    figure.suptitle(
-        f"External torques (blue), thresholds of {contacts.thresholds.false_alarms_per_hour:g} false "
-        "alarms per hour (dashed), contacts (shaded)"
-    )
+    axes[-1].set_xlim(contacts.time[0], contacts.time[-1])
+    _write_heading(figure, contacts, height)
     return figure
 
 
 def _draw(axis: Axes, contacts: Contacts, values: Floats) -> None:
     shown = peaks(values, _MOST_POINTS)
-    axis.plot(contacts.time[shown], values[shown], color=_LINE, linewidth=0.8)
+    known = np.where(contacts.valid, values, np.nan)  # else zeros were drawn
+    axis.plot(contacts.time[shown], known[shown], **_LINE)
+    if contacts.quiet_part is not None:
+        axis.axvspan(*contacts.quiet_part, **_QUIET)
+    for begin, end in contacts.interruptions:
+        axis.axvspan(begin, end, **_UNKNOWN)
+    least = _MARK * (contacts.time[-1] - contacts.time[0])
     for contact in contacts.contacts:
-        axis.axvspan(contact.begin, contact.end, color=_CONTACT, alpha=0.3, linewidth=0)
+        axis.axvspan(contact.begin, max(contact.end, contact.begin + least), **_CONTACT)
+
+
+def _write_heading(figure: Figure, contacts: Contacts, height: float) -> None:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    evaluation = contacts.evaluation
+    robot, count = evaluation.robot, len(contacts.contacts)
+    title = f"{robot.description or robot.name}: {count} contact{'' if count == 1 else 's'}"
+    size = min(13.0, 13.0 * 100 / len(title))
+    figure.text(0.012, 1 - 0.3 / height, title, fontsize=size, fontweight="bold")
+    rate = contacts.thresholds.false_alarms_per_hour
+    figure.text(
+        0.012,
+        1 - 0.52 / height,
+        f"{evaluation.bag.name}   ·   {contacts.estimator}, {contacts.gain:g} 1/s   ·   thresholds for "
+        f"{rate:g} false alarm{'' if rate == 1 else 's'} per hour",
+        color=_MUTED,
+    )
+    handles: list[Line2D | Patch] = [
+        Line2D([], [], label="external torque", **_LINE),
+        Line2D([], [], label="threshold", **_THRESHOLD),
+        Patch(label="contact", **_CONTACT),
+    ]
+    if contacts.quiet_part is not None:
+        handles.append(Patch(label="part that the thresholds are from", **_QUIET))
+    if contacts.interruptions:
+        handles.append(Patch(label="no estimate", **_UNKNOWN))
+    figure.legend(
+        handles=handles,
+        loc="upper left",
+        bbox_to_anchor=(0.012, 1 - 0.66 / height),
+        borderaxespad=0,
+        borderpad=0,
+        ncols=len(handles),
+        frameon=False,
+        fontsize=9,
+    )

@@ -67,6 +67,8 @@ def _summary(contacts: Contacts) -> dict[str, Any]:
         "level",
         "scale",
         "shape",
+        "low",
+        "high",
     )
     return {
         "schema": 1,
@@ -76,6 +78,10 @@ def _summary(contacts: Contacts) -> dict[str, Any]:
         "plugin": evaluation.robot.plugin,
         "estimator": contacts.estimator,
         "gain": contacts.gain,
+        "tracking": contacts.tracking,
+        "measured_velocities": contacts.measured_velocities,
+        "friction_band": list(contacts.friction_band),
+        "effort": evaluation.effort.meaning,
         "quiet": contacts.quiet,
         "false_alarms_per_hour": thresholds.false_alarms_per_hour,
         "joints": [
@@ -86,5 +92,6 @@ def _summary(contacts: Contacts) -> dict[str, Any]:
             )
         ],
         "contacts": [asdict(contact) for contact in contacts.contacts],
+        "interruptions": [list(times) for times in contacts.interruptions],
         "notes": list(contacts.notes),
     }

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from inverse_dynamics.base.decimals import decimal
 from inverse_dynamics.verbs.common import file_name, positive_number, progress_bar
 from inverse_dynamics.verbs.options import (
+    add_effort_is,
     add_figures,
     add_robot,
     add_robot_changes,
@@ -30,10 +31,11 @@ examples:
       thresholds from another recording; one false alarm in ten hours
 
   ids contact recording --robot my_robot.yaml --quiet 0,60 --friction-band 1,1,1,0.3,0.3,0.3
-      of each joint, what the friction model may be wrong by [N m]; smaller than what the quiet part shows
+      per joint, what the friction model may be wrong by [N m] beyond what the quiet part shows, for one
+      where the robot hardly moves
 
 External torques are what the robot exerts on its surroundings: measured torques minus those that its
-model needs for the motion, low-passed. What the model doesn't know, a load for one, is among them.
+model needs for the motion, low-passed. What the model doesn't know, such as a load, is among them.
 
 results, written whole or not at all:
   contacts.json           each contact; thresholds, and how they came about
@@ -61,7 +63,10 @@ def add_parser(
         "--quiet", metavar="FROM,TO", type=_span, help="that part, s since the first sample"
     )
     quiet.add_argument(
-        "--quiet-recording", metavar="RECORDING", type=file_name, help="of this recording"
+        "--quiet-recording",
+        metavar="RECORDING",
+        type=file_name,
+        help="a recording without contact; with --quiet: that part of it",
     )
     quiet.add_argument(
         "--false-alarms",
@@ -95,8 +100,8 @@ def add_parser(
         metavar="A,B,...",
         type=_numbers,
         default=(),
-        help="what the friction model may be wrong by [N m], of each joint, or one for all: within it "
-        "there is no external torque",
+        help="what the friction model may be wrong by [N m] beyond what the part without contact shows, one "
+        "number per joint, or one for all: an external torque is what exceeds it",
     )
     parser.add_argument(
         "--out",
@@ -110,6 +115,7 @@ def add_parser(
     add_figures(parser)
     robot = add_robot_changes(parser, "recording")
     robot.add_argument("--topic", metavar="NAME", help="topic of the joint states")
+    add_effort_is(robot)
     return parser
 
 
@@ -157,6 +163,7 @@ def run(arguments: argparse.Namespace) -> None:
             measured_velocities=arguments.measured_velocities,
             progress=progress,
             topic=arguments.topic,
+            effort_is=arguments.effort_is,
             **robot_changes(arguments),
         )
     write_contacts(contacts, out, overwrite=arguments.overwrite, figures=arguments.figures)
@@ -176,6 +183,7 @@ def _print(contacts: Contacts, out: Path, figures: tuple[str, ...]) -> None:
         f"recording      {', '.join(filter(None, (str(evaluation.bag), log.topic)))}: {len(log)} "
         f"samples, {log.duration:.1f} s"
     )
+    console.print(f"effort means   {evaluation.effort.summary}")
     console.print(f"estimator      {contacts.estimator}, {contacts.gain:g} 1/s")
     console.print(f"quiet          {contacts.quiet}")
     for note in contacts.notes:

@@ -16,6 +16,7 @@ from inverse_dynamics.verbs.common import (
     progress_bar,
 )
 from inverse_dynamics.verbs.options import (
+    add_effort_is,
     add_figures,
     add_robot,
     add_robot_changes,
@@ -93,7 +94,7 @@ def add_parser(
     """Declare the verb."""
     from inverse_dynamics.data.joint_log import CLOCKS
     from inverse_dynamics.evaluation.accelerations import RULES
-    from inverse_dynamics.robot.choices import EFFORT_CHOICES, METHODS
+    from inverse_dynamics.robot.choices import METHODS
 
     parser = add_verb(
         subparsers,
@@ -151,13 +152,7 @@ def add_parser(
     robot.add_argument(
         "--topic", metavar="NAME", help="topic of the joint states, or of the trajectory"
     )
-    robot.add_argument(
-        "--effort-is",
-        metavar="MEANING",
-        choices=tuple(EFFORT_CHOICES),
-        help="what recorded efforts mean. "
-        + "; ".join(f"{name}: {text}" for name, text in EFFORT_CHOICES.items()),
-    )
+    add_effort_is(robot)
 
     samples = parser.add_argument_group("time and accelerations")
     samples.add_argument(

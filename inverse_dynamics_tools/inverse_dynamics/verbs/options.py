@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from inverse_dynamics.errors import UserError
+from inverse_dynamics.robot.choices import EFFORT_CHOICES
 from inverse_dynamics.verbs.common import figure_formats, names, parameter, three_numbers
 from inverse_dynamics.verbs.payload_option import payload
 
@@ -68,6 +69,17 @@ def add_gravity(group: argparse._ActionsContainer) -> None:
         metavar="X,Y,Z",
         type=three_numbers,
         help="where things fall [m/s^2], in the frame of the root link (usually 0,0,-9.81)",
+    )
+
+
+def add_effort_is(group: argparse._ActionsContainer) -> None:
+    """--effort-is."""
+    group.add_argument(
+        "--effort-is",
+        metavar="MEANING",
+        choices=tuple(EFFORT_CHOICES),
+        help="what recorded efforts mean. "
+        + "; ".join(f"{name}: {text}" for name, text in EFFORT_CHOICES.items()),
     )
 
 

@@ -62,12 +62,12 @@ def error_table(evaluation: Evaluation) -> Table:
 
 
 def threshold_table(contacts: Contacts) -> Table:
-    """External torques that are a contact, a joint a row."""
+    """External torques that are a contact, one row per joint."""
     thresholds, evaluation = contacts.thresholds, contacts.evaluation
     table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
     table.add_column("joint", overflow="fold")
     table.add_column("unit")
-    for heading in ("noise", "threshold", "correlation [ms]", "independent", "peaks"):
+    for heading in ("noise", "threshold", "range", "correlation [ms]", "peaks"):
         table.add_column(heading, justify="right")
     for j, (joint, unit) in enumerate(zip(evaluation.joint_names, evaluation.units, strict=True)):
         table.add_row(
@@ -75,16 +75,18 @@ def threshold_table(contacts: Contacts) -> Table:
             unit,
             figure(float(thresholds.noise[j])),
             figure(float(thresholds.torques[j])),
+            f"{thresholds.low[j]:.3g} to {thresholds.high[j]:.3g}",
             f"{1e3 * thresholds.correlation_time[j]:.0f}",
-            f"{thresholds.independent[j]:.0f}",
             f"{thresholds.peaks[j]:.0f}",
         )
-    table.caption = f"thresholds of {thresholds.false_alarms_per_hour:g} false alarms per hour"
+    rate = thresholds.false_alarms_per_hour
+    alarms = f"{rate:g} false alarm{'' if rate == 1 else 's'} per hour"
+    table.caption = f"thresholds for {alarms}; range: with a confidence of 90 %"
     return table
 
 
 def contact_table(contacts: Contacts) -> Table:
-    """A contact a row."""
+    """One row per contact."""
     table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
     table.add_column("contact [s]")
     table.add_column("joint", overflow="fold")
@@ -94,12 +96,13 @@ def contact_table(contacts: Contacts) -> Table:
         table.add_column("force at tip [N]", justify="right")
         table.add_column("direction", justify="right", no_wrap=True)
         table.caption = (
-            "as if the tip was touched; direction in the axes of the root; * some directions can't be "
-            "told there"
+            "as if only the tip was touched; direction in the axes of the root; * some directions "
+            "can't be observed there"
         )
     for contact in contacts.contacts:
         row = [
-            f"{contact.begin:.3f} to {contact.end:.3f}",
+            f"{contact.begin:.3f} to {contact.end:.3f}"
+            + (f"\nno estimate for {contact.unknown:.3f} s" if contact.unknown else ""),
             contact.joint,
             f"{contact.torque:+.3g} {contact.unit}",
         ]
