@@ -145,11 +145,18 @@ def diagnose(samples: Samples, model: ArmModel) -> Diagnosis | None:
     span = _span(measured)
     computed = model.compared(q, qd, qdd)
     before = _errors(measured, computed, qd, span)
+    load = None
     if before.max() > _MISMATCH:
         if clock := _clock(samples):
             return clock
-        if best := _best(_hypotheses(samples, model, computed), before, span):
+        best = _best(_hypotheses(samples, model, computed), before, span)
+        if best and best.kind not in ("payload", "tool"):
             return best
+        load = best  # efforts that are cut off look like one, too
+    if full := _saturation(samples.joints, measured, computed, qd, span):
+        return full
+    if load:
+        return load
     return residual_cause(samples, computed) or _friction(model, measured, computed, before, span)
 
 
@@ -474,16 +481,16 @@ def _saturation(
     found = []
     for j, name in enumerate(names):
         for sign in (1.0, -1.0):
-            effort, wanted = sign * measured[:, j], sign * computed[:, j]
+            effort = sign * measured[:, j]
             limit = effort.max()
             flat = effort > limit - 2e-3 * span[j]
-            if limit <= 0 or not 0.02 <= flat.mean() <= 0.9:
+            speed = np.abs(qd[:, j])
+            resting = speed[flat].mean() < 0.05 * speed.max()
+            if limit <= 0 or resting or not 0.02 <= flat.mean() <= 0.9:
                 continue
-            residual = sign * _residual(measured[:, j], computed[:, j], qd[:, j])
-            elsewhere = _rms(residual[~flat])
-            if (wanted[flat].mean() - limit) > 0.05 * span[j] and -residual[flat].mean() > max(
-                2 * elsewhere, 0.03 * span[j]
-            ):
+            columns, error = _friction_columns(qd[:, j]), measured[:, j] - computed[:, j]
+            missing = -sign * (error - columns @ _fit(columns[~flat], error[~flat], (0, 1)))
+            if missing[flat].mean() > max(2 * _rms(missing[~flat]), 0.03 * span[j]):
                 found.append((name, limit * sign, flat.mean()))
     if not found:
         return None
@@ -508,7 +515,7 @@ def _coupling(
     """
     before = _errors(measured, computed, qd, span)
     best, least = None, 0.5
-    for j in np.flatnonzero(before > _MISMATCH):
+    for j in map(int, np.flatnonzero(before > _MISMATCH)):
         masses = _rms(_residual(measured[:, j], computed[:, j], qd[:, j], computed)) / span[j]
         for k in (k for k in range(len(names)) if k != j):
             friction = _friction_columns(qd[:, k])[:, :2]
