@@ -47,10 +47,11 @@ class Chosen:
 class _Alternative:
     law: str
     prior_strength: float
-    errors: list[Floats]  # of each block left out, (M, n)
+    errors: list[Floats]  # of each part left out, (M, n), the delay made up for
+    as_computed: list[Floats]  # the same without, as solvers compute them
 
     def scores(self, noise: Floats) -> Floats:
-        """Of each block: mean over the joints of the RMSE in units of the noise."""
+        """Of each part: mean over the joints of the RMSE in units of the noise."""
         return np.array([(np.sqrt((e**2).mean(0)) / noise).mean() for e in self.errors])
 
 
@@ -63,6 +64,7 @@ def errors_of(fitter: ArmFitter, fit: ArmFit, block: Block) -> Floats:
 def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
     """The fit to all blocks, chosen by leaving out each part in turn."""
     delay = _delay(fitter, blocks)
+    as_recorded = _parts(blocks)
     blocks = [block.later(delay) for block in blocks]
     parts = _parts(blocks)
     whole: dict[str, ArmFit] = {}
@@ -72,7 +74,7 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
         start = whole[law] = fitter.fit(
             together(blocks), law=law, prior_strength=STRENGTHS[1], start=start
         )
-        alternatives += _alternatives(fitter, parts, law, start)
+        alternatives += _left_out(fitter, parts, as_recorded, law, STRENGTHS, start)
     noise = whole["step"].noise
     best, choices = _simplest(alternatives, noise, delay)
     fit = fitter.fit(
@@ -81,7 +83,7 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
         prior_strength=best.prior_strength,
         start=whole[best.law],
     )
-    band = np.quantile(np.abs(np.concatenate(best.errors)), _BAND, axis=0)
+    band = np.quantile(np.abs(np.concatenate(best.as_computed)), _BAND, axis=0)
     return Chosen(best.law, best.prior_strength, delay, fit, band, choices)
 
 
@@ -129,36 +131,35 @@ def _predicts_better(
     scores = []
     for by in (0.0, delay):
         parts = _parts([block.later(by) for block in blocks])
-        errors = _left_out(fitter, parts, _DELAY_LAW, [STRENGTHS[1]], start)[0]
-        scores.append(_Alternative(_DELAY_LAW, STRENGTHS[1], errors).scores(start.noise))
+        tried = _left_out(fitter, parts, parts, _DELAY_LAW, [STRENGTHS[1]], start)[0]
+        scores.append(tried.scores(start.noise))
     gain = scores[0] - scores[1]
     return bool(gain.mean() > gain.std(ddof=1) / np.sqrt(len(gain)))
-
-
-def _alternatives(
-    fitter: ArmFitter, parts: Sequence[Block], law: str, start: ArmFit
-) -> list[_Alternative]:
-    errors = _left_out(fitter, parts, law, STRENGTHS, start)
-    return [_Alternative(law, s, e) for s, e in zip(STRENGTHS, errors, strict=True)]
 
 
 def _left_out(
     fitter: ArmFitter,
     parts: Sequence[Block],
+    as_recorded: Sequence[Block],
     law: str,
     strengths: Sequence[float],
     start: ArmFit,
-) -> list[list[Floats]]:
+) -> list[_Alternative]:
     """Errors of each part under fits to the others, for each prior strength."""
-    found: list[list[Floats]] = [[] for _ in strengths]
+    found = [_Alternative(law, strength, [], []) for strength in strengths]
     for k, part in enumerate(parts):
         others = together([*parts[:k], *parts[k + 1 :]])
         fit = start
-        for errors, strength in zip(found, strengths, strict=True):
+        for alternative in found:
             fit = fitter.fit(
-                others, law=law, prior_strength=strength, most_passes=_PASSES, start=fit
+                others,
+                law=law,
+                prior_strength=alternative.prior_strength,
+                most_passes=_PASSES,
+                start=fit,
             )
-            errors.append(errors_of(fitter, fit, part))
+            alternative.errors.append(errors_of(fitter, fit, part))
+            alternative.as_computed.append(errors_of(fitter, fit, as_recorded[k]))
     return found
 
 

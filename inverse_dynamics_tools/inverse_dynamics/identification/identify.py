@@ -15,7 +15,7 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.identification.baselines import Baselines, root_mean_squares
 from inverse_dynamics.identification.blocks import Block, blocks_of
-from inverse_dynamics.identification.cross_validation import Chosen, choose
+from inverse_dynamics.identification.cross_validation import Chosen, choose, errors_of
 from inverse_dynamics.identification.knowledge import (
     independent_samples,
     intervals,
@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 BLOCKS = 5
 """Contiguous blocks that all recordings are cut into, of which each is predicted by the others."""
 
+_FEWEST_BLOCKS = 3
+_SHORTEST_BLOCK = 2.5  # s; accelerations at the ends of a block are poor
 _SHORTEST = 5.0  # s
 
 
@@ -51,15 +53,16 @@ def identify(
     recordings: Sequence[Path | str],
     robot: Robot | Path | str,
     *,
-    blocks: int = BLOCKS,
+    blocks: int | None = None,
     progress: Progress = no_progress,
     **options: Any,
 ) -> Identification:
     """A physically consistent model with friction, from recordings of a moving arm.
 
     robot: as in evaluate(); its description is the prior, its model, if it has one, is compared
-    with. blocks: how many the recordings are cut into altogether, at least three. options: others
-    of evaluate(), as effort_is, start, end.
+    with. blocks: how many the recordings are cut into altogether, at least three; none: BLOCKS, or
+    fewer where they would be shorter than 2.5 s. options: others of evaluate(), as effort_is, start,
+    end.
 
     Raises UserError: those of evaluate(), IdentificationError.
     """
@@ -69,7 +72,8 @@ def identify(
     description = _description(robot)
     evaluations = [evaluate(path, robot, progress=progress, **options) for path in recordings]
     robot = evaluations[0].robot if evaluations else robot
-    _check(evaluations, blocks)
+    _check(evaluations)
+    blocks = _block_count(evaluations, blocks)
     fitter = _core.ArmFitter.from_urdf(
         description, root=robot.root, tip=robot.tip, gravity=robot.gravity
     )
@@ -91,11 +95,18 @@ def _description(robot: Robot) -> str:
     return read_description(robot.urdf)
 
 
-def _check(evaluations: Sequence[Evaluation], blocks: int) -> None:
+def _block_count(evaluations: Sequence[Evaluation], asked: int | None) -> int:
+    if asked is None:
+        duration = sum(float(e.time[-1]) for e in evaluations)
+        return int(np.clip(duration // _SHORTEST_BLOCK, _FEWEST_BLOCKS, BLOCKS))
+    if asked < _FEWEST_BLOCKS:
+        raise IdentificationError(f"blocks: expected at least {_FEWEST_BLOCKS}, got {asked}")
+    return asked
+
+
+def _check(evaluations: Sequence[Evaluation]) -> None:
     if not evaluations:
         raise IdentificationError("recordings: expected at least one, got none")
-    if blocks < 3:
-        raise IdentificationError(f"blocks: expected at least 3, got {blocks}")
     for evaluation in evaluations:
         if evaluation.effort.meaning == "torque_without_gravity":
             raise IdentificationError(
@@ -117,7 +128,7 @@ def _cut(evaluations: Sequence[Evaluation], blocks: int) -> list[Block]:
     counts = np.maximum(1, np.round(blocks * lengths / lengths.sum())).astype(int)
     if len(evaluations) == 1:
         counts[:] = blocks
-    while counts.sum() < 3:
+    while counts.sum() < _FEWEST_BLOCKS:
         counts[lengths.argmax()] += 1
     return [
         block
@@ -166,14 +177,14 @@ def _result(
     begin = time.perf_counter()
     first, fit = evaluations[0], chosen.fit
     links = _links(description, fitter.joint_names)
-    errors = [b.tau - fitter.torques(fit, b.q, b.qd, b.qdd) for b in cut]
-    errors = [e[b.counts] for e, b in zip(errors, cut, strict=True)]
+    later = [block.later(chosen.delay) for block in cut]
+    errors = [errors_of(fitter, fit, block) for block in later]
     independent = independent_samples(errors)
     samples = sum(map(len, errors))
     known = knowledge(
         fitter,
         fit,
-        cut,
+        later,
         law=chosen.law,
         prior_strength=chosen.prior_strength,
         worth=float(independent.mean() / samples),

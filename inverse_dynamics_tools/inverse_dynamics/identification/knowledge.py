@@ -62,6 +62,7 @@ class Knowledge:
 
     joints: tuple[str, ...]
     values: Floats  # (m,)
+    described: Floats  # (n, 10): the parameters of the prior
     data: Floats  # (m, m), of samples as if they were independent
     prior: Floats  # (m, m)
     scores: Floats  # (clusters, m)
@@ -69,19 +70,32 @@ class Knowledge:
 
     @property
     def covariance(self) -> Floats:
-        """(m, m), cluster-robust."""
+        """(m, m): cluster-robust, and what the prior may be wrong by.
+
+        A fit is drawn to the prior by as much as the prior is wrong. How wrong that is, in units of
+        its strength, the links tell that the data have moved.
+        """
         bread = _inverse(self.data + self.prior)
         centred = self.scores - self.scores.mean(0)
         clusters = len(centred)
         meat = centred.T @ centred * (clusters / (clusters - 1))
-        covariance: Floats = bread @ meat @ bread
+        covariance: Floats = bread @ (meat + self._prior_error() * self.prior) @ bread
         return covariance
+
+    def _prior_error(self) -> float:
+        """Mean square of the prior's errors in the directions that the data tell, at least one."""
+        rigid = slice(0, self.described.size)
+        moved = self.values[rigid] - self.described.ravel()
+        told = np.trace(_inverse(self.data + self.prior)[rigid] @ self.data[:, rigid])
+        error = moved @ self.prior[rigid, rigid] @ moved / max(float(told), 1.0)
+        return max(float(error), 1.0)
 
     @property
     def shares(self) -> Floats:
         """(m,) of the information on each unknown, what comes from the data: 0 to 1."""
-        posterior = np.diag(_inverse(self.worth * self.data + self.prior))
-        shares: Floats = 1 - posterior / np.diag(_inverse(self.prior))
+        prior = self.prior / self._prior_error()
+        posterior = np.diag(_inverse(self.worth * self.data + prior))
+        shares: Floats = 1 - posterior / np.diag(_inverse(prior))
         return shares
 
 
@@ -114,7 +128,7 @@ def knowledge(
         for j, figures in enumerate(fit.friction)
     ]
     values = np.concatenate([fit.parameters.ravel(), np.array(own)[:, :columns].ravel()])
-    return Knowledge(fitter.joint_names, values, data, prior, scores, worth)
+    return Knowledge(fitter.joint_names, values, fitter.prior, data, prior, scores, worth)
 
 
 def _clusters(blocks: Sequence[Block]) -> list[_core.Block]:

@@ -146,7 +146,9 @@ class Identification:
     prior: Floats  # (n, 10): the parameters of the prior, in the same frames
     law: str  # of LAWS
     prior_strength: float
-    delay: float  # s by which efforts are later than positions; negative: earlier
+    # s by which efforts are later than the states, made up for in fits; negative: earlier. Held-out
+    # errors and bands are of torques as solvers compute them, without it.
+    delay: float
     cutoff: float | None  # Hz, of the low-pass of velocities; None: accelerations were given
     filter: str  # how accelerations were estimated, in words
     effort: str  # what recorded efforts mean, in words
