@@ -67,6 +67,11 @@ double Setup::period() const noexcept {
   return update_rate > 0 ? 1.0 / update_rate : 0.0;
 }
 
+std::string Setup::tip() const {
+  rclcpp::Parameter tip;
+  return node->get_parameter("ids.tip", tip) ? tip.value_to_string() : "";
+}
+
 ArmSource::ArmSource(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node)
     : node_(std::move(node)),
       parameters_(std::make_shared<arm_parameters::ParamListener>(node_)),
@@ -92,13 +97,16 @@ Setup ArmSource::setup(const std::string& managers_description, unsigned update_
   return {node_, parameters, {solver, joints, urdfLimits(description, joints)}, update_rate};
 }
 
+inverse_dynamics_control::Compensated compensatedByRobot(const Setup& setup) {
+  const auto& compensated = setup.parameters.compensated_by_robot;
+  return {compensated.gravity, compensated.coriolis, compensated.friction};
+}
+
 LawOptions lawOptions(const Setup& setup, const std::string& friction_source) {
   const Arm& arm = setup.arm;
   const ArmParameters& parameters = setup.parameters;
   LawOptions options;
-  options.compensated = {parameters.compensated_by_robot.gravity,
-                         parameters.compensated_by_robot.coriolis,
-                         parameters.compensated_by_robot.friction};
+  options.compensated = compensatedByRobot(setup);
   options.friction.source = frictionSource(friction_source);
   options.friction.dead_band = parameters.friction.dead_band;
   options.friction.blend = parameters.friction.blend;

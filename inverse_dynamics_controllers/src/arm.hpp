@@ -38,6 +38,9 @@ struct Setup {
 
   /// Period of the control loop [s]; 0: neither the parameter nor the update rate says it.
   double period() const noexcept;
+
+  /// The parameter `ids.tip`; empty: not set.
+  std::string tip() const;
 };
 
 /// Where a controller's robot comes from: parameters, and the robot description.
@@ -58,6 +61,9 @@ class ArmSource {
   std::shared_ptr<arm_parameters::ParamListener> parameters_;
   RobotDescriptionTopic description_;
 };
+
+/// The parameters `compensated_by_robot.*`.
+inverse_dynamics_control::Compensated compensatedByRobot(const Setup& setup);
 
 /// Options of the law.
 ///

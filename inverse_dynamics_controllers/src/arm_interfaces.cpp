@@ -2,6 +2,7 @@
 #include "arm_interfaces.hpp"
 
 #include <hardware_interface/types/hardware_interface_type_values.hpp>
+#include <initializer_list>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <utility>
 
@@ -14,6 +15,19 @@ using hardware_interface::HW_IF_EFFORT;
 using hardware_interface::HW_IF_POSITION;
 using hardware_interface::HW_IF_VELOCITY;
 
+constexpr auto kIndividual = controller_interface::interface_configuration_type::INDIVIDUAL;
+const char* const kState = "state interface";
+
+// `joint/interface`, joint by joint.
+std::vector<std::string> namesOf(const std::vector<std::string>& joints,
+                                 std::initializer_list<const char*> interfaces) {
+  std::vector<std::string> names;
+  for (const std::string& joint : joints) {
+    for (const char* interface : interfaces) names.push_back(joint + "/" + interface);
+  }
+  return names;
+}
+
 template <class Interfaces>
 std::size_t find(const Interfaces& interfaces, const std::string& name, const char* kind) {
   for (std::size_t i = 0; i < interfaces.size(); ++i) {
@@ -25,38 +39,40 @@ std::size_t find(const Interfaces& interfaces, const std::string& name, const ch
       "the parameter 'joints'"));
 }
 
+template <class Interfaces>
+std::vector<std::size_t> find(const Interfaces& interfaces, const std::vector<std::string>& names,
+                              const char* kind) {
+  std::vector<std::size_t> places;
+  for (const std::string& name : names) places.push_back(find(interfaces, name, kind));
+  return places;
+}
+
 }  // namespace
 
 ArmInterfaces::ArmInterfaces(std::vector<std::string> joints) : joints_(std::move(joints)) {}
 
 controller_interface::InterfaceConfiguration ArmInterfaces::states() const {
-  controller_interface::InterfaceConfiguration configuration;
-  configuration.type = controller_interface::interface_configuration_type::INDIVIDUAL;
-  for (const std::string& joint : joints_) {
-    configuration.names.push_back(joint + "/" + HW_IF_POSITION);
-    configuration.names.push_back(joint + "/" + HW_IF_VELOCITY);
-  }
-  return configuration;
+  return {kIndividual, namesOf(joints_, {HW_IF_POSITION, HW_IF_VELOCITY})};
+}
+
+controller_interface::InterfaceConfiguration ArmInterfaces::statesWithEffort() const {
+  return {kIndividual, namesOf(joints_, {HW_IF_POSITION, HW_IF_VELOCITY, HW_IF_EFFORT})};
 }
 
 controller_interface::InterfaceConfiguration ArmInterfaces::commands() const {
-  controller_interface::InterfaceConfiguration configuration;
-  configuration.type = controller_interface::interface_configuration_type::INDIVIDUAL;
-  for (const std::string& joint : joints_) {
-    configuration.names.push_back(joint + "/" + HW_IF_EFFORT);
-  }
-  return configuration;
+  return {kIndividual, namesOf(joints_, {HW_IF_EFFORT})};
 }
 
 void ArmInterfaces::bind(const StateInterfaces& states, const CommandInterfaces& commands) {
-  positions_.clear();
-  velocities_.clear();
-  efforts_.clear();
-  for (const std::string& joint : joints_) {
-    positions_.push_back(find(states, joint + "/" + HW_IF_POSITION, "state interface"));
-    velocities_.push_back(find(states, joint + "/" + HW_IF_VELOCITY, "state interface"));
-    efforts_.push_back(find(commands, joint + "/" + HW_IF_EFFORT, "command interface"));
-  }
+  positions_ = find(states, namesOf(joints_, {HW_IF_POSITION}), kState);
+  velocities_ = find(states, namesOf(joints_, {HW_IF_VELOCITY}), kState);
+  efforts_ = find(commands, namesOf(joints_, {HW_IF_EFFORT}), "command interface");
+}
+
+void ArmInterfaces::bindMeasured(const StateInterfaces& states) {
+  positions_ = find(states, namesOf(joints_, {HW_IF_POSITION}), kState);
+  velocities_ = find(states, namesOf(joints_, {HW_IF_VELOCITY}), kState);
+  measured_efforts_ = find(states, namesOf(joints_, {HW_IF_EFFORT}), kState);
 }
 
 void ArmInterfaces::read(const StateInterfaces& states,
@@ -65,6 +81,13 @@ void ArmInterfaces::read(const StateInterfaces& states,
     const auto row = static_cast<Eigen::Index>(j);
     state.q[row] = valueOf(states[positions_[j]]);
     state.qd[row] = valueOf(states[velocities_[j]]);
+  }
+}
+
+void ArmInterfaces::readEffort(const StateInterfaces& states,
+                               Eigen::VectorXd& effort) const noexcept {
+  for (std::size_t j = 0; j < measured_efforts_.size(); ++j) {
+    effort[static_cast<Eigen::Index>(j)] = valueOf(states[measured_efforts_[j]]);
   }
 }
 

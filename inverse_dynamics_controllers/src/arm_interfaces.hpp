@@ -6,6 +6,8 @@
 ///     interfaces.bind(state_interfaces_, command_interfaces_);     // when activated
 ///     interfaces.read(state_interfaces_, state);                   // in each cycle
 ///     interfaces.write(tau, command_interfaces_);
+///
+/// What measures only takes the efforts as states: statesWithEffort(), bindMeasured(), readEffort().
 #pragma once
 
 #include <Eigen/Core>
@@ -29,6 +31,9 @@ class ArmInterfaces {
   /// `joint/position` and `joint/velocity` of all joints.
   controller_interface::InterfaceConfiguration states() const;
 
+  /// The same, and `joint/effort` of all joints.
+  controller_interface::InterfaceConfiguration statesWithEffort() const;
+
   /// `joint/effort` of all joints.
   controller_interface::InterfaceConfiguration commands() const;
 
@@ -37,12 +42,20 @@ class ArmInterfaces {
   /// Throws inverse_dynamics_solver::Exception: one is missing.
   void bind(const StateInterfaces& states, const CommandInterfaces& commands);
 
+  /// The same for statesWithEffort().
+  void bindMeasured(const StateInterfaces& states);
+
   /// Measured state; NaN where a value can't be read. Real time: no allocation, exception or system
   /// call.
   ///
   /// @param[out] state  of n joints.
   void read(const StateInterfaces& states,
             inverse_dynamics_control::JointState& state) const noexcept;
+
+  /// Measured efforts [N m]; NaN where a value can't be read. Real time: as read().
+  ///
+  /// @param[out] effort  n.
+  void readEffort(const StateInterfaces& states, Eigen::VectorXd& effort) const noexcept;
 
   /// Commands the efforts [N m]. Real time: as read().
   ///
@@ -52,6 +65,7 @@ class ArmInterfaces {
  private:
   std::vector<std::string> joints_;
   std::vector<std::size_t> positions_, velocities_, efforts_;  // where they are
+  std::vector<std::size_t> measured_efforts_;
 };
 
 }  // namespace inverse_dynamics_controllers

@@ -26,11 +26,6 @@ RigidBody bodyOfParameters(const ParameterValues& values) {
       values.at("payload.inertia").get<std::vector<double>>(), "parameter payload.");
 }
 
-std::string tipOf(const Setup& setup) {
-  rclcpp::Parameter tip;
-  return setup.node->get_parameter("ids.tip", tip) ? tip.value_to_string() : "";
-}
-
 }  // namespace
 
 CarriedBody::CarriedBody(const Setup& setup) {
@@ -47,7 +42,7 @@ CarriedBody::CarriedBody(const Setup& setup) {
   };
   watch_ = std::make_unique<ParameterWatch>(setup.node, parameterNames(), check, apply);
 
-  const auto receive = [ramp = ramp_, tip = tipOf(setup),
+  const auto receive = [ramp = ramp_, tip = setup.tip(),
                         logger = setup.node->get_logger()](const InertiaStamped& message) {
     try {
       ramp->aimAt(inverse_dynamics_control::bodyOf(message, tip));

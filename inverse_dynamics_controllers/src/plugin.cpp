@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pluginlib/class_list_macros.hpp>
 
+#include "inverse_dynamics_controllers/external_wrench_broadcaster.hpp"
 #include "inverse_dynamics_controllers/feed_forward_controller.hpp"
 #include "inverse_dynamics_controllers/gravity_compensation_controller.hpp"
 #include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
 #include "inverse_dynamics_controllers/pd_gravity_compensation_controller.hpp"
+
+static_assert(inverse_dynamics_controllers::kExportsStates == bool(CONTROLLERS_EXPORT_STATES),
+              "the plugin file names another base class than the broadcaster has");
 
 PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::InverseDynamicsController,
                        controller_interface::ChainableControllerInterface)
@@ -14,3 +18,10 @@ PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::FeedForwardController,
                        controller_interface::ChainableControllerInterface)
 PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::PdGravityCompensationController,
                        controller_interface::ChainableControllerInterface)
+#if CONTROLLERS_EXPORT_STATES
+PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::ExternalWrenchBroadcaster,
+                       controller_interface::ChainableControllerInterface)
+#else
+PLUGINLIB_EXPORT_CLASS(inverse_dynamics_controllers::ExternalWrenchBroadcaster,
+                       controller_interface::ControllerInterface)
+#endif

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
-#include <chrono>
 
 namespace inverse_dynamics_controllers {
 
@@ -85,21 +84,6 @@ std::vector<UpdateReport::Line> UpdateReport::takeLines() {
                                std::to_string(times) + " cycles"});
   }
   return lines;
-}
-
-rclcpp::TimerBase::SharedPtr logEverySecond(
-    const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
-    const std::shared_ptr<UpdateReport>& report) {
-  const rclcpp::Logger logger = node->get_logger();
-  return node->create_wall_timer(std::chrono::seconds(1), [logger, report] {
-    for (const UpdateReport::Line& line : report->takeLines()) {
-      if (line.is_error) {
-        RCLCPP_ERROR(logger, "%s", line.text.c_str());
-      } else {
-        RCLCPP_WARN(logger, "%s", line.text.c_str());
-      }
-    }
-  });
 }
 
 }  // namespace inverse_dynamics_controllers

@@ -13,9 +13,10 @@
 #include <inverse_dynamics_control/output_stage.hpp>
 #include <inverse_dynamics_control/reference_guard.hpp>
 #include <inverse_dynamics_control/status.hpp>
-#include <rclcpp_lifecycle/lifecycle_node.hpp>
 #include <string>
 #include <vector>
+
+#include "report_log.hpp"
 
 namespace inverse_dynamics_controllers {
 
@@ -24,11 +25,7 @@ class UpdateReport {
  public:
   using Joints = inverse_dynamics_control::OutputStage::Joints;
 
-  /// A sentence for the log.
-  struct Line {
-    bool is_error;  ///< the wish was refused; else: it was cut
-    std::string text;
-  };
+  using Line = ReportLine;
 
   explicit UpdateReport(std::vector<std::string> joints) : joints_(std::move(joints)) {}
 
@@ -58,10 +55,5 @@ class UpdateReport {
   std::atomic<std::uint32_t> not_written_{0};
   std::atomic<int> stop_{0}, stop_joint_{-1}, given_up_{0};
 };
-
-/// Logs a report's lines, once a second.
-rclcpp::TimerBase::SharedPtr logEverySecond(
-    const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
-    const std::shared_ptr<UpdateReport>& report);
 
 }  // namespace inverse_dynamics_controllers

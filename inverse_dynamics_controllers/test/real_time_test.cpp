@@ -3,6 +3,7 @@
 #include <inverse_dynamics_solver/conformance/real_time_section.hpp>
 #include <new>
 
+#include "inverse_dynamics_controllers/external_wrench_broadcaster.hpp"
 #include "inverse_dynamics_controllers/feed_forward_controller.hpp"
 #include "inverse_dynamics_controllers/gravity_compensation_controller.hpp"
 #include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
@@ -124,6 +125,23 @@ TEST_F(GravityCompensationCycle, AllocatesLocksAndThrowsNothing) {
   if (IsSkipped() || HasFatalFailure()) return;
   ASSERT_TRUE(configure(good()) && activate()) << log.text();
   EXPECT_EQ(allocationsOf(*this, hardware, [](double) {}), 0);
+}
+
+class ExternalWrenchCycle : public ControllerFixture<ExternalWrenchBroadcaster> {
+ public:
+  using ControllerFixture::update;
+};
+
+TEST_F(ExternalWrenchCycle, AllocatesLocksAndThrowsNothing) {
+  proveTheGuard();
+  if (IsSkipped() || HasFatalFailure()) return;
+  Parameters parameters = good();
+  parameters["noise"] = rclcpp::ParameterValue(std::vector<double>{0.3});
+  parameters["contact.thresholds"] = rclcpp::ParameterValue(std::vector<double>{1.0});
+  ASSERT_TRUE(configure(parameters) && activate()) << log.text();
+  EXPECT_EQ(
+      allocationsOf(*this, hardware, [this](double effort) { hardware.measured_tau[0] = effort; }),
+      0);
 }
 
 }  // namespace

@@ -162,12 +162,13 @@ TEST_F(Refusals, ActivationWithoutAMeasuredState) {
 TEST_F(Refusals, ActivationWithoutAnInterface) {
   ASSERT_TRUE(configure(good())) << log.text();
   auto states = hardware.states();
-  states.pop_back();
+  states.pop_back();  // the effort of the last joint
+  states.pop_back();  // its velocity
   controller.assign_interfaces(hardware.commands(), std::move(states));
   EXPECT_NE(controller.get_node()->activate().id(),
             lifecycle_msgs::msg::State::PRIMARY_STATE_ACTIVE);
   EXPECT_TRUE(
-      log.has("ERROR: state interface: missing: expected wrist_3_joint/velocity, got 11 "
+      log.has("ERROR: state interface: missing: expected wrist_3_joint/velocity, got 16 "
               "others; "))
       << log.text();
 }

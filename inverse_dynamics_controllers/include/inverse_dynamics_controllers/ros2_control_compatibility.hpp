@@ -6,7 +6,9 @@
 ///     setValue(command_interfaces_[0], tau);
 #pragma once
 
+#include <array>
 #include <controller_interface/chainable_controller_interface.hpp>
+#include <controller_interface/controller_interface.hpp>
 #include <hardware_interface/handle.hpp>
 #include <limits>
 #include <memory>
@@ -42,6 +44,15 @@ struct SharedReferences : controller_interface::ChainableControllerInterface {
   static std::false_type find(...);
 };
 constexpr bool kHasSharedReferences = decltype(SharedReferences::find<SharedReferences>(0))::value;
+
+/// Whether controllers export state interfaces of their own (jazzy).
+struct SharedStates : controller_interface::ChainableControllerInterface {
+  template <class T>
+  static auto find(int) -> decltype(&T::on_export_state_interfaces_list, std::true_type());
+  template <class T>
+  static std::false_type find(...);
+};
+constexpr bool kHasSharedStates = decltype(SharedStates::find<SharedStates>(0))::value;
 
 }  // namespace detail
 
@@ -194,5 +205,67 @@ class ChainableController : public controller_interface::ChainableControllerInte
 
   std::vector<std::shared_ptr<hardware_interface::CommandInterface>> shared_;
 };
+
+/// Whether a Broadcaster has state interfaces; decides about its base class in the plugin file too.
+constexpr bool kExportsStates = detail::kHasSharedStates;
+
+/// A controller that commands nothing, with the state interfaces of a force-torque sensor that has
+/// the controller's name.
+template <class StateInterface>
+class ExportingBroadcaster : public ChainableController {
+ protected:
+  /// A cycle.
+  virtual controller_interface::return_type measure(const rclcpp::Time& time,
+                                                    const rclcpp::Duration& period) noexcept = 0;
+
+  /// What others read from now on: force, then torque. Real time: no allocation, exception or system call.
+  void setStates(const std::array<double, 6>& values) noexcept {
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+      setValue(*states_[k], values[k]);
+    }
+  }
+
+  // NOLINTBEGIN(readability-identifier-naming)
+  std::vector<std::shared_ptr<StateInterface>> on_export_state_interfaces_list() override {
+    states_.clear();
+    for (const char* name : {"force.x", "force.y", "force.z", "torque.x", "torque.y", "torque.z"}) {
+      states_.push_back(std::make_shared<StateInterface>(this->get_node()->get_name(), name));
+    }
+    return states_;
+  }
+  controller_interface::return_type update_and_write_commands(
+      const rclcpp::Time& time, const rclcpp::Duration& period) override {
+    return measure(time, period);
+  }
+  // NOLINTEND(readability-identifier-naming)
+
+ private:
+  std::vector<std::string> referenceNames() const override { return {}; }
+  void readReferenceTopic() noexcept override {}
+
+  std::vector<std::shared_ptr<StateInterface>> states_;
+};
+
+/// The same without state interfaces.
+class PlainBroadcaster : public controller_interface::ControllerInterface {
+ public:
+  // NOLINTNEXTLINE(readability-identifier-naming): the base class's name, from jazzy on
+  rclcpp::NodeOptions define_custom_node_options() const { return declaringNodeOptions(); }
+
+  controller_interface::return_type update(const rclcpp::Time& time,
+                                           const rclcpp::Duration& period) override {
+    return measure(time, period);
+  }
+
+ protected:
+  virtual controller_interface::return_type measure(const rclcpp::Time& time,
+                                                    const rclcpp::Duration& period) noexcept = 0;
+  void setStates(const std::array<double, 6>& /*values*/) noexcept {}
+};
+
+/// Base class of controllers that measure: with state interfaces where the release has them.
+using Broadcaster =
+    std::conditional_t<kExportsStates, ExportingBroadcaster<hardware_interface::StateInterface>,
+                       PlainBroadcaster>;
 
 }  // namespace inverse_dynamics_controllers

@@ -60,14 +60,18 @@ inline const std::vector<std::string>& ur10Joints() {
   return names;
 }
 
-/// Joints with a position, a velocity and an effort each.
+/// Joints with a position, a velocity, a measured and a commanded effort each.
 class FakeHardware {
  public:
   explicit FakeHardware(const std::vector<std::string>& joints)
-      : q(joints.size(), 0.0), qd(joints.size(), 0.0), tau(joints.size(), 77.0) {
+      : q(joints.size(), 0.0),
+        qd(joints.size(), 0.0),
+        measured_tau(joints.size(), 0.0),
+        tau(joints.size(), 77.0) {
     for (std::size_t j = 0; j < joints.size(); ++j) {
       addState(joints[j], "position", &q[j]);
       addState(joints[j], "velocity", &qd[j]);
+      addState(joints[j], "effort", &measured_tau[j]);
       commands_.push_back(std::make_shared<hardware_interface::CommandInterface>(
           referenceInterface(joints[j], "effort", &tau[j])));
     }
@@ -80,6 +84,10 @@ class FakeHardware {
     }
   }
 
+  void setEffort(const Eigen::VectorXd& measured) {
+    measured_tau.assign(measured.begin(), measured.end());
+  }
+
   Eigen::VectorXd effort() const {
     return Eigen::Map<const Eigen::VectorXd>(tau.data(), static_cast<Eigen::Index>(tau.size()));
   }
@@ -89,7 +97,7 @@ class FakeHardware {
     return loans<LoanedCommandInterface>(commands_);
   }
 
-  std::vector<double> q, qd, tau;
+  std::vector<double> q, qd, measured_tau, tau;
 
  private:
   void addState(const std::string& joint, const std::string& interface, double* value) {
@@ -163,8 +171,8 @@ class ControllerFixture : public ::testing::Test {
            lifecycle_msgs::msg::State::PRIMARY_STATE_ACTIVE;
   }
 
-  return_type update() {
-    return controller.update(rclcpp::Time(0), rclcpp::Duration::from_seconds(kPeriod));
+  return_type update(double period = kPeriod) {
+    return controller.update(rclcpp::Time(0), rclcpp::Duration::from_seconds(period));
   }
 
   /// Spins the controller's node, and others that were added, until something is true.

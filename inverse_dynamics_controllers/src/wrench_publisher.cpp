@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wrench_publisher.hpp"
+
+#include <chrono>
+#include <geometry_msgs/msg/wrench_stamped.hpp>
+#include <sensor_msgs/msg/joint_state.hpp>
+#include <std_msgs/msg/bool.hpp>
+#include <utility>
+
+#include "latest_value.hpp"
+
+namespace inverse_dynamics_controllers {
+
+using geometry_msgs::msg::WrenchStamped;
+using sensor_msgs::msg::JointState;
+using std_msgs::msg::Bool;
+
+namespace {
+
+struct Estimate {
+  std::int64_t nanoseconds = 0;
+  Eigen::VectorXd torques;
+  std::array<double, 6> wrench{};
+  bool contact = false;
+};
+
+void write(const std::array<double, 6>& values, geometry_msgs::msg::Wrench& wrench) {
+  wrench.force.x = values[0];
+  wrench.force.y = values[1];
+  wrench.force.z = values[2];
+  wrench.torque.x = values[3];
+  wrench.torque.y = values[4];
+  wrench.torque.z = values[5];
+}
+
+}  // namespace
+
+struct WrenchPublisher::Outbox {
+  LatestValue<Estimate> newest;
+  WrenchStamped wrench;
+  JointState torques;
+  rclcpp::Publisher<WrenchStamped>::SharedPtr wrench_publisher;
+  rclcpp::Publisher<JointState>::SharedPtr torques_publisher;
+  rclcpp::Publisher<Bool>::SharedPtr contact_publisher;  // null: no contacts
+
+  void publish() {
+    const Estimate* const estimate = newest.take();
+    if (estimate == nullptr) return;
+    wrench.header.stamp = rclcpp::Time(estimate->nanoseconds);
+    write(estimate->wrench, wrench.wrench);
+    wrench_publisher->publish(wrench);
+    torques.header.stamp = wrench.header.stamp;
+    torques.effort.assign(estimate->torques.begin(), estimate->torques.end());
+    torques_publisher->publish(torques);
+    if (contact_publisher == nullptr) return;
+    Bool contact;
+    contact.data = estimate->contact;
+    contact_publisher->publish(contact);
+  }
+};
+
+WrenchPublisher::WrenchPublisher(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
+                                 const std::vector<std::string>& joints, const std::string& frame,
+                                 double rate, bool contacts) {
+  if (!(rate > 0)) return;
+  Estimate first;
+  first.torques.setZero(static_cast<Eigen::Index>(joints.size()));
+  WrenchStamped wrench;
+  wrench.header.frame_id = frame;
+  JointState torques;
+  torques.name = joints;
+  const rclcpp::SystemDefaultsQoS qos;
+  outbox_.reset(new Outbox{LatestValue<Estimate>(first), std::move(wrench), std::move(torques),
+                           node->create_publisher<WrenchStamped>("~/wrench", qos),
+                           node->create_publisher<JointState>("~/external_torques", qos),
+                           contacts ? node->create_publisher<Bool>("~/contact", qos) : nullptr});
+  timer_ = node->create_wall_timer(std::chrono::duration<double>(1.0 / rate),
+                                   [outbox = outbox_] { outbox->publish(); });
+}
+
+void WrenchPublisher::note(const rclcpp::Time& time, const SensedWrench& sensed) noexcept {
+  if (outbox_ == nullptr) return;
+  Estimate& estimate = outbox_->newest.back();
+  estimate.nanoseconds = time.nanoseconds();
+  estimate.torques = sensed.torques();
+  estimate.wrench = sensed.wrench();
+  estimate.contact = sensed.contact() != nullptr && sensed.contact()->contact();
+  outbox_->newest.publish();
+}
+
+}  // namespace inverse_dynamics_controllers
