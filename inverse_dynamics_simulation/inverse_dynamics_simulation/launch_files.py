@@ -51,6 +51,9 @@ CONTROLLERS = {
 }
 """What is spawned for each choice, in this order."""
 
+BROADCASTERS = ["joint_state_broadcaster", "external_wrench_broadcaster"]
+"""What is spawned for all of them."""
+
 
 def arguments() -> list[DeclareLaunchArgument]:
     """Which robot, which controller, which parameters."""
@@ -85,7 +88,7 @@ def parameter_file(context: LaunchContext) -> str:
 
 def spawner(context: LaunchContext) -> Node:
     """Starts the controllers of the argument `controller`."""
-    spawned = ["joint_state_broadcaster", *CONTROLLERS[text(context, "controller")]]
+    spawned = [*BROADCASTERS, *CONTROLLERS[text(context, "controller")]]
     return Node(
         package="controller_manager",
         executable="spawner",
