@@ -7,8 +7,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
-#include <type_traits>
-#include <variant>
 #include <vector>
 
 #include "chain_dynamics/fast_model.hpp"
@@ -67,27 +65,17 @@ double largestTerm(const Chain& chain, const std::vector<LinkParameters>& links,
   return largest;
 }
 
-double largestFriction(const Model& model, const VectorXd& qd) {
+/// load: the largest term of the gravity torques.
+double largestFriction(const Model& model, const VectorXd& qd, double load) {
   const double speed = qd.cwiseAbs().maxCoeff();
   double largest = 0;
   for (const FrictionLaw& law : model.friction) {
-    largest = std::max(
-        largest,
-        std::visit(
-            [&](const auto& named) {
-              if constexpr (std::is_same_v<decltype(named), const ViscousCoulombOffset&>) {
-                return std::abs(named.fv) * speed + std::abs(named.fc) + std::abs(named.fo);
-              } else if constexpr (std::is_same_v<decltype(named), const ViscousOffsetSigmoid&>) {
-                // the rounding of the exponent, times the steepest slope of the step
-                const double exponent = std::abs(named.alpha) * (speed + std::abs(named.nu));
-                return std::abs(named.fv) * speed + std::abs(named.fo) +
-                       std::abs(named.fc) * (1 + exponent / 4);
-              } else {
-                const double exponent = std::abs(named.alpha) * (speed + std::abs(named.delta));
-                return 2 * std::abs(named.A) * (1 + exponent / 4);
-              }
-            },
-            law));
+    const FrictionForm form = formOf(law);
+    // the rounding of the exponent, times the steepest slope of the step
+    const double exponent = std::abs(form.alpha) * (speed + std::abs(form.shift));
+    const double height = std::abs(form.A) + form.fl * load + form.fs;
+    largest = std::max(largest, std::abs(form.fv) * speed + std::abs(form.fc) + std::abs(form.fo) +
+                                    2 * height * (1 + exponent / 4));
   }
   return largest;
 }
@@ -110,7 +98,7 @@ void require(const MatrixXd& fast, const MatrixXd& plain, double allowed, const 
 Terms plainTerms(const Model& model, const State& x) {
   Terms terms(x.q.size());
   dynamicComponents(model, x.q, x.qd, terms.H, terms.c, terms.g);
-  frictionVector(model, x.qd, terms.f);
+  frictionVector(model, x.q, x.qd, terms.f);
   torques(model, x.q, x.qd, x.qdd, terms.tau);
   terms.tau += terms.f;
   return terms;
@@ -120,7 +108,7 @@ Terms fastTerms(const FastModel& fast, const State& x) {
   Terms terms(x.q.size());
   fast.dynamicComponents(x.q.data(), x.qd.data(), terms.H.data(), x.q.size(), terms.c.data(),
                          terms.g.data());
-  fast.frictionVector(x.qd.data(), terms.f.data());
+  fast.frictionVector(x.q.data(), x.qd.data(), terms.f.data());
   fast.torques(x.q.data(), x.qd.data(), x.qdd.data(), terms.tau.data());
   return terms;
 }
@@ -136,7 +124,7 @@ Terms batchTerms(const FastModel& fast, const State& x) {
   };
   MatrixXd H(n, n * kStates), c(n, kStates), g(c), f(c), tau(c);
   fast.dynamicComponentsBatch(states(x.q), states(x.qd), H, c, g);
-  fast.frictionVectorBatch(states(x.qd), f);
+  fast.frictionVectorBatch(states(x.q), states(x.qd), f);
   fast.torquesBatch(states(x.q), states(x.qd), states(x.qdd), tau);
   Terms terms(n);
   terms.H = H.middleCols(kAt * n, n);
@@ -164,10 +152,10 @@ void requireEqualKernels(const Model& model, const State& state) {
   const Index n = model.chain.jointCount();
   const VectorXd zero = VectorXd::Zero(n), one = VectorXd::Ones(n);
   const double unit = rounding(model), gravity = model.chain.gravity().norm();
-  const double friction = unit * largestFriction(model, state.qd);
   const double H = unit * largestTerm(model, {state.q, zero, one}, 0);
   const double c = unit * largestTerm(model, {state.q, state.qd, zero}, 0);
   const double g = unit * largestTerm(model, {state.q, zero, zero}, gravity);
+  const double friction = unit * largestFriction(model, state.qd, g / unit);
   const double tau = friction + unit * largestTerm(model, state, gravity);
 
   const Terms plain = plainTerms(model, state);

@@ -61,13 +61,22 @@ Chain chainOf(Bytes& bytes) {
 
 FrictionLaw friction(Bytes& bytes) {
   const double a = bytes.number(500), b = bytes.number(20), c = bytes.number(20);
-  switch (bytes.below(3)) {
+  switch (bytes.below(4)) {
     case 0:
       return ViscousCoulombOffset{a, b, c};
     case 1:
       return ViscousOffsetSigmoid{a, b, c, bytes.number(500), bytes.number(0.5)};
-    default:
+    case 2:
       return CenteredSigmoid{b, a, bytes.number(0.5)};
+    default:
+      return SmoothCoulomb{std::abs(b),
+                           std::abs(c),
+                           0.002 + std::abs(bytes.number(0.5)),
+                           bytes.number(0.5),
+                           bytes.number(5),
+                           std::abs(bytes.number(1)),
+                           std::abs(bytes.number(5)),
+                           0.01 + std::abs(bytes.number(0.5))};
   }
 }
 

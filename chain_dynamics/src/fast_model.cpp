@@ -21,10 +21,15 @@ using fast::Robot;
 
 static_assert(FastModel::kMaxJoints == fast::kMaxJoints);
 static_assert(sizeof(Body) == fast::kBodyNumbers * sizeof(double));
+static_assert(sizeof(FrictionForm) == fast::kFrictionNumbers * sizeof(double));
 
 /// Longest chain whose accelerations are solved for in O(n^3); beyond it the O(n) recursion is
 /// faster.
 constexpr Eigen::Index kSolvedJoints = 32;
+
+/// Shift [rad/s] of a step without any: velocities of 1e-100 rad/s would make the kernels' powers of
+/// the exponent denormal. It is nothing beside one.
+constexpr double kNoDenormals = 1e-40;
 
 /// Rows and joints of arrays that are read a pack at a time.
 constexpr std::size_t kPack = 8;
@@ -58,24 +63,6 @@ KernelSet kernelsNamed(const std::string& name, int joints) {
   }
   throw ModelError("fast model", "instruction set", joined(FastModel::instructionSets()), name,
                    "leave it empty for the best");
-}
-
-/// The numbers of a law in the order of fast::kFrictionNumbers.
-using FrictionNumbers = Eigen::Matrix<double, fast::kFrictionNumbers, 1>;
-FrictionNumbers numbersOf(const ViscousCoulombOffset& law) {
-  FrictionNumbers numbers;
-  numbers << law.fv, law.fc, law.fo, 0, 0, 0, 0;
-  return numbers;
-}
-FrictionNumbers numbersOf(const ViscousOffsetSigmoid& law) {
-  FrictionNumbers numbers;
-  numbers << law.fv, 0, law.fo, law.fc, law.alpha, law.nu, 0;
-  return numbers;
-}
-FrictionNumbers numbersOf(const CenteredSigmoid& law) {
-  FrictionNumbers numbers;
-  numbers << 0, 0, 0, law.A, law.alpha, law.delta, sigmoid(law.alpha * law.delta);
-  return numbers;
 }
 
 }  // namespace
@@ -114,11 +101,13 @@ struct FastModel::Data {
     if (laws.empty()) return;
     friction.resize(fast::kFrictionNumbers * stride, 0.0);
     for (std::size_t j = 0; j < laws.size(); ++j) {
-      const FrictionNumbers numbers =
-          std::visit([](const auto& law) { return numbersOf(law); }, laws[j]);
-      for (std::size_t k = 0; k < fast::kFrictionNumbers; ++k) {
-        friction[k * stride + j] = numbers[static_cast<Eigen::Index>(k)];
-      }
+      FrictionForm form = formOf(laws[j]);
+      if (form.alpha != 0 && form.shift == 0) form.shift = kNoDenormals;
+      const double* const numbers = &form.fv;
+      for (std::size_t k = 0; k < fast::kFrictionNumbers; ++k)
+        friction[k * stride + j] = numbers[k];
+      robot.load_friction = robot.load_friction || form.fl != 0;
+      robot.changing_steps = robot.changing_steps || form.fl != 0 || form.fs != 0;
     }
   }
 
@@ -226,8 +215,10 @@ void FastModel::gravityVector(const double* q, double* g) const {
   kernels_->gravity(robot(), structure_, q, g);
 }
 
-void FastModel::frictionVector(const double* qd, double* f) const {
-  kernels_->friction(robot(), qd, f);
+bool FastModel::frictionDependsOnLoad() const { return robot().load_friction; }
+
+void FastModel::frictionVector(const double* q, const double* qd, double* f) const {
+  kernels_->friction(robot(), structure_, q, qd, f);
 }
 
 void FastModel::dynamicComponents(const double* q, const double* qd, double* H,
@@ -246,7 +237,7 @@ void FastModel::forwardDynamics(const double* q, const double* qd, const double*
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
   using Given = Eigen::Map<const Eigen::VectorXd>;
   Vector without_friction(n);
-  kernels_->friction(robot(), qd, without_friction.data());
+  kernels_->friction(robot(), structure_, q, qd, without_friction.data());
   without_friction = Given(tau, n) - without_friction;
   chain_dynamics::forwardDynamics(chain, Given(q, n), Given(qd, n), without_friction,
                                   Eigen::Map<Eigen::VectorXd>(qdd, n));

@@ -65,8 +65,8 @@ void FastModel::gravityVectorBatch(ConstStates q, States g) const {
   many_->gravity(robot(), structure_, q.count, samples(q), samples(g));
 }
 
-void FastModel::frictionVectorBatch(ConstStates qd, States f) const {
-  many_->friction(robot(), qd.count, samples(qd), samples(f));
+void FastModel::frictionVectorBatch(ConstStates q, ConstStates qd, States f) const {
+  many_->friction(robot(), structure_, qd.count, samples(q), samples(qd), samples(f));
 }
 
 void FastModel::dynamicComponentsBatch(ConstStates q, ConstStates qd, StridedMatrices H, States c,

@@ -97,8 +97,8 @@ struct Plain {
   Plain(const Model& model, const VectorXd& q)
       : H(q.size(), q.size()), c(q.size()), g(q.size()), f(q.size()), backwards(q.size()) {
     dynamicComponents(model, q, q, H, c, g);
-    frictionVector(model, q, f);
-    frictionVector(model, -q, backwards);
+    frictionVector(model, q, q, f);
+    frictionVector(model, q, -q, backwards);
   }
   /// What friction is made of: the parts of a law may cancel at one velocity.
   VectorXd frictionScale() const { return f.cwiseAbs() + backwards.cwiseAbs(); }
@@ -155,8 +155,8 @@ bool derivativesEqual(const FastModel& fast, const Model& model, const Scale& sc
   MatrixXd by_q(n, n), by_qd(n, n), by_qdd(n, n);
   VectorXd slope(n);
   torqueDerivatives(model, q, q, q, by_q, by_qd, by_qdd);
-  frictionSlopes(model, q, slope);
-  by_qd.diagonal() += slope;
+  addFrictionDerivatives(model, q, q, by_q, by_qd);
+  frictionSlopes(model, q, q, slope);
 
   MatrixXd fast_by_q(n, n), fast_by_qd(n, n), fast_by_qdd(n, n);
   fast.torqueDerivatives(q.data(), q.data(), q.data(), fast_by_q.data(), fast_by_qd.data(),

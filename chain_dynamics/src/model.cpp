@@ -2,15 +2,18 @@
 
 #include "chain_dynamics/model.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <string>
 
 #include "chain_dynamics/coriolis_matrix.hpp"
 #include "chain_dynamics/coriolis_vector.hpp"
+#include "chain_dynamics/dual.hpp"
 #include "chain_dynamics/dynamic_components.hpp"
 #include "chain_dynamics/energy.hpp"
 #include "chain_dynamics/error.hpp"
+#include "chain_dynamics/gravity_vector.hpp"
 #include "chain_dynamics/parameter_sets.hpp"
 #include "chain_dynamics/torque_derivatives.hpp"
 #include "definite_inertia.hpp"
@@ -23,35 +26,91 @@ ParameterSets setsOf(const Model& model) {
   return {model.row_parameters, model.gravity_parameters};
 }
 
+/// What laws of friction call load: the gravity torques, or zeros where none asks for them.
+class Load {
+ public:
+  Load(const Model& model, const ConstVectorRef& q)
+      : memory_(model.chain.jointCount()), g(&memory_[0], model.chain.jointCount()) {
+    if (frictionDependsOnLoad(model)) {
+      gravityVector(model, q, g);
+    } else {
+      g.setZero();
+    }
+  }
+
+ private:
+  Scratch<double> memory_;
+
+ public:
+  Eigen::Map<Eigen::VectorXd> g;
+};
+
+std::string nameOf(const Model& model, std::size_t joint) {
+  return model.chain.joints()[joint].name;
+}
+
+/// A part of the model that is there for no joint or for all.
+void checkCount(const Model& model, const std::string& what, std::size_t count) {
+  const std::size_t n = model.chain.joints().size();
+  if (count == 0 || count == n) return;
+  throw ModelError("model " + model.name, what,
+                   "none, or one per joint (" + std::to_string(n) + ")", std::to_string(count), "");
+}
+
+void checkFrictionLaws(const Model& model) {
+  const std::string where = "model " + model.name;
+  if (!model.friction.empty() && model.friction.size() != model.chain.joints().size()) {
+    throw ModelError(where, "friction",
+                     "no law, or one per joint (" + std::to_string(model.chain.jointCount()) + ")",
+                     std::to_string(model.friction.size()), "");
+  }
+  for (std::size_t j = 0; j < model.friction.size(); ++j) {
+    checkFriction(model.friction[j], where + ": friction of joint " + nameOf(model, j));
+  }
+}
+
+void checkDriveGains(const Model& model) {
+  checkCount(model, "drive gains", static_cast<std::size_t>(model.drive_gains.size()));
+  for (Eigen::Index j = 0; j < model.drive_gains.size(); ++j) {
+    if (std::isfinite(model.drive_gains[j]) && model.drive_gains[j] > 0) continue;
+    throw ModelError("model " + model.name,
+                     "drive gain of joint " + nameOf(model, static_cast<std::size_t>(j)),
+                     "a finite number > 0 [N m/A]", std::to_string(model.drive_gains[j]), "");
+  }
+}
+
+bool isInterval(const Interval& interval) {
+  return std::isfinite(interval.lower) && std::isfinite(interval.upper) &&
+         interval.lower <= interval.upper;
+}
+
+void checkExperience(const Model& model) {
+  const std::string where = "model " + model.name;
+  checkCount(model, "torque deviations", static_cast<std::size_t>(model.torque_deviation.size()));
+  for (Eigen::Index j = 0; j < model.torque_deviation.size(); ++j) {
+    if (std::isfinite(model.torque_deviation[j]) && model.torque_deviation[j] >= 0) continue;
+    throw ModelError(where,
+                     "torque deviation of joint " + nameOf(model, static_cast<std::size_t>(j)),
+                     "a finite number >= 0 [N m]", std::to_string(model.torque_deviation[j]), "");
+  }
+  checkCount(model, "seen ranges", model.seen.size());
+  for (std::size_t j = 0; j < model.seen.size(); ++j) {
+    const SeenRange& seen = model.seen[j];
+    if (isInterval(seen.q) && isInterval(seen.qd) && isInterval(seen.qdd)) continue;
+    throw ModelError(where, "seen range of joint " + nameOf(model, j),
+                     "finite numbers, the least first", "others", "");
+  }
+}
+
 }  // namespace
 
 bool Model::inertiaIsPhysical() const { return row_parameters.empty() && inertiaIsDefinite(chain); }
 
 void checkModel(const Model& model) {
-  const std::string where = "model " + model.name;
-  const Eigen::Index n = model.chain.jointCount();
   checkParameterSets(model.chain, setsOf(model));
-  if (!model.friction.empty() && model.friction.size() != model.chain.joints().size()) {
-    throw ModelError(where, "friction", "no law, or one per joint (" + std::to_string(n) + ")",
-                     std::to_string(model.friction.size()), "");
-  }
-  for (std::size_t j = 0; j < model.friction.size(); ++j) {
-    if (!std::isfinite(friction(model.friction[j], 0.0))) {
-      throw ModelError(where, "friction of joint " + model.chain.joints()[j].name,
-                       "finite coefficients", "a NaN or an infinity", "");
-    }
-  }
-  if (model.drive_gains.size() != 0 && model.drive_gains.size() != n) {
-    throw ModelError(where, "drive gains", "none, or one per joint (" + std::to_string(n) + ")",
-                     std::to_string(model.drive_gains.size()), "");
-  }
-  for (Eigen::Index j = 0; j < model.drive_gains.size(); ++j) {
-    if (!std::isfinite(model.drive_gains[j]) || model.drive_gains[j] <= 0) {
-      throw ModelError(
-          where, "drive gain of joint " + model.chain.joints()[static_cast<std::size_t>(j)].name,
-          "a finite number > 0 [N m/A]", std::to_string(model.drive_gains[j]), "");
-    }
-  }
+  checkFrictionLaws(model);
+  checkDriveGains(model);
+  checkExperience(model);
 }
 
 Model withBodyAtTip(const Model& model, const LinkParameters& body) {
@@ -109,19 +168,51 @@ double potentialEnergy(const Model& model, const ConstVectorRef& q) {
                                      own ? model.gravity_parameters : model.chain.links(), q);
 }
 
-void frictionVector(const Model& model, const ConstVectorRef& qd, VectorRef f) {
+bool frictionDependsOnLoad(const Model& model) {
+  return std::any_of(model.friction.begin(), model.friction.end(), dependsOnLoad);
+}
+
+void frictionVector(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                    VectorRef f) {
   if (model.friction.empty()) {
     f = 0.0 * qd;  // keeps a NaN
   } else {
-    frictionVector(model.friction, qd, f);
+    frictionVector(model.friction, qd, Load(model, q).g, f);
   }
 }
 
-void frictionSlopes(const Model& model, const ConstVectorRef& qd, VectorRef slope) {
+void frictionSlopes(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                    VectorRef slope) {
   if (model.friction.empty()) {
     slope = 0.0 * qd;  // keeps a NaN
   } else {
-    frictionSlopes(model.friction, qd, slope);
+    frictionSlopes(model.friction, qd, Load(model, q).g, slope);
+  }
+}
+
+void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                            MatrixRef dtau_dq, MatrixRef dtau_dqd) {
+  if (model.friction.empty()) return;
+  const Eigen::Index n = model.chain.jointCount();
+  const Load load(model, q);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    dtau_dqd(j, j) += frictionSlope(model.friction[static_cast<std::size_t>(j)], qd[j], load.g[j]);
+  }
+  if (!frictionDependsOnLoad(model)) return;
+
+  // df/dq = df/dg dg/dq, a column of dg/dq at a time
+  using Number = Dual<double, 1>;
+  Scratch<Number> q_memory(n);
+  Scratch<Number> g_memory(n);
+  Eigen::Map<Eigen::Matrix<Number, Eigen::Dynamic, 1>> moved(&q_memory[0], n), g(&g_memory[0], n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) moved[j] = q[j];
+    moved[i] = Number::variable(q[i], 0);
+    gravityVector(model.chain, setsOf(model), moved, g);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const FrictionLaw& law = model.friction[static_cast<std::size_t>(j)];
+      dtau_dq(j, i) += frictionLoadSlope(law, qd[j], load.g[j]) * g[j].derivative[0];
+    }
   }
 }
 

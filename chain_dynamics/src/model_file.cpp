@@ -18,7 +18,7 @@ namespace chain_dynamics {
 inline namespace v2 {
 namespace {
 
-constexpr int kSchema = 1;
+constexpr int kNewestSchema = 2;
 
 // ---------------------------------------------------------------------------------------------
 // The model
@@ -49,7 +49,9 @@ Chain makeChain(const std::string& name, const std::vector<JointEntry>& entries,
 /// Everything beyond the chain, in torques.
 void addIdentified(const std::vector<JointEntry>& entries, const Conventions& conventions,
                    Model& model) {
+  const bool has_deviation = !entries.front().torque_deviation.empty();
   model.drive_gains.resize(conventions.gains ? model.chain.jointCount() : 0);
+  model.torque_deviation.resize(has_deviation ? model.chain.jointCount() : 0);
   for (std::size_t j = 0; j < entries.size(); ++j) {
     const JointEntry& entry = entries[j];
     const double gain = conventions.gains ? entry.drive_gain[0] : 1.0;
@@ -57,9 +59,13 @@ void addIdentified(const std::vector<JointEntry>& entries, const Conventions& co
     if (conventions.gains) {
       model.drive_gains[static_cast<Eigen::Index>(j)] = gain;
     }
+    if (has_deviation) {
+      model.torque_deviation[static_cast<Eigen::Index>(j)] = entry.torque_deviation[0];
+    }
     for (const FrictionLaw& law : entry.friction) {
       model.friction.push_back(scaled(law, factor(conventions.friction_level)));
     }
+    model.seen.insert(model.seen.end(), entry.seen.begin(), entry.seen.end());
     for (const Eigen::Vector3d& first_moment : entry.gravity_first_moment) {
       const LinkParameters& own = entry.own[0];
       model.gravity_parameters.push_back(inChain(entry, {own.mass, first_moment, own.inertia}));
@@ -107,7 +113,7 @@ void verifyState(const YamlValue& value, double tolerance, const Model& model) {
   Eigen::VectorXd tau(q.size());
   Eigen::VectorXd f(q.size());
   torques(model, q, qd, qdd, tau);
-  frictionVector(model, qd, f);
+  frictionVector(model, q, qd, f);
   tau += f;
   for (Eigen::Index j = 0; j < q.size(); ++j) {
     if (!(std::abs(tau[j] - expected[j]) <= tolerance)) {
@@ -133,8 +139,18 @@ void verifyChecks(YamlMap map, const Model& model) {
   map.rejectOtherKeys();
 }
 
-Conventions readConventions(YamlMap& file) {
+int readSchema(const YamlValue& schema) {
+  const int number = schema.wholeNumber();
+  if (number < 1 || number > kNewestSchema) {
+    throw schema.error("1 or " + std::to_string(kNewestSchema),
+                       "this program reads no other schema");
+  }
+  return number;
+}
+
+Conventions readConventions(YamlMap& file, int schema) {
   Conventions conventions{};
+  conventions.schema = schema;
   file.required("units").choice({"SI"});
   conventions.geometry = static_cast<Geometry>(
       file.required("geometry").choice({"modified_dh", "standard_dh", "placements"}));
@@ -154,14 +170,11 @@ Conventions readConventions(YamlMap& file) {
 
 Model readModel(const YamlValue& document) {
   YamlMap file(document, false);
-  const YamlValue schema = file.required("schema");
-  if (schema.wholeNumber() != kSchema) {
-    throw schema.error(std::to_string(kSchema), "this program reads no other schema");
-  }
+  const int schema = readSchema(file.required("schema"));
   const std::string name = file.required("name").text();
   const std::string source = file.required("source").text();
   const std::string validity = file.required("validity").text();
-  const Conventions conventions = readConventions(file);
+  const Conventions conventions = readConventions(file, schema);
   const Eigen::Vector3d gravity = readVector(file.required("gravity"));
   Transform<double> X_U_tip = Transform<double>::identity();
   if (const auto tip = file.optional("tip")) {

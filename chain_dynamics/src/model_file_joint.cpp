@@ -3,6 +3,7 @@
 #include "model_file_joint.hpp"
 
 #include <utility>
+#include <variant>
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -33,22 +34,88 @@ JointLimits readLimits(YamlMap map, JointType type) {
   return limits;
 }
 
-/// Every law with its figures by name; a new one is a new word and one more branch.
-FrictionLaw readFriction(YamlMap map) {
-  const auto number = [&map](const std::string& key) { return map.required(key).number(); };
-  const std::size_t law = map.required("law").choice(
-      {"none", "viscous_coulomb_offset", "viscous_offset_sigmoid", "centered_sigmoid"});
-  FrictionLaw result;
-  if (law == 1) {
-    result = ViscousCoulombOffset{number("fv"), number("fc"), number("fo")};
-  } else if (law == 2) {
-    result = ViscousOffsetSigmoid{number("fv"), number("fo"), number("fc"), number("alpha"),
-                                  number("nu")};
-  } else if (law == 3) {
-    result = CenteredSigmoid{number("A"), number("alpha"), number("delta")};
+/// An error where a file of schema 1 has what came with schema 2.
+ModelError newer(const YamlValue& value, const std::string& expected) {
+  return value.error(expected + " in schema 1", "write schema: 2 at the top of the file");
+}
+
+double readInRange(const YamlValue& value, FigureRange range) {
+  const double number = value.number();
+  if (range == FigureRange::kNotNegative && number < 0) throw value.error("a number >= 0");
+  if (range == FigureRange::kPositive && number <= 0) throw value.error("a number > 0");
+  return number;
+}
+
+/// A law with its figures by name.
+template <class Law>
+Law readLaw(YamlMap& map) {
+  Law law;
+  for (const Figure<Law>& figure : Law::figures()) {
+    const auto value = figure.required ? map.required(figure.name) : map.optional(figure.name);
+    if (value) {
+      law.*figure.value = readInRange(*value, figure.range);
+    } else if (figure.required_with != nullptr && map.optional(figure.required_with)) {
+      throw ModelError(map.value().where(), map.value().what() + ": " + figure.name,
+                       std::string("this key beside ") + figure.required_with, "none", "add it");
+    }
   }
+  return law;
+}
+
+/// The k-th law of the variant.
+template <class... Laws>
+FrictionLaw readLaw(std::size_t k, const YamlValue& name, int schema, YamlMap& map,
+                    const std::variant<Laws...>* /*all*/) {
+  FrictionLaw result;
+  const auto read = [&](auto law) {
+    if (k-- != 0) return;
+    if (decltype(law)::kSchema > schema) throw newer(name, "another law");
+    result = readLaw<decltype(law)>(map);
+  };
+  (read(Laws()), ...);
+  return result;
+}
+
+template <class... Laws>
+std::vector<std::string> namesOf(const std::variant<Laws...>* /*all*/) {
+  return {"none", Laws::kName...};
+}
+
+FrictionLaw readFriction(YamlMap map, int schema) {
+  constexpr const FrictionLaw* kAllLaws = nullptr;
+  const YamlValue name = map.required("law");
+  const std::size_t law = name.choice(namesOf(kAllLaws));
+  FrictionLaw result;
+  if (law > 0) result = readLaw(law - 1, name, schema, map, kAllLaws);
   map.rejectOtherKeys();
   return result;
+}
+
+Interval readInterval(const YamlValue& value) {
+  const std::vector<double> numbers = value.numbers(2);
+  if (numbers[0] > numbers[1]) {
+    throw ModelError(value.where(), value.what(), "the least number first", "the greatest first",
+                     "");
+  }
+  return {numbers[0], numbers[1]};
+}
+
+/// What the data of identification say about the joint.
+void readExperience(YamlMap& map, int schema, JointEntry& entry) {
+  const auto deviation = map.optional("torque_deviation");
+  const auto seen = map.optional("seen");
+  for (const auto& value : {deviation, seen}) {
+    if (value && schema < 2) throw newer(*value, "no such key");
+  }
+  if (deviation) {
+    entry.torque_deviation.push_back(readInRange(*deviation, FigureRange::kNotNegative));
+  }
+  if (seen) {
+    YamlMap ranges(*seen);
+    entry.seen.push_back({readInterval(ranges.required("q")), readInterval(ranges.required("qd")),
+                          readInterval(ranges.required("qdd"))});
+    ranges.rejectOtherKeys();
+  }
 }
 
 /// The parameters of the link: one set of ten numbers, or for this row one set per link.
@@ -102,8 +169,9 @@ JointEntry readJoint(const YamlValue& value, const Conventions& conventions, std
                       "say in levels whether parameters and friction are torques or currents");
   }
   if (const auto friction = map.optional("friction")) {
-    entry.friction.push_back(readFriction(YamlMap(*friction)));
+    entry.friction.push_back(readFriction(YamlMap(*friction), conventions.schema));
   }
+  readExperience(map, conventions.schema, entry);
   readParameters(map, conventions, joints, entry);
   if (const auto first_moment = map.optional("gravity_first_moment")) {
     entry.gravity_first_moment.push_back(readVector(*first_moment));
@@ -144,6 +212,8 @@ std::vector<JointEntry> readJoints(const YamlValue& value, const Conventions& co
   allOrNone(entries, &JointEntry::row, "row", "give every joint a row, or every joint a link");
   allOrNone(entries, &JointEntry::friction, "friction",
             "where a joint has no friction, write {law: none}");
+  allOrNone(entries, &JointEntry::torque_deviation, "torque_deviation", "");
+  allOrNone(entries, &JointEntry::seen, "seen", "");
   if (allOrNone(entries, &JointEntry::gravity_first_moment, "gravity_first_moment", "") &&
       !entries[0].row.empty()) {
     throw ModelError(entries[0].where, "joint " + entries[0].joint.name + ": gravity_first_moment",

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "chain_dynamics/chain.hpp"
-#include "chain_dynamics/friction.hpp"
+#include "chain_dynamics/model.hpp"
 #include "model_file_geometry.hpp"
 #include "yaml_value.hpp"
 
@@ -24,6 +24,7 @@ enum class Level { kTorque, kCurrent };
 
 /// What the head of a file says about its joints.
 struct Conventions {
+  int schema = 1;
   Geometry geometry;
   Parameters parameters;
   bool gains = false;  // whether `levels` is there, and so every joint has a drive gain
@@ -41,9 +42,11 @@ struct JointEntry {
   std::vector<Eigen::Vector3d> gravity_first_moment;       // in U: one, or none
   std::vector<FrictionLaw> friction;                       // one, or none
   std::vector<double> drive_gain;                          // one, or none
+  std::vector<double> torque_deviation;                    // one, or none
+  std::vector<SeenRange> seen;                             // one, or none
 };
 
-/// The joints from root to tip; what one has of row, friction and gravity, all have.
+/// The joints from root to tip; what one has of row, friction and so on, all have.
 std::vector<JointEntry> readJoints(const YamlValue& value, const Conventions& conventions);
 
 }  // namespace v2

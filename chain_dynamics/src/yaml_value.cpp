@@ -163,10 +163,11 @@ std::vector<double> YamlValue::numbers(std::size_t count) const {
 }
 
 std::size_t YamlValue::choice(const std::vector<std::string>& words) const {
-  const auto found =
-      std::find(words.begin(), words.end(), node_.IsScalar() ? node_.Scalar() : std::string());
+  const std::string word = node_.IsScalar() ? node_.Scalar() : std::string();
+  const auto found = std::find(words.begin(), words.end(), word);
   if (found == words.end()) {
-    throw error("one of " + joined(words));
+    const std::string nearest = nearestName(word, words);
+    throw error("one of " + joined(words), nearest.empty() ? "" : "did you mean " + nearest + "?");
   }
   return static_cast<std::size_t>(found - words.begin());
 }

@@ -76,6 +76,23 @@ inline Model identified(const Chain& chain, bool rows, bool gravity, std::uint32
   return model;
 }
 
+/// The same with friction that depends on load, on velocity (Stribeck), on both, and on neither.
+inline Model withChangingSteps(Model model, std::uint32_t seed) {
+  Random random(seed);
+  const auto positive = [&random] { return 1.0001 + random(); };
+  model.friction.clear();
+  for (Index j = 0; j < model.chain.jointCount(); ++j) {
+    const double fv = positive(), fc = positive(), fo = random(), shift = 0.1 * random();
+    const FrictionLaw laws[] = {
+        SmoothCoulomb{fv, fc, 0.05, shift, fo, 0.2 * positive()},
+        SmoothCoulomb{fv, fc, 0.3, shift, fo, 0.1 * positive(), positive(), 0.4},
+        SmoothCoulomb{fv, fc, 0.02, shift, fo, 0, positive(), 0.2},
+        ViscousOffsetSigmoid{fv, fo, fc, 300 * random(), shift}};
+    model.friction.push_back(laws[j % 4]);
+  }
+  return model;
+}
+
 struct NamedModel {
   std::string name;
   Model model;
@@ -97,9 +114,25 @@ inline std::vector<NamedModel> models() {
     all.push_back({"gravity, " + joints, identified(randomChain(n), false, true, 2)});
     all.push_back({"rows and gravity, " + joints, identified(randomChain(n), true, true, 3)});
   }
+  for (const Index n : {1, 3, 6, 7, 11}) {
+    const std::string joints = std::to_string(n) + " joints, changing steps";
+    for (const bool gravity : {false, true}) {
+      const Model rows = identified(randomChain(n), true, gravity, 1);
+      all.push_back(
+          {(gravity ? "rows and gravity, " : "rows, ") + joints, withChangingSteps(rows, 5)});
+    }
+    const Model gravity = identified(randomChain(n), false, true, 2);
+    all.push_back({"gravity, " + joints, withChangingSteps(gravity, 6)});
+  }
+  for (const Index n : {2, 5, 8, 13, 64}) {
+    all.push_back({"any axes, " + std::to_string(n) + " joints, changing steps",
+                   withChangingSteps(Model(randomChain(n)), 7)});
+  }
   for (const std::string robot : {"ur10", "panda"}) {
     const std::string urdf = textOf(robotFile("urdf/" + robot + ".urdf"));
-    all.push_back({robot, Model(chainFromUrdf(urdf))});
+    const Model model(chainFromUrdf(urdf));
+    all.push_back({robot, model});
+    all.push_back({robot + ", changing steps", withChangingSteps(model, 8)});
   }
   for (const std::string name :
        {"ur10_identified", "franka_inria_identified", "franka_gaz2019_feasible"}) {

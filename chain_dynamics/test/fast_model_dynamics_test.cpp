@@ -57,10 +57,8 @@ Results resultsOf(const FastModel& fast, const State<double>& x, const VectorXd&
 void expectDerivatives(const Results& fast, const Model& model, const State<double>& x) {
   const Index n = x.q.size();
   MatrixXd by_q(n, n), by_qd(n, n), by_qdd(n, n);
-  VectorXd slope(n);
   torqueDerivatives(model, x.q, x.qd, x.qdd, by_q, by_qd, by_qdd);
-  frictionSlopes(model, x.qd, slope);
-  by_qd.diagonal() += slope;
+  addFrictionDerivatives(model, x.q, x.qd, by_q, by_qd);
   const double tolerance = 4 * rounding<double>(model.chain);
   const double speed = std::max(1.0, largest(x.qd));
   const double rate = largest(by_qdd) * speed + largest(by_qd);
@@ -83,7 +81,7 @@ void expectSolves(const Results& fast, const Model& model, const State<double>& 
   MatrixXd H(n, n);
   VectorXd c(n), g(n), f(n);
   dynamicComponents(model, x.q, x.qd, H, c, g);
-  frictionVector(model, x.qd, f);
+  frictionVector(model, x.q, x.qd, f);
   const double terms = largest(H.cwiseAbs() * fast.qdd.cwiseAbs() + c.cwiseAbs() + g.cwiseAbs());
   const double tolerance = 4 * rounding<double>(model.chain);
   EXPECT_TRUE(agree(H * fast.qdd + c + g + f, tau, terms + largest(tau), tolerance)) << "solution";

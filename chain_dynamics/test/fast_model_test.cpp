@@ -33,7 +33,7 @@ struct Terms {
 Terms termsOf(const Model& model, const State<double>& x) {
   Terms t(model.chain.jointCount());
   dynamicComponents(model, x.q, x.qd, t.H, t.c, t.g);
-  frictionVector(model, x.qd, t.f);
+  frictionVector(model, x.q, x.qd, t.f);
   torques(model, x.q, x.qd, x.qdd, t.tau);
   t.tau += t.f;
   return t;
@@ -44,7 +44,7 @@ Terms termsOf(const FastModel& fast, const State<double>& x) {
   fast.inertiaMatrix(x.q.data(), t.H.data(), t.H.outerStride());
   fast.coriolisVector(x.q.data(), x.qd.data(), t.c.data());
   fast.gravityVector(x.q.data(), t.g.data());
-  fast.frictionVector(x.qd.data(), t.f.data());
+  fast.frictionVector(x.q.data(), x.qd.data(), t.f.data());
   fast.torques(x.q.data(), x.qd.data(), x.qdd.data(), t.tau.data());
   return t;
 }
@@ -120,7 +120,7 @@ void compute(const FastModel& fast, Batch& b) {
   fast.coriolisVectorBatch(b.q.in(), b.qd.in(), b.c.out());
   fast.gravityVectorBatch(b.q.in(), b.g.out());
   fast.torquesBatch(b.q.in(), b.qd.in(), b.qdd.in(), b.tau.out());
-  fast.frictionVectorBatch(b.qd.in(), b.f.out());
+  fast.frictionVectorBatch(b.q.in(), b.qd.in(), b.f.out());
 }
 
 void expectBatchEqual(const FastModel& fast, Index n, Index count, Index joint_step,
@@ -230,16 +230,17 @@ TEST_P(FastModelOn, NanGoesToEveryEntry) {
 TEST_P(FastModelOn, FrictionOfNanIsNanAndThatOfAnyVelocityIsFinite) {
   const Model model = identified(randomChain(9), false, false, 5);
   const FastModel fast(model, GetParam());
+  const VectorXd q = VectorXd::Constant(9, 0.3);
   VectorXd f(9);
   for (const double velocity : {0.0, 1e-300, 1e3, 1e200, std::numeric_limits<double>::max() / 4}) {
     for (const double sign : {-1.0, 1.0}) {
       const VectorXd qd = VectorXd::Constant(9, sign * velocity);
-      fast.frictionVector(qd.data(), f.data());
+      fast.frictionVector(q.data(), qd.data(), f.data());
       EXPECT_TRUE(f.allFinite()) << sign * velocity << ": " << f.transpose();
     }
   }
   const VectorXd nan = VectorXd::Constant(9, std::numeric_limits<double>::quiet_NaN());
-  fast.frictionVector(nan.data(), f.data());
+  fast.frictionVector(q.data(), nan.data(), f.data());
   EXPECT_TRUE(f.array().isNaN().all()) << f.transpose();
 }
 
@@ -357,7 +358,7 @@ TEST_P(FastModelOn, NoCallAllocates) {
     fast.torques(x.q.data(), x.qd.data(), x.qdd.data(), terms.tau.data());
     fast.dynamicComponents(x.q.data(), x.qd.data(), terms.H.data(), n, terms.c.data(),
                            terms.g.data());
-    fast.frictionVector(x.qd.data(), terms.f.data());
+    fast.frictionVector(x.q.data(), x.qd.data(), terms.f.data());
     fast.torquesBatch(x.q, x.qd, x.qdd, terms.tau);
     EXPECT_EQ(guard.count(), 0) << name;
   }

@@ -2,6 +2,7 @@
 
 #include "chain_dynamics/friction.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -10,8 +11,13 @@
 #include <limits>
 #include <vector>
 
+#include "chain_dynamics/error.hpp"
+#include "reference.hpp"
+
 namespace chain_dynamics {
 namespace {
+
+using ::testing::HasSubstr;
 
 // A handful of additions and one exp: a few units in the last place of figures around one.
 constexpr double kRounding = 1e-14;
@@ -26,19 +32,33 @@ const ViscousOffsetSigmoid kSteep{0.235839271499783, -0.245334512427042, 0.59795
                                   459.1933488839184, -0.012953200294568};
 const CenteredSigmoid kCentered{0.54615, 5.1181, 0.039533};
 
-const std::vector<FrictionLaw> kAllLaws{ViscousCoulombOffset{0.5, 2.0, 0.25}, kGentle,
-                                        kNegativeSlope, kSteep, kCentered};
+/// Figures of the size that large arms have: with load, with the Stribeck effect, with both.
+const SmoothCoulomb kLoaded{12.0, 3.5, 0.025, 0.004, -0.6, 0.11};
+const SmoothCoulomb kStribeck{2.0, 1.25, 0.01, 0, 0, 0, 0.75, 0.2};
+const SmoothCoulomb kBoth{4.0, 2.5, 0.05, -0.01, 0.3, 0.08, 1.5, 0.125};
+
+const std::vector<FrictionLaw> kAllLaws{ViscousCoulombOffset{0.5, 2.0, 0.25},
+                                        kGentle,
+                                        kNegativeSlope,
+                                        kSteep,
+                                        kCentered,
+                                        kLoaded,
+                                        kStribeck,
+                                        kBoth};
+
+/// A gravity torque [N m].
+constexpr double kLoad = -17.5;
 
 TEST(Friction, ViscousCoulombOffsetWorkedByHand) {
   const ViscousCoulombOffset law{0.5, 2.0, 0.25};
-  EXPECT_EQ(friction(law, 4.0), 0.5 * 4 + 2.0 + 0.25);
-  EXPECT_EQ(friction(law, -4.0), -0.5 * 4 - 2.0 + 0.25);
-  EXPECT_EQ(friction(law, 0.0), 0.25);
+  EXPECT_EQ(friction(law, 4.0, kLoad), 0.5 * 4 + 2.0 + 0.25);
+  EXPECT_EQ(friction(law, -4.0, kLoad), -0.5 * 4 - 2.0 + 0.25);
+  EXPECT_EQ(friction(law, 0.0, kLoad), 0.25);
 }
 
 TEST(Friction, DefaultLawIsNoFriction) {
-  EXPECT_EQ(friction(FrictionLaw{}, 3.0), 0.0);
-  EXPECT_EQ(friction(FrictionLaw{}, -3.0), 0.0);
+  EXPECT_EQ(friction(FrictionLaw{}, 3.0, kLoad), 0.0);
+  EXPECT_EQ(friction(FrictionLaw{}, -3.0, kLoad), 0.0);
 }
 
 TEST(Friction, ViscousOffsetSigmoidIsItsFormulaWhereTheFormulaDoesNotOverflow) {
@@ -46,7 +66,8 @@ TEST(Friction, ViscousOffsetSigmoidIsItsFormulaWhereTheFormulaDoesNotOverflow) {
     for (double qd = -1.0; qd <= 1.0; qd += 0.01) {
       const double naive =
           law.fv * qd + law.fo + law.fc / (1.0 + std::exp(-law.alpha * (qd + law.nu)));
-      EXPECT_NEAR(friction(law, qd), naive, kRounding) << "alpha " << law.alpha << " qd " << qd;
+      EXPECT_NEAR(friction(law, qd, kLoad), naive, kRounding)
+          << "alpha " << law.alpha << " qd " << qd;
     }
   }
 }
@@ -56,27 +77,88 @@ TEST(Friction, CenteredSigmoidIsItsFormulaAndZeroAtRest) {
   for (double qd = -3.0; qd <= 3.0; qd += 0.1) {
     const double naive = law.A / (1.0 + std::exp(-law.alpha * (qd + law.delta))) -
                          law.A / (1.0 + std::exp(-law.alpha * law.delta));
-    EXPECT_NEAR(friction(law, qd), naive, kRounding) << "qd " << qd;
+    EXPECT_NEAR(friction(law, qd, kLoad), naive, kRounding) << "qd " << qd;
   }
-  EXPECT_EQ(friction(law, 0.0), 0.0);
+  EXPECT_EQ(friction(law, 0.0, kLoad), 0.0);
+}
+
+TEST(Friction, SmoothCoulombIsItsFormula) {
+  for (const SmoothCoulomb& law : {kLoaded, kStribeck, kBoth}) {
+    for (double qd = -2.0; qd <= 2.0; qd += 0.01) {
+      for (const double g : {0.0, 3.0, -3.0, 120.0}) {
+        const double stribeck =
+            law.fs == 0 ? 0.0 : law.fs * std::exp(-(qd / law.vs) * (qd / law.vs));
+        const double formula =
+            law.fv * qd + law.fo +
+            (law.fc + law.fl * std::abs(g) + stribeck) * std::tanh((qd + law.shift) / law.width);
+        EXPECT_NEAR(friction(law, qd, g), formula, 30 * kRounding) << "qd " << qd << " g " << g;
+      }
+    }
+  }
+}
+
+TEST(Friction, SmoothCoulombWorkedByHand) {
+  // far from the step, whose width is 0.01 rad/s
+  EXPECT_NEAR(friction(SmoothCoulomb{2, 3, 0.01, 0, 0.5, 0.25}, 1, -8), 2 + 0.5 + 3 + 2, kRounding);
+  EXPECT_NEAR(friction(SmoothCoulomb{2, 3, 0.01, 0, 0.5, 0.25}, -1, -8), -2 + 0.5 - 3 - 2,
+              kRounding);
+  EXPECT_EQ(friction(SmoothCoulomb{2, 3, 0.01}, 0, 100), 0);
+  // where the step is
+  EXPECT_EQ(friction(SmoothCoulomb{2, 3, 0.01, -0.25, 0.5, 0.25}, 0.25, 100), 2 * 0.25 + 0.5);
+  // fs adds to fc at rest, and 1/e of it at vs
+  const double at_vs = friction(SmoothCoulomb{0, 3, 1e-3, 0, 0, 0, 2, 0.5}, 0.5, 0);
+  EXPECT_NEAR(at_vs, 3 + 2 / std::exp(1.0), kRounding);
+}
+
+/// Friction without offset and shift takes energy from a motion in either direction, whatever the
+/// load.
+TEST(Friction, SmoothCoulombWithoutOffsetAndShiftDoesNoPositiveWork) {
+  for (SmoothCoulomb law : {kLoaded, kStribeck, kBoth}) {
+    law.fo = law.shift = 0;
+    for (double qd = -3.0; qd <= 3.0; qd += 0.001) {
+      for (const double g : {0.0, 5.0, -80.0}) {
+        ASSERT_GE(qd * friction(law, qd, g), 0.0) << "qd " << qd << " g " << g;
+      }
+    }
+  }
+}
+
+TEST(Friction, GrowsWithVelocityWithoutStribeckEffect) {
+  for (double qd = -3.0; qd < 3.0; qd += 0.001) {
+    ASSERT_LT(friction(kLoaded, qd, 20.0), friction(kLoaded, qd + 0.001, 20.0)) << qd;
+  }
+}
+
+TEST(Friction, DependsOnTheMagnitudeOfTheLoadWithALoadCoefficientOnly) {
+  for (const FrictionLaw& law : kAllLaws) {
+    const bool depends = friction(law, 0.7, 10.0) != friction(law, 0.7, 0.0);
+    EXPECT_EQ(dependsOnLoad(law), depends) << "law " << law.index();
+    EXPECT_EQ(friction(law, 0.7, 10.0), friction(law, 0.7, -10.0)) << "law " << law.index();
+  }
+  EXPECT_TRUE(dependsOnLoad(kLoaded));
+  EXPECT_FALSE(dependsOnLoad(kStribeck));
+  // a joint that doesn't depend on it doesn't see its NaN
+  EXPECT_EQ(friction(kStribeck, 0.7, kNaN), friction(kStribeck, 0.7, 0.0));
+  EXPECT_TRUE(std::isnan(friction(kLoaded, 0.7, kNaN)));
 }
 
 TEST(Friction, StepEndsAtItsTwoLevels) {
   // Far from the step only the viscous part and the offset, or offset + height, are left.
-  EXPECT_NEAR(friction(kSteep, -20.0), kSteep.fv * -20.0 + kSteep.fo, kRounding);
-  EXPECT_NEAR(friction(kSteep, 20.0), kSteep.fv * 20.0 + kSteep.fo + kSteep.fc, kRounding);
+  EXPECT_NEAR(friction(kSteep, -20.0, kLoad), kSteep.fv * -20.0 + kSteep.fo, kRounding);
+  EXPECT_NEAR(friction(kSteep, 20.0, kLoad), kSteep.fv * 20.0 + kSteep.fo + kSteep.fc, kRounding);
   // A negative slope turns the step round.
   const auto& turned = kNegativeSlope;
-  EXPECT_NEAR(friction(turned, -20.0), turned.fv * -20.0 + turned.fo + turned.fc, kRounding);
-  EXPECT_NEAR(friction(turned, 20.0), turned.fv * 20.0 + turned.fo, kRounding);
+  EXPECT_NEAR(friction(turned, -20.0, kLoad), turned.fv * -20.0 + turned.fo + turned.fc, kRounding);
+  EXPECT_NEAR(friction(turned, 20.0, kLoad), turned.fv * 20.0 + turned.fo, kRounding);
 }
 
 TEST(Friction, NoOverflowAtAnyFiniteVelocity) {
   for (const FrictionLaw& law : kAllLaws) {
     for (const double qd : {1.5, 2.0, 1e3, 1e10, 1e100, 1e300}) {
       std::feclearexcept(FE_ALL_EXCEPT);
-      EXPECT_TRUE(std::isfinite(friction(law, qd))) << "law " << law.index() << " qd " << qd;
-      EXPECT_TRUE(std::isfinite(friction(law, -qd))) << "law " << law.index() << " qd " << -qd;
+      EXPECT_TRUE(std::isfinite(friction(law, qd, kLoad))) << "law " << law.index() << " qd " << qd;
+      EXPECT_TRUE(std::isfinite(friction(law, -qd, kLoad)))
+          << "law " << law.index() << " qd " << -qd;
       EXPECT_FALSE(std::fetestexcept(FE_OVERFLOW | FE_INVALID)) << law.index() << " " << qd;
     }
   }
@@ -84,15 +166,18 @@ TEST(Friction, NoOverflowAtAnyFiniteVelocity) {
 
 TEST(Friction, NaNVelocityGivesNaN) {
   for (const FrictionLaw& law : kAllLaws) {
-    EXPECT_TRUE(std::isnan(friction(law, kNaN))) << "law " << law.index();
+    EXPECT_TRUE(std::isnan(friction(law, kNaN, kLoad))) << "law " << law.index();
   }
-  EXPECT_TRUE(std::isnan(friction(FrictionLaw{}, kNaN)));
+  EXPECT_TRUE(std::isnan(friction(FrictionLaw{}, kNaN, kLoad)));
 }
 
-TEST(Friction, ScaledLawScalesTheTorque) {
+// From currents to torques: the gravity torque is one, too.
+TEST(Friction, ScaledLawIsTheSameInAnotherUnitOfTorque) {
+  constexpr double kGain = 13.5841;
   for (const FrictionLaw& law : kAllLaws) {
     for (const double qd : {-2.0, -0.01, 0.0, 0.02, 1.0}) {
-      EXPECT_NEAR(friction(scaled(law, 13.5841), qd), 13.5841 * friction(law, qd), 1e-13)
+      EXPECT_NEAR(friction(scaled(law, kGain), qd, kGain * kLoad), kGain * friction(law, qd, kLoad),
+                  1e-13)
           << "law " << law.index() << " qd " << qd;
     }
   }
@@ -102,42 +187,77 @@ TEST(Friction, ScaledLawScalesTheTorque) {
 TEST(FrictionSlope, IsTheDerivative) {
   for (const FrictionLaw& law : kAllLaws) {
     for (const double qd : {-2.0, -0.01, 0.002, 0.0129, 1.0}) {
-      const double quotient = (friction(law, qd + 1e-6) - friction(law, qd - 1e-6)) / 2e-6;
-      const double slope = frictionSlope(law, qd);
+      const double quotient =
+          (friction(law, qd + 1e-6, kLoad) - friction(law, qd - 1e-6, kLoad)) / 2e-6;
+      const double slope = frictionSlope(law, qd, kLoad);
       EXPECT_NEAR(slope, quotient, 1e-7 * (1 + std::abs(slope))) << law.index() << " qd " << qd;
     }
   }
 }
 
+TEST(FrictionLoadSlope, IsTheDerivativeByTheGravityTorque) {
+  for (const FrictionLaw& law : kAllLaws) {
+    for (const double qd : {-2.0, -0.01, 0.002, 1.0}) {
+      for (const double g : {-40.0, 0.5, 12.0}) {
+        const double quotient = (friction(law, qd, g + 1e-4) - friction(law, qd, g - 1e-4)) / 2e-4;
+        EXPECT_NEAR(frictionLoadSlope(law, qd, g), quotient, 1e-9) << law.index() << " " << qd;
+      }
+      EXPECT_EQ(frictionLoadSlope(law, qd, 0.0), 0.0) << "none at the kink of |g|";
+    }
+  }
+}
+
+TEST(CheckFriction, RefusesFiguresThatALawCantHave) {
+  const auto error = [](const FrictionLaw& law) {
+    return errorOf([&] { checkFriction(law, "model arm: friction of joint one"); });
+  };
+  EXPECT_EQ(error(SmoothCoulomb{-1, 1, 1}),
+            "model arm: friction of joint one: smooth_coulomb: fv: expected a finite number >= 0, "
+            "got -1");
+  EXPECT_THAT(error(SmoothCoulomb{1, -1, 1}), HasSubstr("fc: expected a finite number >= 0"));
+  EXPECT_THAT(error(SmoothCoulomb{1, 1, 0}), HasSubstr("width: expected a finite number > 0"));
+  EXPECT_THAT(error(SmoothCoulomb{1, 1, 1, kNaN}), HasSubstr("shift: expected a finite number"));
+  EXPECT_THAT(error(SmoothCoulomb{1, 1, 1, 0, 0, -0.1}), HasSubstr("fl: expected a finite number"));
+  EXPECT_THAT(error(SmoothCoulomb{1, 1, 1, 0, 0, 0, -1, 1}), HasSubstr("fs: expected a finite"));
+  EXPECT_THAT(error(SmoothCoulomb{1, 1, 1, 0, 0, 0, 1}),
+              HasSubstr("vs: expected a finite number > 0, got 0"));
+  EXPECT_THAT(error(CenteredSigmoid{1, kNaN, 0}), HasSubstr("centered_sigmoid: alpha: expected"));
+  for (const FrictionLaw& law : kAllLaws) checkFriction(law, "every other law is accepted");
+}
+
 TEST(FrictionSlope, LeavesOutTheJumpAtRest) {
-  EXPECT_EQ(frictionSlope(ViscousCoulombOffset{0.5, 2.0, 0.25}, 0.0), 0.5);
+  EXPECT_EQ(frictionSlope(ViscousCoulombOffset{0.5, 2.0, 0.25}, 0.0, kLoad), 0.5);
 }
 
 TEST(FrictionSlope, IsFiniteForAnyFiniteVelocityAndNanForNan) {
   for (const FrictionLaw& law : kAllLaws) {
     for (const double qd : {1e3, 1e100, 1e300}) {
-      EXPECT_TRUE(std::isfinite(frictionSlope(law, qd))) << law.index() << " qd " << qd;
-      EXPECT_TRUE(std::isfinite(frictionSlope(law, -qd))) << law.index() << " qd " << -qd;
+      EXPECT_TRUE(std::isfinite(frictionSlope(law, qd, kLoad))) << law.index() << " qd " << qd;
+      EXPECT_TRUE(std::isfinite(frictionSlope(law, -qd, kLoad))) << law.index() << " qd " << -qd;
     }
-    EXPECT_TRUE(std::isnan(frictionSlope(law, kNaN))) << law.index();
+    EXPECT_TRUE(std::isnan(frictionSlope(law, kNaN, kLoad))) << law.index();
   }
 }
 
+const auto kJoints = static_cast<Eigen::Index>(kAllLaws.size());
+
 TEST(FrictionSlopes, EachJointHasItsOwnLaw) {
-  const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(5, -1.0, 2.0);
-  Eigen::VectorXd slope = Eigen::VectorXd::Constant(5, kNaN);
-  frictionSlopes(kAllLaws, qd, slope);
-  for (Eigen::Index j = 0; j < 5; ++j) {
-    EXPECT_EQ(slope[j], frictionSlope(kAllLaws[static_cast<std::size_t>(j)], qd[j])) << j;
+  const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(kJoints, -1.0, 2.0);
+  const Eigen::VectorXd g = Eigen::VectorXd::LinSpaced(kJoints, 30.0, -50.0);
+  Eigen::VectorXd slope = Eigen::VectorXd::Constant(kJoints, kNaN);
+  frictionSlopes(kAllLaws, qd, g, slope);
+  for (Eigen::Index j = 0; j < kJoints; ++j) {
+    EXPECT_EQ(slope[j], frictionSlope(kAllLaws[static_cast<std::size_t>(j)], qd[j], g[j])) << j;
   }
 }
 
 TEST(FrictionVector, EachJointHasItsOwnLaw) {
-  const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(5, -1.0, 2.0);
-  Eigen::VectorXd f = Eigen::VectorXd::Constant(5, kNaN);
-  frictionVector(kAllLaws, qd, f);
-  for (Eigen::Index j = 0; j < 5; ++j) {
-    EXPECT_EQ(f[j], friction(kAllLaws[static_cast<std::size_t>(j)], qd[j])) << "joint " << j;
+  const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(kJoints, -1.0, 2.0);
+  const Eigen::VectorXd g = Eigen::VectorXd::LinSpaced(kJoints, 30.0, -50.0);
+  Eigen::VectorXd f = Eigen::VectorXd::Constant(kJoints, kNaN);
+  frictionVector(kAllLaws, qd, g, f);
+  for (Eigen::Index j = 0; j < kJoints; ++j) {
+    EXPECT_EQ(f[j], friction(kAllLaws[static_cast<std::size_t>(j)], qd[j], g[j])) << "joint " << j;
   }
 }
 

@@ -172,8 +172,10 @@ TEST(ModelFileError, NumbersMustBeFiniteNumbers) {
 }
 
 TEST(ModelFileError, WrongTypesAndWords) {
-  EXPECT_THAT(fileError(replaced(documentedFile(), "schema: 1", "schema: 2")),
-              HasSubstr("arm.yaml:1: schema: expected 1, got '2'"));
+  for (const std::string other : {"0", "3", "-1"}) {
+    EXPECT_THAT(fileError(replaced(documentedFile(), "schema: 1", "schema: " + other)),
+                HasSubstr("arm.yaml:1: schema: expected 1 or 2, got '" + other + "'"));
+  }
   EXPECT_THAT(fileError(replaced(documentedFile(), "schema: 1", "schema: 1.5")),
               HasSubstr("schema: expected a small whole number, got '1.5'"));
   EXPECT_THAT(fileError(replaced(documentedFile(), "units: SI", "units: imperial")),
@@ -186,6 +188,8 @@ TEST(ModelFileError, WrongTypesAndWords) {
   EXPECT_THAT(fileError(replaced(documentedFile(), "law: none", "law: stribeck")),
               AllOf(HasSubstr("joint hinge: friction: law: expected one of none, "),
                     HasSubstr("got 'stribeck'")));
+  EXPECT_THAT(fileError(replaced(smoothFile("fv: 1, fc: 1, width: 1"), "smooth_", "smoth_")),
+              HasSubstr("got 'smoth_coulomb'; did you mean smooth_coulomb?"));
   EXPECT_THAT(fileError(replaced(documentedFile(), "source: worked by hand", "source: [a]")),
               HasSubstr("source: expected a text, got a list of 1"));
   EXPECT_THAT(fileError(replaced(documentedFile(), "source: worked by hand", "source: ")),
@@ -227,6 +231,64 @@ TEST(ModelFileError, KeysThatExcludeEachOther) {
   EXPECT_THAT(fileError(replaced(documentedFile(), "    rotor_inertia",
                                  "    limits: {lower: 1}\n    rotor_inertia")),
               HasSubstr("joint hinge: limits: lower: expected a known key"));
+}
+
+TEST(ModelFileError, FiguresThatFrictionCantHave) {
+  EXPECT_EQ(fileError(smoothFile("fv: -1, fc: 1, width: 1")),
+            "arm.yaml:13: joint one: friction: fv: expected a number >= 0, got '-1'");
+  for (const std::string figure : {"fc: -1, fv: 1, width: 1", "fl: -0.1, fv: 1, fc: 1, width: 1",
+                                   "fs: -2, fv: 1, fc: 1, width: 1, vs: 1"}) {
+    EXPECT_THAT(fileError(smoothFile(figure)),
+                HasSubstr("friction: " + figure.substr(0, 2) + ": expected a number >= 0, got '-"));
+  }
+  for (const std::string zero : {"0", "-0.1"}) {
+    EXPECT_THAT(fileError(smoothFile("fv: 1, fc: 1, width: " + zero)),
+                HasSubstr("friction: width: expected a number > 0, got '" + zero + "'"));
+    EXPECT_THAT(fileError(smoothFile("fv: 1, fc: 1, width: 1, fs: 1, vs: " + zero)),
+                HasSubstr("friction: vs: expected a number > 0, got '" + zero + "'"));
+  }
+  EXPECT_THAT(fileError(smoothFile("fv: 1, fc: 1")),
+              HasSubstr("joint one: friction: width: expected this key, got none; add it"));
+  EXPECT_THAT(fileError(smoothFile("fv: 1, fc: 1, width: 1, fs: 1")),
+              HasSubstr("joint one: friction: vs: expected this key beside fs, got none; add it"));
+  EXPECT_THAT(fileError(smoothFile("fv: 1, fc: 1, width: 1, alpha: 1")),
+              HasSubstr("friction: alpha: expected a known key"));
+}
+
+TEST(ModelFileError, WhatSchemaOneDoesntHaveNamesTheRemedy) {
+  const auto one = [](const std::string& text) { return replaced(text, "schema: 2", "schema: 1"); };
+  const std::string figures = "fv: 1, fc: 1, width: 1";
+  EXPECT_EQ(fileError(one(smoothFile(figures))),
+            "arm.yaml:13: joint one: friction: law: expected another law in schema 1, got "
+            "'smooth_coulomb'; write schema: 2 at the top of the file");
+  const std::string plain = file("modified_dh", joint("one", withLink(dh("0", "0", "0", "0"))));
+  for (const std::string key :
+       {"torque_deviation: 1", "seen: {q: [0, 1], qd: [0, 1], qdd: [0, 1]}"}) {
+    EXPECT_THAT(fileError(plain + "  " + key + "\n"),
+                AllOf(StartsWith("arm.yaml:14: joint one: " + key.substr(0, key.find(':')) +
+                                 ": expected no such key in schema 1, got"),
+                      HasSubstr("write schema: 2 at the top of the file")));
+  }
+}
+
+TEST(ModelFileError, ExperienceThatCantBe) {
+  const auto with = [](const std::string& line) {
+    return fileError(smoothFile("fv: 1, fc: 1, width: 1", "  " + line + "\n"));
+  };
+  EXPECT_THAT(with("torque_deviation: -1"),
+              HasSubstr("joint one: torque_deviation: expected a number >= 0, got '-1'"));
+  EXPECT_THAT(with("seen: {q: [0, 1], qd: [0, 1]}"),
+              HasSubstr("joint one: seen: qdd: expected this key, got none"));
+  EXPECT_THAT(with("seen: {q: [2, 1], qd: [0, 1], qdd: [0, 1]}"),
+              HasSubstr("joint one: seen: q: expected the least number first"));
+  EXPECT_THAT(with("seen: {q: [1], qd: [0, 1], qdd: [0, 1]}"),
+              HasSubstr("joint one: seen: q: expected 2 numbers"));
+  const std::string two =
+      replaced(replaced(documentedFile(), "schema: 1", "schema: 2"), "    rotor_inertia",
+               "    torque_deviation: 1\n    rotor_inertia");
+  EXPECT_THAT(fileError(two),
+              HasSubstr("joint hinge: torque_deviation: expected no such key, as in "
+                        "the first joint, got one"));
 }
 
 TEST(ModelFileError, WhatCannotBeARobotNamesFileAndJoint) {

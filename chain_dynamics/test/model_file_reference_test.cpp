@@ -22,7 +22,7 @@ void expectReference(const std::string& model_file, const std::string& reference
     Eigen::MatrixXd H(n, n);
     Eigen::VectorXd c(n), g(n), f(n), tau(n);
     dynamicComponents(robot, state.q, state.qd, H, c, g);
-    frictionVector(robot, state.qd, f);
+    frictionVector(robot, state.q, state.qd, f);
     torques(robot, state.q, state.qd, state.qdd, tau);
     EXPECT_LT(difference(H, state.H), kReference) << state.label;
     EXPECT_LT(difference(c, state.coriolis), kReference) << state.label;

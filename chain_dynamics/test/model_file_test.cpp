@@ -247,12 +247,79 @@ TEST(ModelFile, RowsAreThoseOfRobotsWithOneParameterSetEach) {
 TEST(ModelFile, LevelsSayWhatTheDriveGainsMultiply) {
   const Eigen::Vector2d qd(1, -1);
   Eigen::VectorXd f(2);
-  frictionVector(model(rowsFile()), qd, f);
+  frictionVector(model(rowsFile()), qd, qd, f);
   EXPECT_EQ(f, Eigen::Vector2d(10 * (2 + 1), 5 * (-2 + 1)));  // gain (2 qd + 1)
   const Model in_torques = model(rowsFile("{parameters: torque, friction: torque}"));
-  frictionVector(in_torques, qd, f);
+  frictionVector(in_torques, qd, qd, f);
   EXPECT_EQ(f, Eigen::Vector2d(3, -1));
   EXPECT_NEAR(someTorques(in_torques)[0], someTorques(model(rowsFile()))[0] / 10, kRounding);
+}
+
+TEST(ModelFile, SmoothCoulombIsRead) {
+  const Model whole =
+      model(smoothFile("fv: 1, fc: 2, width: 0.1, shift: 0.02, fo: -0.5, fl: 0.25, "
+                       "fs: 3, vs: 0.125"));
+  const auto& law = std::get<SmoothCoulomb>(whole.friction.at(0));
+  EXPECT_EQ(law.fv, 1);
+  EXPECT_EQ(law.fc, 2);
+  EXPECT_EQ(law.width, 0.1);
+  EXPECT_EQ(law.shift, 0.02);
+  EXPECT_EQ(law.fo, -0.5);
+  EXPECT_EQ(law.fl, 0.25);
+  EXPECT_EQ(law.fs, 3);
+  EXPECT_EQ(law.vs, 0.125);
+  EXPECT_TRUE(frictionDependsOnLoad(whole));
+
+  const Model least = model(smoothFile("fv: 0, fc: 2, width: 0.1"));
+  const auto& given = std::get<SmoothCoulomb>(least.friction.at(0));
+  for (const double figure : {given.fv, given.shift, given.fo, given.fl, given.fs}) {
+    EXPECT_EQ(figure, 0);
+  }
+  EXPECT_FALSE(frictionDependsOnLoad(least));
+}
+
+// K (fv qd + (fc + fl |g| / K) tanh(...)): the load coefficient is a number in either unit.
+TEST(ModelFile, FrictionInCurrentsHasLoadInCurrents) {
+  std::string text =
+      replaced(rowsFile("{parameters: torque, friction: current}"), "schema: 1", "schema: 2");
+  for (int joint = 0; joint < 2; ++joint) {
+    text = replaced(text, "law: viscous_coulomb_offset, fv: 2, fc: 0, fo: 1",
+                    "law: smooth_coulomb, fv: 2, fc: 3, width: 0.001, fl: 0.5");
+  }
+  const Model robot = model(replaced(text, "[0, 0, -9.81]", "[0, -9.81, 0]"));
+  const Eigen::Vector2d q(0.3, -0.7), qd(1, -1);
+  Eigen::VectorXd f(2), g(2);
+  frictionVector(robot, q, qd, f);
+  gravityVector(robot, q, g);
+  ASSERT_GT(g.cwiseAbs().minCoeff(), 0.1);
+  EXPECT_NEAR(f[0], 10 * (2 + 3) + 0.5 * std::abs(g[0]), kRounding);
+  EXPECT_NEAR(f[1], -5 * (2 + 3) - 0.5 * std::abs(g[1]), kRounding);
+}
+
+TEST(ModelFile, ExperienceOfIdentificationIsRead) {
+  const Model robot = model(smoothFile("fv: 0, fc: 2, width: 0.1",
+                                       "  torque_deviation: 1.9\n"
+                                       "  seen: {q: [-1, 2], qd: [-0.5, 0.75], qdd: [-3, 4]}\n"));
+  ASSERT_EQ(robot.torque_deviation.size(), 1);
+  EXPECT_EQ(robot.torque_deviation[0], 1.9);
+  ASSERT_EQ(robot.seen.size(), 1U);
+  EXPECT_EQ(robot.seen[0].q.lower, -1);
+  EXPECT_EQ(robot.seen[0].q.upper, 2);
+  EXPECT_EQ(robot.seen[0].qd.lower, -0.5);
+  EXPECT_EQ(robot.seen[0].qd.upper, 0.75);
+  EXPECT_EQ(robot.seen[0].qdd.lower, -3);
+  EXPECT_EQ(robot.seen[0].qdd.upper, 4);
+  const Model unknown = model(documentedFile());
+  EXPECT_EQ(unknown.torque_deviation.size(), 0);
+  EXPECT_TRUE(unknown.seen.empty());
+}
+
+// Schema 2 only adds to schema 1.
+TEST(ModelFile, FileOfSchemaOneIsOneOfSchemaTwo) {
+  const Model one = model(documentedFile());
+  const Model two = model(replaced(documentedFile(), "schema: 1", "schema: 2"));
+  EXPECT_EQ(someTorques(two), someTorques(one));
+  EXPECT_EQ(two.friction.size(), one.friction.size());
 }
 
 // In a convention whose link frame isn't the chain's, so that moments must be moved.

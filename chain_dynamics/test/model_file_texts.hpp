@@ -79,6 +79,13 @@ inline Eigen::VectorXd someTorques(const Model& robot) {
   return tau;
 }
 
+/// One joint in schema 2, with this law; `more` are lines of the joint.
+inline std::string smoothFile(const std::string& figures, const std::string& more = "") {
+  const std::string law = "  friction: {law: smooth_coulomb, " + figures + "}\n";
+  return replaced(file("modified_dh", joint("one", withLink(dh("0", "0", "0", "0") + law + more))),
+                  "schema: 1", "schema: 2");
+}
+
 /// Two joints identified in currents, each with a row of its own.
 inline std::string rowsFile(
     const std::string& levels = "{parameters: current, friction: current}") {

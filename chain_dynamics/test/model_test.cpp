@@ -46,7 +46,7 @@ struct Values {
     coriolisVector(model, q, qd, c_alone);
     coriolisMatrix(model, q, qd, C);
     gravityVector(model, q, g_alone);
-    frictionVector(model, qd, f);
+    frictionVector(model, q, qd, f);
     torques(model, q, qd, qdd, tau);
   }
 
@@ -211,7 +211,7 @@ TEST(Model, ColumnsOfABatchAreWrittenInPlace) {
 TEST(Model, NaNVelocityIsNaNFrictionEvenWithoutALaw) {
   const Model model(test::pendulum(1, 1, 9.81));
   Eigen::VectorXd f(1);
-  frictionVector(model, Eigen::VectorXd::Constant(1, kNaN), f);
+  frictionVector(model, Eigen::VectorXd(), Eigen::VectorXd::Constant(1, kNaN), f);
   EXPECT_TRUE(std::isnan(f[0]));
 }
 
@@ -275,13 +275,26 @@ TEST(ModelError, PartsMustFit) {
   model.friction.resize(2);
   EXPECT_EQ(error(model), "model pendulum: friction: expected no law, or one per joint (1), got 2");
   model.friction = {ViscousCoulombOffset{kNaN, 0, 0}};
-  EXPECT_THAT(error(model), HasSubstr("friction of joint pivot: expected finite coefficients"));
+  EXPECT_THAT(error(model),
+              HasSubstr("friction of joint pivot: viscous_coulomb_offset: fv: expected a finite"));
 
   model = pendulum;
   model.drive_gains.resize(3);
   EXPECT_THAT(error(model), HasSubstr("drive gains: expected none, or one per joint (1), got 3"));
   model.drive_gains = Eigen::VectorXd::Constant(1, -2);
   EXPECT_THAT(error(model), HasSubstr("drive gain of joint pivot: expected a finite number > 0"));
+
+  model = pendulum;
+  model.torque_deviation.setZero(2);
+  EXPECT_THAT(error(model), HasSubstr("torque deviations: expected none, or one per joint (1)"));
+  model.torque_deviation = Eigen::VectorXd::Constant(1, kNaN);
+  EXPECT_THAT(error(model), HasSubstr("torque deviation of joint pivot: expected a finite number"));
+
+  model = pendulum;
+  model.seen.resize(2);
+  EXPECT_THAT(error(model), HasSubstr("seen ranges: expected none, or one per joint (1), got 2"));
+  model.seen = {{{1, 0}, {0, 1}, {0, 1}}};
+  EXPECT_THAT(error(model), HasSubstr("seen range of joint pivot: expected finite numbers"));
 
   model = pendulum;
   model.gravity_parameters.resize(2, LinkParameters::zero());

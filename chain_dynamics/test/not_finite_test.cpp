@@ -26,6 +26,9 @@ using Eigen::VectorXd;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// What friction adds to a quantity, where the templates compute that apart.
+const std::string kFriction = ", friction";
+
 /// Each quantity of one state by its name.
 using Quantities = std::map<std::string, MatrixXd>;
 
@@ -49,16 +52,16 @@ void addKinematics(Quantities& all, const MatrixXd& C, const MatrixXd& R, const 
 Quantities plain(const Model& model, const State<double>& x) {
   const Index n = x.q.size();
   MatrixXd H(n, n), by_q(n, n), by_qd(n, n), by_qdd(n, n), Y(n, 10 * n);
-  VectorXd c(n), g(n), f(n), slope(n), tau(n);
+  VectorXd c(n), g(n), f(n), tau(n);
   Quantities all;
   dynamicComponents(model, x.q, x.qd, H, c, g);
   addParts(all, "", H, c, g);
   addParts(all, " together", H, c, g);
-  frictionVector(model, x.qd, f);
+  frictionVector(model, x.q, x.qd, f);
   torques(model, x.q, x.qd, x.qdd, tau);
   torqueDerivatives(model, x.q, x.qd, x.qdd, by_q, by_qd, by_qdd);
-  frictionSlopes(model, x.qd, slope);
-  by_qd.diagonal() += slope;
+  MatrixXd friction_by_q = MatrixXd::Zero(n, n), friction_by_qd = friction_by_q;
+  addFrictionDerivatives(model, x.q, x.qd, friction_by_q, friction_by_qd);
   regressor(model.chain, x.q, x.qd, x.qdd, Y);
   MatrixXd C(n, n), J(6, n), dJ(6, n);
   coriolisMatrix(model, x.q, x.qd, C);
@@ -70,6 +73,8 @@ Quantities plain(const Model& model, const State<double>& x) {
   all["tau"] = tau + f;
   all["by q"] = by_q;
   all["by qd"] = by_qd;
+  all["by q" + kFriction] = friction_by_q;
+  all["by qd" + kFriction] = friction_by_qd;
   all["by qdd"] = by_qdd;
   all["Y"] = Y;
   all["qdd"] = H.partialPivLu().solve(x.qdd - c - g - f);  // of torques as large as qdd
@@ -89,7 +94,7 @@ Quantities single(const FastModel& fast, const State<double>& x) {
   addParts(all, "", H, c, g);
   fast.dynamicComponents(q, qd, H.data(), n, c.data(), g.data());
   addParts(all, " together", H, c, g);
-  fast.frictionVector(qd, f.data());
+  fast.frictionVector(q, qd, f.data());
   fast.torques(q, qd, x.qdd.data(), tau.data());
   fast.torqueDerivatives(q, qd, x.qdd.data(), by_q.data(), by_qd.data(), by_qdd.data(), n);
   fast.regressor(q, qd, x.qdd.data(), Y.data(), n);
@@ -131,7 +136,7 @@ std::vector<Quantities> batch(const FastModel& fast, const State<double>& health
   fast.coriolisVectorBatch(q, qd, c);
   fast.gravityVectorBatch(q, g);
   fast.dynamicComponentsBatch(q, qd, H2, c2, g2);
-  fast.frictionVectorBatch(qd, f);
+  fast.frictionVectorBatch(q, qd, f);
   fast.torquesBatch(q, qd, qdd, tau);
   MatrixXd C = H, R(3, 3 * kStates), p(3, kStates), J(6, n * kStates), dJ = J;
   fast.coriolisMatrixBatch(q, qd, C);
@@ -189,7 +194,13 @@ void expectSpoilt(const Quantities& fast, const Quantities& plain_spoilt,
                   const std::map<std::string, Flags>& depends, const std::string& how) {
   for (const auto& [name, values] : fast) {
     // finite where an infinity is: friction that saturates
-    const Flags expected = depends.at(name) && notFinite(plain_spoilt.at(name));
+    const auto expected_of = [&](const std::string& part) {
+      return Flags(depends.at(part) && notFinite(plain_spoilt.at(part)));
+    };
+    Flags expected = expected_of(name);
+    if (depends.count(name + kFriction) > 0) {
+      expected = expected || expected_of(name + kFriction);
+    }
     EXPECT_FALSE((expected && !notFinite(values)).any()) << name << ", " << how << "\n" << values;
   }
 }
@@ -265,9 +276,9 @@ TEST_P(NotFinite, FirstJointCountsWhereGravityIsAlongItsAxisAndFrictionIsUnknown
     VectorXd tau(n), f(n);
     fast.torquesBatch(spoilt.q, x.qd, x.qdd, tau);
     EXPECT_TRUE(tau.tail(n - 1).array().isNaN().all()) << robot << ": " << tau.transpose();
-    fast.frictionVectorBatch(spoilt.qd, f);
+    fast.frictionVectorBatch(spoilt.q, spoilt.qd, f);
     EXPECT_TRUE(std::isnan(f[1])) << robot << ": " << f.transpose();
-    fast.frictionVector(spoilt.qd.data(), f.data());
+    fast.frictionVector(spoilt.q.data(), spoilt.qd.data(), f.data());
     EXPECT_TRUE(std::isnan(f[1])) << robot << ": " << f.transpose();
   }
 }

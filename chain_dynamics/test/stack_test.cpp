@@ -88,7 +88,8 @@ void expectWithin(std::size_t bound, const std::string& who, const Calls& calls)
 /// Sliding and turning joints, and parameters for each row: what takes most memory.
 std::vector<Model> largest() {
   const Chain chain = randomChain(FastModel::kMaxJoints);
-  return {Model(chain), identified(chain, true, true, 3)};
+  const Model rows = identified(chain, true, false, 3);
+  return {Model(chain), identified(chain, true, true, 3), withChangingSteps(rows, 5)};
 }
 
 // Sanitizers, coverage and profiles need stack of their own; only some of them define a macro.
@@ -115,7 +116,7 @@ TEST_P(Stack, OfOneStateIsBounded) {
          {"H", [&] { fast.inertiaMatrix(q, H.data(), n); }},
          {"c", [&] { fast.coriolisVector(q, qd, c.data()); }},
          {"g", [&] { fast.gravityVector(q, g.data()); }},
-         {"f", [&] { fast.frictionVector(qd, c.data()); }},
+         {"f", [&] { fast.frictionVector(q, qd, c.data()); }},
          {"components", [&] { fast.dynamicComponents(q, qd, H.data(), n, c.data(), g.data()); }},
          {"forward dynamics", [&] { fast.forwardDynamics(q, qd, qdd, c.data()); }},
          {"regressor", [&] { fast.regressor(q, qd, qdd, Y.data(), n); }},
@@ -143,7 +144,7 @@ TEST_P(Stack, OfManyStatesIsBounded) {
                   {"H", [&] { fast.inertiaMatrixBatch(q, H); }},
                   {"c", [&] { fast.coriolisVectorBatch(q, q, c); }},
                   {"g", [&] { fast.gravityVectorBatch(q, g); }},
-                  {"f", [&] { fast.frictionVectorBatch(q, c); }},
+                  {"f", [&] { fast.frictionVectorBatch(q, q, c); }},
                   {"components", [&] { fast.dynamicComponentsBatch(q, q, H, c, g); }},
                   {"forward dynamics", [&] { fast.forwardDynamicsBatch(q, q, q, c); }},
                   {"regressor", [&] { fast.regressorBatch(q, q, q, Y); }},
@@ -163,7 +164,8 @@ TEST_P(Stack, OfDerivativesOfManyStatesIsBounded) {
   constexpr Index kJoints = 16;
   constexpr Index kStates = 20;
   const Chain chain = randomChain(kJoints);
-  for (const Model& model : {Model(chain), identified(chain, true, true, 3)}) {
+  for (const Model& model : {Model(chain), identified(chain, true, true, 3),
+                             withChangingSteps(identified(chain, true, false, 3), 5)}) {
     const FastModel fast(model, GetParam());
     const MatrixXd q = MatrixXd::Constant(kJoints, kStates, 0.3);
     MatrixXd by_q(kJoints, kJoints * kStates), by_qd = by_q, H = by_q;
@@ -185,6 +187,8 @@ TEST(StackOfPlainFunctions, IsBounded) {
   const Chain chain = randomChain(kStackJoints);
   const std::vector<std::vector<LinkParameters>> rows(kStackJoints, chain.links());
   const ParameterSets sets{rows, rows[0]};
+  Model model(chain);
+  model.friction.resize(kStackJoints, SmoothCoulomb{1, 2, 0.1, 0.01, 0.3, 0.1, 0.5, 0.2});
   const State<double> x = randomState<double>(chain, 1);
   const VectorXd &q = x.q, &qd = x.qd, &qdd = x.qdd;
   const Index n = q.size();
@@ -201,6 +205,8 @@ TEST(StackOfPlainFunctions, IsBounded) {
        {"forward dynamics", [&] { forwardDynamics(chain, q, qd, qdd, c); }},
        {"regressor", [&] { regressor(chain, q, qd, qdd, Y); }},
        {"derivatives", [&] { torqueDerivatives(chain, sets, q, qd, qdd, by_q, by_qd, H); }},
+       {"friction", [&] { frictionVector(model, q, qd, c); }},
+       {"friction's derivatives", [&] { addFrictionDerivatives(model, q, qd, by_q, by_qd); }},
        {"energy", [&] { c[0] = kineticEnergy(chain, q, qd) + potentialEnergy(chain, q); }}});
 }
 

@@ -65,6 +65,9 @@ class FastModel {
   FastModel(const FastModel&) = delete;
   FastModel& operator=(const FastModel&) = delete;
 
+  /// Whether friction depends on the gravity torques, and so on q.
+  bool frictionDependsOnLoad() const;
+
   /// The instruction set in use.
   std::string instructionSet() const;
 
@@ -75,7 +78,7 @@ class FastModel {
   /// n numbers each; H: entry (i, j) at H[i + j * outer_step].
   /// @{
 
-  /// `tau = H(q) qdd + C(q, qd) qd + g(q) + f(qd)`.
+  /// `tau = H(q) qdd + C(q, qd) qd + g(q) + f(q, qd)`.
   void torques(const double* q, const double* qd, const double* qdd, double* tau) const;
   /// `H(q)`.
   void inertiaMatrix(const double* q, double* H, std::ptrdiff_t outer_step) const;
@@ -83,8 +86,8 @@ class FastModel {
   void coriolisVector(const double* q, const double* qd, double* c) const;
   /// `g(q)`.
   void gravityVector(const double* q, double* g) const;
-  /// `f(qd)`.
-  void frictionVector(const double* qd, double* f) const;
+  /// `f(q, qd)`. q may be null where frictionDependsOnLoad() is false.
+  void frictionVector(const double* q, const double* qd, double* f) const;
   /// `H(q)`, `C(q, qd) qd`, `g(q)`.
   void dynamicComponents(const double* q, const double* qd, double* H, std::ptrdiff_t outer_step,
                          double* c, double* g) const;
@@ -99,8 +102,9 @@ class FastModel {
   /// the model has. Entry (i, j) at Y[i + j * outer_step].
   void regressor(const double* q, const double* qd, const double* qdd, double* Y,
                  std::ptrdiff_t outer_step) const;
-  /// `dtau/dq`, `dtau/dqd` and `dtau/dqdd = H(q)` of torques(), with frictionSlope(): n x n each,
-  /// entry (i, j), of tau_i by joint j, at [i + j * outer_step].
+  /// `dtau/dq`, `dtau/dqd` and `dtau/dqdd = H(q)` of torques(), those of friction included
+  /// [addFrictionDerivatives() in model.hpp]: n x n each, entry (i, j), of tau_i by joint j, at
+  /// [i + j * outer_step].
   void torqueDerivatives(const double* q, const double* qd, const double* qdd, double* dtau_dq,
                          double* dtau_dqd, double* dtau_dqdd, std::ptrdiff_t outer_step) const;
   /// `C(q, qd)` of coriolis_matrix.hpp: entry (i, j) at C[i + j * outer_step].
@@ -123,7 +127,8 @@ class FastModel {
   void inertiaMatrixBatch(ConstStates q, StridedMatrices H) const;
   void coriolisVectorBatch(ConstStates q, ConstStates qd, States c) const;
   void gravityVectorBatch(ConstStates q, States g) const;
-  void frictionVectorBatch(ConstStates qd, States f) const;
+  /// q may be 0 x N where frictionDependsOnLoad() is false.
+  void frictionVectorBatch(ConstStates q, ConstStates qd, States f) const;
   void dynamicComponentsBatch(ConstStates q, ConstStates qd, StridedMatrices H, States c,
                               States g) const;
   /// As forwardDynamics().

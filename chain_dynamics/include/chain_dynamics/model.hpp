@@ -5,7 +5,7 @@
 ///
 ///     Model ur10 = modelFromFile("ur10_identified.yaml");   // model_file.hpp
 ///     torques(ur10, q, qd, qdd, tau);                       // tau = H qdd + C qd + g
-///     frictionVector(ur10, qd, f);                          // what the motors need is tau + f
+///     frictionVector(ur10, q, qd, f);                       // what the motors need is tau + f
 ///
 /// An identified robot need not be one system of rigid bodies [parameter_sets.hpp]: rows of the
 /// torque may have parameters of their own, and so may gravity. The functions below have the names
@@ -29,6 +29,19 @@
 namespace chain_dynamics {
 inline namespace v2 {
 
+/// From the least to the greatest of some numbers.
+struct Interval {
+  double lower = 0;
+  double upper = 0;
+};
+
+/// Where one joint was while the robot was identified.
+struct SeenRange {
+  Interval q;    ///< rad (prismatic m)
+  Interval qd;   ///< rad/s (prismatic m/s)
+  Interval qdd;  ///< rad/s^2 (prismatic m/s^2)
+};
+
 /// A chain with identified parameters, friction and drive gains. Plain data; see checkModel().
 struct Model {
   /// A chain as it is: one parameter set, no friction.
@@ -50,6 +63,14 @@ struct Model {
   /// Empty: nothing is known about motors. Otherwise torque per motor current of each joint; N m/A.
   OwnedVector drive_gains = {};
 
+  /// Empty: not known. Otherwise, for each joint, half the width of the band that holds 95 % of the
+  /// differences between measured and computed torque, of data that weren't used to identify; N m
+  /// (prismatic N). For the robot without payload, within `seen`.
+  OwnedVector torque_deviation = {};
+
+  /// Empty: not known. Otherwise, for each joint, the range of the data of identification.
+  std::vector<SeenRange> seen = {};
+
   std::string name;           ///< what messages call it
   std::string source = {};    ///< where the figures come from
   std::string validity = {};  ///< what they are good for
@@ -65,7 +86,8 @@ struct Model {
   bool inertiaIsPhysical() const;
 };
 
-/// Rejects a model whose parts don't fit together: wrong sizes, non-finite numbers, gains <= 0.
+/// Rejects a model whose parts don't fit together: wrong sizes, non-finite numbers, gains <= 0,
+/// figures that a friction law can't have.
 ///
 /// Call it once where a model was made by hand; the functions below only assert sizes.
 ///
@@ -152,22 +174,44 @@ double kineticEnergy(const Model& model, const ConstVectorRef& q, const ConstVec
 /// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 double potentialEnergy(const Model& model, const ConstVectorRef& q);
 
-/// Friction torques: `f(qd)`; zero where the model knows no friction, but NaN for NaN.
+/// Whether friction depends on the gravity torques, and so on q: a law has a load coefficient.
+bool frictionDependsOnLoad(const Model& model);
+
+/// Friction torques: `f(q, qd)`; zero where the model knows no friction, but NaN for NaN.
 ///
+/// The load of a joint is its gravityVector(), of the model as it is.
+///
+/// @param q       n; rad (prismatic m); may be empty where frictionDependsOnLoad() is false.
 /// @param qd      n; rad/s (prismatic m/s).
 /// @param[out] f  n; N m (prismatic N).
-/// Real time: no allocation, lock, exception or system call. Threads: safe.
-void frictionVector(const Model& model, const ConstVectorRef& qd, VectorRef f);
+/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+void frictionVector(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                    VectorRef f);
 
-/// Derivatives of the friction torques: the diagonal of `df/dqd`; zero where the model knows no
-/// friction, but NaN for NaN.
+/// Derivatives of the friction torques by velocity: the diagonal of `df/dqd`; zero where the model
+/// knows no friction, but NaN for NaN.
 ///
+/// @param q           n; rad (prismatic m); may be empty where frictionDependsOnLoad() is false.
 /// @param qd          n; rad/s (prismatic m/s).
 /// @param[out] slope  n; N m s/rad (prismatic N s/m).
-/// Real time: no allocation, lock, exception or system call. Threads: safe.
-void frictionSlopes(const Model& model, const ConstVectorRef& qd, VectorRef slope);
+/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+void frictionSlopes(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                    VectorRef slope);
+
+/// Adds the derivatives of the friction torques: `df/dq` to `dtau_dq`, `df/dqd` to `dtau_dqd`.
+///
+/// `df_j/dq = df_j/dg_j dg_j/dq`; where a gravity torque is zero, |g_j| has no derivative, which
+/// counts as zero.
+///
+/// @param q,qd             n each; rad, rad/s (prismatic m, m/s).
+/// @param[in,out] dtau_dq  n x n; N m/rad (prismatic N, m).
+/// @param[in,out] dtau_dqd n x n; N m s/rad (prismatic N, m).
+/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
+                            MatrixRef dtau_dq, MatrixRef dtau_dqd);
 
 /// Derivatives of the joint torques without friction: `dtau/dq`, `dtau/dqd`, `dtau/dqdd = H(q)`.
+/// Those of friction are added by addFrictionDerivatives().
 ///
 /// Recursion over blocks of links [torque_derivatives.hpp], O(n^2), or once per row, O(n^3).
 ///

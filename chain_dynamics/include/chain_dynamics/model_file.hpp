@@ -26,7 +26,7 @@ Model modelFromFile(const std::string& path);
 
 /// The model of a text.
 ///
-/// @param text   YAML, schema 1.
+/// @param text   YAML, schema 1 or 2.
 /// @param where  what messages call it, usually a file name.
 /// @throws ModelError  `where:line: key: expected ..., got ...; remedy`.
 Model modelFromYaml(const std::string& text, const std::string& where);

@@ -182,7 +182,7 @@ void addGravityDerivatives(const Chain& chain, const std::vector<LinkParameters>
 ///
 /// Recursion over blocks of links in link frames, exact, O(n^2) [Carpentier and Mansard 2018,
 /// Robotics: Science and Systems; in this form Singh, Russell, Wensing 2022, arXiv 2105.05102].
-/// Without friction: see frictionSlope() in friction.hpp.
+/// Without friction: see addFrictionDerivatives() in model.hpp.
 ///
 /// @tparam Scalar         (of all arguments) float, double or a dual number.
 /// @param sets            ParameterSets [parameter_sets.hpp]; left out: chain.links().

@@ -34,7 +34,9 @@ void forwardDynamicsBatch(const Robot& robot, int structure, std::ptrdiff_t stat
     gather<N>(robot, tau, lanes, given);
     torquesOf(robot, structure, x.state(), bias);
     for (int i = 0; i < n; ++i) given[i] -= bias[i];
-    if (robot.friction != nullptr) {
+    if (robot.changing_steps) {
+      addChangingFriction(robot, structure, x.state(), -1.0, given);
+    } else if (robot.friction != nullptr) {
       for (int i = 0; i < n; ++i) given[i] -= frictionOfPack(robot, i, x.qd[i]);
     }
     recursionsOf<Pack>(structure).inertia(robot, x.state(), Entries<Pack>{H, n, 1});
@@ -78,10 +80,12 @@ void torqueDerivativesBatch(const Robot& robot, int structure, std::ptrdiff_t st
     PackOfStates<kPackedMatrixJoints> x;
     Pack entries[3][kPackedEntries];
     x.read<N>(robot, q, qd, qdd, lanes);
-    derivativesOf(robot, structure, x.state(),
-                  DerivativeEntries<Pack>{entries[0], entries[1], entries[2], n});
-    for (int i = 0; robot.friction != nullptr && i < n; ++i) {
-      entries[1][i + i * n] += frictionSlopeOfPack(robot, i, x.qd[i]);
+    const DerivativeEntries<Pack> to{entries[0], entries[1], entries[2], n};
+    derivativesOf(robot, structure, x.state(), to);
+    if (robot.changing_steps) {
+      addChangingFrictionDerivatives(robot, structure, x.state(), to);
+    } else if (robot.friction != nullptr) {
+      for (int i = 0; i < n; ++i) entries[1][i + i * n] += frictionSlopeOfPack(robot, i, x.qd[i]);
     }
     scatterMatrix<N>(entries[0], n, lanes, by_q);
     scatterMatrix<N>(entries[1], n, lanes, by_qd);

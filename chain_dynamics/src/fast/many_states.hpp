@@ -11,7 +11,6 @@
 
 #include "friction.hpp"
 #include "lanes.hpp"
-#include "recursions.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -74,7 +73,9 @@ void torquesBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
     Pack result[kMaxJoints];
     x.read<N>(robot, q, qd, qdd, lanes);
     torquesOf(robot, structure, x.state(), result);
-    if (robot.friction != nullptr) {
+    if (robot.changing_steps) {
+      addChangingFriction(robot, structure, x.state(), 1.0, result);
+    } else if (robot.friction != nullptr) {
       for (int i = 0; i < jointsOf<N>(robot); ++i) result[i] += frictionOfPack(robot, i, x.qd[i]);
     }
     scatter<N>(robot, result, lanes, tau);
@@ -132,7 +133,22 @@ void componentsBatch(const Robot& robot, int structure, std::ptrdiff_t states, S
 }
 
 template <int N>
-void frictionBatch(const Robot& robot, std::ptrdiff_t states, Samples qd, Samples f) {
+void changingFrictionBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
+                           Samples qd, Samples f) {
+  forEachPack(states, [&](const Lanes& lanes) {
+    PackOfStates<> x;
+    Pack result[kJointSpace];
+    gather<N>(robot, qd, lanes, x.qd);
+    if (robot.load_friction) x.readPositions<N>(robot, q, lanes, FirstJoint::kForGravity);
+    changingFriction(robot, structure, x.state(), result);
+    scatter<N>(robot, result, lanes, f);
+  });
+}
+
+template <int N>
+void frictionBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                   Samples f) {
+  if (robot.changing_steps) return changingFrictionBatch<N>(robot, structure, states, q, qd, f);
   forEachPack(states, [&](const Lanes& lanes) {
     Pack x[kMaxJoints];
     gather<N>(robot, qd, lanes, x);

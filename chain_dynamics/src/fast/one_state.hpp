@@ -9,7 +9,6 @@
 
 #include "friction.hpp"
 #include "linear_solve.hpp"
-#include "recursions.hpp"
 #include "regressor.hpp"
 #include "turns.hpp"
 
@@ -28,7 +27,12 @@ void torquesOfState(const Robot& robot, int structure, const double* q, const do
     return;
   }
   JointNumbers f;
-  frictionNumbers(robot, qd, f.values);
+  if (robot.changing_steps) {
+    const State<double> state{c.values, s.values, q, qd, qdd};
+    changingFriction(robot, structure, state, f.values);
+  } else {
+    frictionNumbers(robot, qd, f.values);
+  }
   torquesOf(robot, structure, State<double>{c.values, s.values, q, qd, qdd}, tau);
   for (int i = 0; i < robot.joints; ++i) tau[i] += f.values[i];
 }
@@ -75,6 +79,29 @@ void componentsOfState(const Robot& robot, int structure, const double* q, const
   for (int i = 0; i < robot.joints; ++i) g[i] = gravity.values[i];
 }
 
+FAST_APART void changingFrictionOfState(const Robot& robot, int structure, const double* q,
+                                        const double* qd, double* f) {
+  JointNumbers c;
+  JointNumbers s;
+  if (robot.load_friction) turnsOfState(robot, q, c.values, s.values);
+  changingFriction(robot, structure, State<double>{c.values, s.values, q, qd, nullptr}, f);
+}
+
+void frictionOfState(const Robot& robot, int structure, const double* q, const double* qd,
+                     double* f) {
+  if (robot.friction == nullptr) {
+    for (int i = 0; i < robot.joints; ++i) f[i] = 0.0 * qd[i];  // keeps a NaN
+    return;
+  }
+  JointNumbers numbers;
+  if (robot.changing_steps) {
+    changingFrictionOfState(robot, structure, q, qd, numbers.values);
+  } else {
+    frictionNumbers(robot, qd, numbers.values);
+  }
+  for (int i = 0; i < robot.joints; ++i) f[i] = numbers.values[i];
+}
+
 void forwardDynamicsOfState(const Robot& robot, int structure, const double* q, const double* qd,
                             const double* tau, double* qdd) {
   const int n = robot.joints;
@@ -88,7 +115,11 @@ void forwardDynamicsOfState(const Robot& robot, int structure, const double* q, 
   torquesOf(robot, structure, state, bias.values);
   for (int i = 0; i < n; ++i) accelerating[i] = tau[i] - bias.values[i];
   if (robot.friction != nullptr) {
-    frictionNumbers(robot, qd, bias.values);
+    if (robot.changing_steps) {
+      changingFriction(robot, structure, state, bias.values);
+    } else {
+      frictionNumbers(robot, qd, bias.values);
+    }
     for (int i = 0; i < n; ++i) accelerating[i] -= bias.values[i];
   }
   recursionsOf<double>(structure).inertia(robot, state, Entries<double>{H, n, 1});
@@ -111,9 +142,11 @@ void torqueDerivativesOfState(const Robot& robot, int structure, const double* q
   JointNumbers s;
   turnsOfState(robot, q, c.values, s.values);
   const State<double> state{c.values, s.values, q, qd, qdd};
-  derivativesOf(robot, structure, state,
-                DerivativeEntries<double>{by_q, by_qd, by_qdd, outer_step});
-  if (robot.friction != nullptr) {
+  const DerivativeEntries<double> entries{by_q, by_qd, by_qdd, outer_step};
+  derivativesOf(robot, structure, state, entries);
+  if (robot.changing_steps) {
+    addChangingFrictionDerivatives(robot, structure, state, entries);
+  } else if (robot.friction != nullptr) {
     frictionSlopes(robot, qd, c.values);
     for (int i = 0; i < robot.joints; ++i) by_qd[i + i * outer_step] += c.values[i];
   }

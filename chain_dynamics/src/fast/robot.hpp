@@ -45,9 +45,9 @@ struct Body {
 };
 constexpr int kBodyNumbers = 10;
 
-/// Friction of one joint has this many numbers, every law in one form, in this order:
-/// `f = fv qd + fc sign(qd) + fo + A (sigmoid(alpha (qd + shift)) - centre)`.
-constexpr int kFrictionNumbers = 7;
+/// Friction of one joint has this many numbers, every law in one form, in this order: those of
+/// FrictionForm [friction_laws/figures.hpp].
+constexpr int kFrictionNumbers = 10;
 
 /// A joint's place in the frames of the robot's description, with the angles of Placement.
 struct OwnPlacement {
@@ -76,6 +76,8 @@ struct Robot {
   const Body* const* rows;      ///< null: none; else joints sets of bodies: row j has set j
   const double* row_lanes;      ///< the same: [joint][number of Body][row]
   const double* friction;       ///< null: none; else [number][joint]
+  bool changing_steps;          ///< a law's step depends on load or (Stribeck) on velocity
+  bool load_friction;           ///< on load
   int stride;                   ///< joints, and zeros to the end of a pack: rows of the last two
   FixedPose base;               ///< of the first joint's frame at angle zero, in the root frame
   FixedPose tip;                ///< of the tip in the last frame
@@ -130,7 +132,8 @@ struct Kernels {
   void (*inertia)(const Robot&, int structure, const double* q, Matrices H);
   void (*components)(const Robot&, int structure, const double* q, const double* qd, Matrices H,
                      double* c, double* g);
-  void (*friction)(const Robot&, const double* qd, double* f);
+  /// q isn't read unless the robot has load_friction; likewise of many states.
+  void (*friction)(const Robot&, int structure, const double* q, const double* qd, double* f);
   void (*forward_dynamics)(const Robot&, int structure, const double* q, const double* qd,
                            const double* tau, double* qdd);
   void (*regressor)(const Robot&, const double* q, const double* qd, const double* qdd, double* Y,
@@ -161,7 +164,8 @@ struct ManyKernels {
   /// H is left out where its data are null.
   void (*components)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
                      Matrices H, Samples c, Samples g);
-  void (*friction)(const Robot&, std::ptrdiff_t states, Samples qd, Samples f);
+  void (*friction)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Samples qd,
+                   Samples f);
   /// Of robots with one set of parameters for all rows.
   void (*forward_dynamics)(const Robot&, int structure, std::ptrdiff_t states, Samples q,
                            Samples qd, Samples tau, Samples qdd);

@@ -267,15 +267,16 @@ void torqueDerivatives(const Robot& robot, const State<V>& state, const double* 
   }
 }
 
-/// dtau_dq += dg/dq with the set of gravity's own: second derivatives of potential energy.
-template <typename S, typename V>
-void addGravityDerivatives(const Robot& robot, const State<V>& state, V* dtau_dq,
-                           std::ptrdiff_t outer_step) {
+/// each(i, j, dg_i/dq_j = dg_j/dq_i) for j <= i with one set of parameters: second derivatives of
+/// potential energy.
+template <typename S, typename V, typename Each>
+FAST_INLINE void forEachGravityDerivative(const Robot& robot, const State<V>& state,
+                                          const Body* bodies, const Each& each) {
   Vec<V> a[S::kJoints];
   gravityInLinks<S>(robot, state, a);
   Vec<V> mc{};
   for (int i = robot.joints - 1; i >= 0; --i) {
-    const Body& body = robot.gravity_bodies[i];
+    const Body& body = bodies[i];
     const bool prismatic = robot.placements[i].prismatic;
     addTo(mc, {body.mcx + V{}, body.mcy + V{}, body.mcz + V{}});
 
@@ -284,15 +285,42 @@ void addGravityDerivatives(const Robot& robot, const State<V>& state, V* dtau_dq
     if (prismatic) f = {V{}, V{}, body.mass_beyond + V{}};
     for (int j = i; j >= 0; --j) {
       const Placement& Y = robot.placements[j];
-      if (!Y.prismatic) {
-        const V change = f.x * a[j].y - f.y * a[j].x;
-        dtau_dq[i + j * outer_step] += change;
-        if (j < i) dtau_dq[j + i * outer_step] += change;
-      }
+      if (!Y.prismatic) each(i, j, f.x * a[j].y - f.y * a[j].x);
       f = outOf<Twist::kAny>(Turn<V>{state.c[j], state.s[j], Y}, f);
     }
     carryPoint<S>(i, robot, state, body.mass_beyond, mc);
   }
+}
+
+/// dtau_dq += dg/dq with the set of gravity's own.
+template <typename S, typename V>
+void addGravityDerivatives(const Robot& robot, const State<V>& state, V* dtau_dq,
+                           std::ptrdiff_t outer_step) {
+  forEachGravityDerivative<S>(robot, state, robot.gravity_bodies,
+                              [&](int i, int j, const V& change) FAST_LAMBDA {
+                                dtau_dq[i + j * outer_step] += change;
+                                if (j < i) dtau_dq[j + i * outer_step] += change;
+                              });
+}
+
+/// Row i of dtau_dq += by_load[i] dg_i/dq.
+template <typename S, typename V>
+void addLoadDerivatives(const Robot& robot, const State<V>& state, const V* by_load, V* dtau_dq,
+                        std::ptrdiff_t outer_step) {
+  constexpr int kAllRows = -1;
+  const auto add = [&](const Body* bodies, int row) {
+    forEachGravityDerivative<S>(robot, state, bodies,
+                                [&](int i, int j, const V& change) FAST_LAMBDA {
+                                  if (row == kAllRows || row == i)
+                                    dtau_dq[i + j * outer_step] += by_load[i] * change;
+                                  if (j == i || (row != kAllRows && row != j)) return;
+                                  dtau_dq[j + i * outer_step] += by_load[j] * change;
+                                });
+  };
+  if (robot.gravity_bodies != nullptr || robot.rows == nullptr) {
+    return add(robot.gravity_bodies != nullptr ? robot.gravity_bodies : robot.bodies, kAllRows);
+  }
+  for (int row = 0; row < robot.joints; ++row) add(robot.rows[row], row);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <inverse_dynamics_evaluation/online_derivative.hpp>
 #include <inverse_dynamics_solver/motor_currents.hpp>
 #include <inverse_dynamics_solver/pooled_solver.hpp>
+#include <inverse_dynamics_solver/torque_deviation.hpp>
 #include <rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp>
 
 #include "chain_dynamics/fast_model.hpp"
@@ -29,6 +30,7 @@ std::vector<Layout> LAYOUTS() {
   return {LAYOUT(chain_dynamics::Chain),
           LAYOUT(chain_dynamics::FastModel),
           LAYOUT(chain_dynamics::FrictionLaw),
+          LAYOUT(chain_dynamics::SeenRange),
           LAYOUT(chain_dynamics::Joint),
           LAYOUT(chain_dynamics::LinkParameters),
           LAYOUT(chain_dynamics::Model),
@@ -59,6 +61,7 @@ std::vector<Layout> LAYOUTS() {
           LAYOUT(inverse_dynamics_solver::InverseDynamicsSolver),
           LAYOUT(inverse_dynamics_solver::MatrixRef),
           LAYOUT(inverse_dynamics_solver::MotorCurrents),
+          LAYOUT(inverse_dynamics_solver::TorqueDeviation),
           LAYOUT(inverse_dynamics_solver::Parameters),
           LAYOUT(inverse_dynamics_solver::PooledSolver),
           LAYOUT(inverse_dynamics_solver::WorkspacePool<inverse_dynamics_solver::Workspace>),

@@ -114,7 +114,7 @@ TEST(UsersProgram, ReadsCopiesChangesAndFreesModels) {
 
   VectorXd tau(6), f(6), fast(6);
   chain_dynamics::torques(model, kQ, kQd, kQdd, tau);
-  chain_dynamics::frictionVector(model, kQd, f);
+  chain_dynamics::frictionVector(model, kQ, kQd, f);
   chain_dynamics::FastModel(model).torques(kQ.data(), kQd.data(), kQdd.data(), fast.data());
   EXPECT_LT((tau + f - fast).cwiseAbs().maxCoeff(), kRounding);
 }

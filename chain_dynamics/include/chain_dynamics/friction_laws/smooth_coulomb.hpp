@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// Smooth Coulomb friction that may grow with load and near rest:
+/// `f = fv qd + fo + (fc + fl |g(q)| + fs exp(-(qd / vs)^2)) tanh((qd + shift) / width)`.
+
+#pragma once
+
+#include <array>
+
+#include "chain_dynamics/friction_laws/figures.hpp"
+
+namespace chain_dynamics {
+inline namespace v2 {
+
+/// `f = fv qd + fo + (fc + fl |g(q)| + fs exp(-(qd / vs)^2)) tanh((qd + shift) / width)`.
+///
+/// g(q) is the gravity torque of the joint, of the robot as it is: with its payload, under its
+/// gravity; an external wrench doesn't count. Gears rub more where they carry more; near rest, the
+/// lubricant is squeezed out (Stribeck) [Bittencourt et al. 2010, An extended friction model to
+/// capture load and temperature effects in robot joints, IROS]. Without shift and offset f brakes at
+/// every velocity, and without fs it grows with velocity.
+struct SmoothCoulomb {
+  double fv = 0;     ///< viscous coefficient [N m s/rad] (prismatic: N s/m), >= 0
+  double fc = 0;     ///< Coulomb friction [N m] (prismatic: N), >= 0
+  double width = 1;  ///< of the step [rad/s], > 0: tanh(1) = 76 % of it at qd = width - shift
+  double shift = 0;  ///< the step is at qd = -shift [rad/s]
+  double fo = 0;     ///< offset [N m] (prismatic: N), at rest too
+  double fl = 0;     ///< load coefficient [1], >= 0: friction per gravity torque
+  double fs = 0;     ///< what friction is greater by at rest (Stribeck) [N m] (prismatic: N), >= 0
+  double vs = 0;     ///< velocity at which 1/e of fs is left [rad/s], > 0; without fs not used
+
+  static constexpr const char* kName = "smooth_coulomb";
+  static constexpr int kSchema = 2;
+
+  static constexpr std::array<Figure<SmoothCoulomb>, 8> figures() {
+    constexpr auto kNotNegative = FigureRange::kNotNegative;
+    constexpr auto kPositive = FigureRange::kPositive;
+    return {{{"fv", &SmoothCoulomb::fv, true, kNotNegative},
+             {"fc", &SmoothCoulomb::fc, true, kNotNegative},
+             {"width", &SmoothCoulomb::width, false, kPositive},
+             {"shift", &SmoothCoulomb::shift, false, FigureRange::kAny, false},
+             {"fo", &SmoothCoulomb::fo, true, FigureRange::kAny, false},
+             {"fl", &SmoothCoulomb::fl, false, kNotNegative, false},
+             {"fs", &SmoothCoulomb::fs, true, kNotNegative, false},
+             {"vs", &SmoothCoulomb::vs, false, kPositive, false, "fs"}}};
+  }
+
+  FrictionForm form() const {
+    FrictionForm form;  // tanh(x) = 2 sigmoid(2 x) - 1
+    form.fv = fv;
+    form.fo = fo;
+    form.A = 2 * fc;
+    form.alpha = 2 / width;
+    form.shift = shift;
+    form.centre = 0.5;
+    form.fl = 2 * fl;
+    form.fs = 2 * fs;
+    if (fs != 0) form.per_vs = 1 / vs;
+    return form;
+  }
+};
+
+}  // namespace v2
+}  // namespace chain_dynamics

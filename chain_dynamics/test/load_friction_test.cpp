@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Friction that depends on the gravity torques: of a model as it is, with its payload and gravity.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "allocation_guard.hpp"
+#include "chain_dynamics/fast_model.hpp"
+#include "example_models.hpp"
+#include "example_robots.hpp"
+
+namespace chain_dynamics {
+namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+VectorXd frictionOf(const Model& model, const VectorXd& q, const VectorXd& qd) {
+  VectorXd f(q.size());
+  frictionVector(model, q, qd, f);
+  return f;
+}
+
+VectorXd gravityOf(const Model& model, const VectorXd& q) {
+  VectorXd g(q.size());
+  gravityVector(model, q, g);
+  return g;
+}
+
+std::vector<NamedModel> loadedModels() {
+  std::vector<NamedModel> loaded;
+  for (const NamedModel& named : models()) {
+    if (frictionDependsOnLoad(named.model)) loaded.push_back(named);
+  }
+  return loaded;
+}
+
+// 2 kg at 1.5 m: g = 2 9.81 1.5 cos(q) N m; 3 + 0.2 |g| far from the step.
+TEST(LoadFriction, OfAPendulumWorkedByHand) {
+  Model model(pendulum(2, 1.5, 9.81));
+  model.friction = {SmoothCoulomb{0, 3, 1e-3, 0, 0, 0.2}};
+  const VectorXd down = VectorXd::Zero(1), side = VectorXd::Constant(1, std::acos(0.0));
+  const double most = std::max(gravityOf(model, down).norm(), gravityOf(model, side).norm());
+  EXPECT_NEAR(most, 2 * 9.81 * 1.5, 1e-12);
+  const VectorXd fast = VectorXd::Constant(1, 1.0);
+  for (const VectorXd& q : {down, side}) {
+    const double load = std::abs(gravityOf(model, q)[0]);
+    EXPECT_NEAR(frictionOf(model, q, fast)[0], 3 + 0.2 * load, 1e-12);
+    EXPECT_NEAR(frictionOf(model, q, -fast)[0], -3 - 0.2 * load, 1e-12);
+  }
+}
+
+TEST(LoadFriction, CountsABodyAtTheTipAndGravity) {
+  const LinkParameters body = LinkParameters::fromCenterOfMass(
+      3.1, {0.02, -0.05, 0.11}, Eigen::Vector3d(0.1, 0.2, 0.25).asDiagonal());
+  for (const auto& [name, model] : loadedModels()) {
+    const State<double> x = randomState<double>(model.chain, 1);
+    Model loaded = withBodyAtTip(model, body);
+    Model turned = model;
+    turned.chain = turned.chain.withGravity({1, -2, 3});
+    for (const Model& changed : {loaded, turned}) {
+      const VectorXd g = gravityOf(changed, x.q), f = frictionOf(changed, x.q, x.qd);
+      EXPECT_NE(f, frictionOf(model, x.q, x.qd)) << name;
+      for (Index j = 0; j < g.size(); ++j) {
+        EXPECT_EQ(f[j], friction(model.friction[static_cast<std::size_t>(j)], x.qd[j], g[j]));
+      }
+    }
+  }
+}
+
+TEST(LoadFriction, NeedsNoPositionsWhereNoLawDependsOnLoad) {
+  for (const auto& [name, model] : models()) {
+    const FastModel fast(model);
+    EXPECT_EQ(fast.frictionDependsOnLoad(), frictionDependsOnLoad(model)) << name;
+    if (frictionDependsOnLoad(model)) continue;
+    const State<double> x = randomState<double>(model.chain, 1);
+    EXPECT_EQ(frictionOf(model, x.q, x.qd), frictionOf(model, x.q + x.qd, x.qd)) << name;
+    VectorXd without(x.qd.size()), f(without), slope(without), slope_without(without);
+    frictionVector(model, VectorXd(), x.qd, without);
+    EXPECT_EQ(without, frictionOf(model, x.q, x.qd)) << name;
+    frictionSlopes(model, x.q, x.qd, slope);
+    frictionSlopes(model, VectorXd(), x.qd, slope_without);
+    EXPECT_EQ(slope, slope_without) << name;
+    fast.frictionVector(x.q.data(), x.qd.data(), f.data());
+    fast.frictionVector(nullptr, x.qd.data(), without.data());
+    EXPECT_EQ(f, without) << name;
+    fast.frictionVectorBatch(ConstStates(nullptr, 0, 1, 1, 0), x.qd, without);
+    EXPECT_LT((f - without).norm(), 1e-12 * (1 + f.norm())) << name;
+  }
+}
+
+// The five-point rule: its error is h^4 / 30 times a fifth derivative, (2 / width)^4 of the step.
+TEST(LoadFriction, DerivativesAreThoseOfTheTorques) {
+  constexpr double kStep = 2e-5;
+  for (const auto& [name, model] : loadedModels()) {
+    const Index n = model.chain.jointCount();
+    const State<double> x = randomState<double>(model.chain, 3);
+    MatrixXd by_q = MatrixXd::Zero(n, n), by_qd = MatrixXd::Zero(n, n);
+    addFrictionDerivatives(model, x.q, x.qd, by_q, by_qd);
+    VectorXd slope(n);
+    frictionSlopes(model, x.q, x.qd, slope);
+    EXPECT_EQ(by_qd, MatrixXd(slope.asDiagonal())) << name;
+    const auto quotient = [](const auto& f) {
+      return VectorXd((f(-2 * kStep) - f(2 * kStep) + 8 * (f(kStep) - f(-kStep))) / (12 * kStep));
+    };
+    const double size = 1 + largest(by_q) + largest(frictionOf(model, x.q, x.qd));
+    for (Index j = 0; j < n; ++j) {
+      const VectorXd unit = VectorXd::Unit(n, j);
+      const VectorXd q_column =
+          quotient([&](double h) { return frictionOf(model, x.q + h * unit, x.qd); });
+      const VectorXd qd_column =
+          quotient([&](double h) { return frictionOf(model, x.q, x.qd + h * unit); });
+      EXPECT_LT(largest(by_q.col(j) - q_column), 1e-8 * size) << name << ", joint " << j;
+      EXPECT_LT(largest(by_qd.col(j) - qd_column), 1e-6 * (size + largest(by_qd))) << name;
+    }
+  }
+}
+
+TEST(LoadFriction, HasNoDerivativeByPositionWhereTheLoadIsZero) {
+  Model model(pendulum(2, 1.5, 9.81));
+  model.chain = model.chain.withGravity(Eigen::Vector3d::Zero());
+  model.friction = {SmoothCoulomb{1, 3, 0.1, 0, 0, 0.2}};
+  MatrixXd by_q = MatrixXd::Zero(1, 1), by_qd = MatrixXd::Zero(1, 1), H(1, 1);
+  const VectorXd x = VectorXd::Constant(1, 0.3);
+  addFrictionDerivatives(model, x, x, by_q, by_qd);
+  EXPECT_EQ(by_q(0, 0), 0);
+  for (const std::string& set : FastModel::instructionSets()) {
+    FastModel(model, set)
+        .torqueDerivatives(x.data(), x.data(), x.data(), by_q.data(), by_qd.data(), H.data(), 1);
+    EXPECT_EQ(by_q(0, 0), 0) << set;
+  }
+}
+
+TEST(LoadFriction, AllocatesNothing) {
+  if (!CHAIN_DYNAMICS_COUNTS_ALLOCATIONS) {
+    GTEST_SKIP() << "allocations are counted with the GNU C library, without sanitizers";
+  }
+  for (const auto& [name, model] : loadedModels()) {
+    const State<double> x = randomState<double>(model.chain, 1);
+    const Index n = x.q.size();
+    VectorXd f(n), slope(n);
+    MatrixXd by_q = MatrixXd::Zero(n, n), by_qd = by_q, F(n, 20);
+    const MatrixXd q = x.q.replicate(1, 20), qd = x.qd.replicate(1, 20);
+    const FastModel fast(model);
+    const AllocationGuard guard;
+    frictionVector(model, x.q, x.qd, f);
+    frictionSlopes(model, x.q, x.qd, slope);
+    addFrictionDerivatives(model, x.q, x.qd, by_q, by_qd);
+    fast.frictionVector(x.q.data(), x.qd.data(), f.data());
+    fast.frictionVectorBatch(q, qd, F);
+    EXPECT_EQ(guard.count(), 0) << name;
+  }
+}
+
+}  // namespace
+}  // namespace chain_dynamics
