@@ -59,7 +59,7 @@ Status ComputedTorque::update(const JointState& state, const Reference& referenc
     acceleration_ = reference.qdd + gains_.Kp.cwiseProduct(reference.q - state.q) +
                     gains_.Kd.cwiseProduct(reference.qd - state.qd);
     model().torques(state.q, state.qd, acceleration_, wished);
-    addFriction(state.qd, reference.qd, wished);
+    addFriction(state.q, state.qd, reference.qd, wished);
   });
 }
 

@@ -38,12 +38,12 @@ Status ControlLaw::check(const ConstVectorRef& reference) const noexcept {
   return reference.allFinite() ? Status::kOk : Status::kReferenceNotFinite;
 }
 
-void ControlLaw::addFriction(const ConstVectorRef& qd, const ConstVectorRef& qd_reference,
-                             VectorRef tau) {
+void ControlLaw::addFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
+                             const ConstVectorRef& qd_reference, VectorRef tau) {
   if (friction_.source() == FrictionSource::kNone) return;
   const bool measured = friction_.source() == FrictionSource::kMeasuredVelocity;
   const ConstVectorRef& v = measured ? qd : qd_reference;
-  model_.friction(v, f_);
+  model_.friction(q, v, f_);
   friction_.weigh(v, f_);
   tau += f_;
 }

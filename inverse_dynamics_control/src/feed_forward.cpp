@@ -19,9 +19,9 @@ Status FeedForward::update(const JointState& state, const Reference& reference,
   return output(state, period, tau, [&](VectorRef wished) {
     // tau = effort + H qdd_ref + C qd + g + f
     const bool measured = at_ == ModelState::kMeasured;
-    model().torques(measured ? state.q : reference.q, measured ? state.qd : reference.qd,
-                    reference.qdd, wished);
-    addFriction(state.qd, reference.qd, wished);
+    const auto& q = measured ? state.q : reference.q;
+    model().torques(q, measured ? state.qd : reference.qd, reference.qdd, wished);
+    addFriction(q, state.qd, reference.qd, wished);
     wished += effort;
   });
 }

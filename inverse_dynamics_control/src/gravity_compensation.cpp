@@ -23,7 +23,7 @@ Status GravityCompensation::update(const JointState& state, const ConstVectorRef
   return output(state, period, tau, [&](VectorRef wished) {
     model().gravity(state.q, wished);
     wished -= damping().cwiseProduct(state.qd);
-    addFriction(state.qd, qd_reference, wished);
+    addFriction(state.q, state.qd, qd_reference, wished);
   });
 }
 

@@ -42,11 +42,11 @@ void ModelTerms::gravity(const ConstVectorRef& q, VectorRef g) const {
   }
 }
 
-void ModelTerms::friction(const ConstVectorRef& v, VectorRef f) const {
+void ModelTerms::friction(const ConstVectorRef& q, const ConstVectorRef& v, VectorRef f) const {
   if (compensated_.friction) {
     f.setZero();
   } else {
-    solver_->getFrictionVector(v, f);
+    solver_->getFrictionVector(q, v, f);
   }
 }
 

@@ -36,7 +36,7 @@ Status PdGravityCompensation::update(const JointState& state, const Reference& r
     model().gravity(state.q, wished);
     wished += gains_.Kp.cwiseProduct(reference.q - state.q) +
               gains_.Kd.cwiseProduct(reference.qd - state.qd);
-    addFriction(state.qd, reference.qd, wished);
+    addFriction(state.q, state.qd, reference.qd, wished);
   });
 }
 

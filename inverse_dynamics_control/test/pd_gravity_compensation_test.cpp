@@ -5,6 +5,8 @@
 
 #include "arms.hpp"
 #include "inverse_dynamics_control/computed_torque.hpp"
+#include "inverse_dynamics_control/feed_forward.hpp"
+#include "inverse_dynamics_control/gravity_compensation.hpp"
 
 namespace inverse_dynamics_control {
 namespace {
@@ -39,6 +41,51 @@ TEST(PdGravityCompensation, FrictionIsThatOfTheReferenceVelocity) {
   PdGravityCompensation with(solver, kGains, options);
   const Eigen::VectorXd f = solver->getFrictionVector(kReference.qd);
   EXPECT_LT((torquesOf(with) - torquesOf(without) - f).norm(), 1e-12);
+}
+
+/// A pendulum whose friction grows with the gravity torque.
+class LoadedPendulum : public Pendulum {
+ public:
+  static std::shared_ptr<LoadedPendulum> make() {
+    auto solver = std::make_shared<LoadedPendulum>();
+    solver->initialize();
+    return solver;
+  }
+
+ protected:
+  void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
+                       VectorRef f) const override {
+    f[0] = 0.5 * std::abs(9.81 * std::cos(q[0])) * std::tanh(qd[0]);
+  }
+  bool frictionDependsOnPositionImpl() const override { return true; }
+};
+
+TEST(FrictionCompensation, IsThatOfTheLoadAtThePositionOfTheLaw) {
+  const auto solver = LoadedPendulum::make();
+  LawOptions options = unlimited(1);
+  options.friction.source = FrictionSource::kReferenceVelocity;
+  const JointState state = stateOf(vec({0.3}), vec({0.7}));
+  const Reference reference = referenceOf(vec({0.9}), vec({0.5}), vec({2.0}));
+  LawOptions none = unlimited(1);
+  none.friction.source = FrictionSource::kNone;
+  const auto expect = [&](auto&& added, double q) {
+    EXPECT_NEAR(added, 0.5 * 9.81 * std::cos(q) * std::tanh(0.5), 1e-12);
+  };
+  Eigen::VectorXd with(1), without(1);
+  const Eigen::VectorXd effort = vec({0.0});
+
+  GravityCompensation guided(solver, options), plain(solver, none);
+  EXPECT_EQ(guided.update(state, reference.qd, kPeriod, with), Status::kOk);
+  EXPECT_EQ(plain.update(state, reference.qd, kPeriod, without), Status::kOk);
+  expect(with[0] - without[0], 0.3);
+
+  for (const bool measured : {false, true}) {
+    const ModelState at = measured ? ModelState::kMeasured : ModelState::kReference;
+    FeedForward feed(solver, at, options), bare(solver, at, none);
+    EXPECT_EQ(feed.update(state, reference, effort, kPeriod, with), Status::kOk);
+    EXPECT_EQ(bare.update(state, reference, effort, kPeriod, without), Status::kOk);
+    expect(with[0] - without[0], measured ? 0.3 : 0.9);
+  }
 }
 
 TEST(PdGravityCompensation, APendulumSettlesAtItsReference) {

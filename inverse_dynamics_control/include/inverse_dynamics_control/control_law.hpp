@@ -90,8 +90,9 @@ class ControlLaw {
   /// kWrongSize, kReferenceNotFinite or kOk, of a vector of a reference.
   Status check(const ConstVectorRef& reference) const noexcept;
 
-  /// Adds the blended friction at the velocity that the options choose.
-  void addFriction(const ConstVectorRef& qd, const ConstVectorRef& qd_reference, VectorRef tau);
+  /// Adds the blended friction at the velocity that the options choose, under the load at q.
+  void addFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
+                   const ConstVectorRef& qd_reference, VectorRef tau);
 
   /// Safe torque, and why.
   Status refuse(Status why, const JointState& state, double period, VectorRef tau) noexcept;

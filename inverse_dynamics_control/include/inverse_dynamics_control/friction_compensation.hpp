@@ -6,7 +6,7 @@
 ///     options.source = FrictionSource::kMeasuredVelocity;   // hand guiding
 ///     options.dead_band = 0.02;                             // rad/s: what noise stays below
 ///     FrictionCompensation friction(options, "gravity compensation");
-///     friction.weigh(qd, f);                                // f = solver->getFrictionVector(qd)
+///     friction.weigh(qd, f);                                // f = getFrictionVector(q, qd)
 ///
 /// Identified friction jumps at zero speed (slopes of 500 N m s/rad are common) and isn't even zero
 /// there (the UR10's: up to 4.5 N m at rest). Added as it is, it would push a resting arm and

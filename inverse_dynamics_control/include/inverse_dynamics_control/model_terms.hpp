@@ -52,8 +52,8 @@ class ModelTerms {
   /// `g(q)`, n; zero if compensated.
   void gravity(const ConstVectorRef& q, VectorRef g) const;
 
-  /// `f(v)`, n; zero if compensated.
-  void friction(const ConstVectorRef& v, VectorRef f) const;
+  /// `f(q, v)`, n; zero if compensated.
+  void friction(const ConstVectorRef& q, const ConstVectorRef& v, VectorRef f) const;
 
  private:
   std::shared_ptr<const InverseDynamicsSolver> solver_;
