@@ -135,8 +135,7 @@ DescriptionFriction descriptionFriction(const Configuration& configuration,
   std::vector<std::string> stated;  // joints
   for (const chain_dynamics::Joint& joint : chain.joints()) {
     if (joint.damping != 0.0 || joint.friction != 0.0) stated.push_back(joint.name);
-    result.laws.emplace_back(
-        chain_dynamics::ViscousCoulombOffset{joint.damping, joint.friction, 0.0});
+    result.laws.push_back({joint.damping, joint.friction, 0.0});
   }
   if (!configuration.urdf_friction) result.laws.clear();
   if (configuration.urdf_friction == !stated.empty()) return result;

@@ -60,6 +60,11 @@ bool InverseDynamicsSolver::inertiaIsPhysical() const {
   return inertiaIsPhysicalImpl();
 }
 
+bool InverseDynamicsSolver::frictionDependsOnPosition() const {
+  requireInitialized("frictionDependsOnPosition");
+  return frictionDependsOnPositionImpl();
+}
+
 void InverseDynamicsSolver::requireInitialized(const char* method) const {
   MethodCall(method, *this);
 }
@@ -79,7 +84,9 @@ void InverseDynamicsSolver::getCoriolisVector(const ConstVectorRef& q, const Con
 
 void InverseDynamicsSolver::getFrictionVector(const ConstVectorRef& q, const ConstVectorRef& qd,
                                               VectorRef f) const {
-  MethodCall("getFrictionVector", *this).vectorOrNothing("q", q).vector("qd", qd).vector("f", f);
+  const MethodCall call("getFrictionVector", *this);
+  call.vectorOrNothing("q", q).vector("qd", qd).vector("f", f);
+  call.positionsOfFriction(q.size());
   computeFriction(q, qd, f);
 }
 
@@ -110,6 +117,8 @@ void InverseDynamicsSolver::getTorques(const ConstVectorRef& q, const ConstVecto
 }
 
 // ---------------------------------------------------------------- defaults
+
+bool InverseDynamicsSolver::frictionDependsOnPositionImpl() const { return false; }
 
 void InverseDynamicsSolver::computeFriction(const ConstVectorRef&, const ConstVectorRef&,
                                             VectorRef f) const {

@@ -33,6 +33,7 @@ void InverseDynamicsSolver::getFrictionVectorBatch(const ConstStatesRef& q,
   const BatchCall call("getFrictionVectorBatch", *this, qd.count);
   if (q.joints > 0 || q.count != qd.count) call.states("q", q);
   call.states("qd", qd).states("f", f);
+  call.positionsOfFriction(q.joints);
   call.share([this](const auto&... part) { computeFrictionBatch(part...); }, q, qd, f);
 }
 

@@ -33,6 +33,14 @@ void MethodCall::throwMismatch(const char* argument, const std::string& expected
                                         "the joints are " + chain_dynamics::joined(jointNames())));
 }
 
+void MethodCall::throwNoPositions() const {
+  throw SizeMismatchException(errorText(
+      std::string(method_) + ": argument q", "missing",
+      std::to_string(joints()) + " numbers, as friction depends on the position", "0",
+      "call getFrictionVector(q, qd), in Python friction_vector(qd, q=q); the joints are " +
+          chain_dynamics::joined(jointNames())));
+}
+
 void MethodCall::throwUnphysical() const {
   throw Exception(errorText(method_, "the inertia matrix isn't that of rigid bodies",
                             "a solver whose inertiaIsPhysical() is true", "one where it is false",

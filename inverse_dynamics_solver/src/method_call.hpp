@@ -53,6 +53,12 @@ class MethodCall {
     return *this;
   }
 
+  /// @throws SizeMismatchException  no positions, but friction depends on them.
+  const MethodCall& positionsOfFriction(Eigen::Index size) const {
+    if (size == 0 && solver_.frictionDependsOnPositionImpl()) throwNoPositions();
+    return *this;
+  }
+
   /// @throws Exception  inertiaIsPhysical() is false.
   const MethodCall& physicalInertia() const {
     if (!solver_.inertiaIsPhysicalImpl()) throwUnphysical();
@@ -75,6 +81,7 @@ class MethodCall {
   [[noreturn]] void throwMismatch(const char* argument, const std::string& expected,
                                   const std::string& got) const;
   [[noreturn]] void throwUnphysical() const;
+  [[noreturn]] void throwNoPositions() const;
 
   const char* method_;
   const InverseDynamicsSolver& solver_;

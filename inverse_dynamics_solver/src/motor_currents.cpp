@@ -41,9 +41,10 @@ void MotorCurrents::getGravityCurrents(const ConstVectorRef& q, VectorRef i) con
   i.array() /= K.array();
 }
 
-void MotorCurrents::getFrictionCurrents(const ConstVectorRef& qd, VectorRef i) const {
+void MotorCurrents::getFrictionCurrents(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                        VectorRef i) const {
   const Gains K = gains("getFrictionCurrents");
-  torqueSolver().getFrictionVector(qd, i);
+  torqueSolver().getFrictionVector(q, qd, i);
   i.array() /= K.array();
 }
 

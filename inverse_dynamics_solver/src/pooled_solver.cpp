@@ -7,6 +7,12 @@
 
 namespace inverse_dynamics_solver {
 inline namespace v2 {
+namespace {
+
+/// The friction that a robot description states doesn't depend on load.
+constexpr double kNoLoad = 0.0;
+
+}  // namespace
 
 auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
   // Everything that can fail, aside.
@@ -19,13 +25,15 @@ auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
   JointInfo info{chain.jointNames(), chain.warnings()};
   DescriptionFriction friction = descriptionFriction(configuration, chain);
   info.warnings.insert(info.warnings.end(), friction.warnings.begin(), friction.warnings.end());
+  std::vector<chain_dynamics::FrictionForm> laws;
+  for (const auto& law : friction.laws) laws.push_back(law.form());
   configuration.rejectOthers();
 
   // Nothing below can fail.
   beginWith(std::move(robot), std::move(conditions));
   bare_ = std::move(bare);
   max_threads_ = max_threads;
-  friction_ = std::move(friction.laws);
+  friction_ = std::move(laws);
   inertia_is_physical_ = inertia_is_physical;
   return info;
 }
@@ -56,17 +64,21 @@ void PooledSolver::computeGravityVector(const ConstVectorRef& q, VectorRef g) co
 
 void PooledSolver::computeFriction(const ConstVectorRef&, const ConstVectorRef& qd,
                                    VectorRef f) const {
-  if (friction_.empty()) {
-    f.setZero();
-  } else {
-    chain_dynamics::frictionVector(friction_, qd, f);
+  f.setZero();
+  addFriction(qd, f);
+}
+
+void PooledSolver::addFriction(const ConstVectorRef& qd, VectorRef f) const {
+  for (std::size_t j = 0; j < friction_.size(); ++j) {
+    const auto i = static_cast<Eigen::Index>(j);
+    f[i] += chain_dynamics::friction(friction_[j], qd[i], kNoLoad);
   }
 }
 
 void PooledSolver::addFrictionSlopes(const ConstVectorRef& qd, MatrixRef dtau_dqd) const {
   for (std::size_t j = 0; j < friction_.size(); ++j) {
     const auto i = static_cast<Eigen::Index>(j);
-    dtau_dqd(i, i) += chain_dynamics::frictionSlope(friction_[j], qd[i]);
+    dtau_dqd(i, i) += chain_dynamics::frictionSlope(friction_[j], qd[i], kNoLoad);
   }
 }
 
@@ -81,10 +93,7 @@ void PooledSolver::computeDynamicComponents(const ConstVectorRef& q, const Const
 void PooledSolver::computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
                                   const ConstVectorRef& qdd, VectorRef tau) const {
   borrow<Workspace>()->torques(q, qd, qdd, tau);
-  for (std::size_t j = 0; j < friction_.size(); ++j) {
-    const auto i = static_cast<Eigen::Index>(j);
-    tau[i] += chain_dynamics::friction(friction_[j], qd[i]);
-  }
+  addFriction(qd, tau);
 }
 
 }  // namespace v2

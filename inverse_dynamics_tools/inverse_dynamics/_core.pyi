@@ -65,6 +65,25 @@ class Solver:
     def drive_gains(self) -> Floats | None:
         """(n,) N m/A (prismatic N/A) of a model identified in motor currents; None of any other."""
 
+    @property
+    def friction_depends_on_position(self) -> bool:
+        """Whether friction grows with the gravity torques: then friction_vector() needs q."""
+
+    @property
+    def torque_deviation(self) -> Floats | None:
+        """(n,) N m (prismatic N): half the width of the band that holds 95 % of the differences.
+
+        Between measured and computed torques of data that weren't used to identify. None where the
+        model doesn't state it.
+        """
+
+    @property
+    def seen(self) -> Floats | None:
+        """(3, n, 2): least and greatest q, qd, qdd of the data of identification.
+
+        None where the model doesn't state it.
+        """
+
     def torques(
         self,
         q: ArrayLike,
@@ -75,7 +94,7 @@ class Solver:
         frame: str = "root",
         out: Floats | None = None,
     ) -> Floats:
-        """Tau = H(q) qdd + C(q, qd) qd + f(qd) + g(q); with a wrench + J(q)^T wrench.
+        """Tau = H(q) qdd + C(q, qd) qd + f(q, qd) + g(q); with a wrench + J(q)^T wrench.
 
         wrench, frame: as in external_torques().
         """
@@ -92,7 +111,10 @@ class Solver:
     def friction_vector(
         self, qd: ArrayLike, *, q: ArrayLike | None = None, out: Floats | None = None
     ) -> Floats:
-        """f(q, qd); zero if the solver has no friction model or was made without."""
+        """f(q, qd); zero if the solver has no friction model or was made without.
+
+        q is needed where friction_depends_on_position.
+        """
 
     def dynamic_components(
         self, q: ArrayLike, qd: ArrayLike, *, out: tuple[Floats, Floats, Floats] | None = None

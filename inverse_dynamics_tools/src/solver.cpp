@@ -7,6 +7,7 @@
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/motor_currents.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
+#include <inverse_dynamics_solver/torque_deviation.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -151,6 +152,33 @@ class Solver {
     if (motors == nullptr) return py::none();
     const Eigen::VectorXd gains = motors->getDriveGainsMatrix().diagonal();
     return py::array_t<double>(gains.size(), gains.data());
+  }
+
+  bool frictionDependsOnPosition() const { return solver_->frictionDependsOnPosition(); }
+
+  /// Half the width of the band that holds 95 % of the torques; None where nobody knows.
+  py::object torqueDeviation() const {
+    const auto* band = dynamic_cast<const ids::TorqueDeviation*>(solver_.get());
+    if (band == nullptr || !band->hasTorqueDeviation()) return py::none();
+    const Eigen::VectorXd deviation = band->getTorqueDeviation();
+    return py::array_t<double>(deviation.size(), deviation.data());
+  }
+
+  /// (3, n, 2): q, qd, qdd; joint; least and greatest. None where nobody knows.
+  py::object seenRanges() const {
+    const auto* band = dynamic_cast<const ids::TorqueDeviation*>(solver_.get());
+    if (band == nullptr || band->seenRanges().empty()) return py::none();
+    const auto& ranges = band->seenRanges();
+    py::array_t<double> result(
+        {py::ssize_t{3}, static_cast<py::ssize_t>(ranges.size()), py::ssize_t{2}});
+    for (std::size_t j = 0; j < ranges.size(); ++j) {
+      const chain_dynamics::Interval of_joint[] = {ranges[j].q, ranges[j].qd, ranges[j].qdd};
+      for (int k = 0; k < 3; ++k) {
+        result.mutable_at(k, j, 0) = of_joint[k].lower;
+        result.mutable_at(k, j, 1) = of_joint[k].upper;
+      }
+    }
+    return std::move(result);
   }
 
  private:
@@ -313,9 +341,20 @@ void bindSolver(py::module_& module) {
       .def_property_readonly("drive_gains", &Solver::driveGains,
                              "(n,) N m/A (prismatic N/A) of a model identified in motor\n"
                              "currents; None of any other.")
+      .def_property_readonly("friction_depends_on_position", &Solver::frictionDependsOnPosition,
+                             "Whether friction grows with the gravity torques: then\n"
+                             "friction_vector() needs q.")
+      .def_property_readonly(
+          "torque_deviation", &Solver::torqueDeviation,
+          "(n,) N m (prismatic N): half the width of the band that holds 95 %\n"
+          "of the differences between measured and computed torques of data\n"
+          "that weren't used to identify; None where the model doesn't state it.")
+      .def_property_readonly("seen", &Solver::seenRanges,
+                             "(3, n, 2): least and greatest q, qd, qdd of the data of\n"
+                             "identification; None where the model doesn't state it.")
       .def("torques", &Solver::torques, py::arg("q"), py::arg("qd"), py::arg("qdd"), py::kw_only(),
            py::arg("wrench") = py::none(), py::arg("frame") = "root", py::arg("out") = py::none(),
-           "tau = H(q) qdd + C(q, qd) qd + f(qd) + g(q); with a wrench + J(q)^T wrench, as in\n"
+           "tau = H(q) qdd + C(q, qd) qd + f(q, qd) + g(q); with a wrench + J(q)^T wrench, as in\n"
            "external_torques().")
       .def("inertia_matrix", &Solver::inertiaMatrix, py::arg("q"), py::kw_only(),
            py::arg("out") = py::none(), "H(q), (n, n) or (N, n, n).")
@@ -325,7 +364,8 @@ void bindSolver(py::module_& module) {
            py::arg("out") = py::none(), "g(q): what holds the robot still.")
       .def("friction_vector", &Solver::frictionVector, py::arg("qd"), py::kw_only(),
            py::arg("q") = py::none(), py::arg("out") = py::none(),
-           "f(q, qd); zero if the solver has no friction model or was made without.")
+           "f(q, qd); zero if the solver has no friction model or was made without. q is needed\n"
+           "where friction_depends_on_position.")
       .def("dynamic_components", &Solver::dynamicComponents, py::arg("q"), py::arg("qd"),
            py::kw_only(), py::arg("out") = py::none(),
            "H(q), C(q, qd) qd, g(q); out: a tuple of three arrays.")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import mujoco
@@ -226,3 +227,51 @@ def test_friction_takes_a_position() -> None:
     np.testing.assert_array_equal(solver.friction_vector(qd, q=q), solver.friction_vector(qd))
     with pytest.raises(errors.SizeMismatchError, match="argument q"):
         solver.friction_vector(qd, q=q[:-1])
+
+
+LIFT = """
+schema: 2
+name: lift
+source: worked by hand
+validity: a test
+units: SI
+geometry: placements
+gravity: [0, 0, -9.81]
+parameters: about_center_of_mass
+joints:
+  - name: lift
+    type: prismatic
+    placement: {xyz: [0, 0, 0], rpy: [0, 0, 0], axis: [0, 0, 1]}
+    friction: {law: smooth_coulomb, fv: 0, fc: 3, width: 0.001, fl: 0.5}
+    torque_deviation: 0.75
+    seen: {q: [-1, 1], qd: [-2, 2], qdd: [-3, 4]}
+    link: [2, 0, 0, 0, 0.1, 0, 0, 0.1, 0, 0.1]
+"""
+
+
+def test_friction_that_depends_on_load_needs_a_position_and_counts_a_payload(
+    tmp_path: Path,
+) -> None:
+    file = tmp_path / "lift.yaml"
+    file.write_text(LIFT)
+    solver = Solver(RIGID_BODY, model=str(file))
+    assert solver.friction_depends_on_position
+    assert not Solver(UR10).friction_depends_on_position
+    with pytest.raises(errors.SizeMismatchError, match=r"missing.*friction_vector\(qd, q=q\)"):
+        solver.friction_vector([1.0])
+    assert solver.friction_vector([1.0], q=[0.0]) == pytest.approx(3 + 0.5 * 2 * 9.81)
+    solver.set_payload("part", 5.0)
+    assert solver.friction_vector([1.0], q=[0.0]) == pytest.approx(3 + 0.5 * 7 * 9.81)
+    many = solver.friction_vector(np.ones((20, 1)), q=np.zeros((20, 1)))
+    np.testing.assert_allclose(many, 3 + 0.5 * 7 * 9.81)
+
+
+def test_model_tells_the_deviation_of_torques_and_the_range_that_was_seen(tmp_path: Path) -> None:
+    file = tmp_path / "lift.yaml"
+    file.write_text(LIFT)
+    solver = Solver(RIGID_BODY, model=str(file))
+    np.testing.assert_array_equal(solver.torque_deviation, [0.75])
+    np.testing.assert_array_equal(solver.seen, [[[-1, 1]], [[-2, 2]], [[-3, 4]]])
+    for other in (Solver(UR10), made(KDL, "ur10")):
+        assert other.torque_deviation is None
+        assert other.seen is None

@@ -130,11 +130,7 @@ void InverseDynamicsSolverRigidBody::computeTorqueDerivatives(const ConstVectorR
     return;
   }
   chain_dynamics::torqueDerivatives(robot->model, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
-  const auto& laws = robot->model.friction;
-  for (std::size_t j = 0; j < laws.size(); ++j) {
-    const auto i = static_cast<Eigen::Index>(j);
-    dtau_dqd(i, i) += chain_dynamics::frictionSlope(laws[j], qd[i]);
-  }
+  chain_dynamics::addFrictionDerivatives(robot->model, q, qd, dtau_dq, dtau_dqd);
 }
 
 void InverseDynamicsSolverRigidBody::computeRegressor(const ConstVectorRef& q,
@@ -159,7 +155,7 @@ void InverseDynamicsSolverRigidBody::computeAccelerations(const ConstVectorRef& 
   // What the chain's own bodies are accelerated by.
   const chain_dynamics::Model& own = robot->model;
   Eigen::VectorXd rest = tau, term(q.size());
-  chain_dynamics::frictionVector(own, qd, term);
+  chain_dynamics::frictionVector(own, q, qd, term);
   rest -= term;
   if (!own.gravity_parameters.empty()) {
     chain_dynamics::gravityVector(own, q, term);

@@ -173,7 +173,7 @@ auto InverseDynamicsSolverRigidBody::configure(const Configuration& configuratio
 
   chain_dynamics::Model model(chainOfDescription(configuration));
   DescriptionFriction friction = descriptionFriction(configuration, model.chain);
-  model.friction = std::move(friction.laws);
+  model.friction.assign(friction.laws.begin(), friction.laws.end());
   return keep(std::move(model), configuration, std::move(friction.warnings));
 }
 
@@ -244,11 +244,11 @@ void InverseDynamicsSolverRigidBody::computeGravityVector(const ConstVectorRef& 
   robot->fast->gravityVector(q.data(), g.data());
 }
 
-void InverseDynamicsSolverRigidBody::computeFriction(const ConstVectorRef&,
+void InverseDynamicsSolverRigidBody::computeFriction(const ConstVectorRef& q,
                                                      const ConstVectorRef& qd, VectorRef f) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return chain_dynamics::frictionVector(robot->model, qd, f);
-  robot->fast->frictionVector(qd.data(), f.data());
+  if (robot->fast == nullptr) return chain_dynamics::frictionVector(robot->model, q, qd, f);
+  robot->fast->frictionVector(q.data(), qd.data(), f.data());
 }
 
 void InverseDynamicsSolverRigidBody::computeDynamicComponents(const ConstVectorRef& q,
@@ -270,12 +270,10 @@ void InverseDynamicsSolverRigidBody::computeTorques(const ConstVectorRef& q,
     return robot->fast->torques(q.data(), qd.data(), qdd.data(), tau.data());
 
   // tau = H qdd + C qd + g, and f on top
+  Eigen::VectorXd f(q.size());
   chain_dynamics::torques(robot->model, q, qd, qdd, tau);
-  const auto& laws = robot->model.friction;
-  for (std::size_t j = 0; j < laws.size(); ++j) {
-    const auto i = static_cast<Eigen::Index>(j);
-    tau[i] += chain_dynamics::friction(laws[j], qd[i]);
-  }
+  chain_dynamics::frictionVector(robot->model, q, qd, f);
+  tau += f;
 }
 
 // ---------------------------------------------------------------- many states
@@ -310,7 +308,7 @@ void InverseDynamicsSolverRigidBody::computeFrictionBatch(const ConstStates& q,
                                                           const States& f) const {
   const auto robot = currentRobot();
   if (robot->fast == nullptr) return InverseDynamicsSolver::computeFrictionBatch(q, qd, f);
-  robot->fast->frictionVectorBatch(qd, f);
+  robot->fast->frictionVectorBatch(q, qd, f);
 }
 
 void InverseDynamicsSolverRigidBody::computeGravityVectorBatch(const ConstStates& q,

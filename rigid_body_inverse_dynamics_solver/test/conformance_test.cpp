@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <system_error>
+
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
 
@@ -37,6 +45,53 @@ struct FeasiblePandaModel : RigidBody {
   static ParameterMap parameters() { return {{"model", std::string("franka_gaz2019_feasible")}}; }
 };
 
+/// A file of the process's own, removed with it.
+class TemporaryFile {
+ public:
+  TemporaryFile(const std::string& name, const std::string& text)
+      : path_(std::filesystem::temp_directory_path() /
+              ("conformance_" + std::to_string(process_) + "_" + name)) {
+    std::ofstream(path_) << text;
+  }
+  ~TemporaryFile() {
+    if (::getpid() != process_) return;  // a copy of the process
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  std::string path() const { return path_.string(); }
+
+ private:
+  pid_t process_ = ::getpid();
+  std::filesystem::path path_;
+};
+
+/// The feasible Panda in schema 2, its first three joints with friction that depends on load.
+std::string loadedPanda() {
+  std::string text = textOf(robotsFile("models/franka_gaz2019_feasible.yaml"));
+  text = text.substr(0, text.find("\nchecks:") + 1);  // of the other friction
+  text = std::regex_replace(text, std::regex("schema: 1"), "schema: 2");
+  text = std::regex_replace(text, std::regex("\\n    friction:"),
+                            "\n    torque_deviation: 0.4\n    seen: {q: [-1, 1.5], qd: [-2, 2], "
+                            "qdd: [-9, 8]}\n    friction:");
+  const std::regex law("\\{law: centered_sigmoid[^}]*\\}");
+  for (const char* figures : {"fv: 1.5, fc: 0.6, width: 0.05, fl: 0.02",
+                              "fv: 2.5, fc: 0.9, width: 0.08, shift: 0.01, fo: 0.1, fl: 0.05",
+                              "fv: 0.5, fc: 0.4, width: 0.05, fl: 0.03"}) {
+    text = std::regex_replace(text, law, std::string("{law: smooth_coulomb, ") + figures + "}",
+                              std::regex_constants::format_first_only);
+  }
+  return text;
+}
+
+struct LoadedPandaModel : RigidBody {
+  static ParameterMap parameters() {
+    static const TemporaryFile file("loaded_panda.yaml", loadedPanda());
+    return {{"model", file.path()}};
+  }
+};
+
 struct IdentifiedUr10Model : RigidBody {
   static ParameterMap parameters() { return {{"model", std::string("ur10_identified")}}; }
   static constexpr const char* kGravityIsNotConservative =
@@ -47,6 +102,7 @@ INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Ur10Description, Ur10Description);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaDescription, PandaDescription);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaDescriptionWithFriction, PandaDescriptionWithFriction);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(FeasiblePandaModel, FeasiblePandaModel);
+INVERSE_DYNAMICS_SOLVER_CONFORMANCE(LoadedPandaModel, LoadedPandaModel);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(IdentifiedUr10Model, IdentifiedUr10Model);
 
 }  // namespace

@@ -207,6 +207,81 @@ TEST(RigidBody, FrictionIsTheModelFilesAndCanBeSwitchedOff) {
   EXPECT_EQ(described.getFrictionVector(ramp(7, 0.5, -0.2)), Eigen::VectorXd::Zero(7));
 }
 
+/// A body of 2 kg that slides up and down, so that gravity asks for 2 9.81 N: friction is
+/// 3 + 0.5 |g| N at 1 m/s, far from the step.
+const char* const kLift =
+    "schema: 2\nname: lift\nsource: worked by hand\nvalidity: a test\nunits: SI\n"
+    "geometry: placements\ngravity: [0, 0, -9.81]\nparameters: about_center_of_mass\n"
+    "joints:\n"
+    "  - name: lift\n"
+    "    type: prismatic\n"
+    "    placement: {xyz: [0, 0, 0], rpy: [0, 0, 0], axis: [0, 0, 1]}\n"
+    "    friction: {law: smooth_coulomb, fv: 0, fc: 3, width: 0.001, fl: 0.5}\n"
+    "    torque_deviation: 0.75\n"
+    "    seen: {q: [-1, 1], qd: [-2, 2], qdd: [-3, 4]}\n"
+    "    link: [2, 0, 0, 0, 0.1, 0, 0, 0.1, 0, 0.1]\n";
+
+TEST(RigidBody, LoadFrictionCountsPayloadAndGravityButNoWrench) {
+  using inverse_dynamics_solver::RigidBody;
+  using inverse_dynamics_solver::WrenchInRoot;
+  const TemporaryFile file("lift.yaml", kLift);
+  InverseDynamicsSolverRigidBody solver;
+  solver.initialize({{"model", file.path()}});
+  const Eigen::VectorXd q = Eigen::VectorXd::Zero(1), qd = Eigen::VectorXd::Ones(1);
+  const auto friction = [&] { return solver.getFrictionVector(q, qd)[0]; };
+  const auto torque = [&] { return solver.getTorques(q, qd, q)[0]; };
+  EXPECT_TRUE(solver.frictionDependsOnPosition());
+  EXPECT_NEAR(friction(), 3 + 0.5 * 2 * 9.81, 1e-12);
+  EXPECT_NEAR(torque(), 2 * 9.81 + 3 + 0.5 * 2 * 9.81, 1e-12);
+
+  solver.setPayload("part", RigidBody{5.0});
+  EXPECT_NEAR(friction(), 3 + 0.5 * 7 * 9.81, 1e-12);
+  EXPECT_NEAR(torque(), 7 * 9.81 + 3 + 0.5 * 7 * 9.81, 1e-12);
+  EXPECT_NEAR(solver.getTorquesBatch(q, qd, q)(0, 0), torque(), 1e-12);
+  EXPECT_NEAR(solver.getAccelerations(q, qd, Eigen::VectorXd::Constant(1, torque()))[0], 0, 1e-12);
+
+  // pressing down with 100 N
+  const WrenchInRoot wrench{{0, 0, -100}, {0, 0, 0}};
+  EXPECT_NEAR(solver.getTorques(q, qd, q, wrench)[0], torque() - 100, 1e-12);
+
+  solver.setGravity({0, 0, 1.5});
+  EXPECT_NEAR(friction(), 3 + 0.5 * 7 * 1.5, 1e-12);
+  EXPECT_NEAR(torque(), -7 * 1.5 + 3 + 0.5 * 7 * 1.5, 1e-12);
+
+  solver.initialize({{"model", file.path()}, {"friction", false}});
+  EXPECT_FALSE(solver.frictionDependsOnPosition());
+  EXPECT_EQ(solver.getFrictionVector(qd)[0], 0);
+}
+
+TEST(RigidBody, LoadFrictionWithoutPositionsIsRefused) {
+  const TemporaryFile file("lift.yaml", kLift);
+  InverseDynamicsSolverRigidBody solver;
+  solver.initialize({{"model", file.path()}});
+  const Eigen::VectorXd qd = Eigen::VectorXd::Ones(1);
+  using inverse_dynamics_solver::SizeMismatchException;
+  expectContains(errorOf<SizeMismatchException>([&] { solver.getFrictionVector(qd); }),
+                 {"getFrictionVector: argument q: missing: expected 1 numbers, as friction depends "
+                  "on the position, got 0; call getFrictionVector(q, qd)",
+                  "the joints are lift"});
+  expectContains(errorOf<SizeMismatchException>([&] { solver.getFrictionVectorBatch(qd); }),
+                 {"getFrictionVectorBatch: argument q: missing"});
+}
+
+TEST(RigidBody, TorqueDeviationIsThatOfTheModelFile) {
+  const TemporaryFile file("lift.yaml", kLift);
+  InverseDynamicsSolverRigidBody stated, unknown;
+  stated.initialize({{"model", file.path()}});
+  unknown.initialize({{"model", kFeasible}});
+  ASSERT_TRUE(stated.hasTorqueDeviation());
+  EXPECT_EQ(stated.getTorqueDeviation(), Eigen::VectorXd::Constant(1, 0.75));
+  ASSERT_EQ(stated.seenRanges().size(), 1U);
+  EXPECT_EQ(stated.seenRanges()[0].qdd.upper, 4);
+  EXPECT_FALSE(unknown.hasTorqueDeviation());
+  EXPECT_TRUE(unknown.seenRanges().empty());
+  expectContains(errorOf<Exception>([&] { unknown.getTorqueDeviation(); }),
+                 {"getTorqueDeviation: not known: expected a model that states torque_deviation"});
+}
+
 TEST(RigidBody, FrictionOfADescriptionCanBeAskedFor) {
   const std::string urdf = textOf(robotsFile("urdf/panda.urdf"));  // 0.003 N m s/rad, 0.2 N m each
   InverseDynamicsSolverRigidBody without, with, off;

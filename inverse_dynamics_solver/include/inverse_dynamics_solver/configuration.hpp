@@ -132,7 +132,7 @@ chain_dynamics::Chain chainFromDescription(const Configuration& configuration);
 /// Friction that a robot description states.
 struct DescriptionFriction {
   /// One law per joint, `f = damping qd + friction sign(qd)`; empty: no friction.
-  std::vector<chain_dynamics::FrictionLaw> laws;
+  std::vector<chain_dynamics::ViscousCoulombOffset> laws;
   /// A sentence if what the description states isn't used, or if it states nothing to use.
   std::vector<std::string> warnings;
 };

@@ -48,8 +48,8 @@ REGISTER_TYPED_TEST_SUITE_P(
     ResultsByValueEqualResultsInMemoryOfTheCaller, CallsIntoMemoryOfTheCallerDoNotAllocate,
     ManyThreadsGetTheNumbersOfOne, NanGoesToEveryEntryThatDependsOnIt,
     // Many states at once.
-    BatchOfWrongShapeIsRefused, BatchEqualsSingleCalls, BatchesOfAnyLayoutGiveTheBitsOfColumns,
-    ThreadsThatShareABatchGiveTheBitsOfOne,
+    BatchOfWrongShapeIsRefused, FrictionWithoutPositionsIsTheSameOrRefused, BatchEqualsSingleCalls,
+    BatchesOfAnyLayoutGiveTheBitsOfColumns, ThreadsThatShareABatchGiveTheBitsOfOne,
     // Real time.
     CallsIntoMemoryOfTheCallerMakeNoSystemCall, NoDenormalNumberArises,
     // Physics.
@@ -57,14 +57,15 @@ REGISTER_TYPED_TEST_SUITE_P(
     CoriolisTorquesAreQuadraticInVelocity, GravityTorquesAreProportionalToGravity,
     GravityPointsDownByDefault, GravityTorquesHaveASymmetricJacobian,
     PhysicalInertiaIsSymmetricPositiveDefinite, PowerIsTheRateOfKineticEnergy,
-    FrictionCanBeSwitchedOff, FrictionIsFiniteAtAnyVelocity, MotorCurrentsTimesDriveGainsAreTorques,
+    FrictionCanBeSwitchedOff, FrictionIsFiniteAtAnyVelocity, FrictionDoesNoPositiveWork,
+    MotorCurrentsTimesDriveGainsAreTorques,
     // Capabilities.
     CapabilitiesRefuseWrongSizes, TipJacobianIsTheDerivativeOfTheTipPose,
     TipJacobianDerivativeIsItsRate, WrenchAddsItsPowerPerVelocity, NanInAWrenchGivesNan,
     CoriolisMatrixIsThatOfChristoffelsSymbols, RateOfInertiaIsTheCoriolisMatrixPlusItsTranspose,
     EnergyGrowsWithThePowerOfTheTorques, TorqueDerivativesAreThoseOfTheTorques,
-    TorqueDerivativesIncludeFriction, RegressorTimesParametersAreTheTorques,
-    AccelerationsInvertTorques,
+    TorqueDerivativesIncludeFriction, TorqueDeviationIsOneOfEachJointOrUnknown,
+    RegressorTimesParametersAreTheTorques, AccelerationsInvertTorques,
     // Bodies and gravity that change.
     BodiesAddWhatEachAddsAlone, NumbersDependOnTheBodiesThatAreThereAlone,
     BodyEqualsAFixedLinkOfTheDescription, BodyOfParametersEqualsOneThatIsSet,

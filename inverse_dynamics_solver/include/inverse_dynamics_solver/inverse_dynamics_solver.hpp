@@ -88,6 +88,10 @@ class InverseDynamicsSolver {
   /// taken away. Only then may a controller invert H or feed back through it.
   bool inertiaIsPhysical() const;
 
+  /// Whether friction grows with the gravity torques that joints carry: then it must be asked for with
+  /// the position, as it also depends on payloads and gravity.
+  bool frictionDependsOnPosition() const;
+
   /// @name By value
   /// @{
 
@@ -104,15 +108,14 @@ class InverseDynamicsSolver {
     return c;
   }
   /// Friction torques `f(qd)`; zero where the solver has no friction model or the parameter
-  /// `friction` is false.
+  /// `friction` is false. Throws SizeMismatchException where frictionDependsOnPosition().
   Eigen::VectorXd getFrictionVector(const ConstVectorRef& qd) const {
     Eigen::VectorXd f = vector("getFrictionVector");
     getFrictionVector(qd, f);
     return f;
   }
-  /// The same at a position, for friction that depends on the load of the joints (no law of this
-  /// workspace does). Not for a qd that may be written: that is the output of
-  /// `getFrictionVector(qd, f)`, so give `std::as_const(qd)`.
+  /// Friction torques `f(q, qd)`, of any solver. Not for a qd that may be written: that is the output
+  /// of `getFrictionVector(qd, f)`, so give `std::as_const(qd)`.
   template <class Velocities,
             typename = std::enable_if_t<!std::is_convertible_v<Velocities, States>>>
   Eigen::VectorXd getFrictionVector(const ConstVectorRef& q, Velocities&& qd) const {
@@ -139,7 +142,7 @@ class InverseDynamicsSolver {
       const ConstVectorRef& q, const ConstVectorRef& qd) const {
     return getDynamicComponents(q, qd);
   }
-  /// Joint torques `tau = H(q) qdd + C(q, qd) qd + f(qd) + g(q)`.
+  /// Joint torques `tau = H(q) qdd + C(q, qd) qd + f(q, qd) + g(q)`.
   Eigen::VectorXd getTorques(const ConstVectorRef& q, const ConstVectorRef& qd,
                              const ConstVectorRef& qdd) const {
     Eigen::VectorXd tau = vector("getTorques");
@@ -155,7 +158,7 @@ class InverseDynamicsSolver {
   void getFrictionVector(const ConstVectorRef& qd, VectorRef f) const {
     getFrictionVector(Eigen::VectorXd(), qd, f);
   }
-  /// q may be empty: the position isn't known.
+  /// q may be empty where not frictionDependsOnPosition(); as in batches.
   void getFrictionVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef f) const;
   void getGravityVector(const ConstVectorRef& q, VectorRef g) const;
   void getDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
@@ -176,7 +179,6 @@ class InverseDynamicsSolver {
   void getInertiaMatrixBatch(const ConstStatesRef& q, const StridedMatrices& H) const;
   void getCoriolisVectorBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
                               const States& c) const;
-  /// q may be 0 x N: the positions aren't known.
   void getFrictionVectorBatch(const ConstStatesRef& qd, const States& f) const {
     getFrictionVectorBatch(ConstStates(qd.data, 0, qd.count, 1, 0), qd, f);
   }
@@ -259,8 +261,7 @@ class InverseDynamicsSolver {
   virtual void computeGravityVector(const ConstVectorRef& q, VectorRef g) const = 0;
 
   /// Zero by default. With Configuration::friction false it gives zero, and computeTorques() leaves
-  /// it out. q is for friction that depends on load; it is empty where the caller of
-  /// getFrictionVector() doesn't know it.
+  /// it out. q may be empty where frictionDependsOnPositionImpl() is false.
   virtual void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
                                VectorRef f) const;
 
@@ -294,6 +295,9 @@ class InverseDynamicsSolver {
 
   /// Answer of inertiaIsPhysical(). No default: a wrong yes makes robots oscillate.
   virtual bool inertiaIsPhysicalImpl() const = 0;
+
+  /// Answer of frictionDependsOnPosition(); false by default.
+  virtual bool frictionDependsOnPositionImpl() const;
   /// @}
 
  private:

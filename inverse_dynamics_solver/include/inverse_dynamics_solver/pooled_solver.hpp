@@ -108,13 +108,15 @@ class PooledSolver : public InverseDynamicsSolver, public ChangeableRobot<Pooled
   }
   bool inertiaIsPhysicalImpl() const final { return inertia_is_physical_; }
 
+  void addFriction(const ConstVectorRef& qd, VectorRef f) const;
+
   std::unique_ptr<const PooledRobot> robotUnder(const Conditions& conditions) const final;
   std::unique_ptr<const PooledRobot> robotOf(const chain_dynamics::Chain& chain,
                                              std::size_t max_threads) const;
 
   std::unique_ptr<const chain_dynamics::Model> bare_;  // without payloads
   std::size_t max_threads_ = 0;
-  std::vector<chain_dynamics::FrictionLaw> friction_;  // empty: none
+  std::vector<chain_dynamics::FrictionForm> friction_;  // empty: none; independent of load
   bool inertia_is_physical_ = false;
 };
 

@@ -43,11 +43,12 @@ def diagnosis_of(
 
 
 def _arm_model(robot: Robot, effort: Effort, solver: Solver, description: str) -> ArmModel:
+    ones = np.ones(len(solver.joint_names))
     model = ArmModel(
         torques=solver.torques,
         gravity=solver.gravity_vector,
         compared_without_gravity=effort.meaning == "torque_without_gravity",
-        has_friction=bool(np.any(solver.friction_vector(np.ones(len(solver.joint_names))))),
+        has_friction=bool(np.any(solver.friction_vector(ones, q=ones))),
     )
 
     @cache

@@ -24,6 +24,7 @@
 #include "inverse_dynamics_solver/kinematics.hpp"
 #include "inverse_dynamics_solver/regressor.hpp"
 #include "inverse_dynamics_solver/torque_derivatives.hpp"
+#include "inverse_dynamics_solver/torque_deviation.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
 inline namespace v2 {
@@ -59,7 +60,7 @@ struct ReadyModel {
 /// zero.
 ///
 /// Capabilities: all of rigid bodies; where the inertia isn't physical, energies and accelerations
-/// are refused.
+/// are refused. TorqueDeviation: of a model file that states it.
 ///
 /// Real time and threads: as the base class promises, for up to 64 joints.
 class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDynamicsSolver,
@@ -70,7 +71,8 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
                                        public inverse_dynamics_solver::Energies,
                                        public inverse_dynamics_solver::TorqueDerivatives,
                                        public inverse_dynamics_solver::Regressor,
-                                       public inverse_dynamics_solver::ForwardDynamics {
+                                       public inverse_dynamics_solver::ForwardDynamics,
+                                       public inverse_dynamics_solver::TorqueDeviation {
  public:
   using ExternalWrench::getTorques;
   using ExternalWrench::getTorquesBatch;
@@ -156,6 +158,15 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
 
   void computeParts(bool shared, const std::function<void()>& compute) const override;
   bool inertiaIsPhysicalImpl() const override { return inertia_is_physical_; }
+  bool frictionDependsOnPositionImpl() const override {
+    return chain_dynamics::frictionDependsOnLoad(model());
+  }
+  Deviations torqueDeviation() const override {
+    return {model().torque_deviation.data(), model().torque_deviation.size()};
+  }
+  const std::vector<chain_dynamics::SeenRange>& seenRangesImpl() const override {
+    return model().seen;
+  }
 
  private:
   JointInfo keep(chain_dynamics::Model model, const Configuration& configuration,

@@ -196,6 +196,29 @@ TYPED_TEST_P(SolverConformance, BatchOfWrongShapeIsRefused) {
   errorOf<SizeMismatchException>([&] { s.getGravityVectorBatch(ok.transpose()); });
 }
 
+TYPED_TEST_P(SolverConformance, FrictionWithoutPositionsIsTheSameOrRefused) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  const Eigen::MatrixXd q = this->randomColumns(3);
+  const Eigen::MatrixXd qd = this->randomColumns(3);
+  const Eigen::VectorXd none;
+  if (s.frictionDependsOnPosition()) {
+    for (const auto& call : std::vector<std::function<void()>>{
+             [&] { s.getFrictionVector(qd.col(0)); }, [&] { s.getFrictionVectorBatch(qd); },
+             [&] { s.getFrictionVector(none, qd.col(0)); }}) {
+      EXPECT_TRUE(contains(errorOf<SizeMismatchException>(call),
+                           {"argument q: missing", "getFrictionVector(q, qd)"}));
+    }
+    return;
+  }
+  const Eigen::MatrixXd batch = s.getFrictionVectorBatch(qd);
+  for (Eigen::Index k = 0; k < qd.cols(); ++k) {
+    const Eigen::VectorXd f = s.getFrictionVector(q.col(k), qd.col(k));
+    EXPECT_TRUE(identical(s.getFrictionVector(qd.col(k)), f));
+    EXPECT_TRUE(identical(s.getFrictionVector(none, qd.col(k)), f));
+    EXPECT_TRUE(near(batch.col(k), f, kRounding, sizeOf(f)));
+  }
+}
+
 TYPED_TEST_P(SolverConformance, BatchEqualsSingleCalls) {
   const InverseDynamicsSolver& s = *this->solver_;
   const Eigen::Index n = s.jointCount();
@@ -215,7 +238,6 @@ TYPED_TEST_P(SolverConformance, BatchEqualsSingleCalls) {
     const Eigen::MatrixXd tau = tau_memory.bottomRows(n), H = H_memory.bottomRows(n);
     const Eigen::MatrixXd c = s.getCoriolisVectorBatch(q, qd);
     const Eigen::MatrixXd f = s.getFrictionVectorBatch(q, std::as_const(qd));
-    EXPECT_EQ(s.getFrictionVectorBatch(qd).cols(), count);
     const Eigen::MatrixXd g = s.getGravityVectorBatch(q);
     const auto [H_all, c_all, g_all] = s.getDynamicComponentsBatch(q, qd);
     EXPECT_EQ(g_all.cols(), count);

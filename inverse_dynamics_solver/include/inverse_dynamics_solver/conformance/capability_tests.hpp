@@ -8,6 +8,7 @@
 #include "inverse_dynamics_solver/conformance/batch_tests.hpp"
 #include "inverse_dynamics_solver/conformance/capabilities.hpp"
 #include "inverse_dynamics_solver/conformance/law_tests.hpp"
+#include "inverse_dynamics_solver/torque_deviation.hpp"
 
 namespace inverse_dynamics_solver::conformance {
 
@@ -264,19 +265,50 @@ TYPED_TEST_P(SolverConformance, TorqueDerivativesIncludeFriction) {
     const auto [q_with, qd_with, qdd_with] = derivatives->getTorqueDerivatives(x.q, x.qd, x.qdd);
     const auto [q_without, qd_without, qdd_without] =
         without.getTorqueDerivatives(x.q, x.qd, x.qdd);
-    EXPECT_TRUE(near(q_with, q_without, kRounding, sizeOf(q_with)));
     EXPECT_TRUE(near(qdd_with, qdd_without, kRounding, sizeOf(qdd_with)));
 
     // A difference of steep laws: small steps, so fewer digits.
-    const Eigen::MatrixXd slopes = qd_with - qd_without;
+    const Eigen::MatrixXd slopes = qd_with - qd_without, by_load = q_with - q_without;
     for (Eigen::Index j = 0; j < n; ++j) {
       const auto friction = [&](double h) -> Eigen::MatrixXd {
         return s.getFrictionVector(x.q, x.qd + h * Eigen::VectorXd::Unit(n, j));
       };
       const double size = sizeOf(friction(0.0)) + sizeOf(qd_with);
       EXPECT_TRUE(near(slopes.col(j), derivative(friction, kSteepStep), kSteepDifference, size));
+      const auto elsewhere = [&](double h) -> Eigen::MatrixXd {
+        return s.getFrictionVector(x.q + h * Eigen::VectorXd::Unit(n, j), std::as_const(x.qd));
+      };
+      const double q_size = sizeOf(friction(0.0)) + sizeOf(q_with);
+      EXPECT_TRUE(
+          near(by_load.col(j), derivative(elsewhere, kSteepStep), kSteepDifference, q_size));
+      if (!s.frictionDependsOnPosition()) {
+        EXPECT_TRUE(near(by_load.col(j), 0 * q_with.col(j), kRounding, sizeOf(q_with)));
+      }
     }
   }
+}
+
+TYPED_TEST_P(SolverConformance, TorqueDeviationIsOneOfEachJointOrUnknown) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  INVERSE_DYNAMICS_SOLVER_REQUIRE(TorqueDeviation, band);
+  const Eigen::Index n = s.jointCount();
+  Eigen::VectorXd deviation(n), wrong(n + 1);
+  EXPECT_TRUE(band->seenRanges().empty() ||
+              static_cast<Eigen::Index>(band->seenRanges().size()) == n);
+  if (band->hasTorqueDeviation()) {
+    band->getTorqueDeviation(deviation);
+    EXPECT_TRUE(identical(band->getTorqueDeviation(), deviation));
+    EXPECT_TRUE((deviation.array() >= 0.0 && deviation.array().isFinite()).all());
+    errorOf<SizeMismatchException>([&] { band->getTorqueDeviation(wrong); });
+  } else {
+    const std::string error = errorOf<Exception>([&] { band->getTorqueDeviation(); });
+    EXPECT_TRUE(contains(error, {"getTorqueDeviation", "torque_deviation"}));
+  }
+  const auto fresh = this->make();
+  const auto& uninitialized = dynamic_cast<const TorqueDeviation&>(*fresh);
+  errorOf<UninitializedException>([&] { uninitialized.hasTorqueDeviation(); });
+  errorOf<UninitializedException>([&] { uninitialized.getTorqueDeviation(); });
+  errorOf<UninitializedException>([&] { uninitialized.seenRanges(); });
 }
 
 TYPED_TEST_P(SolverConformance, RegressorTimesParametersAreTheTorques) {

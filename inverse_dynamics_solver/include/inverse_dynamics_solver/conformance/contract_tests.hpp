@@ -30,7 +30,7 @@ TYPED_TEST_P(SolverConformance, ResultsHaveTheSizesOfTheRobotAndAreFinite) {
   EXPECT_EQ(this->solver_->getInertiaMatrix(x.q).rows(), n);
   EXPECT_EQ(this->solver_->getInertiaMatrix(x.q).cols(), n);
   EXPECT_EQ(this->solver_->getCoriolisVector(x.q, x.qd).size(), n);
-  EXPECT_EQ(this->solver_->getFrictionVector(x.qd).size(), n);
+  EXPECT_EQ(this->solver_->getFrictionVector(x.q, x.qd).size(), n);
   EXPECT_EQ(this->solver_->getGravityVector(x.q).size(), n);
   EXPECT_EQ(this->solver_->getTorques(x.q, x.qd, x.qdd).size(), n);
   for (const Quantity& quantity : allQuantities(*this->solver_, n)) {
@@ -75,8 +75,10 @@ TYPED_TEST_P(SolverConformance, WrongSizeIsRefusedNamingArgumentExpectedAndGot) 
     refuses("getFrictionVector", "qd", [&] { return s.getFrictionVector(no); });
     refuses("getFrictionVector", "qd", [&] { return s.getFrictionVector(ok, no); });
     refuses("getFrictionVector", "f", [&] { s.getFrictionVector(ok, ok, short_out); });
-    // (without positions friction is that of the velocities)
-    if (size > 0) refuses("getFrictionVector", "q", [&] { return s.getFrictionVector(no, ok); });
+    // (no positions are fine where friction doesn't depend on them)
+    if (size > 0 || s.frictionDependsOnPosition()) {
+      refuses("getFrictionVector", "q", [&] { return s.getFrictionVector(no, std::as_const(ok)); });
+    }
     refuses("getGravityVector", "q", [&] { s.getGravityVector(no); });
     refuses("getGravityVector", "g", [&] { s.getGravityVector(ok, short_out); });
     refuses("getDynamicComponents", "q", [&] { s.getDynamicComponents(no, ok); });

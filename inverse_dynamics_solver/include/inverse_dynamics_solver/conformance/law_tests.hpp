@@ -81,14 +81,16 @@ TYPED_TEST_P(SolverConformance, GravityTorquesAreProportionalToGravity) {
     EXPECT_TRUE(
         near(sum->getGravityVector(x.q), 2 * g_a + g_b, kRounding, 2 * sizeOf(g_a) + sizeOf(g_b)));
 
-    // Gravity is in no other term.
+    // Gravity is in no other term, but for friction that depends on it.
+    const Eigen::VectorXd f_a = a->getFrictionVector(x.q, std::as_const(x.qd));
+    const Eigen::VectorXd f_b = b->getFrictionVector(x.q, std::as_const(x.qd));
     EXPECT_TRUE(identical(a->getCoriolisVector(x.q, x.qd), b->getCoriolisVector(x.q, x.qd)));
-    EXPECT_TRUE(identical(a->getFrictionVector(x.qd), b->getFrictionVector(x.qd)));
+    EXPECT_EQ(identical(f_a, f_b), !a->frictionDependsOnPosition());
     const Eigen::MatrixXd H_a = a->getInertiaMatrix(x.q);
     EXPECT_TRUE(identical(flat(H_a), flat(b->getInertiaMatrix(x.q))));
     const Eigen::VectorXd tau = a->getTorques(x.q, x.qd, x.qdd);
-    EXPECT_TRUE(near(tau - g_a, b->getTorques(x.q, x.qd, x.qdd) - g_b, kRounding,
-                     sizeOf(tau) + sizeOf(g_a) + sizeOf(g_b)));
+    EXPECT_TRUE(near(tau - g_a - f_a, b->getTorques(x.q, x.qd, x.qdd) - g_b - f_b, kRounding,
+                     sizeOf(tau) + sizeOf(g_a) + sizeOf(g_b) + sizeOf(f_a) + sizeOf(f_b)));
   }
 }
 
@@ -168,9 +170,24 @@ TYPED_TEST_P(SolverConformance, FrictionCanBeSwitchedOff) {
 
 TYPED_TEST_P(SolverConformance, FrictionIsFiniteAtAnyVelocity) {
   for (const double velocity : {0.0, 1.0, 1e3, 1e12, 1e200}) {
-    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(this->solver_->jointCount());
-    EXPECT_TRUE(this->solver_->getFrictionVector(velocity * ones).allFinite()) << velocity;
-    EXPECT_TRUE(this->solver_->getFrictionVector(-velocity * ones).allFinite()) << -velocity;
+    const Eigen::VectorXd q = this->randomState().q;
+    const Eigen::VectorXd qd = Eigen::VectorXd::Constant(q.size(), velocity);
+    EXPECT_TRUE(this->solver_->getFrictionVector(q, std::as_const(qd)).allFinite()) << velocity;
+    EXPECT_TRUE(this->solver_->getFrictionVector(q, -qd).allFinite()) << -velocity;
+  }
+}
+
+/// Friction that is zero at rest takes energy from every motion.
+TYPED_TEST_P(SolverConformance, FrictionDoesNoPositiveWork) {
+  const InverseDynamicsSolver& s = *this->solver_;
+  for (const State& x : this->randomStates(kStates)) {
+    SCOPED_TRACE(toString(x));
+    const Eigen::VectorXd at_rest = s.getFrictionVector(x.q, 0 * x.qd);
+    const Eigen::VectorXd f = s.getFrictionVector(x.q, std::as_const(x.qd));
+    for (Eigen::Index j = 0; j < f.size(); ++j) {
+      if (at_rest[j] != 0.0) continue;
+      EXPECT_GE(x.qd[j] * f[j], 0.0) << "joint " << j;
+    }
   }
 }
 
@@ -190,7 +207,11 @@ TYPED_TEST_P(SolverConformance, MotorCurrentsTimesDriveGainsAreTorques) {
     EXPECT_TRUE(equal(motors->getInertiaCurrents(x.q), s.getInertiaMatrix(x.q)));
     EXPECT_TRUE(equal(motors->getCoriolisCurrents(x.q, x.qd), s.getCoriolisVector(x.q, x.qd)));
     EXPECT_TRUE(equal(motors->getGravityCurrents(x.q), s.getGravityVector(x.q)));
-    EXPECT_TRUE(equal(motors->getFrictionCurrents(x.qd), s.getFrictionVector(x.qd)));
+    EXPECT_TRUE(equal(motors->getFrictionCurrents(x.q, std::as_const(x.qd)),
+                      s.getFrictionVector(x.q, std::as_const(x.qd))));
+    if (!s.frictionDependsOnPosition()) {
+      EXPECT_TRUE(equal(motors->getFrictionCurrents(x.qd), s.getFrictionVector(x.qd)));
+    }
     motors->getCurrents(x.q, x.qd, x.qdd, i);
     EXPECT_EQ(i, motors->getCurrents(x.q, x.qd, x.qdd));
   }
