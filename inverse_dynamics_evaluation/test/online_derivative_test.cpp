@@ -62,6 +62,17 @@ TEST(OnlineDerivative, LagsSlowMotionByItsDelay) {
   EXPECT_NEAR(filter.derivative()[0], w * std::cos(w * (t - filter.delay())), 1e-3 * w);
 }
 
+TEST(OnlineDerivative, ItsValueIsAsLate) {
+  OnlineDerivative filter(1, 10.0);
+  const double w = 2 * kPi * 0.1;
+  double t = 0;
+  for (int k = 0; k < 20000; ++k) {
+    t = 1e-3 * k;
+    filter.update(nanoseconds(t), one(std::sin(w * t)));
+  }
+  EXPECT_NEAR(filter.value()[0], std::sin(w * (t - filter.delay())), 1e-3);
+}
+
 TEST(OnlineDerivative, IsSettledWhenTheStartHasDiedAway) {
   OnlineDerivative filter(1, 5.0);
   EXPECT_FALSE(filter.settled());

@@ -126,13 +126,8 @@ def effort_arguments(efforts: dict[str, str] = _EFFORTS) -> list[DeclareLaunchAr
 def effort_parameters(context: LaunchContext) -> dict[str, Any]:
     """Node parameters of the arguments of effort_arguments(). Raises ValueError."""
     parameters = given_strings(context, "effort")
-    if gains := text(context, "drive_gains"):
-        try:
-            parameters["drive_gains"] = [float(gain) for gain in gains.split(",")]
-        except ValueError:
-            raise ValueError(
-                f"argument drive_gains: expected numbers, 12.5,12.5 for one, got '{gains}'"
-            ) from None
+    if gains := numbers(context, "drive_gains"):
+        parameters["drive_gains"] = gains
     return parameters
 
 
@@ -228,6 +223,17 @@ def number(context: LaunchContext, argument: str) -> float:
         return float(value)
     except ValueError:
         raise ValueError(f"argument {argument}: expected a number, got '{value}'") from None
+
+
+def numbers(context: LaunchContext, argument: str) -> list[float]:
+    """The value of a launch argument as comma-separated numbers; none if empty. Raises ValueError."""
+    value = text(context, argument)
+    try:
+        return [float(part) for part in value.split(",")] if value else []
+    except ValueError:
+        raise ValueError(
+            f"argument {argument}: expected numbers, 12.5,12.5 for one, got '{value}'"
+        ) from None
 
 
 def failing_with_its_node() -> RegisterEventHandler:

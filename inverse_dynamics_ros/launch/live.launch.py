@@ -12,6 +12,7 @@ from inverse_dynamics_ros.launch_files import (
     effort_parameters,
     failing_with_its_node,
     number,
+    numbers,
     solver_arguments,
     solver_parameters,
     string,
@@ -40,6 +41,8 @@ def nodes(context):
     }
     if contacts_file := text(context, "contacts_file"):
         parameters["external_torques.contacts_file"] = string(contacts_file)
+    if noise := numbers(context, "payload_noise"):
+        parameters["estimate_payload.noise"] = noise
     common = {
         "package": "inverse_dynamics_ros",
         "name": "live",
@@ -78,6 +81,12 @@ def generate_launch_description():
                 default_value="",
                 description="contacts.json of `ids contact`: with it, contacts and the wrench at the "
                 "tip are published, too",
+            ),
+            DeclareLaunchArgument(
+                "payload_noise",
+                default_value="",
+                description="Standard deviation of measured - computed torques without a load [N m], "
+                "comma-separated, of each joint or one for all; needed to estimate what the tip carries",
             ),
             DeclareLaunchArgument(
                 "joint_states",

@@ -44,6 +44,9 @@ class LiveLoad {
   /// Loads this robot from now on.
   void use(std::unique_ptr<PayloadRamp> ramp, const LiveRobot& robot);
 
+  /// What is carried, or will be when the ramp has ended.
+  const inverse_dynamics_control::RigidBody& body() const { return body_; }
+
   void report(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
  private:

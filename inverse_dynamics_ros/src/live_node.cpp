@@ -11,6 +11,7 @@
 #include "live_contact_topics.hpp"
 #include "live_diagnostics.hpp"
 #include "live_load.hpp"
+#include "live_payload_services.hpp"
 #include "live_torques.hpp"
 #include "node_solver.hpp"
 #include "overridable.hpp"
@@ -45,7 +46,8 @@ class LiveNode::Implementation {
         robot_(givenParameters(node)),
         diagnostics_(node, node.get_node_topics_interface()->resolve_topic_name("joint_states"),
                      {params_.max_age, params_.min_rate}),
-        load_(node, listener_) {
+        load_(node, listener_),
+        payload_(node, params_, [this] { return load_.body(); }) {
     diagnostics_.add("load", [this](Status& status) { load_.report(status); });
     if (params_.external_torques.enabled) {
       contact_ = std::make_unique<LiveContactTopics>(node, params_.external_torques,
@@ -140,6 +142,7 @@ class LiveNode::Implementation {
   void useRobot(const LiveRobot& robot) {
     auto contact = contact_ == nullptr ? nullptr : contact_->make(robot);
     load_.use(load_.make(robot), robot);
+    payload_.use(robot);
     if (contact_ != nullptr) {
       contact_->use(std::move(contact), robot);
     }
@@ -167,9 +170,12 @@ class LiveNode::Implementation {
     if (outcome == LiveTorques::Outcome::kComputed) {
       publish(message);
     }
-    if (contact_ != nullptr && outcome != LiveTorques::Outcome::kMissing &&
+    if (outcome != LiveTorques::Outcome::kMissing &&
         outcome != LiveTorques::Outcome::kNoVelocities) {
-      contact_->take(message.header, stamp, *live_);
+      payload_.take(stamp, *live_);
+      if (contact_ != nullptr) {
+        contact_->take(message.header, stamp, *live_);
+      }
     }
     report(outcome);
     previous_stamp_ = stamp;
@@ -260,6 +266,7 @@ class LiveNode::Implementation {
   NodeRobot robot_;
   LiveDiagnostics diagnostics_;
   LiveLoad load_;
+  LivePayloadServices payload_;
   std::unique_ptr<LiveContactTopics> contact_;  // null: not enabled
   std::unique_ptr<LiveTorques> live_;           // null until there is a description
   JointState torques_, residual_;               // reused, so that nothing is allocated per message

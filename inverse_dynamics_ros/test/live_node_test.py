@@ -20,6 +20,7 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from sensor_msgs.msg import Imu
 from std_msgs.msg import Bool
+from std_srvs.srv import Trigger
 
 sys.path.insert(0, str(Path(__file__).parent))
 import itertools
@@ -43,9 +44,10 @@ CUTOFF = 20.0  # Hz: settled after 53 ms, late by 16 ms
 LEVELS = {DiagnosticStatus.OK: "ok", DiagnosticStatus.WARN: "warn", DiagnosticStatus.ERROR: "error"}
 
 
-def live(name, **parameters):
+def live(name, remappings=(), **parameters):
     """A node of its own topics and name."""
     return Node(
+        remappings=remappings,
         package="inverse_dynamics_ros",
         executable="live",
         name=name,
@@ -74,6 +76,17 @@ def generate_test_description():
                 "gravity_from_imu.use": "orientation",
                 "gravity_from_imu.time_constant": 0.05,
             },
+        ),
+        "carrier": live(
+            "carrier",
+            robot="ur10_simulated",
+            **{"payload.mass": 3.0, "payload.center_of_mass": [0.02, -0.03, 0.12]},
+        ),
+        "weigher": live(
+            "weigher",
+            remappings=[("joint_states", "/carrier/carrier/torques")],
+            robot="ur10_simulated",
+            **{"estimate_payload.noise": [0.5]},
         ),
         "unfed": live("unfed", plugin_name=UR10),
         "undescribed": live("undescribed", plugin_name=SOLVER),
@@ -502,6 +515,73 @@ class TestExternalTorques(unittest.TestCase):
         self.assertAlmostEqual(self.last(), 2 * gravity, delta=0.1)
         self.gravity.publish(Vector3Stamped())
         proc_output.assertWaitFor("/touched/touched/gravity: ignored: gravity", timeout=30)
+
+
+class TestPayloadEstimate(unittest.TestCase):
+    """Of the node `weigher`, which gets the torques that the node `carrier` computes with a load."""
+
+    @classmethod
+    def setUpClass(cls):
+        rclpy.init()
+        cls.node = rclpy.create_node("mover")
+        cls.states = cls.node.create_publisher(JointState, "/carrier/joint_states", 10)
+        cls.found = []
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        cls.node.create_subscription(
+            InertiaStamped, "/weigher/weigher/estimated_payload", cls.found.append, latched
+        )
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.node.destroy_node()
+        rclpy.shutdown()
+
+    def call(self, node, service):
+        client = self.node.create_client(Trigger, f"/{node}/{node}/estimate_payload/{service}")
+        self.assertTrue(client.wait_for_service(timeout_sec=30))
+        future = client.call_async(Trigger.Request())
+        rclpy.spin_until_future_complete(self.node, future, timeout_sec=30)
+        return future.result()
+
+    def move(self, seconds):
+        names = ["shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3"]
+        while self.states.get_subscription_count() == 0:
+            rclpy.spin_once(self.node, timeout_sec=0.02)
+        for k in range(round(100 * seconds)):
+            t = 0.01 * k
+            message = JointState(name=[f"{name}_joint" for name in names])
+            message.header.stamp = stamp(20 + t)
+            rates = [0.9 + 0.17 * j for j in range(6)]
+            message.position = [0.7 * math.sin(w * t) + 0.4 * j - 1.0 for j, w in enumerate(rates)]
+            message.velocity = [0.7 * w * math.cos(w * t) for w in rates]
+            self.states.publish(message)
+            rclpy.spin_once(self.node, timeout_sec=0.01)
+
+    def test_1_is_refused_with_a_reason(self):
+        response = self.call("weigher", "stop")
+        self.assertFalse(response.success)
+        self.assertIn("call start before stop", response.message)
+        response = self.call("touched", "start")
+        self.assertFalse(response.success)
+        self.assertIn("parameter 'estimate_payload.noise'", response.message)
+        self.assertTrue(self.call("weigher", "start").success)
+        response = self.call("weigher", "stop")
+        self.assertFalse(response.success)
+        self.assertIn("no estimate: ", response.message)
+
+    def test_2_is_published_as_controllers_take_it(self):
+        self.assertTrue(self.call("weigher", "start").success)
+        self.move(8.0)
+        response = self.call("weigher", "stop")
+        self.assertTrue(response.success, response.message)
+        while not self.found:
+            rclpy.spin_once(self.node, timeout_sec=0.1)
+        message = self.found[-1]
+        self.assertEqual(message.header.frame_id, "tool0")
+        self.assertAlmostEqual(message.inertia.m, 3.0, delta=0.1)
+        self.assertAlmostEqual(message.inertia.com.x, 0.02, delta=0.02)
+        self.assertAlmostEqual(message.inertia.com.y, -0.03, delta=0.02)
+        self.assertAlmostEqual(message.inertia.com.z, 0.12, delta=0.02)
 
 
 @launch_testing.post_shutdown_test()

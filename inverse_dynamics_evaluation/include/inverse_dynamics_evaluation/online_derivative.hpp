@@ -61,6 +61,9 @@ class OnlineDerivative {
   /// n; in units of u per second.
   const OwnedVector& derivative() const { return derivative_; }
 
+  /// n; the low-passed samples themselves, as late as the derivative.
+  const OwnedVector& value() const { return value_; }
+
   /// By how much slow changes come late [s]: `1 / (pi f_c)`.
   double delay() const { return 2.0 / w_; }
 

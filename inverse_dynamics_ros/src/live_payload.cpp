@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "live_payload.hpp"
+
+namespace inverse_dynamics_ros {
+namespace {
+
+using inverse_dynamics_evaluation::OnlineDerivative;
+using inverse_dynamics_identification::PayloadOptions;
+
+// How the noise is shared out: nearly all of it is friction that isn't quite that of the model.
+constexpr double kWhite = 0.3;
+
+PayloadOptions optionsOf(const LivePayloadOptions& options) {
+  PayloadOptions result;
+  result.noise.white = kWhite * options.noise;
+  result.noise.correlated = options.noise;
+  result.carried = options.carried;
+  return result;
+}
+
+}  // namespace
+
+LivePayload::LivePayload(
+    std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
+    const LivePayloadOptions& options)
+    : n_(solver->jointCount()),
+      estimator_(solver, optionsOf(options)),
+      filter_(3 * n_, options.cutoff, options.longest_gap),
+      samples_(3 * n_) {}
+
+void LivePayload::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
+                         const Eigen::VectorXd& effort) {
+  samples_ << q, qd, effort;
+  if (!samples_.allFinite()) {
+    return;
+  }
+  const OnlineDerivative::Step step = filter_.update(stamp, samples_);
+  if (step == OnlineDerivative::Step::kWentBack) {
+    estimator_.restart();
+  }
+  if (step == OnlineDerivative::Step::kRepeated || !filter_.settled()) {
+    return;
+  }
+  const auto& late = filter_.value();
+  estimator_.update(1e-9 * static_cast<double>(stamp), late.head(n_), late.segment(n_, n_),
+                    filter_.derivative().segment(n_, n_), late.tail(n_));
+}
+
+}  // namespace inverse_dynamics_ros

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// What the tip carries, estimated from joint states as they come: without topics.
+///
+///     LivePayload payload(solver, options);
+///     payload.update(stamp, q, qd, effort);                              // each joint state
+///     if (payload.estimate(found) == PayloadStatus::kOk) use(found.body());
+
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <inverse_dynamics_evaluation/online_derivative.hpp>
+#include <inverse_dynamics_identification/payload_estimator.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <memory>
+
+namespace inverse_dynamics_ros {
+
+/// What LivePayload works with.
+struct LivePayloadOptions {
+  double cutoff = 5.0;                         ///< Hz; see online_derivative.hpp
+  double longest_gap = 0.5;                    ///< s
+  Eigen::VectorXd noise;                       ///< n; N m: of efforts and the arm's model
+  inverse_dynamics_solver::RigidBody carried;  ///< what the solver carries of the estimate already
+};
+
+/// Estimates the body at the tip. Positions, velocities and efforts all pass through the filter of
+/// the accelerations, so that each is as late as the others.
+///
+/// Real time: update() allocates nothing, takes no lock, throws nothing, if the solver keeps its
+/// promise.
+class LivePayload {
+ public:
+  /// @throws inverse_dynamics_solver::Exception: a solver without kinematics, options out of range.
+  LivePayload(std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
+              const LivePayloadOptions& options);
+
+  /// Takes a sample; what isn't finite is left out. A clock that goes back begins again.
+  ///
+  /// @param stamp   ns. @param effort  n; N m (prismatic N), with gravity.
+  void update(std::int64_t stamp, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
+              const Eigen::VectorXd& effort);
+
+  /// The body of all samples so far.
+  inverse_dynamics_identification::PayloadStatus estimate(
+      inverse_dynamics_identification::PayloadEstimate& found) {
+    return estimator_.estimate(found);
+  }
+
+ private:
+  Eigen::Index n_;
+  inverse_dynamics_identification::PayloadEstimator estimator_;
+  inverse_dynamics_evaluation::OnlineDerivative filter_;  // of q, qd, effort
+  Eigen::VectorXd samples_;                               // 3 n
+};
+
+}  // namespace inverse_dynamics_ros
