@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.identification.identify import identify
     from inverse_dynamics.identification.result import Identification
     from inverse_dynamics.results.evaluations import read_evaluation, write_evaluation
+    from inverse_dynamics.results.excitations import ExcitationResult, excite, write_excitation
     from inverse_dynamics.results.exports import export_series
     from inverse_dynamics.results.many_evaluations import ManyEvaluations, evaluate_many
     from inverse_dynamics.results.trajectory_torques import write_trajectory_torques
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 
 _HOME = {
     "Evaluation": "evaluation.evaluation",
+    "ExcitationResult": "results.excitations",
     "FastModel": "_core",
     "Identification": "identification.result",
     "JointError": "evaluation.evaluation",
@@ -49,6 +51,7 @@ _HOME = {
     "available_solvers": "_core",
     "evaluate": "evaluation.evaluation",
     "evaluate_many": "results.many_evaluations",
+    "excite": "results.excitations",
     "export_series": "results.exports",
     "fetch_recordings": "data.public_recordings",
     "identify": "identification.identify",
@@ -62,12 +65,14 @@ _HOME = {
     "torque_figure": "figures.plots",
     "trajectory_torques": "evaluation.trajectory_torques",
     "write_evaluation": "results.evaluations",
+    "write_excitation": "results.excitations",
     "write_joint_logs": "data.bags",
     "write_trajectory_torques": "results.trajectory_torques",
 }
 
 __all__ = [
     "Evaluation",
+    "ExcitationResult",
     "FastModel",
     "Identification",
     "JointError",
@@ -80,6 +85,7 @@ __all__ = [
     "available_solvers",
     "evaluate",
     "evaluate_many",
+    "excite",
     "export_series",
     "fetch_recordings",
     "identify",
@@ -93,6 +99,7 @@ __all__ = [
     "torque_figure",
     "trajectory_torques",
     "write_evaluation",
+    "write_excitation",
     "write_joint_logs",
     "write_trajectory_torques",
 ]

@@ -35,6 +35,7 @@ VERBS = (
     "robots",
     "data",
     "simulate",
+    "excite",
     "evaluate",
     "compare",
     "torques",

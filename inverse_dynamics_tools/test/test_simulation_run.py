@@ -26,7 +26,7 @@ from inverse_dynamics.simulation import (
     write_run,
 )
 from inverse_dynamics.simulation import run as run_module
-from inverse_dynamics.simulation.excitation import optimise_excitation
+from inverse_dynamics.simulation.excitation import ExcitationOptions
 from inverse_dynamics.simulation.trajectory import WaypointTrajectory
 
 SWING = WaypointTrajectory.through(("swing",), np.array([0.0, 1.0]), np.array([[0.0], [-0.5]]))
@@ -180,14 +180,11 @@ def test_settings_of_the_run_configuration_are_used_and_said(tmp_path: Path) -> 
 def test_trajectory_is_searched_for_where_none_is_stored(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(
-        run_module, "optimise_excitation", partial(optimise_excitation, evaluations=40)
-    )
+    monkeypatch.setattr(run_module, "ExcitationOptions", partial(ExcitationOptions, iterations=6))
     arm = robot(tmp_path, urdf=two_links())
     seen: set[str] = set()
     run = simulate(arm, rate=125, duration=0.5, progress=lambda what, *_: seen.add(what))
     assert "optimised with seed 0" in run.trajectory_source
-    assert run.condition_number is not None
     assert run.condition_number < 1000
     assert seen == {"optimising", "simulating"}
 
@@ -298,5 +295,4 @@ def test_stored_configuration_names_its_trajectory(name: str) -> None:
     config = yaml.safe_load((package / f"robots/{name}_simulated.yaml").read_text())["simulation"]
     file = config["trajectory"].removeprefix("package://inverse_dynamics_robots/")
     run = simulate(stored(name), trajectory=package / file, rate=config["rate"], duration=0.1)
-    assert run.condition_number is not None
     assert f"base regressor {run.condition_number:.4g}." in run.trajectory_source

@@ -26,6 +26,12 @@ def waypoints() -> WaypointTrajectory:
     return WaypointTrajectory.through(NAMES, times, positions)
 
 
+def with_a_rest() -> WaypointTrajectory:
+    times = np.array([0.0, 1.0, 1.7, 3.1, 4.0])
+    positions = np.array([[0.0, 1.0], [0.5, 0.0], [-0.3, 0.2], [0.4, 0.9], [0.0, 2.0]])
+    return WaypointTrajectory.through(NAMES, times, positions, (2,))
+
+
 @pytest.mark.parametrize("trajectory", [fourier(), waypoints()], ids=["fourier", "waypoints"])
 def test_velocity_and_acceleration_are_derivatives(
     trajectory: FourierTrajectory | WaypointTrajectory,
@@ -89,13 +95,36 @@ def test_jerk_and_its_rate_are_continuous_at_waypoints() -> None:
         np.testing.assert_allclose(rates[0] / h**2, rates[1] / h**2, rtol=1e-2, atol=1.0)
 
 
+def test_all_joints_stop_at_a_rest_and_the_parts_are_motions_of_their_own() -> None:
+    trajectory = with_a_rest()
+    q, qd, qdd = trajectory.at(np.array([1.7]))
+    np.testing.assert_allclose(q, [[-0.3, 0.2]])
+    np.testing.assert_allclose(qd, 0.0, atol=1e-12)
+    np.testing.assert_allclose(qdd, 0.0, atol=1e-12)
+    second = WaypointTrajectory.through(
+        NAMES, trajectory.times[2:] - trajectory.times[2], trajectory.positions[2:]
+    )
+    time = np.linspace(0.0, second.duration, 40)
+    for whole, part in zip(trajectory.at(1.7 + time), second.at(time), strict=True):
+        np.testing.assert_allclose(whole, part, atol=1e-12)
+
+
+@pytest.mark.parametrize("rests", [(0,), (4,), (2, 2), (3, 1), (-1,)])
+def test_rests_are_waypoints_between_the_ends(rests: tuple[int, ...]) -> None:
+    motion = with_a_rest()
+    with pytest.raises(TrajectoryError, match="rests: expected waypoints between the first"):
+        WaypointTrajectory.through(NAMES, motion.times, motion.positions, rests)
+
+
 @pytest.mark.parametrize("times", [[0.0], [0.0, 1.0, 1.0], [0.5, 1.0], [0.0, np.nan]])
 def test_waypoints_need_increasing_times(times: list[float]) -> None:
     with pytest.raises(TrajectoryError, match="at least two times, increasing from 0 s"):
         WaypointTrajectory.through(("a",), np.array(times), np.zeros((len(times), 1)))
 
 
-@pytest.mark.parametrize("trajectory", [fourier(), waypoints()], ids=["fourier", "waypoints"])
+@pytest.mark.parametrize(
+    "trajectory", [fourier(), waypoints(), with_a_rest()], ids=["fourier", "waypoints", "rest"]
+)
 def test_file_keeps_every_digit(
     trajectory: FourierTrajectory | WaypointTrajectory, tmp_path: Path
 ) -> None:
@@ -108,7 +137,9 @@ def test_file_keeps_every_digit(
         np.testing.assert_array_equal(a, b)
 
 
-@pytest.mark.parametrize("trajectory", [fourier(), waypoints()], ids=["fourier", "waypoints"])
+@pytest.mark.parametrize(
+    "trajectory", [fourier(), waypoints(), with_a_rest()], ids=["fourier", "waypoints", "rest"]
+)
 def test_joints_of_a_file_are_matched_by_name(
     trajectory: FourierTrajectory | WaypointTrajectory, tmp_path: Path
 ) -> None:
@@ -143,6 +174,8 @@ positions: [[0, 0], [1, 2]]
         ("times: [0, 1]\n", "", "the key times is missing"),
         ("times", "time", "the key times is missing"),
         ("kind", "speed: 3\nkind", "speed: unknown key"),
+        ("kind", "rests: [1]\nkind", "motion.yaml:2: rests: expected waypoints between the first"),
+        ("kind", "rests: [0.5]\nkind", "motion.yaml:2: rests[0]: expected an integer"),
         ("waypoints", "fourier", "the key period is missing"),
     ],
 )

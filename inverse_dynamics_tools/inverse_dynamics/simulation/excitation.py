@@ -1,117 +1,223 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Search for an exciting trajectory: a motion that tells as much as possible about the inertial parameters.
+"""Search for an exciting motion: one after which the torques of an arm are predicted best.
 
-    found = optimise_excitation(robot, seed=0)
-    found.trajectory, found.condition_number
+    found = optimise_excitation(robot, ExcitationOptions(duration=20.0), seed=0)
+    found.trajectory, found.deviation, found.condition_number
 
-The measure is the condition number of the base regressor, stacked over the motion [Gautier and Khalil 1992]: how much
-measurement noise grows into errors of parameters. The base parameters are taken in an orthonormal basis, so the measure
-is the ratio of the nonzero singular values of the regressor. Each trial is a Fourier series that starts and ends at
-rest; its amplitudes are scaled into the limits of position, velocity and acceleration, so those always hold; what goes
-beyond the effort limits or comes too close to itself or to the table is penalised until nothing does.
+What is minimised is the variance of predicted torques, averaged over states drawn evenly from the limits: V-optimality
+[Fedorov 1972; Atkinson, Donev, Tobias, Optimum Experimental Designs, with SAS, 2007, ch. 10], in logarithms, so that
+each joint counts by its ratio, whatever its size and unit:
 
-The search is an evolution strategy (CMA-ES with a diagonal covariance [Ros and Hansen 2008]): no gradients, few
-parameters, and the same seed gives the same trajectory (on one kind of machine: rounding differs between processors).
+    1 / (2 n) sum_j log mean_k z_jk V z_jk'           V, z: information.py
+
+D-optimality, log det V, is not the same: it counts combinations of parameters that hardly act on torques as much as
+those that decide them. Limits of position, velocity, acceleration, effort and distance are quadratic penalties that
+grow from step to step; the motion found is then checked at 1 kHz, and made smaller until the check passes.
+
+The gradient is that of the chain rule: d tr(A V) = -tr(V A V dM), dM from derivatives of the rows z by q, qd and qdd,
+which are finite differences of the regressor, in one batch. The same seed gives the same motion (on one kind of
+machine: rounding differs between processors).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.simulation.collision import ContactChecker
+from inverse_dynamics.simulation.descent import minimise
 from inverse_dynamics.simulation.errors import SimulationError, TrajectoryError
-from inverse_dynamics.simulation.evolution import minimise
+from inverse_dynamics.simulation.excitation_motion import MotionFamily
+from inverse_dynamics.simulation.information import Unknowns, sample_weight
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
 from inverse_dynamics.simulation.regressor import (
     ArmGeometry,
     base_count,
     condition_number,
-    inertial_parameters,
     regressor,
 )
-from inverse_dynamics.simulation.trajectory import FourierTrajectory
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.simulation.model import SimulatedRobot
+    from inverse_dynamics.simulation.trajectory import Trajectory, WaypointTrajectory
 
-PERIOD = 20.0  # s
-HARMONICS = 8  # the highest at 0.4 Hz
-MARGIN = 0.8  # part of each limit that a trajectory may use
+DURATION = 20.0  # s
+PAYLOAD_DURATION = 8.0  # s
+MARGIN = 0.8  # part of each limit that a motion may use
 TIME_TO_FULL_SPEED = 0.5  # s, what limits accelerations, since a URDF states no limit of them
+SLOW = 0.2  # part of the time, for slow reversals
+ITERATIONS = 600
+WRIST = 3  # how many joints move for a payload
 
-_EVALUATIONS = 6000
-_SAMPLES = 120  # points of a trajectory at which a trial is judged
-_CONTACT_SAMPLES = 200  # points of a trajectory at which contacts are looked for
-_STARTS = 100  # random ones, of which the best is improved
-_FIRST_AMPLITUDE = 0.3
-_PENALTY = 10.0  # per unit of relative excess of effort, and per 0.1 m of lacking clearance
+_START_WAVES = 2  # of each joint
+_FASTEST_START = 20  # half turns of the fastest
+_STARTS = 20  # random ones, of which the best is improved
+_FIRST_WEIGHT, _LAST_WEIGHT = 3.0, 300.0  # of the penalties
+_SAMPLE_STEP = 0.1  # s between the points at which a motion is judged
+_LIMIT_STEP = 0.025  # s, the same for velocities and accelerations
+_CHECK_STEP = 1e-3  # s, of the last check
+_CLOSER = 0.002  # m of distance that the search keeps beyond the clearance
+_AIM = 0.985  # part of the limits that the search aims at
+_SHRINKING, _SHRINKINGS = 0.96, 20  # each time to that part, so often, where the last check fails
+_TEST_STATES = 300
+_LOADED = 0.25  # of the greatest gravity torque, at both slow reversals
+_LIGHT = 0.01  # part of the effort limit: less gravity than that is none
+_DIFFERENCE = 1e-6  # of velocity limit and so on, in finite differences
+_TURN = 1e-4  # rad, in finite differences of distances
+_CONDITION_SAMPLES = 200
+
+
+@dataclass(frozen=True)
+class ExcitationOptions:
+    """What a motion may take, and what it is for."""
+
+    duration: float = DURATION  # s
+    share: float = MARGIN  # of the limits of position, velocity, acceleration and effort
+    time_to_full_speed: float = TIME_TO_FULL_SPEED  # s, what limits accelerations
+    slow: float = SLOW  # share of the duration, for slow reversals; not for a payload
+    payload: bool = False  # whether a body at the tip is to be identified, instead of the arm
+    clearance: float = 0.01  # m, from itself and from the table
+    table: bool = True
+    iterations: int = ITERATIONS
+
+    def limits(self, robot: SimulatedRobot) -> MotionLimits:
+        """Limits of the motion."""
+        return MotionLimits.of(robot, self.time_to_full_speed).fraction(self.share)
 
 
 @dataclass(frozen=True)
 class Excitation:
-    """An exciting trajectory and how good it is."""
+    """An exciting motion and how good it is."""
 
-    trajectory: FourierTrajectory
-    condition_number: float
+    trajectory: WaypointTrajectory
+    condition_number: float  # of the base regressor
+    unknowns: Unknowns
+    gram: Floats  # (m, m) information of the motion alone
+    notes: tuple[str, ...] = ()
 
 
 def optimise_excitation(
     robot: SimulatedRobot,
+    options: ExcitationOptions | None = None,
     *,
     seed: int = 0,
-    period: float = PERIOD,
-    harmonics: int = HARMONICS,
-    evaluations: int = _EVALUATIONS,
-    table: bool = True,
+    noise: Floats | None = None,
+    given: Floats | None = None,
     progress: Progress = no_progress,
 ) -> Excitation:
-    """Exciting trajectory of a robot; the same seed gives the same one.
+    """Exciting motion of a robot; the same seed gives the same one.
+
+    noise: (n,) N m, of the efforts; None: a part of each effort limit. given: (m, m), information that is there
+    already, of Unknowns.gram().
 
     Raises SimulationError if none was found within the limits, and where the URDF lacks limits.
     """
-    limits = MotionLimits.of(robot, TIME_TO_FULL_SPEED).fraction(MARGIN)
-    for name, values in (("velocity", limits.velocity), ("effort", limits.effort)):
+    options = options or ExcitationOptions()
+    limits = options.limits(robot)
+    check_limits(robot, limits)
+    unknowns = (Unknowns.of_payload if options.payload else Unknowns.of_arm)(robot, limits, noise)
+    moving = np.ones(len(limits.lower), dtype=bool)
+    if options.payload:
+        moving[:-WRIST] = False
+    family = MotionFamily.of(
+        robot.chain.joint_names,
+        limits,
+        duration=options.duration,
+        slow=0.0 if options.payload else options.slow * options.duration,
+        moving=moving,
+    )
+    searched = ContactChecker(robot, clearance=options.clearance + _CLOSER, table=options.table)
+    judge = _Judge(unknowns, family, limits, searched, given)
+    x = _start(judge, family, np.random.default_rng(seed))
+
+    def gradient(x: Floats, done: float) -> Floats:
+        judge.weight = _FIRST_WEIGHT * (_LAST_WEIGHT / _FIRST_WEIGHT) ** done
+        return judge.cost(x)[1]
+
+    x = minimise(gradient, x, iterations=options.iterations, progress=progress)
+    checker = ContactChecker(robot, clearance=options.clearance, table=options.table)
+    trajectory = _shrunk_until_free(robot, family, x, limits, checker)
+    return Excitation(
+        trajectory,
+        condition_of(robot, trajectory),
+        unknowns,
+        motion_gram(unknowns, trajectory),
+        _notes(unknowns, family, trajectory, checker),
+    )
+
+
+def check_limits(robot: SimulatedRobot, limits: MotionLimits) -> None:
+    """Raises SimulationError where the description states no limit that the search needs."""
+    for article, name, values in (
+        ("a", "velocity", limits.velocity),
+        ("an", "effort", limits.effort),
+    ):
         for joint, value in zip(robot.chain.joint_names, values, strict=True):
             if not (np.isfinite(value) and value > 0):
                 raise SimulationError(
-                    f"robot description: joint {joint}: the search needs a {name} limit, got {value:g}; "
+                    f"robot description: joint {joint}: the search needs {article} {name} limit, got {value:g}; "
                     f"add <limit {name}=.../>, or give a trajectory by --trajectory"
                 )
-    checker = ContactChecker(robot, table=table)
-    family = _Family(robot.chain.joint_names, limits, period, harmonics)
-    judge = _Judge(robot, family, limits, checker)
-    random = np.random.default_rng(seed)
-    starts = _FIRST_AMPLITUDE * random.standard_normal((_STARTS, family.size))
-    start = min(starts, key=judge.cost)
-    best = minimise(
-        judge.cost, start, step=0.2, evaluations=evaluations, seed=seed, progress=progress
-    )
-    trajectory = _shrunk_until_free(robot, family.member(best), checker)
-    return Excitation(trajectory, condition_of(robot, trajectory))
+    lower, upper = limits.window()
+    for joint, low, high in zip(robot.chain.joint_names, lower, upper, strict=True):
+        if not low < high:
+            raise SimulationError(
+                f"robot description: joint {joint}: expected a range of positions to move in, got "
+                f"{low:g} to {high:g}; correct its <limit lower=... upper=.../>"
+            )
 
 
-def condition_of(robot: SimulatedRobot, trajectory: FourierTrajectory) -> float:
+def condition_of(robot: SimulatedRobot, trajectory: Trajectory) -> float:
     """Condition number of the base regressor over a trajectory."""
     arm = ArmGeometry.of(robot)
-    time = np.linspace(0.0, trajectory.duration, _SAMPLES, endpoint=False)
+    time = np.linspace(0.0, trajectory.duration, _CONDITION_SAMPLES, endpoint=False)
     return condition_number(regressor(arm, *trajectory.at(time)), base_count(arm))
 
 
+def motion_gram(
+    unknowns: Unknowns, trajectory: Trajectory, duration: float | None = None
+) -> Floats:
+    """Information (m, m) of a motion. duration: s; None: all of it."""
+    duration = trajectory.duration if duration is None else duration
+    time = np.arange(0.0, duration, _SAMPLE_STEP / 2)
+    return unknowns.gram(*trajectory.at(time), period=duration / len(time))
+
+
+def _start(judge: _Judge, family: MotionFamily, random: np.random.Generator) -> Floats:
+    """The best of a few random motions: slow waves with a little of everything."""
+    shape = family.amplitudes.shape
+    starts = []
+    for _ in range(_STARTS):
+        about = np.zeros(shape)
+        for _ in range(_START_WAVES):
+            which = random.integers(2, min(_FASTEST_START, shape[0]), shape[1])
+            about[which, np.arange(shape[1])] += random.choice([-1.0, 1.0], shape[1])
+        center = np.asarray(random.uniform(-0.5, 0.5, shape[1]))
+        starts.append(judge.slowed(center, about))
+    judge.weight = _FIRST_WEIGHT
+    return min(starts, key=lambda x: judge.cost(x)[0])
+
+
 def _shrunk_until_free(
-    robot: SimulatedRobot, found: FourierTrajectory, checker: ContactChecker
-) -> FourierTrajectory:
-    """The trajectory, with amplitudes small enough that the check between the search's points passes too."""
-    limits = MotionLimits.of(robot)
-    for factor in np.linspace(1.0, 0.5, 11):
-        trajectory = replace(found, sine=factor * found.sine, cosine=factor * found.cosine)
+    robot: SimulatedRobot,
+    family: MotionFamily,
+    x: Floats,
+    limits: MotionLimits,
+    checker: ContactChecker,
+) -> WaypointTrajectory:
+    """The motion, made small enough about its mean pose that it passes the check."""
+    waves = x.reshape(family.amplitudes.shape)
+    for factor in _SHRINKING ** np.arange(_SHRINKINGS):
+        small = np.vstack([waves[:1], factor * waves[1:]])
+        trajectory = family.member(small.ravel())
         try:
             check_trajectory(robot, trajectory, limits, checker)
+            check_trajectory(robot, trajectory, limits, None, step=_CHECK_STEP)
         except TrajectoryError as error:
             reason = error
         else:
@@ -121,85 +227,182 @@ def _shrunk_until_free(
     )
 
 
-@dataclass(frozen=True)
-class _Family:
-    """Fourier trajectories within limits of position, velocity and acceleration, made from free numbers."""
-
-    joint_names: tuple[str, ...]
-    limits: MotionLimits
-    period: float
-    harmonics: int
-
-    @property
-    def size(self) -> int:
-        return len(self.joint_names) * (1 + 2 * self.harmonics)
-
-    def member(self, x: Floats) -> FourierTrajectory:
-        """The trajectory that belongs to free numbers x (size,)."""
-        joints = len(self.joint_names)
-        free_center, sine, cosine = np.split(x, [joints, joints * (1 + self.harmonics)])
-        sine, cosine = sine.reshape(joints, -1), cosine.reshape(joints, -1)
-        # at rest, without acceleration, at the beginning
-        order = np.arange(1, self.harmonics + 1)
-        sine = sine - sine.mean(axis=1, keepdims=True)
-        cosine = cosine - np.outer(cosine @ order / (order @ order), order)
-        # numbers of size one are amplitudes that use up the velocity limit
-        scale = self.limits.velocity[:, None] / np.sqrt(self.harmonics)
-        lower, upper = self._window()
-        center = lower + (upper - lower) / (1.0 + np.exp(-free_center))
-        trial = FourierTrajectory(
-            self.joint_names, self.period, center, scale * sine, scale * cosine
-        )
-        reach = self._reach(trial)[:, None]
-        return FourierTrajectory(
-            self.joint_names, self.period, center, trial.sine * reach, trial.cosine * reach
-        )
-
-    def _window(self) -> tuple[Floats, Floats]:
-        """Ranges of positions: at most one turn."""
-        lower, upper = np.maximum(self.limits.lower, -np.pi), np.minimum(self.limits.upper, np.pi)
-        return lower, upper
-
-    def _reach(self, trial: FourierTrajectory) -> Floats:
-        """The greatest factors (n,) up to 1 by which the amplitudes may be multiplied."""
-        q, qd, qdd = trial.at(np.linspace(0.0, self.period, 10 * _SAMPLES))
-        lower, upper = self._window()
-        room = np.minimum(upper - trial.center, trial.center - lower)
-        used = [
-            np.abs(values).max(axis=0) / limit
-            for values, limit in (
-                (q - trial.center, room),
-                (qd, self.limits.velocity),
-                (qdd, self.limits.acceleration),
-            )
+def _notes(
+    unknowns: Unknowns,
+    family: MotionFamily,
+    trajectory: WaypointTrajectory,
+    checker: ContactChecker,
+) -> tuple[str, ...]:
+    notes = []
+    if not checker.has_shapes:
+        notes.append("the description has no collision shapes: self-collision can't be checked")
+    if family.reversals:
+        g = unknowns.gravity(trajectory.positions[list(family.reversals)])
+        heavy = _greatest_gravity(unknowns) > _LIGHT * unknowns.limits.effort
+        one_sided = [
+            name
+            for name, loaded, values in zip(family.joint_names, heavy, g.T, strict=True)
+            if loaded and values.min() * values.max() >= 0.0
         ]
-        return np.asarray(1.0 / np.maximum(1.0, np.max(used, axis=0)))
+        if one_sided:
+            notes.append(
+                f"slow reversals under gravity in one direction only: {', '.join(one_sided)}"
+            )
+    return tuple(notes)
+
+
+def _greatest_gravity(unknowns: Unknowns) -> Floats:
+    """(n,) N m, over random states."""
+    states = unknowns.random_states(_TEST_STATES)
+    return np.asarray(np.abs(unknowns.gravity(states.q)).max(axis=0))
 
 
 class _Judge:
-    """The cost of a trial: logarithm of the condition number, and penalties."""
+    """Cost of a motion and its gradient: logarithm of the predicted deviations, and penalties."""
 
     def __init__(
         self,
-        robot: SimulatedRobot,
-        family: _Family,
+        unknowns: Unknowns,
+        family: MotionFamily,
         limits: MotionLimits,
         checker: ContactChecker,
+        given: Floats | None,
     ) -> None:
-        self._robot, self._family, self._limits, self._checker = robot, family, limits, checker
-        self._arm = ArmGeometry.of(robot)
-        self._count = base_count(self._arm)
-        self._parameters = inertial_parameters(robot)
-        self._contact_time = np.linspace(0.0, family.period, _CONTACT_SAMPLES, endpoint=False)
-        self._time = np.linspace(0.0, family.period, _SAMPLES, endpoint=False)
-
-    def cost(self, x: Floats) -> float:
-        trajectory = self._family.member(x)
-        Y = regressor(self._arm, *trajectory.at(self._time))
-        excess = np.abs(Y @ self._parameters) / self._limits.effort - 1.0
-        violations = self._checker.violations(trajectory.at(self._contact_time)[0])
-        penalty = sum(
-            values.max() + values.mean()
-            for values in (np.maximum(excess, 0.0), 10.0 * np.maximum(violations, 0.0))
+        self.weight = _FIRST_WEIGHT
+        self._unknowns, self._family, self._limits = unknowns, family, limits
+        self._checker = checker
+        self._given = np.zeros_like(unknowns.scale) if given is None else given
+        count = round(family.times[-1] / _SAMPLE_STEP)
+        self._period = family.times[-1] / count
+        self._basis = family.basis((np.arange(count) + 0.5) * self._period)
+        fine = np.arange(0.0, family.times[-1], _LIMIT_STEP)
+        self._fine = family.basis(fine)
+        # A_j of the test states, in all unknowns
+        Z = unknowns.rows(*unknowns.random_states(_TEST_STATES, seed=1)) * unknowns.predicted
+        self._tested = np.einsum("kjm,kjl->jml", Z, Z) / len(Z)
+        self._heavy = _greatest_gravity(unknowns)
+        self._steps = _DIFFERENCE * np.array(
+            [np.ones_like(limits.velocity), limits.velocity, limits.acceleration]
         )
-        return float(np.log10(condition_number(Y, self._count)) + _PENALTY * penalty)
+
+    def cost(self, x: Floats) -> tuple[float, Floats]:
+        """Value and gradient at free numbers x."""
+        value, gradient = self._information(x)
+        for penalty in (self._kinematic_penalty, self._contact_penalty, self._load_penalty):
+            more, slope = penalty(x)
+            value += self.weight * more
+            gradient = gradient + self.weight * slope
+        return value, gradient
+
+    def slowed(self, center: Floats, waves: Floats) -> Floats:
+        """Free numbers of waves (P, n) about a center (n,), made small enough for the limits."""
+        still = np.zeros_like(waves)
+        still[0] = center
+        q0, _, _ = self._family.states(still.ravel(), self._fine)
+        q, qd, qdd = self._family.states((still + waves).ravel(), self._fine)
+        lower, upper = self._limits.window()
+        room = np.minimum(upper - q0, q0 - lower).min(axis=0)
+        used = [
+            np.abs(values).max(axis=0) / limit
+            for values, limit in (
+                (q - q0, np.maximum(room, 1e-6)),
+                (qd, self._limits.velocity),
+                (qdd, self._limits.acceleration),
+            )
+        ]
+        return np.asarray((still + waves / np.maximum(np.max(used, axis=0), 1.0)).ravel())
+
+    def _information(self, x: Floats) -> tuple[float, Floats]:
+        """Logarithm of the deviations, and the penalty of efforts, which takes the same rows."""
+        unknowns, joints = self._unknowns, len(self._limits.lower)
+        states = self._family.states(x, self._basis)
+        Z, tau = unknowns.rows_and_torques(*states)
+        V = unknowns.covariance(self._given + unknowns.weighted_gram(Z, self._period))
+        variances = np.einsum("jml,lm->j", self._tested, V)
+        value = float(np.log(variances).sum() / (2 * joints))
+        # d value = -1/n sum_kj (w_j B z_kj)' dz_kj
+        B = V @ np.einsum("jml,j->ml", self._tested, 1.0 / variances) @ V
+        weight = sample_weight(self._period) / unknowns.noise**2 / joints
+        U = -(Z @ B) * weight[:, None]
+        excess = np.maximum(np.abs(tau) / self._limits.effort - _AIM, 0.0)
+        U_tau = 2.0 * self.weight * excess * np.sign(tau) / self._limits.effort
+        slopes = self._slopes(states, Z, U, tau, U_tau)
+        value += self.weight * float((excess**2).sum())
+        return value, self._family.pulled_back(slopes, self._basis)
+
+    def _slopes(
+        self,
+        states: tuple[Floats, Floats, Floats],
+        Z: Floats,
+        U: Floats,
+        tau: Floats,
+        U_tau: Floats,
+    ) -> list[Floats]:
+        """Derivatives (N, n) by q, qd, qdd of sum U . Z + sum U_tau . tau."""
+        gravity = self._unknowns.gravity(states[0])
+        slopes = []
+        for which in range(3):
+            slope = np.empty_like(states[which])
+            for j, step in enumerate(self._steps[which]):
+                q, qd, qdd = (
+                    values.copy() if k == which else values for k, values in enumerate(states)
+                )
+                (q, qd, qdd)[which][:, j] += step
+                Z_moved, tau_moved = self._unknowns.rows_and_torques(
+                    q, qd, qdd, None if which == 0 else gravity
+                )
+                change = ((Z_moved - Z) * U).sum(axis=(1, 2))
+                change += ((tau_moved - tau) * U_tau).sum(axis=1)
+                slope[:, j] = change / step
+            slopes.append(slope)
+        return slopes
+
+    def _kinematic_penalty(self, x: Floats) -> tuple[float, Floats]:
+        """Of positions, velocities and accelerations beyond their limits."""
+        q, qd, qdd = self._family.states(x, self._fine)
+        lower, upper = self._limits.window()
+        half = (upper - lower) / 2
+        total, slopes = 0.0, []
+        for values, limit in (
+            (q - (lower + upper) / 2, half),
+            (qd, self._limits.velocity),
+            (qdd, self._limits.acceleration),
+        ):
+            excess = np.maximum(np.abs(values) / limit - _AIM, 0.0)
+            total += float((excess**2).sum())
+            slopes.append(2.0 * excess * np.sign(values) / limit)
+        return total, self._family.pulled_back(slopes, self._fine)
+
+    def _contact_penalty(self, x: Floats) -> tuple[float, Floats]:
+        """Of states that come too close to the arm itself or to the table, per 0.1 m."""
+        q, still, _ = self._family.states(x, self._basis)
+        still = np.zeros_like(q)
+        slope = np.zeros_like(q)
+        violations = self._checker.violations(q)
+        for k in np.flatnonzero(violations > 0.0):
+            moved = q[k] + _TURN * np.eye(q.shape[1])
+            change = self._checker.violations(moved) - violations[k]
+            slope[k] = 200.0 * violations[k] * change / _TURN
+        value = 100.0 * float((violations**2).sum())
+        return value, self._family.pulled_back((slope, still, still), self._basis)
+
+    def _load_penalty(self, x: Floats) -> tuple[float, Floats]:
+        """Of slow reversals that don't see gravity in both directions."""
+        slope = np.zeros((self._family.pose_of.shape[1], len(self._limits.lower)))
+        if not self._family.reversals:
+            return 0.0, self._family.of_poses(slope)
+        turning = self._family.positions(x)[list(self._family.reversals)]
+        joints = turning.shape[1]
+        heavy = self._heavy > _LIGHT * self._limits.effort
+
+        def load(states: Floats) -> Floats:
+            return np.where(heavy, self._unknowns.gravity(states) / self._heavy, 0.0)
+
+        loads = load(turning)
+        total, side = 0.0, np.where(loads[0] >= loads[1], 1.0, -1.0)
+        for k, sign in enumerate((side, -side)):
+            lacking = np.where(heavy, np.maximum(_LOADED - sign * loads[k], 0.0), 0.0)
+            total += float((lacking**2).sum())
+            change = (load(turning[k] + 1e-6 * np.eye(joints)) - loads[k]) / 1e-6
+            slope[self._family.slow_poses[k]] = -change @ (2.0 * lacking * sign)
+        return total, self._family.of_poses(slope)

@@ -51,6 +51,10 @@ class MotionLimits:
         )
         return cls(chain.lower, chain.upper, chain.velocity, acceleration, chain.effort)
 
+    def window(self) -> tuple[Floats, Floats]:
+        """Lowest and highest positions (n,) of a motion: at most one turn."""
+        return np.maximum(self.lower, -np.pi), np.minimum(self.upper, np.pi)
+
     def fraction(self, fraction: float) -> MotionLimits:
         """Limits with a margin: positions about the middle of their range."""
         margin = np.where(
@@ -72,17 +76,19 @@ def check_trajectory(
     trajectory: Trajectory,
     limits: MotionLimits,
     checker: ContactChecker | None,
+    step: float = CHECK_STEP,
 ) -> None:
     """Raises TrajectoryError naming joint, time, value and limit where a trajectory asks too much.
 
     Torques are those of the robot with its payload and gravity, friction included. checker None: contacts are allowed.
+    step: s between the points that are checked, at most; contacts are looked for at most CHECK_STEP apart.
     """
     if trajectory.joint_names != robot.chain.joint_names:
         raise TrajectoryError(
             f"trajectory: expected joints {', '.join(robot.chain.joint_names)} in this order; "
             f"got {', '.join(trajectory.joint_names)}; is it for another robot?"
         )
-    time = np.linspace(0.0, trajectory.duration, 1 + int(np.ceil(trajectory.duration / CHECK_STEP)))
+    time = np.linspace(0.0, trajectory.duration, 1 + int(np.ceil(trajectory.duration / step)))
     q, qd, qdd = trajectory.at(time)
     tau = robot.torques(q, qd, qdd)
     if robot.friction is not None:
@@ -95,7 +101,8 @@ def check_trajectory(
     ):
         _check_range(robot.chain.joint_names, time, what, unit, values, least, greatest)
     if checker is not None:
-        _check_contacts(time, q, checker)
+        every = max(1, round(CHECK_STEP / step))
+        _check_contacts(time[::every], q[::every], checker)
 
 
 def _check_range(

@@ -25,12 +25,15 @@ from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.configuration import Wishes
 from inverse_dynamics.simulation.controller import Gains
 from inverse_dynamics.simulation.errors import SimulationError
-from inverse_dynamics.simulation.excitation import condition_of, optimise_excitation
+from inverse_dynamics.simulation.excitation import (
+    ExcitationOptions,
+    condition_of,
+    optimise_excitation,
+)
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
 from inverse_dynamics.simulation.model import GRAVITY, JointFriction, SimulatedRobot
 from inverse_dynamics.simulation.physics import Motion, check_rate, default_gains, follow
 from inverse_dynamics.simulation.sensors import Recorded, Sensors
-from inverse_dynamics.simulation.trajectory import FourierTrajectory
 from inverse_dynamics.simulation.trajectory_file import read_trajectory
 from inverse_dynamics.simulation.urdf import chain_from_urdf
 
@@ -51,7 +54,7 @@ class SimulatedRun:
     recorded: Recorded  # which samples became messages
     trajectory: Trajectory
     trajectory_source: str
-    condition_number: float | None  # of the base regressor; None: not a Fourier series
+    condition_number: float  # of the base regressor
     settings: dict[str, Any]  # everything needed to make it again, ready for YAML
     notes: tuple[str, ...]  # what was left out or assumed, in words
 
@@ -74,7 +77,7 @@ def simulate(
     """Simulates a robot under a joint trajectory controller, and records its joint states.
 
     trajectory: a file or an object; None: the run configuration's; without one, or with `optimise`, a new exciting
-        trajectory is searched for, which takes a minute or two.
+        trajectory is searched for, which takes half a minute.
     rate: of controller and recording, 125, 500 or 1000 Hz.
     duration: s; None: once through the trajectory. A periodic one goes on as long as is asked.
     seed: of the search and of the sensors' random numbers.
@@ -126,14 +129,13 @@ def simulate(
     recorded = sensors.record(motion, seed)
     settings = _settings(robot, simulated, sensors, gains, rate, duration, seed, source)
     settings["robot_description_sha256"] = hashlib.sha256(description.encode()).hexdigest()
-    condition = condition_of(simulated, chosen) if isinstance(chosen, FourierTrajectory) else None
     return SimulatedRun(
         log=_joint_log(robot, chain, recorded),
         motion=motion,
         recorded=recorded,
         trajectory=chosen,
         trajectory_source=source,
-        condition_number=condition,
+        condition_number=condition_of(simulated, chosen),
         settings=settings,
         notes=tuple(notes),
     )
@@ -154,7 +156,9 @@ def _choose_trajectory(
     if given is None and not optimise:
         given = default
     if given is None:
-        found = optimise_excitation(robot, seed=seed, table=table, progress=progress)
+        found = optimise_excitation(
+            robot, ExcitationOptions(table=table), seed=seed, progress=progress
+        )
         return found.trajectory, (
             f"Exciting trajectory for {robot.chain.name}, optimised with seed {seed}: condition number of "
             f"the base regressor {found.condition_number:.4g}."

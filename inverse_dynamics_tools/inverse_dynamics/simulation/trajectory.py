@@ -16,6 +16,7 @@ averaged. It starts and ends at rest, with zero acceleration, where sum_l sine_l
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -70,7 +71,8 @@ class FourierTrajectory:
 class WaypointTrajectory:
     """Motion through waypoints, smooth up to the jerk; at rest, with zero acceleration, at both ends.
 
-    Quintic pieces: the waypoints' velocities and accelerations are those that make jerk and its rate continuous.
+    Quintic pieces: the waypoints' velocities and accelerations are those that make jerk and its rate continuous. At
+    `rests` all joints stop, with zero acceleration.
     """
 
     joint_names: tuple[str, ...]
@@ -78,10 +80,15 @@ class WaypointTrajectory:
     positions: Floats  # (K, n) rad
     velocities: Floats  # (K, n) rad/s
     accelerations: Floats  # (K, n) rad/s^2
+    rests: tuple[int, ...] = ()  # waypoints between the ends, counted from 0, increasing
 
     @classmethod
     def through(
-        cls, joint_names: tuple[str, ...], times: Floats, positions: Floats
+        cls,
+        joint_names: tuple[str, ...],
+        times: Floats,
+        positions: Floats,
+        rests: tuple[int, ...] = (),
     ) -> WaypointTrajectory:
         """The smooth motion that is at `positions[k]` at `times[k]`."""
         times = np.asarray(times, dtype=np.float64)
@@ -90,8 +97,19 @@ class WaypointTrajectory:
                 "waypoints: expected at least two times, increasing from 0 s; "
                 f"got {', '.join(f'{t:g}' for t in times)}"
             )
-        velocities, accelerations = _smooth_derivatives(times, positions)
-        return cls(joint_names, times, positions, velocities, accelerations)
+        ends = (0, *rests, len(times) - 1)
+        if not (np.diff(ends) > 0).all():
+            raise TrajectoryError(
+                "waypoints: rests: expected waypoints between the first and the last, counted from 0, "
+                f"increasing; got {', '.join(map(str, rests))}"
+            )
+        velocities, accelerations = np.zeros_like(positions), np.zeros_like(positions)
+        for first, last in pairwise(ends):
+            part = slice(first, last + 1)
+            velocities[part], accelerations[part] = _smooth_derivatives(
+                times[part], positions[part]
+            )
+        return cls(joint_names, times, positions, velocities, accelerations, tuple(rests))
 
     @property
     def duration(self) -> float:

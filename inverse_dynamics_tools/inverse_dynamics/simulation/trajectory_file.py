@@ -19,6 +19,7 @@ or waypoints, passed smoothly, at rest at both ends:
     joints: [joint_1, joint_2]
     times: [0.0, 1.5, 3.0]                            # s, from 0
     positions: [[0.0, 0.0], [0.5, -0.5], [0.0, 0.0]]  # rad, a row per time
+    rests: [1]                                        # optional: waypoints, counted from 0, where all joints stop
 """
 
 from __future__ import annotations
@@ -79,7 +80,11 @@ def _waypoints(top: Mapping, names: tuple[str, ...], order: list[int]) -> Waypoi
     if len(times) < 2 or times[0] != 0.0 or not (np.diff(times) > 0).all():
         times_value.fail("at least two times that increase from 0")
     positions = _table(top.required("positions"), rows=len(times), columns=len(names))
-    return WaypointTrajectory.through(names, times, positions[:, order])
+    rests_value = top.optional("rests")
+    rests = () if rests_value is None else tuple(rest.integer() for rest in rests_value.entries())
+    if rests_value is not None and not (np.diff((0, *rests, len(times) - 1)) > 0).all():
+        rests_value.fail("waypoints between the first and the last, counted from 0, that increase")
+    return WaypointTrajectory.through(names, times, positions[:, order], rests)
 
 
 def trajectory_text(trajectory: Trajectory, source: str) -> str:
@@ -92,6 +97,7 @@ def trajectory_text(trajectory: Trajectory, source: str) -> str:
     elif isinstance(trajectory, WaypointTrajectory):
         kind, rows = "waypoints", {"positions": trajectory.positions}
         head = [f"times: {_flow(trajectory.times)}"]
+        head += [f"rests: [{', '.join(map(str, trajectory.rests))}]"] if trajectory.rests else []
     else:
         raise TypeError(f"no file format for {type(trajectory).__name__}")
     lines += [f"kind: {kind}", f"source: >-\n  {' '.join(source.split())}"]

@@ -79,6 +79,14 @@ def positive_number(text: str) -> float:
     return number
 
 
+def share(text: str) -> float:
+    """A part of something, above 0 and up to 1."""
+    part = positive_number(text)
+    if part > 1.0:
+        raise argparse.ArgumentTypeError(f"expected a part, above 0 and up to 1, got '{text}'")
+    return part
+
+
 def number(text: str) -> float:
     """A finite number of an option."""
     try:

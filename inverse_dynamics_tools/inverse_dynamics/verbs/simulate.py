@@ -30,7 +30,7 @@ examples:
       5 kg, 0.1 m before the tip; base upside down
 
   ids simulate --robot my_robot.yaml --out recording --optimise --seed 1
-      look for another exciting trajectory first (a minute or two); it is stored in the recording
+      look for another exciting trajectory first (half a minute); it is stored in the recording
 
   ids simulate --robot ur10_simulated --out recording --trajectory other/trajectory.yaml
       a motion of your own: waypoints or a Fourier series
@@ -83,8 +83,7 @@ def add_parser(
     motion.add_argument(
         "--optimise",
         action="store_true",
-        help="search for a new exciting trajectory instead: the best condition number of the base "
-        "regressor within the limits, clear of the robot itself and of the table",
+        help="search for a new exciting trajectory instead, as `ids excite` does",
     )
     motion.add_argument(
         "--duration",
@@ -224,11 +223,7 @@ def _print(result: SimulatedRun, out: Path) -> None:
 
     console = Screen()
     settings, log = result.settings, result.log
-    excitation = (
-        ""
-        if result.condition_number is None
-        else f", condition number of the base regressor {result.condition_number:.1f}"
-    )
+    excitation = f", condition number of the base regressor {result.condition_number:.4g}"
     for note in result.notes:
         console.print(f"note        {note}")
     console.print(f"trajectory  {result.trajectory.duration:g} s{excitation}")

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.summary import EvaluationSummary
     from inverse_dynamics.evaluation.trajectory_torques import TrajectoryTorques
     from inverse_dynamics.identification.payload import Payload
+    from inverse_dynamics.results.excitations import ExcitationResult
 
 
 def error_table(evaluation: Evaluation) -> Table:
@@ -235,6 +236,36 @@ def load_table(result: TrajectoryTorques) -> Table:
             f"{load.limit:g} {load.unit}" if math.isfinite(load.limit) else "-",
             passed,
         )
+    return table
+
+
+_AFTER = {"description": "before", "given": "given", "stored": "stored", "motion": "after"}
+
+
+def excitation_table(result: ExcitationResult) -> Table:
+    """How each joint moves, and how uncertain its predicted torque is before and after."""
+    table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
+    table.add_column("joint", overflow="fold")
+    for heading in ("from", "to", "speed", "accel.", "torque"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for name in result.deviation:
+        table.add_column(_AFTER[name], justify="right", no_wrap=True)
+    table.add_column("unit", no_wrap=True)
+    for j, (joint, unit) in enumerate(zip(result.joint_names, result.units, strict=True)):
+        table.add_row(
+            joint,
+            *(f"{position:.2f}" for position in result.travel[j]),
+            *(f"{100 * share:.0f} %" for share in result.greatest[:, j]),
+            *(figure(float(values[j])) for values in result.deviation.values()),
+            unit,
+        )
+    table.caption = (
+        "speed, acceleration, torque: the greatest, of their limits here; then the standard deviation of "
+        "predicted torques, mean over random states within the limits: before any recording"
+        + (", after those given" if "given" in result.deviation else "")
+        + (", after the stored motion in the same time" if "stored" in result.deviation else "")
+        + ", after this motion"
+    )
     return table
 
 

@@ -1,0 +1,313 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A motion to record before identification, chosen for a robot and for what is known already.
+
+    result = excite("ur10_simulated", given=["recording"])
+    result.deviation["motion"]                        # (n,) N m, after it
+    write_excitation(result, "motion.yaml")
+
+What is searched for, and how: simulation/excitation.py.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.base.files import check_output_file, files_written_whole, write_text
+from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.base.wording import counted
+from inverse_dynamics.errors import EvaluationError
+from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.robots import Robot, load_robot
+from inverse_dynamics.simulation.configuration import Wishes
+from inverse_dynamics.simulation.errors import SimulationError
+from inverse_dynamics.simulation.excitation import (
+    PAYLOAD_DURATION,
+    Excitation,
+    ExcitationOptions,
+    check_limits,
+    motion_gram,
+    optimise_excitation,
+)
+from inverse_dynamics.simulation.information import Unknowns, sample_weight
+from inverse_dynamics.simulation.model import GRAVITY, SimulatedRobot
+from inverse_dynamics.simulation.trajectory_file import read_trajectory, trajectory_text
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.simulation.limits import MotionLimits
+    from inverse_dynamics.simulation.trajectory import WaypointTrajectory
+
+LEAD_IN = 3.0  # s from the start of the trajectory to send to its first point
+_RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
+_TEST_STATES = 1000
+_REWEIGHTED = 4  # times that the noise is taken from the residuals
+_GIVEN_STEP = 0.02  # s between samples of recordings that are used
+_HARDLY = 0.05  # part of the range of positions: less motion is hardly any
+
+
+@dataclass(frozen=True)
+class ExcitationResult:
+    """A motion, and what it tells. n joints, in the order of the chain.
+
+    deviation: N m (prismatic N), (n,) each: standard deviation of the torques that are predicted
+    after it, mean over random states within the limits; of
+    "description": without a recording; "given": after the recordings that were given; "stored":
+    after them and the stored motion of the robot, for the same time; "motion": after them and the new one.
+    """
+
+    robot: Robot
+    joint_names: tuple[str, ...]  # of the recordings and controllers
+    units: tuple[str, ...]
+    options: ExcitationOptions
+    limits: MotionLimits  # of the motion
+    excitation: Excitation
+    deviation: dict[str, Floats]
+    noise: Floats  # (n,) N m, of the efforts
+    noise_source: str
+    greatest: Floats  # (3, n) greatest velocity, acceleration and torque, share of each limit
+    travel: Floats  # (n, 2) lowest and highest position
+    notes: tuple[str, ...]
+
+
+def robot_of_description(urdf: Path, root: str = "", tip: str = "") -> Robot:
+    """What there is to know of a robot of which only the description is given."""
+    return Robot(
+        name=urdf.stem,
+        description="",
+        file=urdf,
+        plugin=_RIGID_BODY,
+        urdf=urdf,
+        root=root,
+        tip=tip,
+        effort="auto",
+    )
+
+
+def excite(
+    robot: Robot | Path | str,
+    *,
+    given: Sequence[Path | str] = (),
+    options: ExcitationOptions | None = None,
+    seed: int = 0,
+    progress: Progress = no_progress,
+) -> ExcitationResult:
+    """Search for the motion after which torques of the robot are predicted best.
+
+    robot: as evaluate() takes it, with a description; given: recordings that will be used too.
+    The same arguments give the same motion.
+
+    Raises UserError: SimulationError, RobotError, BagError, EvaluationError.
+    """
+    robot = robot if isinstance(robot, Robot) else load_robot(robot)
+    options = options or ExcitationOptions()
+    if options.payload and given:
+        raise SimulationError(
+            "expected either recordings that are given or a motion for a payload, got both: "
+            "recordings of the arm say nothing of a payload"
+        )
+    if robot.urdf is None:
+        raise SimulationError(
+            f"{robot.file}: names no urdf; a motion needs the robot's description"
+        )
+    simulated = SimulatedRobot.from_urdf(
+        read_description(robot.urdf), robot.root, robot.tip, gravity=robot.gravity or GRAVITY
+    )
+    limits = options.limits(simulated)
+    check_limits(simulated, limits)
+    kind = Unknowns.of_payload if options.payload else Unknowns.of_arm
+    unknowns = kind(simulated, limits)
+    noise_source = "1 % of each effort limit"
+    known: Floats | None = None
+    notes: list[str] = []
+    if given:
+        recordings = [_read(recording, robot, progress) for recording in given]
+        unknowns = _with_noise_of(unknowns, recordings)
+        noise_source = "residuals of the given recordings"
+        known = np.sum([_gram(unknowns, recording) for recording in recordings], axis=0)
+        notes += _resting(simulated, recordings)
+    found = optimise_excitation(
+        simulated, options, seed=seed, noise=unknowns.noise, given=known, progress=progress
+    )
+    stored = None if robot.file == robot.urdf else Wishes.of(robot, simulated.chain).trajectory
+    motions = {} if known is None else {"given": known}
+    base = np.zeros_like(unknowns.scale) if known is None else known
+    if stored is not None:
+        trajectory, _ = read_trajectory(stored, simulated.chain.joint_names)
+        motions["stored"] = base + motion_gram(unknowns, trajectory, options.duration)
+    motions["motion"] = base + found.gram
+    states = unknowns.random_states(_TEST_STATES, seed=2)
+    deviation = {"description": unknowns.deviations(None, states)}
+    deviation |= {name: unknowns.deviations(gram, states) for name, gram in motions.items()}
+    greatest, travel = _use_of_limits(simulated, found, limits)
+    return ExcitationResult(
+        robot=robot,
+        joint_names=robot.joints or simulated.chain.joint_names,
+        units=_units(simulated),
+        options=options,
+        limits=limits,
+        excitation=found,
+        deviation=deviation,
+        noise=unknowns.noise,
+        noise_source=noise_source,
+        greatest=greatest,
+        travel=travel,
+        notes=(*simulated.chain.notes, *notes, *found.notes),
+    )
+
+
+def default_options(**given: object) -> ExcitationOptions:
+    """Options of a motion, for an arm or a payload; those that are None have their defaults."""
+    stated = {name: value for name, value in given.items() if value is not None}
+    if stated.get("payload") and "duration" not in stated:
+        stated["duration"] = PAYLOAD_DURATION
+    return ExcitationOptions(**stated)  # type: ignore[arg-type]
+
+
+def check_output(out: Path, robot: Robot, given: Sequence[Path], *, overwrite: bool) -> None:
+    """Raise OutputError unless the files may be written."""
+    for file in (out, sending_file(out)):
+        check_output_file(file, overwrite=overwrite, inputs=(*given, *robot.files))
+
+
+def sending_file(out: Path) -> Path:
+    """Where the trajectory to send goes: motion_joint_trajectory.yaml beside motion.yaml."""
+    return out.with_name(f"{out.stem}_joint_trajectory.yaml")
+
+
+def write_excitation(
+    result: ExcitationResult,
+    out: Path | str,
+    *,
+    overwrite: bool = False,
+    step: float | None = None,
+) -> None:
+    """Write the motion for `ids simulate` and the message to send, both or none.
+
+    step: s between the message's points; None: at the waypoints. Raises OutputError.
+    """
+    out = Path(out)
+    check_output(out, result.robot, (), overwrite=overwrite)
+    trajectory = result.excitation.trajectory
+    what = "a payload" if result.options.payload else "identification"
+    source = (
+        f"Exciting motion of {result.robot.name} for {what}, made by ids excite: condition number of the "
+        f"base regressor {result.excitation.condition_number:.4g}."
+    )
+    with files_written_whole([out, sending_file(out)]) as (motion, message):
+        write_text(motion, trajectory_text(trajectory, source))
+        write_text(message, message_text(trajectory, result.joint_names, step))
+
+
+def message_text(
+    trajectory: WaypointTrajectory, joint_names: Sequence[str], step: float | None = None
+) -> str:
+    """A trajectory_msgs/JointTrajectory as YAML, as `ros2 topic pub` takes it.
+
+    The first point, where the arm is at rest, comes after LEAD_IN. Points at the waypoints are
+    enough for a controller that joins points by polynomials of the fifth order.
+    """
+    time = trajectory.times
+    if step is not None:
+        time = np.linspace(0.0, trajectory.duration, 1 + int(np.ceil(trajectory.duration / step)))
+    lines = ["header: {stamp: {sec: 0, nanosec: 0}, frame_id: ''}"]
+    lines += [f"joint_names: [{', '.join(joint_names)}]", "points:"]
+    for t, *state in zip(time, *trajectory.at(time), strict=True):
+        stamp = round((LEAD_IN + t) * 1e9)
+        lines += [
+            f"{'-' if key == 'positions' else ' '} {key}: [{', '.join(f'{v:.9g}' for v in values)}]"
+            for key, values in zip(("positions", "velocities", "accelerations"), state, strict=True)
+        ]
+        sec, nanosec = divmod(stamp, 10**9)
+        lines.append(f"  time_from_start: {{sec: {sec}, nanosec: {nanosec}}}")
+    return "\n".join(lines) + "\n"
+
+
+def _read(recording: Path | str, robot: Robot, progress: Progress) -> Evaluation:
+    """Samples of a recording that count. Raises UserError."""
+    found = evaluate(recording, robot, progress=progress)
+    if not found.samples.kept.any():
+        raise EvaluationError(f"{recording}: expected samples of a motion, got none that counts")
+    return found
+
+
+def _samples(recording: Evaluation) -> tuple[list[Floats], float]:
+    """q, qd, qdd, measured (N, n), and the time between them [s]."""
+    stride = max(1, round(_GIVEN_STEP / recording.samples.period))
+    arrays = (recording.log.q, recording.log.qd, recording.qdd, recording.measured)
+    whole = np.all([np.isfinite(array).all(axis=1) for array in arrays], axis=0)
+    chosen = np.flatnonzero(recording.samples.kept & whole)[::stride]
+    return [array[chosen] for array in arrays], stride * recording.samples.period
+
+
+def _gram(unknowns: Unknowns, recording: Evaluation) -> Floats:
+    (q, qd, qdd, _), period = _samples(recording)
+    return unknowns.gram(q, qd, qdd, period)
+
+
+def _with_noise_of(unknowns: Unknowns, recordings: Sequence[Evaluation]) -> Unknowns:
+    """The noise that the given efforts have: what the best fitting model leaves."""
+    for _ in range(_REWEIGHTED):
+        gram = np.zeros_like(unknowns.scale)
+        right = np.zeros(len(gram))
+        parts = []
+        for recording in recordings:
+            (q, qd, qdd, measured), period = _samples(recording)
+            Z, computed = unknowns.rows_and_torques(q, qd, qdd)
+            if recording.effort.meaning == "torque_without_gravity":
+                measured = measured + unknowns.gravity(q)
+            difference = measured - computed
+            gram += unknowns.weighted_gram(Z, period)
+            weighted = difference / unknowns.noise**2 * sample_weight(period)
+            right += np.einsum("kjm,kj->m", Z, weighted)
+            parts.append((Z, difference))
+        change = unknowns.covariance(gram) @ right
+        residual = np.concatenate([difference - Z @ change for Z, difference in parts])
+        noise = np.sqrt(np.mean(residual**2, axis=0))
+        unknowns = replace(unknowns, noise=np.maximum(noise, 1e-4 * unknowns.limits.effort))
+    return unknowns
+
+
+def _resting(robot: SimulatedRobot, recordings: Sequence[Evaluation]) -> list[str]:
+    """Joints that the given recordings hardly move."""
+    notes = []
+    lower, upper = robot.chain.lower, robot.chain.upper
+    for j, joint in enumerate(robot.chain.joint_names):
+        q = np.concatenate([recording.log.q[:, j] for recording in recordings])
+        travel, room = float(np.ptp(q)), min(float(upper[j] - lower[j]), 2.0 * np.pi)
+        if travel < _HARDLY * room:
+            which = counted(len(recordings), "given recording")
+            notes.append(f"{joint} moves by {travel:.3g} of {room:.3g} in the {which}")
+    return notes
+
+
+def _use_of_limits(
+    robot: SimulatedRobot, found: Excitation, limits: MotionLimits
+) -> tuple[Floats, Floats]:
+    time = np.linspace(0.0, found.trajectory.duration, 2001)
+    q, qd, qdd = found.trajectory.at(time)
+    tau = found.unknowns.rows_and_torques(q, qd, qdd)[1]
+    shares = [
+        np.abs(values).max(axis=0) / limit
+        for values, limit in (
+            (qd, limits.velocity),
+            (qdd, limits.acceleration),
+            (tau, limits.effort),
+        )
+    ]
+    return np.array(shares), np.column_stack([q.min(axis=0), q.max(axis=0)])
+
+
+def _units(robot: SimulatedRobot) -> tuple[str, ...]:
+    import mujoco
+
+    types = [robot.model.joint(name).type[0] for name in robot.chain.joint_names]
+    return tuple("N m" if kind == mujoco.mjtJoint.mjJNT_HINGE else "N" for kind in types)

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids excite`: the motion to record for identification."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.verbs.common import positive_number, progress_bar, share, whole_number
+from inverse_dynamics.verbs.options import add_gravity, add_verb
+
+if TYPE_CHECKING:
+    from inverse_dynamics.results.excitations import ExcitationResult
+
+_EPILOG = """\
+examples:
+  ids excite --robot ur10_simulated --out motion.yaml
+      20 s within 80 % of the limits of the URDF; then, as a rehearsal:
+      ids simulate --robot ur10_simulated --trajectory motion.yaml --out rehearsal
+
+  ids excite --urdf arm.urdf --root base --tip flange --duration 30 --share 0.5 --out motion.yaml
+      half of the limits, longer: the table says what that costs
+
+  ids excite --robot my_robot.yaml --given recording --out missing.yaml
+      a motion that tells what the recording doesn't
+
+  ids excite --robot my_robot.yaml --payload --out weigh.yaml
+      8 s of the last three joints, for a body at the tip whose mass isn't known
+
+results, written together or not at all; Ctrl-C leaves nothing:
+  motion.yaml                    the motion, for `ids simulate --trajectory`
+  motion_joint_trajectory.yaml   trajectory_msgs/JointTrajectory, whose first point is the start pose,
+                                 3 s after the start: bring the arm there first, the way isn't checked
+"""
+
+
+def add_parser(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+) -> argparse.ArgumentParser:
+    """Declare the verb."""
+    parser = add_verb(
+        subparsers,
+        "excite",
+        summary="find the motion to record for identification",
+        description=(
+            "Find the motion after which the torques of a robot can be predicted best: within the "
+            "limits, clear of the robot itself and of the table, with slow reversals for friction."
+        ),
+        epilog=_EPILOG,
+    )
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument(
+        "--robot",
+        metavar="NAME|FILE",
+        help="run configuration: a name that `ids robots` lists, or a YAML file",
+    )
+    which.add_argument(
+        "--urdf", metavar="FILE", type=Path, help="robot description, in place of --robot"
+    )
+    parser.add_argument("--root", metavar="LINK", help="first link of the chain")
+    parser.add_argument("--tip", metavar="LINK", help="last link of the chain")
+    add_gravity(parser)
+    parser.add_argument("--out", metavar="FILE", type=Path, required=True, help="the motion (YAML)")
+    parser.add_argument("--overwrite", action="store_true", help="replace older files")
+    parser.add_argument(
+        "--given",
+        metavar="RECORDING",
+        type=Path,
+        nargs="+",
+        default=[],
+        help="recordings that will be used too: the motion is for what they don't tell",
+    )
+    parser.add_argument(
+        "--payload", action="store_true", help="for the ten parameters of a body at the tip only"
+    )
+    parser.add_argument(
+        "--seed", type=whole_number, default=0, help="the same seed gives the same motion"
+    )
+    _add_limits(parser)
+    return parser
+
+
+def _add_limits(parser: argparse.ArgumentParser) -> None:
+    limits = parser.add_argument_group("limits")
+    limits.add_argument(
+        "--duration",
+        metavar="S",
+        type=positive_number,
+        help="of the motion (default: 20; of one for a payload: 8)",
+    )
+    limits.add_argument(
+        "--share",
+        metavar="P",
+        type=share,
+        help="part of the limits of position, velocity, acceleration and effort (default: 0.8)",
+    )
+    limits.add_argument(
+        "--full-speed-in",
+        metavar="S",
+        type=positive_number,
+        help="shortest time to the velocity limit: it limits the acceleration (default: 0.5)",
+    )
+    limits.add_argument(
+        "--clearance",
+        metavar="M",
+        type=positive_number,
+        help="distance to the arm itself and to the table (default: 0.01)",
+    )
+    limits.add_argument(
+        "--no-table",
+        dest="table",
+        action="store_false",
+        help="the arm may reach below its base",
+    )
+    limits.add_argument(
+        "--step",
+        metavar="S",
+        type=positive_number,
+        help="time between points of the JointTrajectory (default: its waypoints, about 0.5 s apart, "
+        "which controllers join by polynomials of the fifth order)",
+    )
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.results.excitations import (
+        check_output,
+        default_options,
+        excite,
+        robot_of_description,
+        write_excitation,
+    )
+    from inverse_dynamics.robot.robots import load_robot, with_changes
+
+    robot = (
+        load_robot(arguments.robot)
+        if arguments.robot is not None
+        else robot_of_description(arguments.urdf)
+    )
+    robot = with_changes(robot, root=arguments.root, tip=arguments.tip, gravity=arguments.gravity)
+    check_output(arguments.out, robot, arguments.given, overwrite=arguments.overwrite)
+    options = default_options(
+        duration=arguments.duration,
+        share=arguments.share,
+        time_to_full_speed=arguments.full_speed_in,
+        clearance=arguments.clearance,
+        table=arguments.table,
+        payload=arguments.payload,
+    )
+    with progress_bar() as progress:
+        result = excite(
+            robot, given=arguments.given, options=options, seed=arguments.seed, progress=progress
+        )
+    write_excitation(result, arguments.out, overwrite=arguments.overwrite, step=arguments.step)
+    _print(result, arguments.out)
+
+
+def _print(result: ExcitationResult, out: Path) -> None:
+    from inverse_dynamics.results.excitations import sending_file
+    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.tables import excitation_table
+
+    console = Screen()
+    found = result.excitation
+    console.print(result.robot.description or result.robot.name, style="bold")
+    for note in result.notes:
+        console.print(f"note        {note}")
+    console.print(
+        f"motion      {found.trajectory.duration:g} s, condition number of the base regressor "
+        f"{found.condition_number:.1f}"
+    )
+    console.print(f"noise       {result.noise_source}")
+    console.print(excitation_table(result))
+    console.print(f"written     {out}, {sending_file(out)}")
