@@ -318,6 +318,7 @@ std::vector<LinkPrior> priorsOf(const Chain& description, const LinkFloor& floor
 
 std::vector<LinkParameters> linksOf(const std::vector<LinkPrior>& priors) {
   std::vector<LinkParameters> links;
+  links.reserve(priors.size());
   for (const LinkPrior& prior : priors) links.push_back(prior.link);
   return links;
 }

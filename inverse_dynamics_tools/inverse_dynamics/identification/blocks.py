@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 _FEWEST = 20  # samples that a block can be differentiated with
 
+_ARRAYS = ("time", "instants", "used", "q", "qd", "qdd", "tau", "counts")  # of a block
+
 
 @dataclass(frozen=True)
 class Block:
@@ -34,6 +36,9 @@ class Block:
     qdd: Floats  # from this block's samples alone
     tau: Floats  # measured
     counts: Mask  # (M,) samples to be fitted to: no repeats, no start transient
+
+    def __len__(self) -> int:
+        return len(self.time)
 
     def later(self, delay: float) -> Block:
         """The same torques with the states of `delay` [s] before: what they answer to.
@@ -50,11 +55,14 @@ class Block:
     def parts(self, count: int) -> list[Block]:
         """The block in so many parts, with its accelerations."""
         edges = np.linspace(0, len(self.time), count + 1).round().astype(int)
-        arrays = ("time", "instants", "used", "q", "qd", "qdd", "tau", "counts")
         return [
-            replace(self, **{name: getattr(self, name)[first:after] for name in arrays})
+            replace(self, **{name: getattr(self, name)[first:after] for name in _ARRAYS})
             for first, after in pairwise(edges)
         ]
+
+    def thinned(self, step: int) -> Block:
+        """Each sample whose number is a multiple of step, with its acceleration."""
+        return replace(self, **{name: getattr(self, name)[::step] for name in _ARRAYS})
 
     @property
     def fitted(self) -> _core.Block:

@@ -28,6 +28,8 @@ STRENGTHS = (1000.0, 100.0, 10.0)
 _PASSES = 3  # over the samples, from a fit to nearly the same ones
 _BAND = 0.95
 _FOLDS = 8  # parts of blocks that are left out in turn, about
+_MOST_SAMPLES = 15_000  # that choices are made with; neighbours' errors are alike
+_DELAY_STEP = 0.008  # s, at least
 _DELAY_LAW = "load"  # what delays are looked for with
 
 
@@ -62,10 +64,15 @@ def errors_of(fitter: ArmFitter, fit: ArmFit, block: Block) -> Floats:
 
 
 def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
-    """The fit to all blocks, chosen by leaving out each part in turn."""
-    delay = _delay(fitter, blocks)
-    as_recorded = _parts(blocks)
-    blocks = [block.later(delay) for block in blocks]
+    """The fit to all blocks, chosen by leaving out each part in turn.
+
+    Of long recordings, choices take samples at equal distances; the fit takes all.
+    """
+    everything = blocks
+    step = 1 + sum(map(len, blocks)) // _MOST_SAMPLES
+    delay = _delay(fitter, blocks, step)
+    as_recorded = _parts([block.thinned(step) for block in blocks])
+    blocks = _later(blocks, delay, step)
     parts = _parts(blocks)
     whole: dict[str, ArmFit] = {}
     alternatives: list[_Alternative] = []
@@ -78,7 +85,7 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
     noise = whole["step"].noise
     best, choices = _simplest(alternatives, noise, delay)
     fit = fitter.fit(
-        together(blocks),
+        together(_later(everything, delay, 1)),
         law=best.law,
         prior_strength=best.prior_strength,
         start=whole[best.law],
@@ -93,17 +100,22 @@ def _parts(blocks: Sequence[Block]) -> list[Block]:
     return [part for block in blocks for part in block.parts(each)]
 
 
-def _delay(fitter: ArmFitter, blocks: Sequence[Block]) -> float:
+def _later(blocks: Sequence[Block], delay: float, step: int) -> list[Block]:
+    """Blocks with the delay made up for, thinned."""
+    return [block.later(delay).thinned(step) for block in blocks]
+
+
+def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> float:
     """By how much the torques are later than the states [s]; zero where that predicts as well.
 
     The vertex of the parabola through three costs, gone to twice.
     """
-    step, center = _period(blocks), 0.0
+    step, center = max(_period(blocks), _DELAY_STEP), 0.0
     start = None
     for _ in range(2):
         costs = []
         for delay in (center - step, center, center + step):
-            later = together([block.later(delay) for block in blocks])
+            later = together(_later(blocks, delay, thinned))
             start = fitter.fit(
                 later, law=_DELAY_LAW, prior_strength=STRENGTHS[1], most_passes=_PASSES, start=start
             )
@@ -112,9 +124,9 @@ def _delay(fitter: ArmFitter, blocks: Sequence[Block]) -> float:
         curvature = costs[0] - 2 * costs[1] + costs[2]
         if curvature <= 0:
             return 0.0
-        center += step * float(np.clip(0.5 * (costs[0] - costs[2]) / curvature, -2, 2))
+        center += step * float(np.clip(0.5 * (costs[0] - costs[2]) / curvature, -3, 3))
         step *= 0.5
-    if start is None or not _predicts_better(fitter, blocks, center, start):
+    if start is None or not _predicts_better(fitter, blocks, center, thinned, start):
         return 0.0
     return center
 
@@ -125,12 +137,12 @@ def _period(blocks: Sequence[Block]) -> float:
 
 
 def _predicts_better(
-    fitter: ArmFitter, blocks: Sequence[Block], delay: float, start: ArmFit
+    fitter: ArmFitter, blocks: Sequence[Block], delay: float, thinned: int, start: ArmFit
 ) -> bool:
     """Whether parts that were left out are predicted better with a delay, by a standard error."""
     scores = []
     for by in (0.0, delay):
-        parts = _parts([block.later(by) for block in blocks])
+        parts = _parts(_later(blocks, by, thinned))
         tried = _left_out(fitter, parts, parts, _DELAY_LAW, [STRENGTHS[1]], start)[0]
         scores.append(tried.scores(start.noise))
     gain = scores[0] - scores[1]

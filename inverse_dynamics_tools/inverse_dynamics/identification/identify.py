@@ -46,6 +46,10 @@ BLOCKS = 5
 _FEWEST_BLOCKS = 3
 _SHORTEST_BLOCK = 2.5  # s; accelerations at the ends of a block are poor
 _SHORTEST = 5.0  # s
+_LITTLE_MOTION = 0.1  # rad or m
+_FEW_SAMPLES = 20
+_MOST_SHIFT = 0.1  # of the greatest velocity: arm_fit.hpp
+_BOUND = 0.99
 
 
 @checked
@@ -218,7 +222,10 @@ def _result(
         choices=chosen.choices,
         intervals=intervals(known, model),
         prior_decided=prior_decided(known, fitter.prior, links),
-        findings=_findings(fitter, links, held, cut),
+        findings=(
+            *_findings(fitter, links, held),
+            *_motion_findings(fitter, chosen, later, independent),
+        ),
         notes=tuple(note for e in evaluations for note in e.notes),
         seconds={**seconds, "intervals": time.perf_counter() - begin},
     )
@@ -256,7 +263,7 @@ def _held_out_errors(
 
 
 def _findings(
-    fitter: ArmFitter, links: Sequence[str], held: dict[str, Floats], cut: Sequence[Block]
+    fitter: ArmFitter, links: Sequence[str], held: dict[str, Floats]
 ) -> tuple[Finding, ...]:
     found = [
         Finding("floor", f"link {link}: the description can't be meant: the prior has {text}", link)
@@ -274,6 +281,38 @@ def _findings(
             )
         )
     return tuple(found)
+
+
+def _motion_findings(
+    fitter: ArmFitter, chosen: Chosen, blocks: Sequence[Block], independent: Floats
+) -> list[Finding]:
+    """What the motion didn't show, and when the torques were recorded."""
+    found = []
+    if chosen.delay:
+        found.append(
+            Finding(
+                "delay",
+                f"recorded efforts are {1e3 * chosen.delay:.1f} ms later than the states: fits make up "
+                "for it, held-out errors and bands don't, as solvers don't",
+            )
+        )
+    q = np.concatenate([block.q for block in blocks])
+    qd = np.concatenate([block.qd for block in blocks])
+    for j, joint in enumerate(fitter.joint_names):
+        moved, fastest = float(np.ptp(q[:, j])), float(np.abs(qd[:, j]).max())
+        if moved < _LITTLE_MOTION:
+            text = (
+                f"{joint} moves by {moved:.2g} only: its friction and what it turns are the prior's"
+            )
+            found.append(Finding("motion", text, joint))
+        if independent[j] < _FEW_SAMPLES:
+            text = f"{joint}: errors are worth {independent[j]:.0f} independent samples: record for longer"
+            found.append(Finding("samples", text, joint))
+        shift = abs(chosen.fit.friction[j]["shift"])
+        if shift >= _BOUND * _MOST_SHIFT * fastest:
+            text = f"{joint}: the step of friction is at {shift:.3g}, as far from zero as allowed"
+            found.append(Finding("range", text, joint))
+    return found
 
 
 def _links(description: str, joints: Sequence[str]) -> tuple[str, ...]:
