@@ -40,6 +40,7 @@ VERBS = (
     "compare",
     "torques",
     "contact",
+    "identify",
     "payload",
     "report",
     "video",

@@ -29,6 +29,7 @@ from inverse_dynamics.evaluation.accelerations import (
 from inverse_dynamics.evaluation.diagnosed import diagnosis_of
 from inverse_dynamics.evaluation.diagnosis import Diagnosis
 from inverse_dynamics.evaluation.effort import Effort, effort_of
+from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.series import Recorded, SeriesInMemory
 from inverse_dynamics.robot.descriptions import joint_units, read_description
 from inverse_dynamics.robot.robots import Robot, load_robot, with_changes
@@ -186,6 +187,9 @@ def evaluate(
     notes = description_notes(robot, "drawn") if urdf is not None else ()
     notes = (*window.notes, *notes)
     result = replace(result, notes=(*notes, *result.notes), seconds={**result.seconds, **seconds})
+    states = (result.log.q, result.log.qd, result.qdd)
+    outside = outside_of_seen(arm.solver.seen, states, arm.joint_names, arm.units)
+    result = replace(result, notes=(*result.notes, *filter(None, [outside])))
     cause = diagnosis_of(robot, arm.solver, arm.description, result.log, result.qdd, result.effort)
     if cause is None:
         return result

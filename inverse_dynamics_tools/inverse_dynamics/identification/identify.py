@@ -22,6 +22,7 @@ from inverse_dynamics.identification.knowledge import (
     knowledge,
     prior_decided,
 )
+from inverse_dynamics.identification.refusals import check_recordings, check_result
 from inverse_dynamics.identification.result import (
     Finding,
     HeldOutBlock,
@@ -45,7 +46,6 @@ BLOCKS = 5
 
 _FEWEST_BLOCKS = 3
 _SHORTEST_BLOCK = 2.5  # s; accelerations at the ends of a block are poor
-_SHORTEST = 5.0  # s
 _LITTLE_MOTION = 0.1  # rad or m
 _FEW_SAMPLES = 20
 _MOST_SHIFT = 0.1  # of the greatest velocity: arm_fit.hpp
@@ -77,6 +77,7 @@ def identify(
     evaluations = [evaluate(path, robot, progress=progress, **options) for path in recordings]
     robot = evaluations[0].robot if evaluations else robot
     _check(evaluations)
+    check_recordings(evaluations)
     blocks = _block_count(evaluations, blocks)
     fitter = _core.ArmFitter.from_urdf(
         description, root=robot.root, tip=robot.tip, gravity=robot.gravity
@@ -87,7 +88,9 @@ def identify(
     held_out = _held_out(fitter, Baselines(robot, description), cut, progress)
     chosen = choose(fitter, cut)
     seconds["fitting"] = time.perf_counter() - begin
-    return _result(robot, description, evaluations, fitter, cut, held_out, chosen, seconds)
+    found = _result(robot, description, evaluations, fitter, cut, held_out, chosen, seconds)
+    check_result(found)
+    return found
 
 
 def _description(robot: Robot) -> str:
@@ -116,14 +119,8 @@ def _check(evaluations: Sequence[Evaluation]) -> None:
             raise IdentificationError(
                 f"{evaluation.bag}: expected efforts with gravity, as masses show in it alone, got "
                 "torques without; record the motor currents, or torques as the motors have them",
-                "Gravity",
+                "Gravity is taken off the efforts",
             )
-    duration = sum(float(e.time[-1]) for e in evaluations)
-    if duration < _SHORTEST:
-        raise IdentificationError(
-            f"{', '.join(str(e.bag) for e in evaluations)}: expected at least {_SHORTEST:g} s of "
-            f"motion, got {duration:.3g} s; record a longer motion"
-        )
 
 
 def _cut(evaluations: Sequence[Evaluation], blocks: int) -> list[Block]:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from rich import box
 from rich.table import Table
 
+from inverse_dynamics.identification.summary import headings
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -18,6 +20,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.summary import EvaluationSummary
     from inverse_dynamics.evaluation.trajectory_torques import TrajectoryTorques
     from inverse_dynamics.identification.payload import Payload
+    from inverse_dynamics.identification.result import Identification
+    from inverse_dynamics.identification.summary import HeldOutRow
     from inverse_dynamics.results.excitations import ExcitationResult
 
 
@@ -59,6 +63,26 @@ def error_table(evaluation: Evaluation) -> Table:
             "",
             *([figure(_mean([e.rmse for e in evaluation.errors_of_kept]))] if left_out else []),
         )
+    return table
+
+
+def identification_table(found: Identification, rows: Sequence[HeldOutRow], title: str) -> Table:
+    """Errors of held-out data, one row per joint, one column per model."""
+    table = Table(
+        box=box.SIMPLE_HEAD,
+        title=title,
+        title_justify="left",
+        collapse_padding=True,
+    )
+    table.add_column("joint", overflow="fold")
+    table.add_column("unit")
+    for heading in (*headings(found), "in 95 % band"):
+        table.add_column(heading.replace(" ", "\n").replace("95\n%", "95 %"), justify="right")
+    for row in rows:
+        if row.joint == "mean":
+            table.add_section()
+        figures = ("-" if math.isnan(value) else figure(value) for value in row.rmse)
+        table.add_row(row.joint, row.unit, *figures, f"{100 * row.coverage:.1f} %")
     return table
 
 

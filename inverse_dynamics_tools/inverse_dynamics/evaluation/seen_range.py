@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Whether a motion is within the range of the data that its model was identified from."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.base.wording import listed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics.base.arrays import Floats
+
+_BEYOND = 0.05  # of what was seen, that a motion may be beyond it
+_MOST_NAMED = 4
+_NAMES = ("q", "qd", "qdd")
+
+
+def outside_of_seen(
+    seen: Floats | None, motion: Sequence[Floats], joints: Sequence[str], units: Sequence[str]
+) -> str:
+    """A sentence on joints that leave the range of identification; "": none does, or it isn't known.
+
+    seen: (3, n, 2), as Solver.seen. motion: q, qd, qdd, (N, n) each. units: of the joints' torques.
+    """
+    if seen is None:
+        return ""
+    outside = []
+    for name, values, ranges in zip(_NAMES, motion, seen, strict=True):
+        least, greatest = values.min(axis=0), values.max(axis=0)
+        low, high = ranges.T
+        margin = _BEYOND * (high - low)
+        for j in map(int, np.flatnonzero((least < low - margin) | (greatest > high + margin))):
+            unit = ("m" if units[j] == "N" else "rad") + ("", "/s", "/s²")[_NAMES.index(name)]
+            outside.append(
+                f"{joints[j]} {name} {least[j]:.3g} to {greatest[j]:.3g} {unit} "
+                f"(seen {low[j]:.3g} to {high[j]:.3g})"
+            )
+    if not outside:
+        return ""
+    return (
+        "the motion leaves the range that the model was identified in, where its torques and band are "
+        f"extrapolated: {listed(outside, _MOST_NAMED)}"
+    )

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings that no model should be identified from, and models that are no gain: why, and what to do.
+
+check_recordings(evaluations)     # raises IdentificationError
+check_result(found)
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.base.wording import listed
+from inverse_dynamics.evaluation.diagnosis import Diagnosis, pieces_of, residual_cause
+from inverse_dynamics.identification.result import IdentificationError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.identification.result import HeldOutBlock, Identification
+
+LEAST_SECONDS = 5.0
+"""Of motion, of all recordings together: from less, every method is worse than what it starts from."""
+
+LEAST_TRAVEL = 0.1
+"""rad (prismatic: m) between the lowest and the highest position of a joint."""
+
+_IDENTIFIED = ("friction", "payload", "tool")  # what a new model has, unlike the one before
+_MOVING = 0.02  # of a joint's greatest velocity
+_UNEXPLAINED = 0.25  # held-out error as a share of the measured range
+
+
+def check_recordings(evaluations: Sequence[Evaluation]) -> None:
+    """Raise IdentificationError where there is too little motion, or where torques contradict the robot.
+
+    evaluations: by the present model, or by the description. Friction and loads are what
+    identification is for; directions, orders, units, mounts, limits, couplings and drift aren't.
+    """
+    _check_motion(evaluations)
+    for evaluation in evaluations:
+        cause = evaluation.diagnosis
+        if cause is not None and cause.kind not in _IDENTIFIED:
+            raise _refusal(f"{evaluation.bag}", cause)
+
+
+def _refusal(recording: str, cause: Diagnosis) -> IdentificationError:
+    return IdentificationError(f"{recording}: {cause.text}", cause.mistake)
+
+
+def _check_motion(evaluations: Sequence[Evaluation]) -> None:
+    where = ", ".join(str(evaluation.bag) for evaluation in evaluations)
+    seconds = sum(map(_seconds_in_motion, evaluations))
+    if seconds < LEAST_SECONDS:
+        raise IdentificationError(
+            f"{where}: expected at least {LEAST_SECONDS:g} s of motion, got {seconds:.1f} s: from less, every "
+            "method is worse than the model that it starts from; record half a minute in which every "
+            "joint turns round several times (`ids excite` makes such a motion)"
+        )
+    low = np.min([e.log.q.min(axis=0) for e in evaluations], axis=0)
+    travel = np.max([e.log.q.max(axis=0) for e in evaluations], axis=0) - low
+    names = evaluations[0].joint_names
+    still = [joint for joint, way in zip(names, travel, strict=True) if way < LEAST_TRAVEL]
+    if still:
+        raise IdentificationError(
+            f"{where}: {listed(still)}: expected every joint to move by {LEAST_TRAVEL:g} rad or more, got less, "
+            "so that neither friction nor load of the joint show; record a motion in which it moves "
+            "(`ids excite` makes one), or end the chain before it with --root or --tip in a run configuration"
+        )
+
+
+def _seconds_in_motion(evaluation: Evaluation) -> float:
+    """Seconds in which a joint moves."""
+    speed = np.abs(evaluation.log.qd)
+    moving = (speed > _MOVING * np.maximum(speed.max(axis=0), 1e-6)).any(axis=1)
+    step = np.diff(evaluation.time, append=evaluation.time[-1:])
+    return float(step[moving & (step > 0)].sum())
+
+
+def check_result(found: Identification) -> None:
+    """Raise IdentificationError where the model is no gain, or its errors show what no model can fit."""
+    measured = np.concatenate([block.measured for block in found.blocks])
+    share = found.held_out["identified"] / np.maximum(np.ptp(measured, axis=0), 1e-9)
+    if share.mean() > _UNEXPLAINED:
+        raise IdentificationError(
+            f"{_named(found)}: no masses and friction explain the efforts: held-out errors are "
+            f"{100 * share.mean():.0f} % of the measured ranges; is the description that of this robot, "
+            "are its joints in this order, and are efforts torques of the joints?",
+            "Joints in another order",
+        )
+    for recording in dict.fromkeys(block.recording for block in found.blocks):
+        blocks = [block for block in found.blocks if block.recording == recording]
+        if cause := _cause_of_residuals(found, blocks):
+            raise _refusal(recording, cause)
+    start = "present" if "present" in found.held_out else "urdf"
+    if start in found.held_out and found.rmse("identified") >= found.rmse(start):
+        name = {"present": "the present model", "urdf": "the description"}[start]
+        raise IdentificationError(
+            f"{_named(found)}: the identified model is no gain over {name}: {found.rmse('identified'):.3g} "
+            f"against {found.rmse(start):.3g} on data that were held out; stay with {name}, or record a "
+            "longer motion (`ids excite` makes one)"
+        )
+
+
+def _named(found: Identification) -> str:
+    return ", ".join(map(str, found.recordings))
+
+
+def _cause_of_residuals(found: Identification, blocks: Sequence[HeldOutBlock]) -> Diagnosis | None:
+    """What the held-out errors of a recording show: limits, couplings, drift."""
+    ordered = sorted(blocks, key=lambda block: float(block.time[0]))
+    time, q, measured, computed = (
+        np.concatenate(parts)
+        for parts in zip(
+            *((b.time, b.q, b.measured, b.computed["identified"]) for b in ordered), strict=True
+        )
+    )
+    qd = np.gradient(q, np.maximum.accumulate(time + 1e-9 * np.arange(len(time))), axis=0)
+    # pieces of what is computed, in the place of accelerations
+    samples = pieces_of(found.joints, time, q, qd, computed, measured)
+    return None if samples is None else residual_cause(samples, samples.flat(samples.qdd))

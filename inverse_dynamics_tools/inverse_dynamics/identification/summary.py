@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What an identification found, as rows and sentences for the screen and the page."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.identification.result import COLUMNS, LAWS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.identification.result import Choice, Identification
+
+TITLES = {
+    "urdf": "URDF",
+    "present": "present model",
+    "present_refitted": "present, friction refitted",
+    "identified": "identified",
+}
+"""What columns are called."""
+
+
+@dataclass(frozen=True)
+class HeldOutRow:
+    """Held-out errors of a joint, by the order of columns_of()."""
+
+    joint: str
+    unit: str
+    rmse: tuple[float, ...]
+    coverage: float  # share of the samples within the 95 % band
+
+
+def columns_of(found: Identification) -> tuple[str, ...]:
+    """The names of COLUMNS that there are."""
+    return tuple(column for column in COLUMNS if column in found.held_out)
+
+
+def headings(found: Identification) -> tuple[str, ...]:
+    """The titles of columns_of()."""
+    return tuple(TITLES[column] for column in columns_of(found))
+
+
+def held_out_rows(found: Identification) -> list[HeldOutRow]:
+    """One per joint; then, where all have one unit, the mean."""
+    return error_rows(found, found.held_out, found.coverage)
+
+
+def error_rows(
+    found: Identification, errors: Mapping[str, Floats], coverage: Floats
+) -> list[HeldOutRow]:
+    """The same of other errors (n,) by name of COLUMNS; NaN for a column that these haven't."""
+    columns = columns_of(found)
+    figures = np.array(
+        [errors.get(column, np.full(len(found.joints), np.nan)) for column in columns]
+    )
+    rows = [
+        HeldOutRow(joint, unit, tuple(map(float, figures[:, j])), float(coverage[j]))
+        for j, (joint, unit) in enumerate(zip(found.joints, found.units, strict=True))
+    ]
+    if len(set(found.units)) == 1 and len(rows) > 1:
+        means = tuple(map(float, figures.mean(axis=1)))
+        rows.append(HeldOutRow("mean", found.units[0], means, float(coverage.mean())))
+    return rows
+
+
+def choices_told(found: Identification) -> list[tuple[str, str]]:
+    """What was chosen and why: name and sentence."""
+    law, prior = (_best_by(found.choices, name) for name in ("law", "prior_strength"))
+    late = "later" if found.delay >= 0 else "earlier"
+    return [
+        ("friction law", f"{found.law}: {LAWS.get(found.law, found.law)}{_compared(law)}"),
+        (
+            "prior strength",
+            f"{found.prior_strength:g}: how much the description counts{_compared(prior)}",
+        ),
+        ("torque delay", f"{abs(1e3 * found.delay):.1f} ms {late} than positions, of least error"),
+        ("filter", found.filter),
+        ("effort means", found.effort),
+        ("data", f"{found.samples} samples, {found.duration:.1f} s"),
+    ]
+
+
+def _best_by(choices: Iterable[Choice], name: str) -> dict[object, Choice]:
+    """The best alternative of each value that was tried."""
+    best: dict[object, Choice] = {}
+    for choice in choices:
+        value = getattr(choice, name)
+        if value not in best or choice.error < best[value].error or choice.chosen:
+            best[value] = choice
+    return best
+
+
+def _compared(best: dict[object, Choice]) -> str:
+    """Errors of the alternatives."""
+    if len(best) < 2:
+        return ""
+    errors = ", ".join(
+        f"{value:g} {choice.error:.3f}"
+        if isinstance(value, float)
+        else f"{value} {choice.error:.3f}"
+        for value, choice in best.items()
+    )
+    return f"; the simplest within one standard error of the best (error over noise: {errors})"

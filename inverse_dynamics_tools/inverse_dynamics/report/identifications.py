@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An identification as one page: what was chosen, held-out errors, and every block as it was predicted."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.base.wording import counted
+from inverse_dynamics.evaluation.evaluation import joint_errors
+from inverse_dynamics.figures.scene import scene_from_urdf
+from inverse_dynamics.identification.summary import TITLES, choices_told, headings, held_out_rows
+from inverse_dynamics.report.page import (
+    Band,
+    ReportRun,
+    ReportSummary,
+    ReportTable,
+    render_page,
+)
+from inverse_dynamics.robot.descriptions import read_description
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics.identification.result import HeldOutBlock, Identification
+    from inverse_dynamics.identification.summary import HeldOutRow
+
+
+def render_identification(found: Identification, tests: Sequence[ReportTable] = ()) -> str:
+    """The page as text. tests: errors on other recordings. Raises RobotError."""
+    recordings = list(dict.fromkeys(block.recording for block in found.blocks))
+    runs = [_run(found, name, len(recordings) > 1) for name in recordings]
+    return render_page(
+        f"{found.robot.name}: identified model", runs, summary=_summary(found, tests)
+    )
+
+
+def _run(found: Identification, recording: str, several: bool) -> ReportRun:
+    """The blocks of a recording, one after another, each predicted by models that haven't seen it."""
+    blocks = sorted(
+        (block for block in found.blocks if block.recording == recording),
+        key=lambda block: float(block.time[0]),
+    )
+    computed = {
+        column: np.concatenate([block.computed[column] for block in blocks])
+        for column in blocks[0].computed
+    }
+    measured = np.concatenate([block.measured for block in blocks])
+    identified = computed.pop("identified")
+    urdf = found.robot.urdf
+    return ReportRun(
+        title=f"Held-out blocks of {Path(recording).name}" if several else "Held-out blocks",
+        description=f"{counted(len(blocks), 'block')}, each predicted by models fitted to the others. Below, "
+        "errors of the identified model over all samples, those at a start transient too",
+        solver="identified",
+        time=np.concatenate([block.time for block in blocks]),
+        q=np.concatenate([block.q for block in blocks]),
+        measured=measured,
+        computed=identified,
+        table=joint_errors(found.joints, found.units, identified, measured),
+        assumptions=_block_facts(blocks),
+        links=() if urdf is None else scene_from_urdf(read_description(urdf), found.joints),
+        others={TITLES[column]: values for column, values in computed.items()},
+        bands=[Band(float(b.time[0]), float(b.time[-1]), b.band) for b in blocks],
+    )
+
+
+def _block_facts(blocks: Sequence[HeldOutBlock]) -> list[tuple[str, str]]:
+    """What was chosen for each block on the others."""
+    return [
+        (
+            f"{block.time[0]:.1f} to {block.time[-1]:.1f} s",
+            f"law {block.law}, prior strength {block.prior_strength:g}, delay {1e3 * block.delay:.1f} ms",
+        )
+        for block in blocks
+    ]
+
+
+def _summary(found: Identification, tests: Sequence[ReportTable]) -> ReportSummary:
+    note = (
+        "Root mean square of computed - measured over blocks that no model of the row was fitted to; nothing was "
+        "chosen on them either."
+    )
+    known = (_friction(found), _intervals(found), _prior(found))
+    return ReportSummary(
+        table=error_table(found, held_out_rows(found), "Held-out error", note),
+        facts_title="What was chosen, and why",
+        facts=choices_told(found),
+        notes=[*(finding.text for finding in found.findings), *found.notes],
+        more=[*tests, *(table for table in known if table.rows)],
+    )
+
+
+def error_table(
+    found: Identification, rows: Sequence[HeldOutRow], title: str, note: str
+) -> ReportTable:
+    """Errors of each joint by each model."""
+    return ReportTable(
+        title=title,
+        headings=("joint", "unit", *headings(found), "in 95 % band [%]"),
+        rows=[(row.joint, row.unit, *row.rmse, 100 * row.coverage) for row in rows],
+        note=note,
+        total=rows[-1].joint == "mean",
+    )
+
+
+def _friction(found: Identification) -> ReportTable:
+    keys = list(dict.fromkeys(key for figures in found.model.friction for key in figures))
+    keys = [key for key in keys if key != "law"]
+    return ReportTable(
+        title="Friction, rotor inertia and 95 % band of each joint",
+        headings=("joint", *keys, "rotor inertia", "band"),
+        rows=[
+            (
+                joint,
+                *(figures.get(key, math.nan) for key in keys),
+                float(found.model.rotor_inertia[j]),
+                float(found.model.torque_deviation[j]),
+            )
+            for j, (joint, figures) in enumerate(
+                zip(found.joints, found.model.friction, strict=True)
+            )
+        ],
+        note="fv qd + fo + (fc + fl |g(q)| + fs exp(-(qd / vs)²)) tanh((qd + shift) / width); SI units. "
+        "fo and shift may do work, and differ between recordings.",
+    )
+
+
+def _intervals(found: Identification) -> ReportTable:
+    return ReportTable(
+        title="What the data tell, with 95 % intervals",
+        headings=("number", "value", "±", "unit"),
+        rows=[(i.name, i.value, i.half_width, i.unit) for i in found.intervals],
+        note="Intervals count how long residuals stay alike, not each sample for itself.",
+    )
+
+
+def _prior(found: Identification) -> ReportTable:
+    return ReportTable(
+        title="What the prior decided",
+        headings=("link", "number", "prior", "value", "from the data [%]"),
+        rows=[(p.link, p.parameter, p.prior, p.value, 100 * p.share) for p in found.prior_decided],
+        note="These numbers are the description's more than the data's: torques don't tell them. "
+        "`ids excite --given RECORDING` looks for a motion that tells more.",
+    )

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Errors of an identified model on a recording that nothing was fitted to or chosen on.
+
+test = hold_out(found, Path("wednesday"))
+print(test.rmse["identified"])
+"""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.results.model_files import model_file_text
+from inverse_dynamics.robot.robots import with_changes
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.identification.result import Identification
+
+_RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
+
+
+@dataclass(frozen=True)
+class HoldOut:
+    """Errors on a recording, over the samples that count: RMSE (n,) by name of COLUMNS, and coverage (n,)."""
+
+    recording: Path
+    rmse: Mapping[str, Floats]
+    coverage: Floats  # share of the samples within the model's 95 % band
+    notes: tuple[str, ...]  # of its evaluation with the identified model
+
+
+def hold_out(
+    found: Identification,
+    recording: Path | str,
+    *,
+    progress: Progress = no_progress,
+    **options: Any,
+) -> HoldOut:
+    """Evaluate the identified model, the description, and the present model if there is one.
+
+    options: those of evaluate(). Raises UserError.
+    """
+    recording = Path(recording)
+    described = with_changes(found.robot, plugin=_RIGID_BODY, urdf=found.robot.urdf, friction=False)
+    robots = {"urdf": described}
+    if "present" in found.held_out:
+        robots["present"] = found.robot
+    with tempfile.TemporaryDirectory() as directory:
+        model = Path(directory) / "model.yaml"
+        model.write_text(model_file_text(found, "identified"), encoding="utf-8")
+        robots["identified"] = replace(
+            found.robot, plugin=_RIGID_BODY, model=model, friction=True, parameters={}
+        )
+        results = {
+            column: evaluate(recording, robot, progress=progress, **options)
+            for column, robot in robots.items()
+        }
+    errors = {column: _errors(result) for column, result in results.items()}
+    return HoldOut(
+        recording=recording,
+        rmse={column: np.sqrt((error**2).mean(axis=0)) for column, error in errors.items()},
+        coverage=(np.abs(errors["identified"]) <= found.model.torque_deviation).mean(axis=0),
+        notes=results["identified"].notes,
+    )
+
+
+def _errors(result: Evaluation) -> Floats:
+    """(M, n) of the samples that count."""
+    kept = result.samples.kept
+    return np.asarray((result.computed - result.measured)[kept])

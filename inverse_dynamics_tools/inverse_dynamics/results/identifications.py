@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An identification as files: a robot that every verb takes, and what it is worth.
+
+arm.yaml         run configuration: `ids evaluate RECORDING --robot arm.yaml`
+arm_model.yaml   the model: rigid bodies, friction, 95 % band and range of the data (docs/model_file.md)
+arm.json         all figures
+arm.html         the report's page
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import asdict, is_dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from inverse_dynamics import _core
+from inverse_dynamics.base.files import check_output_file, files_written_whole, write_text
+from inverse_dynamics.errors import OutputError
+from inverse_dynamics.identification.summary import error_rows
+from inverse_dynamics.report.identifications import error_table, render_identification
+from inverse_dynamics.results.model_files import model_file_text
+from inverse_dynamics.results.yaml_text import yaml_list, yaml_text
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from inverse_dynamics.identification.result import Identification
+    from inverse_dynamics.report.page import ReportTable
+    from inverse_dynamics.results.hold_out import HoldOut
+
+SCHEMA = 1
+PLUGIN = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
+
+
+class IdentificationFiles(NamedTuple):
+    """The files of an identification."""
+
+    robot: Path
+    model: Path
+    figures: Path
+    page: Path
+
+
+def identification_files(out: Path | str) -> IdentificationFiles:
+    """The files that belong to the run configuration `out`. Raises OutputError."""
+    out = Path(out)
+    if out.suffix not in (".yaml", ".yml"):
+        raise OutputError(
+            f"{out}: expected a name ending in .yaml, as --robot takes it; name another file with --out"
+        )
+    return IdentificationFiles(
+        out,
+        out.with_name(f"{out.stem}_model{out.suffix}"),
+        out.with_suffix(".json"),
+        out.with_suffix(".html"),
+    )
+
+
+def check_identification_files(
+    out: Path | str,
+    *,
+    overwrite: bool = False,
+    more: Mapping[str, Path] | None = None,
+    inputs: tuple[Path | None, ...] = (),
+) -> IdentificationFiles:
+    """The files, which may be written. more: others, by option. Raises OutputError."""
+    files = identification_files(out)
+    named = [("--out", file) for file in files] + list((more or {}).items())
+    for option, file in named:
+        check_output_file(file, overwrite=overwrite, option=option, inputs=inputs)
+    places = [file.absolute() for _, file in named]
+    for (option, file), place in reversed(list(zip(named, places, strict=True))):
+        if places.count(place) > 1:
+            raise OutputError(
+                f"{file}: expected a file of its own for {option}, got one of the other results; "
+                "name another file"
+            )
+    return files
+
+
+def write_identification(
+    found: Identification,
+    out: Path | str,
+    *,
+    overwrite: bool = False,
+    more: Mapping[Path, str] | None = None,
+    tests: Sequence[HoldOut] = (),
+) -> IdentificationFiles:
+    """Write all files, or none of them. more: texts of others, by file. Raises OutputError."""
+    more = more or {}
+    inputs = (*found.recordings, *found.robot.files)
+    options = {f"{file}": file for file in more}
+    files = check_identification_files(out, overwrite=overwrite, more=options, inputs=inputs)
+    name = files.robot.stem
+    texts = {
+        files.model: model_file_text(found, f"{name}_model"),
+        files.figures: _figures(found, tests),
+        files.page: render_identification(found, [_table_of(found, test) for test in tests]),
+        **more,
+        files.robot: _run_configuration(found, files, name),  # last: it names the model
+    }
+    with files_written_whole(list(texts)) as fresh:
+        for file, text in zip(fresh, texts.values(), strict=True):
+            write_text(file, text)
+        _check_model(dict(zip(texts, fresh, strict=True))[files.model])
+    return files
+
+
+def _check_model(file: Path) -> None:
+    """The solver's own reader computes the rows of checks. Raises SolverError."""
+    _core.Solver(PLUGIN, model=str(file))
+
+
+def _run_configuration(found: Identification, files: IdentificationFiles, name: str) -> str:
+    robot = found.robot
+    lines = [
+        "# SPDX-License-Identifier: Apache-2.0",
+        "#",
+        "# Run configuration, written by `ids identify`; what each key means: docs/add_a_robot.md.",
+        "#",
+        f"#     ids evaluate RECORDING --robot {files.robot.name}",
+        "",
+        "schema: 1",
+        f"name: {yaml_text(name)}",
+        f"description: {yaml_text(f'{robot.name}, identified from {_names(found)}')}",
+        f"plugin: {PLUGIN}",
+        f"model: {yaml_text(files.model.name)}",
+        f"urdf: {yaml_text(_reference(robot.urdf, files.robot.parent))}  # drawn; the model counts",
+    ]
+    lines += [
+        f"{key}: {yaml_text(value)}"
+        for key, value in (("root", robot.root), ("tip", robot.tip))
+        if value
+    ]
+    if robot.gravity:
+        lines.append(f"gravity: {yaml_list(robot.gravity)}")
+    lines.append(f"topic: {yaml_text(robot.topic)}")
+    if robot.joints:
+        lines.append(f"joints: [{', '.join(map(yaml_text, robot.joints))}]")
+    lines.append(f"effort: {robot.effort}")
+    gains = found.model.drive_gains
+    if gains is not None or robot.drive_gains:
+        lines.append(f"drive_gains: {yaml_list(robot.drive_gains if gains is None else gains)}")
+    lines.append(f"accelerations: {_accelerations(found)}")
+    source = f"identified from {_names(found)}: {files.page.name}, {files.figures.name}"
+    lines.append(f"source: {yaml_text(source)}")
+    return "\n".join(lines) + "\n"
+
+
+def _accelerations(found: Identification) -> str:
+    robot = found.robot
+    cutoff = f", cutoff: {robot.cutoff!r}" if robot.cutoff is not None else ""
+    return f"{{method: {robot.accelerations}{cutoff}}}"
+
+
+def _names(found: Identification) -> str:
+    return ", ".join(path.name for path in found.recordings)
+
+
+def _reference(urdf: Path | None, directory: Path) -> str:
+    """How a run configuration names a description: by its package, else relative to the configuration."""
+    assert urdf is not None  # the model file's geometry is from it
+    place = urdf.resolve()
+    for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
+        share = (Path(prefix) / "share").resolve()
+        if place.is_relative_to(share):
+            return f"package://{place.relative_to(share)}"
+    return os.path.relpath(place, directory.resolve())
+
+
+def _table_of(found: Identification, test: HoldOut) -> ReportTable:
+    rows = error_rows(found, test.rmse, test.coverage)
+    return error_table(found, rows, f"Error on {test.recording.name}", "; ".join(test.notes))
+
+
+def _figures(found: Identification, tests: Sequence[HoldOut]) -> str:
+    """Everything but the samples."""
+    robot = found.robot
+    data = {
+        "schema": SCHEMA,
+        "robot": robot.name,
+        "plugin": robot.plugin,
+        "urdf": None if robot.urdf is None else str(robot.urdf),
+        **{
+            name: _plain(getattr(found, name))
+            for name in found.__dataclass_fields__
+            if name not in ("robot", "blocks")
+        },
+        "hold_out": [_plain(test) for test in tests],
+        "blocks": [
+            {
+                "recording": block.recording,
+                "from": float(block.time[0]),
+                "to": float(block.time[-1]),
+                "samples": len(block.time),
+                "law": block.law,
+                "prior_strength": block.prior_strength,
+                "delay": block.delay,
+                "band": _plain(block.band),
+                "rmse": {
+                    column: _plain(np.sqrt(np.mean((computed - block.measured) ** 2, axis=0)))
+                    for column, computed in block.computed.items()
+                },
+            }
+            for block in found.blocks
+        ],
+    }
+    return json.dumps(data, indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def _plain(value: Any) -> Any:
+    """As JSON has it; undefined figures are null."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return _plain(asdict(value))
+    if isinstance(value, dict) or hasattr(value, "items"):
+        return {str(key): _plain(entry) for key, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(entry) for entry in value]
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    if isinstance(value, float) and not np.isfinite(value):
+        return None
+    return str(value) if isinstance(value, Path) else value

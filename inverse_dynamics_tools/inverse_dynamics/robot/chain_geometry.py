@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where the joints of a description's chain are: what a model file states as `placements`.
+
+    chain = chain_geometry(Path("ur10.urdf").read_text(), "base_link", solver.joint_names)
+    chain[0].xyz, chain[0].rpy, chain[0].axis
+
+Fixed joints between two movable ones are lumped into the placement of the second. Numbers are those of
+the description, unless fixed joints have to be multiplied.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.base.wording import shown
+from inverse_dynamics.errors import RobotError
+from inverse_dynamics.robot.descriptions import numbers_of, parse_description
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from xml.etree.ElementTree import Element
+
+    from inverse_dynamics.base.arrays import Floats
+
+
+@dataclass(frozen=True)
+class JointGeometry:
+    """A movable joint of a chain: its frame in that of the link above, and its axis in its own."""
+
+    name: str
+    type: str  # revolute, continuous or prismatic
+    link: str  # that it moves
+    xyz: Floats  # (3,) m, in the frame of the parent link of the chain
+    rpy: Floats  # (3,) rad: roll, pitch, yaw about fixed axes
+    axis: Floats  # (3,) of length 1, in the joint's frame
+    limits: Mapping[str, float] = field(default_factory=dict)  # lower, upper, velocity, effort
+
+    @property
+    def pose(self) -> Floats:
+        """(4, 4) of the link's frame in that of the parent link, at q = 0."""
+        return _pose(self.xyz, self.rpy)
+
+    @property
+    def rotation_from_z(self) -> Floats:
+        """R_UE (3, 3): E is the engine's frame of the link, whose z is the axis; U the description's.
+
+        The same turn as in chain_dynamics (joint_frame.cpp), where link parameters are stated in E.
+        """
+        axis = self.axis
+        if axis[2] < 0:
+            flip = np.array([1.0, -1.0, -1.0])
+            return flip[:, None] * _turn_from_z(flip * axis)
+        return _turn_from_z(axis)
+
+
+def chain_geometry(
+    description: str, root: str, joint_names: Sequence[str]
+) -> tuple[JointGeometry, ...]:
+    """The joints of these names, each the next movable one below the one before. Raises RobotError.
+
+    root: the link at which the chain begins; "": the description's root.
+    """
+    robot = parse_description(description)
+    above = {_link_of(joint, "child"): joint for joint in robot.findall("joint")}
+    by_name = {joint.get("name"): joint for joint in above.values()}
+    parent = root or next(iter({_link_of(j, "parent") for j in above.values()} - set(above)), "")
+    chain = []
+    for name in joint_names:
+        joint = by_name.get(name)
+        if joint is None:
+            raise RobotError(f"robot description: expected a joint {shown(name)}, got none")
+        xyz, rpy = _placement(_path(above, parent, joint))
+        parent = _link_of(joint, "child")
+        kind = joint.get("type", "")
+        chain.append(JointGeometry(name, kind, parent, xyz, rpy, _axis(joint), _limits(joint)))
+    return tuple(chain)
+
+
+def roll_pitch_yaw(rotation: Floats) -> Floats:
+    """(3,) rad of a rotation matrix: R = RotZ(yaw) RotY(pitch) RotX(roll)."""
+    cosine = np.hypot(rotation[0, 0], rotation[1, 0])
+    pitch = np.arctan2(-rotation[2, 0], cosine)
+    if cosine < 1e-12:  # only yaw - roll or yaw + roll counts
+        return np.array([np.arctan2(-rotation[1, 2], rotation[1, 1]), pitch, 0.0])
+    roll = np.arctan2(rotation[2, 1], rotation[2, 2])
+    return np.array([roll, pitch, np.arctan2(rotation[1, 0], rotation[0, 0])])
+
+
+def _path(above: Mapping[str, Element], parent: str, joint: Element) -> list[Element]:
+    """Fixed joints from a link to a joint, and that joint."""
+    path = [joint]
+    while (link := _link_of(path[0], "parent")) != parent:
+        step = above.get(link)
+        if step is None or len(path) > len(above):
+            raise RobotError(
+                f"robot description: joint {joint.get('name')}: expected it below link {parent}"
+            )
+        path.insert(0, step)
+    return path
+
+
+def _placement(path: Sequence[Element]) -> tuple[Floats, Floats]:
+    origins = [_origin(joint) for joint in path]
+    if len(origins) == 1:
+        return origins[0]
+    pose = np.linalg.multi_dot([np.eye(4), *(_pose(*origin) for origin in origins)])
+    return pose[:3, 3], roll_pitch_yaw(pose[:3, :3])
+
+
+def _origin(joint: Element) -> tuple[Floats, Floats]:
+    origin = joint.find("origin")
+    xyz, rpy = (_vector(origin, name, (0.0, 0.0, 0.0)) for name in ("xyz", "rpy"))
+    return xyz, rpy
+
+
+def _axis(joint: Element) -> Floats:
+    axis = _vector(joint.find("axis"), "xyz", (1.0, 0.0, 0.0))
+    return axis / np.linalg.norm(axis)
+
+
+def _limits(joint: Element) -> dict[str, float]:
+    """What is stated; of velocity and effort, zero states nothing."""
+    limit = joint.find("limit")
+    if limit is None:
+        return {}
+    names = ["velocity", "effort"]
+    if joint.get("type") != "continuous":
+        names = ["lower", "upper", *names]
+    found = {n: numbers_of(limit, n, 1, RobotError)[0] for n in names if limit.get(n) is not None}
+    return {name: value for name, value in found.items() if name in ("lower", "upper") or value > 0}
+
+
+def _vector(element: Element | None, attribute: str, absent: Sequence[float]) -> Floats:
+    if element is None or element.get(attribute) is None:
+        return np.array(absent)
+    return np.array(numbers_of(element, attribute, 3, RobotError))
+
+
+def _link_of(joint: Element, role: str) -> str:
+    element = joint.find(role)
+    return "" if element is None else element.get("link", "")
+
+
+def _pose(xyz: Floats, rpy: Floats) -> Floats:
+    (cr, cp, cy), (sr, sp, sy) = np.cos(rpy), np.sin(rpy)
+    pose = np.eye(4)
+    pose[:3, :3] = [
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+        [-sp, cp * sr, cp * cr],
+    ]
+    pose[:3, 3] = xyz
+    return pose
+
+
+def _turn_from_z(axis: Floats) -> Floats:
+    """The least turn that takes z to the axis, which isn't below the horizon."""
+    x, y, z = axis
+    cross = np.array([[0, 0, x], [0, 0, y], [-x, -y, 0]], float)  # of z x axis
+    turn: Floats = np.eye(3) + cross + cross @ cross / (1 + z)
+    return turn

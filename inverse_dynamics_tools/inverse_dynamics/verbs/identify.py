@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids identify`: from recordings to a model with friction, and how good it is."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.verbs.common import file_name, number, progress_bar
+from inverse_dynamics.verbs.options import add_verb
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics.identification.result import Identification
+    from inverse_dynamics.results.hold_out import HoldOut
+    from inverse_dynamics.results.identifications import IdentificationFiles
+    from inverse_dynamics.robot.robots import Robot
+
+_EPILOG = """\
+examples:
+  ids identify recording --robot ur10_real --out arm.yaml
+      a model of the arm that was recorded: its description's geometry, masses and friction that fit
+
+  ids evaluate other_recording --robot arm.yaml
+      torques of that model for another motion
+
+  ids identify recording --urdf my_arm.urdf --out arm.yaml
+      no run configuration yet: the description is all that is needed
+
+  ids identify monday tuesday --robot ur10_real --hold-out wednesday --out arm.yaml
+      from two recordings; errors on a third one, which nothing is fitted to or chosen on
+
+What is shown is the error on parts of the recordings that were held out: each of several contiguous
+blocks is predicted by a model fitted to the others, with law, prior, delay and filter chosen on the others.
+A gain counts only against `present, friction refitted`. docs/identification.md tells how, and what to do on the robot.
+
+results, all of them or none:
+  arm.yaml                run configuration: what --robot of every verb takes
+  arm_model.yaml          the model: links, friction, rotor inertia, 95 % band of the torques, range of the data
+  arm.html                page: the robot in motion, measured against predicted torques, what decided what
+  arm.json                all figures
+"""
+
+
+def add_parser(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
+) -> argparse.ArgumentParser:
+    """Declare the verb."""
+    from inverse_dynamics.robot.choices import EFFORT_CHOICES
+
+    parser = add_verb(
+        subparsers,
+        "identify",
+        summary="make a model with friction from recordings of a robot, and tell how good it is",
+        epilog=_EPILOG,
+    )
+    parser.add_argument(
+        "recordings",
+        metavar="RECORDING",
+        type=file_name,
+        nargs="+",
+        help="as `ids evaluate` takes it; several are of one robot with the same load",
+    )
+    parser.add_argument(
+        "--robot",
+        metavar="NAME|FILE",
+        help="run configuration: its URDF is the prior, its model the one to be compared with",
+    )
+    parser.add_argument(
+        "--urdf",
+        metavar="FILE",
+        type=Path,
+        help="robot description, instead of the robot's or alone",
+    )
+    parser.add_argument(
+        "--out",
+        metavar="FILE",
+        type=Path,
+        required=True,
+        help="run configuration to be written, NAME.yaml; beside it NAME_model.yaml, NAME.json, NAME.html",
+    )
+    parser.add_argument(
+        "--hold-out",
+        metavar="RECORDING",
+        type=file_name,
+        action="append",
+        default=[],
+        help="a recording to test the model with, of another day for one; may be given several times",
+    )
+    parser.add_argument(
+        "--urdf-out",
+        metavar="FILE",
+        type=Path,
+        help="also the description with the identified inertia, and friction as far as <dynamics> holds it",
+    )
+    parser.add_argument(
+        "--mjcf-out",
+        metavar="FILE",
+        type=Path,
+        help="also MuJoCo <default> classes of the joints: armature, damping, frictionloss",
+    )
+    parser.add_argument("--overwrite", action="store_true", help="replace older files")
+    parser.add_argument(
+        "--effort-is",
+        metavar="MEANING",
+        choices=tuple(EFFORT_CHOICES),
+        help="what recorded efforts mean. "
+        + "; ".join(f"{name}: {text}" for name, text in EFFORT_CHOICES.items()),
+    )
+    parser.add_argument("--topic", metavar="NAME", help="topic of the joint states")
+    parser.add_argument(
+        "--from",
+        dest="start",
+        metavar="SECONDS",
+        type=number,
+        help="leave out the samples before that time, counted from the first one of each recording",
+    )
+    parser.add_argument(
+        "--to", dest="end", metavar="SECONDS", type=number, help="and those after that time"
+    )
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.identification.identify import identify
+    from inverse_dynamics.results.hold_out import hold_out
+    from inverse_dynamics.results.identifications import (
+        check_identification_files,
+        write_identification,
+    )
+    from inverse_dynamics.results.urdf_export import mjcf_text, urdf_text
+    from inverse_dynamics.verbs.screen import Screen
+
+    robot = _robot(arguments)
+    inputs = (*arguments.recordings, *arguments.hold_out, *robot.files)
+    more = {"--urdf-out": arguments.urdf_out, "--mjcf-out": arguments.mjcf_out}
+    more = {option: file for option, file in more.items() if file is not None}
+    check_identification_files(
+        arguments.out, overwrite=arguments.overwrite, more=more, inputs=inputs
+    )
+    with progress_bar() as progress:
+        found = identify(
+            arguments.recordings,
+            robot,
+            effort_is=arguments.effort_is,
+            topic=arguments.topic,
+            start=arguments.start,
+            end=arguments.end,
+            progress=progress,
+        )
+        options = {"effort_is": arguments.effort_is, "topic": arguments.topic}
+        tests = [
+            hold_out(found, recording, progress=progress, **options)
+            for recording in arguments.hold_out
+        ]
+    texts = {"--urdf-out": urdf_text, "--mjcf-out": mjcf_text}
+    files = write_identification(
+        found,
+        arguments.out,
+        overwrite=arguments.overwrite,
+        more={file: texts[option](found) for option, file in more.items()},
+        tests=tests,
+    )
+    _print(found, files, tests)
+    for file in more.values():
+        Screen().print(f"also           {file}")
+
+
+def _robot(arguments: argparse.Namespace) -> Robot:
+    """The run configuration to start from; of a description alone, one with its name."""
+    from inverse_dynamics.errors import UserError
+    from inverse_dynamics.results.identifications import PLUGIN
+    from inverse_dynamics.robot.robots import Robot, load_robot, with_changes
+
+    if arguments.robot is not None:
+        return with_changes(load_robot(arguments.robot), urdf=arguments.urdf)
+    if arguments.urdf is None:
+        raise UserError(
+            "expected --robot NAME or --urdf FILE, got neither; `ids robots` lists the names"
+        )
+    name = arguments.urdf.name.partition(".")[0]
+    return Robot(name, "", arguments.urdf, PLUGIN, urdf=arguments.urdf, friction=False)
+
+
+def _print(found: Identification, files: IdentificationFiles, tests: Sequence[HoldOut]) -> None:
+    from inverse_dynamics.identification.summary import choices_told, error_rows, held_out_rows
+    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.tables import identification_table
+
+    console = Screen()
+    console.print(found.robot.description or found.robot.name, style="bold")
+    console.print(f"recordings     {', '.join(map(str, found.recordings))}")
+    for name, text in choices_told(found):
+        console.print(f"{name:<14} {text}")
+    for note in found.notes:
+        console.print(f"note           {note}")
+    rows = held_out_rows(found)
+    console.print(identification_table(found, rows, "RMSE on held-out blocks"))
+    for test in tests:
+        rows = error_rows(found, test.rmse, test.coverage)
+        console.print(identification_table(found, rows, f"RMSE on {test.recording}"))
+        for note in test.notes:
+            console.print(f"note           {test.recording}: {note}")
+    for finding in found.findings:
+        console.print(f"finding        {finding.text}")
+    console.print(f"robot          {files.robot}: `ids evaluate RECORDING --robot {files.robot}`")
+    console.print(f"model          {files.model}")
+    console.print(f"page           {files.page}")
+    console.print(f"figures        {files.figures}")

@@ -1,0 +1,279 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The files of an identification: a robot that evaluates as the identification predicts, figures, page."""
+
+from __future__ import annotations
+
+import json
+import re
+import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from identified_arms import arm, engine, identification, simulated_torques
+from test_evaluation import JOINTS, URDF, motion
+
+from inverse_dynamics import Solver, evaluate, write_joint_logs
+from inverse_dynamics.data.joint_log import JointLog
+from inverse_dynamics.errors import OutputError, RobotError, SolverError
+from inverse_dynamics.evaluation.seen_range import outside_of_seen
+from inverse_dynamics.results import identifications
+from inverse_dynamics.results.hold_out import hold_out
+from inverse_dynamics.results.identifications import PLUGIN, write_identification
+from inverse_dynamics.results.model_files import model_file_text, predicted_torques, turned
+from inverse_dynamics.robot.chain_geometry import chain_geometry, roll_pitch_yaw
+
+
+@pytest.fixture(scope="module")
+def found():
+    return identification()
+
+
+@pytest.fixture(scope="module")
+def files(found, tmp_path_factory):
+    return write_identification(found, tmp_path_factory.mktemp("identified") / "arm.yaml")
+
+
+@pytest.fixture
+def states(found):
+    """Random ones within what was seen, (200, n) each."""
+    low, high = np.moveaxis(found.model.seen, 2, 0)
+    shares = np.random.default_rng(5).uniform(size=(200, *low.shape))
+    return np.moveaxis(low + (high - low) * shares, 1, 0)
+
+
+def test_the_model_file_predicts_what_the_identification_does(found, files, states):
+    solver = Solver(PLUGIN, model=str(files.model))
+    assert solver.joint_names == JOINTS
+    expected = predicted_torques(found.model, engine(), *states)
+    np.testing.assert_allclose(solver.torques(*states), expected, rtol=0, atol=1e-10)
+
+
+def test_every_digit_is_in_the_model_file(found, files):
+    text = files.model.read_text()
+    for number in (*found.model.parameters[0], *found.model.rotor_inertia):
+        assert number == 0 or repr(float(number)) in text
+    for figures in found.model.friction:
+        assert all(repr(value) in text for value in figures.values())
+    assert "seen: {q: [" in text
+    assert "torque_deviation: 0.196" in text
+
+
+def test_the_robot_evaluates_with_the_error_of_the_noise(found, files, tmp_path):
+    q, qd, qdd, stamps = motion()
+    log = JointLog(JOINTS, stamps, stamps, q, qd, simulated_torques(q, qd, qdd, seed=1))
+    write_joint_logs(tmp_path / "again", {log.topic: log})
+    result = evaluate(tmp_path / "again", files.robot)
+    assert result.robot.model == files.model
+    assert result.mean_rmse == pytest.approx(found.noise.mean(), rel=0.1)
+    assert evaluate(tmp_path / "again", "ur10_simulated").mean_rmse > 20 * result.mean_rmse
+
+
+def test_parameters_are_in_the_frames_of_the_description():
+    """Centres of mass are where the URDF's text says, wherever the axes of the joints point."""
+    geometry = chain_geometry(URDF.read_text(), "base_link", JOINTS)
+    links = {link.get("name"): link for link in ElementTree.parse(URDF).iter("link")}
+    for row, joint in zip(arm().parameters, geometry, strict=True):
+        origin = links[joint.link].find("inertial/origin").get("xyz")
+        own = turned(row, joint.rotation_from_z)
+        np.testing.assert_allclose(
+            own[1:4] / own[0], [float(x) for x in origin.split()], atol=1e-12
+        )
+
+
+def test_roll_pitch_yaw_gives_the_rotation_back():
+    from inverse_dynamics.robot.chain_geometry import _pose
+
+    random = np.random.default_rng(2)
+    angles = [*random.uniform(-3, 3, size=(50, 3)), [0.3, np.pi / 2, 0.7], [1.0, -np.pi / 2, 2.0]]
+    for rpy in angles:
+        rotation = _pose(np.zeros(3), np.array(rpy))[:3, :3]
+        again = _pose(np.zeros(3), roll_pitch_yaw(rotation))[:3, :3]
+        np.testing.assert_allclose(again, rotation, atol=2e-15)
+
+
+OBLIQUE = """<robot name="oblique">
+<link name="world"/><link name="base"/><link name="a"/><link name="mid"/><link name="b"/><link name="tool"/>
+<joint name="stand" type="fixed"><parent link="world"/><child link="base"/>
+<origin xyz="0.1 0 0.3" rpy="0.2 0 0.4"/></joint>
+<joint name="one" type="continuous"><parent link="base"/><child link="a"/><origin xyz="0 0.2 0.1" rpy="0 0.5 0"/>
+<axis xyz="1 2 -3"/></joint>
+<joint name="bend" type="fixed"><parent link="a"/><child link="mid"/><origin xyz="0 0 0.4" rpy="0.3 -0.2 0.9"/></joint>
+<joint name="two" type="prismatic"><parent link="mid"/><child link="b"/><origin xyz="0.1 0 0"/><axis xyz="0 1 1"/>
+<limit lower="-1" upper="1" velocity="2" effort="0"/></joint>
+<joint name="flange" type="fixed"><parent link="b"/><child link="tool"/><origin xyz="0 0 0.2" rpy="0 1 0"/></joint>
+</robot>"""
+
+
+def inertial(link: str, mass: float) -> str:
+    return (
+        f'<link name="{link}"><inertial><origin xyz="0.1 0.2 -0.1" rpy="0.1 0.2 0.3"/><mass value="{mass}"/>'
+        '<inertia ixx="0.2" ixy="0.01" ixz="0.02" iyy="0.3" iyz="-0.01" izz="0.25"/></inertial></link>'
+    )
+
+
+def test_oblique_axes_and_fixed_joints_are_those_of_the_engine(found, tmp_path):
+    """A model with the description's own figures computes the description's torques, tip and all."""
+    from inverse_dynamics import FastModel
+    from inverse_dynamics.robot.robots import Robot
+
+    text = OBLIQUE
+    for link, mass in (("a", 2.0), ("mid", 0.5), ("b", 1.5), ("tool", 0.3)):
+        text = text.replace(f'<link name="{link}"/>', inertial(link, mass))
+    urdf = tmp_path / "oblique.urdf"
+    urdf.write_text(text)
+    chain = FastModel.from_urdf(text)
+    two = slice(0, 2)
+    model = replace(
+        found.model,
+        parameters=chain.parameters.reshape(2, 10),
+        rotor_inertia=np.array([0.5, 0.0]),
+        friction=found.model.friction[two],
+        torque_deviation=found.model.torque_deviation[two],
+        seen=found.model.seen[:, two],
+    )
+    robot = Robot("oblique", "", urdf, PLUGIN, urdf=urdf, gravity=(1.0, 2.0, -9.0))
+    oblique = replace(
+        found,
+        robot=robot,
+        joints=("one", "two"),
+        units=("N m", "N"),
+        model=model,
+        held_out={"identified": np.zeros(2)},
+    )
+    file = tmp_path / "oblique_model.yaml"
+    file.write_text(model_file_text(oblique, "oblique"))
+    solver = Solver(PLUGIN, model=str(file))
+    described = Solver(PLUGIN, urdf=text, gravity=(1.0, 2.0, -9.0))
+    q = np.random.default_rng(1).uniform(-1, 1, size=(20, 2))
+    np.testing.assert_allclose(solver.gravity_vector(q), described.gravity_vector(q), atol=1e-12)
+    for one, other in zip(solver.tip_pose(q), described.tip_pose(q), strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-12)
+    rotor = np.diag([0.5, 0.0])
+    np.testing.assert_allclose(
+        solver.inertia_matrix(q), described.inertia_matrix(q) + rotor, atol=1e-12
+    )
+    assert "limits: {lower: -1, upper: 1, velocity: 2}" in file.read_text()
+
+
+def test_a_model_that_its_reader_computes_otherwise_leaves_nothing(found, tmp_path, monkeypatch):
+    monkeypatch.setattr(
+        identifications,
+        "model_file_text",
+        lambda *_: model_file_text(found, "arm").replace(
+            "geometry: placements\ngravity: [0, 0, -9.81]",
+            "geometry: placements\ngravity: [0, 0, -9.8]",
+        ),
+    )
+    with pytest.raises(SolverError, match=r"arm_model\.yaml"):
+        write_identification(found, tmp_path / "arm.yaml")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_all_files_or_none(found, tmp_path, monkeypatch):
+    """An error while they are put in place leaves the older ones."""
+    import os
+
+    files = write_identification(found, tmp_path / "arm.yaml")
+    before = {file: file.read_text() for file in files}
+    replaced = os.replace
+    calls = []
+
+    def fail_late(source, target):
+        calls.append(target)
+        if len(calls) == 3:
+            raise OSError(28, "No space left on device", str(target))
+        return replaced(source, target)
+
+    monkeypatch.setattr(os, "replace", fail_late)
+    other = replace(found, law="load")
+    with pytest.raises(OutputError, match="No space left"):
+        write_identification(other, tmp_path / "arm.yaml", overwrite=True)
+    assert {file: file.read_text() for file in files} == before
+    assert sorted(tmp_path.iterdir()) == sorted(files)
+
+
+def test_older_files_are_kept_unless_they_may_be_replaced(found, files):
+    with pytest.raises(OutputError, match=r"exists already.*--overwrite"):
+        write_identification(found, files.robot)
+    with pytest.raises(OutputError, match=r"expected a name ending in \.yaml"):
+        write_identification(found, files.robot.with_suffix(".txt"))
+
+
+def test_what_is_read_is_not_replaced(found, tmp_path):
+    recording = tmp_path / "arm.json"
+    recording.touch()
+    with pytest.raises(OutputError, match="is read"):
+        write_identification(
+            replace(found, recordings=(recording,)), tmp_path / "arm.yaml", overwrite=True
+        )
+
+
+def test_all_figures_are_in_json(found, files):
+    data = json.loads(files.figures.read_text())
+    assert data["model"]["parameters"] == found.model.parameters.tolist()
+    assert data["held_out"]["identified"] == found.held_out["identified"].tolist()
+    assert [block["samples"] for block in data["blocks"]] == [300] * 5
+    error = np.array([block["rmse"]["identified"] for block in data["blocks"]])
+    np.testing.assert_allclose(
+        np.sqrt((error**2).mean(axis=0)), found.held_out["identified"], rtol=1e-12
+    )
+    assert data["law"] == "step"
+
+
+def test_without_a_description_there_is_no_geometry(found, tmp_path):
+    robot = replace(found.robot, urdf=None)
+    with pytest.raises(RobotError, match="expected a description"):
+        write_identification(replace(found, robot=robot), tmp_path / "arm.yaml")
+
+
+def test_the_page_shows_each_column_and_the_band(found, files):
+    html = files.page.read_text()
+    assert "Held-out error" in html
+    for text in ("URDF", "identified", "in 95 % band", "masses of single links", "forearm_link"):
+        assert text in html
+    data = json.loads(re.search(r'id="runs">(.*?)</script>', html, re.DOTALL)[1])
+    (run,) = data
+    (joint, *_) = run["joints"]
+    assert [other["name"] for other in joint["others"]] == ["URDF"]
+    assert len(joint["band"]) == 5
+    assert joint["band"][0]["half"] == pytest.approx(0.196)
+    assert run["links"]
+
+
+def test_a_motion_outside_of_what_was_seen_is_told(found, files):
+    seen = Solver(PLUGIN, model=str(files.model)).seen
+    np.testing.assert_array_equal(seen, found.model.seen)
+    q, qd, qdd, _ = motion()
+    units = (*found.units[:5], "N")
+    assert outside_of_seen(seen, (q, qd, qdd), JOINTS, units) == ""
+    assert outside_of_seen(None, (q, qd, qdd), JOINTS, units) == ""
+    fast = qd * [1, 1, 1, 1.5, 1, 1]
+    text = outside_of_seen(seen, (q, fast, qdd), JOINTS, units)
+    assert "wrist_1_joint qd -2.83 to 2.83 rad/s (seen -1.88 to 1.88)" in text
+    assert "elbow_joint" not in text
+    far = outside_of_seen(seen, (q * [1, 1, 1, 1, 1, 2], qd, qdd), JOINTS, units)
+    assert "wrist_3_joint q -2 to 2 m (seen -1 to 1)" in far
+
+
+def test_evaluation_tells_it_too(files, tmp_path):
+    q, qd, qdd, stamps = motion()
+    log = JointLog(JOINTS, stamps, stamps, 1.5 * q, qd, simulated_torques(q, qd, qdd))
+    write_joint_logs(tmp_path / "far", {log.topic: log})
+    notes = evaluate(tmp_path / "far", files.robot).notes
+    assert any(note.startswith("the motion leaves the range") for note in notes)
+
+
+def test_a_recording_that_was_held_out_is_a_table_of_its_own(found, tmp_path):
+    q, qd, qdd, stamps = motion()
+    log = JointLog(JOINTS, stamps, stamps, q, qd, simulated_torques(q, qd, qdd, seed=7))
+    write_joint_logs(tmp_path / "tuesday", {log.topic: log})
+    test = hold_out(found, tmp_path / "tuesday")
+    assert set(test.rmse) == {"urdf", "identified"}
+    assert test.rmse["identified"].mean() == pytest.approx(found.noise.mean(), rel=0.1)
+    assert test.rmse["urdf"].mean() > 20 * test.rmse["identified"].mean()
+    assert (test.coverage > 0.85).all()
+    files = write_identification(found, tmp_path / "arm.yaml", tests=[test])
+    (figures,) = json.loads(files.figures.read_text())["hold_out"]
+    assert figures["rmse"]["urdf"] == test.rmse["urdf"].tolist()
+    assert "Error on tuesday" in files.page.read_text()

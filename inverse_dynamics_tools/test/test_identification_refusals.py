@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What no model is identified from: exit status, reason, remedy, the nearest entry of the page of mistakes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import fails
+from identified_arms import identification, simulated_torques
+from test_evaluation import JOINTS, motion
+
+from inverse_dynamics import Solver, evaluate, load_robot, read_joint_log, write_joint_logs
+from inverse_dynamics.data.joint_log import JointLog
+from inverse_dynamics.evaluation.diagnosis import PAGE
+from inverse_dynamics.identification.refusals import check_recordings, check_result
+from inverse_dynamics.identification.result import IdentificationError
+
+ROBOT = "ur10_simulated"
+RATE = 250  # Hz, of motion()
+
+
+@pytest.fixture(scope="module")
+def log() -> JointLog:
+    q, qd, qdd, stamps = motion()
+    return JointLog(JOINTS, stamps, stamps, q, qd, simulated_torques(q, qd, qdd))
+
+
+def evaluated(directory, log, robot=ROBOT):
+    write_joint_logs(directory / "recording", {log.topic: log})
+    return evaluate(directory / "recording", robot)
+
+
+def part(log: JointLog, samples: slice) -> JointLog:
+    names = ("header_stamps", "receive_stamps", "q", "qd", "effort")
+    return replace(log, **{name: getattr(log, name)[samples] for name in names})
+
+
+def reason(evaluations) -> IdentificationError:
+    with pytest.raises(IdentificationError) as caught:
+        check_recordings(evaluations)
+    return caught.value
+
+
+def test_a_good_recording_is_taken(log, tmp_path):
+    check_recordings([evaluated(tmp_path, log)])
+
+
+def test_too_short(log, tmp_path):
+    short = evaluated(tmp_path, part(log, slice(0, 3 * RATE)))
+    text = str(reason([short]))
+    assert "expected at least 5 s of motion, got 3.0 s" in text
+    assert "ids excite" in text
+    check_recordings([short, short])  # together they are long enough
+
+
+def test_rest_counts_as_no_motion(log, tmp_path):
+    still = np.minimum(np.arange(len(log.q)), 2 * RATE)
+    resting = replace(log, q=log.q[still], qd=log.qd * (still == np.arange(len(still)))[:, None])
+    assert "got 2.0 s" in str(reason([evaluated(tmp_path, resting)]))
+
+
+def test_a_joint_that_hardly_moves(log, tmp_path):
+    q, qd = log.q.copy(), log.qd.copy()
+    q[:, 3], qd[:, 3] = 0.7 + 0.02 * q[:, 3], 0.02 * qd[:, 3]
+    text = str(reason([evaluated(tmp_path, replace(log, q=q, qd=qd))]))
+    assert "wrist_1_joint: expected every joint to move by 0.1 rad" in text
+    assert "ids excite" in text
+
+
+def test_efforts_without_gravity(log, tmp_path):
+    solver = Solver(
+        "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody",
+        urdf=load_robot(ROBOT).urdf.read_text(),
+        root="base_link",
+        tip="tool0",
+    )
+    effort = log.effort - 1.05 * solver.gravity_vector(log.q)
+    error = reason([evaluated(tmp_path, replace(log, effort=effort))])
+    assert error.mistake == "Gravity is taken off the efforts"
+    assert f"--effort-is torque_without_gravity ({PAGE}#gravity-is-taken-off-the-efforts)" in str(
+        error
+    )
+
+
+def test_currents(log, tmp_path):
+    gains = np.array([13.6, 14.3, 11.4, 11.2, 11.8, 11.8])
+    error = reason([evaluated(tmp_path, replace(log, effort=log.effort / gains))])
+    assert error.mistake == "Efforts are motor currents"
+
+
+def test_a_turned_joint(log, tmp_path):
+    error = reason([evaluated(tmp_path, replace(log, effort=log.effort * [1, 1, -1, 1, 1, 1]))])
+    assert error.mistake == "A joint counts the other way"
+    assert "joint elbow_joint" in str(error)
+
+
+def test_swapped_joints(log, tmp_path):
+    order = [0, 2, 1, 3, 4, 5]
+    swapped = {name: getattr(log, name)[:, order] for name in ("q", "qd", "effort")}
+    error = reason([evaluated(tmp_path, replace(log, **swapped))])
+    assert error.mistake == "Joints in another order"
+    assert "joints shoulder_lift_joint and elbow_joint have each other's columns" in str(error)
+
+
+def test_saturation(log, tmp_path):
+    effort = log.effort.copy()
+    effort[:, 1] = np.maximum(effort[:, 1], np.quantile(effort[:, 1], 0.15))  # always negative
+    text = str(reason([evaluated(tmp_path, replace(log, effort=effort))]))
+    assert "joint shoulder_lift_joint: efforts stay at" in text
+    assert "slower motion" in text
+
+
+# ---- after the fit -----------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def found():
+    return identification()
+
+
+def measured(found, change):
+    """The same result with other efforts. change: (M, n) of a block."""
+    blocks = [replace(block, measured=change(block)) for block in found.blocks]
+    errors = np.concatenate([b.computed["identified"] - b.measured for b in blocks])
+    held_out = {**found.held_out, "identified": np.sqrt((errors**2).mean(axis=0))}
+    return replace(found, blocks=tuple(blocks), held_out=held_out)
+
+
+def test_a_good_result_is_taken(found):
+    check_result(found)
+
+
+def test_no_gain_over_the_model_before(found):
+    present = {**found.held_out, "present": 0.9 * found.held_out["identified"]}
+    with pytest.raises(IdentificationError, match="no gain over the present model: .* stay with"):
+        check_result(replace(found, held_out=present))
+    urdf = {**found.held_out, "urdf": 0.9 * found.held_out["identified"]}
+    with pytest.raises(IdentificationError, match="no gain over the description"):
+        check_result(replace(found, held_out=urdf))
+
+
+def test_another_robot(found):
+    def of_another(block):
+        return block.measured[:, ::-1] * np.sin(3 * block.time)[:, None]
+
+    with pytest.raises(
+        IdentificationError, match="no masses and friction explain the efforts"
+    ) as caught:
+        check_result(measured(found, of_another))
+    assert caught.value.mistake
+
+
+def test_coupled_joints(found):
+    def coupled(block):
+        efforts = block.measured.copy()
+        velocity = np.gradient(block.q[:, 3], block.time)
+        efforts[:, 4] += 8.0 * np.tanh(velocity / 0.1)
+        return efforts
+
+    with pytest.raises(
+        IdentificationError, match="wrist_2_joint: its effort has friction of joint wrist_1"
+    ):
+        check_result(measured(found, coupled))
+
+
+def test_drift(found):
+    """Three times as long, so that there is time to warm up."""
+
+    def slower(block):
+        return replace(block, time=3 * block.time)
+
+    slow = replace(found, blocks=tuple(slower(block) for block in found.blocks))
+
+    def warming(block):
+        efforts = block.measured.copy()
+        velocity = np.gradient(block.q[:, 2], block.time)
+        efforts[:, 2] += 25.0 * (block.time / 18.0) * np.tanh(velocity / 0.1)
+        return efforts
+
+    with pytest.raises(
+        IdentificationError, match="elbow_joint changes along the recording"
+    ) as caught:
+        check_result(measured(slow, warming))
+    assert "half an hour" in str(caught.value)
+
+
+def test_the_command_tells_it_and_writes_nothing(log, tmp_path, ids):
+    short = part(log, slice(0, 3 * RATE))
+    write_joint_logs(tmp_path / "short", {log.topic: short})
+    result = ids("identify", "short", "--robot", ROBOT, "--out", "arm.yaml")
+    fails(result, "error: short: expected at least 5 s of motion", "ids excite")
+    assert [path.name for path in tmp_path.iterdir()] == ["short"]
+
+
+def test_the_command_refuses_before_the_work(tmp_path, ids):
+    (tmp_path / "arm.html").touch()
+    fails(
+        ids("identify", "none", "--robot", ROBOT, "--out", "arm.yaml"), "arm.html: exists already"
+    )
+    fails(ids("identify", "none", "--out", "arm.yaml"), "--robot NAME or --urdf FILE")
+    fails(ids("identify", "none", "--robot", ROBOT, "--out", "arm"), "ending in .yaml")
+    more = ("--out", "a.yaml", "--urdf-out", "a.json")
+    fails(ids("identify", "none", "--robot", ROBOT, *more), "a.json", "--urdf-out")
+
+
+# ---- real recordings ---------------------------------------------------------------------------------------------
+
+
+def test_the_panda_is_identified_by_the_command(recordings, tmp_path, ids):
+    """The whole way on a real recording: table, files, page, and the robot that evaluates."""
+    bag = recordings / "panda_exciting_trajectory"
+    outputs = ("--out", "arm.yaml", "--urdf-out", "arm.urdf", "--mjcf-out", "arm.xml")
+    code, out, err = ids("identify", bag, "--robot", "panda_real", *outputs)
+    assert (code, err) == (0, "")
+    assert "present" in out
+    mean = next(line for line in out.splitlines() if line.strip().startswith("mean")).split()
+    urdf, present, refitted, identified = map(float, mean[3:7])
+    assert identified < min(0.285, refitted) < present < urdf
+    names = {"arm.yaml", "arm_model.yaml", "arm.json", "arm.html", "arm.urdf", "arm.xml"}
+    assert {path.name for path in tmp_path.iterdir()} == names
+    result = evaluate(bag, tmp_path / "arm.yaml")
+    assert sum(error.rmse for error in result.errors_of_kept) / 7 < 0.285
+    assert not [
+        note for note in result.notes if "likely cause" in note or "leaves the range" in note
+    ]
+    log = read_joint_log(bag)
+    fast = replace(log, qd=2 * log.qd, q=2 * log.q)
+    write_joint_logs(tmp_path / "fast", {log.topic: fast})
+    notes = evaluate(tmp_path / "fast", tmp_path / "arm.yaml").notes
+    assert any("leaves the range" in note for note in notes)
