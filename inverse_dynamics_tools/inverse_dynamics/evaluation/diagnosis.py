@@ -343,13 +343,13 @@ def _directions(
         sign = np.ones(len(names))
         sign[j] = -1.0
         for kind, what in (
-            ("effort_direction", "effort"),
-            ("direction", "position, velocity and effort"),
+            ("effort_direction", "effort counts"),
+            ("direction", "position, velocity and effort count"),
         ):
             diagnosis = Diagnosis(
                 kind,
                 "A joint counts the other way",
-                f"joint {name}: torques match if its {what} count the other way",
+                f"joint {name}: torques match if its {what} the other way",
                 "turn the sign where the recording is made"
                 + (", or the <axis> in the description" if kind == "direction" else ""),
                 (name,),
@@ -420,7 +420,7 @@ def _loads(
     center = first_moment / mass
     load = np.tensordot(body, np.array(parts), axes=1)
     beside = float(np.abs(load[:, -1]).max()) > 0.02 * float(np.abs(load).max())
-    where = ",".join(f"{x:.2g}" for x in center)
+    where = ",".join(f"{round(float(x), 3) + 0.0:g}" for x in center)
     yield _Hypothesis(
         Diagnosis(
             "tool" if beside else "payload",
