@@ -178,6 +178,18 @@ def test_an_empty_recording_tells_offsets_and_noise(ids, tmp_path):
     assert "without load   " in out
 
 
+def test_what_the_model_lacks_is_found_without_a_load_too(tmp_path):
+    solver = panda()
+    tooled = with_load(moved(solver, seed=1), solver, {"mass": 0.4, "center_of_mass": [0, 0, 0.05]})
+    empty = table(tmp_path / "empty.csv", tooled)
+    file = table(tmp_path / "with.csv", with_load(tooled, solver, LOAD))
+    payload = estimate_payload(file, "panda_simulated", empty=empty)
+    assert any(note.startswith("without the load 0.4 +- ") for note in payload.notes)
+    right = table(tmp_path / "right.csv", moved(solver, seed=2))
+    payload = estimate_payload(file, "panda_simulated", empty=right)
+    assert not any("without the load" in note for note in payload.notes)
+
+
 def test_a_load_is_found_beside_one_that_is_known(tmp_path):
     solver = panda()
     solver.set_payload("tool", 0.8, [0, 0, 0.05])

@@ -134,11 +134,12 @@ def estimate_payload(
     evaluation = evaluate(bag, robot, progress=progress, **options)
     _require_gravity(evaluation)
     solver = _solver_of(evaluation)
-    alone = None
+    alone, phantom = None, []
     if empty is not None:
         without = evaluate(empty, robot, progress=progress, **options)
         _require_gravity(without)
         alone = empty_run(samples_of(without), solver)
+        phantom = _phantom(fit_payload(samples_of(without), solver, where=str(without.bag)))
     samples = samples_of(evaluation)
     where = str(evaluation.bag)
     _require_motion(samples, where)
@@ -153,7 +154,7 @@ def estimate_payload(
         time=samples.time,
         before=found.before,
         after=found.after,
-        notes=(*evaluation.notes, *_notes(found, evaluation)),
+        notes=(*evaluation.notes, *phantom, *_notes(found, evaluation)),
     )
 
 
@@ -320,6 +321,17 @@ def _check(found: Fit, samples: Samples, evaluation: Evaluation) -> None:
             "of the tip frame: gravity hardly loads the wrist in these poses; turn the wrist so that each "
             "of its axes is horizontal for some time"
         )
+
+
+def _phantom(found: Fit) -> list[str]:
+    """What is found where nothing is carried: an error of the model, in words."""
+    mass, half = found.estimate.mass, found.estimate.mass_half_width
+    if mass <= half:
+        return []
+    return [
+        f"without the load {mass:.2g} +- {half:.2g} kg are found: the model of the arm is wrong by about "
+        "as much, which the intervals don't include; a tool that it doesn't have, or friction"
+    ]
 
 
 def _notes(found: Fit, evaluation: Evaluation) -> list[str]:
