@@ -22,7 +22,7 @@ PayloadOptions optionsOf(const LivePayloadOptions& options) {
 }  // namespace
 
 LivePayload::LivePayload(
-    std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
+    const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver,
     const LivePayloadOptions& options)
     : n_(solver->jointCount()),
       estimator_(solver, optionsOf(options)),

@@ -34,7 +34,7 @@ struct LivePayloadOptions {
 class LivePayload {
  public:
   /// @throws inverse_dynamics_solver::Exception: a solver without kinematics, options out of range.
-  LivePayload(std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
+  LivePayload(const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver,
               const LivePayloadOptions& options);
 
   /// Takes a sample; what isn't finite is left out. A clock that goes back begins again.
