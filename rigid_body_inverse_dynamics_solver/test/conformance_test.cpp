@@ -78,7 +78,7 @@ std::string loadedPanda() {
   const std::regex law("\\{law: centered_sigmoid[^}]*\\}");
   for (const char* figures : {"fv: 1.5, fc: 0.6, width: 0.05, fl: 0.02",
                               "fv: 2.5, fc: 0.9, width: 0.08, shift: 0.01, fo: 0.1, fl: 0.05",
-                              "fv: 0.5, fc: 0.4, width: 0.05, fl: 0.03"}) {
+                              "fv: 0.5, fc: 0.4, width: 0.05, fl: 0.03, fs: 0.3, vs: 0.2"}) {
     text = std::regex_replace(text, law, std::string("{law: smooth_coulomb, ") + figures + "}",
                               std::regex_constants::format_first_only);
   }

@@ -57,7 +57,8 @@ FAST_INLINE ChangingHeight<V> heightOf(const V& qd, const V& g, const Number& nu
   V u = qd * number(9);
   u = u > 20.0 ? most : u;
   u = u < -20.0 ? -most : u;
-  const V stribeck = number(8) * expOfMinus<V>(u * u);
+  // 1e-40: powers of the square of a velocity of 1e-100 rad/s would be denormal
+  const V stribeck = number(8) * expOfMinus<V>(u * u + 1e-40);
   // (a joint without load friction doesn't see a NaN of the others)
   const V zero{};
   const V load = number(7) > 0.0 ? number(7) * (g < 0.0 ? -g : g) : zero;
