@@ -56,7 +56,7 @@ _GAP = 2.5  # periods; one lost message isn't a gap
 _LONGEST_PERIOD = 0.02  # s, unless samples are further apart
 _LATEST = 1e9  # s
 _LARGE = 0.2  # of an effort limit: a threshold above it is noted
-_UNCERTAIN = 2.0  # upper by lower end of the range of a threshold: noted above it
+_UNCERTAIN = 3.0  # upper by lower end of the range of a threshold: noted above it
 
 
 @dataclass(frozen=True)
@@ -70,9 +70,12 @@ class Contact:
     torque: float  # its greatest, N m (prismatic N), with its sign
     torque_time: float
     unknown: float = 0.0  # s of it without an estimate: see Contacts.interruptions
-    force: float | None = None  # N, the greatest at the tip; None: the solver has no Kinematics
-    force_direction: tuple[float, float, float] | None = None  # then, in the axes of the root
-    unseen: int | None = None  # how many directions of a wrench can't be observed then
+    force: float | None = None  # N, at the tip, mean over it; None: the solver has no Kinematics
+    force_direction: tuple[float, float, float] | None = (
+        None  # of that mean, in the axes of the root
+    )
+    greatest_force: float | None = None  # N; near singularities it is mostly noise
+    unseen: int | None = None  # directions of a wrench that can't be observed, the most during it
 
 
 @dataclass(frozen=True)
@@ -317,15 +320,17 @@ def _contact(found: Contacts, first: int, last: int) -> Contact:
     )
     if found.wrenches is None or found.unseen is None:
         return contact
-    forces = found.wrenches[first : last + 1, :3]
-    sizes = np.linalg.norm(forces, axis=1)
-    most = int(sizes.argmax())
-    x, y, z = (float(c) for c in forces[most] / max(sizes[most], 1e-300))
+    known = found.valid[first : last + 1]
+    forces = found.wrenches[first : last + 1, :3][known]
+    mean = forces.mean(axis=0)
+    force = float(np.linalg.norm(mean))
+    x, y, z = (float(component) for component in mean / max(force, 1e-300))
     return replace(
         contact,
-        force=float(sizes[most]),
+        force=force,
         force_direction=(x, y, z),
-        unseen=int(found.unseen[first + most]),
+        greatest_force=float(np.linalg.norm(forces, axis=1).max()),
+        unseen=int(found.unseen[first : last + 1][known].max()),
     )
 
 

@@ -92,7 +92,7 @@ def threshold_table(contacts: Contacts) -> Table:
     table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
     table.add_column("joint", overflow="fold")
     table.add_column("unit")
-    for heading in ("noise", "threshold", "range", "correlation [ms]", "peaks"):
+    for heading in ("noise", "threshold", "range", "peaks"):
         table.add_column(heading, justify="right")
     for j, (joint, unit) in enumerate(zip(evaluation.joint_names, evaluation.units, strict=True)):
         table.add_row(
@@ -101,7 +101,6 @@ def threshold_table(contacts: Contacts) -> Table:
             figure(float(thresholds.noise[j])),
             figure(float(thresholds.torques[j])),
             f"{thresholds.low[j]:.3g} to {thresholds.high[j]:.3g}",
-            f"{1e3 * thresholds.correlation_time[j]:.0f}",
             f"{thresholds.peaks[j]:.0f}",
         )
     rate = thresholds.false_alarms_per_hour
@@ -115,27 +114,28 @@ def contact_table(contacts: Contacts) -> Table:
     table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
     table.add_column("contact [s]")
     table.add_column("joint", overflow="fold")
-    table.add_column("greatest torque", justify="right")
+    table.add_column("torque", justify="right")
     force = contacts.wrenches is not None
     if force:
-        table.add_column("force at tip [N]", justify="right")
+        table.add_column("force [N]\nmean, peak", justify="right")
         table.add_column("direction", justify="right", no_wrap=True)
         table.caption = (
-            "as if only the tip was touched; direction in the axes of the root; * some directions "
-            "can't be observed there"
+            "force: as if only the tip was touched; direction of its mean in the axes of the root; * some "
+            "directions can't be observed there"
         )
     for contact in contacts.contacts:
         row = [
-            f"{contact.begin:.3f} to {contact.end:.3f}"
-            + (f"\nno estimate for {contact.unknown:.3f} s" if contact.unknown else ""),
+            f"{contact.begin:.2f} to {contact.end:.2f}"
+            + (f"\nunknown: {contact.unknown:.2f} s" if contact.unknown else ""),
             contact.joint,
             f"{contact.torque:+.3g} {contact.unit}",
         ]
-        if contact.force is not None and contact.force_direction is not None:
-            x, y, z = contact.force_direction
+        mean, greatest = contact.force, contact.greatest_force
+        if mean is not None and greatest is not None and contact.force_direction is not None:
+            x, y, z = (round(part, 1) + 0.0 for part in contact.force_direction)  # no -0.0
             row += [
-                f"{contact.force:.3g}{'*' if contact.unseen else ''}",
-                f"{x:+.2f} {y:+.2f} {z:+.2f}",
+                f"{mean:.3g}{'*' if contact.unseen else ''}, {greatest:.3g}",
+                f"{x:+.1f} {y:+.1f} {z:+.1f}",
             ]
         table.add_row(*row)
     return table
