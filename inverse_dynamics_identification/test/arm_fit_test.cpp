@@ -79,6 +79,42 @@ TEST(ArmFitter, FindsAKnownRobotWithItsFriction) {
   }
 }
 
+TEST(ArmFitter, TorquesAreThoseOfAModelWithTheSameFigures) {
+  const ArmFitter fitter(threeJointArm(0.6));
+  for (const FrictionTerms terms :
+       {FrictionTerms::kStep, FrictionTerms::kLoad, FrictionTerms::kStribeck}) {
+    SCOPED_TRACE(static_cast<int>(terms));
+    const Motion motion = measured(terms, 700, 1);
+    ArmFitOptions options;
+    options.terms = terms;
+    const ArmFit fit = fitter.fit({samplesOf(motion)}, options);
+    std::vector<Joint> joints = fitter.description().joints();
+    std::vector<LinkParameters> links;
+    for (std::size_t j = 0; j < 3; ++j) {
+      joints[j].rotor_inertia = fit.rotor_inertia[static_cast<Eigen::Index>(j)];
+      const Eigen::Matrix<double, 10, 1> p = fit.parameters.col(static_cast<Eigen::Index>(j));
+      links.push_back(LinkParameters::fromVector(p));
+    }
+    Model model(Chain("fitted", joints, links, fitter.description().gravity()));
+    for (const StepFriction& law : fit.friction) {
+      chain_dynamics::SmoothCoulomb same;
+      same.fv = law.fv;
+      same.fc = law.fc;
+      same.width = law.width;
+      same.shift = law.shift;
+      same.fo = law.fo;
+      same.fl = law.fl;
+      same.fs = law.fs;
+      same.vs = law.vs;
+      model.friction.emplace_back(same);
+    }
+    Eigen::MatrixXd expected(3, 700), tau(3, 700);
+    FastModel(model).torquesBatch(motion.q, motion.qd, motion.qdd, expected);
+    fitter.torques(fit, motion.q, motion.qd, motion.qdd, tau);
+    EXPECT_LT((tau - expected).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
 TEST(ArmFitter, HasNoLoadTermWithoutLoad) {
   // The axis of the first joint is vertical: gravity doesn't load it.
   const ArmFitter fitter(threeJointArm());
