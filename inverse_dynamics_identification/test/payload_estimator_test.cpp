@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <fstream>
 #include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
 #include <inverse_dynamics_solver/conformance/real_time_section.hpp>
 #include <limits>
@@ -178,6 +180,46 @@ TEST(PayloadEstimator, WhatTheSolverCarriesAlreadyIsPartOfTheEstimate) {
   const auto a = estimateOf(from_nothing, *loaded, 5.0), b = estimateOf(from_near, *loaded, 5.0);
   EXPECT_NEAR(a.mass, b.mass, kSettled);
   EXPECT_LT((a.center_of_mass - b.center_of_mass).norm(), kSettled);
+}
+
+/// An arm whose friction grows with load, as a file.
+std::string armWithLoadFriction() {
+  const std::string path = testing::TempDir() + "/arm_with_load_friction.yaml";
+  std::ofstream file(path);
+  file << "schema: 2\nname: arm\nsource: a test\nvalidity: a test\nunits: SI\n"
+          "geometry: placements\ngravity: [0, 0, -9.81]\nparameters: about_origin\njoints:\n";
+  for (Index j = 0; j < kJoints; ++j) {
+    file << "  - name: joint" << j << "\n    type: revolute\n"
+         << "    placement: {xyz: [0, 0, 0.2], rpy: [0, 0, 0], axis: "
+         << (j % 2 == 0 ? "[0, 0, 1]" : "[0, 1, 0]") << "}\n"
+         << "    friction: {law: smooth_coulomb, fv: 0.5, fc: 1, width: 0.05, fl: 0.1}\n"
+         << "    link: [2, 0, 0, 0.2, 0.1, 0, 0, 0.1, 0, 0.02]\n";
+  }
+  return path;
+}
+
+TEST(PayloadEstimator, FrictionThatGrowsWithLoadIsCountedInTwoMoreRounds) {
+  const std::string path = armWithLoadFriction();
+  const auto make = [&path] {
+    auto solver = std::make_shared<Solver>();
+    solver->initialize({{"model", path}}, "");
+    return solver;
+  };
+  const RigidBody body = box(3.0);
+  const auto arm = make(), loaded = make();
+  loaded->setPayload("load", body);
+  PayloadOptions options = optionsWith(noiseOf(0.01, 0.01));
+  std::vector<double> errors;
+  for (int round = 0; round < 4; ++round) {
+    PayloadEstimator estimator(arm, options);
+    const auto found = estimateOf(estimator, *loaded, 5.0);
+    errors.push_back(std::abs(found.mass - body.mass));
+    options.carried = found.body();
+    arm->setPayload("estimate", options.carried);
+  }
+  EXPECT_GT(errors[0], 0.02) << "friction of the load doesn't matter here";
+  EXPECT_LT(errors[2], 0.1 * errors[0]);
+  EXPECT_LT(errors[3], 0.003);
 }
 
 TEST(PayloadEstimator, FindsOffsetsThatAreLargerThanTheNoise) {
