@@ -213,9 +213,9 @@ void bindEstimators(py::module_& module) {
            py::arg("solver"), py::arg("options"));
 }
 
-template <OwnedVector ContactThresholds::*member>
+template <OwnedVector ContactThresholds::*Member>
 Vector numbersOf(const ContactThresholds& thresholds) {
-  return thresholds.*member;
+  return thresholds.*Member;
 }
 
 void bindThresholds(py::module_& module) {
