@@ -102,7 +102,7 @@ TEST_F(CarriedBodyTest, ABodyOfTheTopicIsCarried) {
   EXPECT_TRUE(spinUntil([this] {
     return log.has(
         "ERROR: ~/payload: ignored: header.frame_id: another frame: expected the tip "
-        "tool0, got flange; give the body in the tip frame, or leave frame_id empty");
+        "tool0, got flange; give it in the tip frame, or leave frame_id empty");
   })) << log.text();
   EXPECT_EQ(update(), return_type::OK);
   EXPECT_LT((hardware.effort() - gravity(tool())).norm(), kRounding);
