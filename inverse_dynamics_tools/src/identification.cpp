@@ -48,6 +48,7 @@ std::unique_ptr<ArmFitter> fromUrdf(const std::string& urdf, const std::string& 
 
 std::vector<ArmSamples> samplesOf(const std::vector<Block>& blocks) {
   std::vector<ArmSamples> samples;
+  samples.reserve(blocks.size());
   for (const auto& [q, qd, qdd, tau] : blocks) {
     samples.push_back({states(q, "q"), states(qd, "qd"), states(qdd, "qdd"), states(tau, "tau")});
   }
