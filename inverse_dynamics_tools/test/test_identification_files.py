@@ -245,14 +245,17 @@ def test_a_motion_outside_of_what_was_seen_is_told(found, files):
     seen = Solver(PLUGIN, model=str(files.model)).seen
     np.testing.assert_array_equal(seen, found.model.seen)
     q, qd, qdd, _ = motion()
+    kept = np.arange(len(q)) >= 5
     units = (*found.units[:5], "N")
-    assert outside_of_seen(seen, (q, qd, qdd), JOINTS, units) == ""
-    assert outside_of_seen(None, (q, qd, qdd), JOINTS, units) == ""
+    assert outside_of_seen(seen, (q, qd, qdd), kept, JOINTS, units) == ""
+    assert outside_of_seen(None, (q, qd, qdd), kept, JOINTS, units) == ""
+    wild = np.where(kept[:, None], qd, 100.0)  # at samples that don't count
+    assert outside_of_seen(seen, (q, wild, qdd), kept, JOINTS, units) == ""
     fast = qd * [1, 1, 1, 1.5, 1, 1]
-    text = outside_of_seen(seen, (q, fast, qdd), JOINTS, units)
+    text = outside_of_seen(seen, (q, fast, qdd), kept, JOINTS, units)
     assert "wrist_1_joint qd -2.83 to 2.83 rad/s (seen -1.88 to 1.88)" in text
     assert "elbow_joint" not in text
-    far = outside_of_seen(seen, (q * [1, 1, 1, 1, 1, 2], qd, qdd), JOINTS, units)
+    far = outside_of_seen(seen, (q * [1, 1, 1, 1, 1, 2], qd, qdd), kept, JOINTS, units)
     assert "wrist_3_joint q -2 to 2 m (seen -1 to 1)" in far
 
 

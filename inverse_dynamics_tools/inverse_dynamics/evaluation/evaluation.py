@@ -188,7 +188,8 @@ def evaluate(
     notes = (*window.notes, *notes)
     result = replace(result, notes=(*notes, *result.notes), seconds={**result.seconds, **seconds})
     states = (result.log.q, result.log.qd, result.qdd)
-    outside = outside_of_seen(arm.solver.seen, states, arm.joint_names, arm.units)
+    kept = result.samples.kept
+    outside = outside_of_seen(arm.solver.seen, states, kept, arm.joint_names, arm.units)
     result = replace(result, notes=(*result.notes, *filter(None, [outside])))
     cause = diagnosis_of(robot, arm.solver, arm.description, result.log, result.qdd, result.effort)
     if cause is None:

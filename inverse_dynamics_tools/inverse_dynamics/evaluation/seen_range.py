@@ -12,27 +12,34 @@ from inverse_dynamics.base.wording import listed
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.arrays import Floats, Mask
 
-_BEYOND = 0.05  # of what was seen, that a motion may be beyond it
+_BEYOND = (0.05, 0.05, 0.25)  # of what was seen, of q, qd, qdd, that depend on the filter
 _MOST_NAMED = 4
 _NAMES = ("q", "qd", "qdd")
 
 
 def outside_of_seen(
-    seen: Floats | None, motion: Sequence[Floats], joints: Sequence[str], units: Sequence[str]
+    seen: Floats | None,
+    motion: Sequence[Floats],
+    kept: Mask,
+    joints: Sequence[str],
+    units: Sequence[str],
 ) -> str:
     """A sentence on joints that leave the range of identification; "": none does, or it isn't known.
 
-    seen: (3, n, 2), as Solver.seen. motion: q, qd, qdd, (N, n) each. units: of the joints' torques.
+    seen: (3, n, 2), as Solver.seen. motion: q, qd, qdd, (N, n) each; kept: (N,) samples that count.
+    units: of the joints' torques.
     """
-    if seen is None:
+    if seen is None or not kept.any():
         return ""
     outside = []
-    for name, values, ranges in zip(_NAMES, motion, seen, strict=True):
-        least, greatest = values.min(axis=0), values.max(axis=0)
+    where = kept[:, None]
+    for name, values, ranges, beyond in zip(_NAMES, motion, seen, _BEYOND, strict=True):
+        least = values.min(axis=0, where=where, initial=np.inf)
+        greatest = values.max(axis=0, where=where, initial=-np.inf)
         low, high = ranges.T
-        margin = _BEYOND * (high - low)
+        margin = beyond * (high - low)
         for j in map(int, np.flatnonzero((least < low - margin) | (greatest > high + margin))):
             unit = ("m" if units[j] == "N" else "rad") + ("", "/s", "/s²")[_NAMES.index(name)]
             outside.append(
