@@ -25,7 +25,8 @@ class ConformanceTestsOfPayloads : public ::testing::TestWithParam<Fault> {};
 void expectFound(const std::string& program, const std::string& suite, const Fault& fault) {
   const std::string command = "FAULT=\"" + std::string(fault.fault) + "\" " + program +
                               " --gtest_output= --gtest_filter='*." +
-                              (fault.test[0] == '\0' ? "*" : fault.test) + "' 2>&1";
+                              (fault.test[0] == '\0' ? "" : fault.test + std::string("/")) +
+                              "*' 2>&1";
   FILE* const pipe = popen(command.c_str(), "r");
   ASSERT_NE(pipe, nullptr);
   std::string output;

@@ -34,54 +34,13 @@
 #include "inverse_dynamics_solver/conformance/payload_tests.hpp"
 #include "inverse_dynamics_solver/conformance/real_time_tests.hpp"
 
-namespace inverse_dynamics_solver::conformance {
-
-REGISTER_TYPED_TEST_SUITE_P(
-    SolverConformance,
-    // Initialization.
-    FailedInitializeLeavesTheSolverAsItWas, UnknownParameterIsAWarningOrARefusal,
-    InitializingAgainTakesEffect, ParametersAreReadBelowTheNamespace,
-    RobotDescriptionComesFromArgumentOrParameter,
-    // Contract.
-    JointNamesAreDistinctAndCounted, ResultsHaveTheSizesOfTheRobotAndAreFinite,
-    UninitializedSolverRefusesEveryMethod, WrongSizeIsRefusedNamingArgumentExpectedAndGot,
-    ResultsByValueEqualResultsInMemoryOfTheCaller, CallsIntoMemoryOfTheCallerDoNotAllocate,
-    ManyThreadsGetTheNumbersOfOne, NanGoesToEveryEntryThatDependsOnIt,
-    // Many states at once.
-    BatchOfWrongShapeIsRefused, FrictionWithoutPositionsIsTheSameOrRefused, BatchEqualsSingleCalls,
-    BatchesOfAnyLayoutGiveTheBitsOfColumns, ThreadsThatShareABatchGiveTheBitsOfOne,
-    // Real time.
-    CallsIntoMemoryOfTheCallerMakeNoSystemCall, NoDenormalNumberArises,
-    // Physics.
-    TorquesAreTheSumOfTheirTerms, ComponentsEqualTheSingleMethods, TorquesAreLinearInAcceleration,
-    CoriolisTorquesAreQuadraticInVelocity, GravityTorquesAreProportionalToGravity,
-    GravityPointsDownByDefault, GravityTorquesHaveASymmetricJacobian,
-    PhysicalInertiaIsSymmetricPositiveDefinite, PowerIsTheRateOfKineticEnergy,
-    FrictionCanBeSwitchedOff, FrictionIsFiniteAtAnyVelocity, FrictionDoesNoPositiveWork,
-    MotorCurrentsTimesDriveGainsAreTorques,
-    // Capabilities.
-    CapabilitiesRefuseWrongSizes, TipJacobianIsTheDerivativeOfTheTipPose,
-    TipJacobianDerivativeIsItsRate, WrenchAddsItsPowerPerVelocity, NanInAWrenchGivesNan,
-    CoriolisMatrixIsThatOfChristoffelsSymbols, RateOfInertiaIsTheCoriolisMatrixPlusItsTranspose,
-    EnergyGrowsWithThePowerOfTheTorques, TorqueDerivativesAreThoseOfTheTorques,
-    TorqueDerivativesIncludeFriction, TorqueDeviationIsOneOfEachJointOrUnknown,
-    RegressorTimesParametersAreTheTorques, AccelerationsInvertTorques,
-    // Bodies and gravity that change.
-    BodiesAddWhatEachAddsAlone, NumbersDependOnTheBodiesThatAreThereAlone,
-    BodyEqualsAFixedLinkOfTheDescription, BodyOfParametersEqualsOneThatIsSet,
-    ImpossibleBodyIsRefusedAndNothingChanges, InertiaWithABodyIsAsPhysicalAsWithout,
-    GravityThatIsSetEqualsThatOfInitialize, UninitializedSolverRefusesBodiesAndGravity,
-    CallsWithABodyNeitherAllocateNorMakeASystemCall,
-    ThreadsThatComputeWhileTheRobotChangesGetOldOrNewNumbers,
-    ThreadsThatShareABatchComputeWithOneRobot);
-
-REGISTER_TYPED_TEST_SUITE_P(SolverAlone, FirstErrorOfAProcessIsReported);
-
-}  // namespace inverse_dynamics_solver::conformance
-
 /// Runs all tests for the solver that `traits` describes, under the name `prefix`.
-#define INVERSE_DYNAMICS_SOLVER_CONFORMANCE(prefix, traits)            \
-  using inverse_dynamics_solver::conformance::SolverAlone;             \
-  using inverse_dynamics_solver::conformance::SolverConformance;       \
-  INSTANTIATE_TYPED_TEST_SUITE_P(prefix, SolverConformance, traits, ); \
-  INSTANTIATE_TYPED_TEST_SUITE_P(prefix, SolverAlone, traits, )
+#define INVERSE_DYNAMICS_SOLVER_CONFORMANCE(prefix, traits)                             \
+  using inverse_dynamics_solver::conformance::SolverAlone;                              \
+  using inverse_dynamics_solver::conformance::SolverConformance;                        \
+  INSTANTIATE_TEST_SUITE_P(                                                             \
+      prefix, SolverConformance,                                                        \
+      ::testing::Values(inverse_dynamics_solver::conformance::testedSolver<traits>())); \
+  INSTANTIATE_TEST_SUITE_P(                                                             \
+      prefix, SolverAlone,                                                              \
+      ::testing::Values(inverse_dynamics_solver::conformance::testedSolver<traits>()))

@@ -181,8 +181,8 @@ inline Matrices ofState(const CapabilityMethod& method, const Matrices& results,
   return all;
 }
 
-TYPED_TEST_P(SolverConformance, BatchOfWrongShapeIsRefused) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, BatchOfWrongShapeIsRefused) {
+  const InverseDynamicsSolver& s = *solver_;
   const Eigen::Index n = s.jointCount(), count = n + 2;
   const Eigen::MatrixXd ok = Eigen::MatrixXd::Zero(n, count), no = ok.leftCols(n + 1);
   Eigen::MatrixXd short_out(n, n + 1), short_H(n, count * n - 1);
@@ -196,10 +196,10 @@ TYPED_TEST_P(SolverConformance, BatchOfWrongShapeIsRefused) {
   errorOf<SizeMismatchException>([&] { s.getGravityVectorBatch(ok.transpose()); });
 }
 
-TYPED_TEST_P(SolverConformance, FrictionWithoutPositionsIsTheSameOrRefused) {
-  const InverseDynamicsSolver& s = *this->solver_;
-  const Eigen::MatrixXd q = this->randomColumns(3);
-  const Eigen::MatrixXd qd = this->randomColumns(3);
+TEST_P(SolverConformance, FrictionWithoutPositionsIsTheSameOrRefused) {
+  const InverseDynamicsSolver& s = *solver_;
+  const Eigen::MatrixXd q = randomColumns(3);
+  const Eigen::MatrixXd qd = randomColumns(3);
   const Eigen::VectorXd none;
   if (s.frictionDependsOnPosition()) {
     for (const auto& call : std::vector<std::function<void()>>{
@@ -219,11 +219,11 @@ TYPED_TEST_P(SolverConformance, FrictionWithoutPositionsIsTheSameOrRefused) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, BatchEqualsSingleCalls) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, BatchEqualsSingleCalls) {
+  const InverseDynamicsSolver& s = *solver_;
   const Eigen::Index n = s.jointCount();
   for (const int count : {0, 1, 7}) {
-    const std::vector<State> states = this->randomStates(count);
+    const std::vector<State> states = randomStates(count);
     Eigen::MatrixXd q(n, count), qd(n, count), qdd(n, count);
     for (int k = 0; k < count; ++k) {
       q.col(k) = states[static_cast<std::size_t>(k)].q;
@@ -272,11 +272,11 @@ TYPED_TEST_P(SolverConformance, BatchEqualsSingleCalls) {
 }
 
 /// Rows, columns, gaps: a layout is where numbers stand, not what they are.
-TYPED_TEST_P(SolverConformance, BatchesOfAnyLayoutGiveTheBitsOfColumns) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, BatchesOfAnyLayoutGiveTheBitsOfColumns) {
+  const InverseDynamicsSolver& s = *solver_;
   for (const Eigen::Index count : {1, 11}) {
-    const Eigen::MatrixXd q = this->randomColumns(count), qd = this->randomColumns(count),
-                          qdd = this->randomColumns(count);
+    const Eigen::MatrixXd q = randomColumns(count), qd = randomColumns(count),
+                          qdd = randomColumns(count);
     const std::vector<BatchLayout> layouts = batchLayouts();
     const auto expected = batchResults(s, layouts.front(), q, qd, qdd);
     for (const BatchLayout& layout : layouts) {
@@ -290,14 +290,14 @@ TYPED_TEST_P(SolverConformance, BatchesOfAnyLayoutGiveTheBitsOfColumns) {
 }
 
 /// Of a pool of one workspace (`max_threads`) too, where a solver has a pool.
-TYPED_TEST_P(SolverConformance, ThreadsThatShareABatchGiveTheBitsOfOne) {
+TEST_P(SolverConformance, ThreadsThatShareABatchGiveTheBitsOfOne) {
   const Eigen::Index count = 3 * 2048 + 7;  // enough for three threads, and no multiple
-  const Eigen::MatrixXd q = this->randomColumns(count), qd = this->randomColumns(count),
-                        qdd = this->randomColumns(count);
+  const Eigen::MatrixXd q = randomColumns(count), qd = randomColumns(count),
+                        qdd = randomColumns(count);
   const BatchLayout rows = batchLayouts()[1];
-  const auto expected = batchResults(*this->solver_, rows, q, qd, qdd);
+  const auto expected = batchResults(*solver_, rows, q, qd, qdd);
   for (const int threads : {2, 3, 4096}) {
-    const auto solver = this->makeInitialized({{"batch_threads", threads}, {"max_threads", 1}});
+    const auto solver = makeInitialized({{"batch_threads", threads}, {"max_threads", 1}});
     const auto results = batchResults(*solver, rows, q, qd, qdd);
     for (std::size_t i = 0; i < results.size(); ++i) {
       EXPECT_TRUE(identical(results[i], expected[i])) << threads << " threads: quantity " << i;

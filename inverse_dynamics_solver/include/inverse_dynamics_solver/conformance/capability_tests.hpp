@@ -24,8 +24,8 @@ inline Eigen::VectorXd moved(const State& x, double time) { return x.q + time * 
 /// A step in time in which all joints together move by kDifferenceStep.
 inline double timeStep(const State& x) { return kDifferenceStep / x.qd.cwiseAbs().sum(); }
 
-TYPED_TEST_P(SolverConformance, CapabilitiesRefuseWrongSizes) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, CapabilitiesRefuseWrongSizes) {
+  const InverseDynamicsSolver& s = *solver_;
   const Eigen::Index n = s.jointCount();
   const auto refuses = [&](const CapabilityMethod& method, const std::function<void()>& call) {
     const std::string error = errorOf<SizeMismatchException>(call);
@@ -70,10 +70,10 @@ TYPED_TEST_P(SolverConformance, CapabilitiesRefuseWrongSizes) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, TipJacobianIsTheDerivativeOfTheTipPose) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, TipJacobianIsTheDerivativeOfTheTipPose) {
+  const InverseDynamicsSolver& s = *solver_;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Kinematics, kinematics);
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const Eigen::MatrixXd J = kinematics->getTipJacobian(x.q);
     const auto pose = kinematics->getTipPose(x.q);
@@ -96,10 +96,10 @@ TYPED_TEST_P(SolverConformance, TipJacobianIsTheDerivativeOfTheTipPose) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, TipJacobianDerivativeIsItsRate) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, TipJacobianDerivativeIsItsRate) {
+  const InverseDynamicsSolver& s = *solver_;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Kinematics, kinematics);
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const auto J = [&](double time) { return kinematics->getTipJacobian(moved(x, time)); };
     const double size = sizeOf(J(0.0)) * x.qd.cwiseAbs().sum();
@@ -108,12 +108,12 @@ TYPED_TEST_P(SolverConformance, TipJacobianDerivativeIsItsRate) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, WrenchAddsItsPowerPerVelocity) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, WrenchAddsItsPowerPerVelocity) {
+  const InverseDynamicsSolver& s = *solver_;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(ExternalWrench, contact);
   Eigen::Matrix<double, 6, 1> w;
   w << kWrenchInRoot.force, kWrenchInRoot.torque;
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const Eigen::VectorXd external = contact->getExternalTorques(x.q, kWrenchInRoot);
     const Eigen::VectorXd tau = s.getTorques(x.q, x.qd, x.qdd);
@@ -135,10 +135,10 @@ TYPED_TEST_P(SolverConformance, WrenchAddsItsPowerPerVelocity) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, NanInAWrenchGivesNan) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, NanInAWrenchGivesNan) {
+  const InverseDynamicsSolver& s = *solver_;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(ExternalWrench, contact);
-  const State x = this->randomState();
+  const State x = randomState();
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Vector3d WrenchInRoot::*half : {&WrenchInRoot::force, &WrenchInRoot::torque}) {
       WrenchInRoot unit, nan;
@@ -153,11 +153,11 @@ TYPED_TEST_P(SolverConformance, NanInAWrenchGivesNan) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, CoriolisMatrixIsThatOfChristoffelsSymbols) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, CoriolisMatrixIsThatOfChristoffelsSymbols) {
+  const InverseDynamicsSolver& s = *solver_;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(CoriolisMatrix, coriolis);
   const Eigen::Index n = s.jointCount();
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const Eigen::MatrixXd C = coriolis->getCoriolisMatrix(x.q, x.qd);
     const double size = sizeOf(C) * sizeOf(x.qd);
@@ -174,14 +174,14 @@ TYPED_TEST_P(SolverConformance, CoriolisMatrixIsThatOfChristoffelsSymbols) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, RateOfInertiaIsTheCoriolisMatrixPlusItsTranspose) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, RateOfInertiaIsTheCoriolisMatrixPlusItsTranspose) {
+  const InverseDynamicsSolver& s = *solver_;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(CoriolisMatrix, coriolis);
-  const Eigen::MatrixXd H = s.getInertiaMatrix(this->randomState().q);
+  const Eigen::MatrixXd H = s.getInertiaMatrix(randomState().q);
   if (!near(H, H.transpose(), kRounding, sizeOf(H))) {
     GTEST_SKIP() << "the inertia matrix of this solver isn't symmetric";
   }
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const auto inertia = [&](double time) { return s.getInertiaMatrix(moved(x, time)); };
     const Eigen::MatrixXd C = coriolis->getCoriolisMatrix(x.q, x.qd);
@@ -190,11 +190,11 @@ TYPED_TEST_P(SolverConformance, RateOfInertiaIsTheCoriolisMatrixPlusItsTranspose
   }
 }
 
-TYPED_TEST_P(SolverConformance, EnergyGrowsWithThePowerOfTheTorques) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, EnergyGrowsWithThePowerOfTheTorques) {
+  const InverseDynamicsSolver& s = *solver_;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Energies, energies);
   if (!s.inertiaIsPhysical()) {
-    const State x = this->randomState();
+    const State x = randomState();
     for (const auto& call :
          std::vector<std::function<void()>>{[&] { energies->getKineticEnergy(x.q, x.qd); },
                                             [&] { energies->getPotentialEnergy(x.q); },
@@ -204,7 +204,7 @@ TYPED_TEST_P(SolverConformance, EnergyGrowsWithThePowerOfTheTorques) {
     }
     return;
   }
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const double T = energies->getKineticEnergy(x.q, x.qd);
     const Eigen::MatrixXd H = s.getInertiaMatrix(x.q);
@@ -224,17 +224,17 @@ TYPED_TEST_P(SolverConformance, EnergyGrowsWithThePowerOfTheTorques) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, TorqueDerivativesAreThoseOfTheTorques) {
-  const InverseDynamicsSolver& own = *this->solver_;
+TEST_P(SolverConformance, TorqueDerivativesAreThoseOfTheTorques) {
+  const InverseDynamicsSolver& own = *solver_;
   if (dynamic_cast<const TorqueDerivatives*>(&own) == nullptr) {
     GTEST_SKIP() << "this solver has no TorqueDerivatives";
   }
   // Without friction, whose laws may be steeper than a difference can tell.
-  const auto smooth = this->makeInitialized({{"friction", false}});
+  const auto smooth = makeInitialized({{"friction", false}});
   const InverseDynamicsSolver& s = *smooth;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(TorqueDerivatives, derivatives);
   const Eigen::Index n = s.jointCount();
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const auto [by_q, by_qd, by_qdd] = derivatives->getTorqueDerivatives(x.q, x.qd, x.qdd);
     const double size = sizeOf(s.getTorques(x.q, x.qd, x.qdd)) + sizeOf(by_q) + sizeOf(by_qd) +
@@ -254,13 +254,13 @@ TYPED_TEST_P(SolverConformance, TorqueDerivativesAreThoseOfTheTorques) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, TorqueDerivativesIncludeFriction) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, TorqueDerivativesIncludeFriction) {
+  const InverseDynamicsSolver& s = *solver_;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(TorqueDerivatives, derivatives);
-  const auto smooth = this->makeInitialized({{"friction", false}});
+  const auto smooth = makeInitialized({{"friction", false}});
   const auto& without = dynamic_cast<const TorqueDerivatives&>(*smooth);
   const Eigen::Index n = s.jointCount();
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const auto [q_with, qd_with, qdd_with] = derivatives->getTorqueDerivatives(x.q, x.qd, x.qdd);
     const auto [q_without, qd_without, qdd_without] =
@@ -288,8 +288,8 @@ TYPED_TEST_P(SolverConformance, TorqueDerivativesIncludeFriction) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, TorqueDeviationIsOneOfEachJointOrUnknown) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, TorqueDeviationIsOneOfEachJointOrUnknown) {
+  const InverseDynamicsSolver& s = *solver_;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(TorqueDeviation, band);
   const Eigen::Index n = s.jointCount();
   Eigen::VectorXd deviation(n), wrong(n + 1);
@@ -304,35 +304,35 @@ TYPED_TEST_P(SolverConformance, TorqueDeviationIsOneOfEachJointOrUnknown) {
     const std::string error = errorOf<Exception>([&] { band->getTorqueDeviation(); });
     EXPECT_TRUE(contains(error, {"getTorqueDeviation", "torque_deviation"}));
   }
-  const auto fresh = this->make();
+  const auto fresh = make();
   const auto& uninitialized = dynamic_cast<const TorqueDeviation&>(*fresh);
   errorOf<UninitializedException>([&] { uninitialized.hasTorqueDeviation(); });
   errorOf<UninitializedException>([&] { uninitialized.getTorqueDeviation(); });
   errorOf<UninitializedException>([&] { uninitialized.seenRanges(); });
 }
 
-TYPED_TEST_P(SolverConformance, RegressorTimesParametersAreTheTorques) {
-  const auto own = this->makeInitialized({{"friction", false}});
+TEST_P(SolverConformance, RegressorTimesParametersAreTheTorques) {
+  const auto own = makeInitialized({{"friction", false}});
   const InverseDynamicsSolver& s = *own;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Regressor, bodies);
-  if (TypeParam::robotDescription().empty() || !s.inertiaIsPhysical()) {
+  if (GetParam().robotDescription().empty() || !s.inertiaIsPhysical()) {
     GTEST_SKIP() << "this solver doesn't compute with the bodies of a robot description";
   }
   const chain_dynamics::Chain chain = chainFromDescription(
-      readConfiguration(TypeParam::parameters(), "", TypeParam::robotDescription()));
+      readConfiguration(GetParam().parameters(), "", GetParam().robotDescription()));
   const Eigen::VectorXd p = chain_dynamics::parameters(chain);
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const Eigen::VectorXd tau = s.getTorques(x.q, x.qd, x.qdd);
     EXPECT_TRUE(near(bodies->getRegressor(x.q, x.qd, x.qdd) * p, tau, kRounding, sizeOf(tau)));
   }
 }
 
-TYPED_TEST_P(SolverConformance, AccelerationsInvertTorques) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, AccelerationsInvertTorques) {
+  const InverseDynamicsSolver& s = *solver_;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(ForwardDynamics, forward);
   if (!s.inertiaIsPhysical()) {
-    const State x = this->randomState();
+    const State x = randomState();
     for (const auto& call : std::vector<std::function<void()>>{
              [&] { forward->getAccelerations(x.q, x.qd, x.qdd); },
              [&] { forward->getAccelerationsBatch(x.q, x.qd, x.qdd); }}) {
@@ -340,7 +340,7 @@ TYPED_TEST_P(SolverConformance, AccelerationsInvertTorques) {
     }
     return;
   }
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const Eigen::VectorXd tau = s.getTorques(x.q, x.qd, x.qdd);
     const Eigen::VectorXd qdd = forward->getAccelerations(x.q, x.qd, tau);

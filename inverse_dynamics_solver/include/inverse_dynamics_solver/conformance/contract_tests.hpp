@@ -16,31 +16,31 @@
 
 namespace inverse_dynamics_solver::conformance {
 
-TYPED_TEST_P(SolverConformance, JointNamesAreDistinctAndCounted) {
-  const std::vector<std::string>& names = this->solver_->jointNames();
-  EXPECT_GT(this->solver_->jointCount(), 0);
-  EXPECT_EQ(static_cast<Eigen::Index>(names.size()), this->solver_->jointCount());
+TEST_P(SolverConformance, JointNamesAreDistinctAndCounted) {
+  const std::vector<std::string>& names = solver_->jointNames();
+  EXPECT_GT(solver_->jointCount(), 0);
+  EXPECT_EQ(static_cast<Eigen::Index>(names.size()), solver_->jointCount());
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).count(""), 0U);
 }
 
-TYPED_TEST_P(SolverConformance, ResultsHaveTheSizesOfTheRobotAndAreFinite) {
-  const Eigen::Index n = this->solver_->jointCount();
-  const State x = this->randomState();
-  EXPECT_EQ(this->solver_->getInertiaMatrix(x.q).rows(), n);
-  EXPECT_EQ(this->solver_->getInertiaMatrix(x.q).cols(), n);
-  EXPECT_EQ(this->solver_->getCoriolisVector(x.q, x.qd).size(), n);
-  EXPECT_EQ(this->solver_->getFrictionVector(x.q, x.qd).size(), n);
-  EXPECT_EQ(this->solver_->getGravityVector(x.q).size(), n);
-  EXPECT_EQ(this->solver_->getTorques(x.q, x.qd, x.qdd).size(), n);
-  for (const Quantity& quantity : allQuantities(*this->solver_, n)) {
-    EXPECT_TRUE(quantity.value(*this->solver_, x).allFinite()) << quantity.name << toString(x);
+TEST_P(SolverConformance, ResultsHaveTheSizesOfTheRobotAndAreFinite) {
+  const Eigen::Index n = solver_->jointCount();
+  const State x = randomState();
+  EXPECT_EQ(solver_->getInertiaMatrix(x.q).rows(), n);
+  EXPECT_EQ(solver_->getInertiaMatrix(x.q).cols(), n);
+  EXPECT_EQ(solver_->getCoriolisVector(x.q, x.qd).size(), n);
+  EXPECT_EQ(solver_->getFrictionVector(x.q, x.qd).size(), n);
+  EXPECT_EQ(solver_->getGravityVector(x.q).size(), n);
+  EXPECT_EQ(solver_->getTorques(x.q, x.qd, x.qdd).size(), n);
+  for (const Quantity& quantity : allQuantities(*solver_, n)) {
+    EXPECT_TRUE(quantity.value(*solver_, x).allFinite()) << quantity.name << toString(x);
   }
 }
 
-TYPED_TEST_P(SolverConformance, UninitializedSolverRefusesEveryMethod) {
-  const auto solver = this->make();
-  const State x = this->randomState();
+TEST_P(SolverConformance, UninitializedSolverRefusesEveryMethod) {
+  const auto solver = make();
+  const State x = randomState();
   EXPECT_FALSE(solver->isInitialized());
   for (const Quantity& quantity : allQuantities(*solver, x.q.size())) {
     const std::string error = errorOf<UninitializedException>([&] { quantity.value(*solver, x); });
@@ -52,8 +52,8 @@ TYPED_TEST_P(SolverConformance, UninitializedSolverRefusesEveryMethod) {
   errorOf<UninitializedException>([&] { solver->getTorquesBatch(x.q, x.qd, x.qdd); });
 }
 
-TYPED_TEST_P(SolverConformance, WrongSizeIsRefusedNamingArgumentExpectedAndGot) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, WrongSizeIsRefusedNamingArgumentExpectedAndGot) {
+  const InverseDynamicsSolver& s = *solver_;
   const Eigen::Index n = s.jointCount();
   const Eigen::VectorXd ok = Eigen::VectorXd::Zero(n);
   for (const Eigen::Index size : {Eigen::Index{0}, n - 1, n + 1}) {
@@ -93,10 +93,10 @@ TYPED_TEST_P(SolverConformance, WrongSizeIsRefusedNamingArgumentExpectedAndGot) 
   }
 }
 
-TYPED_TEST_P(SolverConformance, ResultsByValueEqualResultsInMemoryOfTheCaller) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, ResultsByValueEqualResultsInMemoryOfTheCaller) {
+  const InverseDynamicsSolver& s = *solver_;
   const Eigen::Index n = s.jointCount();
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     // A stale entry would show: the memory is filled with NaN before each call.
     const Eigen::VectorXd nan =
@@ -131,10 +131,10 @@ TYPED_TEST_P(SolverConformance, ResultsByValueEqualResultsInMemoryOfTheCaller) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, CallsIntoMemoryOfTheCallerDoNotAllocate) {
+TEST_P(SolverConformance, CallsIntoMemoryOfTheCallerDoNotAllocate) {
   if (!kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted in this build";
-  const InverseDynamicsSolver& s = *this->solver_;
-  const State x = this->randomState();
+  const InverseDynamicsSolver& s = *solver_;
+  const State x = randomState();
   const Eigen::Index n = s.jointCount();
   Eigen::MatrixXd H(n, n);
   Eigen::VectorXd c(n), f(n), g(n), tau(n);
@@ -162,17 +162,17 @@ TYPED_TEST_P(SolverConformance, CallsIntoMemoryOfTheCallerDoNotAllocate) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, ManyThreadsGetTheNumbersOfOne) {
+TEST_P(SolverConformance, ManyThreadsGetTheNumbersOfOne) {
   constexpr int kThreads = 8;
   constexpr int kRounds = 20;
-  const std::vector<State> states = this->randomStates(32);
-  const std::vector<Quantity> all = allQuantities(*this->solver_, this->solver_->jointCount());
+  const std::vector<State> states = randomStates(32);
+  const std::vector<Quantity> all = allQuantities(*solver_, solver_->jointCount());
 
   // What one thread computes.
   std::vector<Eigen::VectorXd> expected;
   for (const State& x : states) {
     for (const Quantity& quantity : all) {
-      expected.push_back(quantity.value(*this->solver_, x));
+      expected.push_back(quantity.value(*solver_, x));
     }
   }
 
@@ -184,7 +184,7 @@ TYPED_TEST_P(SolverConformance, ManyThreadsGetTheNumbersOfOne) {
     for (std::size_t i = 0; i < states.size() * kRounds; ++i) {
       const std::size_t k = (i + 4 * thread) % states.size();
       for (std::size_t j = 0; j < all.size(); ++j) {
-        const Eigen::VectorXd value = all[j].value(*this->solver_, states[k]);
+        const Eigen::VectorXd value = all[j].value(*solver_, states[k]);
         if (!identical(value, expected[k * all.size() + j])) ++different;
       }
     }
@@ -196,14 +196,14 @@ TYPED_TEST_P(SolverConformance, ManyThreadsGetTheNumbersOfOne) {
 }
 
 /// For each input number: the entries that change with it must become NaN with it.
-TYPED_TEST_P(SolverConformance, NanGoesToEveryEntryThatDependsOnIt) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, NanGoesToEveryEntryThatDependsOnIt) {
+  const InverseDynamicsSolver& s = *solver_;
   for (const Quantity& quantity : allQuantities(s, s.jointCount())) {
     for (Eigen::VectorXd State::*argument : {&State::q, &State::qd, &State::qdd}) {
       for (Eigen::Index j = 0; j < s.jointCount(); ++j) {
         using Flags = Eigen::Array<bool, Eigen::Dynamic, 1>;
         Flags depends, is_nan;
-        for (const State& x : this->randomStates(4)) {
+        for (const State& x : randomStates(4)) {
           const Eigen::VectorXd value = quantity.value(s, x);
           State changed = x, spoilt = x;
           (changed.*argument)[j] += 0.7;

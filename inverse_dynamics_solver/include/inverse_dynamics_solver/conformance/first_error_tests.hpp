@@ -12,9 +12,7 @@
 namespace inverse_dynamics_solver::conformance {
 
 /// No fixture: the first solver of the process is that of the test.
-template <class Traits>
-class SolverAlone : public ::testing::Test {};
-TYPED_TEST_SUITE_P(SolverAlone);
+class SolverAlone : public ::testing::TestWithParam<TestedSolver> {};
 
 /// Ends the process: status 0 if initialize() throws an error with a text, whole.
 ///
@@ -31,12 +29,12 @@ TYPED_TEST_SUITE_P(SolverAlone);
   std::exit(text.empty() ? 1 : 0);
 }
 
-TYPED_TEST_P(SolverAlone, FirstErrorOfAProcessIsReported) {
+TEST_P(SolverAlone, FirstErrorOfAProcessIsReported) {
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";  // each in a process of its own
-  for (const auto& [changed, description] : mistakes<TypeParam>()) {
-    ParameterMap parameters = TypeParam::parameters();
+  for (const auto& [changed, description] : mistakes(GetParam())) {
+    ParameterMap parameters = GetParam().parameters();
     for (const auto& [name, value] : changed) parameters[name] = value;
-    EXPECT_EXIT(exitWithFirstError(TypeParam::kPlugin, parameters, description),
+    EXPECT_EXIT(exitWithFirstError(GetParam().plugin, parameters, description),
                 ::testing::ExitedWithCode(0), ".");
   }
 }

@@ -22,10 +22,9 @@ inline std::vector<Eigen::VectorXd> fingerprint(const InverseDynamicsSolver& sol
 
 /// Arguments with which initialize() must throw: what differs from the traits' parameters, and the
 /// robot description.
-template <class Traits>
-std::vector<std::pair<ParameterMap, std::string>> mistakes() {
-  const std::string description = Traits::robotDescription();
-  auto result = Traits::badInitializations();
+inline std::vector<std::pair<ParameterMap, std::string>> mistakes(const TestedSolver& tested) {
+  const std::string description = tested.robotDescription();
+  auto result = tested.badInitializations();
   result.push_back({{{"gravity", std::vector<double>{1.0, 2.0}}}, description});
   result.push_back({{{"gravity", std::string("down")}}, description});
   result.push_back({{{"friction", std::string("maybe")}}, description});
@@ -38,37 +37,37 @@ std::vector<std::pair<ParameterMap, std::string>> mistakes() {
   return result;
 }
 
-TYPED_TEST_P(SolverConformance, FailedInitializeLeavesTheSolverAsItWas) {
-  const std::vector<State> states = this->randomStates(kStates);
-  const std::vector<Eigen::VectorXd> before = fingerprint(*this->solver_, states);
-  const std::vector<std::string> names = this->solver_->jointNames();
+TEST_P(SolverConformance, FailedInitializeLeavesTheSolverAsItWas) {
+  const std::vector<State> states = randomStates(kStates);
+  const std::vector<Eigen::VectorXd> before = fingerprint(*solver_, states);
+  const std::vector<std::string> names = solver_->jointNames();
 
   // Each mistake with other parameters that would change the numbers.
-  for (const auto& [changed, text] : mistakes<TypeParam>()) {
-    ParameterMap parameters = TypeParam::parameters();
+  for (const auto& [changed, text] : mistakes(GetParam())) {
+    ParameterMap parameters = GetParam().parameters();
     parameters["gravity"] = std::vector<double>{1.0, -2.0, 3.0};
     for (const auto& [name, value] : changed) parameters[name] = value;
-    EXPECT_THROW(this->solver_->initialize(parameters, "", text), Exception);
+    EXPECT_THROW(solver_->initialize(parameters, "", text), Exception);
 
-    EXPECT_TRUE(this->solver_->isInitialized());
-    EXPECT_EQ(this->solver_->jointNames(), names);
-    const std::vector<Eigen::VectorXd> after = fingerprint(*this->solver_, states);
+    EXPECT_TRUE(solver_->isInitialized());
+    EXPECT_EQ(solver_->jointNames(), names);
+    const std::vector<Eigen::VectorXd> after = fingerprint(*solver_, states);
     for (std::size_t i = 0; i < before.size(); ++i) EXPECT_TRUE(identical(before[i], after[i]));
 
     // And a solver that never was initialized isn't after that.
-    const auto fresh = this->make();
+    const auto fresh = make();
     EXPECT_THROW(fresh->initialize(parameters, "", text), Exception);
     EXPECT_FALSE(fresh->isInitialized());
   }
 }
 
-TYPED_TEST_P(SolverConformance, UnknownParameterIsAWarningOrARefusal) {
-  const std::string description = TypeParam::robotDescription();
-  const std::vector<State> states = this->randomStates(kStates);
-  const std::vector<Eigen::VectorXd> before = fingerprint(*this->solver_, states);
-  ParameterMap parameters = TypeParam::parameters();
+TEST_P(SolverConformance, UnknownParameterIsAWarningOrARefusal) {
+  const std::string description = GetParam().robotDescription();
+  const std::vector<State> states = randomStates(kStates);
+  const std::vector<Eigen::VectorXd> before = fingerprint(*solver_, states);
+  ParameterMap parameters = GetParam().parameters();
   parameters["gravty"] = std::vector<double>{1.0, -2.0, 3.0};
-  const auto warned = this->make(), fresh = this->make();
+  const auto warned = make(), fresh = make();
   warned->initialize(parameters, "", description);
   const std::vector<std::string>& warnings = warned->warnings();
   EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(),
@@ -79,14 +78,14 @@ TYPED_TEST_P(SolverConformance, UnknownParameterIsAWarningOrARefusal) {
 
   // Refused, with other parameters that would change the numbers: nothing has changed.
   parameters["gravity"] = std::vector<double>{1.0, -2.0, 3.0};
-  for (InverseDynamicsSolver* solver : {this->solver_.get(), fresh.get()}) {
+  for (InverseDynamicsSolver* solver : {solver_.get(), fresh.get()}) {
     const std::string error = errorOf<InvalidParameterValueException>(
         [&] { solver->initialize(Parameters(parameters).strict(), "", description); });
     EXPECT_TRUE(contains(error, {"'gravty'", "did you mean 'gravity'?"}));
   }
   EXPECT_FALSE(fresh->isInitialized());
-  ASSERT_TRUE(this->solver_->isInitialized());
-  const std::vector<Eigen::VectorXd> after = fingerprint(*this->solver_, states);
+  ASSERT_TRUE(solver_->isInitialized());
+  const std::vector<Eigen::VectorXd> after = fingerprint(*solver_, states);
   for (std::size_t i = 0; i < before.size(); ++i) EXPECT_TRUE(identical(before[i], after[i]));
 
   // What the solver knows it takes.
@@ -94,12 +93,12 @@ TYPED_TEST_P(SolverConformance, UnknownParameterIsAWarningOrARefusal) {
   EXPECT_NO_THROW(fresh->initialize(Parameters(parameters).strict(), "", description));
 }
 
-TYPED_TEST_P(SolverConformance, InitializingAgainTakesEffect) {
-  const std::vector<State> states = this->randomStates(kStates);
-  const std::vector<Eigen::VectorXd> before = fingerprint(*this->solver_, states);
-  this->initialize(*this->solver_, {{"gravity", std::vector<double>{3.0, -2.0, 1.0}}});
-  const std::vector<Eigen::VectorXd> other = fingerprint(*this->solver_, states);
-  const auto fresh = this->makeInitialized({{"gravity", std::vector<double>{3.0, -2.0, 1.0}}});
+TEST_P(SolverConformance, InitializingAgainTakesEffect) {
+  const std::vector<State> states = randomStates(kStates);
+  const std::vector<Eigen::VectorXd> before = fingerprint(*solver_, states);
+  initialize(*solver_, {{"gravity", std::vector<double>{3.0, -2.0, 1.0}}});
+  const std::vector<Eigen::VectorXd> other = fingerprint(*solver_, states);
+  const auto fresh = makeInitialized({{"gravity", std::vector<double>{3.0, -2.0, 1.0}}});
   const std::vector<Eigen::VectorXd> expected = fingerprint(*fresh, states);
   bool changed = false;
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -109,45 +108,45 @@ TYPED_TEST_P(SolverConformance, InitializingAgainTakesEffect) {
   EXPECT_TRUE(changed) << "the new gravity has no effect";
 
   // Back to the first parameters, back to the first numbers.
-  this->initialize(*this->solver_);
-  const std::vector<Eigen::VectorXd> after = fingerprint(*this->solver_, states);
+  initialize(*solver_);
+  const std::vector<Eigen::VectorXd> after = fingerprint(*solver_, states);
   for (std::size_t i = 0; i < before.size(); ++i) EXPECT_TRUE(identical(before[i], after[i]));
 }
 
-TYPED_TEST_P(SolverConformance, ParametersAreReadBelowTheNamespace) {
+TEST_P(SolverConformance, ParametersAreReadBelowTheNamespace) {
   const ParameterMap changed = {{"gravity", std::vector<double>{3.0, -2.0, 1.0}}};
   ParameterMap parameters, elsewhere;
-  for (const auto& [name, value] : TypeParam::parameters()) parameters["arm.ids." + name] = value;
+  for (const auto& [name, value] : GetParam().parameters()) parameters["arm.ids." + name] = value;
   elsewhere = parameters;
   for (const auto& [name, value] : changed) parameters["arm.ids." + name] = value;
   for (const auto& [name, value] : changed) elsewhere[name] = value;  // not below: no effect
 
-  const auto solver = this->make(), untouched = this->make();
-  solver->initialize(parameters, "arm.ids", TypeParam::robotDescription());
-  untouched->initialize(elsewhere, "arm.ids", TypeParam::robotDescription());
-  const State x = this->randomState();
-  EXPECT_TRUE(identical(solver->getGravityVector(x.q),
-                        this->makeInitialized(changed)->getGravityVector(x.q)));
-  EXPECT_TRUE(identical(untouched->getGravityVector(x.q), this->solver_->getGravityVector(x.q)));
+  const auto solver = make(), untouched = make();
+  solver->initialize(parameters, "arm.ids", GetParam().robotDescription());
+  untouched->initialize(elsewhere, "arm.ids", GetParam().robotDescription());
+  const State x = randomState();
+  EXPECT_TRUE(
+      identical(solver->getGravityVector(x.q), makeInitialized(changed)->getGravityVector(x.q)));
+  EXPECT_TRUE(identical(untouched->getGravityVector(x.q), solver_->getGravityVector(x.q)));
 }
 
-TYPED_TEST_P(SolverConformance, RobotDescriptionComesFromArgumentOrParameter) {
-  const std::string description = TypeParam::robotDescription();
+TEST_P(SolverConformance, RobotDescriptionComesFromArgumentOrParameter) {
+  const std::string description = GetParam().robotDescription();
   if (description.empty()) GTEST_SKIP() << "this solver needs no robot description";
 
   // Absent: the error says where it may come from.
-  const auto solver = this->make();
+  const auto solver = make();
   const std::string error = errorOf<ParameterUninitializedException>(
-      [&] { solver->initialize(TypeParam::parameters(), "", ""); });
+      [&] { solver->initialize(GetParam().parameters(), "", ""); });
   EXPECT_TRUE(contains(error, {"robot description", "'robot_description'", "third argument"}));
 
   // From the parameter, which has no namespace; the argument goes before it.
   ParameterMap parameters;
-  for (const auto& [name, value] : TypeParam::parameters()) parameters["ids." + name] = value;
+  for (const auto& [name, value] : GetParam().parameters()) parameters["ids." + name] = value;
   parameters["robot_description"] = description;
   solver->initialize(parameters, "ids");
-  const State x = this->randomState();
-  const Eigen::VectorXd expected = this->solver_->getTorques(x.q, x.qd, x.qdd);
+  const State x = randomState();
+  const Eigen::VectorXd expected = solver_->getTorques(x.q, x.qd, x.qdd);
   EXPECT_TRUE(identical(solver->getTorques(x.q, x.qd, x.qdd), expected));
   parameters["robot_description"] = std::string("<robot name='broken'");
   solver->initialize(parameters, "ids", description);

@@ -21,9 +21,9 @@ Eigen::MatrixXd derivative(const F& f, double h) {
   return (outer + 8 * inner) / (12 * h);
 }
 
-TYPED_TEST_P(SolverConformance, TorquesAreTheSumOfTheirTerms) {
-  const InverseDynamicsSolver& s = *this->solver_;
-  for (const State& x : this->randomStates(kStates)) {
+TEST_P(SolverConformance, TorquesAreTheSumOfTheirTerms) {
+  const InverseDynamicsSolver& s = *solver_;
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const Eigen::VectorXd inertial = s.getInertiaMatrix(x.q) * x.qdd;
     const Eigen::VectorXd c = s.getCoriolisVector(x.q, x.qd), f = s.getFrictionVector(x.q, x.qd);
@@ -33,9 +33,9 @@ TYPED_TEST_P(SolverConformance, TorquesAreTheSumOfTheirTerms) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, ComponentsEqualTheSingleMethods) {
-  const InverseDynamicsSolver& s = *this->solver_;
-  for (const State& x : this->randomStates(kStates)) {
+TEST_P(SolverConformance, ComponentsEqualTheSingleMethods) {
+  const InverseDynamicsSolver& s = *solver_;
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const auto [H, c, g] = s.getDynamicComponents(x.q, x.qd);
     EXPECT_TRUE(near(H, s.getInertiaMatrix(x.q), kRounding, sizeOf(H)));
@@ -44,11 +44,11 @@ TYPED_TEST_P(SolverConformance, ComponentsEqualTheSingleMethods) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, TorquesAreLinearInAcceleration) {
-  const InverseDynamicsSolver& s = *this->solver_;
-  for (const State& x : this->randomStates(kStates)) {
+TEST_P(SolverConformance, TorquesAreLinearInAcceleration) {
+  const InverseDynamicsSolver& s = *solver_;
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
-    const Eigen::VectorXd other = this->randomVector(TypeParam::kAcceleration);
+    const Eigen::VectorXd other = randomVector(GetParam().acceleration);
     const Eigen::VectorXd rest = s.getTorques(x.q, x.qd, 0 * x.qdd);
     const Eigen::VectorXd one = s.getTorques(x.q, x.qd, x.qdd) - rest;
     const Eigen::VectorXd two = s.getTorques(x.q, x.qd, other) - rest;
@@ -58,9 +58,9 @@ TYPED_TEST_P(SolverConformance, TorquesAreLinearInAcceleration) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, CoriolisTorquesAreQuadraticInVelocity) {
-  const InverseDynamicsSolver& s = *this->solver_;
-  for (const State& x : this->randomStates(kStates)) {
+TEST_P(SolverConformance, CoriolisTorquesAreQuadraticInVelocity) {
+  const InverseDynamicsSolver& s = *solver_;
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const Eigen::VectorXd c = s.getCoriolisVector(x.q, x.qd);
     EXPECT_TRUE(near(s.getCoriolisVector(x.q, -3 * x.qd), 9 * c, kRounding, 9 * sizeOf(c)));
@@ -68,13 +68,13 @@ TYPED_TEST_P(SolverConformance, CoriolisTorquesAreQuadraticInVelocity) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, GravityTorquesAreProportionalToGravity) {
+TEST_P(SolverConformance, GravityTorquesAreProportionalToGravity) {
   using Gravity = std::vector<double>;
-  const auto none = this->makeInitialized({{"gravity", Gravity{0, 0, 0}}});
-  const auto a = this->makeInitialized({{"gravity", Gravity{1, 2, -3}}});
-  const auto b = this->makeInitialized({{"gravity", Gravity{-2, 0, 7}}});
-  const auto sum = this->makeInitialized({{"gravity", Gravity{2 * 1 - 2, 2 * 2 + 0, 2 * -3 + 7}}});
-  for (const State& x : this->randomStates(kStates)) {
+  const auto none = makeInitialized({{"gravity", Gravity{0, 0, 0}}});
+  const auto a = makeInitialized({{"gravity", Gravity{1, 2, -3}}});
+  const auto b = makeInitialized({{"gravity", Gravity{-2, 0, 7}}});
+  const auto sum = makeInitialized({{"gravity", Gravity{2 * 1 - 2, 2 * 2 + 0, 2 * -3 + 7}}});
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const Eigen::VectorXd g_a = a->getGravityVector(x.q), g_b = b->getGravityVector(x.q);
     EXPECT_TRUE(near(none->getGravityVector(x.q), 0 * g_a, 0.0, 1.0)) << "not zero without gravity";
@@ -94,24 +94,24 @@ TYPED_TEST_P(SolverConformance, GravityTorquesAreProportionalToGravity) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, GravityPointsDownByDefault) {
-  ParameterMap parameters = TypeParam::parameters();
+TEST_P(SolverConformance, GravityPointsDownByDefault) {
+  ParameterMap parameters = GetParam().parameters();
   parameters.erase("gravity");
-  const auto by_default = this->make();
-  by_default->initialize(parameters, "", TypeParam::robotDescription());
-  const auto given = this->makeInitialized({{"gravity", std::vector<double>{0, 0, -9.81}}});
-  const State x = this->randomState();
+  const auto by_default = make();
+  by_default->initialize(parameters, "", GetParam().robotDescription());
+  const auto given = makeInitialized({{"gravity", std::vector<double>{0, 0, -9.81}}});
+  const State x = randomState();
   EXPECT_TRUE(identical(by_default->getGravityVector(x.q), given->getGravityVector(x.q)));
 }
 
 /// Where g is the gradient of a potential, its Jacobian is symmetric.
-TYPED_TEST_P(SolverConformance, GravityTorquesHaveASymmetricJacobian) {
-  if (TypeParam::kGravityIsNotConservative != nullptr) {
-    GTEST_SKIP() << TypeParam::kGravityIsNotConservative;
+TEST_P(SolverConformance, GravityTorquesHaveASymmetricJacobian) {
+  if (GetParam().gravity_is_not_conservative != nullptr) {
+    GTEST_SKIP() << GetParam().gravity_is_not_conservative;
   }
-  const InverseDynamicsSolver& s = *this->solver_;
+  const InverseDynamicsSolver& s = *solver_;
   const Eigen::Index n = s.jointCount();
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     Eigen::MatrixXd jacobian(n, n);
     for (Eigen::Index j = 0; j < n; ++j) {
@@ -125,10 +125,10 @@ TYPED_TEST_P(SolverConformance, GravityTorquesHaveASymmetricJacobian) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, PhysicalInertiaIsSymmetricPositiveDefinite) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, PhysicalInertiaIsSymmetricPositiveDefinite) {
+  const InverseDynamicsSolver& s = *solver_;
   if (!s.inertiaIsPhysical()) GTEST_SKIP() << "inertiaIsPhysical() is false for this solver";
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const Eigen::MatrixXd H = s.getInertiaMatrix(x.q);
     EXPECT_TRUE(near(H, H.transpose(), kRounding, sizeOf(H)));
@@ -139,10 +139,10 @@ TYPED_TEST_P(SolverConformance, PhysicalInertiaIsSymmetricPositiveDefinite) {
 
 /// Power of all but gravity and friction = rate of the kinetic energy `1/2 qd' H qd`. With the
 /// inertial torques on both sides taken away: `qd' (C qd) = 1/2 qd' Hdot qd`.
-TYPED_TEST_P(SolverConformance, PowerIsTheRateOfKineticEnergy) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, PowerIsTheRateOfKineticEnergy) {
+  const InverseDynamicsSolver& s = *solver_;
   if (!s.inertiaIsPhysical()) GTEST_SKIP() << "inertiaIsPhysical() is false for this solver";
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const auto later = [&](double time) { return s.getInertiaMatrix(x.q + time * x.qd); };
 
@@ -155,10 +155,10 @@ TYPED_TEST_P(SolverConformance, PowerIsTheRateOfKineticEnergy) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, FrictionCanBeSwitchedOff) {
-  const auto with = this->makeInitialized({{"friction", true}});
-  const auto without = this->makeInitialized({{"friction", false}});
-  for (const State& x : this->randomStates(kStates)) {
+TEST_P(SolverConformance, FrictionCanBeSwitchedOff) {
+  const auto with = makeInitialized({{"friction", true}});
+  const auto without = makeInitialized({{"friction", false}});
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const Eigen::VectorXd f = with->getFrictionVector(x.q, x.qd);
     const Eigen::VectorXd tau = with->getTorques(x.q, x.qd, x.qdd);
@@ -168,19 +168,19 @@ TYPED_TEST_P(SolverConformance, FrictionCanBeSwitchedOff) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, FrictionIsFiniteAtAnyVelocity) {
+TEST_P(SolverConformance, FrictionIsFiniteAtAnyVelocity) {
   for (const double velocity : {0.0, 1.0, 1e3, 1e12, 1e200}) {
-    const Eigen::VectorXd q = this->randomState().q;
+    const Eigen::VectorXd q = randomState().q;
     const Eigen::VectorXd qd = Eigen::VectorXd::Constant(q.size(), velocity);
-    EXPECT_TRUE(this->solver_->getFrictionVector(q, std::as_const(qd)).allFinite()) << velocity;
-    EXPECT_TRUE(this->solver_->getFrictionVector(q, -qd).allFinite()) << -velocity;
+    EXPECT_TRUE(solver_->getFrictionVector(q, std::as_const(qd)).allFinite()) << velocity;
+    EXPECT_TRUE(solver_->getFrictionVector(q, -qd).allFinite()) << -velocity;
   }
 }
 
 /// Friction that is zero at rest takes energy from every motion.
-TYPED_TEST_P(SolverConformance, FrictionDoesNoPositiveWork) {
-  const InverseDynamicsSolver& s = *this->solver_;
-  for (const State& x : this->randomStates(kStates)) {
+TEST_P(SolverConformance, FrictionDoesNoPositiveWork) {
+  const InverseDynamicsSolver& s = *solver_;
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const Eigen::VectorXd at_rest = s.getFrictionVector(x.q, 0 * x.qd);
     const Eigen::VectorXd f = s.getFrictionVector(x.q, std::as_const(x.qd));
@@ -191,14 +191,14 @@ TYPED_TEST_P(SolverConformance, FrictionDoesNoPositiveWork) {
   }
 }
 
-TYPED_TEST_P(SolverConformance, MotorCurrentsTimesDriveGainsAreTorques) {
-  const InverseDynamicsSolver& s = *this->solver_;
+TEST_P(SolverConformance, MotorCurrentsTimesDriveGainsAreTorques) {
+  const InverseDynamicsSolver& s = *solver_;
   const auto* motors = dynamic_cast<const MotorCurrents*>(&s);
   if (motors == nullptr) GTEST_SKIP() << "this solver has no MotorCurrents";
   const Eigen::MatrixXd K = motors->getDriveGainsMatrix();
   ASSERT_EQ(K.rows(), s.jointCount());
   Eigen::VectorXd i(s.jointCount());
-  for (const State& x : this->randomStates(kStates)) {
+  for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const auto equal = [&](const Eigen::MatrixXd& currents, const Eigen::MatrixXd& torques) {
       return near(K * currents, torques, kRounding, sizeOf(torques));
@@ -221,7 +221,7 @@ TYPED_TEST_P(SolverConformance, MotorCurrentsTimesDriveGainsAreTorques) {
   EXPECT_THROW(motors->getCurrents(no, no, no), SizeMismatchException);
   EXPECT_THROW(motors->getInertiaCurrents(no), SizeMismatchException);
   EXPECT_THROW(motors->getFrictionCurrents(no), SizeMismatchException);
-  const auto fresh = this->make();
+  const auto fresh = make();
   EXPECT_THROW(dynamic_cast<const MotorCurrents&>(*fresh).getDriveGainsMatrix(),
                UninitializedException);
 }

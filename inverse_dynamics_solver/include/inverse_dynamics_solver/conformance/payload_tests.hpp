@@ -72,8 +72,8 @@ inline RigidBody pointMass() {
 }
 
 // The capability of the fixture's solver, which a test is about; without it the test is skipped.
-#define INVERSE_DYNAMICS_SOLVER_REQUIRE(Capability, name)                  \
-  Capability* const name = dynamic_cast<Capability*>(this->solver_.get()); \
+#define INVERSE_DYNAMICS_SOLVER_REQUIRE(Capability, name)            \
+  Capability* const name = dynamic_cast<Capability*>(solver_.get()); \
   if (name == nullptr) GTEST_SKIP() << "this solver has no " #Capability
 
 inline ::testing::AssertionResult identicalAll(const std::vector<Eigen::VectorXd>& a,
@@ -88,11 +88,11 @@ inline ::testing::AssertionResult identicalAll(const std::vector<Eigen::VectorXd
   return ::testing::AssertionSuccess();
 }
 
-TYPED_TEST_P(SolverConformance, BodiesAddWhatEachAddsAlone) {
-  this->initialize(*this->solver_, {{"friction", false}});
+TEST_P(SolverConformance, BodiesAddWhatEachAddsAlone) {
+  initialize(*solver_, {{"friction", false}});
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Payload, payload);
-  const std::vector<State> states = this->randomStates(kStates);
-  const auto now = [&] { return fingerprint(*this->solver_, states); };
+  const std::vector<State> states = randomStates(kStates);
+  const auto now = [&] { return fingerprint(*solver_, states); };
   const auto none = now();
   payload->setPayload("tool", tool());
   const auto one = now();
@@ -111,10 +111,10 @@ TYPED_TEST_P(SolverConformance, BodiesAddWhatEachAddsAlone) {
   EXPECT_TRUE(changed) << "the bodies have no effect";
 }
 
-TYPED_TEST_P(SolverConformance, NumbersDependOnTheBodiesThatAreThereAlone) {
+TEST_P(SolverConformance, NumbersDependOnTheBodiesThatAreThereAlone) {
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Payload, payload);
-  const std::vector<State> states = this->randomStates(kStates);
-  const auto now = [&] { return fingerprint(*this->solver_, states); };
+  const std::vector<State> states = randomStates(kStates);
+  const auto now = [&] { return fingerprint(*solver_, states); };
   const auto none = now();
   EXPECT_FALSE(payload->removePayload("tool"));
 
@@ -141,56 +141,55 @@ TYPED_TEST_P(SolverConformance, NumbersDependOnTheBodiesThatAreThereAlone) {
 
   // Those of initialize() are the parameters'.
   payload->setPayload("tool", tool());
-  this->initialize(*this->solver_);
+  initialize(*solver_);
   EXPECT_TRUE(payload->payloads().empty());
   EXPECT_TRUE(identicalAll(now(), none));
 }
 
 /// The link that the last joint moves, in the description; empty without one.
-template <class Traits>
-std::string lastLink(const InverseDynamicsSolver& solver) {
-  if (Traits::robotDescription().empty()) return "";
+inline std::string lastLink(const TestedSolver& tested, const InverseDynamicsSolver& solver) {
+  if (tested.robotDescription().empty()) return "";
   try {
-    const auto robot = chain_dynamics::robotFromUrdf(Traits::robotDescription());
+    const auto robot = chain_dynamics::robotFromUrdf(tested.robotDescription());
     return robot.links[robot.joints[robot.jointIndex(solver.jointNames().back())].child].name;
   } catch (const std::exception&) {
     return "";
   }
 }
 
-TYPED_TEST_P(SolverConformance, BodyEqualsAFixedLinkOfTheDescription) {
+TEST_P(SolverConformance, BodyEqualsAFixedLinkOfTheDescription) {
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Payload, payload);
-  const std::string link = lastLink<TypeParam>(*this->solver_);
+  const std::string link = lastLink(GetParam(), *solver_);
   if (link.empty()) GTEST_SKIP() << "this solver needs no robot description";
-  const std::vector<State> states = this->randomStates(kStates);
-  ParameterMap parameters = TypeParam::parameters();
+  const std::vector<State> states = randomStates(kStates);
+  ParameterMap parameters = GetParam().parameters();
   parameters["tip"] = link;
-  const auto described = this->make();
-  described->initialize(parameters, "", withToolAsLink(TypeParam::robotDescription(), link));
+  const auto described = make();
+  described->initialize(parameters, "", withToolAsLink(GetParam().robotDescription(), link));
   const auto expected = fingerprint(*described, states);
 
-  this->initialize(*this->solver_, {{"tip", link}});
+  initialize(*solver_, {{"tip", link}});
   payload->setPayload("tool", tool());
-  const auto found = fingerprint(*this->solver_, states);
+  const auto found = fingerprint(*solver_, states);
   for (std::size_t i = 0; i < found.size(); ++i) {
     EXPECT_TRUE(near(found[i], expected[i], kFixedLink, sizeOf(expected[i])))
         << quantities()[i % quantities().size()].name;
   }
 }
 
-TYPED_TEST_P(SolverConformance, BodyOfParametersEqualsOneThatIsSet) {
+TEST_P(SolverConformance, BodyOfParametersEqualsOneThatIsSet) {
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Payload, payload);
-  const std::vector<State> states = this->randomStates(kStates);
-  const auto none = fingerprint(*this->solver_, states);
+  const std::vector<State> states = randomStates(kStates);
+  const auto none = fingerprint(*solver_, states);
   payload->setPayload("payload", tool());
   const RigidBody body = payload->payloads().at("payload");
-  const auto expected = fingerprint(*this->solver_, states);
+  const auto expected = fingerprint(*solver_, states);
 
-  const std::string description = TypeParam::robotDescription();
+  const std::string description = GetParam().robotDescription();
   for (const std::string name : {"", "gripper."}) {
-    ParameterMap parameters = TypeParam::parameters();
+    ParameterMap parameters = GetParam().parameters();
     for (const auto& [key, value] : toolParameters("payload." + name)) parameters[key] = value;
-    const auto solver = this->make();
+    const auto solver = make();
     solver->initialize(Parameters(parameters).strict(), "", description);
     auto& stated = dynamic_cast<Payload&>(*solver);
     ASSERT_EQ(stated.payloads().size(), 1U);
@@ -206,11 +205,11 @@ TYPED_TEST_P(SolverConformance, BodyOfParametersEqualsOneThatIsSet) {
     // A name that is misspelt, with the one that is meant.
     parameters["payload." + name + "centre_of_mass"] = std::vector<double>{0, 0, 0};
     const std::string error = errorOf<InvalidParameterValueException>(
-        [&] { this->solver_->initialize(Parameters(parameters).strict(), "", description); });
+        [&] { solver_->initialize(Parameters(parameters).strict(), "", description); });
     EXPECT_TRUE(contains(error, {"'payload." + name + "centre_of_mass'",
                                  "did you mean 'payload." + name + "center_of_mass'?"}));
   }
-  EXPECT_TRUE(identicalAll(fingerprint(*this->solver_, states), expected)) << "changed by an error";
+  EXPECT_TRUE(identicalAll(fingerprint(*solver_, states), expected)) << "changed by an error";
 }
 
 /// A body that can't be, and the part of the message that names what is wrong.
@@ -237,11 +236,11 @@ inline std::vector<ImpossibleBody> impossibleBodies() {
           {"rotation", [](RigidBody& b) { b.frame.R = -b.frame.R; }}};
 }
 
-TYPED_TEST_P(SolverConformance, ImpossibleBodyIsRefusedAndNothingChanges) {
+TEST_P(SolverConformance, ImpossibleBodyIsRefusedAndNothingChanges) {
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Payload, payload);
   payload->setPayload("tool", pointMass());
-  const std::vector<State> states = this->randomStates(2);
-  const auto before = fingerprint(*this->solver_, states);
+  const std::vector<State> states = randomStates(2);
+  const auto before = fingerprint(*solver_, states);
   for (const ImpossibleBody& impossible : impossibleBodies()) {
     RigidBody body = tool();
     impossible.spoil(body);
@@ -253,7 +252,7 @@ TYPED_TEST_P(SolverConformance, ImpossibleBodyIsRefusedAndNothingChanges) {
     errorOf<InvalidParameterValueException>([&] { payload->setPayload(name, tool()); });
   }
   EXPECT_EQ(payload->payloads(), (Payloads{{"tool", pointMass()}}));
-  EXPECT_TRUE(identicalAll(fingerprint(*this->solver_, states), before));
+  EXPECT_TRUE(identicalAll(fingerprint(*solver_, states), before));
 
   // By parameters: initialize() changes nothing.
   const std::vector<std::pair<std::string, ParameterValue>> mistakes = {
@@ -267,44 +266,43 @@ TYPED_TEST_P(SolverConformance, ImpossibleBodyIsRefusedAndNothingChanges) {
     ParameterMap parameters = {{"payload.mass", 1.0}, {"gravity", std::vector<double>{1, 2, 3}}};
     parameters[name] = value;
     const std::string error = errorOf<InvalidParameterValueException>(
-        [&, &changed = parameters] { this->initialize(*this->solver_, changed); });
+        [&, &changed = parameters] { initialize(*solver_, changed); });
     EXPECT_TRUE(contains(error, {"parameter '" + name + "'", "expected", "got"}));
   }
   const std::string error = errorOf<ParameterUninitializedException>([&] {
-    this->initialize(*this->solver_,
-                     {{"payload.part.center_of_mass", std::vector<double>{0, 0, 1}}});
+    initialize(*solver_, {{"payload.part.center_of_mass", std::vector<double>{0, 0, 1}}});
   });
   EXPECT_TRUE(contains(error, {"'payload.part.mass'"}));
-  EXPECT_TRUE(identicalAll(fingerprint(*this->solver_, states), before));
+  EXPECT_TRUE(identicalAll(fingerprint(*solver_, states), before));
 
   // No body has to have mass.
   EXPECT_NO_THROW(payload->setPayload("tool", RigidBody{}));
   EXPECT_NO_THROW(payload->setPayload("tool", RigidBody{2.0}));
 }
 
-TYPED_TEST_P(SolverConformance, InertiaWithABodyIsAsPhysicalAsWithout) {
+TEST_P(SolverConformance, InertiaWithABodyIsAsPhysicalAsWithout) {
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Payload, payload);
-  const bool physical = this->solver_->inertiaIsPhysical();
+  const bool physical = solver_->inertiaIsPhysical();
   payload->setPayload("tool", tool());
-  EXPECT_EQ(this->solver_->inertiaIsPhysical(), physical);
+  EXPECT_EQ(solver_->inertiaIsPhysical(), physical);
   if (!physical) return;
-  for (const State& x : this->randomStates(kStates)) {
-    const Eigen::MatrixXd H = this->solver_->getInertiaMatrix(x.q);
+  for (const State& x : randomStates(kStates)) {
+    const Eigen::MatrixXd H = solver_->getInertiaMatrix(x.q);
     EXPECT_TRUE(near(H, H.transpose(), kRounding, sizeOf(H))) << toString(x);
     EXPECT_EQ(H.llt().info(), Eigen::Success) << toString(x);
   }
 }
 
-TYPED_TEST_P(SolverConformance, GravityThatIsSetEqualsThatOfInitialize) {
+TEST_P(SolverConformance, GravityThatIsSetEqualsThatOfInitialize) {
   INVERSE_DYNAMICS_SOLVER_REQUIRE(VariableGravity, mount);
-  const std::vector<State> states = this->randomStates(kStates);
-  const auto now = [&] { return fingerprint(*this->solver_, states); };
+  const std::vector<State> states = randomStates(kStates);
+  const auto now = [&] { return fingerprint(*solver_, states); };
   const auto before = now();
   const Eigen::Vector3d first = mount->gravity(), other(3.0, -2.0, 1.0), a(0.3, 0.7, -1.1);
   EXPECT_EQ(mount->baseAcceleration(), Eigen::Vector3d::Zero());
 
   mount->setGravity(other);
-  const auto fresh = this->makeInitialized({{"gravity", std::vector<double>{3.0, -2.0, 1.0}}});
+  const auto fresh = makeInitialized({{"gravity", std::vector<double>{3.0, -2.0, 1.0}}});
   EXPECT_TRUE(identicalAll(now(), fingerprint(*fresh, states)));
   EXPECT_FALSE(identicalAll(now(), before)) << "gravity has no effect";
 
@@ -333,10 +331,10 @@ TYPED_TEST_P(SolverConformance, GravityThatIsSetEqualsThatOfInitialize) {
   EXPECT_TRUE(identicalAll(now(), before));
 }
 
-TYPED_TEST_P(SolverConformance, UninitializedSolverRefusesBodiesAndGravity) {
+TEST_P(SolverConformance, UninitializedSolverRefusesBodiesAndGravity) {
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Payload, ignored);
   (void)ignored;
-  const auto solver = this->make();
+  const auto solver = make();
   auto& payload = dynamic_cast<Payload&>(*solver);
   const auto refused = [](const char* method, const std::function<void()>& call) {
     EXPECT_TRUE(contains(errorOf<UninitializedException>(call), {method, "initialize()"}));
@@ -353,11 +351,11 @@ TYPED_TEST_P(SolverConformance, UninitializedSolverRefusesBodiesAndGravity) {
   refused("baseAcceleration", [&] { mount->baseAcceleration(); });
 }
 
-TYPED_TEST_P(SolverConformance, CallsWithABodyNeitherAllocateNorMakeASystemCall) {
+TEST_P(SolverConformance, CallsWithABodyNeitherAllocateNorMakeASystemCall) {
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Payload, payload);
   payload->setPayload("tool", tool());
-  const std::vector<State> states = this->randomStates(kStates);
-  CallsOfALoop calls(*this->solver_);
+  const std::vector<State> states = randomStates(kStates);
+  CallsOfALoop calls(*solver_);
   const SystemCalls found = runWithoutSystemCalls([&] {
     for (const State& x : states) calls(x);
   });
@@ -391,11 +389,11 @@ inline std::vector<Eigen::VectorXd> resultsOf(const InverseDynamicsSolver& solve
 }
 
 /// Each result is that of one robot, whole: which, changes in between.
-TYPED_TEST_P(SolverConformance, ThreadsThatComputeWhileTheRobotChangesGetOldOrNewNumbers) {
+TEST_P(SolverConformance, ThreadsThatComputeWhileTheRobotChangesGetOldOrNewNumbers) {
   constexpr int kThreads = 8, kRounds = 40;
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Payload, payload);
-  auto* const mount = dynamic_cast<VariableGravity*>(this->solver_.get());
-  const std::vector<State> states = this->randomStates(12);
+  auto* const mount = dynamic_cast<VariableGravity*>(solver_.get());
+  const std::vector<State> states = randomStates(12);
   const Eigen::Vector3d other_gravity(3.0, -2.0, 1.0);
 
   // One change after the other; the last one leads back to the first robot.
@@ -411,7 +409,7 @@ TYPED_TEST_P(SolverConformance, ThreadsThatComputeWhileTheRobotChangesGetOldOrNe
   for (int twice = 0; twice < 2; ++twice) {
     for (const auto& change : changes) {
       change();
-      robots.push_back(resultsOf(*this->solver_, states));
+      robots.push_back(resultsOf(*solver_, states));
     }
   }
 
@@ -419,7 +417,7 @@ TYPED_TEST_P(SolverConformance, ThreadsThatComputeWhileTheRobotChangesGetOldOrNe
   std::atomic<long> mixed{0}, results{0};
   const auto work = [&] {
     while (!done) {
-      const std::vector<Eigen::VectorXd> found = resultsOf(*this->solver_, states);
+      const std::vector<Eigen::VectorXd> found = resultsOf(*solver_, states);
       for (std::size_t i = 0; i < found.size(); ++i) {
         bool whole = false;
         for (const auto& robot : robots) whole = whole || identical(found[i], robot[i]);
@@ -441,13 +439,13 @@ TYPED_TEST_P(SolverConformance, ThreadsThatComputeWhileTheRobotChangesGetOldOrNe
   EXPECT_EQ(mixed, 0) << "of " << results << ": a call computes with a mixture of two robots";
 }
 
-TYPED_TEST_P(SolverConformance, ThreadsThatShareABatchComputeWithOneRobot) {
+TEST_P(SolverConformance, ThreadsThatShareABatchComputeWithOneRobot) {
   constexpr int kRounds = 20;
-  this->initialize(*this->solver_, {{"batch_threads", 4}});
+  initialize(*solver_, {{"batch_threads", 4}});
   INVERSE_DYNAMICS_SOLVER_REQUIRE(Payload, payload);
   const Eigen::Index count = 4 * 2048;  // parts for four threads
-  const Eigen::MatrixXd q = this->randomColumns(16).replicate(1, count / 16);
-  const auto torques = [&] { return flat(this->solver_->getTorquesBatch(q, q, q)); };
+  const Eigen::MatrixXd q = randomColumns(16).replicate(1, count / 16);
+  const auto torques = [&] { return flat(solver_->getTorquesBatch(q, q, q)); };
   payload->setPayload("part", tool());
   const Eigen::VectorXd one = torques();
   payload->setPayload("part", pointMass());

@@ -51,13 +51,13 @@ class CallsOfALoop {
 };
 
 /// The very first calls count too: the solver is a fresh one.
-TYPED_TEST_P(SolverConformance, CallsIntoMemoryOfTheCallerMakeNoSystemCall) {
+TEST_P(SolverConformance, CallsIntoMemoryOfTheCallerMakeNoSystemCall) {
   const SystemCalls proof = runWithoutSystemCalls([] { getppid(); });
   if (proof == SystemCalls::kNotKnown) GTEST_SKIP() << "system calls can't be forbidden here";
   ASSERT_EQ(proof, SystemCalls::kMade) << "a system call isn't seen";
 
-  const std::vector<State> states = this->randomStates(kStates);
-  CallsOfALoop calls(*this->solver_);
+  const std::vector<State> states = randomStates(kStates);
+  CallsOfALoop calls(*solver_);
   const SystemCalls found = runWithoutSystemCalls([&] {
     for (const State& x : states) calls(x);
   });
@@ -84,13 +84,13 @@ unsigned denormalFlagsOf(const Code& code) {
 
 /// Some processors take a hundred times as long for such numbers. At rest, and between 1e-100 and
 /// 1e9 rad/s, none arises; a filter that decays beyond that must be cut off by its owner.
-TYPED_TEST_P(SolverConformance, NoDenormalNumberArises) {
+TEST_P(SolverConformance, NoDenormalNumberArises) {
 #ifdef __SSE2__
   volatile double smallest = std::numeric_limits<double>::min();
   ASSERT_NE(denormalFlagsOf([&] { smallest = smallest / 3.0; }), 0U) << "the flags aren't set";
 
-  CallsOfALoop calls(*this->solver_);
-  for (const State& x : this->randomStates(kStates)) {
+  CallsOfALoop calls(*solver_);
+  for (const State& x : randomStates(kStates)) {
     for (const double position : {0.0, 1.0}) {
       for (const double motion : {0.0, 1e-100, 1e-9, 1.0, 1e3, 1e9}) {
         const State scaled = {position * x.q, motion * x.qd, motion * x.qdd};

@@ -71,6 +71,32 @@ struct SolverTraits {
   static std::vector<std::pair<ParameterMap, std::string>> badInitializations() { return {}; }
 };
 
+/// The same as values, which the tests are given: they are compiled once for all solvers.
+struct TestedSolver {
+  const char* plugin;
+  ParameterMap (*parameters)();
+  std::string (*robotDescription)();
+  std::vector<std::pair<ParameterMap, std::string>> (*badInitializations)();
+  const char* gravity_is_not_conservative;
+  double position, velocity, acceleration;
+};
+
+template <class Traits>
+TestedSolver testedSolver() {
+  return {Traits::kPlugin,
+          &Traits::parameters,
+          &Traits::robotDescription,
+          &Traits::badInitializations,
+          Traits::kGravityIsNotConservative,
+          Traits::kPosition,
+          Traits::kVelocity,
+          Traits::kAcceleration};
+}
+
+inline std::ostream& operator<<(std::ostream& stream, const TestedSolver& solver) {
+  return stream << solver.plugin;
+}
+
 /// Joint state; what each quantity depends on.
 struct State {
   Eigen::VectorXd q, qd, qdd;
@@ -185,8 +211,7 @@ inline ::testing::AssertionResult contains(const std::string& text,
 }
 
 /// Fixture: a loaded solver, initialized as its traits say.
-template <class Traits>
-class SolverConformance : public ::testing::Test {
+class SolverConformance : public ::testing::TestWithParam<TestedSolver> {
  protected:
   void SetUp() override {
     solver_ = make();
@@ -196,14 +221,14 @@ class SolverConformance : public ::testing::Test {
   /// A new solver, not initialized.
   static std::shared_ptr<InverseDynamicsSolver> make() {
     static const SolverLoader loader;
-    return loader.load(Traits::kPlugin);
+    return loader.load(GetParam().plugin);
   }
 
   /// Initializes with the parameters of the traits and, in their place, those given.
   static void initialize(InverseDynamicsSolver& solver, const ParameterMap& changed = {}) {
-    ParameterMap parameters = Traits::parameters();
+    ParameterMap parameters = GetParam().parameters();
     for (const auto& [name, value] : changed) parameters[name] = value;
-    solver.initialize(parameters, "", Traits::robotDescription());
+    solver.initialize(parameters, "", GetParam().robotDescription());
   }
 
   /// The same as a new solver.
@@ -223,15 +248,15 @@ class SolverConformance : public ::testing::Test {
   /// n x count, a state a column, of numbers that are small enough for a velocity.
   Eigen::MatrixXd randomColumns(Eigen::Index count) {
     Eigen::MatrixXd result(solver_->jointCount(), count);
-    for (Eigen::Index k = 0; k < count; ++k) result.col(k) = randomVector(Traits::kVelocity);
+    for (Eigen::Index k = 0; k < count; ++k) result.col(k) = randomVector(GetParam().velocity);
     return result;
   }
 
   State randomState() {
     State state;
-    state.q = randomVector(Traits::kPosition);
-    state.qd = randomVector(Traits::kVelocity);
-    state.qdd = randomVector(Traits::kAcceleration);
+    state.q = randomVector(GetParam().position);
+    state.qd = randomVector(GetParam().velocity);
+    state.qdd = randomVector(GetParam().acceleration);
     return state;
   }
 
@@ -244,7 +269,5 @@ class SolverConformance : public ::testing::Test {
   std::shared_ptr<InverseDynamicsSolver> solver_;
   std::mt19937 random_{4711};  // fixed: a failure can be repeated
 };
-
-TYPED_TEST_SUITE_P(SolverConformance);
 
 }  // namespace inverse_dynamics_solver::conformance
