@@ -136,6 +136,17 @@ void check(Index joints, const std::vector<ArmSamples>& blocks) {
   if (samples == 0) throw ModelError("ArmFitter: expected samples, got none");
 }
 
+void check(Index joints, const ArmFit& fit) {
+  const bool fits = fit.parameters.rows() == 10 && fit.parameters.cols() == joints &&
+                    fit.rotor_inertia.size() == joints &&
+                    static_cast<Index>(fit.friction.size()) == joints;
+  if (!fits) {
+    throw ModelError("ArmFitter: fit", "parameters, rotor_inertia, friction",
+                     "those of " + std::to_string(joints) + " joints",
+                     "of " + std::to_string(fit.parameters.cols()), "fit the same arm");
+  }
+}
+
 /// The fits that take turns with passes over the samples.
 class Rounds {
  public:
@@ -342,12 +353,22 @@ Chain ArmFitter::withLinks(const OwnedMatrix& parameters, const OwnedVector* rot
 ArmFit ArmFitter::fit(const std::vector<ArmSamples>& blocks, const ArmFitOptions& options,
                       const ArmFit* start) const {
   check(chain_.jointCount(), blocks);
+  if (start != nullptr) check(chain_.jointCount(), *start);
+  if (options.most_passes < 1) {
+    throw ModelError("ArmFitter: options", "most_passes", "1 or more",
+                     std::to_string(options.most_passes), "");
+  }
   return Rounds(*this, blocks, options).run(start);
 }
 
 ArmInformation ArmFitter::information(const ArmFit& fit, const std::vector<ArmSamples>& blocks,
                                       const ArmFitOptions& options) const {
   check(chain_.jointCount(), blocks);
+  check(chain_.jointCount(), fit);
+  if (fit.noise.size() != chain_.jointCount()) {
+    throw ModelError("ArmFitter: fit", "noise", std::to_string(chain_.jointCount()) + " numbers",
+                     std::to_string(fit.noise.size()), "take a fit to samples");
+  }
   const Fit linear = linearPart(fit, options.terms);
   RegressorGram all(chain_.jointCount(), linear.own.rows());
   VectorXd x(all.unknowns());
@@ -400,6 +421,7 @@ void ArmFitter::addToGram(const ArmFit& fit, const ArmSamples& samples, Regresso
 void ArmFitter::torques(const ArmFit& fit, ConstStates q, ConstStates qd, ConstStates qdd,
                         States tau) const {
   const Index n = chain_.jointCount();
+  check(n, fit);
   const FastModel model(Model(withLinks(fit.parameters, &fit.rotor_inertia)), fast_);
   model.torquesBatch(q, qd, qdd, tau);
   MatrixXd gravity(n, kBatch);

@@ -235,5 +235,23 @@ TEST(ArmFitter, RefusesSamplesThatDoNotFit) {
   EXPECT_THROW(fitter.fit({samplesOf(broken)}, {}), chain_dynamics::ModelError);
 }
 
+TEST(ArmFitter, RefusesAFitOfAnotherArm) {
+  const ArmFitter fitter(threeJointArm());
+  const Motion motion = measured(FrictionTerms::kStep, 100, 1);
+  const ArmFit fit = fitter.fit({samplesOf(motion)}, {});
+  ArmFit other = fit;
+  other.friction.pop_back();
+  Eigen::MatrixXd tau(3, 100);
+  EXPECT_THROW(fitter.fit({samplesOf(motion)}, {}, &other), chain_dynamics::ModelError);
+  EXPECT_THROW(fitter.torques(other, motion.q, motion.qd, motion.qdd, tau),
+               chain_dynamics::ModelError);
+  other = fit;
+  other.noise.resize(0);
+  EXPECT_THROW(fitter.information(other, {samplesOf(motion)}, {}), chain_dynamics::ModelError);
+  ArmFitOptions none;
+  none.most_passes = 0;
+  EXPECT_THROW(fitter.fit({samplesOf(motion)}, none), chain_dynamics::ModelError);
+}
+
 }  // namespace
 }  // namespace inverse_dynamics_identification

@@ -148,6 +148,8 @@ def _block(recording, model, q, qd, qdd, stamps, measured, part) -> HeldOutBlock
         recording=recording.name,
         time=(stamps[part] - stamps[0]) * 1e-9,
         q=q[part],
+        qd=qd[part],
+        counts=np.full(len(q[part]), True),
         measured=measured[part],
         computed={
             "urdf": engine().regressor(*states) @ engine().parameters,

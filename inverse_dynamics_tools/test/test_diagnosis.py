@@ -12,7 +12,14 @@ import pytest
 from simulation_arms import CHAINS, urdf_of
 
 from inverse_dynamics import Solver, evaluate, read_joint_log, write_joint_logs
-from inverse_dynamics.evaluation.diagnosis import PAGE, ArmModel, Samples, diagnose, pieces_of
+from inverse_dynamics.evaluation.diagnosis import (
+    PAGE,
+    ArmModel,
+    Samples,
+    diagnose,
+    pieces_of,
+    residual_cause,
+)
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 NOISE = 0.005  # of each joint's range
@@ -225,6 +232,37 @@ def test_wrong_inertia_alone_is_no_mistake_of_the_page(arm, scale):
 
     found = diagnose(recorded(name, other), model)
     assert found is None or found.kind in ("payload", "tool", "friction")
+
+
+def test_an_effort_that_is_not_measured_shows_no_coupling(arm):
+    _, samples, model = arm
+    states = (samples.flat(values) for values in (samples.q, samples.qd, samples.qdd))
+    computed = model.torques(*states)
+    for j in range(len(samples.joints)):
+        measured = samples.measured.copy()
+        measured[..., j] = 0.0
+        found = residual_cause(replace(samples, measured=measured), computed)
+        assert found is None or found.kind != "coupling"
+
+
+@pytest.mark.parametrize("cycles", [0.5, 1.0])
+def test_wrong_masses_in_a_slow_motion_are_no_drift(arm, cycles):
+    """Gravity that the model gets wrong changes with time, as friction of a warming gear does."""
+    name, _, model = arm
+    joints = solver_of(name).joint_names
+    time, w = np.arange(4000) / 200, 2 * np.pi * cycles / 20
+    random = np.random.default_rng(1)
+    for _ in range(20):
+        phase, a = random.uniform(0, 6, len(joints)), random.uniform(0.3, 1.0, len(joints))
+        q, qd, qdd = (
+            a * size * wave(w * time[:, None] + phase)
+            for size, wave in ((1.0, np.sin), (w, np.cos), (-(w**2), np.sin))
+        )
+        center = random.uniform(-0.2, 0.2, 3)
+        samples = pieces_of(joints, time, q, qd, qdd, model.loaded(6.0, center)(q, qd, qdd))
+        states = (samples.flat(values) for values in (samples.q, samples.qd, samples.qdd))
+        found = residual_cause(samples, model.torques(*states))
+        assert found is None or found.kind != "drift"
 
 
 def test_few_samples_have_none():

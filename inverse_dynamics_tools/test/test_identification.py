@@ -290,3 +290,8 @@ def test_no_recording_and_no_description_are_refused(known, tmp_path):
     with pytest.raises(IdentificationError, match="expected a description"):
         identify([tmp_path], replace(known.robot, urdf=None))
     assert issubclass(IdentificationError, EvaluationError)
+
+
+def test_a_recording_that_is_given_twice_is_refused(known, tmp_path):
+    with pytest.raises(IdentificationError, match="expected each recording once"):
+        identify([tmp_path, tmp_path / "."], known.robot)

@@ -17,6 +17,8 @@ from inverse_dynamics import Solver, evaluate, write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import OutputError, RobotError, SolverError
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
+from inverse_dynamics.identification.refusals import check_result
+from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.results import identifications
 from inverse_dynamics.results.hold_out import hold_out
 from inverse_dynamics.results.identifications import PLUGIN, write_identification
@@ -280,3 +282,19 @@ def test_a_recording_that_was_held_out_is_a_table_of_its_own(found, tmp_path):
     (figures,) = json.loads(files.figures.read_text())["hold_out"]
     assert figures["rmse"]["urdf"] == test.rmse["urdf"].tolist()
     assert "Error on tuesday" in files.page.read_text()
+
+
+def test_a_recording_that_was_fitted_to_is_not_held_out(found):
+    with pytest.raises(IdentificationError, match="nothing was fitted to"):
+        hold_out(found, found.recordings[0])
+
+
+def test_a_backward_stamp_is_no_obstacle(found):
+    block = found.blocks[0]
+    time = block.time.copy()
+    time[50] = time[20]
+    counts = block.counts.copy()
+    counts[50] = False
+    check_result(
+        replace(found, blocks=(replace(block, time=time, counts=counts), *found.blocks[1:]))
+    )

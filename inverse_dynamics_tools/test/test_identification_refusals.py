@@ -169,7 +169,7 @@ def test_drift(found):
     """Three times as long, so that there is time to warm up."""
 
     def slower(block):
-        return replace(block, time=3 * block.time)
+        return replace(block, time=3 * block.time, qd=block.qd / 3)
 
     slow = replace(found, blocks=tuple(slower(block) for block in found.blocks))
 

@@ -167,7 +167,7 @@ struct NumTraits<chain_dynamics::Dual<T, N>> : NumTraits<T> {
   using Real = chain_dynamics::Dual<T, N>;
   using NonInteger = Real;
   using Nested = Real;
-  using Literal = Real;
+  using Literal = Real;  // NOLINTBEGIN(readability-identifier-naming): Eigen's names
   enum {
     IsComplex = 0,
     IsInteger = 0,
@@ -176,7 +176,7 @@ struct NumTraits<chain_dynamics::Dual<T, N>> : NumTraits<T> {
     ReadCost = (N + 1) * static_cast<int>(NumTraits<T>::ReadCost),
     AddCost = (N + 1) * static_cast<int>(NumTraits<T>::AddCost),
     MulCost = (2 * N + 1) * static_cast<int>(NumTraits<T>::MulCost)
-  };
+  };  // NOLINTEND(readability-identifier-naming)
 };
 
 }  // namespace Eigen

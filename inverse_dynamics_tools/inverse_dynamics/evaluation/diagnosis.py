@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 PAGE = "docs/why_dont_my_torques_match.md"
 
 _MISMATCH = 0.08  # error of a joint, as a share of its measured range, below which a model fits
+_ROUNDING = 1e-9  # the same, of what is explained exactly
 _GAIN = 2.0  # least ratio of errors that makes a hypothesis believable
 _FITS = 0.12  # greatest error that it may leave
 _WORSE = 1.5  # how much worse a single joint may fit because of it
@@ -464,7 +465,7 @@ def _clock(samples: Samples) -> Diagnosis | None:
     left = ((slope - factor * mean) ** 2).sum(axis=0) / np.maximum((slope**2).sum(axis=0), 1e-300)
     middle = float(np.median(factor))
     agree = bool((np.abs(factor - middle) < 0.05 * abs(middle)).all() and (left < 0.1).all())
-    if not agree or abs(np.log(max(middle, 1e-9))) < np.log(1.1):
+    if not agree or middle <= 0 or abs(np.log(middle)) < np.log(1.1):
         return None
     return Diagnosis(
         "clock",
@@ -517,6 +518,8 @@ def _coupling(
     best, least = None, 0.5
     for j in map(int, np.flatnonzero(before > _MISMATCH)):
         masses = _rms(_residual(measured[:, j], computed[:, j], qd[:, j], computed)) / span[j]
+        if masses <= _ROUNDING:
+            continue
         for k in (k for k in range(len(names)) if k != j):
             friction = _friction_columns(qd[:, k])[:, :2]
             more = np.column_stack([computed, friction])
@@ -538,7 +541,10 @@ def _coupling(
 def _drift(
     samples: Samples, measured: Floats, computed: Floats, qd: Floats, span: Floats
 ) -> Diagnosis | None:
-    """Friction or offset that changes along the recording."""
+    """Friction or offset that changes along the recording.
+
+    What wrong masses give of gravity may change with time too, where the motion is slow.
+    """
     time = samples.time.reshape(-1)
     if np.ptp(time) < 15.0:
         return None
@@ -547,8 +553,9 @@ def _drift(
     for j, name in enumerate(samples.joints):
         plain = _residual(measured[:, j], computed[:, j], qd[:, j])
         more = share[:, None] * _friction_columns(qd[:, j])
-        drifting = _residual(measured[:, j], computed[:, j], qd[:, j], more)
-        if _rms(plain) > 0.03 * span[j] and _rms(drifting) < 0.6 * _rms(plain):
+        drifting = _rms(_residual(measured[:, j], computed[:, j], qd[:, j], more))
+        otherwise = _rms(_residual(measured[:, j], computed[:, j], qd[:, j], computed))
+        if _rms(plain) > 0.03 * span[j] and drifting < min(0.6 * _rms(plain), otherwise):
             found.append(name)
     if not found:
         return None

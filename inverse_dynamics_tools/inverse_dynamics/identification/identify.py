@@ -74,6 +74,7 @@ def identify(
     if not isinstance(robot, Robot):
         robot = load_robot(robot)
     description = _description(robot)
+    _check_distinct(recordings)
     evaluations = [evaluate(path, robot, progress=progress, **options) for path in recordings]
     robot = evaluations[0].robot if evaluations else robot
     _check(evaluations)
@@ -91,6 +92,14 @@ def identify(
     found = _result(robot, description, evaluations, fitter, cut, held_out, chosen, seconds)
     check_result(found)
     return found
+
+
+def _check_distinct(recordings: Sequence[Path | str]) -> None:
+    """Of a recording that is given twice, a part would be predicted by a fit to itself."""
+    resolved = [Path(recording).resolve() for recording in recordings]
+    for recording, path in zip(recordings, resolved, strict=True):
+        if resolved.count(path) > 1:
+            raise IdentificationError(f"{recording}: expected each recording once, got it twice")
 
 
 def _description(robot: Robot) -> str:
@@ -153,6 +162,8 @@ def _held_out(
             recording=block.recording,
             time=block.time,
             q=block.q,
+            qd=block.qd,
+            counts=block.counts,
             measured=block.tau,
             computed=computed,
             band=chosen.band,

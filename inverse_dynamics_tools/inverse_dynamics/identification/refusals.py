@@ -66,7 +66,7 @@ def _check_motion(evaluations: Sequence[Evaluation]) -> None:
         raise IdentificationError(
             f"{where}: {listed(still)}: expected every joint to move by {LEAST_TRAVEL:g} rad or more, got less, "
             "so that neither friction nor load of the joint show; record a motion in which it moves "
-            "(`ids excite` makes one), or end the chain before it with --root or --tip in a run configuration"
+            "(`ids excite` makes one), or end the chain before it: `root` and `tip` of a run configuration"
         )
 
 
@@ -110,13 +110,13 @@ def _named(found: Identification) -> str:
 def _cause_of_residuals(found: Identification, blocks: Sequence[HeldOutBlock]) -> Diagnosis | None:
     """What the held-out errors of a recording show: limits, couplings, drift."""
     ordered = sorted(blocks, key=lambda block: float(block.time[0]))
-    time, q, measured, computed = (
-        np.concatenate(parts)
+    time, q, qd, measured, computed = (
+        np.concatenate([values[block.counts] for values, block in zip(parts, ordered, strict=True)])
         for parts in zip(
-            *((b.time, b.q, b.measured, b.computed["identified"]) for b in ordered), strict=True
+            *((b.time, b.q, b.qd, b.measured, b.computed["identified"]) for b in ordered),
+            strict=True,
         )
     )
-    qd = np.gradient(q, np.maximum.accumulate(time + 1e-9 * np.arange(len(time))), axis=0)
     # pieces of what is computed, in the place of accelerations
     samples = pieces_of(found.joints, time, q, qd, computed, measured)
     return None if samples is None else residual_cause(samples, samples.flat(samples.qdd))

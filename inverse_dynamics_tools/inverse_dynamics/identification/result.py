@@ -5,7 +5,7 @@
     print(found.rmse("identified"), found.model.friction[0])
 
 n joints in the order of the chain; rad, rad/s, N m (prismatic m, m/s, N). Errors are root mean
-squares over all samples of the blocks that were held out: each block is predicted by a model that
+squares over the samples that count of the blocks that were held out: each block is predicted by a model that
 was fitted to the others, with everything chosen on the others too.
 """
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.arrays import Floats, Mask
     from inverse_dynamics.robot.robots import Robot
 
 COLUMNS = {
@@ -91,6 +91,8 @@ class HeldOutBlock:
     recording: str
     time: Floats  # (M,) s since the recording's first sample
     q: Floats  # (M, n) rad (prismatic m), for the page
+    qd: Floats  # rad/s (prismatic m/s)
+    counts: Mask  # (M,) samples that errors are of: no repeats, no start transient
     measured: Floats
     computed: Mapping[str, Floats]  # by name of COLUMNS
     band: Floats  # (n,) half the width of the 95 % band of this block, chosen on the others

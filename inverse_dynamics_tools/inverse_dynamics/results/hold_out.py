@@ -16,6 +16,7 @@ import numpy as np
 
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.results.model_files import model_file_text
 from inverse_dynamics.robot.robots import with_changes
 
@@ -52,15 +53,23 @@ def hold_out(
     options: those of evaluate(). Raises UserError.
     """
     recording = Path(recording)
-    described = with_changes(found.robot, plugin=_RIGID_BODY, urdf=found.robot.urdf, friction=False)
-    robots = {"urdf": described}
+    if recording.resolve() in [path.resolve() for path in found.recordings]:
+        raise IdentificationError(
+            f"--hold-out {recording}: expected a recording that nothing was fitted to, got one of those "
+            "that were; give another"
+        )
+    robot, gains = found.robot, found.model.drive_gains
+    if gains is not None:
+        robot = replace(robot, drive_gains=tuple(gains.tolist()))
+    described = replace(robot, plugin=_RIGID_BODY, model=None, friction=False, parameters={})
+    robots = {"urdf": with_changes(described)}
     if "present" in found.held_out:
-        robots["present"] = found.robot
+        robots["present"] = robot
     with tempfile.TemporaryDirectory() as directory:
         model = Path(directory) / "model.yaml"
         model.write_text(model_file_text(found, "identified"), encoding="utf-8")
         robots["identified"] = replace(
-            found.robot, plugin=_RIGID_BODY, model=model, friction=True, parameters={}
+            robot, plugin=_RIGID_BODY, model=model, friction=True, parameters={}
         )
         results = {
             column: evaluate(recording, robot, progress=progress, **options)

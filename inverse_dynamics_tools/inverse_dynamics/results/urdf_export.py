@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.identification.result import Identification
 
+_LOAD_STATES = 2000  # that the mean load of a joint is taken over
 _KEYS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
@@ -187,6 +188,7 @@ def _damping_and_friction(found: Identification) -> list[tuple[float, float]]:
         gravity=robot.gravity or (0.0, 0.0, -9.81),
     )
     q = np.concatenate([block.q for block in found.blocks])
+    q = q[:: max(1, len(q) // _LOAD_STATES)]
     still = np.zeros_like(q)
     gravity = engine.regressor(q, still, still) @ found.model.parameters.ravel()
     load = np.abs(gravity).mean(axis=0)
