@@ -38,7 +38,7 @@ Array numbersOf(const std::string& where, const py::object& object, const std::s
     PyErr_Clear();
     refuse(where, expected, py::str(py::type::handle_of(object).attr("__name__")));
   }
-  const Array array = Array::ensure(given);
+  Array array = Array::ensure(given);
   const std::vector<py::ssize_t> shape(array.shape(), array.shape() + array.ndim());
   for (const auto& allowed : shapes) {
     if (shape == allowed) return array;

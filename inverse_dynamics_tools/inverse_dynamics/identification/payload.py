@@ -139,6 +139,7 @@ def estimate_payload(
         without = evaluate(empty, robot, progress=progress, **options)
         _require_gravity(without)
         alone = empty_run(samples_of(without), solver)
+        _require_motion(samples_of(without), str(without.bag), "without the load")
         phantom = _phantom(fit_payload(samples_of(without), solver, where=str(without.bag)))
     samples = samples_of(evaluation)
     where = str(evaluation.bag)
@@ -271,7 +272,7 @@ def _require_gravity(evaluation: Evaluation) -> None:
     )
 
 
-def _require_motion(samples: Samples, where: str) -> None:
+def _require_motion(samples: Samples, where: str, load: str = "with the load") -> None:
     if len(samples.time) < 2:
         raise PayloadError(f"{where}: expected samples, got {len(samples.time)}; record a motion")
     moving = np.any(np.abs(samples.qd) > _MOVING, axis=1)
@@ -279,7 +280,7 @@ def _require_motion(samples: Samples, where: str) -> None:
     motion = float(np.sum(np.minimum(steps, 10 * np.median(steps))[moving[1:]]))
     if motion < _LEAST_MOTION:
         raise PayloadError(
-            f"{where}: expected at least {_LEAST_MOTION:g} s of motion with the load, got {motion:.2g} s "
+            f"{where}: expected at least {_LEAST_MOTION:g} s of motion {load}, got {motion:.2g} s "
             f"with a joint faster than {_MOVING:g} rad/s; move all joints for a few seconds, the wrist "
             "above all"
         )
@@ -336,6 +337,11 @@ def _phantom(found: Fit) -> list[str]:
 
 def _notes(found: Fit, evaluation: Evaluation) -> list[str]:
     notes = []
+    if "payload.mass" in evaluation.robot.parameters:
+        notes.append(
+            "the load comes on top of the `payload` of the run configuration, which `--payload` would "
+            "replace: give that one a name, as `payload: {tool: {mass: ...}}`"
+        )
     if not found.estimate.inertia_is_known:
         notes.append(
             "inertia: the data don't tell it, so the load is written as a point mass; faster motion of "

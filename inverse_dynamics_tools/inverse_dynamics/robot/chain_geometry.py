@@ -81,12 +81,13 @@ def chain_geometry(
 
 def roll_pitch_yaw(rotation: Floats) -> Floats:
     """(3,) rad of a rotation matrix: R = RotZ(yaw) RotY(pitch) RotX(roll)."""
-    cosine = np.hypot(rotation[0, 0], rotation[1, 0])
-    pitch = np.arctan2(-rotation[2, 0], cosine)
-    if cosine < 1e-12:  # only yaw - roll or yaw + roll counts
-        return np.array([np.arctan2(-rotation[1, 2], rotation[1, 1]), pitch, 0.0])
-    roll = np.arctan2(rotation[2, 1], rotation[2, 2])
-    return np.array([roll, pitch, np.arctan2(rotation[1, 0], rotation[0, 0])])
+    R = rotation
+    yaw = np.arctan2(R[1, 0], R[0, 0])
+    pitch = np.arctan2(-R[2, 0], np.hypot(R[0, 0], R[1, 0]))
+    # of RotZ(yaw)' R, exact for any yaw where the pitch is near 90 degrees
+    s, c = np.sin(yaw), np.cos(yaw)
+    roll = np.arctan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1])
+    return np.array([roll, pitch, yaw])
 
 
 def _path(above: Mapping[str, Element], parent: str, joint: Element) -> list[Element]:

@@ -33,7 +33,7 @@ examples:
       from two recordings; errors on a third one, which nothing is fitted to or chosen on
 
 What is shown is the error on parts of the recordings that were held out: each of several contiguous
-blocks is predicted by a model fitted to the others, with law, prior, delay and filter chosen on the others.
+blocks is predicted by a model fitted to the others, with law, prior and delay chosen on the others.
 A gain counts only against `present, friction refitted`. docs/identification.md tells how, and what to do on the robot.
 
 results, all of them or none:
