@@ -54,9 +54,8 @@ class IdentificationError(EvaluationError):
 class Finding:
     """Something to know about the result, in words.
 
-    kind: floor (a link's description is unusable), filter, delay, range (offset or shift at its
-    bound), motion (a joint that hardly moves), samples, gain (no better than the starting model),
-    prior (what the data don't tell).
+    kind: floor (a link's description is unusable), delay, range (offset or shift at its bound),
+    motion (a joint that hardly moves), samples, gain (no better than the starting model).
     """
 
     kind: str
