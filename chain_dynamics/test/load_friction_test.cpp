@@ -96,7 +96,8 @@ TEST(LoadFriction, NeedsNoPositionsWhereNoLawDependsOnLoad) {
 // The five-point rule: its error is h^4 / 30 times a fifth derivative, (2 / width)^4 of the step.
 TEST(LoadFriction, DerivativesAreThoseOfTheTorques) {
   constexpr double kStep = 2e-5;
-  for (const auto& [name, model] : loadedModels()) {
+  for (const auto& [name, loaded] : loadedModels()) {
+    const auto& model = loaded;  // as C++17's lambdas don't capture structured bindings
     const Index n = model.chain.jointCount();
     const State<double> x = randomState<double>(model.chain, 3);
     MatrixXd by_q = MatrixXd::Zero(n, n), by_qd = MatrixXd::Zero(n, n);
