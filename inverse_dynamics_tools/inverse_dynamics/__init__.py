@@ -10,6 +10,7 @@
     print(result.mean_rmse)
 
 Names are imported when they are first used: `import inverse_dynamics` takes no time.
+`__version__` is the version of the installed package.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    __version__: str
+
     from inverse_dynamics._core import FastModel, Solver, available_solvers
     from inverse_dynamics.data.bags import read_joint_log, read_topics, write_joint_logs
     from inverse_dynamics.data.joint_log import JointLog
@@ -106,10 +109,25 @@ __all__ = [
 
 
 def __getattr__(name: str) -> object:
+    if name == "__version__":
+        return _version()
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
 
 
+def _version() -> str:
+    """That of the installed package: pip and colcon write it, from package.xml, beside the modules."""
+    from importlib import metadata
+
+    try:
+        return metadata.version(__name__)
+    except metadata.PackageNotFoundError:
+        raise AttributeError(
+            f"{__name__}.__version__: expected the package to be installed by pip or by colcon, which "
+            f"note its version, got the modules alone, in {__path__[0]}; install it"
+        ) from None
+
+
 def __dir__() -> list[str]:
-    return sorted([*globals(), *__all__])
+    return sorted([*globals(), *__all__, "__version__"])

@@ -70,6 +70,19 @@ _NUMBERS = re.compile(r"-[\d.]+(e[-+]?\d+)?,[-+\d.,e]+", re.IGNORECASE)
 _CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)")
 
 
+class _Version(argparse.Action):
+    """--version: read when it is asked for, as that takes time."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        import inverse_dynamics
+
+        try:
+            print(f"ids {inverse_dynamics.__version__}")
+        except AttributeError as error:
+            raise UserError(str(error)) from None
+        parser.exit()
+
+
 class _Parser(argparse.ArgumentParser):
     """Says what is wrong in one line, and where help is: pages of usage would hide it."""
 
@@ -101,6 +114,7 @@ def make_parser() -> argparse.ArgumentParser:
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     subparsers = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
     for module in _verb_modules():
         verb_parser = module.add_parser(subparsers)
@@ -145,8 +159,8 @@ def _run(given: list[str]) -> int:
     if not given:
         parser.print_help(sys.stderr)
         return 2
-    options = parser.parse_args(_with_numbers_joined(given))
     try:
+        options = parser.parse_args(_with_numbers_joined(given))
         options.run(options)
         if sys.stdout is not None:
             sys.stdout.flush()

@@ -286,7 +286,7 @@ def test_a_wrong_command_line_takes_one_line_that_names_the_help(ids):
         ),
         (("robots", "--list", "x"), "unrecognized arguments: --list; see `ids robots --help`\n"),
         (("report", "a", "--ou=b"), None),
-        (("--versio",), "see `ids --help`\n"),
+        (("--vision",), "see `ids --help`\n"),
     ],
 )
 def test_what_is_like_something_known_is_proposed_and_the_right_help_named(
@@ -307,7 +307,7 @@ def test_a_robot_that_is_like_a_known_one_is_proposed(ids):
 def test_without_a_verb_the_help_is_shown(ids):
     code, out, err = ids()
     assert (code, out) == (2, "")
-    assert err.startswith("usage: ids [-h] VERB ...")
+    assert err.startswith("usage: ids [-h] [--version] VERB ...")
     assert "start here:" in err
 
 
