@@ -39,6 +39,28 @@ macro(inverse_dynamics_solver_add_plugin)
   ament_export_dependencies(${_solver_DEPENDENCIES})
 endmacro()
 
+# inverse_dynamics_solver_conformance_tests(<variable>)
+#
+# The library of the conformance tests: the one that was built with the interface, where it was built with its tests, by
+# the same compiler and with the same flags; else one of this project's own.
+function(inverse_dynamics_solver_conformance_tests variable)
+  set(library inverse_dynamics_solver::conformance_tests)
+  if(TARGET ${library})
+    get_target_property(built_by ${library} BUILT_BY)
+  endif()
+  if(NOT built_by STREQUAL "${CMAKE_CXX_COMPILER} ${CMAKE_CXX_FLAGS}")
+    set(library ${PROJECT_NAME}_conformance_tests)
+    if(NOT TARGET ${library})
+      ament_find_gtest()
+      add_library(${library} STATIC EXCLUDE_FROM_ALL
+        ${inverse_dynamics_solver_DIR}/../conformance_tests.cpp)
+      target_include_directories(${library} SYSTEM PRIVATE ${GTEST_INCLUDE_DIRS})
+      target_link_libraries(${library} PUBLIC inverse_dynamics_solver::inverse_dynamics_solver)
+    endif()
+  endif()
+  set(${variable} ${library} PARENT_SCOPE)
+endfunction()
+
 # inverse_dynamics_solver_add_plugin_test(<test> <source>... PLUGIN <target> [DESCRIPTION <file>]
 #                                         [TIMEOUT <seconds>])
 #
@@ -77,7 +99,8 @@ function(inverse_dynamics_solver_add_plugin_test test)
   endif()
   ament_add_gtest(${test} ${ARG_UNPARSED_ARGUMENTS}
     TIMEOUT ${ARG_TIMEOUT} ENV "AMENT_PREFIX_PATH=${prefixes}")
-  target_link_libraries(${test} inverse_dynamics_solver::inverse_dynamics_solver)
+  inverse_dynamics_solver_conformance_tests(conformance_tests)
+  target_link_libraries(${test} ${conformance_tests})
   add_dependencies(${test} ${ARG_PLUGIN})
 endfunction()
 

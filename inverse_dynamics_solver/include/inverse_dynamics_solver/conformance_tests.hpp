@@ -23,16 +23,12 @@
 ///
 /// The plugin is loaded by name, as users do. Random states have a fixed seed, and a failure prints
 /// its state as C++ to be pasted. Tolerances and their reasons stand in solver_fixture.hpp.
+///
+/// The tests are a library, compiled with the interface and linked by
+/// inverse_dynamics_solver_add_plugin_test.
 #pragma once
 
-#include "inverse_dynamics_solver/conformance/batch_tests.hpp"
-#include "inverse_dynamics_solver/conformance/capability_tests.hpp"
-#include "inverse_dynamics_solver/conformance/contract_tests.hpp"
-#include "inverse_dynamics_solver/conformance/first_error_tests.hpp"
-#include "inverse_dynamics_solver/conformance/initialization_tests.hpp"
-#include "inverse_dynamics_solver/conformance/law_tests.hpp"
-#include "inverse_dynamics_solver/conformance/payload_tests.hpp"
-#include "inverse_dynamics_solver/conformance/real_time_tests.hpp"
+#include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
 
 /// Runs all tests for the solver that `traits` describes, under the name `prefix`.
 #define INVERSE_DYNAMICS_SOLVER_CONFORMANCE(prefix, traits)                             \

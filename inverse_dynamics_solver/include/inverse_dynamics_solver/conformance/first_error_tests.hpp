@@ -11,9 +11,6 @@
 
 namespace inverse_dynamics_solver::conformance {
 
-/// No fixture: the first solver of the process is that of the test.
-class SolverAlone : public ::testing::TestWithParam<TestedSolver> {};
-
 /// Ends the process: status 0 if initialize() throws an error with a text, whole.
 ///
 /// The solver and its loader are gone before the error is handled.

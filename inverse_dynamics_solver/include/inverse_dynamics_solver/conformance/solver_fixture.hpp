@@ -93,9 +93,9 @@ TestedSolver testedSolver() {
           Traits::kAcceleration};
 }
 
-inline std::ostream& operator<<(std::ostream& stream, const TestedSolver& solver) {
-  return stream << solver.plugin;
-}
+/// Defined beside the tests: GoogleTest prints parameters, so a program that instantiates the suite
+/// links them.
+std::ostream& operator<<(std::ostream& stream, const TestedSolver& solver);
 
 /// Joint state; what each quantity depends on.
 struct State {
@@ -269,5 +269,8 @@ class SolverConformance : public ::testing::TestWithParam<TestedSolver> {
   std::shared_ptr<InverseDynamicsSolver> solver_;
   std::mt19937 random_{4711};  // fixed: a failure can be repeated
 };
+
+/// No fixture: the first solver of the process is that of the test.
+class SolverAlone : public ::testing::TestWithParam<TestedSolver> {};
 
 }  // namespace inverse_dynamics_solver::conformance
