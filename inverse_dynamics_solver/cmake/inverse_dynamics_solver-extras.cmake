@@ -24,7 +24,9 @@ macro(inverse_dynamics_solver_add_plugin)
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
     $<INSTALL_INTERFACE:include/${PROJECT_NAME}>)
 
-  find_package(pluginlib REQUIRED)
+  if(NOT TARGET pluginlib::pluginlib)
+    find_package(pluginlib REQUIRED)
+  endif()
   add_library(${PROJECT_NAME}_plugin SHARED src/plugin.cpp)
   target_link_libraries(${PROJECT_NAME}_plugin PRIVATE ${PROJECT_NAME} pluginlib::pluginlib)
   inverse_dynamics_solver_keep_open(${PROJECT_NAME}_plugin)
