@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The code on the page `docs/migration.md` is code of migration_test.cpp, letter by letter."""
+"""C++ on pages of the documentation is code of a test that is compiled and run, letter by letter."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from pages import blocks_of, page
 
 
-def test_the_code_is_that_of_the_test() -> None:
-    (block,) = blocks_of(page("docs/migration.md"))
-    assert block.language == "cpp"
-    assert block.code in (Path(__file__).parent / block.file).read_text(encoding="utf-8")
+@pytest.mark.parametrize("name", ["docs/migration.md", "docs/payload.md"])
+def test_the_code_is_that_of_a_test(name: str) -> None:
+    blocks = blocks_of(page(name), "cpp")
+    assert blocks
+    for block in blocks:
+        assert block.code in (Path(__file__).parent / block.file).read_text(encoding="utf-8")
