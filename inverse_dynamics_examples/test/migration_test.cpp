@@ -6,30 +6,42 @@
 
 #include <Eigen/Core>
 #include <fstream>
+#include <inverse_dynamics_solver/external_wrench.hpp>
+#include <inverse_dynamics_solver/kinematics.hpp>
 #include <inverse_dynamics_solver/motor_currents.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <iostream>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
 
+using inverse_dynamics_solver::ExternalWrench;
+using inverse_dynamics_solver::Kinematics;
 using inverse_dynamics_solver::MotorCurrents;
 using inverse_dynamics_solver::SolverLoader;
+using inverse_dynamics_solver::WrenchInRoot;
 
 const double kRounding = 1e-10;  // of some hundred N m
+
+const char* const kUr10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10";
+const char* const kKdl = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL";
 
 std::string ur10() {
   std::ifstream file(UR10_URDF);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+const Eigen::VectorXd kQ = Eigen::VectorXd::LinSpaced(6, -1.0, 1.0);
+const Eigen::VectorXd kQd = Eigen::VectorXd::LinSpaced(6, 0.5, -0.5);
+const Eigen::VectorXd kQdd = Eigen::VectorXd::Constant(6, 1.0);
+
 TEST(Migration, CallsOfTheReferenceImplementationHaveTheirCounterparts) {
   const std::string urdf = ur10();
-  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(6, -1.0, 1.0);
-  const Eigen::VectorXd qd = Eigen::VectorXd::LinSpaced(6, 0.5, -0.5);
-  const Eigen::VectorXd qdd = Eigen::VectorXd::Constant(6, 1.0);
+  const Eigen::VectorXd &q = kQ, &qd = kQd, &qdd = kQdd;
+  const Eigen::Vector3d force(20.0, 0.0, -5.0), torque(0.0, 1.0, 0.0);
   testing::internal::CaptureStdout();
 
   // Headers end in .hpp. pluginlib::ClassLoader works as before; SolverLoader saves its arguments.
@@ -38,7 +50,7 @@ TEST(Migration, CallsOfTheReferenceImplementationHaveTheirCounterparts) {
   // Identified solvers must be initialized, too: without it, methods throw UninitializedException.
   solver->initialize();
 
-  // getDynamicParameters()
+  // getDynamicParameters(), which is there too
   const auto [H, c, g] = solver->getDynamicComponents(q, qd);
 
   // The free function getCurrents(q, qd, qdd, i), which has no friction. Likewise getInertiaCurrents(),
@@ -64,6 +76,11 @@ TEST(Migration, CallsOfTheReferenceImplementationHaveTheirCounterparts) {
   const auto kdl = SolverLoader().load("kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL");
   kdl->initialize({{"tip", "tool0"}, {"attached", "ignore"}}, "", urdf);
 
+  // getJacobian(q) and getTorques(q, qd, qdd, external_wrench), which are not in a release yet
+  const Eigen::MatrixXd J = dynamic_cast<const Kinematics&>(*kdl).getTipJacobian(q);
+  const Eigen::VectorXd tau =
+      dynamic_cast<const ExternalWrench&>(*kdl).getTorques(q, qd, qdd, WrenchInRoot{force, torque});
+
   EXPECT_NE(testing::internal::GetCapturedStdout().find("parameter 'gravity': wrong value"),
             std::string::npos);
   const Eigen::VectorXd f = solver->getFrictionVector(qd);
@@ -72,6 +89,78 @@ TEST(Migration, CallsOfTheReferenceImplementationHaveTheirCounterparts) {
   EXPECT_EQ(n, 6);
   EXPECT_NEAR(K[0], 13.5841, 1e-12);
   EXPECT_TRUE(kdl->getFrictionVector(qd).isZero(0.0));
+  const Eigen::VectorXd wrench = (Eigen::VectorXd(6) << force, torque).finished();
+  EXPECT_TRUE(tau.isApprox(kdl->getTorques(q, qd, qdd) + J.transpose() * wrench, kRounding));
+}
+
+TEST(Migration, GetDynamicParametersIsThere) {
+  const auto solver = SolverLoader().load(kUr10);
+  solver->initialize();
+  const auto [H, c, g] = solver->getDynamicParameters(kQ, kQd);
+  EXPECT_EQ(H, solver->getInertiaMatrix(kQ));
+  EXPECT_EQ(c, solver->getCoriolisVector(kQ, kQd));
+  EXPECT_EQ(g, solver->getGravityVector(kQ));
+}
+
+TEST(Migration, GettersTakeExpressionsAndWriteIntoMemory) {
+  const auto solver = SolverLoader().load(kUr10);
+  solver->initialize();
+  Eigen::VectorXd tau(6);
+  solver->getTorques(2 * kQ, 2 * kQd, 2 * kQdd, tau);
+  const Eigen::VectorXd q = 2 * kQ, qd = 2 * kQd, qdd = 2 * kQdd;
+  EXPECT_EQ(tau, solver->getTorques(q, qd, qdd));
+}
+
+TEST(Migration, FrictionIsLeftOutOrTakenFromTheUrdf) {
+  const auto identified = SolverLoader().load(kUr10);
+  identified->initialize({{"friction", false}});
+  EXPECT_TRUE(identified->getFrictionVector(kQd).isZero(0.0));
+
+  std::string urdf = ur10();
+  const std::string none = "damping=\"0\"", some = "damping=\"2\"";
+  for (auto at = urdf.find(none); at != std::string::npos; at = urdf.find(none)) {
+    urdf.replace(at, none.size(), some);
+  }
+  const auto kdl = SolverLoader().load(kKdl);
+  kdl->initialize({{"tip", "tool0"}, {"urdf_friction", true}}, "", urdf);
+  EXPECT_TRUE(kdl->getFrictionVector(kQd).isApprox(2.0 * kQd, kRounding));
+}
+
+TEST(Migration, GravityIsHonouredByIdentifiedSolvers) {
+  const auto solver = SolverLoader().load(kUr10);
+  solver->initialize({{"gravity", std::vector<double>{0.0, 0.0, 0.0}}});
+  EXPECT_TRUE(solver->getGravityVector(kQ).isZero(0.0));
+}
+
+TEST(Migration, AFailedInitializeLeavesTheSolverAsItWas) {
+  const auto kdl = SolverLoader().load(kKdl);
+  kdl->initialize({{"tip", "tool0"}}, "", ur10());
+  const Eigen::VectorXd before = kdl->getGravityVector(kQ);
+  EXPECT_THROW(kdl->initialize({{"tip", "nothing"}}, "", ur10()),
+               inverse_dynamics_solver::Exception);
+  EXPECT_EQ(kdl->getGravityVector(kQ), before);
+}
+
+std::string ur10With(const std::string& right, const std::string& wrong) {
+  std::string urdf = ur10();
+  return urdf.replace(urdf.find(right), right.size(), wrong);
+}
+
+TEST(Migration, WhatIsWrongInAUrdfIsAnError) {
+  const auto kdl = SolverLoader().load(kKdl);
+  for (const char* wrong : {"<mass value=\"7,1\"/>", "<mass value=\"-7.1\"/>", "<mass/>", ""}) {
+    const std::string urdf = ur10With("<mass value=\"7.1\"/>", wrong);
+    EXPECT_THROW(kdl->initialize({{"tip", "tool0"}}, "", urdf),
+                 inverse_dynamics_solver::InvalidParameterValueException)
+        << wrong;
+  }
+}
+
+TEST(Migration, ANameThatNoUrdfHasIsAWarning) {
+  const auto kdl = SolverLoader().load(kKdl);
+  kdl->initialize({{"tip", "tool0"}}, "", ur10With("<axis xyz", "<axes xyz"));
+  ASSERT_EQ(kdl->warnings().size(), 1u);
+  EXPECT_NE(kdl->warnings()[0].find("axes"), std::string::npos) << kdl->warnings()[0];
 }
 
 TEST(Migration, NothingWorksBeforeInitialize) {
@@ -82,7 +171,7 @@ TEST(Migration, NothingWorksBeforeInitialize) {
 
 TEST(Migration, RootAndTipAreThoseOfTheUrdfWhereNothingIsSaid) {
   const auto gravity = [](const inverse_dynamics_solver::Parameters& parameters) {
-    const auto kdl = SolverLoader().load("kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL");
+    const auto kdl = SolverLoader().load(kKdl);
     const std::string chain =
         "<robot name='a'><link name='base'/><link name='arm'><inertial><origin xyz='0.5 0 "
         "0'/><mass "
@@ -106,7 +195,7 @@ TEST(Migration, BodiesBeyondTheTipCountUnlessTheyAreIgnored) {
       "link='tool0'/><child link='load'/></joint></robot>";
   urdf.replace(urdf.rfind("</robot>"), std::string::npos, load);
   const auto shoulder = [&](const std::string& attached) {
-    const auto kdl = SolverLoader().load("kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL");
+    const auto kdl = SolverLoader().load(kKdl);
     kdl->initialize({{"tip", "tool0"}, {"attached", attached}}, "", urdf);
     return kdl->getGravityVector(Eigen::VectorXd::Zero(6))[1];  // stretched out
   };
