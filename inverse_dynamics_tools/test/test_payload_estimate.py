@@ -21,7 +21,7 @@ from inverse_dynamics.identification.payload import (
     fit_payload,
     with_load,
 )
-from inverse_dynamics.results.payload import check_payload_output, write_payload
+from inverse_dynamics.results.payload import check_payload_output, payload_files, write_payload
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.solvers import open_solver
 from inverse_dynamics.verbs.payload_option import payload as option
@@ -159,6 +159,32 @@ def test_the_verb_writes_yaml_json_and_figure(ids, recording):
     code, _, err = ids("payload", recording, "--robot", "panda_simulated", "--out", "payload.yaml")
     assert code == 2
     assert "--overwrite" in err
+
+
+def test_all_files_or_none(recording, tmp_path, monkeypatch):
+    """An error while they are put in place leaves the older ones."""
+    import os
+
+    payload = estimate_payload(recording, "panda_simulated")
+    out = tmp_path / "payload.yaml"
+    write_payload(payload, out)
+    files = payload_files(out, ("png",))
+    for file in files:
+        file.write_text("older")
+    around = sorted(tmp_path.iterdir())
+    replaced, calls = os.replace, []
+
+    def fail_late(source, target):
+        calls.append(target)
+        if len(calls) == len(files):
+            raise OSError(28, "No space left on device", str(target))
+        return replaced(source, target)
+
+    monkeypatch.setattr(os, "replace", fail_late)
+    with pytest.raises(OutputError, match="No space left"):
+        write_payload(payload, out, overwrite=True)
+    assert [file.read_text() for file in files] == ["older"] * len(files)
+    assert sorted(tmp_path.iterdir()) == around
 
 
 def test_an_empty_recording_tells_offsets_and_noise(ids, tmp_path):

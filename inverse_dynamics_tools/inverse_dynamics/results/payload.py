@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.base.files import check_output_file, file_written_whole, write_text_whole
+from inverse_dynamics.base.files import check_output_file, files_written_whole, write_text
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.figures.payload import save_payload_figure
 from inverse_dynamics.figures.plots import check_formats
@@ -50,19 +50,21 @@ def write_payload(
     overwrite: bool = False,
     figures: Sequence[str] = ("png",),
 ) -> None:
-    """Write a load, each file whole or not at all, the YAML last.
+    """Write all files of a load, or none of them.
 
     out: of the YAML; the others have its name and suffixes of their own. Raises OutputError.
     """
     out = Path(out)
     inputs = (payload.evaluation.bag, payload.empty, *payload.evaluation.robot.files)
     check_payload_output(out, figures, overwrite=overwrite, inputs=inputs)
-    for suffix in figures:
-        with file_written_whole(out.with_suffix(f".{suffix}")) as file:
-            save_payload_figure(payload, file)
     text = json.dumps(summary(payload), indent=2, allow_nan=False, ensure_ascii=False)
-    write_text_whole(out.with_suffix(".json"), text + "\n")
-    write_text_whole(out, yaml_text(payload))
+    load, *beside = payload_files(out, figures)
+    with files_written_whole([*beside, load]) as fresh:  # the load last
+        data, *drawn, body = fresh
+        write_text(data, text + "\n")
+        if drawn:
+            save_payload_figure(payload, *drawn)
+        write_text(body, yaml_text(payload))
 
 
 def yaml_text(payload: Payload) -> str:

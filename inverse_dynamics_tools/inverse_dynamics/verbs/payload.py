@@ -32,7 +32,7 @@ All joints should move, and each axis of the wrist be horizontal for some time: 
 through gravity. The arm's model must be good: a URDF without friction isn't. What is found is in
 addition to a tool that the run configuration, or --payload, has at the tip.
 
-results, each written whole or not at all:
+results, all of them or none:
   payload.yaml    mass, center_of_mass and, where the data tell it, inertia, in the tip frame: for
                   --payload, for `payload:` of a run configuration, for the controllers
   payload.json    the same with intervals, covariance, offsets, noise and errors of each joint
