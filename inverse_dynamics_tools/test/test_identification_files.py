@@ -22,8 +22,9 @@ from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.results import identifications
 from inverse_dynamics.results.hold_out import hold_out
 from inverse_dynamics.results.identifications import PLUGIN, write_identification
-from inverse_dynamics.results.model_files import model_file_text, predicted_torques, turned
+from inverse_dynamics.results.model_files import model_file_text, predicted_torques
 from inverse_dynamics.robot.chain_geometry import chain_geometry, roll_pitch_yaw
+from inverse_dynamics.robot.link_parameters import turned
 
 
 @pytest.fixture(scope="module")

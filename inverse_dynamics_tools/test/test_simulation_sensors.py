@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from inverse_dynamics.simulation.controller import Gains
+from inverse_dynamics.simulation.effort_noise import EffortNoise
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.physics import Motion
 from inverse_dynamics.simulation.sensors import EPOCH, Resolution, Sensors
@@ -109,6 +112,8 @@ def test_the_seed_decides() -> None:
             {"quantisation": Resolution(0, 0, 1e-320)},
             "quantisation: effort: expected 0 or at least 1",
         ),
+        ({"effort_delay": -1e-3}, "effort delay: expected a time in s that isn't negative"),
+        ({"effort_delay": 2.0}, "effort delay: expected at most 1 s, got 2"),
         ({"noise": Resolution(-1, 0, 0)}, "noise: position: expected a number that isn't negative"),
         ({"quantisation": Resolution(0, 0, np.inf)}, "quantisation: effort: expected a number"),
     ],
@@ -122,3 +127,110 @@ def test_impossible_sensors_are_refused(options: dict[str, object], text: str) -
 def test_nothing_left_is_an_error() -> None:
     with pytest.raises(SimulationError, match="drop: 0.99999 leaves 0 of 20000 messages"):
         Sensors(drop=0.99999).record(motion(), 0)
+
+
+# ---- noise of real residuals, delay, rate of the messages ----------------------------------------
+
+
+def coloured(samples: int = 5000, seed: int = 0) -> np.ndarray:
+    """Residuals of two joints: an AR(1) process, the second joint's with half of the first's in it."""
+    random = np.random.default_rng(seed)
+    values = np.zeros((samples, 2))
+    for k in range(1, samples):
+        values[k] = 0.98 * values[k - 1] + random.normal(0, 0.1, 2)
+    values[:, 1] += 0.5 * values[:, 0]
+    return values + np.array([3.0, -1.0])
+
+
+def correlation(values: np.ndarray, lag: int) -> np.ndarray:
+    """(2, 2) normalised covariance at a lag."""
+    centred = (values - values.mean(0)) / values.std(0)
+    return centred[: len(centred) - lag].T @ centred[lag:] / (len(centred) - lag)
+
+
+def test_effort_noise_has_the_colour_of_the_residuals() -> None:
+    residuals = coloured()
+    sensors = Sensors(effort_noise=EffortNoise(residuals, 1e-3, stretch=0.5))
+    noise = sensors.record(motion(), 0).effort - motion().effort
+    assert np.std(noise, axis=0) == pytest.approx(np.std(residuals, axis=0), rel=0.2)
+    assert np.abs(noise.mean(0)).max() < 0.2 * noise.std()
+    for lag in (0, 1, 10, 30):
+        np.testing.assert_allclose(
+            correlation(noise, lag), correlation(residuals, lag), atol=0.12, err_msg=f"lag {lag}"
+        )
+    np.testing.assert_array_equal(sensors.record(motion(), 0).q, motion().q)
+
+
+def test_effort_noise_of_equal_period_is_residuals_as_they_are() -> None:
+    residuals = coloured()
+    noise = EffortNoise(residuals, 1e-3, stretch=0.5).at(TIME[:1000], np.random.default_rng(3))
+    centred = residuals - residuals.mean(0)
+    nearest = np.abs(noise[:, None] - centred[None]).max(2).min(1)
+    assert nearest.max() < 1e-9
+    # the stretches: of 500 samples each
+    follows = [np.abs(centred - one).max(1).argmin() for one in noise]
+    assert (np.diff(follows) % len(centred) == 1).mean() >= 998 / 999
+
+
+def test_effort_noise_between_residuals_is_interpolated() -> None:
+    noise = EffortNoise(coloured(500), 1e-2, stretch=1.0).at(TIME[:900], np.random.default_rng(3))
+    second = np.diff(noise, 2, axis=0)
+    kinks = np.abs(second).max(1) > 1e-9
+    assert kinks.mean() < 0.25  # at residuals, of which there is one per ten samples
+
+
+def test_efforts_are_late() -> None:
+    sensors = Sensors(effort_delay=0.0125)
+    recorded = sensors.record(motion(), 0)
+    then = 10 * np.cos(2 * (TIME[:, None] - 0.0125 + np.arange(2)))
+    np.testing.assert_allclose(recorded.effort[13:], then[13:], atol=1e-5)
+    np.testing.assert_allclose(recorded.effort[:12], motion().effort[0] * np.ones((12, 1)))
+    np.testing.assert_array_equal(recorded.q, motion().q)
+
+
+def test_messages_may_be_fewer_than_samples() -> None:
+    recorded = Sensors(message_rate=30.0, drop=0.1).record(motion(), 0)
+    assert len(recorded.rows) == pytest.approx(0.9 * 20 * 30, abs=30)
+    due = np.round((TIME[recorded.rows] - TIME[0]) * 30)
+    late = TIME[0] + due / 30 - TIME[recorded.rows]
+    assert (np.abs(late) < 1e-3).all()
+    np.testing.assert_array_equal(recorded.q, motion().q[recorded.rows])
+    np.testing.assert_allclose(recorded.stamps, 1e9 * (EPOCH + TIME[recorded.rows]), atol=300)
+
+
+def test_as_many_messages_as_samples_are_all_of_them() -> None:
+    recorded = Sensors(message_rate=1000.0).record(motion(), 0)
+    np.testing.assert_array_equal(recorded.rows, np.arange(N))
+
+
+@pytest.mark.parametrize("rate", [0.0, 1001.0, np.nan])
+def test_impossible_rates_of_messages_are_refused(rate: float) -> None:
+    with pytest.raises(
+        SimulationError, match="message rate: expected a rate above zero, and at most"
+    ):
+        Sensors(message_rate=rate).record(motion(), 0)
+
+
+def test_residuals_that_are_no_use_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(SimulationError, match="expected at least 4 s of samples"):
+        EffortNoise(coloured(3000), 1e-3)
+    with pytest.raises(SimulationError, match="expected finite residuals"):
+        EffortNoise(np.full((5000, 2), np.nan), 1e-3)
+    with pytest.raises(SimulationError, match="expected residuals of 2 joints, got 3"):
+        Sensors(effort_noise=EffortNoise(np.zeros((5000, 3)), 1e-3)).record(motion(), 0)
+    with pytest.raises(SimulationError, match="expected a result of `ids evaluate`"):
+        EffortNoise.of_result(tmp_path)
+    (tmp_path / "series.npz").write_bytes(b"PK")
+    with pytest.raises(SimulationError, match="expected a result of `ids evaluate`"):
+        EffortNoise.of_result(tmp_path)
+
+
+def test_residuals_are_those_of_an_evaluation(tmp_path: Path) -> None:
+    time = 0.01 * np.arange(1000)
+    measured, computed = coloured(1000), coloured(1000, seed=1)
+    kept = np.arange(1000) != 7
+    np.savez(tmp_path / "series.npz", time=time, measured=measured, computed=computed, kept=kept)
+    noise = EffortNoise.of_result(tmp_path)
+    np.testing.assert_array_equal(noise.residuals, (measured - computed)[kept])
+    assert noise.period == pytest.approx(0.01)
+    assert noise.source == str(tmp_path)

@@ -97,6 +97,27 @@ def test_all_options_arrive(arm: list[str], tmp_path: Path) -> None:
     assert 5e9 <= log.header_stamps[0] < 5.01e9
 
 
+def test_noise_of_an_evaluation_delay_and_rate_of_messages_arrive(
+    arm: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    result, bag = tmp_path / "result", tmp_path / "bag"
+    result.mkdir()
+    random = np.random.default_rng(0)
+    series = {"time": 0.02 * np.arange(300), "computed": np.zeros((300, 1))}
+    series |= {"measured": random.normal(size=(300, 1)), "kept": np.full(300, True)}
+    np.savez(result / "series.npz", **series)
+    options = "--rate 500 --effort-delay 0.01 --message-rate 50 --effort-noise"
+    assert main([*arm, "--out", str(bag), *options.split(), str(result)]) == 0
+    assert "50 messages of 1 joint, 1 s at 50 Hz" in capsys.readouterr().out
+    made = settings(bag)
+    assert made["effort_noise"] == str(result)
+    assert (made["effort_delay"], made["message_rate"]) == (0.01, 50)
+    log, truth = read_joint_log(bag), np.load(bag / "truth.npz")
+    assert np.std(log.effort - truth["effort"]) == pytest.approx(1.0, rel=0.3)
+    # what is read must not be replaced
+    assert main([*arm, "--out", str(result), "--effort-noise", str(result)]) == 2
+
+
 def test_options_without_a_value_have_stated_defaults(arm: list[str], tmp_path: Path) -> None:
     bag = tmp_path / "bag"
     options = "--rate 125 --noise --quantisation --joint-friction --mount ceiling --payload 1"
@@ -128,6 +149,9 @@ def test_optimise_stores_what_it_found(
         (["--rate", "100"], "rate: expected one of 125, 500, 1000 Hz, got 100"),
         (["--drop", "2"], "drop: expected a probability from 0 to below 1, got 2"),
         (["--joint-friction", "much"], "joint friction: expected a part of the effort limit"),
+        (["--from-model"], "solver plugin 'some_package/SomeSolver'"),
+        (["--effort-noise", "no_result"], "no_result: expected a result of `ids evaluate`"),
+        (["--message-rate", "2000"], "message rate: expected a rate above zero, and at most"),
         (["--payload", "30,0.5,0,0"], "joint swing: effort at 0.00 s"),
         (["--optimise"], "expected either a trajectory or the wish to optimise one"),
         (["--trajectory", "no.yaml"], "no.yaml: can't be read"),

@@ -26,6 +26,7 @@ from inverse_dynamics.results.yaml_text import (
 )
 from inverse_dynamics.robot.chain_geometry import chain_geometry, roll_pitch_yaw
 from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.link_parameters import turned
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -82,22 +83,6 @@ def parameters_in_links(
     return np.array(
         [turned(row, joint.rotation_from_z) for row, joint in zip(of_engine, geometry, strict=True)]
     )
-
-
-def turned(parameters: Floats, rotation: Floats) -> Floats:
-    """(10,) of a body, about the same origin, in other axes: v = R v'."""
-    if np.array_equal(rotation, np.eye(3)):
-        return np.array(parameters)
-    turned_inertia = rotation @ inertia_matrix(parameters[4:]) @ rotation.T
-    return np.concatenate(
-        [parameters[:1], rotation @ parameters[1:4], turned_inertia[np.triu_indices(3)]]
-    )
-
-
-def inertia_matrix(six: Floats) -> Floats:
-    """(3, 3) of xx, xy, xz, yy, yz, zz."""
-    xx, xy, xz, yy, yz, zz = six
-    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
 def predicted_torques(

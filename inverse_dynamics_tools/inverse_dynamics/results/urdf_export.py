@@ -21,10 +21,11 @@ import numpy as np
 
 from inverse_dynamics import _core
 from inverse_dynamics.errors import RobotError
-from inverse_dynamics.results.model_files import inertia_matrix, parameters_in_links, urdf_of
+from inverse_dynamics.results.model_files import parameters_in_links, urdf_of
 from inverse_dynamics.results.yaml_text import yaml_number
 from inverse_dynamics.robot.chain_geometry import chain_geometry
 from inverse_dynamics.robot.descriptions import parse_description, read_description
+from inverse_dynamics.robot.link_parameters import inertia_matrix
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

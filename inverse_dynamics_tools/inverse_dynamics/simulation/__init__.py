@@ -9,6 +9,7 @@
 MuJoCo is independent of the engine and of every solver here, so a simulated recording checks them.
 """
 
+from inverse_dynamics.simulation.effort_noise import EffortNoise
 from inverse_dynamics.simulation.errors import SimulationError, TrajectoryError
 from inverse_dynamics.simulation.model import MOUNTS, JointFriction, Payload
 from inverse_dynamics.simulation.run import SimulatedRun, simulate
@@ -19,6 +20,7 @@ __all__ = [
     "MOUNTS",
     "NOISE",
     "QUANTISATION",
+    "EffortNoise",
     "JointFriction",
     "Payload",
     "Resolution",

@@ -92,7 +92,7 @@ def check_trajectory(
     q, qd, qdd = trajectory.at(time)
     tau = robot.torques(q, qd, qdd)
     if robot.friction is not None:
-        tau = tau + robot.friction.torques(qd)
+        tau = tau + robot.friction.torques(qd, q)
     for what, unit, values, least, greatest in (
         ("position", "rad", q, limits.lower, limits.upper),
         ("velocity", "rad/s", qd, -limits.velocity, limits.velocity),

@@ -15,14 +15,14 @@ What MuJoCo would do to a URDF on its own, and what is done about it:
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Protocol
 
 import mujoco
 import numpy as np
 
 from inverse_dynamics.simulation.errors import SimulationError
-from inverse_dynamics.simulation.urdf import UrdfChain, chain_from_urdf
+from inverse_dynamics.simulation.urdf import Inertia, UrdfChain, chain_from_urdf
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
@@ -43,6 +43,31 @@ class Payload:
 
 
 @dataclass(frozen=True)
+class Bodies:
+    """Inertia in place of that of a description: of links by their names, and of the motors."""
+
+    inertia: dict[str, Inertia]  # a link that isn't named has none
+    rotor_inertia: Floats  # (n,) kg m^2 (prismatic kg), seen at the joint
+
+
+class Friction(Protocol):
+    """Friction in each joint, n."""
+
+    @property
+    def viscous(self) -> Floats:
+        """(n,) N m s/rad that a controller makes up for with ff_velocity_scale."""
+
+    def torques(self, qd: Floats, q: Floats, /) -> Floats:
+        """Friction torques (..., n) in states (..., n), as the actuators must add them."""
+
+    def line(self, qd: Floats, q: Floats, /) -> tuple[Floats, Floats]:
+        """(n,) slope, not negative, and torque at zero velocity of a line.
+
+        It has the torque of friction at qd, and stays close to it from there to where friction changes fastest.
+        """
+
+
+@dataclass(frozen=True)
 class JointFriction:
     """Friction in each joint: `coulomb tanh(qd / slip) + viscous qd`; n each.
 
@@ -54,7 +79,7 @@ class JointFriction:
     viscous: Floats  # N m s/rad
     slip: float = 0.02  # rad/s
 
-    def torques(self, qd: Floats) -> Floats:
+    def torques(self, qd: Floats, _q: Floats | None = None) -> Floats:
         """Friction torques (..., n) at velocities (..., n), as the actuators must add them."""
         return self.coulomb * np.tanh(qd / self.slip) + self.viscous * qd
 
@@ -63,6 +88,10 @@ class JointFriction:
         x = np.abs(qd) / self.slip
         ratio = np.tanh(x) / np.maximum(x, 1e-9)
         return self.coulomb / self.slip * np.where(x < 1e-9, 1.0, ratio) + self.viscous
+
+    def line(self, qd: Floats, _q: Floats | None = None) -> tuple[Floats, Floats]:
+        """Through zero."""
+        return self.secant(qd), np.zeros_like(qd)
 
 
 @dataclass(frozen=True)
@@ -74,7 +103,7 @@ class SimulatedRobot:
     dofs: Floats = field(repr=False)  # (n,) index of each joint in MuJoCo's vectors
     gravity: tuple[float, float, float]
     payload: Payload | None
-    friction: JointFriction | None
+    friction: Friction | None
 
     @classmethod
     def from_urdf(
@@ -85,10 +114,16 @@ class SimulatedRobot:
         *,
         gravity: tuple[float, float, float] = GRAVITY,
         payload: Payload | None = None,
-        friction: JointFriction | None = None,
+        friction: Friction | None = None,
+        bodies: Bodies | None = None,
     ) -> SimulatedRobot:
-        """Model of the chain from root to tip (empty: the URDF's root and its only leaf)."""
+        """Model of the chain from root to tip (empty: the URDF's root and its only leaf).
+
+        bodies: in place of those of the description.
+        """
         chain = chain_from_urdf(urdf, root, tip)
+        if bodies is not None:
+            chain = replace(chain, inertia=_in_place_of(chain.inertia, bodies.inertia))
         spec = _read_spec(chain)
         if payload is not None:
             _attach(spec, chain.tip, payload)
@@ -100,7 +135,10 @@ class SimulatedRobot:
             ) from error
         _write_true_inertia(model, chain)
         dofs = np.array([model.joint(name).dofadr[0] for name in chain.joint_names])
-        _check_friction(friction, len(dofs))
+        if isinstance(friction, JointFriction):
+            _check_friction(friction, len(dofs))
+        if bodies is not None:
+            model.dof_armature[dofs] = bodies.rotor_inertia
         model.dof_damping[:] = 0.0
         model.dof_frictionloss[:] = 0.0
         model.opt.gravity = _rotation_of_root(model, chain.root) @ np.array(gravity)
@@ -177,6 +215,11 @@ def _attach(spec: mujoco.MjSpec, tip: str, payload: Payload) -> None:
     )
 
 
+def _in_place_of(described: dict[str, Inertia], given: dict[str, Inertia]) -> dict[str, Inertia]:
+    nothing = Inertia(0.0, np.zeros(3), np.zeros((3, 3)))
+    return {**dict.fromkeys(described, nothing), **given}
+
+
 def _write_true_inertia(model: mujoco.MjModel, chain: UrdfChain) -> None:
     """Puts back what balancing changed: moments about the principal axes, and the axes."""
     for link, inertia in chain.inertia.items():
@@ -191,9 +234,7 @@ def _write_true_inertia(model: mujoco.MjModel, chain: UrdfChain) -> None:
     mujoco.mj_setConst(model, mujoco.MjData(model))
 
 
-def _check_friction(friction: JointFriction | None, joints: int) -> None:
-    if friction is None:
-        return
+def _check_friction(friction: JointFriction, joints: int) -> None:
     for name, values in (("coulomb", friction.coulomb), ("viscous", friction.viscous)):
         if np.shape(values) != (joints,) or not (np.isfinite(values).all() and min(values) >= 0):
             raise SimulationError(

@@ -129,13 +129,13 @@ def drive(
     for k in range(ticks):
         effort[k] = command(k, data.qpos[dofs], data.qvel[dofs])
         data.qfrc_applied[dofs] = effort[k]
-        _advance(robot, data, half)
+        _advance(robot, data, effort[k], half)
         # the acceleration that belongs to this state and this torque
-        _hold_friction(robot, data)
+        _hold_friction(robot, data, effort[k])
         mujoco.mj_forward(model, data)
         q[k], qd[k], qdd[k] = data.qpos[dofs], data.qvel[dofs], data.qacc[dofs]
-        friction[k] = -data.qfrc_passive[dofs]
-        _advance(robot, data, half)
+        friction[k] = effort[k] - data.qfrc_applied[dofs] - data.qfrc_passive[dofs]
+        _advance(robot, data, effort[k], half)
         if k % _PROGRESS_EVERY == 0 or k == ticks - 1:
             progress("simulating", k + 1, ticks)
     if not np.isfinite(qdd).all():
@@ -149,23 +149,25 @@ def default_gains(robot: SimulatedRobot, trajectory: Trajectory, rate: int) -> G
     return Gains.of(robot, states, 1.0 / rate)
 
 
-def _advance(robot: SimulatedRobot, data: mujoco.MjData, steps: int) -> None:
+def _advance(robot: SimulatedRobot, data: mujoco.MjData, effort: Floats, steps: int) -> None:
     if robot.friction is None:
         mujoco.mj_step(robot.model, data, steps)
         return
     for _ in range(steps):
-        _hold_friction(robot, data)
+        _hold_friction(robot, data, effort)
         mujoco.mj_step(robot.model, data)
 
 
-def _hold_friction(robot: SimulatedRobot, data: mujoco.MjData) -> None:
-    """Makes MuJoCo's linear damping equal to the friction law at the present velocity.
+def _hold_friction(robot: SimulatedRobot, data: mujoco.MjData, effort: Floats) -> None:
+    """Makes MuJoCo's linear damping, and a torque beside it, equal to friction at the present velocity.
 
-    Friction over velocity, held for one implicit step: stable however steep the law is at rest, and exact at the
-    beginning of the step, where samples are taken.
+    A line, held for one implicit step: stable however steep the law is, and exact at the beginning of the step, where
+    samples are taken.
     """
     if robot.friction is not None:
-        robot.model.dof_damping[robot.dofs] = robot.friction.secant(data.qvel[robot.dofs])
+        slope, at_rest = robot.friction.line(data.qvel[robot.dofs], data.qpos[robot.dofs])
+        robot.model.dof_damping[robot.dofs] = slope
+        data.qfrc_applied[robot.dofs] = effort - at_rest
 
 
 def _desired_motion(
@@ -176,6 +178,6 @@ def _desired_motion(
     effort = robot.torques(q, qd, qdd)
     if robot.friction is not None:
         # the viscous part is what ff_velocity_scale is for
-        effort = effort + robot.friction.torques(qd) - robot.friction.viscous * qd
+        effort = effort + robot.friction.torques(qd, q) - robot.friction.viscous * qd
     q, qd, _ = trajectory.at(time)
     return DesiredMotion(q, qd, effort)

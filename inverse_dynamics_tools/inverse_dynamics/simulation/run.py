@@ -31,7 +31,13 @@ from inverse_dynamics.simulation.excitation import (
     optimise_excitation,
 )
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
-from inverse_dynamics.simulation.model import GRAVITY, JointFriction, SimulatedRobot
+from inverse_dynamics.simulation.model import GRAVITY, Friction, JointFriction, SimulatedRobot
+from inverse_dynamics.simulation.modelled import (
+    ModelFriction,
+    check_same_torques,
+    model_bodies,
+    model_solver,
+)
 from inverse_dynamics.simulation.physics import Motion, check_rate, default_gains, follow
 from inverse_dynamics.simulation.sensors import Recorded, Sensors
 from inverse_dynamics.simulation.trajectory_file import read_trajectory
@@ -69,7 +75,8 @@ def simulate(
     seed: int = 0,
     sensors: Sensors | None = None,
     payload: Payload | None = None,
-    joint_friction: JointFriction | float | str | None = None,
+    joint_friction: Friction | float | str | None = None,
+    from_model: bool = False,
     gravity: tuple[float, float, float] | None = None,
     table: bool = True,
     progress: Progress = no_progress,
@@ -82,7 +89,9 @@ def simulate(
     duration: s; None: once through the trajectory. A periodic one goes on as long as is asked.
     seed: of the search and of the sensors' random numbers.
     joint_friction: the friction itself; a number: Coulomb friction that part of each joint's effort limit, and as much
-        viscous friction at its velocity limit; "urdf": what <dynamics> says; None: none.
+        viscous friction at its velocity limit; "urdf": what <dynamics> says; "model": that of the run configuration's
+        solver; None: none, or the model's with `from_model`.
+    from_model: links and rotor inertias are those of the run configuration's model, not of the description.
     gravity: m/s^2, in the frame of the root link; None: the run configuration's.
     table: whether the plane z = 0 of the root link must not be touched.
 
@@ -94,17 +103,19 @@ def simulate(
         )
     description = read_description(robot.urdf)
     chain = chain_from_urdf(description, robot.root, robot.tip)
-    simulated = SimulatedRobot.from_urdf(
+    simulated = _simulated_robot(
+        robot,
         description,
-        robot.root,
-        robot.tip,
-        gravity=gravity or robot.gravity or GRAVITY,
-        payload=payload,
-        friction=_friction(joint_friction, chain),
+        gravity or robot.gravity or GRAVITY,
+        payload,
+        joint_friction,
+        from_model,
     )
     wishes = Wishes.of(robot, chain)
     rate = wishes.rate if rate is None else rate
     check_rate(rate)
+    sensors = sensors or Sensors()
+    sensors.check(len(chain.joint_names), rate)
     chosen, source = _choose_trajectory(
         simulated, trajectory, wishes.trajectory, optimise, seed, table, progress
     )
@@ -125,9 +136,8 @@ def simulate(
     duration = duration or chosen.duration
     gains = wishes.gains.apply(default_gains(simulated, chosen, rate))
     motion = follow(simulated, chosen, rate=rate, duration=duration, gains=gains, progress=progress)
-    sensors = sensors or Sensors()
     recorded = sensors.record(motion, seed)
-    settings = _settings(robot, simulated, sensors, gains, rate, duration, seed, source)
+    settings = _settings(robot, simulated, sensors, gains, rate, duration, seed, source, from_model)
     settings["robot_description_sha256"] = hashlib.sha256(description.encode()).hexdigest()
     return SimulatedRun(
         log=_joint_log(robot, chain, recorded),
@@ -139,6 +149,41 @@ def simulate(
         settings=settings,
         notes=tuple(notes),
     )
+
+
+def _simulated_robot(
+    robot: Robot,
+    description: str,
+    gravity: tuple[float, float, float],
+    payload: Payload | None,
+    joint_friction: Friction | float | str | None,
+    from_model: bool,
+) -> SimulatedRobot:
+    chain = chain_from_urdf(description, robot.root, robot.tip)
+    solver = None
+    if from_model or joint_friction == "model":
+        solver = model_solver(robot, description, gravity, payload)
+    if solver is not None and joint_friction in (None, "model"):
+        friction: Friction | None = ModelFriction.of(solver)
+        if friction is None and joint_friction == "model":
+            raise SimulationError(
+                f"joint friction: expected a solver with friction, got {robot.plugin}, which has none for "
+                f"{robot.name}; name a robot whose model has friction"
+            )
+    else:
+        friction = _friction(joint_friction, chain)
+    simulated = SimulatedRobot.from_urdf(
+        description,
+        robot.root,
+        robot.tip,
+        gravity=gravity,
+        payload=payload,
+        friction=friction,
+        bodies=model_bodies(robot, chain, description) if from_model else None,
+    )
+    if solver is not None and from_model:
+        check_same_torques(simulated, robot, solver)
+    return simulated
 
 
 def _choose_trajectory(
@@ -168,8 +213,8 @@ def _choose_trajectory(
     return given, "Given by the caller."
 
 
-def _friction(wish: JointFriction | float | str | None, chain: UrdfChain) -> JointFriction | None:
-    if wish is None or isinstance(wish, JointFriction):
+def _friction(wish: Friction | float | str | None, chain: UrdfChain) -> Friction | None:
+    if wish is None or not isinstance(wish, float | int | str):
         return wish
     if wish == "urdf":
         return JointFriction(chain.friction, chain.damping)
@@ -179,7 +224,7 @@ def _friction(wish: JointFriction | float | str | None, chain: UrdfChain) -> Joi
         part = np.nan
     if not 0 <= part < 1:
         raise SimulationError(
-            f"joint friction: expected a part of the effort limit, 0 to below 1, or urdf, got {wish}"
+            f"joint friction: expected a part of the effort limit, 0 to below 1, urdf or model, got {wish}"
         )
     for name, limits in (("effort", chain.effort), ("velocity", chain.velocity)):
         for joint, limit in zip(chain.joint_names, limits, strict=True):
@@ -219,6 +264,7 @@ def _settings(
     duration: float,
     seed: int,
     source: str,
+    from_model: bool,
 ) -> dict[str, Any]:
     """Everything that decides the result, as plain data."""
     import mujoco
@@ -226,6 +272,8 @@ def _settings(
     def plain(thing: object) -> dict[str, Any] | None:
         if thing is None:
             return None
+        if isinstance(thing, ModelFriction):
+            return {"model": robot.plugin if robot.model is None else str(robot.model)}
         out: dict[str, Any] = {}
         for field in fields(thing):  # type: ignore[arg-type]
             value = getattr(thing, field.name)
@@ -245,8 +293,12 @@ def _settings(
         "seed": seed,
         "trajectory": source,
         "payload": plain(simulated.payload),
+        "links": str(robot.model) if from_model else str(robot.urdf),
         "joint_friction": plain(simulated.friction),
         "noise": plain(sensors.noise),
+        "effort_noise": None if sensors.effort_noise is None else sensors.effort_noise.source,
+        "effort_delay": sensors.effort_delay,
+        "message_rate": sensors.message_rate,
         "quantisation": plain(sensors.quantisation),
         "drop": sensors.drop,
         "repeat": sensors.repeat,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a recording does to a motion: noise, quantisation, repeated and lost messages, stamps that jitter.
+"""What a recording does to a motion: noise, delay, quantisation, repeated and lost messages, stamps that jitter.
 
     recorded = Sensors(noise=Resolution(1e-5, 1e-3, 0.1), drop=0.01).record(motion, seed=0)
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from inverse_dynamics.base.arrays import Floats, Integers
+    from inverse_dynamics.simulation.effort_noise import EffortNoise
     from inverse_dynamics.simulation.physics import Motion
 
 EPOCH = 1_700_000_000.0
@@ -27,7 +28,9 @@ EPOCH = 1_700_000_000.0
 
 _LATEST_EPOCH = 2.0e9  # s
 _MOST_JITTER = 60.0  # s
+_MOST_DELAY = 1.0  # s
 _FINEST, _COARSEST = 1e-12, 1e6  # of noise and steps
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -66,6 +69,9 @@ class Sensors:
     repeat: float = 0.0  # probability that a message carries the numbers of the one before
     jitter: float = 0.0  # s, standard deviation of the stamps
     epoch: float = EPOCH  # s
+    effort_noise: EffortNoise | None = None  # of another colour, on top of `noise`
+    effort_delay: float = 0.0  # s by which recorded efforts are older than positions and velocities
+    message_rate: float | None = None  # Hz; None: a message for each sample
 
     def __post_init__(self) -> None:
         for name, value in (("drop", self.drop), ("repeat", self.repeat)):
@@ -73,7 +79,11 @@ class Sensors:
                 raise SimulationError(
                     f"{name}: expected a probability from 0 to below 1, got {value:g}"
                 )
-        for name, value in (("jitter", self.jitter), ("start stamp", self.epoch)):
+        for name, value in (
+            ("jitter", self.jitter),
+            ("start stamp", self.epoch),
+            ("effort delay", self.effort_delay),
+        ):
             if not (np.isfinite(value) and value >= 0):
                 raise SimulationError(
                     f"{name}: expected a time in s that isn't negative, got {value:g}"
@@ -82,10 +92,12 @@ class Sensors:
             raise SimulationError(
                 f"start stamp: expected at most {_LATEST_EPOCH:g} s (a ROS stamp has 32 bits), got {self.epoch:g}"
             )
-        if self.jitter > _MOST_JITTER:
-            raise SimulationError(
-                f"jitter: expected at most {_MOST_JITTER:g} s, got {self.jitter:g}"
-            )
+        for name, value, most in (
+            ("jitter", self.jitter, _MOST_JITTER),
+            ("effort delay", self.effort_delay, _MOST_DELAY),
+        ):
+            if value > most:
+                raise SimulationError(f"{name}: expected at most {most:g} s, got {value:g}")
         for name, three in (("noise", self.noise), ("quantisation", self.quantisation)):
             for field, value in vars(three).items() if three else ():
                 if not (np.isfinite(value) and value >= 0):
@@ -98,10 +110,26 @@ class Sensors:
                     continue
                 raise SimulationError(f"{name}: {field}: expected {expected}, got {value:g}")
 
+    def check(self, joints: int, rate: float) -> None:
+        """Raises SimulationError unless so many joints at this rate [Hz] can be recorded."""
+        if self.effort_noise is not None:
+            self.effort_noise.check_joints(joints)
+        if self.message_rate is not None and not 0 < self.message_rate <= rate * (1 + _ROUNDING):
+            raise SimulationError(
+                f"message rate: expected a rate above zero, and at most the controller's ({rate:g} Hz), got "
+                f"{self.message_rate:g} Hz"
+            )
+
     def record(self, motion: Motion, seed: int) -> Recorded:
         """Messages of a motion; the same seed gives the same ones."""
-        noise, drop, repeat, jitter = (np.random.default_rng((seed, i)) for i in range(4))
-        fields = [motion.q, motion.qd, motion.effort]
+        samples, joints = motion.q.shape
+        self.check(joints, (samples - 1) / (motion.time[-1] - motion.time[0]))
+        noise, drop, repeat, jitter, coloured = (np.random.default_rng((seed, i)) for i in range(5))
+        sampled = self._sampled(motion.time)
+        time = motion.time[sampled]
+        fields = [motion.q[sampled], motion.qd[sampled], self._effort(motion, sampled)]
+        if self.effort_noise is not None:
+            fields[2] = fields[2] + self.effort_noise.at(time, coloured)
         if self.noise is not None:
             stds = vars(self.noise).values()
             fields = [
@@ -114,16 +142,32 @@ class Sensors:
                 step * np.round(values / step) if step > 0 else values
                 for values, step in zip(fields, steps, strict=True)
             ]
-        samples = len(motion.time)
         # a repeated message carries the numbers of the last one that was new
-        new = repeat.random(samples) >= self.repeat
+        new = repeat.random(len(time)) >= self.repeat
         new[0] = True
-        source = np.maximum.accumulate(np.where(new, np.arange(samples), 0))
-        kept = np.flatnonzero(drop.random(samples) >= self.drop)
+        source = np.maximum.accumulate(np.where(new, np.arange(len(time)), 0))
+        kept = np.flatnonzero(drop.random(len(time)) >= self.drop)
         if len(kept) < 2:
-            raise SimulationError(f"drop: {self.drop:g} leaves {len(kept)} of {samples} messages")
+            raise SimulationError(f"drop: {self.drop:g} leaves {len(kept)} of {len(time)} messages")
         q, qd, effort = (values[source[kept]] for values in fields)
-        return Recorded(kept, self._stamps(motion.time, jitter)[kept], q, qd, effort)
+        return Recorded(sampled[kept], self._stamps(time, jitter)[kept], q, qd, effort)
+
+    def _sampled(self, time: Floats) -> NDArray[np.intp]:
+        """Samples that messages are sent for: the last ones that are there when a message is due."""
+        if self.message_rate is None:
+            return np.arange(len(time))
+        due = np.arange(int((time[-1] - time[0]) * self.message_rate + _ROUNDING) + 1)
+        after = time[0] + due / self.message_rate + _ROUNDING
+        rows: NDArray[np.intp] = np.searchsorted(time, after, "right") - 1
+        return rows
+
+    def _effort(self, motion: Motion, sampled: NDArray[np.intp]) -> Floats:
+        """As it was some time ago; before the first sample, as it was then."""
+        if self.effort_delay == 0:
+            return motion.effort[sampled]
+        then = motion.time[sampled] - self.effort_delay
+        columns = [np.interp(then, motion.time, column) for column in motion.effort.T]
+        return np.transpose(columns)
 
     def _stamps(self, time: Floats, random: np.random.Generator) -> Integers:
         """Increasing stamps [ns], one ns apart at least."""

@@ -26,6 +26,11 @@ examples:
   ids simulate --robot panda_simulated --out recording --rate 500 --noise --joint-friction
       what a real robot adds: friction in the joints, noise of the sensors
 
+  ids simulate --robot my_arm.yaml --out recording --from-model --effort-noise evaluation \
+      --effort-delay 0.008 --message-rate 125
+      the arm that `ids identify` found, with what its model leaves unexplained as noise, and torques
+      that are 8 ms late: does `ids identify` find it again?
+
   ids simulate --robot ur10_simulated --out recording --payload 5,0,0,0.1 --mount ceiling
       5 kg, 0.1 m before the tip; base upside down
 
@@ -110,11 +115,18 @@ def add_parser(
     )
     robot.add_argument(
         "--joint-friction",
-        metavar="PART|urdf",
+        metavar="PART|urdf|model",
         nargs="?",
         const="0.02",
         help="Coulomb friction, that part of each effort limit, and as much viscous friction at the "
-        "velocity limit (without a value: 0.02); urdf: what the description's <dynamics> says",
+        "velocity limit (without a value: 0.02); urdf: what the description's <dynamics> says; model: that of "
+        "the run configuration's solver",
+    )
+    robot.add_argument(
+        "--from-model",
+        action="store_true",
+        help="links, rotor inertias and friction of the run configuration's model, as `ids identify` "
+        "writes it, instead of the description's links without friction",
     )
     gravity = robot.add_mutually_exclusive_group()
     add_gravity(gravity)
@@ -130,6 +142,26 @@ def add_parser(
         const="default",
         type=_resolution,
         help="standard deviations of Gaussian noise [rad, rad/s, N m] (without a value: 1e-5,1e-3,0.1)",
+    )
+    recording.add_argument(
+        "--effort-noise",
+        metavar="DIR",
+        type=Path,
+        help="a result of `ids evaluate` of a real robot: stretches of 2 s of its measured minus computed "
+        "torques, in random order, are the noise of the efforts",
+    )
+    recording.add_argument(
+        "--effort-delay",
+        metavar="S",
+        type=number,
+        default=0.0,
+        help="how much older recorded efforts are than positions and velocities [s]",
+    )
+    recording.add_argument(
+        "--message-rate",
+        metavar="HZ",
+        type=positive_number,
+        help="messages per second (default: one per period of the controller)",
     )
     recording.add_argument(
         "--quantisation",
@@ -174,12 +206,19 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.simulation.writer import CONTENTS
 
     # Before the work.
-    inputs = (arguments.trajectory, *robot.files)
+    inputs = (arguments.trajectory, arguments.effort_noise, *robot.files)
     check_output_directory(
         arguments.out, overwrite=arguments.overwrite, contents=CONTENTS, inputs=inputs
     )
 
-    from inverse_dynamics.simulation import MOUNTS, NOISE, QUANTISATION, simulate, write_run
+    from inverse_dynamics.simulation import (
+        MOUNTS,
+        NOISE,
+        QUANTISATION,
+        EffortNoise,
+        simulate,
+        write_run,
+    )
     from inverse_dynamics.simulation.sensors import EPOCH, Sensors
 
     def chosen(three: Resolution | str | None, default: Resolution) -> Resolution | None:
@@ -192,6 +231,9 @@ def run(arguments: argparse.Namespace) -> None:
         repeat=arguments.repeat,
         jitter=arguments.jitter,
         epoch=EPOCH if arguments.start_stamp is None else arguments.start_stamp,
+        effort_noise=arguments.effort_noise and EffortNoise.of_result(arguments.effort_noise),
+        effort_delay=arguments.effort_delay,
+        message_rate=arguments.message_rate,
     )
     with progress_bar() as progress:
         result = simulate(
@@ -204,6 +246,7 @@ def run(arguments: argparse.Namespace) -> None:
             sensors=sensors,
             payload=arguments.payload,
             joint_friction=arguments.joint_friction,
+            from_model=arguments.from_model,
             gravity=MOUNTS[arguments.mount] if arguments.mount else arguments.gravity,
             table=arguments.table,
             progress=progress,
@@ -230,7 +273,7 @@ def _print(result: SimulatedRun, out: Path) -> None:
     console.print(
         f"recording   {out}, {log.topic}: {counted(len(log), 'message')} of "
         f"{counted(len(log.joint_names), 'joint')}, "
-        f"{settings['duration']:g} s at {settings['rate']} Hz"
+        f"{settings['duration']:g} s at {settings['message_rate'] or settings['rate']:g} Hz"
     )
 
 

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A link: m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz, the moments about the origin of its frame."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from inverse_dynamics.base.arrays import Floats
+
+
+def turned(parameters: Floats, rotation: Floats) -> Floats:
+    """(10,) of a body, about the same origin, in other axes: v = R v'."""
+    if np.array_equal(rotation, np.eye(3)):
+        return np.array(parameters)
+    turned_inertia = rotation @ inertia_matrix(parameters[4:]) @ rotation.T
+    return np.concatenate(
+        [parameters[:1], rotation @ parameters[1:4], turned_inertia[np.triu_indices(3)]]
+    )
+
+
+def inertia_matrix(six: Floats) -> Floats:
+    """(3, 3) of xx, xy, xz, yy, yz, zz."""
+    xx, xy, xz, yy, yz, zz = six
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def pseudo_inertia(parameters: Floats) -> Floats:
+    """(4, 4): positive definite if a body can have these numbers [Wensing, Kim, Slotine 2018]."""
+    about_origin, first = inertia_matrix(parameters[4:]), parameters[1:4]
+    second = 0.5 * np.trace(about_origin) * np.eye(3) - about_origin
+    return np.block([[second, first[:, None]], [first[None], parameters[0]]])
