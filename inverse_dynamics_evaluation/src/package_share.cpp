@@ -10,6 +10,7 @@
 #include <chain_dynamics/text.hpp>
 #include <cstdlib>
 #include <filesystem>
+#include <inverse_dynamics_solver/installed_package.hpp>
 #include <sstream>
 #include <vector>
 
@@ -58,14 +59,9 @@ std::string homeOf(const std::string& user) {
 }  // namespace
 
 std::string packageShare(const std::string& package) {
+  const std::string share = inverse_dynamics_solver::installedPackageShare(package);
+  if (!share.empty()) return share;
   const std::vector<std::string> known = prefixes();
-  for (const std::string& prefix : known) {
-    std::error_code ignored;
-    const fs::path marker = "share/ament_index/resource_index/packages";
-    if (fs::is_regular_file(prefix / marker / package, ignored)) {
-      return fs::path(prefix) / "share" / package;
-    }
-  }
   const std::string where = "package " + package + ": ";
   if (known.empty()) {
     throw PackageNotFoundError(where + "no workspace is sourced; " + kSource);

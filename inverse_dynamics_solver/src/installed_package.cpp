@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/installed_package.hpp"
+
+#include <ament_index_cpp/get_package_share_directory.hpp>
+#include <exception>
+
+namespace inverse_dynamics_solver {
+inline namespace v2 {
+
+std::string installedPackageShare(const std::string& package) {
+  try {
+    return ament_index_cpp::get_package_share_directory(package);
+  } catch (const std::exception&) {  // not found, or no workspace is sourced
+    return "";
+  }
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_solver
