@@ -47,8 +47,8 @@ extern "C" [[gnu::weak, gnu::visibility("default")]] void* inverse_dynamics_make
 
 #define PLUGINLIB_JOINED_NAME(a, b) a##b
 #define PLUGINLIB_UNIQUE_NAME(a, b) PLUGINLIB_JOINED_NAME(a, b)
-#define PLUGINLIB_EXPORT_CLASS(Derived, Base)                                  \
-  namespace {                                                                  \
+#define PLUGINLIB_EXPORT_CLASS(Derived, Base)                                   \
+  namespace {                                                                   \
   [[maybe_unused]] const bool PLUGINLIB_UNIQUE_NAME(registered_, __COUNTER__) = \
-      pluginlib::register_class<Derived, Base>(#Derived);                      \
+      pluginlib::register_class<Derived, Base>(#Derived);                       \
   }

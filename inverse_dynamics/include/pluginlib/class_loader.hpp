@@ -93,7 +93,8 @@ inline void* function_of(const std::string& path, const char* name) {
   if (library == nullptr) throw PluginlibException(dlerror());
   void* const function = dlsym(library, name);
   if (function == nullptr) {
-    throw PluginlibException(file + " registers its plugins with ROS's class_loader, and was built "
+    throw PluginlibException(file +
+                             " registers its plugins with ROS's class_loader, and was built "
                              "for a workspace; this program was built without ROS");
   }
   return function;
