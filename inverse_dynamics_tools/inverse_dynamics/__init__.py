@@ -117,16 +117,13 @@ def __getattr__(name: str) -> object:
 
 
 def _version() -> str:
-    """That of the installed package: pip and colcon write it, from package.xml, beside the modules."""
-    from importlib import metadata
+    from inverse_dynamics.base.version import version
+    from inverse_dynamics.errors import UserError
 
     try:
-        return metadata.version(__name__)
-    except metadata.PackageNotFoundError:
-        raise AttributeError(
-            f"{__name__}.__version__: expected the package to be installed by pip or by colcon, which "
-            f"note its version, got the modules alone, in {__path__[0]}; install it"
-        ) from None
+        return version()
+    except UserError as error:
+        raise AttributeError(str(error)) from None
 
 
 def __dir__() -> list[str]:

@@ -45,6 +45,7 @@ VERBS = (
     "report",
     "video",
     "export",
+    "completion",
 )
 
 # Packages that are built on request: their modules `verb` are verbs too, where they are built.
@@ -74,12 +75,9 @@ class _Version(argparse.Action):
     """--version: read when it is asked for, as that takes time."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
-        import inverse_dynamics
+        from inverse_dynamics.base.version import version
 
-        try:
-            print(f"ids {inverse_dynamics.__version__}")
-        except AttributeError as error:
-            raise UserError(str(error)) from None
+        print(f"ids {version()}")
         parser.exit()
 
 
@@ -118,7 +116,7 @@ def make_parser() -> argparse.ArgumentParser:
     subparsers = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
     for module in _verb_modules():
         verb_parser = module.add_parser(subparsers)
-        verb_parser.set_defaults(run=module.run, parser=verb_parser)
+        verb_parser.set_defaults(run=module.run, parser=verb_parser, program=parser)
     return parser
 
 
