@@ -14,7 +14,7 @@ from test_evaluation import RIGID_BODY, UR10, URDF, recording
 from inverse_dynamics import Solver, cli, evaluate, read_evaluation
 from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.verbs.common import progress_bar
+from inverse_dynamics.verbs.common import _ProgressLines, progress_bar
 from inverse_dynamics.verbs.tables import figure
 
 RAW = ("--accelerations", "backward-difference")
@@ -121,6 +121,46 @@ def test_the_data_are_asked_what_efforts_mean(ids, tmp_path):
     metrics = json.loads((tmp_path / "out/metrics.json").read_text())
     assert metrics["effort"]["verdict"]["sure"] is True
     assert read_evaluation("out").effort.meaning == "current"
+
+
+def test_a_description_alone_is_enough(ids, bag, tmp_path):
+    alone = ("evaluate", bag, "--urdf", URDF, "--tip", "tool0", *RAW, *NO_FIGURE, "--out", "alone")
+    code, out, err = ids(*alone)
+    assert (code, err) == (0, "")
+    assert f"solver         {RIGID_BODY}" in out
+    given = ("evaluate", bag, "--robot", "ur10_simulated", *RAW, *NO_FIGURE, "--out", "given")
+    assert ids(*given)[0] == 0
+    alone, given = read_evaluation("alone"), read_evaluation("given")
+    assert alone.robot.name == URDF.stem
+    assert alone.mean_rmse == pytest.approx(given.mean_rmse, rel=1e-9)
+    many = ("evaluate", bag, "--urdf", URDF, "--tip", "tool0", "--jobs", "1", "--out", "many")
+    assert ids(*many, *NO_FIGURE)[0] == 0
+    for verb in ("evaluate", "contact", "torques", "payload"):
+        out = () if verb in ("evaluate", "contact") else ("--out", "x")
+        fails(
+            ids(verb, bag, *out), "expected --robot NAME or --urdf FILE, got neither; `ids robots`"
+        )
+
+
+def test_a_lone_topic_of_another_name_is_taken_and_reported(ids, tmp_path):
+    recording(tmp_path / "bag", Solver(UR10), topic="/arm/joint_states")
+    command = ("evaluate", "bag", "--robot", "ur10_real", *RAW, *NO_FIGURE)
+    code, out, err = ids(*command, "--out", "out")
+    assert (code, err) == (0, "")
+    said = "bag has no topic /joint_states: its only one of joint states is /arm/joint_states"
+    assert f"note           {said}\n" in out
+    code, out, _ = ids(*command, "--topic", "/arm/joint_states", "--out", "named")
+    assert code == 0
+    assert said not in out
+
+
+def test_no_figures_is_short_for_figures_none(ids, bag, tmp_path):
+    evaluate = ("evaluate", bag, "--robot", "ur10_simulated", *RAW, "--out", "out")
+    code, out, _ = ids(*evaluate, "--no-figures")
+    assert code == 0
+    assert "figure" not in out
+    assert list((tmp_path / "out").glob("torques.*")) == []
+    fails(ids(*evaluate, "--no-figures", "--figures", "svg"), "not allowed with argument")
 
 
 def test_an_existing_result_is_kept_unless_told_otherwise(ids, bag, tmp_path):
@@ -235,7 +275,7 @@ def test_the_projects_robots_pass_the_check(ids, name):
     ("arguments", "expected"),
     [
         (("torque",), "invalid choice: 'torque'"),
-        (("evaluate", "bag"), "the following arguments are required: --robot"),
+        (("simulate", "--out", "b"), "the following arguments are required: --robot"),
         (("evaluate", "bag", "--robot", "x", "--gravity", "1,2"), "expected three numbers, x,y,z"),
         (("evaluate", "bag", "--robot", "x", "--gravity", "1,2,1e999"), "expected finite numbers"),
         (
@@ -264,10 +304,10 @@ def test_names_of_joints_are_whole_on_a_narrow_screen(ids, bag, monkeypatch):
 
 
 def test_a_wrong_command_line_takes_one_line_that_names_the_help(ids):
-    _, _, err = ids("evaluate", "bag")
+    _, _, err = ids("simulate", "--out", "bag")
     assert err == (
-        "ids evaluate: error: the following arguments are required: --robot; see "
-        "`ids evaluate --help`\n"
+        "ids simulate: error: the following arguments are required: --robot; see "
+        "`ids simulate --help`\n"
     )
     assert ids("torque")[2].endswith("; see `ids --help`\n")
 
@@ -400,6 +440,17 @@ def test_without_a_sourced_workspace_the_command_names_the_remedy():
     )
     assert result.returncode != 0
     assert "source install/local_setup.bash" in result.stderr
+
+
+def test_long_work_is_reported_where_standard_error_is_no_terminal(capsys, monkeypatch):
+    monkeypatch.setattr("inverse_dynamics.verbs.common._FIRST_LINE", 10.0)
+    seconds = iter([0.0, 5.0, 11.0, 12.0, 25.0, 60.0])
+    lines = _ProgressLines(lambda: next(seconds))
+    for done in (1, 2, 3, 4, 10):
+        lines("reading", done, 10)
+    assert capsys.readouterr().err == (
+        "ids: reading: 20 % done after 11 s ...\nids: reading: 40 % done after 25 s ...\n"
+    )
 
 
 def test_progress_tells_the_time_that_is_left(monkeypatch, capsys):

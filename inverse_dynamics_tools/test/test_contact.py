@@ -338,7 +338,10 @@ def test_the_command_writes_table_figure_and_series(ids, tmp_path, recording, ro
     assert series["contact"].sum() > 1000
     assert series["wrenches"].shape == (30_000, 6)
     fails(ids(*command), "found: exists", "--overwrite")
-    assert ids(*command, "--overwrite", "--figures", "none")[0] == 0
+    code, out, err = ids(*command, "--overwrite", "--no-figures", "--json")
+    assert (code, err) == (0, "")
+    document = {"schema": 1, "verb": "contact", "written": ["found"], "result": summary}
+    assert json.loads(out) == document
     assert not (tmp_path / "found" / "contacts.png").exists()
 
 

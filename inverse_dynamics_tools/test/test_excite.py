@@ -18,7 +18,7 @@ from simulation_arms import pendulum, robots_package, two_links
 from inverse_dynamics.cli import main
 from inverse_dynamics.results import excitations
 from inverse_dynamics.results.excitations import LEAD_IN, default_options, excite, message_text
-from inverse_dynamics.robot.robots import load_robot
+from inverse_dynamics.robot.robots import load_robot, robot_of_description
 from inverse_dynamics.simulation import simulate, write_run
 from inverse_dynamics.simulation.excitation import ExcitationOptions
 from inverse_dynamics.simulation.trajectory import WaypointTrajectory
@@ -45,7 +45,7 @@ def test_writes_a_motion_and_the_message_to_send(
     out = tmp_path / "motion.yaml"
     assert main(["excite", "--urdf", str(arm), "--duration", "8", "--out", str(out)]) == 0
     printed = capsys.readouterr()
-    assert printed.err == ""
+    assert printed.err == "ids: searching for the motion, which takes about a minute ...\n"
     assert "motion      8 s, condition number of the base regressor" in printed.out
     assert "noise       1 % of each effort limit" in printed.out
     assert f"written     {out}, {tmp_path / 'motion_joint_trajectory.yaml'}" in printed.out
@@ -103,7 +103,7 @@ def test_table_compares_with_the_stored_motion_of_the_robot(
 @pytest.mark.usefixtures("quick")
 def test_share_of_the_limits_is_kept(arm: Path) -> None:
     options = default_options(share=0.3, duration=6.0, time_to_full_speed=1.0)
-    result = excite(excitations.robot_of_description(arm), options=options)
+    result = excite(robot_of_description(arm), options=options)
     time = np.linspace(0.0, 6.0, 6001)
     q, qd, qdd = result.excitation.trajectory.at(time)
     assert np.abs(q).max() <= 0.9 + 1e-9
@@ -142,6 +142,7 @@ def test_given_recording_that_never_moves_the_wrist_is_completed(tmp_path: Path)
             "got both: recordings of the arm say nothing of a payload",
         ),
         (["--urdf", "no.urdf"], "no.urdf: no such file"),
+        (["--urdf", __file__], f"{__file__}: isn't a robot description: no XML"),
         (["--tip", "nowhere"], "there is no tip link 'nowhere'"),
     ],
 )

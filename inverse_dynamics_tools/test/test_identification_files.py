@@ -14,6 +14,7 @@ from identified_arms import arm, engine, identification, simulated_torques
 from test_evaluation import JOINTS, URDF, motion
 
 from inverse_dynamics import Solver, evaluate, write_joint_logs
+from inverse_dynamics.base.plain import plain
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import OutputError, RobotError, SolverError
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
@@ -21,10 +22,11 @@ from inverse_dynamics.identification.refusals import check_result
 from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.results import identifications
 from inverse_dynamics.results.hold_out import hold_out
-from inverse_dynamics.results.identifications import PLUGIN, write_identification
+from inverse_dynamics.results.identifications import write_identification
 from inverse_dynamics.results.model_files import model_file_text, predicted_torques
 from inverse_dynamics.robot.chain_geometry import chain_geometry, roll_pitch_yaw
 from inverse_dynamics.robot.link_parameters import turned
+from inverse_dynamics.robot.robots import RIGID_BODY
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +48,7 @@ def states(found):
 
 
 def test_the_model_file_predicts_what_the_identification_does(found, files, states):
-    solver = Solver(PLUGIN, model=str(files.model))
+    solver = Solver(RIGID_BODY, model=str(files.model))
     assert solver.joint_names == JOINTS
     expected = predicted_torques(found.model, engine(), *states)
     np.testing.assert_allclose(solver.torques(*states), expected, rtol=0, atol=1e-10)
@@ -118,7 +120,7 @@ def inertial(link: str, mass: float) -> str:
 def test_oblique_axes_and_fixed_joints_are_those_of_the_engine(found, tmp_path):
     """A model with the description's own figures computes the description's torques, tip and all."""
     from inverse_dynamics import FastModel
-    from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.robot.robots import RIGID_BODY, Robot
 
     text = OBLIQUE
     for link, mass in (("a", 2.0), ("mid", 0.5), ("b", 1.5), ("tool", 0.3)):
@@ -135,7 +137,7 @@ def test_oblique_axes_and_fixed_joints_are_those_of_the_engine(found, tmp_path):
         torque_deviation=found.model.torque_deviation[two],
         seen=found.model.seen[:, two],
     )
-    robot = Robot("oblique", "", urdf, PLUGIN, urdf=urdf, gravity=(1.0, 2.0, -9.0))
+    robot = Robot("oblique", "", urdf, RIGID_BODY, urdf=urdf, gravity=(1.0, 2.0, -9.0))
     oblique = replace(
         found,
         robot=robot,
@@ -146,8 +148,8 @@ def test_oblique_axes_and_fixed_joints_are_those_of_the_engine(found, tmp_path):
     )
     file = tmp_path / "oblique_model.yaml"
     file.write_text(model_file_text(oblique, "oblique"))
-    solver = Solver(PLUGIN, model=str(file))
-    described = Solver(PLUGIN, urdf=text, gravity=(1.0, 2.0, -9.0))
+    solver = Solver(RIGID_BODY, model=str(file))
+    described = Solver(RIGID_BODY, urdf=text, gravity=(1.0, 2.0, -9.0))
     q = np.random.default_rng(1).uniform(-1, 1, size=(20, 2))
     np.testing.assert_allclose(solver.gravity_vector(q), described.gravity_vector(q), atol=1e-12)
     for one, other in zip(solver.tip_pose(q), described.tip_pose(q), strict=True):
@@ -214,6 +216,7 @@ def test_what_is_read_is_not_replaced(found, tmp_path):
 
 def test_all_figures_are_in_json(found, files):
     data = json.loads(files.figures.read_text())
+    assert plain(identifications.summary(found)) == data
     assert data["model"]["parameters"] == found.model.parameters.tolist()
     assert data["held_out"]["identified"] == found.held_out["identified"].tolist()
     assert [block["samples"] for block in data["blocks"]] == [300] * 5
@@ -245,7 +248,7 @@ def test_the_page_shows_each_column_and_the_band(found, files):
 
 
 def test_a_motion_outside_of_what_was_seen_is_told(found, files):
-    seen = Solver(PLUGIN, model=str(files.model)).seen
+    seen = Solver(RIGID_BODY, model=str(files.model)).seen
     np.testing.assert_array_equal(seen, found.model.seen)
     q, qd, qdd, _ = motion()
     kept = np.arange(len(q)) >= 5

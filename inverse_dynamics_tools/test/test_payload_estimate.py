@@ -156,9 +156,15 @@ def test_the_verb_writes_yaml_json_and_figure(ids, recording):
     assert figures["joints"][0]["joint"] == "fer_joint1"
     assert 0 < figures["mass_half_width"] < 0.1
     assert option("payload.yaml")["payload.mass"] == figures["mass"]
-    code, _, err = ids("payload", recording, "--robot", "panda_simulated", "--out", "payload.yaml")
+    again = ("payload", recording, "--robot", "panda_simulated", "--out", "payload.yaml")
+    code, _, err = ids(*again)
     assert code == 2
     assert "--overwrite" in err
+    code, out, err = ids(*again, "--overwrite", "--no-figures", "--json")
+    assert (code, err) == (0, "")
+    written = ["payload.yaml", "payload.json"]
+    document = {"schema": 1, "verb": "payload", "written": written, "result": figures}
+    assert json.loads(out) == document
 
 
 def test_all_files_or_none(recording, tmp_path, monkeypatch):

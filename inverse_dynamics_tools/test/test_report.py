@@ -540,6 +540,23 @@ def test_demo_shows_the_simulated_robots_and_how_to_get_the_others(tmp_path, cap
     assert "exists already" in capsys.readouterr().err
 
 
+def test_demo_prints_json_and_what_it_does_on_standard_error(tmp_path, capsys, monkeypatch):
+    from inverse_dynamics.results import demo
+
+    def run_demo(out, *, say, **_):
+        say("simulating")
+        return demo.Demo(out, {}, None, (), ("no recordings",))
+
+    monkeypatch.setattr(demo, "run_demo", run_demo)
+    monkeypatch.setattr(demo, "find_recordings", lambda: None)
+    assert cli.main(["demo", "--out", "demo", "--json"]) == 0
+    printed = capsys.readouterr()
+    assert printed.err == "simulating ...\n"
+    document = json.loads(printed.out)
+    assert (document["verb"], document["written"]) == ("demo", ["demo"])
+    assert document["result"] == {"schema": 1, "robots": {}, "notes": ["no recordings"]}
+
+
 def test_demo_that_fails_leaves_nothing(tmp_path, monkeypatch):
     from inverse_dynamics.results import demo
 

@@ -24,6 +24,10 @@ times: [0, 0.5, 1]
 positions: [[0], [-0.3], [0]]
 """
 
+SEARCHING = (
+    "ids: {}searching for an exciting one, which takes about a minute; --trajectory names one ...\n"
+)
+
 
 @pytest.fixture
 def arm(tmp_path: Path) -> list[str]:
@@ -137,10 +141,23 @@ def test_optimise_stores_what_it_found(
     robot, bag = write_robot(tmp_path, two_links(), "", "tip: tip\n"), tmp_path / "bag"
     command = ["simulate", "--robot", str(robot), "--rate", "125", "--duration", "0.2"]
     assert main([*command, "--out", str(bag), "--optimise", "--seed", "1"]) == 0
-    assert "condition number of the base regressor" in capsys.readouterr().out
+    printed = capsys.readouterr()
+    assert "condition number of the base regressor" in printed.out
+    assert printed.err == SEARCHING.format("")
     found = yaml.safe_load((bag / "trajectory.yaml").read_text())
     assert "seed 1" in found["source"]
     assert np.ptp(found["positions"], axis=0).min() > 0.01
+
+
+def test_a_search_that_nobody_asked_for_is_announced(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run_module, "ExcitationOptions", partial(ExcitationOptions, iterations=6))
+    robot, bag = write_robot(tmp_path, two_links(), "", "tip: tip\n"), tmp_path / "bag"
+    command = ["simulate", "--robot", str(robot), "--rate", "125", "--duration", "0.2"]
+    assert main([*command, "--out", str(bag)]) == 0
+    why = "the run configuration names no trajectory: "
+    assert capsys.readouterr().err == SEARCHING.format(why)
 
 
 @pytest.mark.parametrize(
@@ -153,7 +170,7 @@ def test_optimise_stores_what_it_found(
         (["--effort-noise", "no_result"], "no_result: expected a result of `ids evaluate`"),
         (["--message-rate", "2000"], "message rate: expected a rate above zero, and at most"),
         (["--payload", "30,0.5,0,0"], "joint swing: effort at 0.00 s"),
-        (["--optimise"], "expected either a trajectory or the wish to optimise one"),
+        (["--optimise"], "expected either a trajectory or a search for one"),
         (["--trajectory", "no.yaml"], "no.yaml: can't be read"),
         (["--robot", "no.yaml"], "no.yaml"),
     ],

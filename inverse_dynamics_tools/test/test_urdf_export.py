@@ -14,9 +14,8 @@ from test_evaluation import JOINTS, URDF
 from test_identification_files import OBLIQUE, inertial
 
 from inverse_dynamics import FastModel, Solver
-from inverse_dynamics.results.identifications import PLUGIN
 from inverse_dynamics.results.urdf_export import mjcf_text, urdf_text
-from inverse_dynamics.robot.robots import Robot
+from inverse_dynamics.robot.robots import RIGID_BODY, Robot
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +69,7 @@ def test_friction_that_grows_with_load_is_that_of_the_mean_load(found):
     text = urdf_text(replace(found, model=model))
     robot = ElementTree.fromstring(text)
     joint = next(j for j in robot.findall("joint") if j.get("name") == JOINTS[1])
-    solver = Solver(PLUGIN, urdf=text, root="base_link", tip="tool0")
+    solver = Solver(RIGID_BODY, urdf=text, root="base_link", tip="tool0")
     q = np.concatenate([block.q for block in found.blocks])
     load = abs(solver.gravity_vector(q)[:, 1]).mean()
     expected = found.model.friction[1]["fc"] + 0.1 * load
@@ -93,7 +92,7 @@ def test_what_is_fixed_to_a_link_is_part_of_it(found, tmp_path):
         rotor_inertia=np.zeros(2),
     )
     blocks = tuple(replace(block, q=block.q[:, two]) for block in found.blocks)
-    robot = Robot("oblique", "", urdf, PLUGIN, urdf=urdf)
+    robot = Robot("oblique", "", urdf, RIGID_BODY, urdf=urdf)
     oblique = replace(found, robot=robot, joints=("one", "two"), model=model, blocks=blocks)
     again = urdf_text(oblique)
     parameters = FastModel.from_urdf(again).parameters

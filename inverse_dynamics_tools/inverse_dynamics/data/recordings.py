@@ -37,8 +37,8 @@ def read_recording(
     """Samples of a motion: time, positions, velocities, efforts, accelerations where there are any.
 
     path: a file ending in .csv or .txt, else a rosbag2 recording. joints: names, in the order
-    wanted; none: those of the recording. topic, of a bag; none: usual_topic, if it is there or
-    there are no trajectories, else the only one of joint states, else that of trajectories. clock:
+    wanted; none: those of the recording. topic, of a bag; none: usual_topic if it is there, else
+    the only one of joint states, else the only one of trajectories if there are no joint states. clock:
     which stamp of messages is the time.
 
     Raises BagError.
@@ -81,8 +81,11 @@ def open_motion(
 
 
 def _topic(types: dict[str, str], usual: str) -> str:
-    """The usual topic, or that of trajectories if there are no joint states; "" leaves it open."""
-    if usual in types or bags.MESSAGE_TYPE in types.values():
+    """The usual topic, else the only one of joint states, else that of trajectories."""
+    if usual in types:
         return usual
-    found = [name for name, kind in types.items() if kind == joint_trajectories.MESSAGE_TYPE]
-    return found[0] if len(found) == 1 else usual
+    for message_type in (bags.MESSAGE_TYPE, joint_trajectories.MESSAGE_TYPE):
+        found = [name for name, kind in types.items() if kind == message_type]
+        if found:
+            return found[0] if len(found) == 1 else usual
+    return usual

@@ -185,7 +185,7 @@ def evaluate(
     )
     seconds["reading"] += result.seconds["reading"]
     notes = description_notes(robot, "drawn") if urdf is not None else ()
-    notes = (*window.notes, *notes)
+    notes = (*window.notes, *_topic_notes(bag, motion, topic or robot.topic), *notes)
     result = replace(result, notes=(*notes, *result.notes), seconds={**result.seconds, **seconds})
     states = (result.log.q, result.log.qd, result.qdd)
     kept = result.samples.kept
@@ -196,6 +196,13 @@ def evaluate(
         return result
     note = f"likely cause of the error: {cause.text}"
     return replace(result, notes=(*result.notes, note), diagnosis=cause)
+
+
+def _topic_notes(bag: Path, motion: JointLog | JointStateTopic, expected: str) -> list[str]:
+    """That a recording has its joint states on another topic, where it has just one."""
+    if isinstance(motion, JointLog) or motion.topic == expected:
+        return []
+    return [f"{bag} has no topic {expected}: its only one of joint states is {motion.topic}"]
 
 
 def check_options(

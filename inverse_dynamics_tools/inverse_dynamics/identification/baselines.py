@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.robot.robots import with_changes
+from inverse_dynamics.robot.robots import RIGID_BODY, with_changes
 from inverse_dynamics.robot.solvers import open_solver
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.identification.blocks import Block
     from inverse_dynamics.robot.robots import Robot
 
-_RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 _STEP_WIDTH = 0.05  # rad/s, of a step that a model without friction is given
 
 
@@ -27,10 +26,10 @@ class Baselines:
     """Torques of models that aren't new."""
 
     def __init__(self, robot: Robot, description: str) -> None:
-        urdf = replace(robot, model=None, plugin=_RIGID_BODY, friction=False, parameters={})
+        urdf = replace(robot, model=None, plugin=RIGID_BODY, friction=False, parameters={})
         self._urdf = open_solver(with_changes(urdf), description)
         self._present: Solver | None = None
-        if robot.plugin != _RIGID_BODY or robot.model is not None:
+        if robot.plugin != RIGID_BODY or robot.model is not None:
             self._present = open_solver(robot, description)
 
     def torques(self, block: Block, others: Sequence[Block]) -> dict[str, Floats]:

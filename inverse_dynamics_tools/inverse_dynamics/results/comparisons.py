@@ -8,10 +8,10 @@ report.html                 all runs on one page
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.files import Contents, write_text, written_whole
+from inverse_dynamics.base.plain import json_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,8 +46,7 @@ def write_comparison(
     title = title or f"{first.bag.name}: {' against '.join(comparison.labels)}"
     inputs = [path for e in comparison.evaluations for path in (e.bag, *e.robot.files)]
     with written_whole(directory, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as target:
-        text = json.dumps(_figures(comparison), indent=2, allow_nan=False, ensure_ascii=False)
-        write_text(target / MARK, text + "\n")
+        write_text(target / MARK, json_text(summary(comparison)))
         save_comparison_figure(comparison, *(target / f"comparison.{f}" for f in figures))
         if page:
             _write_page(target / "report.html", title, comparison)
@@ -63,15 +62,16 @@ def _write_page(file: Path, title: str, comparison: Comparison) -> None:
     write_page(file, title, runs, [report_comparison(comparison)])
 
 
-def _figures(comparison: Comparison) -> dict[str, Any]:
+def summary(comparison: Comparison) -> dict[str, Any]:
+    """Errors of each run, for JSON."""
     first = comparison.evaluations[0]
     return {
         "schema": 1,
         "bag": str(first.bag),
-        "joints": list(comparison.joint_names),
-        "units": list(first.units),
+        "joints": comparison.joint_names,
+        "units": first.units,
         "runs": [
-            {"label": label, "plugin": evaluation.robot.plugin, "rmse": list(map(float, rmse))}
+            {"label": label, "plugin": evaluation.robot.plugin, "rmse": rmse}
             for label, evaluation, rmse in zip(
                 comparison.labels, comparison.evaluations, comparison.rmse, strict=True
             )

@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.files import Contents, write_text, written_whole
+from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.figures.contacts import save_contact_figure
 from inverse_dynamics.figures.plots import FORMATS, check_formats
 from inverse_dynamics.results.series_file import SeriesFile
@@ -37,8 +36,7 @@ def write_contacts(
     out = Path(out)
     inputs = (contacts.evaluation.bag, *contacts.evaluation.robot.files)
     with written_whole(out, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as directory:
-        text = json.dumps(_summary(contacts), indent=2, allow_nan=False, ensure_ascii=False)
-        write_text(directory / MARK, text + "\n")
+        write_text(directory / MARK, json_text(summary(contacts)))
         with SeriesFile(directory / "series.npz", len(contacts.time)) as series:
             series.add(_series(contacts))
         save_contact_figure(contacts, *(directory / f"contacts.{suffix}" for suffix in figures))
@@ -56,7 +54,8 @@ def _series(contacts: Contacts) -> dict[str, Any]:
     return arrays
 
 
-def _summary(contacts: Contacts) -> dict[str, Any]:
+def summary(contacts: Contacts) -> dict[str, Any]:
+    """Contacts, thresholds and how they came about, for JSON."""
     evaluation, thresholds = contacts.evaluation, contacts.thresholds
     figures = (
         "torques",
@@ -86,12 +85,12 @@ def _summary(contacts: Contacts) -> dict[str, Any]:
         "false_alarms_per_hour": thresholds.false_alarms_per_hour,
         "joints": [
             {"joint": joint, "unit": unit}
-            | {figure: float(getattr(thresholds, figure)[j]) for figure in figures}
+            | {figure: getattr(thresholds, figure)[j] for figure in figures}
             for j, (joint, unit) in enumerate(
                 zip(evaluation.joint_names, evaluation.units, strict=True)
             )
         ],
-        "contacts": [asdict(contact) for contact in contacts.contacts],
+        "contacts": contacts.contacts,
         "interruptions": [list(times) for times in contacts.interruptions],
         "notes": list(contacts.notes),
     }

@@ -15,24 +15,24 @@ DIR/comparison              that against the identified model
 
 from __future__ import annotations
 
-import json
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.files import Contents, write_text, written_whole
+from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data.public_recordings import data_directory
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.comparison import compare
 from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.robot.robots import load_robot
+from inverse_dynamics.robot.robots import RIGID_BODY, load_robot
 from inverse_dynamics.robot.solvers import open_solver
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping, Sequence
 
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.comparison import Comparison
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
 MARK = "demo.json"
 SIMULATED = ("ur10_simulated", "panda_simulated")
 REAL = {"ur10_real": "ur10_exciting_trajectory", "panda_real": "panda_exciting_trajectory"}
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 
 TITLES = {
     "ur10_simulated": "UR10, simulated",
@@ -138,6 +137,18 @@ def run_demo(
         work.write_page(comparison)
     videos = tuple(out / file.name for file in work.videos)
     return Demo(out, work.evaluations, comparison, videos, tuple(work.notes))
+
+
+def summary(evaluations: Mapping[str, Evaluation], notes: Sequence[str]) -> dict[str, Any]:
+    """Mean errors of each robot, for JSON."""
+    return {
+        "schema": 1,
+        "robots": {
+            name: {"mean_rmse": e.mean_rmse, "unit": e.units[0], "samples": len(e.log)}
+            for name, e in evaluations.items()
+        },
+        "notes": notes,
+    }
 
 
 def _contents() -> Contents:
@@ -251,16 +262,7 @@ class _Work:
         runs = [report_run(e, TITLES[name]) for name, e in self.evaluations.items()]
         title = f"{_COUNTS[len(runs)]} robots: measured and computed torques"
         write_page(self.target / "report.html", title, runs, comparisons, self.notes)
-        summary = {
-            "schema": 1,
-            "robots": {
-                name: {"mean_rmse": e.mean_rmse, "unit": e.units[0], "samples": len(e.log)}
-                for name, e in self.evaluations.items()
-            },
-            "notes": self.notes,
-        }
-        text = json.dumps(summary, indent=2, allow_nan=False, ensure_ascii=False)
-        write_text(self.target / MARK, text + "\n")
+        write_text(self.target / MARK, json_text(summary(self.evaluations, self.notes)))
 
 
 def _match(run: SimulatedRun, evaluation: Evaluation) -> str:

@@ -16,13 +16,14 @@ import json
 import math
 import time
 from contextlib import suppress
-from dataclasses import asdict, fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from inverse_dynamics.base.files import Contents, write_text, written_whole
+from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.replacement import restore_interrupted
 from inverse_dynamics.data.bags import JointLogsWriter
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Storage
+    from inverse_dynamics.evaluation.diagnosis import Diagnosis
     from inverse_dynamics.evaluation.series import Arrays
     from inverse_dynamics.figures.torque_lines import TorqueLines
 
@@ -210,8 +212,8 @@ def _write_rest(
     start = time.perf_counter()
     layout = _layout(evaluation, target / "bag", written.storage)
     write_text(target / "plotjuggler.xml", layout)
-    _write_json(target / "metrics.json", _metrics(evaluation))
-    _write_json(target / MARK, _summary(evaluation))
+    write_text(target / "metrics.json", json_text(metrics(evaluation)))
+    write_text(target / MARK, json_text(_summary(evaluation)))
     plotting = time.perf_counter()
     if figures:
         progress("plotting", 0, 1)
@@ -318,23 +320,30 @@ def _series(evaluation: Evaluation) -> Iterator[tuple[Recorded, Arrays]]:
         yield recorded, {name: array[begin : begin + _BLOCK] for name, array in arrays.items()}
 
 
-def _metrics(evaluation: Evaluation) -> dict[str, Any]:
-    """For people and scripts: errors, and enough to know of what."""
+def metrics(evaluation: Evaluation) -> dict[str, Any]:
+    """For people and scripts: errors, what they are of, and what is odd about them; for JSON."""
     return {
         "robot": evaluation.robot.name,
         "plugin": evaluation.robot.plugin,
         "friction": evaluation.robot.friction,
         "bag": str(evaluation.bag),
         "samples": len(evaluation.log),
-        "accelerations": asdict(evaluation.accelerations),
-        "effort": asdict(evaluation.effort),
-        "joints": [_without_nan(error) for error in evaluation.errors],
+        "accelerations": evaluation.accelerations,
+        "effort": evaluation.effort,
+        "joints": evaluation.errors,
         "mean_rmse": evaluation.mean_rmse if len(set(evaluation.units)) == 1 else None,
         "kept": {
             "samples": len(evaluation.log) - evaluation.samples.left_out,
-            "joints": [_without_nan(error) for error in evaluation.errors_of_kept],
+            "joints": evaluation.errors_of_kept,
         },
+        "notes": evaluation.notes,
+        "diagnosis": _cause(evaluation.diagnosis),
     }
+
+
+def _cause(diagnosis: Diagnosis | None) -> dict[str, Any] | None:
+    """The likely cause of the errors, where it is clear."""
+    return None if diagnosis is None else {**vars(diagnosis), "reference": diagnosis.reference}
 
 
 def _summary(evaluation: Evaluation) -> dict[str, Any]:
@@ -344,11 +353,11 @@ def _summary(evaluation: Evaluation) -> dict[str, Any]:
         "bag": str(evaluation.bag),
         "samples": len(log),
         "duration": log.duration,
-        "robot": {f.name: _plain(getattr(robot, f.name)) for f in fields(robot)},
+        "robot": robot,
         "joint_names": list(evaluation.joint_names),
         "units": list(evaluation.units),
-        "accelerations": asdict(evaluation.accelerations),
-        "effort": asdict(evaluation.effort),
+        "accelerations": evaluation.accelerations,
+        "effort": evaluation.effort,
         "sampling": {"period": evaluation.samples.period, "jitter": evaluation.samples.jitter},
         "recording": {
             "joint_names": list(log.joint_names),
@@ -414,22 +423,6 @@ def _effort(data: dict[str, Any]) -> Effort:
         verdict = Verdict(**{**verdict, "candidates": candidates})
     gains = tuple(data["drive_gains"])
     return Effort(**{**data, "drive_gains": gains, "verdict": verdict})
-
-
-def _write_json(file: Path, data: dict[str, Any]) -> None:
-    write_text(file, json.dumps(data, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
-
-
-def _plain(value: object) -> object:
-    return str(value) if isinstance(value, Path) else value
-
-
-def _without_nan(error: JointError) -> dict[str, Any]:
-    """Undefined figures are null: JSON has no NaN."""
-    return {
-        name: None if isinstance(value, float) and not math.isfinite(value) else value
-        for name, value in asdict(error).items()
-    }
 
 
 def _errors(joints: list[dict[str, Any]]) -> tuple[JointError, ...]:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import Robot, load_robot
 from inverse_dynamics.simulation.configuration import Wishes
-from inverse_dynamics.simulation.errors import SimulationError
+from inverse_dynamics.simulation.errors import SimulationError, described_by
 from inverse_dynamics.simulation.excitation import (
     PAYLOAD_DURATION,
     Excitation,
@@ -38,7 +38,7 @@ from inverse_dynamics.simulation.model import GRAVITY, SimulatedRobot
 from inverse_dynamics.simulation.trajectory_file import read_trajectory, trajectory_text
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
@@ -47,7 +47,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.simulation.trajectory import WaypointTrajectory
 
 LEAD_IN = 3.0  # s from the start of the trajectory to send to its first point
-_RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 _TEST_STATES = 1000
 _REWEIGHTED = 4  # times that the noise is taken from the residuals
 _GIVEN_STEP = 0.02  # s between samples of recordings that are used
@@ -78,32 +77,19 @@ class ExcitationResult:
     notes: tuple[str, ...]
 
 
-def robot_of_description(urdf: Path, root: str = "", tip: str = "") -> Robot:
-    """What there is to know of a robot of which only the description is given."""
-    return Robot(
-        name=urdf.stem,
-        description="",
-        file=urdf,
-        plugin=_RIGID_BODY,
-        urdf=urdf,
-        root=root,
-        tip=tip,
-        effort="auto",
-    )
-
-
 def excite(
     robot: Robot | Path | str,
     *,
     given: Sequence[Path | str] = (),
     options: ExcitationOptions | None = None,
     seed: int = 0,
+    say: Callable[[str], None] = lambda text: None,
     progress: Progress = no_progress,
 ) -> ExcitationResult:
     """Search for the motion after which torques of the robot are predicted best.
 
     robot: as evaluate() takes it, with a description; given: recordings that will be used too.
-    The same arguments give the same motion.
+    The same arguments give the same motion. say: called with a sentence before what takes long.
 
     Raises UserError: SimulationError, RobotError, BagError, EvaluationError.
     """
@@ -118,9 +104,10 @@ def excite(
         raise SimulationError(
             f"{robot.file}: names no urdf; a motion needs the robot's description"
         )
-    simulated = SimulatedRobot.from_urdf(
-        read_description(robot.urdf), robot.root, robot.tip, gravity=robot.gravity or GRAVITY
-    )
+    with described_by(robot.urdf):
+        simulated = SimulatedRobot.from_urdf(
+            read_description(robot.urdf), robot.root, robot.tip, gravity=robot.gravity or GRAVITY
+        )
     limits = options.limits(simulated)
     check_limits(simulated, limits)
     kind = Unknowns.of_payload if options.payload else Unknowns.of_arm
@@ -134,6 +121,7 @@ def excite(
         noise_source = "residuals of the given recordings"
         known = np.sum([_gram(unknowns, recording) for recording in recordings], axis=0)
         notes += _resting(simulated, recordings)
+    say("searching for the motion, which takes about a minute")
     found = optimise_excitation(
         simulated, options, seed=seed, noise=unknowns.noise, given=known, progress=progress
     )
@@ -181,6 +169,30 @@ def check_output(out: Path, robot: Robot, given: Sequence[Path], *, overwrite: b
 def sending_file(out: Path) -> Path:
     """Where the trajectory to send goes: motion_joint_trajectory.yaml beside motion.yaml."""
     return out.with_name(f"{out.stem}_joint_trajectory.yaml")
+
+
+def summary(result: ExcitationResult) -> dict[str, Any]:
+    """How each joint moves, and what the motion tells, for JSON."""
+    names = ("velocity_share", "acceleration_share", "torque_share")
+    return {
+        "robot": result.robot.name,
+        "duration": result.excitation.trajectory.duration,
+        "condition_number": result.excitation.condition_number,
+        "noise_source": result.noise_source,
+        "joints": [
+            {
+                "joint": joint,
+                "unit": unit,
+                "lower": result.travel[j, 0],
+                "upper": result.travel[j, 1],
+                **dict(zip(names, result.greatest[:, j], strict=True)),
+                "noise": result.noise[j],
+                "deviation": {name: values[j] for name, values in result.deviation.items()},
+            }
+            for j, (joint, unit) in enumerate(zip(result.joint_names, result.units, strict=True))
+        ],
+        "notes": result.notes,
+    }
 
 
 def write_excitation(

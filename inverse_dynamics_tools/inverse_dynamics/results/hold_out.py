@@ -18,7 +18,7 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.results.model_files import model_file_text
-from inverse_dynamics.robot.robots import with_changes
+from inverse_dynamics.robot.robots import RIGID_BODY, with_changes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.identification.result import Identification
-
-_RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 
 
 @dataclass(frozen=True)
@@ -61,7 +59,7 @@ def hold_out(
     robot, gains = found.robot, found.model.drive_gains
     if gains is not None:
         robot = replace(robot, drive_gains=tuple(gains.tolist()))
-    described = replace(robot, plugin=_RIGID_BODY, model=None, friction=False, parameters={})
+    described = replace(robot, plugin=RIGID_BODY, model=None, friction=False, parameters={})
     robots = {"urdf": with_changes(described)}
     if "present" in found.held_out:
         robots["present"] = robot
@@ -69,7 +67,7 @@ def hold_out(
         model = Path(directory) / "model.yaml"
         model.write_text(model_file_text(found, "identified"), encoding="utf-8")
         robots["identified"] = replace(
-            robot, plugin=_RIGID_BODY, model=model, friction=True, parameters={}
+            robot, plugin=RIGID_BODY, model=model, friction=True, parameters={}
         )
         results = {
             column: evaluate(recording, robot, progress=progress, **options)

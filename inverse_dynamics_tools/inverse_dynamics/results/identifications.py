@@ -9,9 +9,7 @@ arm.html         the report's page
 
 from __future__ import annotations
 
-import json
 import os
-from dataclasses import asdict, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,11 +17,13 @@ import numpy as np
 
 from inverse_dynamics import _core
 from inverse_dynamics.base.files import check_output_file, files_written_whole, write_text
+from inverse_dynamics.base.plain import json_text, plain
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.identification.summary import error_rows
 from inverse_dynamics.report.identifications import error_table, render_identification
 from inverse_dynamics.results.model_files import model_file_text
 from inverse_dynamics.results.yaml_text import yaml_list, yaml_text
+from inverse_dynamics.robot.robots import RIGID_BODY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.results.hold_out import HoldOut
 
 SCHEMA = 1
-PLUGIN = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 
 
 class IdentificationFiles(NamedTuple):
@@ -98,7 +97,7 @@ def write_identification(
     name = files.robot.stem
     texts = {
         files.model: model_file_text(found, f"{name}_model"),
-        files.figures: _figures(found, tests),
+        files.figures: json_text(summary(found, tests)),
         files.page: render_identification(found, [_table_of(found, test) for test in tests]),
         **more,
         files.robot: _run_configuration(found, files, name),  # last: it names the model
@@ -112,7 +111,7 @@ def write_identification(
 
 def _check_model(file: Path) -> None:
     """The solver's own reader computes the rows of checks. Raises SolverError."""
-    _core.Solver(PLUGIN, model=str(file))
+    _core.Solver(RIGID_BODY, model=str(file))
 
 
 def _run_configuration(found: Identification, files: IdentificationFiles, name: str) -> str:
@@ -127,7 +126,7 @@ def _run_configuration(found: Identification, files: IdentificationFiles, name: 
         "schema: 1",
         f"name: {yaml_text(name)}",
         f"description: {yaml_text(f'{robot.name}, identified from {_names(found)}')}",
-        f"plugin: {PLUGIN}",
+        f"plugin: {RIGID_BODY}",
         f"model: {yaml_text(files.model.name)}",
         f"urdf: {yaml_text(_reference(robot.urdf, files.robot.parent))}  # drawn; the model counts",
     ]
@@ -177,20 +176,20 @@ def _table_of(found: Identification, test: HoldOut) -> ReportTable:
     return error_table(found, rows, f"Error on {test.recording.name}", "; ".join(test.notes))
 
 
-def _figures(found: Identification, tests: Sequence[HoldOut]) -> str:
-    """Everything but the samples."""
+def summary(found: Identification, tests: Sequence[HoldOut] = ()) -> dict[str, Any]:
+    """Everything but the samples, for JSON. tests: recordings that were held out."""
     robot = found.robot
-    data = {
+    return {
         "schema": SCHEMA,
         "robot": robot.name,
         "plugin": robot.plugin,
         "urdf": None if robot.urdf is None else str(robot.urdf),
         **{
-            name: _plain(getattr(found, name))
+            name: plain(getattr(found, name))
             for name in found.__dataclass_fields__
             if name not in ("robot", "blocks")
         },
-        "hold_out": [_plain(test) for test in tests],
+        "hold_out": [plain(test) for test in tests],
         "blocks": [
             {
                 "recording": block.recording,
@@ -200,30 +199,12 @@ def _figures(found: Identification, tests: Sequence[HoldOut]) -> str:
                 "law": block.law,
                 "prior_strength": block.prior_strength,
                 "delay": block.delay,
-                "band": _plain(block.band),
+                "band": plain(block.band),
                 "rmse": {
-                    column: _plain(np.sqrt(np.mean((computed - block.measured) ** 2, axis=0)))
+                    column: plain(np.sqrt(np.mean((computed - block.measured) ** 2, axis=0)))
                     for column, computed in block.computed.items()
                 },
             }
             for block in found.blocks
         ],
     }
-    return json.dumps(data, indent=2, allow_nan=False, ensure_ascii=False) + "\n"
-
-
-def _plain(value: Any) -> Any:
-    """As JSON has it; undefined figures are null."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return _plain(asdict(value))
-    if isinstance(value, dict) or hasattr(value, "items"):
-        return {str(key): _plain(entry) for key, entry in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(entry) for entry in value]
-    if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
-    if isinstance(value, np.generic):
-        return _plain(value.item())
-    if isinstance(value, float) and not np.isfinite(value):
-        return None
-    return str(value) if isinstance(value, Path) else value

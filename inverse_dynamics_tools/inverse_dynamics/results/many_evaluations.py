@@ -15,7 +15,6 @@ NAME/series.parquet   its series, with a column `recording`, where that is asked
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 from contextlib import suppress
@@ -26,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 from inverse_dynamics.base.arguments import check_call, checked
 from inverse_dynamics.base.cluster import check_stopped, on_cluster
 from inverse_dynamics.base.files import Contents, write_text, written_whole
+from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.replacement import restore_interrupted
 from inverse_dynamics.base.wording import counted
@@ -257,6 +257,16 @@ def _sorted_out(
     return ManyEvaluations(out, tuple(summaries), tuple(failures))
 
 
+def summary(result: ManyEvaluations, robot: Robot) -> dict[str, Any]:
+    """Recordings, why some failed, and the rows of summary.csv, for JSON."""
+    done = [{"name": s.name, "bag": s.bag, "error": None} for s in result.summaries]
+    return {
+        "robot": robot.name,
+        "recordings": [*done, *result.failures],
+        "rows": result.rows,
+    }
+
+
 def failures_told(what: str, failures: Sequence[FailedRecording]) -> str:
     """Failures as a text of a few lines."""
     lines = [f"  {failure.name}: {failure.error}" for failure in failures[:_MOST_TOLD]]
@@ -279,8 +289,7 @@ def _write(result: ManyEvaluations, target: Path, names: Mapping[str, Path], rob
             for name, bag in names.items()
         ],
     }
-    text = json.dumps(about, indent=2, allow_nan=False, ensure_ascii=False)
-    write_text(target / MARK, text + "\n")
+    write_text(target / MARK, json_text(about))
     title = f"{robot.description or robot.name}: {counted(len(names), 'recording')}"
     links = {s.name: PAGE for s in result.summaries if (target / s.name / PAGE).is_file()}
     write_recordings_page(target / PAGE, title, result.summaries, failures, links)

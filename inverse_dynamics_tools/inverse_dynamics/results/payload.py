@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.files import check_output_file, files_written_whole, write_text
+from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.figures.payload import save_payload_figure
 from inverse_dynamics.figures.plots import check_formats
@@ -57,11 +57,10 @@ def write_payload(
     out = Path(out)
     inputs = (payload.evaluation.bag, payload.empty, *payload.evaluation.robot.files)
     check_payload_output(out, figures, overwrite=overwrite, inputs=inputs)
-    text = json.dumps(summary(payload), indent=2, allow_nan=False, ensure_ascii=False)
     load, *beside = payload_files(out, figures)
     with files_written_whole([*beside, load]) as fresh:  # the load last
         data, *drawn, body = fresh
-        write_text(data, text + "\n")
+        write_text(data, json_text(summary(payload)))
         if drawn:
             save_payload_figure(payload, *drawn)
         write_text(body, yaml_text(payload))

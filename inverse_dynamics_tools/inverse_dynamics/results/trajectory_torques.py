@@ -3,9 +3,6 @@
 
 from __future__ import annotations
 
-import json
-import math
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +17,7 @@ from inverse_dynamics.base.files import (
     write_text_whole,
     written_whole,
 )
+from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data.bags import new_recording, open_recording, unwritable
 from inverse_dynamics.data.csv_table import CsvTable, is_csv
@@ -86,12 +84,12 @@ def write_trajectory_torques(
         except Exception as error:  # writers raise more than they document
             raise unwritable(out, error) from error
         move_up(bag)
-        text = json.dumps(_summary(result), indent=2, allow_nan=False, ensure_ascii=False)
-        write_text(directory / MARK, text + "\n")
+        write_text(directory / MARK, json_text(summary(result)))
     return notes
 
 
-def _summary(result: TrajectoryTorques) -> dict[str, Any]:
+def summary(result: TrajectoryTorques) -> dict[str, Any]:
+    """How torques were computed, and each joint's load, for JSON; no limit is null."""
     robot = result.robot
     return {
         "schema": 1,
@@ -101,10 +99,7 @@ def _summary(result: TrajectoryTorques) -> dict[str, Any]:
         "plugin": robot.plugin,
         "friction": robot.friction,
         "gravity": robot.gravity,
-        "joints": [
-            {**asdict(load), "limit": load.limit if math.isfinite(load.limit) else None}
-            for load in result.loads
-        ],
+        "joints": result.loads,
     }
 
 

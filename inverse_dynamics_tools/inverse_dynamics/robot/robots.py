@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from inverse_dynamics._core import Parameter
 
 DEFAULT_TOPIC = "/joint_states"
+RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,16 @@ def load_robot(name_or_file: str | Path) -> Robot:
     What ends in .yaml or .yml, or has a directory, is a file. Raises RobotError.
     """
     return Robot(**_core.read_robot(path_bytes(name_or_file)))
+
+
+def robot_of_description(urdf: Path | str) -> Robot:
+    """A robot of which only the description is known: rigid bodies without friction.
+
+    Its name is the file's; what recorded efforts mean is found from the data.
+    """
+    urdf = Path(urdf)
+    name = urdf.name.partition(".")[0]
+    return Robot(name, "", urdf, RIGID_BODY, urdf=urdf, effort="auto")
 
 
 def with_changes(robot: Robot, **changes: Any) -> Robot:

@@ -9,13 +9,10 @@ from typing import TYPE_CHECKING
 from inverse_dynamics import _core
 from inverse_dynamics.base.wording import counted, listed
 from inverse_dynamics.errors import InvalidRobotDescriptionError, RobotError, SolverError
+from inverse_dynamics.robot.robots import RIGID_BODY
 
 if TYPE_CHECKING:
     from inverse_dynamics.robot.robots import Robot
-
-
-# What reads a description for a solver that doesn't.
-_RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 
 
 def open_solver(robot: Robot, description: str = "") -> _core.Solver:
@@ -39,7 +36,7 @@ def _check_links(robot: Robot, description: str, solver: _core.Solver) -> None:
             f"robot {robot.name}: {given}: expected none, as {robot.plugin} brings its own model and "
             "there is no description to check them with; leave them out"
         )
-    own, reader = list(solver.joint_names), replace(robot, plugin=_RIGID_BODY)
+    own, reader = list(solver.joint_names), replace(robot, plugin=RIGID_BODY)
     reader = replace(reader, gravity=None, parameters={"allow_massless": True})
     chain = list(_made(reader, description).joint_names)
     # joints of other names may be the same ones

@@ -24,7 +24,7 @@ from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.configuration import Wishes
 from inverse_dynamics.simulation.controller import Gains
-from inverse_dynamics.simulation.errors import SimulationError
+from inverse_dynamics.simulation.errors import SimulationError, described_by
 from inverse_dynamics.simulation.excitation import (
     ExcitationOptions,
     condition_of,
@@ -44,6 +44,8 @@ from inverse_dynamics.simulation.trajectory_file import read_trajectory
 from inverse_dynamics.simulation.urdf import chain_from_urdf
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.robot.robots import Robot
     from inverse_dynamics.simulation.model import Payload
@@ -79,12 +81,13 @@ def simulate(
     from_model: bool = False,
     gravity: tuple[float, float, float] | None = None,
     table: bool = True,
+    say: Callable[[str], None] = lambda text: None,
     progress: Progress = no_progress,
 ) -> SimulatedRun:
     """Simulates a robot under a joint trajectory controller, and records its joint states.
 
     trajectory: a file or an object; None: the run configuration's; without one, or with `optimise`, a new exciting
-        trajectory is searched for, which takes half a minute.
+        trajectory is searched for, which takes about a minute.
     rate: of controller and recording, 125, 500 or 1000 Hz.
     duration: s; None: once through the trajectory. A periodic one goes on as long as is asked.
     seed: of the search and of the sensors' random numbers.
@@ -94,6 +97,7 @@ def simulate(
     from_model: links and rotor inertias are those of the run configuration's model, not of the description.
     gravity: m/s^2, in the frame of the root link; None: the run configuration's.
     table: whether the plane z = 0 of the root link must not be touched.
+    say: called with a sentence before what takes long.
 
     Raises UserError: SimulationError, TrajectoryError, RobotError.
     """
@@ -102,22 +106,23 @@ def simulate(
             f"{robot.file}: names no urdf; a simulation needs the robot's description"
         )
     description = read_description(robot.urdf)
-    chain = chain_from_urdf(description, robot.root, robot.tip)
-    simulated = _simulated_robot(
-        robot,
-        description,
-        gravity or robot.gravity or GRAVITY,
-        payload,
-        joint_friction,
-        from_model,
-    )
+    with described_by(robot.urdf):
+        chain = chain_from_urdf(description, robot.root, robot.tip)
+        simulated = _simulated_robot(
+            robot,
+            description,
+            gravity or robot.gravity or GRAVITY,
+            payload,
+            joint_friction,
+            from_model,
+        )
     wishes = Wishes.of(robot, chain)
     rate = wishes.rate if rate is None else rate
     check_rate(rate)
     sensors = sensors or Sensors()
     sensors.check(len(chain.joint_names), rate)
     chosen, source = _choose_trajectory(
-        simulated, trajectory, wishes.trajectory, optimise, seed, table, progress
+        simulated, trajectory, wishes.trajectory, optimise, seed, table, say, progress
     )
     checker = ContactChecker(simulated, table=table)
     notes = list(chain.notes)
@@ -193,14 +198,21 @@ def _choose_trajectory(
     optimise: bool,
     seed: int,
     table: bool,
+    say: Callable[[str], None],
     progress: Progress,
 ) -> tuple[Trajectory, str]:
     """The trajectory, and in words where it comes from."""
     if optimise and given is not None:
-        raise SimulationError("expected either a trajectory or the wish to optimise one, got both")
+        raise SimulationError(
+            "expected either a trajectory or a search for one (optimise), got both"
+        )
     if given is None and not optimise:
         given = default
     if given is None:
+        why = "" if optimise else "the run configuration names no trajectory: "
+        say(
+            f"{why}searching for an exciting one, which takes about a minute; --trajectory names one"
+        )
         found = optimise_excitation(
             robot, ExcitationOptions(table=table), seed=seed, progress=progress
         )

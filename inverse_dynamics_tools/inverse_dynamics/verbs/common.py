@@ -6,20 +6,23 @@ from __future__ import annotations
 import argparse
 import math
 import re
+import sys
+import time
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.decimals import decimal
-from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import shown
 from inverse_dynamics.errors import UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from inverse_dynamics._core import Parameter
     from inverse_dynamics.base.progress import Progress
+
+_FIRST_LINE = 10.0  # s
 
 _OPTIONS = {  # by the parameter that they set
     "root": "--root",
@@ -140,9 +143,31 @@ def parameter(text: str) -> tuple[str, Parameter]:
     return name, found[name]
 
 
+def announce(text: str) -> None:
+    """One line on stderr, also where it isn't a terminal: what is about to be done takes long."""
+    from inverse_dynamics.base.wording import message
+
+    print(message(f"ids: {text} ..."), file=sys.stderr, flush=True)
+
+
+class _ProgressLines:
+    """Progress where stderr isn't a terminal: a line after 10 s, 20 s, 40 s and so on of work."""
+
+    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
+        self._now = now
+        self._start = now()
+        self._next = _FIRST_LINE
+
+    def __call__(self, what: str, done: int, total: int) -> None:
+        passed = self._now() - self._start
+        if passed >= self._next and 0 < done < total:
+            self._next = 2.0 * passed
+            announce(f"{what}: {100 * done // total} % done after {passed:.0f} s")
+
+
 @contextmanager
 def progress_bar() -> Iterator[Progress]:
-    """A bar per kind of work, on stderr, gone at the end; none where stderr isn't a terminal.
+    """A bar per kind of work, on stderr, gone at the end; lines where stderr isn't a terminal.
 
     It shows what is done, the time that it took, and the time that is left.
     """
@@ -150,7 +175,7 @@ def progress_bar() -> Iterator[Progress]:
 
     console = Screen(stderr=True)
     if not console.is_terminal:
-        yield no_progress
+        yield _ProgressLines()
         return
 
     from rich.progress import (

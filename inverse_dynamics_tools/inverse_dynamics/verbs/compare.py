@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.verbs.common import names
+from inverse_dynamics.verbs.json_output import print_json
 from inverse_dynamics.verbs.options import add_figures, add_runs, add_verb
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ def add_parser(
         summary="put evaluations of one recording side by side",
         description="Put evaluations of one recording side by side: solvers, models, filters.",
         epilog=_EPILOG,
+        json=True,
     )
     add_runs(parser, ", two or more")
     parser.add_argument(
@@ -65,7 +67,7 @@ def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.base.files import check_output_directory
     from inverse_dynamics.evaluation.comparison import compare
-    from inverse_dynamics.results.comparisons import CONTENTS, write_comparison
+    from inverse_dynamics.results.comparisons import CONTENTS, summary, write_comparison
     from inverse_dynamics.results.evaluations import read_evaluation
 
     if arguments.out is not None:
@@ -80,7 +82,10 @@ def run(arguments: argparse.Namespace) -> None:
         write_comparison(
             comparison, arguments.out, overwrite=arguments.overwrite, figures=arguments.figures
         )
-    _print(comparison, arguments.out, arguments.figures)
+    if arguments.json:
+        print_json("compare", summary(comparison), filter(None, [arguments.out]))
+    else:
+        _print(comparison, arguments.out, arguments.figures)
 
 
 def _print(comparison: Comparison, out: Path | None, figures: Sequence[str]) -> None:

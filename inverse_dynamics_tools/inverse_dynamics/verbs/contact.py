@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.decimals import decimal
 from inverse_dynamics.verbs.common import file_name, positive_number, progress_bar
+from inverse_dynamics.verbs.heading import print_heading
+from inverse_dynamics.verbs.json_output import print_json
 from inverse_dynamics.verbs.options import (
     add_effort_is,
     add_figures,
     add_robot,
     add_robot_changes,
     add_verb,
+    chosen_robot,
     robot_changes,
 )
 
@@ -53,6 +56,7 @@ def add_parser(
         "contact",
         summary="find what touched the robot in a recording, and with which force",
         epilog=_EPILOG,
+        json=True,
     )
     parser.add_argument(
         "bag", metavar="RECORDING", type=file_name, help="as `ids evaluate` takes it"
@@ -143,10 +147,9 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.base.files import check_output_directory
     from inverse_dynamics.data.several_recordings import name_of
     from inverse_dynamics.evaluation.contacts import find_contacts
-    from inverse_dynamics.results.contacts import CONTENTS, write_contacts
-    from inverse_dynamics.robot.robots import load_robot
+    from inverse_dynamics.results.contacts import CONTENTS, summary, write_contacts
 
-    robot = load_robot(arguments.robot)
+    robot = chosen_robot(arguments)
     out = arguments.out or Path(f"{name_of(arguments.bag)}_{robot.name}_contacts")
     inputs = (arguments.bag, arguments.quiet_recording, arguments.urdf, *robot.files)
     check_output_directory(out, overwrite=arguments.overwrite, contents=CONTENTS, inputs=inputs)
@@ -167,7 +170,10 @@ def run(arguments: argparse.Namespace) -> None:
             **robot_changes(arguments),
         )
     write_contacts(contacts, out, overwrite=arguments.overwrite, figures=arguments.figures)
-    _print(contacts, out, arguments.figures)
+    if arguments.json:
+        print_json("contact", summary(contacts), [out])
+    else:
+        _print(contacts, out, arguments.figures)
 
 
 def _print(contacts: Contacts, out: Path, figures: tuple[str, ...]) -> None:
@@ -176,13 +182,7 @@ def _print(contacts: Contacts, out: Path, figures: tuple[str, ...]) -> None:
 
     console = Screen()
     evaluation = contacts.evaluation
-    robot, log = evaluation.robot, evaluation.log
-    console.print(robot.description or robot.name, style="bold")
-    console.print(f"solver         {robot.plugin}{'' if robot.friction else ', friction left out'}")
-    console.print(
-        f"recording      {', '.join(filter(None, (str(evaluation.bag), log.topic)))}: {len(log)} "
-        f"samples, {log.duration:.1f} s"
-    )
+    print_heading(console, evaluation)
     console.print(f"effort means   {evaluation.effort.summary}")
     console.print(f"estimator      {contacts.estimator}, {contacts.gain:g} 1/s")
     console.print(f"quiet          {contacts.quiet}")

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from inverse_dynamics.verbs.common import progress_bar
+from inverse_dynamics.verbs.json_output import print_json
 from inverse_dynamics.verbs.options import add_verb
 
 _EPILOG = """\
@@ -32,6 +34,7 @@ def add_parser(
         summary="fetch the public recordings of a real UR10 and a real Panda",
         description="Fetch the public recordings of a real UR10 and a real Panda, and check them.",
         epilog=_EPILOG,
+        json=True,
     )
     parser.add_argument(
         "--out",
@@ -61,17 +64,44 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.verbs.screen import Screen
 
     directory = arguments.out or data_directory()
-    if arguments.dry_run:
+    if arguments.dry_run and not arguments.json:
         _print_plan(directory)
         return
-    with progress_bar() as progress:
-        fetch_recordings(
-            directory,
-            source=arguments.source,
-            overwrite=arguments.overwrite,
-            say=Screen().print,
-            progress=progress,
-        )
+    written = []
+    if not arguments.dry_run:
+        with progress_bar() as progress:
+            written = fetch_recordings(
+                directory,
+                source=arguments.source,
+                overwrite=arguments.overwrite,
+                say=Screen(stderr=arguments.json).print,
+                progress=progress,
+            )
+    if arguments.json:
+        print_json("data", _summary(directory), written)
+
+
+def _summary(directory: Path) -> dict[str, Any]:
+    """The published recordings, and whether they are there."""
+    from inverse_dynamics.data.public_recordings import is_intact, public_recordings
+
+    table = public_recordings()
+    places = {recording.name: directory / "bags" / recording.name for recording in table.recordings}
+    return {
+        "repository": table.repository,
+        "commit": table.commit,
+        "license": table.license,
+        "recordings": [
+            {
+                "name": recording.name,
+                "directory": places[recording.name],
+                "intact": is_intact(recording, places[recording.name]),
+                "bytes": recording.size,
+                "files": recording.files,
+            }
+            for recording in table.recordings
+        ],
+    }
 
 
 def _print_plan(directory: Path) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.verbs.common import progress_bar
+from inverse_dynamics.verbs.json_output import print_json
 from inverse_dynamics.verbs.options import add_verb
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ def add_parser(
         description="Simulate a UR10 and a Panda, compute the torques of their motion and, with "
         "recordings, of the real ones; compare them with the measured torques; show it on one page.",
         epilog=_EPILOG,
+        json=True,
     )
     parser.add_argument(
         "--out", metavar="DIR", type=Path, default=Path("demo"), help="results (default: demo)"
@@ -60,10 +62,10 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.results.demo import find_recordings, run_demo
+    from inverse_dynamics.results.demo import find_recordings, run_demo, summary
     from inverse_dynamics.verbs.screen import Screen
 
-    console = Screen()
+    console = Screen(stderr=arguments.json)
     with progress_bar() as progress:
         demo = run_demo(
             arguments.out,
@@ -74,7 +76,10 @@ def run(arguments: argparse.Namespace) -> None:
             say=lambda text: console.print(f"{text} ..."),
             progress=progress,
         )
-    _print(demo, console)
+    if arguments.json:
+        print_json("demo", summary(demo.evaluations, demo.notes), [demo.directory])
+    else:
+        _print(demo, console)
 
 
 def _print(demo: Demo, console: Screen) -> None:

@@ -15,12 +15,15 @@ from inverse_dynamics.verbs.common import (
     process_count,
     progress_bar,
 )
+from inverse_dynamics.verbs.heading import print_heading
+from inverse_dynamics.verbs.json_output import print_json
 from inverse_dynamics.verbs.options import (
     add_effort_is,
     add_figures,
     add_robot,
     add_robot_changes,
     add_verb,
+    chosen_robot,
     robot_changes,
 )
 
@@ -38,6 +41,9 @@ examples:
 
   ids evaluate recording --robot my_robot.yaml --out result
       a robot of your own, results into the directory result
+
+  ids evaluate recording --urdf my_arm.urdf --tip flange
+      no run configuration yet: the description alone, without friction
 
   ids evaluate recording --robot ur10_real \\
       --plugin kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL
@@ -101,6 +107,7 @@ def add_parser(
         "evaluate",
         summary="compute the torques of a recorded motion and compare them with the measured ones",
         epilog=_EPILOG,
+        json=True,
     )
     parser.add_argument(
         "bags",
@@ -196,9 +203,8 @@ def add_parser(
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.data.several_recordings import holds_recordings
-    from inverse_dynamics.robot.robots import load_robot
 
-    robot = load_robot(arguments.robot)
+    robot = chosen_robot(arguments)
     asked = arguments.jobs is not None or arguments.scheduler is not None
     if asked or len(arguments.bags) > 1 or holds_recordings(arguments.bags[0]):
         _run_many(arguments, robot)
@@ -209,7 +215,7 @@ def run(arguments: argparse.Namespace) -> None:
 def _run_one(arguments: argparse.Namespace, robot: Robot) -> None:
     from inverse_dynamics.base.files import check_output_directory
     from inverse_dynamics.data.several_recordings import name_of
-    from inverse_dynamics.results.evaluations import CONTENTS, evaluate_into
+    from inverse_dynamics.results.evaluations import CONTENTS, evaluate_into, metrics
 
     (bag,) = arguments.bags
     out = arguments.out or Path(f"{name_of(bag)}_{robot.name}")
@@ -233,6 +239,9 @@ def _run_one(arguments: argparse.Namespace, robot: Robot) -> None:
             progress=progress,
             **_options(arguments),
         )
+    if arguments.json:
+        print_json("evaluate", metrics(evaluation), [out])
+        return
     _print(evaluation, out, arguments.figures)
     if arguments.verbose:
         _print_times(evaluation.seconds, len(evaluation.log))
@@ -255,13 +264,13 @@ def _options(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def _run_many(arguments: argparse.Namespace, robot: Robot) -> None:
     from inverse_dynamics.errors import PartialError
-    from inverse_dynamics.results.many_evaluations import evaluate_many, failures_told
+    from inverse_dynamics.results.many_evaluations import evaluate_many, failures_told, summary
 
     start = time.perf_counter()
     with progress_bar() as progress:
         result = evaluate_many(
             arguments.bags,
-            arguments.robot,
+            arguments.robot or robot,
             arguments.out or Path(f"recordings_{robot.name}"),
             jobs=arguments.jobs,
             scheduler=arguments.scheduler,
@@ -272,8 +281,11 @@ def _run_many(arguments: argparse.Namespace, robot: Robot) -> None:
             progress=progress,
             **_options(arguments),
         )
-    _print_many(result, robot)
-    if arguments.verbose:
+    if arguments.json:
+        print_json("evaluate", summary(result, robot), [result.directory])
+    else:
+        _print_many(result, robot)
+    if arguments.verbose and not arguments.json:
         from inverse_dynamics.verbs.screen import Screen
 
         Screen().print(f"time           {time.perf_counter() - start:.1f} s")
@@ -302,14 +314,7 @@ def _print(evaluation: Evaluation, out: Path, figures: Sequence[str]) -> None:
     from inverse_dynamics.verbs.tables import error_table
 
     console = Screen()
-    robot, log = evaluation.robot, evaluation.log
-    console.print(robot.description or robot.name, style="bold")
-    friction = "" if robot.friction else ", friction left out"
-    console.print(f"solver         {robot.plugin}{friction}")
-    console.print(
-        f"recording      {', '.join(filter(None, (str(evaluation.bag), log.topic)))}: {len(log)} samples, "
-        f"{log.duration:.1f} s"
-    )
+    print_heading(console, evaluation)
     console.print(f"accelerations  {evaluation.accelerations.summary}")
     console.print(f"effort means   {evaluation.effort.summary}")
     for note in evaluation.notes:

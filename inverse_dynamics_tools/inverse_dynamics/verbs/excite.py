@@ -7,8 +7,15 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.common import positive_number, progress_bar, share, whole_number
-from inverse_dynamics.verbs.options import add_gravity, add_verb
+from inverse_dynamics.verbs.common import (
+    announce,
+    positive_number,
+    progress_bar,
+    share,
+    whole_number,
+)
+from inverse_dynamics.verbs.json_output import print_json
+from inverse_dynamics.verbs.options import add_gravity, add_verb, chosen_robot
 
 if TYPE_CHECKING:
     from inverse_dynamics.results.excitations import ExcitationResult
@@ -48,6 +55,7 @@ def add_parser(
             "limits, clear of the robot itself and of the table, with slow reversals for friction."
         ),
         epilog=_EPILOG,
+        json=True,
     )
     which = parser.add_mutually_exclusive_group(required=True)
     which.add_argument(
@@ -128,16 +136,13 @@ def run(arguments: argparse.Namespace) -> None:
         check_output,
         default_options,
         excite,
-        robot_of_description,
+        sending_file,
+        summary,
         write_excitation,
     )
-    from inverse_dynamics.robot.robots import load_robot, with_changes
+    from inverse_dynamics.robot.robots import with_changes
 
-    robot = (
-        load_robot(arguments.robot)
-        if arguments.robot is not None
-        else robot_of_description(arguments.urdf)
-    )
+    robot = chosen_robot(arguments)
     robot = with_changes(robot, root=arguments.root, tip=arguments.tip, gravity=arguments.gravity)
     check_output(arguments.out, robot, arguments.given, overwrite=arguments.overwrite)
     options = default_options(
@@ -150,10 +155,18 @@ def run(arguments: argparse.Namespace) -> None:
     )
     with progress_bar() as progress:
         result = excite(
-            robot, given=arguments.given, options=options, seed=arguments.seed, progress=progress
+            robot,
+            given=arguments.given,
+            options=options,
+            seed=arguments.seed,
+            say=announce,
+            progress=progress,
         )
     write_excitation(result, arguments.out, overwrite=arguments.overwrite, step=arguments.step)
-    _print(result, arguments.out)
+    if arguments.json:
+        print_json("excite", summary(result), [arguments.out, sending_file(arguments.out)])
+    else:
+        _print(result, arguments.out)
 
 
 def _print(result: ExcitationResult, out: Path) -> None:

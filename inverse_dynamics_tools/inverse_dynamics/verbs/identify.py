@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.verbs.common import file_name, number, progress_bar
-from inverse_dynamics.verbs.options import add_verb
+from inverse_dynamics.verbs.json_output import print_json
+from inverse_dynamics.verbs.options import add_verb, chosen_robot
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,6 +57,7 @@ def add_parser(
         "identify",
         summary="make a model with friction from recordings of a robot, and tell how good it is",
         epilog=_EPILOG,
+        json=True,
     )
     parser.add_argument(
         "recordings",
@@ -129,6 +132,7 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.results.hold_out import hold_out
     from inverse_dynamics.results.identifications import (
         check_identification_files,
+        summary,
         write_identification,
     )
     from inverse_dynamics.results.urdf_export import mjcf_text, urdf_text
@@ -164,6 +168,9 @@ def run(arguments: argparse.Namespace) -> None:
         more={file: texts[option](found) for option, file in more.items()},
         tests=tests,
     )
+    if arguments.json:
+        print_json("identify", summary(found, tests), [*files, *more.values()])
+        return
     _print(found, files, tests)
     for file in more.values():
         Screen().print(f"also           {file}")
@@ -171,18 +178,11 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _robot(arguments: argparse.Namespace) -> Robot:
     """The run configuration to start from; of a description alone, one with its name."""
-    from inverse_dynamics.errors import UserError
-    from inverse_dynamics.results.identifications import PLUGIN
-    from inverse_dynamics.robot.robots import Robot, load_robot, with_changes
+    from inverse_dynamics.robot.robots import with_changes
 
     if arguments.robot is not None:
-        return with_changes(load_robot(arguments.robot), urdf=arguments.urdf)
-    if arguments.urdf is None:
-        raise UserError(
-            "expected --robot NAME or --urdf FILE, got neither; `ids robots` lists the names"
-        )
-    name = arguments.urdf.name.partition(".")[0]
-    return Robot(name, "", arguments.urdf, PLUGIN, urdf=arguments.urdf, friction=False)
+        return with_changes(chosen_robot(arguments), urdf=arguments.urdf)
+    return replace(chosen_robot(arguments), effort="torque", friction=False)
 
 
 def _print(found: Identification, files: IdentificationFiles, tests: Sequence[HoldOut]) -> None:

@@ -5,12 +5,15 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.robot.choices import EFFORT_CHOICES
 from inverse_dynamics.verbs.common import figure_formats, names, parameter, three_numbers
 from inverse_dynamics.verbs.payload_option import payload
+
+if TYPE_CHECKING:
+    from inverse_dynamics.robot.robots import Robot
 
 # Options of add_robot_changes(), by the names that with_changes() has for them.
 _CHANGES = ("plugin", "friction", "urdf", "root", "tip", "gravity", "joints", "parameters")
@@ -23,15 +26,26 @@ def add_verb(
     summary: str,
     description: str = "",
     epilog: str,
+    json: bool = False,
 ) -> argparse.ArgumentParser:
-    """A verb. summary: in the list of verbs; description: of its own help, else the summary."""
-    return subparsers.add_parser(
+    """A verb. summary: in the list of verbs; description: of its own help, else the summary.
+
+    json: whether it has the option --json, see json_output.py.
+    """
+    parser = subparsers.add_parser(
         name,
         help=summary,
         description=description or f"{summary[0].upper()}{summary[1:]}.",
         epilog=epilog,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    if json:
+        parser.add_argument(
+            "--json",
+            action="store_true",
+            help="print one JSON object instead of the table (docs/command_line.md)",
+        )
+    return parser
 
 
 def add_runs(parser: argparse.ArgumentParser, more: str = "") -> None:
@@ -41,24 +55,46 @@ def add_runs(parser: argparse.ArgumentParser, more: str = "") -> None:
     )
 
 
-def add_robot(parser: argparse.ArgumentParser) -> None:
-    """--robot, read by load_robot()."""
+def add_robot(parser: argparse.ArgumentParser, *, required: bool = False) -> None:
+    """--robot, read by load_robot(); where it isn't required, by chosen_robot()."""
     parser.add_argument(
         "--robot",
         metavar="NAME|FILE",
-        required=True,
-        help="run configuration: a name that `ids robots` lists, or a YAML file",
+        required=required,
+        help="run configuration: a name that `ids robots` lists, or a YAML file"
+        + ("" if required else "; may be left out where --urdf is given"),
     )
 
 
+def chosen_robot(arguments: argparse.Namespace) -> Robot:
+    """The run configuration of --robot; without one, the robot that --urdf describes."""
+    from inverse_dynamics.robot.robots import load_robot, robot_of_description
+
+    if arguments.robot is not None:
+        return load_robot(arguments.robot)
+    if arguments.urdf is None:
+        raise UserError(
+            "expected --robot NAME or --urdf FILE, got neither; `ids robots` lists the names"
+        )
+    return robot_of_description(arguments.urdf)
+
+
 def add_figures(parser: argparse.ArgumentParser) -> None:
-    """--figures."""
-    parser.add_argument(
+    """--figures, --no-figures."""
+    figures = parser.add_mutually_exclusive_group()
+    figures.add_argument(
         "--figures",
         metavar="FORMATS",
         type=figure_formats,
         default=("png",),
         help="formats of the figure: some of png,svg,pdf, or none (default: png)",
+    )
+    figures.add_argument(
+        "--no-figures",
+        dest="figures",
+        action="store_const",
+        const=(),
+        help="no figure, which is faster: short for --figures none",
     )
 
 
@@ -98,7 +134,7 @@ def add_robot_changes(parser: argparse.ArgumentParser, what: str) -> argparse._A
         "--urdf",
         metavar="FILE",
         type=Path,
-        help="robot description; a .xacro file needs the tool xacro",
+        help="robot description, also alone, without --robot; a .xacro file needs the tool xacro",
     )
     group.add_argument("--root", metavar="LINK", help="first link of the chain")
     group.add_argument("--tip", metavar="LINK", help="last link of the chain")

@@ -8,11 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.verbs.common import file_name, progress_bar
+from inverse_dynamics.verbs.heading import print_heading
+from inverse_dynamics.verbs.json_output import print_json
 from inverse_dynamics.verbs.options import (
     add_figures,
     add_robot,
     add_robot_changes,
     add_verb,
+    chosen_robot,
     robot_changes,
 )
 
@@ -51,6 +54,7 @@ def add_parser(
         "payload",
         summary="estimate what the robot carries in a recording: mass, center of mass, inertia",
         epilog=_EPILOG,
+        json=True,
     )
     parser.add_argument(
         "bag", metavar="RECORDING", type=file_name, help="as `ids evaluate` takes it"
@@ -86,10 +90,14 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.results.payload import check_payload_output, write_payload
-    from inverse_dynamics.robot.robots import load_robot
+    from inverse_dynamics.results.payload import (
+        check_payload_output,
+        payload_files,
+        summary,
+        write_payload,
+    )
 
-    robot = load_robot(arguments.robot)
+    robot = chosen_robot(arguments)
     inputs = (arguments.bag, arguments.empty, arguments.urdf, *robot.files)
     check_payload_output(
         arguments.out, arguments.figures, overwrite=arguments.overwrite, inputs=inputs
@@ -108,7 +116,10 @@ def run(arguments: argparse.Namespace) -> None:
             **robot_changes(arguments),
         )
     write_payload(payload, arguments.out, overwrite=arguments.overwrite, figures=arguments.figures)
-    _print(payload, arguments.out, arguments.figures)
+    if arguments.json:
+        print_json("payload", summary(payload), payload_files(arguments.out, arguments.figures))
+    else:
+        _print(payload, arguments.out, arguments.figures)
 
 
 def _print(payload: Payload, out: Path, figures: tuple[str, ...]) -> None:
@@ -117,13 +128,11 @@ def _print(payload: Payload, out: Path, figures: tuple[str, ...]) -> None:
     from inverse_dynamics.verbs.tables import payload_table, residual_table
 
     console = Screen()
-    evaluation = payload.evaluation
-    robot, log = evaluation.robot, evaluation.log
-    console.print(robot.description or robot.name, style="bold")
-    console.print(f"solver         {robot.plugin}{'' if robot.friction else ', friction left out'}")
-    console.print(
-        f"recording      {', '.join(filter(None, (str(evaluation.bag), log.topic)))}: "
-        f"{len(payload.time)} samples, {payload.estimate.duration:.1f} s"
+    print_heading(
+        console,
+        payload.evaluation,
+        samples=len(payload.time),
+        duration=payload.estimate.duration,
     )
     if payload.empty is not None:
         console.print(f"without load   {payload.empty}")

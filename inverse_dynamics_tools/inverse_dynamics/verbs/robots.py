@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.verbs.json_output import print_json
 from inverse_dynamics.verbs.options import add_verb
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ def add_parser(
         summary="list robots, show one",
         description="List the run configurations of the sourced workspaces, or show one.",
         epilog=_EPILOG,
+        json=True,
     )
     shown = parser.add_mutually_exclusive_group()
     shown.add_argument("robot", nargs="?", metavar="NAME|FILE", help="show this one")
@@ -44,20 +46,32 @@ def add_parser(
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     if arguments.plugins:
-        from inverse_dynamics import _core
-        from inverse_dynamics.verbs.screen import Screen
-
-        Screen().print("\n".join(_core.available_solvers()))
+        _list_solvers(json=arguments.json)
     elif arguments.robot:
-        _show(arguments.robot)
+        _show(arguments.robot, json=arguments.json)
     else:
-        _list()
+        _list(json=arguments.json)
 
 
-def _list() -> None:
+def _list_solvers(*, json: bool) -> None:
+    from inverse_dynamics import _core
+    from inverse_dynamics.verbs.screen import Screen
+
+    plugins = _core.available_solvers()
+    if json:
+        print_json("robots", {"plugins": plugins})
+    else:
+        Screen().print("\n".join(plugins))
+
+
+def _list(*, json: bool) -> None:
     from inverse_dynamics.robot.robots import load_robot, robot_names
 
-    _print_rows({name: load_robot(name).description for name in robot_names()})
+    robots = [load_robot(name) for name in robot_names()]
+    if json:
+        print_json("robots", {"robots": robots})
+    else:
+        _print_rows({robot.name: robot.description for robot in robots})
 
 
 def _print_rows(rows: dict[str, str]) -> None:
@@ -73,12 +87,16 @@ def _print_rows(rows: dict[str, str]) -> None:
             console.print(Text(f"{key:<{width}}", "bold") + Text(text, "not bold"))
 
 
-def _show(robot: str) -> None:
+def _show(robot: str, *, json: bool) -> None:
     from inverse_dynamics.robot.choices import EFFORT_CHOICES, METHODS
     from inverse_dynamics.robot.robots import load_robot
 
     shown = load_robot(robot)
     arm, notes = _checked(shown)
+    if json:
+        found = {"robot": shown, "chain": arm.joint_names, "units": arm.units, "notes": notes}
+        print_json("robots", found)
+        return
     gravity = shown.gravity
     cutoff = "" if shown.cutoff is None else f", cut-off {shown.cutoff:g} Hz"
     rows = {

@@ -6,11 +6,18 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.decimals import decimal
 from inverse_dynamics.base.wording import counted
-from inverse_dynamics.verbs.common import number, positive_number, progress_bar, whole_number
+from inverse_dynamics.verbs.common import (
+    announce,
+    number,
+    positive_number,
+    progress_bar,
+    whole_number,
+)
+from inverse_dynamics.verbs.json_output import print_json
 from inverse_dynamics.verbs.options import add_gravity, add_robot, add_verb
 
 if TYPE_CHECKING:
@@ -35,7 +42,7 @@ examples:
       5 kg, 0.1 m before the tip; base upside down
 
   ids simulate --robot my_robot.yaml --out recording --optimise --seed 1
-      look for another exciting trajectory first (half a minute); it is stored in the recording
+      search for another exciting trajectory first (about a minute); it is stored in the recording
 
   ids simulate --robot ur10_simulated --out recording --trajectory other/trajectory.yaml
       a motion of your own: waypoints or a Fourier series
@@ -62,8 +69,9 @@ def add_parser(
             "while it follows an exciting trajectory, and record its joint states to a bag."
         ),
         epilog=_EPILOG,
+        json=True,
     )
-    add_robot(parser)
+    add_robot(parser, required=True)
     parser.add_argument("--out", metavar="BAG", type=Path, required=True, help="the new recording")
     parser.add_argument(
         "--overwrite", action="store_true", help="replace an older simulated recording"
@@ -249,6 +257,7 @@ def run(arguments: argparse.Namespace) -> None:
             from_model=arguments.from_model,
             gravity=MOUNTS[arguments.mount] if arguments.mount else arguments.gravity,
             table=arguments.table,
+            say=announce,
             progress=progress,
         )
         write_run(
@@ -258,7 +267,21 @@ def run(arguments: argparse.Namespace) -> None:
             overwrite=arguments.overwrite,
             progress=progress,
         )
-    _print(result, arguments.out)
+    if arguments.json:
+        print_json("simulate", _summary(result), [arguments.out])
+    else:
+        _print(result, arguments.out)
+
+
+def _summary(result: SimulatedRun) -> dict[str, Any]:
+    """What simulation.yaml says, and what is odd about it."""
+    return {
+        **result.settings,
+        "topic": result.log.topic,
+        "messages": len(result.log),
+        "condition_number": result.condition_number,
+        "notes": result.notes,
+    }
 
 
 def _print(result: SimulatedRun, out: Path) -> None:

@@ -8,7 +8,14 @@ from pathlib import Path
 
 from inverse_dynamics.base.wording import counted
 from inverse_dynamics.verbs.common import progress_bar
-from inverse_dynamics.verbs.options import add_robot, add_robot_changes, add_verb, robot_changes
+from inverse_dynamics.verbs.json_output import print_json
+from inverse_dynamics.verbs.options import (
+    add_robot,
+    add_robot_changes,
+    add_verb,
+    chosen_robot,
+    robot_changes,
+)
 
 _EPILOG = """\
 examples:
@@ -38,6 +45,7 @@ def add_parser(
         "torques",
         summary="fill in the efforts of a planned trajectory, and check them against the limits",
         epilog=_EPILOG,
+        json=True,
     )
     parser.add_argument(
         "trajectory",
@@ -69,13 +77,13 @@ def add_parser(
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.results.trajectory_torques import check_output
-    from inverse_dynamics.robot.robots import load_robot, with_changes
+    from inverse_dynamics.robot.robots import with_changes
 
-    robot = with_changes(load_robot(arguments.robot), **robot_changes(arguments))
+    robot = with_changes(chosen_robot(arguments), **robot_changes(arguments))
     check_output(arguments.trajectory, arguments.out, robot, overwrite=arguments.overwrite)
 
     from inverse_dynamics.evaluation.trajectory_torques import trajectory_torques
-    from inverse_dynamics.results.trajectory_torques import write_trajectory_torques
+    from inverse_dynamics.results.trajectory_torques import summary, write_trajectory_torques
     from inverse_dynamics.robot.solvers import description_notes
     from inverse_dynamics.verbs.screen import Screen
     from inverse_dynamics.verbs.tables import load_table
@@ -90,6 +98,10 @@ def run(arguments: argparse.Namespace) -> None:
 
     if arguments.urdf is not None:
         notes = (*notes, *description_notes(robot, "where limits are from"))
+    if arguments.json:
+        found = {**summary(result), "notes": [*result.notes, *notes]}
+        print_json("torques", found, [arguments.out])
+        return
     console = Screen()
     console.print(robot.description or robot.name, style="bold")
     console.print(f"solver        {robot.plugin}{'' if robot.friction else ', friction left out'}")
