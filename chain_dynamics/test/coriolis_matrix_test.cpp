@@ -21,9 +21,6 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-// A handful of operations on numbers of size one.
-constexpr double kByHand = 1e-14;
-
 template <typename Scalar>
 MatrixX<Scalar> coriolisMatrixOf(const Chain& chain, const VectorX<Scalar>& q,
                                  const VectorX<Scalar>& qd) {

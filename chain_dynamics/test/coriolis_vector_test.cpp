@@ -18,9 +18,6 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-// A handful of operations on numbers of size one.
-constexpr double kByHand = 1e-14;
-
 template <typename Scalar>
 VectorX<Scalar> coriolisOf(const Chain& chain, const VectorX<Scalar>& q,
                            const VectorX<Scalar>& qd) {
@@ -39,7 +36,7 @@ MatrixX<Scalar> rateOfInertia(const Chain& chain, const State<Scalar>& state) {
 
 // The size of the terms that the Coriolis torques are the sum of, cancelling or not.
 template <typename Scalar>
-double termsOf(const Chain& chain, const State<Scalar>& state) {
+double coriolisTermsOf(const Chain& chain, const State<Scalar>& state) {
   const MatrixX<Scalar> rate = rateOfInertia(chain, state);
   return largest(rate.cwiseAbs() * state.qd.cwiseAbs()) +
          largest(coriolisOf(chain, state.q, state.qd));
@@ -75,7 +72,7 @@ TYPED_TEST(CoriolisVectorOf, AnyRobotIsThatOfLagrangesEquation) {
     State<Scalar> unaccelerated = state;
     unaccelerated.qdd.setZero();
     EXPECT_TRUE(agree(coriolisOf(chain, state.q, state.qd),
-                      lagrangeOfKineticEnergy(chain, unaccelerated), termsOf(chain, state),
+                      lagrangeOfKineticEnergy(chain, unaccelerated), coriolisTermsOf(chain, state),
                       rounding<Scalar>(chain)));
   });
 }
@@ -86,7 +83,8 @@ TYPED_TEST(CoriolisVectorOf, AnyRobotChangesNoEnergy) {
   forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
     const Scalar power = state.qd.dot(coriolisOf(chain, state.q, state.qd));
     const Scalar rate = state.qd.dot(rateOfInertia(chain, state) * state.qd);
-    const double scale = termsOf(chain, state) * static_cast<double>(state.qd.cwiseAbs().sum());
+    const double scale =
+        coriolisTermsOf(chain, state) * static_cast<double>(state.qd.cwiseAbs().sum());
     EXPECT_NEAR(2 * power, rate, rounding<Scalar>(chain) * scale);
   });
 }

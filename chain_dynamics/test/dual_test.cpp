@@ -14,22 +14,22 @@
 namespace chain_dynamics {
 namespace {
 
-using Scalar = Dual<double, 1>;
-using Scalar2 = Dual<double, 2>;
+using Dual1 = Dual<double, 1>;
+using Dual2 = Dual<double, 2>;
 
 // Some operations on numbers of size one.
-constexpr double kRounding = 1e-14;
+constexpr double kDualRounding = 1e-14;
 
 // A central difference is off by step^2 (its series) and rounding / step: both 1e-10 here.
 constexpr double kStep = 1e-5;
 constexpr double kDifference = 1e-9;
 
-Scalar x(double value) { return Scalar::variable(value, 0); }
+Dual1 x(double value) { return Dual1::variable(value, 0); }
 
 // Value and derivative of a function against those of the same function of plain numbers.
 template <typename Function>
 void expectDerivative(const Function& f, double at) {
-  const Scalar y = f(x(at));
+  const Dual1 y = f(x(at));
   EXPECT_EQ(y.value, f(at));
   EXPECT_NEAR(y.derivative[0], (f(at + kStep) - f(at - kStep)) / (2 * kStep), kDifference)
       << "at " << at;
@@ -37,11 +37,11 @@ void expectDerivative(const Function& f, double at) {
 
 TEST(Dual, OfTheLesson) {
   // f(x) = x^2 at 3 + e is 9 + 6 e
-  const Scalar square = x(3) * x(3);
+  const Dual1 square = x(3) * x(3);
   EXPECT_EQ(square.value, 9);
   EXPECT_EQ(square.derivative[0], 6);
 
-  const Scalar y = x(3) * x(3) + sin(x(3));
+  const Dual1 y = x(3) * x(3) + sin(x(3));
   EXPECT_EQ(y.value, 9 + std::sin(3.0));
   EXPECT_EQ(y.derivative[0], 6 + std::cos(3.0));
 }
@@ -97,32 +97,32 @@ TEST(Dual, FunctionsHaveTheirDerivatives) {
 }
 
 TEST(Dual, ComposedAssignmentsAreTheOperators) {
-  Scalar y = x(2);
+  Dual1 y = x(2);
   y += 3;
   y *= x(2);
   y -= 1;
   y /= 3;  // ((x + 3) x - 1) / 3, derivative (2 x + 3) / 3
-  EXPECT_NEAR(y.value, 3, kRounding);
-  EXPECT_NEAR(y.derivative[0], 7.0 / 3, kRounding);
+  EXPECT_NEAR(y.value, 3, kDualRounding);
+  EXPECT_NEAR(y.derivative[0], 7.0 / 3, kDualRounding);
 }
 
 TEST(Dual, ConstantsHaveNoDerivative) {
-  EXPECT_EQ(Scalar(5).derivative[0], 0);
-  EXPECT_EQ((Scalar(5) * Scalar(2) - 3).derivative[0], 0);
+  EXPECT_EQ(Dual1(5).derivative[0], 0);
+  EXPECT_EQ((Dual1(5) * Dual1(2) - 3).derivative[0], 0);
   EXPECT_EQ((-x(5)).derivative[0], -1);
   EXPECT_EQ((+x(5)).derivative[0], 1);
 }
 
 // d(a^2 b)/da = 2 a b, d(a^2 b)/db = a^2
 TEST(Dual, TwoDirectionsAreAGradient) {
-  const Scalar2 a = Scalar2::variable(3, 0);
-  const Scalar2 b = Scalar2::variable(5, 1);
+  const Dual2 a = Dual2::variable(3, 0);
+  const Dual2 b = Dual2::variable(5, 1);
   EXPECT_EQ((a * a * b).derivative, Eigen::Vector2d(30, 9));
 }
 
 // x^3: 8, 12, 12 at x = 2
 TEST(Dual, OfDualIsASecondDerivative) {
-  using Twice = Dual<Scalar, 1>;
+  using Twice = Dual<Dual1, 1>;
   const Twice y = Twice::variable(x(2), 0);
   const Twice cube = y * y * y;
   EXPECT_EQ(cube.value.value, 8);
@@ -133,13 +133,13 @@ TEST(Dual, OfDualIsASecondDerivative) {
 
 TEST(Dual, ComparesByValue) {
   EXPECT_TRUE(x(1) < x(2) && x(2) > 1 && x(1) <= x(1) && x(1) >= 1);
-  EXPECT_TRUE(x(1) == Scalar(1) && x(1) != x(2));
+  EXPECT_TRUE(x(1) == Dual1(1) && x(1) != x(2));
   EXPECT_FALSE(x(2) < x(1) || x(1) > 2 || x(2) <= x(1) || x(1) >= 2);
 }
 
 TEST(Dual, PrintsBothParts) {
   std::ostringstream text;
-  text << Scalar2(1.5, Eigen::Vector2d(2, -3));
+  text << Dual2(1.5, Eigen::Vector2d(2, -3));
   EXPECT_EQ(text.str(), "1.5 + [2, -3] e");
 }
 
@@ -157,16 +157,16 @@ TEST(Dual, IsAScalarOfEigensDecompositions) {
   rate << 1, 0.3, 0, 0.3, -1, 0.4, 0, 0.4, 2;
   const Eigen::Vector3d b(1, -2, 3);
 
-  Eigen::Matrix<Scalar, 3, 3> moving = A.cast<Scalar>();
+  Eigen::Matrix<Dual1, 3, 3> moving = A.cast<Dual1>();
   for (Eigen::Index i = 0; i < 9; ++i) {
     moving(i).derivative[0] = rate(i);
   }
-  const Eigen::Matrix<Scalar, 3, 1> solution = moving.llt().solve(b.cast<Scalar>());
+  const Eigen::Matrix<Dual1, 3, 1> solution = moving.llt().solve(b.cast<Dual1>());
   const Eigen::Vector3d value = A.llt().solve(b);
   const Eigen::Vector3d derivative = -A.llt().solve(rate * value);
   for (Eigen::Index i = 0; i < 3; ++i) {
-    EXPECT_NEAR(solution[i].value, value[i], kRounding);
-    EXPECT_NEAR(solution[i].derivative[0], derivative[i], kRounding);
+    EXPECT_NEAR(solution[i].value, value[i], kDualRounding);
+    EXPECT_NEAR(solution[i].derivative[0], derivative[i], kDualRounding);
   }
 }
 

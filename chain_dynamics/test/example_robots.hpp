@@ -13,6 +13,9 @@
 
 namespace chain_dynamics::test {
 
+/// Rounding of a handful of operations, relative to the numbers.
+constexpr double kByHand = 1e-14;
+
 /// A point mass, at a place of its link's frame.
 inline LinkParameters pointMass(double mass, const Eigen::Vector3d& at) {
   return LinkParameters::fromCenterOfMass(mass, at, Eigen::Matrix3d::Zero());

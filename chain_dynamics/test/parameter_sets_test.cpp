@@ -47,21 +47,11 @@ Quantities<Scalar> quantitiesOf(const Chain& chain, const ParameterSets& sets,
   return out;
 }
 
-// Parameters that no body has, except that a Chain wants no negative mass.
-Links identifiedLinks(Random& random, const Chain& chain) {
-  Links links;
-  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
-    links.push_back(randomIdentifiedLink(random));
-    links.back().mass = std::abs(links.back().mass);
-  }
-  return links;
-}
-
 Rows identifiedRows(const Chain& chain) {
   Random random(7);
   Rows rows;
   for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
-    rows.push_back(identifiedLinks(random, chain));
+    rows.push_back(randomIdentifiedLinks(random, chain));
   }
   return rows;
 }
@@ -127,7 +117,7 @@ TYPED_TEST(ParameterSetsOf, GravityReplaceThatOfEveryRow) {
   using Scalar = TypeParam;
   forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
     Random random(11);
-    const Links gravity = identifiedLinks(random, chain);
+    const Links gravity = randomIdentifiedLinks(random, chain);
     const Chain heavy("heavy", chain.joints(), gravity, chain.gravity());
     for (const Rows& rows : {Rows(), identifiedRows(chain)}) {
       Quantities<Scalar> expected =

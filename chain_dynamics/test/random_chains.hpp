@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <random>
@@ -61,6 +62,16 @@ inline LinkParameters randomLink(Random& random) {
 /// Parameters as of an identified model: ten numbers of either sign, no body has them.
 inline LinkParameters randomIdentifiedLink(Random& random) {
   return LinkParameters::fromVector(random.vector(10));
+}
+
+/// One for each joint of a chain; a Chain wants no negative mass.
+inline std::vector<LinkParameters> randomIdentifiedLinks(Random& random, const Chain& chain) {
+  std::vector<LinkParameters> links;
+  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
+    links.push_back(randomIdentifiedLink(random));
+    links.back().mass = std::abs(links.back().mass);
+  }
+  return links;
 }
 
 /// Revolute, prismatic and continuous joints at any angle to one another, some with a rotor.

@@ -15,7 +15,7 @@ namespace {
 using test::Random;
 
 // Products and sums of a few numbers of size one: some units in the last place.
-constexpr double kRounding = 1e-14;
+constexpr double kSpatialRounding = 1e-14;
 
 constexpr int kTrials = 20;
 
@@ -40,7 +40,7 @@ TEST(Skew, IsTheCrossProduct) {
   Random random(1);
   const Eigen::Vector3d a = random.vector3();
   const Eigen::Vector3d b = random.vector3();
-  EXPECT_LE((skew<double>(a) * b - a.cross(b)).norm(), kRounding);
+  EXPECT_LE((skew<double>(a) * b - a.cross(b)).norm(), kSpatialRounding);
 }
 
 // 5 N along y, at the end of a lever of 2 m along x: 10 N m about z, seen from the lever's start.
@@ -70,9 +70,9 @@ TEST(Transform, ComposedActsLikeOneAfterTheOther) {
     const Motion<double> V = randomMotion(random);
     const Force<double> F = randomForce(random);
     const LinkParameters I = test::randomIdentifiedLink(random);
-    EXPECT_LE(distance((X_AB * X_BC) * V, X_AB * (X_BC * V)), kRounding);
-    EXPECT_LE(distance((X_AB * X_BC) * F, X_AB * (X_BC * F)), kRounding);
-    EXPECT_LE(distance((X_AB * X_BC) * I, X_AB * (X_BC * I)), 10 * kRounding);
+    EXPECT_LE(distance((X_AB * X_BC) * V, X_AB * (X_BC * V)), kSpatialRounding);
+    EXPECT_LE(distance((X_AB * X_BC) * F, X_AB * (X_BC * F)), kSpatialRounding);
+    EXPECT_LE(distance((X_AB * X_BC) * I, X_AB * (X_BC * I)), 10 * kSpatialRounding);
   }
 }
 
@@ -81,10 +81,10 @@ TEST(Transform, IsUndoneByItsInverse) {
   for (int trial = 0; trial < kTrials; ++trial) {
     const Transform<double> X = randomTransform(random);
     const Motion<double> V = randomMotion(random);
-    EXPECT_LE(distance(X * X.inverse(), Transform<double>::identity()), kRounding);
-    EXPECT_LE(distance(X.inverse() * X, Transform<double>::identity()), kRounding);
-    EXPECT_LE(distance(X.inverseTimes(V), X.inverse() * V), kRounding);
-    EXPECT_LE(distance(X.inverseTimes(X * V), V), kRounding);
+    EXPECT_LE(distance(X * X.inverse(), Transform<double>::identity()), kSpatialRounding);
+    EXPECT_LE(distance(X.inverse() * X, Transform<double>::identity()), kSpatialRounding);
+    EXPECT_LE(distance(X.inverseTimes(V), X.inverse() * V), kSpatialRounding);
+    EXPECT_LE(distance(X.inverseTimes(X * V), V), kSpatialRounding);
   }
 }
 
@@ -94,7 +94,7 @@ TEST(Power, IsTheSameInEveryFrame) {
     const Transform<double> X_AB = randomTransform(random);
     const Motion<double> V_B = randomMotion(random);
     const Force<double> F_B = randomForce(random);
-    EXPECT_NEAR(dot(X_AB * V_B, X_AB * F_B), dot(V_B, F_B), kRounding);
+    EXPECT_NEAR(dot(X_AB * V_B, X_AB * F_B), dot(V_B, F_B), kSpatialRounding);
   }
 }
 
@@ -106,14 +106,14 @@ TEST(Cross, OfForceIsMinusTheTransposeOfThatOfMotion) {
     const Motion<double> V = randomMotion(random);
     const Motion<double> M = randomMotion(random);
     const Force<double> F = randomForce(random);
-    EXPECT_NEAR(dot(cross(V, M), F) + dot(M, cross(V, F)), 0, kRounding);
+    EXPECT_NEAR(dot(cross(V, M), F) + dot(M, cross(V, F)), 0, kSpatialRounding);
   }
 }
 
 TEST(Cross, OfAMotionWithItselfIsZero) {
   Random random(6);
   const Motion<double> V = randomMotion(random);
-  EXPECT_LE(distance(cross(V, V), Motion<double>::zero()), kRounding);
+  EXPECT_LE(distance(cross(V, V), Motion<double>::zero()), kSpatialRounding);
 }
 
 // 2 kg at 3 m along y: m c^2 = 18 kg m^2 about x and z, nothing about y.
@@ -140,7 +140,7 @@ TEST(SpatialInertia, MovedIsThatOfTheMovedBody) {
     const LinkParameters moved = X * LinkParameters::fromCenterOfMass(1.5, center, about_center);
     const LinkParameters expected = LinkParameters::fromCenterOfMass(
         1.5, X.R * center + X.p, X.R * about_center * X.R.transpose());
-    EXPECT_LE(distance(moved, expected), 10 * kRounding);
+    EXPECT_LE(distance(moved, expected), 10 * kSpatialRounding);
   }
 }
 
@@ -151,7 +151,7 @@ TEST(SpatialInertia, HasTheSameKineticEnergyInEveryFrame) {
     const Motion<double> V_B = randomMotion(random);
     const LinkParameters I_B = test::randomIdentifiedLink(random);
     const Motion<double> V_A = X_AB * V_B;
-    EXPECT_NEAR(dot(V_A, (X_AB * I_B) * V_A), dot(V_B, I_B * V_B), 10 * kRounding);
+    EXPECT_NEAR(dot(V_A, (X_AB * I_B) * V_A), dot(V_B, I_B * V_B), 10 * kSpatialRounding);
   }
 }
 
@@ -160,7 +160,7 @@ TEST(SpatialInertia, OfTwoBodiesIsTheSum) {
   const LinkParameters one = test::randomIdentifiedLink(random);
   const LinkParameters other = test::randomIdentifiedLink(random);
   const Motion<double> A = randomMotion(random);
-  EXPECT_LE(distance((one + other) * A, one * A + other * A), kRounding);
+  EXPECT_LE(distance((one + other) * A, one * A + other * A), kSpatialRounding);
 }
 
 TEST(SpatialInertia, IsTenNumbersInTheOrderOfFiles) {

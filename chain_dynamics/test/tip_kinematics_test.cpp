@@ -18,9 +18,6 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-// A handful of operations on numbers of size one.
-constexpr double kByHand = 1e-14;
-
 template <typename Scalar>
 using Jacobian = Eigen::Matrix<Scalar, 6, Eigen::Dynamic>;
 

@@ -20,9 +20,6 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-// A handful of operations on numbers of size ten.
-constexpr double kByHand = 1e-13;
-
 template <typename Scalar>
 struct Derivatives {
   explicit Derivatives(Eigen::Index n) : q(n, n), qd(n, n), qdd(n, n) {
@@ -75,16 +72,6 @@ void expectSame(const Chain& chain, const Derivatives<Scalar>& a, const Derivati
   EXPECT_TRUE(agree(a.qdd, b.qdd, largest(b.qdd), tolerance)) << "by qdd";
 }
 
-// Parameters that no body has, except that a Chain wants no negative mass.
-std::vector<LinkParameters> identifiedLinks(Random& random, const Chain& chain) {
-  std::vector<LinkParameters> links;
-  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
-    links.push_back(randomIdentifiedLink(random));
-    links.back().mass = std::abs(links.back().mass);
-  }
-  return links;
-}
-
 template <typename Scalar>
 class TorqueDerivativesOf : public ::testing::Test {};
 using Scalars = ::testing::Types<double, float>;
@@ -98,9 +85,9 @@ TEST(TorqueDerivatives, OfAPendulumByHand) {
   x.qd << 2;
   x.qdd << -3;
   const Derivatives<double> d = derivativesOf(chain, x);
-  EXPECT_NEAR(d.q(0, 0), -2 * 9.81 * 0.5 * std::sin(0.7), kByHand);
-  EXPECT_NEAR(d.qd(0, 0), 0, kByHand);
-  EXPECT_NEAR(d.qdd(0, 0), 0.75, kByHand);
+  EXPECT_NEAR(d.q(0, 0), -2 * 9.81 * 0.5 * std::sin(0.7), 10 * kByHand);
+  EXPECT_NEAR(d.qd(0, 0), 0, 10 * kByHand);
+  EXPECT_NEAR(d.qdd(0, 0), 0.75, 10 * kByHand);
 }
 
 // A mass at radius r on a turntable: tau = m (r^2 phi'' + 2 r r' phi'), f = m (r'' - r phi'^2).
@@ -115,9 +102,9 @@ TEST(TorqueDerivatives, OfATurntableByHand) {
   expected.q << 0, m * (2 * r * phidd + 2 * rd * phid), 0, -m * phid * phid;
   expected.qd << 2 * m * r * rd, 2 * m * r * phid, -2 * m * r * phid, 0;
   expected.qdd << m * r * r, 0, 0, m;
-  EXPECT_TRUE(agree(d.q, expected.q, 1, kByHand));
-  EXPECT_TRUE(agree(d.qd, expected.qd, 1, kByHand));
-  EXPECT_TRUE(agree(d.qdd, expected.qdd, 1, kByHand));
+  EXPECT_TRUE(agree(d.q, expected.q, 10, kByHand));
+  EXPECT_TRUE(agree(d.qd, expected.qd, 10, kByHand));
+  EXPECT_TRUE(agree(d.qdd, expected.qdd, 10, kByHand));
 }
 
 TYPED_TEST(TorqueDerivativesOf, AnyRobotAreThoseOfDualNumbers) {
@@ -147,9 +134,9 @@ TYPED_TEST(TorqueDerivativesOf, ParameterSetsAreThoseOfDualNumbers) {
     Random random(7);
     std::vector<std::vector<LinkParameters>> rows;
     for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
-      rows.push_back(identifiedLinks(random, chain));
+      rows.push_back(randomIdentifiedLinks(random, chain));
     }
-    const std::vector<LinkParameters> gravity = identifiedLinks(random, chain);
+    const std::vector<LinkParameters> gravity = randomIdentifiedLinks(random, chain);
     for (const auto& own_rows : {decltype(rows)(), rows}) {
       for (const auto& own_gravity : {std::vector<LinkParameters>(), gravity}) {
         const ParameterSets sets{own_rows, own_gravity};
