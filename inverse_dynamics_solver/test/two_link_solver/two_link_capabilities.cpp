@@ -120,7 +120,10 @@ void TwoLinkSolver::computeAccelerations(const ConstVectorRef& q, const ConstVec
   computeFriction(q, qd, f);
   if (has("accelerations without friction")) f.setZero();
   const Eigen::Vector2d rest = tau - c - g - f;
-  qdd.noalias() = H.inverse().lazyProduct(rest);
+  // In memory of its own first: on processors that multiply and add in one step, Eigen rounds in
+  // another way where the numbers of a result aren't side by side.
+  const Eigen::Vector2d solution = H.inverse() * rest;
+  qdd = solution;
 }
 
 }  // namespace two_link_solver
