@@ -21,7 +21,7 @@ from inverse_dynamics.results.excitations import default_options
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import load_robot
 from inverse_dynamics.simulation.collision import ContactChecker
-from inverse_dynamics.simulation.configuration import Wishes
+from inverse_dynamics.simulation.configuration import StatedSimulation
 from inverse_dynamics.simulation.excitation import motion_gram, optimise_excitation
 from inverse_dynamics.simulation.information import CORRELATION, Unknowns
 from inverse_dynamics.simulation.model import SimulatedRobot
@@ -63,7 +63,9 @@ def main() -> None:
     arguments = parser.parse_args()
     robot = load_robot(arguments.robot)
     simulated = SimulatedRobot.from_urdf(read_description(robot.urdf), robot.root, robot.tip)
-    stored, _ = read_trajectory(Wishes.of(robot, simulated.chain).trajectory, robot.joints)
+    stored, _ = read_trajectory(
+        StatedSimulation.of(robot, simulated.chain).trajectory, robot.joints
+    )
     begin = time.process_time()
     found = optimise_excitation(simulated, default_options(duration=STORED))
     print(f"search: {time.process_time() - begin:.1f} s of CPU")

@@ -3,7 +3,7 @@
 
 A verb is a module of inverse_dynamics.verbs with `add_parser(subparsers)` and `run(arguments)`; it
 imports what is heavy inside `run`. A package that is built on request brings its verb along.
-Exit code 0: done; 2: something the user can put right, named on stderr (without a verb: the help);
+Exit code 0: done; 2: something that the user can correct, named on stderr (without a verb: the help);
 3: some of several recordings failed, the others are done; 1: an unexpected error, with a report in a
 file; 128 + n: ended by signal n (141: the reader of the output has gone).
 """
@@ -21,6 +21,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.crash import crash_report
+from inverse_dynamics.base.help_text import HelpFormatter
 from inverse_dynamics.base.wording import did_you_mean, not_built
 from inverse_dynamics.base.wording import message as _message
 from inverse_dynamics.errors import PartialError, UserError
@@ -54,14 +55,15 @@ BUILT_ON_REQUEST = {"bench": "inverse_dynamics_benchmarks"}
 _EPILOG = """\
 start here:
   ids demo                                       four robots on one page
-  ids data                                       fetch the recordings of the two real ones
-  ids robots                                     which robots there are
-  ids simulate --robot ur10_simulated --out BAG  record a simulated one
+  ids data                                       fetch recordings of two real robots
+  ids robots                                     list the robots
+  ids simulate --robot ur10_simulated --out BAG  record a simulated robot
   ids evaluate RECORDING --robot ur10_real       computed against measured torques: table and plots
-  ids VERB --help                                more on a verb, with examples
+  ids VERB --help                                describe a verb, with examples
 
-An output is written whole or not at all, whatever happens. Exit status: 0 done, 2 something to put
-right, 3 some of several recordings failed, 1 an unexpected error, 128 + N ended by signal N.
+Outputs are written whole or not at all. Exit status: 0 done, 2 something to
+correct, 3 some of several recordings failed, 1 an unexpected error, 128 + N
+ended by signal N.
 """
 
 # A list of numbers that begins with a minus looks like an option to argparse.
@@ -110,7 +112,7 @@ def make_parser() -> argparse.ArgumentParser:
         prog="ids",
         description="Inverse dynamics of robot arms: which joint torques belong to this motion?",
         epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=HelpFormatter,
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     subparsers = parser.add_subparsers(title="verbs", metavar="VERB", required=True)

@@ -259,9 +259,9 @@ def test_a_joint_that_the_chain_lacks_is_told(ids, tmp_path):
     code, out, err = ids("robots", "arm.yaml")
     assert (code, err) == (0, "")
     assert re.search(r"^chain +shoulder_pan_joint, .*, wrist_3_joint$", out, re.M)
-    assert "w3 is no joint of the chain: recordings must have it by this name" in out
+    assert "w3 is not a joint of the chain: recordings must use this name" in out
     (tmp_path / "arm.yaml").write_text(ARM.replace("w3", "wrist_3_joint"))
-    assert "is no joint of the chain" not in ids("robots", "arm.yaml")[1]
+    assert "is not a joint of the chain" not in ids("robots", "arm.yaml")[1]
 
 
 @pytest.mark.parametrize("name", ["ur10_real", "panda_real", "ur10_simulated", "panda_simulated"])

@@ -193,8 +193,8 @@ def test_friction_by_part_by_the_description_and_by_figures(tmp_path: Path) -> N
     urdf = pendulum(inner='<dynamics damping="0.25" friction="1.5"/>')
     arm = robot(tmp_path, urdf=urdf)
 
-    def friction(wish: object) -> dict[str, list[float]]:
-        run = simulate(arm, trajectory=SWING, rate=125, duration=0.1, joint_friction=wish)
+    def friction(given: object) -> dict[str, list[float]]:
+        run = simulate(arm, trajectory=SWING, rate=125, duration=0.1, joint_friction=given)
         return run.settings["joint_friction"]
 
     assert friction(None) is None
@@ -253,7 +253,10 @@ def test_mistakes_in_the_run_configuration_are_pointed_at(
     ("options", "text"),
     [
         ({"rate": 0}, "rate: expected one of 125, 500, 1000 Hz, got 0"),
-        ({"optimise": True}, "expected either a trajectory or the wish to optimise one, got both"),
+        (
+            {"optimise": True},
+            "expected either a trajectory or a search for one (optimise), got both",
+        ),
         ({"joint_friction": "some"}, "joint friction: expected a part of the effort limit"),
         ({"joint_friction": 1.5}, "joint friction: expected a part of the effort limit"),
         ({"duration": 0.001}, "duration: expected at least two periods"),

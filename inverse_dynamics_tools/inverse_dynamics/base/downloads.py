@@ -30,7 +30,7 @@ def download(
 ) -> str:
     """Write what a URL (http, https, file) gives into a file; gives its SHA-256.
 
-    progress: hears the bytes that have come. Raises DownloadError, and OSError of the file.
+    progress: called with the number of bytes received. Raises DownloadError, and OSError of the file.
     """
     digest = hashlib.sha256()
     done = 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The progress of long work, told to whoever shows it."""
+"""The progress of long work, for whoever shows it."""
 
 from __future__ import annotations
 

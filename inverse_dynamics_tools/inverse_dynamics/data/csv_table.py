@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of numbers in text files: a header line, then a row a line.
+"""Tables of numbers in text files: a header line, then one row per line.
 
 Between columns: comma, semicolon, tab or spaces, whichever the header has. Columns that aren't
 asked for may hold anything.

@@ -147,7 +147,7 @@ def fetch_recordings(
     """Fetch those of public_recordings() that aren't there; gives the directories of all of them.
 
     source: URL or directory that holds the repository's files instead of the public one. overwrite:
-    replace recordings that aren't as published. say: hears what is done, and how large it is, first.
+    replace recordings that aren't as published. say: called with a sentence before each step.
 
     Each recording is written whole or not at all. Raises RecordingsError, OutputError.
     """

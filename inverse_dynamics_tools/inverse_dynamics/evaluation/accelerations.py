@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How joint accelerations of a recording were estimated, in C++, and what was found in its samples.
 
-The rules are those of inverse_dynamics_evaluation/samples.hpp. What they find is said in words in
+The rules are those of inverse_dynamics_evaluation/samples.hpp. What they find is stated in words in
 any case; they are acted upon unless they are switched off.
 """
 
@@ -20,7 +20,7 @@ RULES = {
     "repeated": "samples that repeat the one before are left out of the differentiation",
     "non-increasing": "so are those whose stamp isn't later than all before it",
     "time-base": "stamps that positions and velocities contradict give way to equal distances",
-    "start-transient": "efforts that jump at the very start don't count in the second metrics",
+    "start-transient": "efforts that jump at the very start are left out of the second metrics",
 }
 
 
@@ -60,7 +60,7 @@ class Samples:
 
     @property
     def left_out(self) -> int:
-        """How many samples don't count in the second metrics."""
+        """How many samples the second metrics leave out."""
         return int((~self.kept).sum())
 
 

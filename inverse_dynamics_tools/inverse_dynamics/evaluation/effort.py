@@ -2,7 +2,7 @@
 """What recorded efforts mean, and so what is compared with what.
 
 The meaning is stated by the option, else by the recording's format, else by the run configuration;
-`auto` has the data tell. Decided in C++: inverse_dynamics_evaluation/effort.hpp.
+`auto` decides from the data. Decided in C++: inverse_dynamics_evaluation/effort.hpp.
 """
 
 from __future__ import annotations

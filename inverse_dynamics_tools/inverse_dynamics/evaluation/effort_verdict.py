@@ -78,7 +78,7 @@ def compare_meanings(
     """Compare what each meaning predicts with the recorded efforts.
 
     computed, gravity: (N, n) N m. effort: (N, n) as recorded. gains: (n,) N m/A, if they are known.
-    kept: (N,) samples that count.
+    kept: (N,) marks the valid samples.
     """
     from inverse_dynamics import _core
 

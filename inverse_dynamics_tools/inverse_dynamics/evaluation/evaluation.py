@@ -80,7 +80,7 @@ class Evaluation:
     qdd: Floats  # (N, n) rad/s^2 or m/s^2
     computed: Floats  # (N, n) N m or N; without gravity if the efforts are
     errors: tuple[JointError, ...]  # over all samples
-    errors_of_kept: tuple[JointError, ...]  # over samples.kept: to be shown beside the others
+    errors_of_kept: tuple[JointError, ...]  # over samples.kept, the valid samples
     effort: Effort = field(default_factory=Effort)  # what recorded efforts mean
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
     seconds: dict[str, float] = field(default_factory=dict)  # what took how long
@@ -318,7 +318,7 @@ def joint_errors(
     measured: Floats,
     kept: Mask | None = None,
 ) -> tuple[JointError, ...]:
-    """Errors of each joint; computed and measured are (N, n), kept (N,) says which samples count."""
+    """Errors of each joint; computed and measured are (N, n), kept (N,) marks the valid samples."""
     from inverse_dynamics import _core
 
     return _joint_errors(joint_names, units, _core.metrics(computed, measured, kept))

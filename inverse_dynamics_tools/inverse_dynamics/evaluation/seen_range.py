@@ -28,7 +28,7 @@ def outside_of_seen(
 ) -> str:
     """A sentence on joints that leave the range of identification; "": none does, or it isn't known.
 
-    seen: (3, n, 2), as Solver.seen. motion: q, qd, qdd, (N, n) each; kept: (N,) samples that count.
+    seen: (3, n, 2), as Solver.seen. motion: q, qd, qdd, (N, n) each; kept: (N,) marks the valid samples.
     units: of the joints' torques.
     """
     if seen is None or not kept.any():

@@ -97,7 +97,7 @@ def make_printable(figure: Figure) -> None:
 
 
 def torque_figure(evaluation: Evaluation, lines: TorqueLines | None = None) -> Figure:
-    """Measured and computed torque over time, and the error, a joint a row.
+    """Measured and computed torque over time, and the error, one row per joint.
 
     lines: what was gathered of the samples; none: those of the evaluation.
     """
@@ -144,7 +144,7 @@ def torque_figure(evaluation: Evaluation, lines: TorqueLines | None = None) -> F
 
 
 def comparison_figure(comparison: Comparison) -> Figure:
-    """Measured torque and that of each run over time, and the runs' errors, a joint a row."""
+    """Measured torque and that of each run over time, and the runs' errors, one row per joint."""
     from matplotlib.figure import Figure
 
     first = comparison.evaluations[0]

@@ -43,7 +43,7 @@ class Block:
     def later(self, delay: float) -> Block:
         """The same torques with the states of `delay` [s] before: what they answer to.
 
-        States before the block's first sample aren't known: these samples don't count.
+        States before the block's first sample aren't known: these samples are invalid.
         """
         if delay == 0:
             return self

@@ -58,7 +58,7 @@ class _Alternative:
 
 
 def errors_of(fitter: ArmFitter, fit: ArmFit, block: Block) -> Floats:
-    """Measured minus computed torques of the samples that count, (M, n)."""
+    """Measured minus computed torques of the valid samples, (M, n)."""
     q, qd, qdd, tau = block.fitted
     return tau - fitter.torques(fit, q, qd, qdd)
 

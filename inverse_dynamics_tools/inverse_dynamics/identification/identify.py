@@ -258,7 +258,7 @@ def _model(
 def _held_out_errors(
     blocks: Sequence[HeldOutBlock], cut: Sequence[Block]
 ) -> tuple[dict[str, Floats], Floats]:
-    """RMSE (n,) of each column over the samples that count, and the share within the band."""
+    """RMSE (n,) of each column over the valid samples, and the share within the band."""
     columns, within = [], []
     for held_out, block in zip(blocks, cut, strict=True):
         errors = {

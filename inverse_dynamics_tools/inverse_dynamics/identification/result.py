@@ -5,7 +5,7 @@
     print(found.rmse("identified"), found.model.friction[0])
 
 n joints in the order of the chain; rad, rad/s, N m (prismatic m, m/s, N). Errors are root mean
-squares over the samples that count of the blocks that were held out: each block is predicted by a model that
+squares over the valid samples of the blocks that were held out: each block is predicted by a model that
 was fitted to the others, with everything chosen on the others too.
 """
 

@@ -107,7 +107,7 @@ def run_demo(
 
     recordings: directory with those of REAL; None: simulated robots only.
     overwrite: replace an older demonstration. quick: a few seconds of simulated motion, no video.
-    say: hears what is being done. Raises UserError.
+    say: called with a sentence before each step. Raises UserError.
     """
     out = Path(out)
     real = _recordings_in(recordings)

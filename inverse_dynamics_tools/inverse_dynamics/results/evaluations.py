@@ -321,7 +321,7 @@ def _series(evaluation: Evaluation) -> Iterator[tuple[Recorded, Arrays]]:
 
 
 def metrics(evaluation: Evaluation) -> dict[str, Any]:
-    """For people and scripts: errors, what they are of, and what is odd about them; for JSON."""
+    """For people and scripts: errors, what was evaluated, notes and the likely cause of the errors; for JSON."""
     return {
         "robot": evaluation.robot.name,
         "plugin": evaluation.robot.plugin,

@@ -23,7 +23,7 @@ from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import Robot, load_robot
-from inverse_dynamics.simulation.configuration import Wishes
+from inverse_dynamics.simulation.configuration import StatedSimulation
 from inverse_dynamics.simulation.errors import SimulationError, described_by
 from inverse_dynamics.simulation.excitation import (
     PAYLOAD_DURATION,
@@ -125,7 +125,9 @@ def excite(
     found = optimise_excitation(
         simulated, options, seed=seed, noise=unknowns.noise, given=known, progress=progress
     )
-    stored = None if robot.file == robot.urdf else Wishes.of(robot, simulated.chain).trajectory
+    stored = (
+        None if robot.file == robot.urdf else StatedSimulation.of(robot, simulated.chain).trajectory
+    )
     motions = {} if known is None else {"given": known}
     base = np.zeros_like(unknowns.scale) if known is None else known
     if stored is not None:
@@ -244,7 +246,7 @@ def message_text(
 
 
 def _read(recording: Path | str, robot: Robot, progress: Progress) -> Evaluation:
-    """Samples of a recording that count. Raises UserError."""
+    """Valid samples of a recording. Raises UserError."""
     found = evaluate(recording, robot, progress=progress)
     if not found.samples.kept.any():
         raise EvaluationError(f"{recording}: expected samples of a motion, got none that counts")

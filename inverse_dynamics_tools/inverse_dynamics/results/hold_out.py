@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class HoldOut:
-    """Errors on a recording, over the samples that count: RMSE (n,) by name of COLUMNS, and coverage (n,)."""
+    """Errors on a recording, over the valid samples: RMSE (n,) by name of COLUMNS, and coverage (n,)."""
 
     recording: Path
     rmse: Mapping[str, Floats]
@@ -83,6 +83,6 @@ def hold_out(
 
 
 def _errors(result: Evaluation) -> Floats:
-    """(M, n) of the samples that count."""
+    """(M, n) of the valid samples."""
     kept = result.samples.kept
     return np.asarray((result.computed - result.measured)[kept])

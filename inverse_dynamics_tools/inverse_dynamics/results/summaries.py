@@ -9,7 +9,7 @@ start duration      s: stamp of the first sample, and time from it to the last
 window_from window_to    s since the recording's first sample, where a part was asked for
 samples             how many there are
 mae rmse nrmse bias r2 max_abs    over all samples: see docs/notation.md; empty where undefined
-kept_samples kept_rmse            over those that count, without a start transient, for one
+kept_samples kept_rmse            over the valid samples: without a start transient, for example
 accelerations cutoff              how they were estimated; Hz
 effort              what recorded efforts mean: torque, current, torque_without_gravity
 """

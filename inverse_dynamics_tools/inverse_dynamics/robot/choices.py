@@ -7,15 +7,18 @@ from __future__ import annotations
 EFFORT_MEANINGS = {
     "torque": "torques, compared as they are",
     "current": "motor currents, compared times the drive gains",
-    "torque_without_gravity": "torques as newer UR drivers send them, compared with computed "
+    "torque_without_gravity": "torques without gravity, as newer UR drivers send them, compared with computed "
     "torques minus gravity",
 }
-EFFORT_CHOICES = {**EFFORT_MEANINGS, "auto": "the one that clearly fits the data, if there is one"}
+EFFORT_CHOICES = {
+    **EFFORT_MEANINGS,
+    "auto": "the meaning that clearly fits the data, if there is one",
+}
 
 # How accelerations are estimated, as --help says it.
 METHODS = {
-    "auto": "those of the recording if it has any, else low-pass with a cut-off chosen from the data",
+    "auto": "accelerations of the recording if it has any, else low-pass with a cut-off chosen from the data",
     "low-pass": "zero-phase low-pass of the velocities, then their derivative",
-    "given": "those of the recording",
+    "given": "accelerations of the recording",
     "backward-difference": "(qd[k] - qd[k-1]) / (t[k] - t[k-1]), the first one zero; no filter",
 }

@@ -34,7 +34,7 @@ DEFAULT_RATE = 500  # Hz, where neither caller nor run configuration says
 
 
 @dataclass(frozen=True)
-class GainWishes:
+class StatedGains:
     """Gains that a run configuration states: (joint index, name) to value."""
 
     values: dict[tuple[int, str], float]
@@ -48,19 +48,19 @@ class GainWishes:
 
 
 @dataclass(frozen=True)
-class Wishes:
+class StatedSimulation:
     """What a run configuration says under `simulation`."""
 
     trajectory: Path | None
     rate: int  # Hz
-    gains: GainWishes
+    gains: StatedGains
 
     @classmethod
-    def of(cls, robot: Robot, chain: UrdfChain) -> Wishes:
+    def of(cls, robot: Robot, chain: UrdfChain) -> StatedSimulation:
         """Reads them. Raises RobotError with file, line and key."""
         mapping = _simulation(robot)
         if mapping is None:
-            return cls(None, DEFAULT_RATE, GainWishes({}))
+            return cls(None, DEFAULT_RATE, StatedGains({}))
         trajectory = mapping.optional("trajectory")
         file = None if trajectory is None else resolve(trajectory.text(), robot.file.parent)
         if trajectory is not None and file is not None and not file.is_file():
@@ -69,9 +69,9 @@ class Wishes:
         if rate is not None and rate.integer() not in RATES:
             rate.fail(f"one of {', '.join(map(str, RATES))} Hz")
         gains = mapping.optional("gains")
-        wishes = GainWishes({} if gains is None else _gains(gains.mapping(), chain))
+        stated = StatedGains({} if gains is None else _gains(gains.mapping(), chain))
         mapping.reject_others()
-        return cls(file, DEFAULT_RATE if rate is None else rate.integer(), wishes)
+        return cls(file, DEFAULT_RATE if rate is None else rate.integer(), stated)
 
 
 def states_simulation(robot: Robot) -> bool:

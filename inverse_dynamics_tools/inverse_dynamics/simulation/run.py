@@ -22,7 +22,7 @@ from inverse_dynamics.base.wording import listed
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.simulation.collision import ContactChecker
-from inverse_dynamics.simulation.configuration import Wishes
+from inverse_dynamics.simulation.configuration import StatedSimulation
 from inverse_dynamics.simulation.controller import Gains
 from inverse_dynamics.simulation.errors import SimulationError, described_by
 from inverse_dynamics.simulation.excitation import (
@@ -116,13 +116,13 @@ def simulate(
             joint_friction,
             from_model,
         )
-    wishes = Wishes.of(robot, chain)
-    rate = wishes.rate if rate is None else rate
+    stated = StatedSimulation.of(robot, chain)
+    rate = stated.rate if rate is None else rate
     check_rate(rate)
     sensors = sensors or Sensors()
     sensors.check(len(chain.joint_names), rate)
     chosen, source = _choose_trajectory(
-        simulated, trajectory, wishes.trajectory, optimise, seed, table, say, progress
+        simulated, trajectory, stated.trajectory, optimise, seed, table, say, progress
     )
     checker = ContactChecker(simulated, table=table)
     notes = list(chain.notes)
@@ -139,7 +139,7 @@ def simulate(
             "evaluate them with --effort-is torque"
         )
     duration = duration or chosen.duration
-    gains = wishes.gains.apply(default_gains(simulated, chosen, rate))
+    gains = stated.gains.apply(default_gains(simulated, chosen, rate))
     motion = follow(simulated, chosen, rate=rate, duration=duration, gains=gains, progress=progress)
     recorded = sensors.record(motion, seed)
     settings = _settings(robot, simulated, sensors, gains, rate, duration, seed, source, from_model)
@@ -225,18 +225,18 @@ def _choose_trajectory(
     return given, "Given by the caller."
 
 
-def _friction(wish: Friction | float | str | None, chain: UrdfChain) -> Friction | None:
-    if wish is None or not isinstance(wish, float | int | str):
-        return wish
-    if wish == "urdf":
+def _friction(given: Friction | float | str | None, chain: UrdfChain) -> Friction | None:
+    if given is None or not isinstance(given, float | int | str):
+        return given
+    if given == "urdf":
         return JointFriction(chain.friction, chain.damping)
     try:
-        part = decimal(wish) if isinstance(wish, str) else float(wish)
+        part = decimal(given) if isinstance(given, str) else float(given)
     except ValueError:
         part = np.nan
     if not 0 <= part < 1:
         raise SimulationError(
-            f"joint friction: expected a part of the effort limit, 0 to below 1, urdf or model, got {wish}"
+            f"joint friction: expected a part of the effort limit, 0 to below 1, urdf or model, got {given}"
         )
     for name, limits in (("effort", chain.effort), ("velocity", chain.velocity)):
         for joint, limit in zip(chain.joint_names, limits, strict=True):

@@ -22,10 +22,10 @@ examples:
   ids evaluate recording --robot ur10_real --out urdf \\
       --plugin rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody
   ids compare urdf identified --labels URDF,identified --out comparison
-      what identification and friction bring
+      the gain by identification and friction
 
 results, written whole or not at all:
-  comparison.png    measured torque, and each run's, over time; with --figures also .svg, .pdf
+  comparison.png    measured torque and that of each run, over time; with --figures also .svg, .pdf
   comparison.json   root mean square errors of each joint and run
   report.html       all runs on one page
 """
@@ -49,10 +49,13 @@ def add_parser(
         metavar="A,B,...",
         type=names,
         default=(),
-        help="what to call the runs (default: what differs)",
+        help="names of the runs (default: what differs between them)",
     )
     parser.add_argument(
-        "--out", metavar="DIR", type=Path, help="where figure and page go (default: only the table)"
+        "--out",
+        metavar="DIR",
+        type=Path,
+        help="directory for figure and page (default: only the table is printed)",
     )
     parser.add_argument(
         "--overwrite",

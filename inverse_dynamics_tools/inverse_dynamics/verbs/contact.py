@@ -28,20 +28,22 @@ if TYPE_CHECKING:
 _EPILOG = """\
 examples:
   ids contact recording --robot panda_real --quiet 0,60
-      the first minute is without contact, and shows all motions that the rest has
+      the first minute is without contact, and contains all motions of the rest
 
-  ids contact recording --robot panda_real --quiet-recording yesterday --false-alarms 0.1
+  ids contact recording --robot panda_real --quiet-recording yesterday \\
+      --false-alarms 0.1
       thresholds from another recording; one false alarm in ten hours
 
-  ids contact recording --robot my_robot.yaml --quiet 0,60 --friction-band 1,1,1,0.3,0.3,0.3
-      per joint, what the friction model may be wrong by [N m] beyond what the quiet part shows, for one
-      where the robot hardly moves
+  ids contact recording --robot my_robot.yaml --quiet 0,60 \\
+      --friction-band 1,1,1,0.3,0.3,0.3
+      error of the friction model per joint [N m] in addition to that of the quiet part, for a quiet part
+      in which the robot hardly moves
 
-External torques are what the robot exerts on its surroundings: measured torques minus those that its
-model needs for the motion, low-passed. What the model doesn't know, such as a load, is among them.
+External torques are those that the robot exerts on its surroundings: measured torques minus the
+torques of the model for the motion, low-passed. They include what the model lacks, such as a load.
 
 results, written whole or not at all:
-  contacts.json           each contact; thresholds, and how they came about
+  contacts.json           contacts; thresholds, and how they were chosen
   contacts.png            external torques, thresholds, contacts; with --figures also .svg, .pdf
   series.npz              time, torques, valid, contact, wrenches, unseen, for numpy.load()
 """
@@ -59,18 +61,21 @@ def add_parser(
         json=True,
     )
     parser.add_argument(
-        "bag", metavar="RECORDING", type=file_name, help="as `ids evaluate` takes it"
+        "bag", metavar="RECORDING", type=file_name, help="recording, as for `ids evaluate`"
     )
     add_robot(parser)
-    quiet = parser.add_argument_group("thresholds: from a part without contact")
+    quiet = parser.add_argument_group("thresholds, from a part without contact")
     quiet.add_argument(
-        "--quiet", metavar="FROM,TO", type=_span, help="that part, s since the first sample"
+        "--quiet",
+        metavar="FROM,TO",
+        type=_span,
+        help="the part without contact, in s since the first sample",
     )
     quiet.add_argument(
         "--quiet-recording",
         metavar="RECORDING",
         type=file_name,
-        help="a recording without contact; with --quiet: that part of it",
+        help="a recording without contact; with --quiet, only that part of it",
     )
     quiet.add_argument(
         "--false-alarms",
@@ -92,26 +97,26 @@ def add_parser(
         metavar="RAD_PER_SECOND",
         type=positive_number,
         default=200.0,
-        help="of velocities from positions: lower for coarse encoders (default: 200 rad/s)",
+        help="bandwidth of velocities from positions: lower for coarse encoders (default: 200 rad/s)",
     )
     estimator.add_argument(
         "--measured-velocities",
         action="store_true",
-        help="the recorded velocities, where they are good and not delayed",
+        help="use the recorded velocities, where they are accurate and not delayed",
     )
     estimator.add_argument(
         "--friction-band",
         metavar="A,B,...",
         type=_numbers,
         default=(),
-        help="what the friction model may be wrong by [N m] beyond what the part without contact shows, one "
-        "number per joint, or one for all: an external torque is what exceeds it",
+        help="error of the friction model [N m] in addition to that of the part without contact, one number "
+        "per joint, or one for all: only what exceeds it is an external torque",
     )
     parser.add_argument(
         "--out",
         metavar="DIR",
         type=Path,
-        help="where results go (default: RECORDING_ROBOT_contacts in the working directory)",
+        help="output directory (default: RECORDING_ROBOT_contacts in the working directory)",
     )
     parser.add_argument(
         "--overwrite", action="store_true", help="replace an older result in that directory"

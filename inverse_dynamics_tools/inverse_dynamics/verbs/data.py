@@ -14,13 +14,13 @@ from inverse_dynamics.verbs.options import add_verb
 _EPILOG = """\
 examples:
   ids data --dry-run          what would be fetched, from where, how large
-  ids data                    fetch it; `ids demo` then finds it
-  ids data --out recordings   elsewhere: IDS_DATA_DIR=recordings ids demo
+  ids data                    fetch it; `ids demo` finds it
+  ids data --out recordings   to another directory: IDS_DATA_DIR=recordings ids demo
   ids data --from CLONE       from a clone of the public repository, without network
 
 A real UR10 and a real Panda, each on an exciting trajectory: DIR/bags/ur10_exciting_trajectory and
-DIR/bags/panda_exciting_trajectory. Every file is checked by its SHA-256. What is there already and
-intact is left alone; each recording is written whole or not at all.
+DIR/bags/panda_exciting_trajectory. The SHA-256 of every file is checked. Recordings that are already there
+and intact are kept; each recording is written whole or not at all.
 """
 
 
@@ -40,7 +40,7 @@ def add_parser(
         "--out",
         metavar="DIR",
         type=Path,
-        help="where they go (default: $IDS_DATA_DIR, else $XDG_DATA_HOME/inverse_dynamics, else "
+        help="output directory (default: $IDS_DATA_DIR, else $XDG_DATA_HOME/inverse_dynamics, else "
         "~/.local/share/inverse_dynamics)",
     )
     parser.add_argument(
@@ -48,12 +48,13 @@ def add_parser(
         dest="source",
         metavar="URL|CLONE",
         default="",
-        help="where the files of the public repository lie, instead of GitHub: another server, or the "
-        "directory of a clone",
+        help="source of the files, instead of GitHub: another server, or the directory of a clone",
     )
-    parser.add_argument("--dry-run", action="store_true", help="only say what would be fetched")
+    parser.add_argument("--dry-run", action="store_true", help="only list what would be fetched")
     parser.add_argument(
-        "--overwrite", action="store_true", help="replace recordings that aren't as published"
+        "--overwrite",
+        action="store_true",
+        help="replace recordings that differ from the published ones",
     )
     return parser
 

@@ -17,15 +17,15 @@ if TYPE_CHECKING:
 
 _EPILOG = """\
 examples:
-  ids demo                                  simulated robots; real ones if `ids data` has fetched them
+  ids demo                                  simulated robots; the real ones too if `ids data` has fetched them
   ids demo --recordings bags --out robots   real ones too, from recordings in the directory bags
-  ids demo --quick                          a few seconds of motion, no videos: does it work here?
+  ids demo --quick                          a few seconds of motion, no videos: checks the installation
 
 results, written whole or not at all:
   report.html      all robots: 3D view beside the torques, errors, assumptions; needs no network
-  ROBOT/           figure (torques.png), errors and series of each robot, as of `ids evaluate`
-  ROBOT.gif        the robot in motion beside its torques, for slides
-  comparison/      URDF against identified model on the real UR10, as of `ids compare`
+  ROBOT/           figure (torques.png), errors and series of each robot, as `ids evaluate` writes them
+  ROBOT.gif        animation of the robot and its torques, for slides
+  comparison/      URDF against identified model on the real UR10, as `ids compare` writes it
 """
 
 

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _EPILOG = """\
 examples:
   ids evaluate recording --robot ur10_real
-      computed against measured torques, as the run configuration ur10_real says
+      computed against measured torques, with the run configuration ur10_real
 
   ids evaluate recording --robot my_robot.yaml --out result
       a robot of your own, results into the directory result
@@ -50,27 +50,27 @@ examples:
       another solver on the same robot
 
   ids evaluate recording --robot panda_real --accelerations low-pass --cutoff 5
-      another filter; backward-difference is the raw one
+      another filter; backward-difference uses none
 
   ids evaluate recording --robot ur10_real --from 10 --to 20
-      ten seconds of it
+      ten seconds of the recording
 
   ids evaluate recording --robot ur10_real --gravity 0,-9.81,0
-      mounted on a wall: where things fall, in the frame of the root link
+      mounted on a wall: the direction of gravity in the frame of the root link
 
   ids evaluate recording --robot ur10_real --effort-is auto
-      torques, motor currents, or torques without gravity? the data tell
+      find out whether efforts are torques, motor currents or torques without gravity
 
   ids evaluate motion.csv --robot my_robot.yaml
       a table: columns time [s] and, for each joint, position.JOINT, velocity.JOINT, effort.JOINT
-      (or current.JOINT [A]), optionally acceleration.JOINT; comma, semicolon, tab or spaces between them
+      (or current.JOINT [A]), optionally acceleration.JOINT; separated by comma, semicolon, tab or spaces
 
   ids evaluate robot_data.csv --robot ur10_real
-      what the record tool of UR's RTDE client library writes: efforts are motor currents
+      a recording of UR's RTDE client library: efforts are motor currents
 
   ids evaluate monday tuesday wednesday --robot ur10_real --out week
   ids evaluate recordings_of_a_week --robot ur10_real --jobs 4
-      many recordings at the same time: one table, one page, and a result of each (docs/many_recordings.md)
+      many recordings at the same time: one table, one page, and a result for each (docs/many_recordings.md)
 
 results, written whole or not at all:
   metrics.json            errors of each joint
@@ -79,15 +79,15 @@ results, written whole or not at all:
   bag/                    recording with /torques (computed) and /torques_gt (measured)
   plotjuggler.xml         layout for PlotJuggler: `plotjuggler --layout plotjuggler.xml`
   series.npz              time, q, qd, qdd, effort (as recorded), measured, computed, for numpy.load()
-  evaluation.json         what was assumed: filter, messages left out, model, what effort means
+  evaluation.json         assumptions: filter, messages left out, model, meaning of efforts
 
 results of several recordings:
-  report.html             all of them on one page; NAME/report.html is that of each
+  report.html             all recordings on one page; NAME/report.html shows a single one
   summary.csv, .parquet   errors, one row per recording and joint, for pandas, polars, DuckDB
-  recordings.json         which recordings, and why some failed
-  NAME/                   what is listed above, of each recording; with --parquet also series.parquet
+  recordings.json         the recordings, and why some failed
+  NAME/                   the files listed above, for each recording; with --parquet also series.parquet
 
-One that fails is named, and the others are finished; exit status 3 then.
+A recording that fails is named, and the others are finished; the exit status is then 3.
 
 A piece of a compressed recording may unpack to 256 MB, or to 50 times its size; the environment
 variable IDS_UNPACK_LIMIT_MB sets another limit.
@@ -123,7 +123,7 @@ def add_parser(
         "--out",
         metavar="DIR",
         type=Path,
-        help="where results go (default: BAG_ROBOT in the working directory; of several recordings: "
+        help="output directory (default: BAG_ROBOT in the working directory; for several recordings: "
         "recordings_ROBOT)",
     )
     parser.add_argument(
@@ -134,20 +134,20 @@ def add_parser(
     parser.add_argument(
         "--storage",
         choices=("sqlite3", "mcap"),
-        help="storage of the output recording (default: that of BAG; of a table: sqlite3)",
+        help="storage of the output recording (default: that of BAG; for a table: sqlite3)",
     )
     add_figures(parser)
     parser.add_argument(
         "--parquet", action="store_true", help="write series.parquet too: see `ids export --help`"
     )
-    parser.add_argument("--verbose", action="store_true", help="say also what took how long")
+    parser.add_argument("--verbose", action="store_true", help="print also how long each step took")
 
     many = parser.add_argument_group("several recordings")
     many.add_argument(
         "--jobs",
         metavar="N",
         type=process_count,
-        help="how many at the same time, each in a process of its own (default: one per core)",
+        help="number evaluated at the same time, each in its own process (default: one per core)",
     )
     many.add_argument(
         "--scheduler",
@@ -169,23 +169,30 @@ def add_parser(
         help="; ".join(f"{name}: {text}" for name, text in METHODS.items()),
     )
     samples.add_argument(
-        "--cutoff", metavar="HZ", type=positive_number, help="cut-off of the low-pass"
+        "--cutoff",
+        metavar="HZ",
+        type=positive_number,
+        help="cut-off frequency of the low-pass filter",
     )
     samples.add_argument(
         "--from",
         dest="start",
         metavar="SECONDS",
         type=number,
-        help="leave out the samples before that time, counted from the first one",
+        help="leave out the samples before this time, counted from the first sample",
     )
     samples.add_argument(
-        "--to", dest="end", metavar="SECONDS", type=number, help="and those after that time"
+        "--to",
+        dest="end",
+        metavar="SECONDS",
+        type=number,
+        help="leave out the samples after this time",
     )
     samples.add_argument(
         "--clock",
         choices=CLOCKS,
         default="auto",
-        help="stamps that are the time: the header's, those of reception, or the header's if "
+        help="time stamps that are used: the header's, those of reception, or the header's if "
         "there are any (auto)",
     )
     samples.add_argument(
@@ -194,7 +201,7 @@ def add_parser(
         choices=tuple(RULES),
         action="append",
         default=[],
-        help="don't act upon what this rule finds (it is still said); may be given several times. "
+        help="report what this rule finds, but do not act on it; may be given several times. "
         + "; ".join(f"{name}: {text}" for name, text in RULES.items()),
     )
     return parser
@@ -248,7 +255,7 @@ def _run_one(arguments: argparse.Namespace, robot: Robot) -> None:
 
 
 def _options(arguments: argparse.Namespace) -> dict[str, Any]:
-    """What evaluate() is told beyond recording and robot."""
+    """Options of evaluate(), except recording and robot."""
     return {
         **robot_changes(arguments),
         "topic": arguments.topic,

@@ -23,22 +23,23 @@ if TYPE_CHECKING:
 _EPILOG = """\
 examples:
   ids excite --robot ur10_simulated --out motion.yaml
-      20 s within 80 % of the limits of the URDF; then, as a rehearsal:
-      ids simulate --robot ur10_simulated --trajectory motion.yaml --out rehearsal
+      20 s within 80 % of the limits of the URDF; rehearse it in simulation:
+  ids simulate --robot ur10_simulated --trajectory motion.yaml --out rehearsal
 
-  ids excite --urdf arm.urdf --root base --tip flange --duration 30 --share 0.5 --out motion.yaml
-      half of the limits, longer: the table says what that costs
+  ids excite --urdf arm.urdf --root base --tip flange --out motion.yaml \\
+      --duration 30 --share 0.5
+      half of the limits, longer: the table shows the effect on the uncertainty
 
   ids excite --robot my_robot.yaml --given recording --out missing.yaml
-      a motion that tells what the recording doesn't
+      a motion that adds the information that the recording lacks
 
   ids excite --robot my_robot.yaml --payload --out weigh.yaml
-      8 s of the last three joints, for a body at the tip whose mass isn't known
+      8 s of motion of the last three joints, to identify a body at the tip
 
 results, written together or not at all; Ctrl-C leaves nothing:
   motion.yaml                    the motion, for `ids simulate --trajectory`
   motion_joint_trajectory.yaml   trajectory_msgs/JointTrajectory, whose first point is the start pose,
-                                 3 s after the start: bring the arm there first, the way isn't checked
+                                 3 s after the start: move the arm there first, that path is not checked
 """
 
 
@@ -64,7 +65,7 @@ def add_parser(
         help="run configuration: a name that `ids robots` lists, or a YAML file",
     )
     which.add_argument(
-        "--urdf", metavar="FILE", type=Path, help="robot description, in place of --robot"
+        "--urdf", metavar="FILE", type=Path, help="robot description, instead of --robot"
     )
     parser.add_argument("--root", metavar="LINK", help="first link of the chain")
     parser.add_argument("--tip", metavar="LINK", help="last link of the chain")
@@ -77,13 +78,18 @@ def add_parser(
         type=Path,
         nargs="+",
         default=[],
-        help="recordings that will be used too: the motion is for what they don't tell",
+        help="recordings that will also be used: the motion adds the information that they lack",
     )
     parser.add_argument(
-        "--payload", action="store_true", help="for the ten parameters of a body at the tip only"
+        "--payload",
+        action="store_true",
+        help="a motion that identifies only the ten parameters of a body at the tip",
     )
     parser.add_argument(
-        "--seed", type=whole_number, default=0, help="the same seed gives the same motion"
+        "--seed",
+        type=whole_number,
+        default=0,
+        help="seed of the search: the same seed gives the same motion",
     )
     _add_limits(parser)
     return parser
@@ -95,37 +101,37 @@ def _add_limits(parser: argparse.ArgumentParser) -> None:
         "--duration",
         metavar="S",
         type=positive_number,
-        help="of the motion (default: 20; of one for a payload: 8)",
+        help="length of the motion (default: 20; with --payload: 8)",
     )
     limits.add_argument(
         "--share",
         metavar="P",
         type=share,
-        help="part of the limits of position, velocity, acceleration and effort (default: 0.8)",
+        help="share of the limits of position, velocity, acceleration and effort (default: 0.8)",
     )
     limits.add_argument(
         "--full-speed-in",
         metavar="S",
         type=positive_number,
-        help="shortest time to the velocity limit: it limits the acceleration (default: 0.5)",
+        help="shortest time to reach the velocity limit, which limits the acceleration (default: 0.5)",
     )
     limits.add_argument(
         "--clearance",
         metavar="M",
         type=positive_number,
-        help="distance to the arm itself and to the table (default: 0.01)",
+        help="least distance to the arm itself and to the table (default: 0.01)",
     )
     limits.add_argument(
         "--no-table",
         dest="table",
         action="store_false",
-        help="the arm may reach below its base",
+        help="allow the arm to reach below its base",
     )
     limits.add_argument(
         "--step",
         metavar="S",
         type=positive_number,
-        help="time between points of the JointTrajectory (default: its waypoints, about 0.5 s apart, "
+        help="time between points of the JointTrajectory (default: at the waypoints, about 0.5 s apart, "
         "which controllers join by polynomials of the fifth order)",
     )
 

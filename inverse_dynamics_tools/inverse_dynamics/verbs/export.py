@@ -13,17 +13,17 @@ _EPILOG = """\
 examples:
   ids export result                            result/series.csv
   ids export ur10 panda --format parquet       ur10/series.parquet, panda/series.parquet
-  ids export result --out torques.csv          one table, where it is wanted
+  ids export result --out torques.csv          one table, in a file of your choice
 
-columns, J being a joint as the recording names it; a row per sample:
+columns (J: a joint, as the recording names it), one row per sample:
   time                                    s since the first sample
   position.J velocity.J acceleration.J    the motion; accelerations as estimated
   effort.J                                as recorded; current.J [A] where these are motor currents
   measured.J computed.J error.J           torques; error = computed - measured
   repeated non_increasing start_transient isolated kept
-                                          what was found in a sample (true, false)
+                                          findings about a sample (true, false)
 
-Every digit is kept. A Parquet file says the unit of each column; a CSV file has rad, rad/s, rad/s^2, N m
+All digits are kept. A Parquet file states the unit of each column; a CSV file has rad, rad/s, rad/s^2, N m
 (prismatic: m, m/s, m/s^2, N). `ids evaluate` reads such a CSV file as a recording.
 """
 
@@ -43,7 +43,9 @@ def add_parser(
     )
     add_runs(parser)
     parser.add_argument(
-        "--format", choices=FORMATS, help="(default: that of --out by its ending, else csv)"
+        "--format",
+        choices=FORMATS,
+        help="format of the table (default: by the ending of --out, else csv)",
     )
     parser.add_argument(
         "--out",

@@ -23,25 +23,26 @@ if TYPE_CHECKING:
 _EPILOG = """\
 examples:
   ids identify recording --robot ur10_real --out arm.yaml
-      a model of the arm that was recorded: its description's geometry, masses and friction that fit
+      a model of the recorded arm: geometry from its description, masses and friction from the data
 
   ids evaluate other_recording --robot arm.yaml
-      torques of that model for another motion
+      torques of this model for another motion
 
   ids identify recording --urdf my_arm.urdf --out arm.yaml
-      no run configuration yet: the description is all that is needed
+      without a run configuration: the description is enough
 
-  ids identify monday tuesday --robot ur10_real --hold-out wednesday --out arm.yaml
-      from two recordings; errors on a third one, which nothing is fitted to or chosen on
+  ids identify monday tuesday --robot ur10_real --out arm.yaml \\
+      --hold-out wednesday
+      from two recordings; errors on a third one, which is used for no fit and no choice
 
-What is shown is the error on parts of the recordings that were held out: each of several contiguous
+Errors are those on held-out parts of the recordings: each of several contiguous
 blocks is predicted by a model fitted to the others, with law, prior and delay chosen on the others.
-A gain counts only against `present, friction refitted`. docs/identification.md tells how, and what to do on the robot.
+Compare them with `present, friction refitted`. docs/identification.md explains the method, and what to do on the robot.
 
 results, all of them or none:
-  arm.yaml                run configuration: what --robot of every verb takes
+  arm.yaml                run configuration, for --robot of every verb
   arm_model.yaml          the model: links, friction, rotor inertia, 95 % band of the torques, range of the data
-  arm.html                page: the robot in motion, measured against predicted torques, what decided what
+  arm.html                page: the robot in motion, measured and predicted torques, influence of data and prior
   arm.json                all figures
 """
 
@@ -55,7 +56,7 @@ def add_parser(
     parser = add_verb(
         subparsers,
         "identify",
-        summary="make a model with friction from recordings of a robot, and tell how good it is",
+        summary="identify a model with friction from recordings of a robot, and state its errors",
         epilog=_EPILOG,
         json=True,
     )
@@ -64,25 +65,25 @@ def add_parser(
         metavar="RECORDING",
         type=file_name,
         nargs="+",
-        help="as `ids evaluate` takes it; several are of one robot with the same load",
+        help="recording, as for `ids evaluate`; several ones must be of one robot with the same load",
     )
     parser.add_argument(
         "--robot",
         metavar="NAME|FILE",
-        help="run configuration: its URDF is the prior, its model the one to be compared with",
+        help="run configuration: its URDF is the prior, its model is compared with the identified one",
     )
     parser.add_argument(
         "--urdf",
         metavar="FILE",
         type=Path,
-        help="robot description, instead of the robot's or alone",
+        help="robot description, with or without --robot",
     )
     parser.add_argument(
         "--out",
         metavar="FILE",
         type=Path,
         required=True,
-        help="run configuration to be written, NAME.yaml; beside it NAME_model.yaml, NAME.json, NAME.html",
+        help="run configuration to write, NAME.yaml; NAME_model.yaml, NAME.json and NAME.html are written with it",
     )
     parser.add_argument(
         "--hold-out",
@@ -90,26 +91,26 @@ def add_parser(
         type=file_name,
         action="append",
         default=[],
-        help="a recording to test the model with, of another day for one; may be given several times",
+        help="a recording to test the model on, for example of another day; may be given several times",
     )
     parser.add_argument(
         "--urdf-out",
         metavar="FILE",
         type=Path,
-        help="also the description with the identified inertia, and friction as far as <dynamics> holds it",
+        help="also write the description with the identified inertia, and friction as far as <dynamics> can state it",
     )
     parser.add_argument(
         "--mjcf-out",
         metavar="FILE",
         type=Path,
-        help="also MuJoCo <default> classes of the joints: armature, damping, frictionloss",
+        help="also write MuJoCo <default> classes of the joints: armature, damping, frictionloss",
     )
     parser.add_argument("--overwrite", action="store_true", help="replace older files")
     parser.add_argument(
         "--effort-is",
         metavar="MEANING",
         choices=tuple(EFFORT_CHOICES),
-        help="what recorded efforts mean. "
+        help="meaning of the recorded efforts. "
         + "; ".join(f"{name}: {text}" for name, text in EFFORT_CHOICES.items()),
     )
     parser.add_argument("--topic", metavar="NAME", help="topic of the joint states")
@@ -118,10 +119,14 @@ def add_parser(
         dest="start",
         metavar="SECONDS",
         type=number,
-        help="leave out the samples before that time, counted from the first one of each recording",
+        help="leave out the samples before this time, counted from the first sample of each recording",
     )
     parser.add_argument(
-        "--to", dest="end", metavar="SECONDS", type=number, help="and those after that time"
+        "--to",
+        dest="end",
+        metavar="SECONDS",
+        type=number,
+        help="leave out the samples after this time",
     )
     return parser
 

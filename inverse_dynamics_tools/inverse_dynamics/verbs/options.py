@@ -7,6 +7,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from inverse_dynamics.base.help_text import HelpFormatter
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.robot.choices import EFFORT_CHOICES
 from inverse_dynamics.verbs.common import figure_formats, names, parameter, three_numbers
@@ -37,13 +38,13 @@ def add_verb(
         help=summary,
         description=description or f"{summary[0].upper()}{summary[1:]}.",
         epilog=epilog,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=HelpFormatter,
     )
     if json:
         parser.add_argument(
             "--json",
             action="store_true",
-            help="print one JSON object instead of the table (docs/command_line.md)",
+            help="print one JSON object instead of tables (docs/command_line.md)",
         )
     return parser
 
@@ -104,7 +105,7 @@ def add_gravity(group: argparse._ActionsContainer) -> None:
         "--gravity",
         metavar="X,Y,Z",
         type=three_numbers,
-        help="where things fall [m/s^2], in the frame of the root link (usually 0,0,-9.81)",
+        help="gravitational acceleration [m/s^2] in the frame of the root link (usually 0,0,-9.81)",
     )
 
 
@@ -114,27 +115,27 @@ def add_effort_is(group: argparse._ActionsContainer) -> None:
         "--effort-is",
         metavar="MEANING",
         choices=tuple(EFFORT_CHOICES),
-        help="what recorded efforts mean. "
+        help="meaning of the recorded efforts. "
         + "; ".join(f"{name}: {text}" for name, text in EFFORT_CHOICES.items()),
     )
 
 
 def add_robot_changes(parser: argparse.ArgumentParser, what: str) -> argparse._ArgumentGroup:
-    """Options that stand instead of what the run configuration says. what: the joints are named in."""
-    group = parser.add_argument_group("instead of what the run configuration says")
+    """Options that override the run configuration. what: what names the joints."""
+    group = parser.add_argument_group("overrides of the run configuration")
     group.add_argument("--plugin", metavar="PACKAGE/CLASS", help="solver (`ids robots --plugins`)")
     group.add_argument(
         "--no-friction",
         dest="friction",
         action="store_false",
         default=None,
-        help="leave the solver's friction out: for a robot whose controller compensates it",
+        help="leave out the solver's friction: for a robot whose controller compensates it",
     )
     group.add_argument(
         "--urdf",
         metavar="FILE",
         type=Path,
-        help="robot description, also alone, without --robot; a .xacro file needs the tool xacro",
+        help="robot description, with or without --robot; a .xacro file needs the tool xacro",
     )
     group.add_argument("--root", metavar="LINK", help="first link of the chain")
     group.add_argument("--tip", metavar="LINK", help="last link of the chain")
@@ -149,7 +150,7 @@ def add_robot_changes(parser: argparse.ArgumentParser, what: str) -> argparse._A
         "--payload",
         metavar="BODY",
         type=payload,
-        help="a rigid body at the tip: MASS[,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz]], that is mass [kg], "
+        help="a rigid body at the tip: MASS[,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz]]: mass [kg], "
         "center of mass in the tip frame [m], moments of inertia "
         "about it [kg m^2]; or a YAML file with mass, center_of_mass, inertia and frame "
         "(docs/add_a_robot.md)",
@@ -167,7 +168,7 @@ def add_robot_changes(parser: argparse.ArgumentParser, what: str) -> argparse._A
 
 
 def robot_changes(arguments: argparse.Namespace) -> dict[str, Any]:
-    """What add_robot_changes() was told; None: nothing."""
+    """Values of the options of add_robot_changes(); None: not given."""
     changes = {name: getattr(arguments, name) for name in _CHANGES}
     parameters = dict(changes["parameters"] or {})
     for name, value in (arguments.payload or {}).items():

@@ -26,17 +26,17 @@ _EPILOG = """\
 examples:
   ids payload loaded --robot ur10_real --out payload.yaml
   ids evaluate loaded --robot ur10_real --payload payload.yaml
-      a few seconds of motion with the load, better ten; then the errors with the load
+      a few seconds of motion with the load, better ten; then the errors with the load in the model
 
   ids payload loaded --empty before --robot my_robot.yaml --out payload.yaml
-      a recording of the same motion without the load: offsets and noise are known, which is better
+      with a recording of the same motion without the load, which provides offsets and noise
 
-All joints should move, and each axis of the wrist be horizontal for some time: the load is felt
-through gravity. The arm's model must be good: a URDF without friction isn't. What is found is in
-addition to a tool that the run configuration, or --payload, has at the tip.
+All joints should move, and each axis of the wrist should be horizontal for some time: most of the
+information comes from gravity. The model of the arm must be accurate; a URDF without friction is not.
+The result is in addition to a tool that the run configuration, or --payload, has at the tip.
 
 results, all of them or none:
-  payload.yaml    mass, center_of_mass and, where the data tell it, inertia, in the tip frame: for
+  payload.yaml    mass, center_of_mass and, where the data determine it, inertia, in the tip frame: for
                   --payload, for `payload:` of a run configuration, for the controllers
   payload.json    the same with intervals, covariance, offsets, noise and errors of each joint
   payload.png     measured minus computed torques with and without the load
@@ -57,21 +57,21 @@ def add_parser(
         json=True,
     )
     parser.add_argument(
-        "bag", metavar="RECORDING", type=file_name, help="as `ids evaluate` takes it"
+        "bag", metavar="RECORDING", type=file_name, help="recording, as for `ids evaluate`"
     )
     add_robot(parser)
     parser.add_argument(
         "--empty",
         metavar="RECORDING",
         type=file_name,
-        help="of the same robot without the load, on the same day",
+        help="recording of the same robot without the load, on the same day",
     )
     parser.add_argument(
         "--out",
         metavar="FILE",
         type=Path,
         required=True,
-        help="the body, a YAML file; a .json and the figure are put beside it",
+        help="the load, a YAML file; a .json file and the figure are written next to it",
     )
     parser.add_argument(
         "--overwrite", action="store_true", help="replace older results of these names"
@@ -83,7 +83,7 @@ def add_parser(
         "--effort-is",
         metavar="MEANING",
         choices=tuple(EFFORT_CHOICES),
-        help=f"what recorded efforts mean: {', '.join(EFFORT_CHOICES)} (`ids evaluate --help`)",
+        help=f"meaning of the recorded efforts: {', '.join(EFFORT_CHOICES)} (`ids evaluate --help`)",
     )
     return parser
 

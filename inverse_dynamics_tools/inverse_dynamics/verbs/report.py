@@ -14,7 +14,7 @@ examples:
   ids report result                             report.html of one evaluation
   ids report ur10 panda --out robots.html       two on one page
 
-The page is complete in itself: it needs no network, can be mailed, and printed.
+The page is a single file: it needs no network, and can be mailed and printed.
 """
 
 
@@ -25,8 +25,8 @@ def add_parser(
     parser = add_verb(
         subparsers,
         "report",
-        summary="make one HTML page of evaluations: the robot in motion beside its torques",
-        description="Make one HTML page of evaluations: the robot in motion beside its torques.",
+        summary="make one HTML page of evaluations: the robot in motion and its torques",
+        description="Make one HTML page of evaluations: the robot in motion and its torques.",
         epilog=_EPILOG,
     )
     add_runs(parser)
@@ -39,7 +39,7 @@ def add_parser(
     )
     parser.add_argument("--title", metavar="TEXT", default="", help="headline of the page")
     parser.add_argument(
-        "--labels", metavar="A,B,...", type=names, default=(), help="what to call the runs"
+        "--labels", metavar="A,B,...", type=names, default=(), help="names of the runs"
     )
     parser.add_argument("--overwrite", action="store_true", help="replace an older page")
     return parser

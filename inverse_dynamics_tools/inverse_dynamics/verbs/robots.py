@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 _EPILOG = """\
 examples:
-  ids robots                     a line each
-  ids robots ur10_real           what one of them says
-  ids robots my_robot.yaml       the same of a file: also checks it
+  ids robots                     names and descriptions
+  ids robots ur10_real           its run configuration
+  ids robots my_robot.yaml       the run configuration in a file, which is checked
   ids robots --plugins           installed solvers
 
-A robot of your own is one more file: see docs/add_a_robot.md.
+To add a robot, write one more file: docs/add_a_robot.md.
 """
 
 
@@ -38,7 +38,7 @@ def add_parser(
         json=True,
     )
     shown = parser.add_mutually_exclusive_group()
-    shown.add_argument("robot", nargs="?", metavar="NAME|FILE", help="show this one")
+    shown.add_argument("robot", nargs="?", metavar="NAME|FILE", help="show this robot")
     shown.add_argument("--plugins", action="store_true", help="list installed solvers instead")
     return parser
 
@@ -75,7 +75,7 @@ def _list(*, json: bool) -> None:
 
 
 def _print_rows(rows: dict[str, str]) -> None:
-    """A key and a text a line; lines stay whole, so that paths can be copied. No text: no line."""
+    """One key and text per line; lines stay whole, so that paths can be copied. No text: no line."""
     from rich.text import Text
 
     from inverse_dynamics.verbs.screen import Screen
@@ -122,11 +122,11 @@ def _show(robot: str, *, json: bool) -> None:
 
 
 def _checked(robot: Robot) -> tuple[Arm, list[str]]:
-    """What can be told of it without a recording, and what is odd about it. Raises UserError."""
+    """The arm, checked as far as possible without a recording, and warnings. Raises UserError."""
     from inverse_dynamics.base.wording import did_you_mean
     from inverse_dynamics.evaluation.evaluation import Arm
     from inverse_dynamics.robot.descriptions import effort_limits, read_description
-    from inverse_dynamics.simulation.configuration import Wishes, states_simulation
+    from inverse_dynamics.simulation.configuration import StatedSimulation, states_simulation
 
     arm = Arm(robot)
     notes = list(arm.solver.warnings)
@@ -134,7 +134,7 @@ def _checked(robot: Robot) -> tuple[Arm, list[str]]:
         for name in sorted(set(robot.joints) - set(arm.joint_names)):
             hint = did_you_mean(name, set(arm.joint_names) - set(robot.joints))
             notes.append(
-                f"{name} is no joint of the chain: recordings must have it by this name"
+                f"{name} is not a joint of the chain: recordings must use this name"
                 + (hint and f"; {hint}")
             )
     if robot.urdf is not None:
@@ -143,5 +143,5 @@ def _checked(robot: Robot) -> tuple[Arm, list[str]]:
         if states_simulation(robot):
             from inverse_dynamics.simulation.urdf import chain_from_urdf
 
-            Wishes.of(robot, chain_from_urdf(description, robot.root, robot.tip))
+            StatedSimulation.of(robot, chain_from_urdf(description, robot.root, robot.tip))
     return arm, notes

@@ -28,28 +28,30 @@ _MOUNTS = ("floor", "wall", "ceiling")
 _EPILOG = """\
 examples:
   ids simulate --robot ur10_simulated --out recording
-      a UR10 follows its exciting trajectory; then: ids evaluate recording --robot ur10_simulated
+      a UR10 follows its exciting trajectory; `ids evaluate recording --robot ur10_simulated` evaluates it
 
-  ids simulate --robot panda_simulated --out recording --rate 500 --noise --joint-friction
-      what a real robot adds: friction in the joints, noise of the sensors
+  ids simulate --robot panda_simulated --out recording \\
+      --rate 500 --noise --joint-friction
+      with friction in the joints and noise of the sensors, as on a real robot
 
-  ids simulate --robot my_arm.yaml --out recording --from-model --effort-noise evaluation \
-      --effort-delay 0.008 --message-rate 125
+  ids simulate --robot my_arm.yaml --out recording --from-model \\
+      --effort-noise evaluation --effort-delay 0.008 --message-rate 125
       the arm that `ids identify` found, with what its model leaves unexplained as noise, and torques
-      that are 8 ms late: does `ids identify` find it again?
+      that are 8 ms late: a test whether `ids identify` finds it again
 
-  ids simulate --robot ur10_simulated --out recording --payload 5,0,0,0.1 --mount ceiling
-      5 kg, 0.1 m before the tip; base upside down
+  ids simulate --robot ur10_simulated --out recording \\
+      --payload 5,0,0,0.1 --mount ceiling
+      5 kg, 0.1 m in front of the tip; base mounted upside down
 
   ids simulate --robot my_robot.yaml --out recording --optimise --seed 1
-      search for another exciting trajectory first (about a minute); it is stored in the recording
+      search for a new exciting trajectory first (about a minute), and store it in the recording
 
-  ids simulate --robot ur10_simulated --out recording --trajectory other/trajectory.yaml
+  ids simulate --robot ur10_simulated --out recording --trajectory other.yaml
       a motion of your own: waypoints or a Fourier series
 
 results, written whole or not at all:
   metadata.yaml, .db3 or .mcap   recording of sensor_msgs/JointState, as rosbag2 writes it
-  simulation.yaml                how it was made
+  simulation.yaml                all settings of the simulation
   trajectory.yaml                the desired motion
   truth.npz                      per message, without the sensors' errors: time, q, qd, effort, and the simulator's qdd
                                  and friction
@@ -77,13 +79,16 @@ def add_parser(
         "--overwrite", action="store_true", help="replace an older simulated recording"
     )
     parser.add_argument(
-        "--storage", choices=("sqlite3", "mcap"), default="sqlite3", help="default: sqlite3"
+        "--storage",
+        choices=("sqlite3", "mcap"),
+        default="sqlite3",
+        help="storage of the recording (default: sqlite3)",
     )
     parser.add_argument(
         "--seed",
         type=whole_number,
         default=0,
-        help="of all random numbers: the same seed gives the same recording (default: 0)",
+        help="seed of all random numbers: the same seed gives the same recording (default: 0)",
     )
 
     motion = parser.add_argument_group("motion")
@@ -102,19 +107,19 @@ def add_parser(
         "--duration",
         metavar="S",
         type=positive_number,
-        help="how long (default: once through the trajectory; exciting ones repeat)",
+        help="length of the motion (default: once through the trajectory; exciting ones repeat)",
     )
     motion.add_argument(
         "--rate",
         metavar="HZ",
         type=whole_number,
-        help="of controller and recording: 125, 500 or 1000 (default: the run configuration's)",
+        help="rate of controller and recording: 125, 500 or 1000 (default: the run configuration's)",
     )
     motion.add_argument(
         "--no-table",
         dest="table",
         action="store_false",
-        help="the arm may reach below its base",
+        help="allow the arm to reach below its base",
     )
 
     robot = parser.add_argument_group("robot")
@@ -126,7 +131,7 @@ def add_parser(
         metavar="PART|urdf|model",
         nargs="?",
         const="0.02",
-        help="Coulomb friction, that part of each effort limit, and as much viscous friction at the "
+        help="Coulomb friction as a share of each effort limit, and as much viscous friction at the "
         "velocity limit (without a value: 0.02); urdf: what the description's <dynamics> says; model: that of "
         "the run configuration's solver",
     )
@@ -163,7 +168,7 @@ def add_parser(
         metavar="S",
         type=number,
         default=0.0,
-        help="how much older recorded efforts are than positions and velocities [s]",
+        help="delay of recorded efforts behind positions and velocities [s]",
     )
     recording.add_argument(
         "--message-rate",
@@ -180,7 +185,7 @@ def add_parser(
         help="steps of the values [rad, rad/s, N m] (without a value: 1e-5,1e-3,0.01)",
     )
     recording.add_argument(
-        "--drop", metavar="P", type=number, default=0.0, help="part of the messages that is lost"
+        "--drop", metavar="P", type=number, default=0.0, help="share of messages that are lost"
     )
     recording.add_argument(
         "--repeat",
@@ -194,13 +199,13 @@ def add_parser(
         metavar="S",
         type=number,
         default=0.0,
-        help="standard deviation of the stamps [s]",
+        help="standard deviation of the time stamps [s]",
     )
     recording.add_argument(
         "--start-stamp",
         metavar="S",
         type=number,
-        help="stamp of the start [s] (default: 1700000000; never the time of day)",
+        help="time stamp of the start [s] (default: 1700000000)",
     )
     return parser
 
@@ -274,7 +279,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _summary(result: SimulatedRun) -> dict[str, Any]:
-    """What simulation.yaml says, and what is odd about it."""
+    """The content of simulation.yaml, and notes."""
     return {
         **result.settings,
         "topic": result.log.topic,

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 
 def error_table(evaluation: Evaluation) -> Table:
-    """Errors of the computed torques, a joint a row.
+    """Errors of the computed torques, one row per joint.
 
-    Where samples don't count, errors without them stand beside those over all samples.
+    Where samples are invalid, a column has the errors over the valid ones.
     """
     left_out = evaluation.samples.left_out
     count = len(evaluation.log)
@@ -39,7 +39,7 @@ def error_table(evaluation: Evaluation) -> Table:
         table.add_column(heading, justify="right")
     if left_out:
         table.add_column("RMSE*", justify="right")
-        table.caption = f"* over the {count - left_out} of {count} samples that count"
+        table.caption = f"* over the {count - left_out} valid samples of {count}"
     for error, kept in zip(evaluation.errors, evaluation.errors_of_kept, strict=True):
         table.add_row(
             error.joint,
@@ -120,8 +120,8 @@ def contact_table(contacts: Contacts) -> Table:
         table.add_column("force [N]\nmean, peak", justify="right")
         table.add_column("direction", justify="right", no_wrap=True)
         table.caption = (
-            "force: as if only the tip was touched; direction of its mean in the axes of the root; * some "
-            "directions can't be observed there"
+            "force: on the assumption that only the tip is touched; direction of its mean in the axes of the root; "
+            "* some directions can't be observed there"
         )
     for contact in contacts.contacts:
         row = [
@@ -184,7 +184,7 @@ def residual_table(payload: Payload) -> Table:
 
 
 def mean_table(evaluations: Mapping[str, Evaluation]) -> Table:
-    """Mean over the joints of the root mean square errors, a robot a row."""
+    """Mean over the joints of the root mean square errors, one row per robot."""
     table = Table(box=box.SIMPLE_HEAD)
     table.add_column("robot")
     table.add_column("solver")
@@ -225,7 +225,7 @@ def recordings_table(summaries: Sequence[EvaluationSummary]) -> Table:
 
 
 def comparison_table(comparison: Comparison) -> Table:
-    """Root mean square errors, a run a column."""
+    """Root mean square errors, one column per run."""
     table = Table(box=box.SIMPLE_HEAD, title="RMSE", title_justify="left")
     table.add_column("joint")
     table.add_column("unit")

@@ -21,18 +21,18 @@ _EPILOG = """\
 examples:
   ids torques planned --robot ur10_simulated --out filled
       a recording of trajectory_msgs/JointTrajectory; `filled` is a copy with the effort of each
-      point, which a joint_trajectory_controller takes as feed-forward; other topics are copied
+      point, which a joint_trajectory_controller uses as feed-forward; other topics are copied
 
   ids torques planned.csv --robot my_robot.yaml --out filled.csv
       a table: columns time [s] and, for each joint, position.JOINT, velocity.JOINT,
-      acceleration.JOINT; effort.JOINT is put in, further columns are copied
+      acceleration.JOINT; effort.JOINT is filled in, further columns are copied
 
   ids torques planned --robot panda_real --no-friction --out filled
       for a robot whose controller compensates friction itself
 
-positions, velocities and accelerations of each point are needed. A directory gets torques.json too:
-how it was computed, and each joint's peak. The table on the screen says which
-joint would pass the effort limit of the robot description, and when first.
+Each point needs positions, velocities and accelerations. An output directory also holds torques.json:
+how efforts were computed, and the peak of each joint. The printed table shows which
+joints would exceed the effort limits of the robot description, and when first.
 """
 
 

@@ -14,7 +14,7 @@ examples:
   ids video result                               result.gif
   ids video result --out slides/ur10.gif --seconds 6
 
-The robot is drawn by MuJoCo without a screen. MUJOCO_GL says by what: osmesa (in software, the
+The robot is drawn by MuJoCo without a screen. MUJOCO_GL selects the renderer: osmesa (software, the
 default; Debian package libosmesa6), egl (graphics card), glfw (needs a screen).
 """
 
@@ -26,19 +26,21 @@ def add_parser(
     parser = add_verb(
         subparsers,
         "video",
-        summary="make an animated GIF: the robot in motion beside its torques",
-        description="Make an animated GIF of an evaluation: the robot in motion beside its torques.",
+        summary="make an animated GIF: the robot in motion and its torques",
+        description="Make an animated GIF of an evaluation: the robot in motion and its torques.",
         epilog=_EPILOG,
     )
     parser.add_argument("evaluation", metavar="RUN", type=Path, help="result of `ids evaluate`")
     parser.add_argument("--out", metavar="FILE", type=Path, help="the video (default: RUN.gif)")
-    parser.add_argument("--title", metavar="TEXT", default="", help="instead of the robot's name")
+    parser.add_argument(
+        "--title", metavar="TEXT", default="", help="title of the video (default: the robot's name)"
+    )
     parser.add_argument(
         "--seconds",
         metavar="S",
         type=positive_number,
         default=10.0,
-        help="length; a longer motion is shown faster (default: 10)",
+        help="length of the video; a longer motion is shown faster (default: 10)",
     )
     parser.add_argument("--overwrite", action="store_true", help="replace an older file")
     return parser

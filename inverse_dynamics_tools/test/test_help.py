@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""--help on a terminal of 80 columns."""
+
+from __future__ import annotations
+
+import pytest
+
+from inverse_dynamics import cli
+from inverse_dynamics.base.help_text import wrapped
+
+
+@pytest.mark.parametrize("verb", [(), *((verb,) for verb in cli.VERBS)])
+def test_no_line_is_longer_than_the_terminal(ids, monkeypatch, verb):
+    monkeypatch.setenv("COLUMNS", "80")
+    code, out, _ = ids(*verb, "--help")
+    assert code == 0
+    assert [line for line in out.splitlines() if len(line) > 80] == []
+
+
+def test_rows_paragraphs_and_commands_are_told_apart():
+    text = (
+        "results:\n"
+        "  name.json    first second\n"
+        "               third\n"
+        "  other        x\n"
+        "\n"
+        "  ids verb --option value \\\n"
+        "      --more a_long_value_that_stays_where_it_is\n"
+        "      what it is for\n"
+        "a paragraph\n"
+        "of two lines\n"
+    )
+    assert wrapped(text, 28) == [
+        "results:",
+        "  name.json    first second",
+        "               third",
+        "  other        x",
+        "",
+        "  ids verb --option value \\",
+        "      --more a_long_value_that_stays_where_it_is",
+        "      what it is for",
+        "a paragraph of two lines",
+    ]
+    assert wrapped(text, 80)[1] == "  name.json    first second third"
