@@ -30,6 +30,9 @@ macro(inverse_dynamics_solver_add_plugin)
   add_library(${PROJECT_NAME}_plugin SHARED src/plugin.cpp)
   target_link_libraries(${PROJECT_NAME}_plugin PRIVATE ${PROJECT_NAME} pluginlib::pluginlib)
   inverse_dynamics_solver_keep_open(${PROJECT_NAME}_plugin)
+  # It finds the solver library beside it, wherever the two are installed.
+  set_target_properties(${PROJECT_NAME}_plugin PROPERTIES
+    INSTALL_RPATH "$<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>")
   pluginlib_export_plugin_description_file(inverse_dynamics_solver ${PROJECT_NAME}.xml)
 
   install(DIRECTORY include/ DESTINATION include/${PROJECT_NAME})
