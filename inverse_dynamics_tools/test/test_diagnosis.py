@@ -112,6 +112,14 @@ def in_degrees(samples: Samples) -> Samples:
     return replace(samples, **{k: np.degrees(getattr(samples, k)) for k in ("q", "qd", "qdd")})
 
 
+def positions_in_degrees(samples: Samples) -> Samples:
+    return replace(samples, q=np.degrees(samples.q))
+
+
+def velocities_in_degrees(samples: Samples) -> Samples:
+    return replace(samples, qd=np.degrees(samples.qd), qdd=np.degrees(samples.qdd))
+
+
 def slow_clock(samples: Samples) -> Samples:
     return replace(samples, time=samples.time / 2, qdd=2 * samples.qdd)
 
@@ -148,6 +156,8 @@ MISTAKES = [
     (partial(swapped_efforts, 0, 2), "effort_order", (0, 2)),
     (partial(swapped_efforts, 3, 4), "effort_order", (3, 4)),
     (in_degrees, "degrees", ()),
+    (positions_in_degrees, "degrees", ()),
+    (velocities_in_degrees, "degrees", ()),
     (slow_clock, "clock", ()),
     (partial(clipped, 1), "saturation", (1,)),
     (partial(coupled, 4, 3), "coupling", (4, 3)),

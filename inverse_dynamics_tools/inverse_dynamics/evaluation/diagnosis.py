@@ -33,6 +33,7 @@ _ROUNDING = 1e-9  # the same, of what is explained exactly
 _GAIN = 2.0  # least ratio of errors that makes a hypothesis believable
 _FITS = 0.12  # greatest error that it may leave
 _WORSE = 1.5  # how much worse a single joint may fit because of it
+_SAME_RATIO = 0.05  # of velocities, relative: no clock is wrong by 57.3
 _PIECES, _PIECE = 60, 50  # of a recording: short contiguous pieces of all of it
 
 Compute = Callable[["Floats", "Floats", "Floats"], "Floats"]
@@ -467,6 +468,18 @@ def _clock(samples: Samples) -> Diagnosis | None:
     agree = bool((np.abs(factor - middle) < 0.05 * abs(middle)).all() and (left < 0.1).all())
     if not agree or middle <= 0 or abs(np.log(middle)) < np.log(1.1):
         return None
+    for ratio, degrees, radians in (
+        (np.degrees(1), "positions", "velocities"),
+        (np.radians(1), "velocities", "positions"),
+    ):
+        if abs(np.log(middle / ratio)) < _SAME_RATIO:
+            return Diagnosis(
+                "degrees",
+                "Degrees",
+                f"positions change {middle:.3g} times as fast as velocities say, in every joint: {degrees} are in "
+                f"degrees, {radians} in rad",
+                f"convert {degrees} to rad" + ("/s" if degrees == "velocities" else ""),
+            )
     return Diagnosis(
         "clock",
         "A clock at the wrong speed",
