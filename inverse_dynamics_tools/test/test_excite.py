@@ -7,17 +7,20 @@ import re
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
+from identified_arms import identification
 from simulation_arms import pendulum, robots_package, two_links
 
 from inverse_dynamics.cli import main
 from inverse_dynamics.results import excitations
 from inverse_dynamics.results.excitations import LEAD_IN, default_options, excite, message_text
+from inverse_dynamics.results.identifications import write_identification
 from inverse_dynamics.robot.robots import load_robot, robot_of_description
 from inverse_dynamics.simulation import simulate, write_run
 from inverse_dynamics.simulation.excitation import ExcitationOptions
@@ -216,3 +219,20 @@ def test_ctrl_c_leaves_nothing(arm: Path, tmp_path: Path) -> None:
     assert done.returncode == 128 + signal.SIGINT
     assert "interrupted" in done.stderr
     assert list(out.parent.iterdir()) == []
+
+
+@pytest.mark.usefixtures("quick")
+def test_the_band_of_a_model_is_the_noise(tmp_path: Path) -> None:
+    found = identification()
+    band = np.linspace(0.5, 3.0, 6)
+    files = write_identification(
+        replace(found, model=replace(found.model, torque_deviation=band)), tmp_path / "arm.yaml"
+    )
+    result = excite(files.robot, options=default_options(duration=8.0))
+    np.testing.assert_allclose(result.noise, band / 1.96)
+    assert result.noise_source == "95 % band of the robot's model"
+    plain = excite("ur10_simulated", options=default_options(duration=8.0))
+    assert plain.noise_source == "1 % of each effort limit"
+    assert not np.allclose(
+        plain.excitation.trajectory.positions, result.excitation.trajectory.positions
+    )

@@ -20,7 +20,7 @@ from inverse_dynamics.base.files import check_output_file, files_written_whole, 
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import counted
 from inverse_dynamics.errors import EvaluationError
-from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.evaluation.evaluation import Arm, evaluate
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import Robot, load_robot
 from inverse_dynamics.simulation.configuration import StatedSimulation
@@ -48,6 +48,7 @@ if TYPE_CHECKING:
 
 LEAD_IN = 3.0  # s from the start of the trajectory to send to its first point
 _TEST_STATES = 1000
+_BAND = 1.96  # half the width of the 95 % band of a normal distribution, in standard deviations
 _REWEIGHTED = 4  # times that the noise is taken from the residuals
 _GIVEN_STEP = 0.02  # s between samples of recordings that are used
 _HARDLY = 0.05  # part of the range of positions: less motion is hardly any
@@ -111,8 +112,9 @@ def excite(
     limits = options.limits(simulated)
     check_limits(simulated, limits)
     kind = Unknowns.of_payload if options.payload else Unknowns.of_arm
-    unknowns = kind(simulated, limits)
-    noise_source = "1 % of each effort limit"
+    noise = _band_noise(robot, simulated)
+    unknowns = kind(simulated, limits, noise)
+    noise_source = "1 % of each effort limit" if noise is None else "95 % band of the robot's model"
     known: Floats | None = None
     notes: list[str] = []
     if given:
@@ -265,6 +267,15 @@ def _samples(recording: Evaluation) -> tuple[list[Floats], float]:
 def _gram(unknowns: Unknowns, recording: Evaluation) -> Floats:
     (q, qd, qdd, _), period = _samples(recording)
     return unknowns.gram(q, qd, qdd, period)
+
+
+def _band_noise(robot: Robot, simulated: SimulatedRobot) -> Floats | None:
+    """(n,) N m, standard deviation of the errors of the robot's model, where it states them."""
+    solver = Arm(robot).solver
+    deviation = solver.torque_deviation
+    if deviation is None or tuple(solver.joint_names) != simulated.chain.joint_names:
+        return None
+    return np.asarray(deviation / _BAND)
 
 
 def _with_noise_of(unknowns: Unknowns, recordings: Sequence[Evaluation]) -> Unknowns:
