@@ -46,6 +46,14 @@ double readInRange(const YamlValue& value, FigureRange range) {
   return number;
 }
 
+/// Whether the figure has a meaning: not where the one it is required with is zero.
+template <class Law>
+bool isUsed(YamlMap& map, const Figure<Law>& figure) {
+  if (figure.required_with == nullptr) return true;
+  const auto other = map.optional(figure.required_with);
+  return other && other->number() != 0;
+}
+
 /// A law with its figures by name.
 template <class Law>
 Law readLaw(YamlMap& map) {
@@ -53,7 +61,8 @@ Law readLaw(YamlMap& map) {
   for (const Figure<Law>& figure : Law::figures()) {
     const auto value = figure.required ? map.required(figure.name) : map.optional(figure.name);
     if (value) {
-      law.*figure.value = readInRange(*value, figure.range);
+      law.*figure.value =
+          readInRange(*value, isUsed(map, figure) ? figure.range : FigureRange::kAny);
     } else if (figure.required_with != nullptr && map.optional(figure.required_with)) {
       throw ModelError(map.value().where(), map.value().what() + ": " + figure.name,
                        std::string("this key beside ") + figure.required_with, "none", "add it");

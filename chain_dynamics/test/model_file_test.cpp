@@ -278,6 +278,19 @@ TEST(ModelFile, SmoothCoulombIsRead) {
   EXPECT_FALSE(frictionDependsOnLoad(least));
 }
 
+// Without fs, vs has no meaning.
+TEST(ModelFile, AStribeckVelocityWithoutStribeckFrictionMayBeZero) {
+  const std::string figures = "fv: 1, fc: 2, width: 0.1, ";
+  const Model plain = model(smoothFile("fv: 1, fc: 2, width: 0.1"));
+  const Eigen::VectorXd qd = Eigen::VectorXd::Constant(plain.chain.jointCount(), 0.05);
+  Eigen::VectorXd expected(qd.size()), f(qd.size());
+  frictionVector(plain, qd, qd, expected);
+  for (const std::string none : {"fs: 0, vs: 0", "vs: 0"}) {
+    frictionVector(model(smoothFile(figures + none)), qd, qd, f);
+    EXPECT_EQ(f, expected) << none;
+  }
+}
+
 // K (fv qd + (fc + fl |g| / K) tanh(...)): the load coefficient is a number in either unit.
 TEST(ModelFile, FrictionInCurrentsHasLoadInCurrents) {
   std::string text =
