@@ -13,30 +13,18 @@ namespace {
 
 using chain_dynamics::Chain;
 using chain_dynamics::ConstStates;
-using chain_dynamics::FastModel;
-using chain_dynamics::GramSamples;
 using chain_dynamics::Model;
 using chain_dynamics::ModelError;
 using chain_dynamics::RegressorGram;
-using chain_dynamics::States;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kBatch = 512;      // samples whose columns are held
 constexpr double kSettled = 0.02;  // Gauss-Newton step, relative to the width, that ends it
-constexpr double kFixed = 1e-9;    // deviation of a column that is switched off
+const double kGainDeviation = std::log(kDriveGainFactor);
+constexpr double kSettledGain = 1e-3;  // the same, of the logarithm of a drive gain
+constexpr double kFixed = 1e-9;        // deviation of a column that is switched off
 constexpr int kNoiseIterations = 4;
-
-/// Links without motor or friction: the regressor's, and its gravity.
-Chain rigidChain(const Chain& chain, std::vector<chain_dynamics::LinkParameters> links,
-                 const OwnedVector* rotors) {
-  std::vector<chain_dynamics::Joint> joints = chain.joints();
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    joints[j].rotor_inertia = rotors == nullptr ? 0 : (*rotors)[static_cast<Index>(j)];
-  }
-  return Chain(chain.name(), std::move(joints), std::move(links), chain.gravity(), chain.tip());
-}
 
 double logRatio(double to, double from) { return std::log(to / from); }
 
@@ -85,8 +73,8 @@ class StepPrior {
     return shift * shift + width * width + vs * vs;
   }
 
-  /// The law after a step of (shift, log width, log vs), within bounds.
-  StepFriction moved(StepFriction law, const Eigen::Vector3d& by) const {
+  /// The law after a step of (shift, log width, log vs, and what isn't its own), within bounds.
+  StepFriction moved(StepFriction law, const Eigen::Vector4d& by) const {
     const double most = prior_.most_shift * greatest_;
     law.shift = std::clamp(law.shift + std::clamp(by[0], -law.width, law.width), -most, most);
     law.width = std::clamp(law.width * std::exp(std::clamp(by[1], -1.0, 1.0)),
@@ -95,13 +83,15 @@ class StepPrior {
     return law;
   }
 
- private:
-  static std::size_t at(Index column) { return static_cast<std::size_t>(column); }
+  /// Of a step whose coefficient is drawn to the center, or held.
   static OwnColumn step(double center, double deviation, bool free) {
     const double infinity = std::numeric_limits<double>::infinity();
     return free ? OwnColumn{false, infinity, center, deviation}
                 : OwnColumn{false, infinity, 0, kFixed * deviation};
   }
+
+ private:
+  static std::size_t at(Index column) { return static_cast<std::size_t>(column); }
 
   FrictionPrior prior_;
   double greatest_;
@@ -119,7 +109,7 @@ VectorXd greatestVelocities(Index joints, const std::vector<ArmSamples>& blocks)
   return greatest;
 }
 
-void check(Index joints, const std::vector<ArmSamples>& blocks) {
+void checkSamples(Index joints, const std::vector<ArmSamples>& blocks) {
   Index samples = 0;
   for (const ArmSamples& block : blocks) {
     for (const ConstStates& states : {block.q, block.qd, block.qdd, block.tau}) {
@@ -136,14 +126,19 @@ void check(Index joints, const std::vector<ArmSamples>& blocks) {
   if (samples == 0) throw ModelError("ArmFitter: expected samples, got none");
 }
 
-void check(Index joints, const ArmFit& fit) {
-  const bool fits = fit.parameters.rows() == 10 && fit.parameters.cols() == joints &&
-                    fit.rotor_inertia.size() == joints &&
-                    static_cast<Index>(fit.friction.size()) == joints;
-  if (!fits) {
-    throw ModelError("ArmFitter: fit", "parameters, rotor_inertia, friction",
-                     "those of " + std::to_string(joints) + " joints",
-                     "of " + std::to_string(fit.parameters.cols()), "fit the same arm");
+bool areGains(Index joints, const OwnedVector& gains) {
+  return gains.size() == 0 || (gains.size() == joints && gains.allFinite() && gains.minCoeff() > 0);
+}
+
+void checkOptions(Index joints, const ArmFitOptions& options) {
+  if (options.most_passes < 1) {
+    throw ModelError("ArmFitter: options", "most_passes", "1 or more",
+                     std::to_string(options.most_passes), "");
+  }
+  if (!areGains(joints, options.drive_gains)) {
+    throw ModelError("ArmFitter: options", "drive_gains",
+                     std::to_string(joints) + " finite numbers > 0 [N m/A]", "others",
+                     "leave them out where torques were measured");
   }
 }
 
@@ -156,6 +151,7 @@ class Rounds {
     const Index n = fitter.description().jointCount();
     const VectorXd greatest = greatestVelocities(n, blocks);
     for (Index j = 0; j < n; ++j) steps_.emplace_back(options.friction, greatest[j]);
+    gains_ = options.drive_gains.size() > 0;
   }
 
   /// Of all unknowns at a fit; free: with steps of shift, width and vs.
@@ -165,45 +161,49 @@ class Rounds {
     for (std::size_t j = 0; j < steps_.size(); ++j) {
       const auto columns = steps_[j].columns(fit.friction[j], options_.terms, free);
       prior.own.insert(prior.own.end(), columns.begin(), columns.end());
+      if (gains_) prior.own.push_back(StepPrior::step(-gainRatio(fit, j), kGainDeviation, free));
     }
     return prior;
   }
 
+  /// The best fit of all passes.
   ArmFit run(const ArmFit* start) {
-    ArmFit best = start != nullptr ? *start : beginning();
-    if (options_.terms != FrictionTerms::kStribeck) withoutStribeck(best);
-    std::vector<Eigen::Vector3d> by;
-    ArmFit tried = best;
-    double least = std::numeric_limits<double>::infinity();
-    for (int pass = 1; pass <= options_.most_passes; ++pass) {
-      RegressorGram gram(joints(), ownColumns(options_.terms));
+    ArmFit tried = start != nullptr ? *start : beginning();
+    if (!gains_ || tried.drive_gains.size() != joints()) tried.drive_gains = options_.drive_gains;
+    if (options_.terms != FrictionTerms::kStribeck) withoutStribeck(tried);
+    ArmFit best, current;
+    best.cost = current.cost = std::numeric_limits<double>::infinity();
+    std::vector<Eigen::Vector4d> by;
+    int pass = 1;
+    for (; pass <= options_.most_passes; ++pass) {
+      RegressorGram gram(joints(), ownColumns(options_.terms) + (gains_ ? 1 : 0));
       for (const ArmSamples& block : blocks_) fitter_.addToGram(tried, block, gram);
       const Fit held = consistentFit(gram, prior(tried, false), fitOptions(), linear(tried));
       ArmFit next = with(tried, held);
       next.cost = cost(held, next, gram.samples());
-      next.passes = pass;
-      const bool better = next.cost < least;
-      if (!better && pass > 2 && shrink(by)) {
-        tried = moved(best, by);
-        best.passes = pass;
+      const bool known = pass > 1 || start != nullptr;  // the columns' heights and loads
+      const double gain = current.cost - next.cost;
+      // the way to a better fit may begin with a worse one
+      if (!(gain > 0) && pass > 2) {
+        if (!shrink(by)) break;
+        tried = moved(current, by);
         continue;
       }
-      if (!better && pass > 2) break;
-      const double gain = least - next.cost;
-      least = next.cost;
-      best = next;
+      current = next;
       last_ = held;
-      const bool known = pass > 1 || start != nullptr;  // the columns' heights
-      by = known ? stepOf(gram, next, held) : std::vector<Eigen::Vector3d>(steps_.size(), zero());
+      if (next.cost < best.cost) best = next;
+      by = known ? stepOf(gram, next, held) : std::vector<Eigen::Vector4d>(steps_.size(), zero());
       if (known && (settled(by, next) || (pass > 2 && gain < kGain))) break;
+      if (!known && options_.most_passes > 1) best.cost = std::numeric_limits<double>::infinity();
       tried = moved(next, by);
     }
+    best.passes = std::min(pass, options_.most_passes);
     return best;
   }
 
  private:
   static constexpr double kGain = 1e-1;  // of the cost, that is worth another pass
-  static Eigen::Vector3d zero() { return Eigen::Vector3d::Zero(); }
+  static Eigen::Vector4d zero() { return Eigen::Vector4d::Zero(); }
   Index joints() const { return static_cast<Index>(steps_.size()); }
 
   ArmFit beginning() const {
@@ -241,55 +241,70 @@ class Rounds {
       law.fv = fit.own(own_column::kVelocity, j);
       law.fo = fit.own(own_column::kOne, j);
       law.fc = fit.own(own_column::kStep, j);
-      law.fl = fit.own.rows() > own_column::kLoad ? fit.own(own_column::kLoad, j) : 0.0;
-      law.fs = fit.own.rows() > own_column::kStribeck ? fit.own(own_column::kStribeck, j) : 0.0;
+      const Index columns = ownColumns(options_.terms);
+      law.fl = columns > own_column::kLoad ? fit.own(own_column::kLoad, j) : 0.0;
+      law.fs = columns > own_column::kStribeck ? fit.own(own_column::kStribeck, j) : 0.0;
     }
     return next;
   }
 
-  /// Twice the negative logarithm of the likelihood, with the penalties.
+  /// Logarithm of a drive gain by the one to start from.
+  double gainRatio(const ArmFit& fit, std::size_t j) const {
+    const auto i = static_cast<Index>(j);
+    return logRatio(fit.drive_gains[i], options_.drive_gains[i]);
+  }
+
+  /// Twice the negative logarithm of the likelihood of what was measured, with the penalties.
   double cost(const Fit& fit, const ArmFit& arm, Index samples) const {
     const auto N = static_cast<double>(samples);
     double sum = fit.cost - N * (fit.noise.array() / fit.weighed_by.array()).square().sum() +
                  2 * N * fit.noise.array().log().sum();
     for (std::size_t j = 0; j < steps_.size(); ++j) {
       sum += steps_[j].penalty(arm.friction[j], options_.terms);
+      if (!gains_) continue;
+      const double ratio = gainRatio(arm, j) / kGainDeviation;
+      sum += ratio * ratio - 2 * N * std::log(arm.drive_gains[static_cast<Index>(j)]);
     }
     return sum;
   }
 
-  std::vector<Eigen::Vector3d> stepOf(const RegressorGram& gram, const ArmFit& arm,
+  std::vector<Eigen::Vector4d> stepOf(const RegressorGram& gram, const ArmFit& arm,
                                       const Fit& held) const {
     FitOptions options = fitOptions();
     options.noise = held.noise;
     options.noise_iterations = 1;
     const Fit fit = consistentFit(gram, prior(arm, true), options, &held);
-    std::vector<Eigen::Vector3d> by;
+    std::vector<Eigen::Vector4d> by;
     for (Index j = 0; j < joints(); ++j) {
       const bool stribeck = options_.terms == FrictionTerms::kStribeck;
       by.emplace_back(fit.own(own_column::kShift, j), fit.own(own_column::kWidth, j),
-                      stribeck ? fit.own(own_column::kStribeckVelocity, j) : 0.0);
+                      stribeck ? fit.own(own_column::kStribeckVelocity, j) : 0.0,
+                      gains_ ? fit.own(fit.own.rows() - 1, j) : 0.0);
     }
     return by;
   }
 
-  ArmFit moved(const ArmFit& fit, const std::vector<Eigen::Vector3d>& by) const {
+  ArmFit moved(const ArmFit& fit, const std::vector<Eigen::Vector4d>& by) const {
     ArmFit result = fit;
     for (std::size_t j = 0; j < steps_.size(); ++j) {
       result.friction[j] = steps_[j].moved(fit.friction[j], by[j]);
+      if (gains_) {
+        result.drive_gains[static_cast<Index>(j)] *= std::exp(std::clamp(by[j][3], -1.0, 1.0));
+      }
     }
     return result;
   }
 
   /// Whether a smaller step is worth another try.
-  bool shrink(std::vector<Eigen::Vector3d>& by) {
-    for (Eigen::Vector3d& step : by) step *= 0.3;
+  bool shrink(std::vector<Eigen::Vector4d>& by) {
+    for (Eigen::Vector4d& step : by) step *= 0.3;
     return ++shrunk_ <= 2;
   }
 
-  static bool settled(const std::vector<Eigen::Vector3d>& by, const ArmFit& fit) {
+  static bool settled(const std::vector<Eigen::Vector4d>& by, const ArmFit& fit) {
     for (std::size_t j = 0; j < by.size(); ++j) {
-      const Eigen::Vector3d step(by[j][0] / fit.friction[j].width, by[j][1], by[j][2]);
+      const Eigen::Vector4d step(by[j][0] / fit.friction[j].width, by[j][1], by[j][2],
+                                 by[j][3] * kSettled / kSettledGain);
       if (step.cwiseAbs().maxCoeff() > kSettled) return false;
     }
     return true;
@@ -299,6 +314,7 @@ class Rounds {
   const std::vector<ArmSamples>& blocks_;
   const ArmFitOptions& options_;
   std::vector<StepPrior> steps_;
+  bool gains_ = false;  // whether they are fitted
   Fit last_;
   int shrunk_ = 0;
 };
@@ -308,17 +324,25 @@ Fit linearPart(const ArmFit& arm, FrictionTerms terms) {
   Fit fit;
   fit.parameters = arm.parameters;
   fit.weighed_by = arm.noise;
-  fit.own = MatrixXd::Zero(ownColumns(terms), arm.parameters.cols());
+  const Index columns = ownColumns(terms);
+  fit.own = MatrixXd::Zero(columns + (arm.drive_gains.size() > 0 ? 1 : 0), arm.parameters.cols());
   fit.own.row(own_column::kAcceleration) = arm.rotor_inertia.transpose();
   for (Index j = 0; j < fit.own.cols(); ++j) {
     const StepFriction& law = arm.friction[static_cast<std::size_t>(j)];
     fit.own(own_column::kVelocity, j) = law.fv;
     fit.own(own_column::kOne, j) = law.fo;
     fit.own(own_column::kStep, j) = law.fc;
-    if (fit.own.rows() > own_column::kLoad) fit.own(own_column::kLoad, j) = law.fl;
-    if (fit.own.rows() > own_column::kStribeck) fit.own(own_column::kStribeck, j) = law.fs;
+    if (columns > own_column::kLoad) fit.own(own_column::kLoad, j) = law.fl;
+    if (columns > own_column::kStribeck) fit.own(own_column::kStribeck, j) = law.fs;
   }
   return fit;
+}
+
+/// Links without motor or friction: the regressor's, and its gravity.
+Chain withoutMotors(const Chain& chain, std::vector<LinkParameters> links) {
+  std::vector<chain_dynamics::Joint> joints = chain.joints();
+  for (chain_dynamics::Joint& joint : joints) joint.rotor_inertia = 0;
+  return Chain(chain.name(), std::move(joints), std::move(links), chain.gravity(), chain.tip());
 }
 
 std::vector<LinkPrior> priorsOf(const Chain& description, const LinkFloor& floor) {
@@ -339,32 +363,34 @@ std::vector<LinkParameters> linksOf(const std::vector<LinkPrior>& priors) {
 ArmFitter::ArmFitter(const Chain& description, const LinkFloor& floor)
     : chain_(description),
       prior_(priorsOf(description, floor)),
-      fast_(Model(rigidChain(description, linksOf(prior_), nullptr))) {}
+      fast_(Model(withoutMotors(description, linksOf(prior_)))) {}
 
-Chain ArmFitter::withLinks(const OwnedMatrix& parameters, const OwnedVector* rotors) const {
-  std::vector<LinkParameters> links;
-  for (Index j = 0; j < parameters.cols(); ++j) {
-    const Eigen::Matrix<double, 10, 1> p = parameters.col(j);
-    links.push_back(LinkParameters::fromVector(p));
+void ArmFitter::check(const ArmFit& fit) const {
+  const Index joints = chain_.jointCount();
+  const bool fits = fit.parameters.rows() == 10 && fit.parameters.cols() == joints &&
+                    fit.rotor_inertia.size() == joints && areGains(joints, fit.drive_gains) &&
+                    static_cast<Index>(fit.friction.size()) == joints;
+  if (!fits) {
+    throw ModelError("ArmFitter: fit", "parameters, rotor_inertia, friction",
+                     "those of " + std::to_string(joints) + " joints",
+                     "of " + std::to_string(fit.parameters.cols()), "fit the same arm");
   }
-  return rigidChain(chain_, std::move(links), rotors);
 }
 
 ArmFit ArmFitter::fit(const std::vector<ArmSamples>& blocks, const ArmFitOptions& options,
                       const ArmFit* start) const {
-  check(chain_.jointCount(), blocks);
-  if (start != nullptr) check(chain_.jointCount(), *start);
-  if (options.most_passes < 1) {
-    throw ModelError("ArmFitter: options", "most_passes", "1 or more",
-                     std::to_string(options.most_passes), "");
-  }
+  checkSamples(chain_.jointCount(), blocks);
+  if (start != nullptr) check(*start);
+  checkOptions(chain_.jointCount(), options);
   return Rounds(*this, blocks, options).run(start);
 }
 
 ArmInformation ArmFitter::information(const ArmFit& fit, const std::vector<ArmSamples>& blocks,
                                       const ArmFitOptions& options) const {
-  check(chain_.jointCount(), blocks);
-  check(chain_.jointCount(), fit);
+  checkSamples(chain_.jointCount(), blocks);
+  check(fit);
+  ArmFitOptions of = options;
+  of.drive_gains = fit.drive_gains;  // a step begins at the fit
   if (fit.noise.size() != chain_.jointCount()) {
     throw ModelError("ArmFitter: fit", "noise", std::to_string(chain_.jointCount()) + " numbers",
                      std::to_string(fit.noise.size()), "take a fit to samples");
@@ -389,52 +415,10 @@ ArmInformation ArmFitter::information(const ArmFit& fit, const std::vector<ArmSa
   FitOptions how;
   how.prior_strength = options.prior_strength;
   Information found = ::inverse_dynamics_identification::information(
-      all, Rounds(*this, blocks, options).prior(fit, true), how, linear);
+      all, Rounds(*this, blocks, of).prior(fit, true), how, linear);
   result.data = std::move(found.data);
   result.prior = std::move(found.prior);
   return result;
-}
-
-void ArmFitter::addToGram(const ArmFit& fit, const ArmSamples& samples, RegressorGram& gram) const {
-  const Index n = chain_.jointCount(), columns = gram.ownColumns();
-  const FastModel loads(Model(withLinks(fit.parameters, nullptr)), fast_);
-  std::vector<MatrixXd> own(static_cast<std::size_t>(columns), MatrixXd(n, kBatch));
-  MatrixXd gravity(n, kBatch);
-  VectorXd row(columns);
-  for (Index first = 0; first < samples.q.count; first += kBatch) {
-    const Index size = std::min(kBatch, samples.q.count - first);
-    const ConstStates qd = samples.qd.middle(first, size), qdd = samples.qdd.middle(first, size);
-    loads.gravityVectorBatch(samples.q.middle(first, size), gravity.leftCols(size));
-    for (Index k = 0; k < size; ++k) {
-      for (Index j = 0; j < n; ++j) {
-        ownColumnsAt(fit.friction[static_cast<std::size_t>(j)], qd(j, k), qdd(j, k),
-                     std::abs(gravity(j, k)), row);
-        for (Index c = 0; c < columns; ++c) own[static_cast<std::size_t>(c)](j, k) = row[c];
-      }
-    }
-    GramSamples batch{samples.q.middle(first, size), qd, qdd, samples.tau.middle(first, size)};
-    for (const MatrixXd& column : own) batch.own_columns.emplace_back(column.leftCols(size));
-    fast_.addToGram(batch, gram);
-  }
-}
-
-void ArmFitter::torques(const ArmFit& fit, ConstStates q, ConstStates qd, ConstStates qdd,
-                        States tau) const {
-  const Index n = chain_.jointCount();
-  check(n, fit);
-  const FastModel model(Model(withLinks(fit.parameters, &fit.rotor_inertia)), fast_);
-  model.torquesBatch(q, qd, qdd, tau);
-  MatrixXd gravity(n, kBatch);
-  for (Index first = 0; first < q.count; first += kBatch) {
-    const Index size = std::min(kBatch, q.count - first);
-    model.gravityVectorBatch(q.middle(first, size), gravity.leftCols(size));
-    for (Index k = 0; k < size; ++k) {
-      for (Index j = 0; j < n; ++j) {
-        tau(j, first + k) += friction(fit.friction[static_cast<std::size_t>(j)], qd(j, first + k),
-                                      std::abs(gravity(j, k)));
-      }
-    }
-  }
 }
 
 }  // namespace v2

@@ -31,8 +31,12 @@ std::vector<StepFriction> knownFriction(FrictionTerms terms) {
 }
 
 /// The motion of an arm with friction, rotor inertia and noise.
-Motion measured(FrictionTerms terms, Eigen::Index count, unsigned seed, double deviation = kNoise) {
-  const Chain arm = threeJointArm();
+Motion measured(FrictionTerms terms, Eigen::Index count, unsigned seed, double deviation = kNoise,
+                const LinkParameters& carried = LinkParameters::zero()) {
+  const Chain alone = threeJointArm();
+  std::vector<LinkParameters> links = alone.links();
+  links.back() += carried;
+  const Chain arm("arm", alone.joints(), links, alone.gravity());
   Motion motion = randomMotion(arm, count, seed);
   Eigen::MatrixXd gravity(3, count);
   FastModel(Model(arm)).gravityVectorBatch(motion.q, gravity);
@@ -200,6 +204,115 @@ TEST(ArmFitter, BeginsWithAnotherFit) {
   const ArmFit again = fitter.fit({samplesOf(motion)}, options, &first);
   EXPECT_LT(again.passes, first.passes);
   EXPECT_NEAR(again.cost, first.cost, 1.0);  // of twice a log likelihood
+}
+
+/// Of motor currents, half of the samples with a known body at the tip.
+struct CurrentMotion {
+  Motion alone, loaded;
+  LinkParameters body;
+  Eigen::Vector3d gains;
+
+  std::vector<ArmSamples> samples() const {
+    std::vector<ArmSamples> both = {samplesOf(alone), samplesOf(loaded)};
+    both[1].carried = body;
+    return both;
+  }
+};
+
+CurrentMotion currents(Eigen::Index count, double deviation = kNoise) {
+  CurrentMotion motion{measured(FrictionTerms::kLoad, count, 1, deviation), {}, {}, {12, 7, 3}};
+  motion.body =
+      LinkParameters::fromCenterOfMass(1.5, {0.1, 0.05, 0.2}, Eigen::Matrix3d::Identity() * 0.004);
+  motion.loaded = measured(FrictionTerms::kLoad, count, 2, deviation, motion.body);
+  motion.alone.tau = motion.gains.cwiseInverse().asDiagonal() * motion.alone.tau;
+  motion.loaded.tau = motion.gains.cwiseInverse().asDiagonal() * motion.loaded.tau;
+  return motion;
+}
+
+ArmFitOptions gainOptions() {
+  ArmFitOptions options;
+  options.terms = FrictionTerms::kLoad;
+  options.prior_strength = 1;
+  options.most_passes = 30;
+  options.drive_gains = Eigen::Vector3d(9, 9, 5);
+  return options;
+}
+
+TEST(ArmFitter, FindsDriveGainsFromAKnownBody) {
+  const ArmFitter fitter(threeJointArm(0.6));
+  for (const double deviation : {kNoise, 1.0}) {  // N m: torques vary by 10, the body's by 3
+    SCOPED_TRACE(deviation);
+    const CurrentMotion motion = currents(4000, deviation);
+    const ArmFit fit = fitter.fit(motion.samples(), gainOptions());
+    ASSERT_EQ(fit.drive_gains.size(), 3);
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      // what the noise leaves; a fit of errors in N m would find small gains where it is large
+      const double share = deviation > kNoise ? 0.03 : 0.003;
+      EXPECT_NEAR(fit.drive_gains[j], motion.gains[j], share * motion.gains[j]) << fit.passes;
+    }
+    const Motion unseen = measured(FrictionTerms::kLoad, 1000, 9, 0);
+    EXPECT_LT(errorOf(fitter, fit, unseen), deviation > kNoise ? 0.3 : 0.03);
+  }
+}
+
+TEST(ArmFitter, AKnownBodyIsNoPartOfTheLinks) {
+  const ArmFitter fitter(threeJointArm(0.6));
+  const CurrentMotion motion = currents(2000);
+  ArmFitOptions options = gainOptions();
+  options.drive_gains = {};
+  CurrentMotion torques = motion;
+  torques.alone.tau = motion.gains.asDiagonal() * motion.alone.tau;
+  torques.loaded.tau = motion.gains.asDiagonal() * motion.loaded.tau;
+  const ArmFit fit = fitter.fit(torques.samples(), options);
+  EXPECT_EQ(fit.drive_gains.size(), 0);
+  EXPECT_LT(errorOf(fitter, fit, measured(FrictionTerms::kLoad, 1000, 9, 0)), 0.02);
+}
+
+TEST(ArmFitter, InformationKnowsHowWellGainsAreKnown) {
+  const ArmFitter fitter(threeJointArm(0.6));
+  const CurrentMotion motion = currents(2000, 0.3);
+  const ArmFitOptions options = gainOptions();
+  const ArmFit fit = fitter.fit(motion.samples(), options);
+  const ArmInformation found = fitter.information(fit, motion.samples(), options);
+  ASSERT_EQ(found.data.rows(), 3 * (10 + 7 + 1));
+  const auto deviations = [](const Eigen::MatrixXd& H) {
+    const Eigen::MatrixXd V = H.inverse();
+    return Eigen::Vector3d(V(37, 37), V(45, 45), V(53, 53)).cwiseSqrt().eval();
+  };
+  const Eigen::Vector3d known = deviations(found.data + found.prior);
+  EXPECT_LT(known.maxCoeff(), 0.01);  // of log k
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    EXPECT_LT(std::abs(std::log(fit.drive_gains[j] / motion.gains[j])), 4 * known[j] + 1e-3);
+  }
+  // without the body, links, friction and gains have a scale in common: the prior's
+  const std::vector<ArmSamples> alone = {samplesOf(motion.alone)};
+  const ArmFit scaled = fitter.fit(alone, options);
+  const ArmInformation open = fitter.information(scaled, alone, options);
+  EXPECT_GT(deviations(open.data + 1e-3 * open.prior).minCoeff(), 0.3);
+}
+
+TEST(ArmFitter, RefusesGainsThatAreNone) {
+  const ArmFitter fitter(threeJointArm());
+  const CurrentMotion motion = currents(100);
+  ArmFitOptions options = gainOptions();
+  for (const Eigen::VectorXd& gains :
+       {Eigen::VectorXd(Eigen::Vector2d(1, 1)), Eigen::VectorXd(Eigen::Vector3d(1, 0, 1)),
+        Eigen::VectorXd(Eigen::Vector3d(1, NAN, 1))}) {
+    options.drive_gains = gains;
+    EXPECT_THROW(fitter.fit(motion.samples(), options), chain_dynamics::ModelError);
+  }
+}
+
+TEST(ArmFitter, RefusesAGramOfOtherColumns) {
+  const ArmFitter fitter(threeJointArm());
+  const Motion motion = measured(FrictionTerms::kStep, 100, 1);
+  const ArmFit fit = fitter.fit({samplesOf(motion)}, {});
+  for (const auto& [joints, columns] :
+       {std::pair<int, int>{3, 0}, {3, 5}, {3, 8}, {3, 10}, {2, 6}}) {
+    chain_dynamics::RegressorGram gram(joints, columns);
+    EXPECT_THROW(fitter.addToGram(fit, samplesOf(motion), gram), chain_dynamics::ModelError)
+        << joints << ", " << columns;
+  }
 }
 
 TEST(ArmFitter, InformationHasNoSlopeAtTheMinimum) {

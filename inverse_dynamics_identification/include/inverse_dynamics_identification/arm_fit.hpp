@@ -13,6 +13,16 @@
 /// friction_step.hpp]. All that is linear in it is fitted by consistentFit(); width and shift of the
 /// steps by Gauss-Newton steps, for which the samples are gone through again: 3 to 10 times. The
 /// load of friction is that of the fit before. Memory doesn't grow with the samples.
+///
+/// Where `tau` are motor currents i, the drive gains k are fitted too,
+///
+///     k_j i_j = Y_j p + rotor_inertia_j qdd_j + f_j + t_j,
+///
+/// t_j the torque of a body that the tip carries and that is known: it alone has a scale [Gautier,
+/// Briot 2011, New Method for Global Identification of the Joint Drive Gains of Robots Using a Known
+/// Payload Mass, IROS]. Errors are those of the currents, weighed with k_j: `2 N log k_j` is taken off
+/// the cost, as small gains would make errors in N m small. log k_j takes Gauss-Newton steps as widths
+/// do.
 
 #pragma once
 
@@ -30,7 +40,9 @@ inline namespace v2 {
 /// N samples of n joints: a block of a recording, a sample a column. Views.
 struct ArmSamples {
   chain_dynamics::ConstStates q, qd, qdd;  ///< rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2)
-  chain_dynamics::ConstStates tau;         ///< N m (prismatic N)
+  chain_dynamics::ConstStates tau;         ///< N m (prismatic N); A where drive gains are fitted
+  /// A known body at the tip, in the tip frame and about its origin.
+  LinkParameters carried = LinkParameters::zero();
 };
 
 /// What is known of friction beforehand. Velocities are shares of a joint's greatest.
@@ -46,12 +58,18 @@ struct FrictionPrior {
   double stribeck_velocity = 0.1;  ///< where the step has fallen
 };
 
+/// How far a drive gain may well be from where its fit starts: a factor.
+constexpr double kDriveGainFactor = 3;
+
 /// How to fit.
 struct ArmFitOptions {
   FrictionTerms terms = FrictionTerms::kStep;
   double prior_strength = 100;  ///< gamma [consistent_fit.hpp]
   int most_passes = 10;         ///< over the samples
   FrictionPrior friction = {};
+  /// n, > 0; N m/A (prismatic N/A), about: what is measured are currents, and the gains are fitted.
+  /// Empty: what is measured are torques.
+  OwnedVector drive_gains = {};
 };
 
 /// A model of an arm.
@@ -60,12 +78,14 @@ struct ArmFit {
   OwnedVector rotor_inertia;           ///< n; kg m^2 (prismatic kg)
   std::vector<StepFriction> friction;  ///< n
   OwnedVector noise;                   ///< n; root mean square of the errors; N m (prismatic N)
+  OwnedVector drive_gains;             ///< n; N m/A (prismatic N/A); empty: of measured torques
   double cost = 0;                     ///< what was minimised, up to a constant
   int passes = 0;
 };
 
 /// What samples and prior say of the unknowns at a fit: 10 n parameters, then ownColumns(terms) of each
-/// joint; those of shift, log(width) and log(vs) are steps from the fit.
+/// joint, and one more of log(drive gain) where these were fitted; those of shift, log(width), log(vs)
+/// and log(drive gain) are steps from the fit.
 struct ArmInformation {
   OwnedMatrix data;    ///< unknowns x unknowns: half the second derivatives of the weighted squares
   OwnedMatrix prior;   ///< the same of prior and penalties
@@ -87,7 +107,7 @@ class ArmFitter {
   ///
   /// @param start  another fit to begin with; its terms may be others.
   /// @throws chain_dynamics::ModelError  no samples, other numbers of joints, numbers that aren't
-  ///     finite.
+  ///     finite, drive gains that aren't above zero.
   ArmFit fit(const std::vector<ArmSamples>& blocks, const ArmFitOptions& options,
              const ArmFit* start = nullptr) const;
 
@@ -99,14 +119,18 @@ class ArmFitter {
   void torques(const ArmFit& fit, chain_dynamics::ConstStates q, chain_dynamics::ConstStates qd,
                chain_dynamics::ConstStates qdd, chain_dynamics::States tau) const;
 
-  /// Adds samples with the own columns of a fit [friction_step.hpp].
+  /// Adds samples with the own columns of a fit [friction_step.hpp], less the torque of what is carried.
   ///
-  /// @param gram  of ownColumns(terms) columns.
+  /// @param gram  of ownColumns(terms) columns, and of one more for the drive gain where the fit has
+  ///     gains: minus the computed torque, which is the derivative by log k of the errors.
+  /// @throws chain_dynamics::ModelError  a gram of other joints or columns.
   void addToGram(const ArmFit& fit, const ArmSamples& samples,
                  chain_dynamics::RegressorGram& gram) const;
 
  private:
-  chain_dynamics::Chain withLinks(const OwnedMatrix& parameters, const OwnedVector* rotors) const;
+  void check(const ArmFit& fit) const;
+  chain_dynamics::Chain withLinks(const OwnedMatrix& parameters, const OwnedVector* rotors,
+                                  const LinkParameters& carried = LinkParameters::zero()) const;
 
   chain_dynamics::Chain chain_;
   std::vector<LinkPrior> prior_;
