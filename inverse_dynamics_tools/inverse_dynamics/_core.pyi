@@ -323,6 +323,10 @@ class ArmFit:
         """(n,) root mean squares of the errors of the samples that it was fitted to."""
 
     @property
+    def drive_gains(self) -> Floats | None:
+        """(n,) N m/A (prismatic N/A) that were fitted; None: of measured torques."""
+
+    @property
     def cost(self) -> float: ...
     @property
     def passes(self) -> int: ...
@@ -365,14 +369,26 @@ class ArmFitter:
         prior_strength: float,
         most_passes: int = 10,
         start: ArmFit | None = None,
+        drive_gains: ArrayLike | None = None,
+        carried: Sequence[Floats | None] = ...,
     ) -> ArmFit:
-        """A fit to the samples of all blocks. start: another one to begin with."""
+        """A fit to the samples of all blocks. start: another one to begin with.
+
+        drive_gains: (n,) N m/A, about: tau are currents [A], and the gains are fitted. carried: (10,)
+        or None of each block, a known body m, mc, I in the tip frame, about its origin.
+        """
 
     def torques(self, fit: ArmFit, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Floats:
         """Torques of a fit, friction included: (n,) or (N, n)."""
 
     def information(
-        self, fit: ArmFit, blocks: Sequence[Block], *, law: str, prior_strength: float
+        self,
+        fit: ArmFit,
+        blocks: Sequence[Block],
+        *,
+        law: str,
+        prior_strength: float,
+        carried: Sequence[Floats | None] = ...,
     ) -> tuple[Floats, Floats, Floats]:
         """What data and prior say of the m unknowns, (m, m) each, and scores (blocks, m)."""
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "accelerations.hpp"
 
-#include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
 #include <inverse_dynamics_evaluation/accelerations.hpp>
@@ -15,6 +14,7 @@
 
 #include "arrays.hpp"
 #include "initialized.hpp"
+#include "vectors.hpp"
 
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::SampleRules)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::SampleReport)

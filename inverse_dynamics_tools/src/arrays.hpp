@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <chain_dynamics/owned.hpp>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,13 @@ namespace inverse_dynamics_tools {
 
 /// Doubles, row after row; an array of another type or layout is copied into one.
 using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
+
+/// Whether an object is a number, or an array or sequence of numbers: numpy would read texts as
+/// numbers, and take the real parts of complex ones.
+inline bool hasNumbers(pybind11::handle object) {
+  const auto array = pybind11::array::ensure(object);
+  return array && std::strchr("biuf", array.dtype().kind()) != nullptr;
+}
 
 /// Integers, for stamps in ns.
 using Integers =
@@ -57,3 +65,16 @@ inline pybind11::array rowsOf(chain_dynamics::OwnedMatrix matrix) {
 }
 
 }  // namespace inverse_dynamics_tools
+
+namespace pybind11::detail {
+
+/// Of arguments: numbers alone.
+template <>
+struct type_caster<inverse_dynamics_tools::Array> : pyobject_caster<inverse_dynamics_tools::Array> {
+  bool load(handle source, bool convert) {
+    return inverse_dynamics_tools::hasNumbers(source) &&
+           pyobject_caster<inverse_dynamics_tools::Array>::load(source, convert);
+  }
+};
+
+}  // namespace pybind11::detail

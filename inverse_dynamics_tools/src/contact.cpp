@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contact.hpp"
 
-#include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
@@ -13,6 +12,7 @@
 #include "arrays.hpp"
 #include "initialized.hpp"
 #include "solver.hpp"
+#include "vectors.hpp"
 
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::EstimatorOptions)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::ExternalTorqueEstimator)

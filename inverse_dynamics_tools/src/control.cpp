@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "control.hpp"
 
-#include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
@@ -11,6 +10,7 @@
 
 #include "initialized.hpp"
 #include "solver.hpp"
+#include "vectors.hpp"
 
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::Compensated)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::FrictionOptions)

@@ -46,11 +46,31 @@ std::unique_ptr<ArmFitter> fromUrdf(const std::string& urdf, const std::string& 
   return std::make_unique<ArmFitter>(chain_dynamics::chainFromUrdf(urdf, options));
 }
 
-std::vector<ArmSamples> samplesOf(const std::vector<Block>& blocks) {
+// (10,) of what the tip carries in each block, or none.
+using Carried = std::vector<std::optional<Array>>;
+
+chain_dynamics::LinkParameters bodyOf(const Array& numbers) {
+  if (numbers.ndim() != 1 || numbers.shape(0) != 10) {
+    throw py::value_error("carried: expected an array (10,) for each block, or None, got " +
+                          std::string(py::str(numbers.attr("shape"))));
+  }
+  using Vector10 = Eigen::Matrix<double, 10, 1>;
+  const Vector10 p = Eigen::Map<const Vector10>(numbers.data());
+  return chain_dynamics::LinkParameters::fromVector(p);
+}
+
+std::vector<ArmSamples> samplesOf(const std::vector<Block>& blocks, const Carried& carried) {
+  if (!carried.empty() && carried.size() != blocks.size()) {
+    throw py::value_error("carried: expected one for each of " + std::to_string(blocks.size()) +
+                          " blocks, got " + std::to_string(carried.size()));
+  }
   std::vector<ArmSamples> samples;
   samples.reserve(blocks.size());
   for (const auto& [q, qd, qdd, tau] : blocks) {
     samples.push_back({states(q, "q"), states(qd, "qd"), states(qdd, "qdd"), states(tau, "tau")});
+    if (carried.empty()) continue;
+    const std::optional<Array>& body = carried[samples.size() - 1];
+    if (body) samples.back().carried = bodyOf(*body);
   }
   return samples;
 }
@@ -72,9 +92,11 @@ ArmFitOptions optionsOf(const std::string& law, double prior_strength, int most_
 }
 
 ArmFit fit(const ArmFitter& fitter, const std::vector<Block>& blocks, const std::string& law,
-           double prior_strength, int most_passes, const ArmFit* start) {
-  const ArmFitOptions options = optionsOf(law, prior_strength, most_passes);
-  const std::vector<ArmSamples> samples = samplesOf(blocks);
+           double prior_strength, int most_passes, const ArmFit* start,
+           const std::optional<Array>& drive_gains, const Carried& carried) {
+  ArmFitOptions options = optionsOf(law, prior_strength, most_passes);
+  if (drive_gains) options.drive_gains = states(*drive_gains, "drive_gains").col(0);
+  const std::vector<ArmSamples> samples = samplesOf(blocks, carried);
   const py::gil_scoped_release release;
   return fitter.fit(samples, options, start);
 }
@@ -99,9 +121,9 @@ Array torques(const ArmFitter& fitter, const ArmFit& of, const Array& q, const A
 }
 
 py::tuple information(const ArmFitter& fitter, const ArmFit& of, const std::vector<Block>& blocks,
-                      const std::string& law, double prior_strength) {
+                      const std::string& law, double prior_strength, const Carried& carried) {
   const ArmFitOptions options = optionsOf(law, prior_strength, 1);
-  const std::vector<ArmSamples> samples = samplesOf(blocks);
+  const std::vector<ArmSamples> samples = samplesOf(blocks, carried);
   identification::ArmInformation found;
   {
     const py::gil_scoped_release release;
@@ -157,6 +179,13 @@ void bindFit(py::module_& module) {
       .def_property_readonly(
           "noise", [](const ArmFit& f) { return vectorOf(f.noise); },
           "(n,) root mean squares of the errors of the samples that it was fitted to.")
+      .def_property_readonly(
+          "drive_gains",
+          [](const ArmFit& f) -> py::object {
+            if (f.drive_gains.size() == 0) return py::none();
+            return vectorOf(f.drive_gains);
+          },
+          "(n,) N m/A (prismatic N/A) that were fitted; None: of measured torques.")
       .def_readonly("cost", &ArmFit::cost, "What was minimised, up to a constant.")
       .def_readonly("passes", &ArmFit::passes, "How often the samples were gone through.");
 }
@@ -187,13 +216,17 @@ void bindIdentification(py::module_& module) {
             return changes;
           },
           "What the prior has changed about each described link, in words; empty: nothing.")
-      .def("fit", &fit, py::arg("blocks"), py::kw_only(), py::arg("law"), py::arg("prior_strength"),
-           py::arg("most_passes") = 10, py::arg("start") = static_cast<const ArmFit*>(nullptr),
-           "A fit to the samples of all blocks. start: another one to begin with.")
+      .def(
+          "fit", &fit, py::arg("blocks"), py::kw_only(), py::arg("law"), py::arg("prior_strength"),
+          py::arg("most_passes") = 10, py::arg("start") = static_cast<const ArmFit*>(nullptr),
+          py::arg("drive_gains") = py::none(), py::arg("carried") = Carried(),
+          "A fit to the samples of all blocks. start: another one to begin with; drive_gains: (n,) "
+          "N m/A, about: tau are currents [A], and the gains are fitted; carried: (10,) or None of "
+          "each block, a known body m, mc, I in the tip frame, about its origin.")
       .def("torques", &torques, py::arg("fit"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
            "Torques of a fit, friction included: (n,) or (N, n).")
       .def("information", &information, py::arg("fit"), py::arg("blocks"), py::kw_only(),
-           py::arg("law"), py::arg("prior_strength"),
+           py::arg("law"), py::arg("prior_strength"), py::arg("carried") = Carried(),
            "What data and prior say of the m unknowns, (m, m) each, and scores (blocks, m).");
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "payload.hpp"
 
-#include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
 #include <inverse_dynamics_identification/payload_estimator.hpp>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,9 +14,36 @@
 #include "initialized.hpp"
 #include "solver.hpp"
 #include "solver_payload.hpp"
+#include "vectors.hpp"
+
+namespace inverse_dynamics_tools {
+
+/// An estimator that several threads of Python may call: each call waits for the others.
+class SharedEstimator {
+ public:
+  SharedEstimator(std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
+                  const inverse_dynamics_identification::PayloadOptions& options)
+      : estimator_(std::move(solver), options) {}
+
+  Eigen::Index jointCount() const { return estimator_.jointCount(); }
+
+  /// What `call(estimator)` returns, without the GIL.
+  template <class Call>
+  auto during(Call call) {
+    const pybind11::gil_scoped_release release;
+    const std::lock_guard<std::mutex> alone(busy_);
+    return call(estimator_);
+  }
+
+ private:
+  inverse_dynamics_identification::PayloadEstimator estimator_;
+  std::mutex busy_;
+};
+
+}  // namespace inverse_dynamics_tools
 
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::PayloadEstimate)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::PayloadEstimator)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::SharedEstimator)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ResidualNoise)
 
 namespace inverse_dynamics_tools {
@@ -37,12 +64,11 @@ inverse_dynamics_solver::RigidBody carriedBody(const py::object& carried) {
                 part("frame"));
 }
 
-std::unique_ptr<PayloadEstimator> makeEstimator(const py::object& solver,
-                                                const ResidualNoise& noise,
-                                                const std::optional<Vector>& offset,
-                                                const std::optional<Vector>& offset_deviation,
-                                                const py::object& carried, double extent,
-                                                double block) {
+std::unique_ptr<SharedEstimator> makeEstimator(const py::object& solver, const ResidualNoise& noise,
+                                               const std::optional<Vector>& offset,
+                                               const std::optional<Vector>& offset_deviation,
+                                               const py::object& carried, double extent,
+                                               double block) {
   PayloadOptions options;
   options.noise = noise;
   if (offset) options.offset = *offset;
@@ -50,7 +76,7 @@ std::unique_ptr<PayloadEstimator> makeEstimator(const py::object& solver,
   options.carried = carriedBody(carried);
   options.extent = extent;
   options.block = block;
-  return std::make_unique<PayloadEstimator>(solverOf(solver), options);
+  return std::make_unique<SharedEstimator>(solverOf(solver), options);
 }
 
 void requireSamples(const char* name, const Array& array, py::ssize_t count, py::ssize_t joints) {
@@ -61,10 +87,10 @@ void requireSamples(const char* name, const Array& array, py::ssize_t count, py:
 }
 
 /// All samples, one after the other, without the GIL; how many were added.
-Eigen::Index run(PayloadEstimator& estimator, const Array& time, const Array& q, const Array& qd,
+Eigen::Index run(SharedEstimator& shared, const Array& time, const Array& q, const Array& qd,
                  const Array& qdd, const Array& measured) {
   const py::ssize_t count = time.ndim() == 1 ? time.shape(0) : 0;
-  const auto n = static_cast<py::ssize_t>(estimator.jointCount());
+  const auto n = static_cast<py::ssize_t>(shared.jointCount());
   requireSamples("q", q, count, n);
   requireSamples("qd", qd, count, n);
   requireSamples("qdd", qdd, count, n);
@@ -72,20 +98,32 @@ Eigen::Index run(PayloadEstimator& estimator, const Array& time, const Array& q,
   const ConstMap columns[] = {states(q, "q"), states(qd, "qd"), states(qdd, "qdd"),
                               states(measured, "measured")};
   const double* const t = time.data();
-  const py::gil_scoped_release release;
-  Eigen::Index added = 0;
-  for (py::ssize_t k = 0; k < count; ++k) {
-    const PayloadStatus status = estimator.update(t[k], columns[0].col(k), columns[1].col(k),
-                                                  columns[2].col(k), columns[3].col(k));
-    added += status == PayloadStatus::kOk ? 1 : 0;
-  }
-  return added;
+  return shared.during([&](PayloadEstimator& estimator) {
+    Eigen::Index added = 0;
+    for (py::ssize_t k = 0; k < count; ++k) {
+      const PayloadStatus status = estimator.update(t[k], columns[0].col(k), columns[1].col(k),
+                                                    columns[2].col(k), columns[3].col(k));
+      added += status == PayloadStatus::kOk ? 1 : 0;
+    }
+    return added;
+  });
 }
 
-std::pair<PayloadEstimate, PayloadStatus> estimate(PayloadEstimator& estimator) {
-  PayloadEstimate found(estimator.jointCount());
-  const PayloadStatus status = estimator.estimate(found);
+PayloadStatus update(SharedEstimator& shared, double time, const Vector& q, const Vector& qd,
+                     const Vector& qdd, const Vector& measured) {
+  return shared.during(
+      [&](PayloadEstimator& estimator) { return estimator.update(time, q, qd, qdd, measured); });
+}
+
+std::pair<PayloadEstimate, PayloadStatus> estimate(SharedEstimator& shared) {
+  PayloadEstimate found(shared.jointCount());
+  const PayloadStatus status =
+      shared.during([&](PayloadEstimator& estimator) { return estimator.estimate(found); });
   return {std::move(found), status};
+}
+
+void restart(SharedEstimator& shared) {
+  shared.during([](PayloadEstimator& estimator) { estimator.restart(); });
 }
 
 void bindNoise(py::module_& module) {
@@ -155,8 +193,10 @@ void bindPayload(py::module_& module) {
   bindNoise(module);
   bindEstimate(module);
   const PayloadOptions usual;
-  py::class_<PayloadEstimator>(module, "PayloadEstimator",
-                               "Mass, center of mass and inertia of what the tip carries.")
+  py::class_<SharedEstimator>(module, "PayloadEstimator",
+                              "Mass, center of mass and inertia of what the tip carries. Threads: "
+                              "safe; the GIL is released, "
+                              "and each call waits for those of other threads.")
       .def(py::init(&makeEstimator), py::arg("solver"), py::arg("noise"), py::kw_only(),
            py::arg("offset") = py::none(), py::arg("offset_deviation") = py::none(),
            py::arg("carried") = py::none(), py::arg("extent") = usual.extent,
@@ -164,12 +204,12 @@ void bindPayload(py::module_& module) {
            "offset, offset_deviation: (n,) N m, what is known of the offsets; carried: the body "
            "among "
            "solver.payloads that belongs to the estimate; extent: m; block: s.")
-      .def("update", &PayloadEstimator::update, py::arg("time"), py::arg("q"), py::arg("qd"),
-           py::arg("qdd"), py::arg("measured"), "Adds a sample: s, (n,) each; PayloadStatus.")
+      .def("update", &update, py::arg("time"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
+           py::arg("measured"), "Adds a sample: s, (n,) each; PayloadStatus.")
       .def("run", &run, py::arg("time"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
            py::arg("measured"), "Adds N samples, (N,) and (N, n); how many were added.")
       .def("estimate", &estimate, "(PayloadEstimate, PayloadStatus).")
-      .def("restart", &PayloadEstimator::restart, "Forgets all samples.");
+      .def("restart", &restart, "Forgets all samples.");
 }
 
 }  // namespace inverse_dynamics_tools

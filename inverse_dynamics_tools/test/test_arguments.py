@@ -10,7 +10,9 @@ import pytest
 
 from inverse_dynamics import Solver, UserError, _core, evaluate
 from inverse_dynamics.base.arguments import checked, refused
-from inverse_dynamics.errors import ArgumentError
+from inverse_dynamics.contact import ContactDetector, EstimatorOptions
+from inverse_dynamics.control import Gains
+from inverse_dynamics.errors import ArgumentError, InvalidParameterError
 
 UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
 Q = np.zeros(6)
@@ -180,3 +182,23 @@ def test_masks_of_numbers_are_named(mask: np.ndarray, got: str) -> None:
     assert refusal(lambda: _core.metrics(numbers, numbers, mask)) == (
         f"metrics: argument mask: expected an array of True and False or None, got {got}"
     )
+
+
+@pytest.mark.parametrize(
+    "numbers", [["1", "2", "3", "4", "5", "6"], np.full(6, 1 + 2j), [None] * 6], ids=str
+)
+def test_what_isnt_a_number_is_no_vector(solver, numbers):
+    """numpy would read texts, and drop imaginary parts."""
+    for call in (
+        lambda: EstimatorOptions(numbers),
+        lambda: Gains(numbers, numbers),
+        lambda: ContactDetector(np.ones(6), ["a"] * 6).update(numbers, 0.01),
+        lambda: _core.residual_noise(np.arange(6.0), [numbers] * 6),
+    ):
+        with pytest.raises(TypeError):
+            call()
+    with pytest.raises(InvalidParameterError):
+        solver.torques(numbers, Q, Q)
+    with pytest.raises(InvalidParameterError):
+        solver.set_gravity(numbers[:3])
+    EstimatorOptions([60, 60])

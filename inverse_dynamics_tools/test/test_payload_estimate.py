@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -324,3 +325,32 @@ def test_an_empty_run_knows_how_sure_it_is():
     assert alone.offset == pytest.approx(np.full(7, 0.4), abs=0.01)
     assert np.all(alone.offset_deviation >= 0.02 * NOISE * 0.9)
     assert np.all(alone.offset_deviation < 0.02)
+
+
+def test_threads_that_share_an_estimator_wait_for_each_other():
+    solver = panda()
+    time, q, qd, qdd = motion(seconds=40.0)
+    noise = ResidualNoise(np.full(7, NOISE), np.full(7, 1e-3))
+    light, heavy = (solver.torques(q, qd, qdd) + more for more in (0.0, 5.0))
+
+    def estimate_of(*runs):
+        estimator = PayloadEstimator(solver, noise)
+        added = []
+        start = threading.Barrier(len(runs))
+
+        def run(measured):
+            start.wait()
+            added.append(estimator.run(time, q, qd, qdd, measured))
+
+        threads = [threading.Thread(target=run, args=(measured,)) for measured in runs]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        return sorted(added), estimator.estimate()[0].mass
+
+    alone = [estimate_of(run)[1] for run in (light, heavy)]
+    for _ in range(5):
+        added, mass = estimate_of(light, heavy)
+        assert added == [0, len(time)]  # the samples of the second aren't later
+        assert mass in alone
