@@ -12,9 +12,9 @@ import pytest
 from inverse_dynamics import _core, evaluate, identify, load_robot, write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import EvaluationError
-from inverse_dynamics.identification.blocks import blocks_of
+from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import choose, errors_of
-from inverse_dynamics.identification.knowledge import independent_samples
+from inverse_dynamics.identification.knowledge import independent_samples, intervals, knowledge
 from inverse_dynamics.identification.result import COLUMNS, LAWS, IdentificationError
 from inverse_dynamics.robot.descriptions import read_description
 
@@ -295,3 +295,83 @@ def test_no_recording_and_no_description_are_refused(known, tmp_path):
 def test_a_recording_that_is_given_twice_is_refused(known, tmp_path):
     with pytest.raises(IdentificationError, match="expected each recording once"):
         identify([tmp_path, tmp_path / "."], known.robot)
+
+
+SLIDE = """<robot name="slide"><link name="base"/><link name="cart"/><link name="arm"/>
+<joint name="slide" type="prismatic"><parent link="base"/><child link="cart"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" velocity="1" effort="100"/></joint>
+<joint name="hinge" type="continuous"><parent link="cart"/><child link="arm"/><axis xyz="0 1 0"/></joint>
+</robot>""".replace(
+    "/><link",
+    "><inertial><mass value='2'/><origin xyz='.1 0 0'/><inertia ixx='.1' iyy='.1' izz='.1' ixy='0' "
+    "ixz='0' iyz='0'/></inertial></link><link",
+).replace(
+    '<link name="arm"/>',
+    "<link name='arm'><inertial><mass value='1'/><origin xyz='.2 0 0'/><inertia ixx='.1' "
+    "iyy='.1' izz='.1' ixy='0' ixz='0' iyz='0'/></inertial></link>",
+)
+
+
+def test_intervals_of_a_prismatic_joint_are_in_newtons_and_metres():
+    fitter = _core.ArmFitter.from_urdf(SLIDE)
+    model = _core.FastModel.from_urdf(SLIDE)
+    q, qd, qdd = np.random.default_rng(1).uniform(-1, 1, (3, 400, 2))
+    tau = model.regressor(q, qd, qdd) @ model.parameters + qd + np.tanh(qd / 0.05)
+    tau += np.random.default_rng(2).normal(0, 0.1, tau.shape)
+    blocks = blocks_of_arrays(q, qd, qdd, tau)
+    fit = fitter.fit([b.fitted for b in blocks], law="stribeck", prior_strength=10)
+    known = knowledge(fitter, fit, blocks, law="stribeck", prior_strength=10, worth=1.0)
+    units = {i.name: i.unit for i in intervals(known, model, ("N", "N m"))}
+    of = {key: (units[f"slide {key}"], units[f"hinge {key}"]) for key in OWN_UNITS}
+    assert of == OWN_UNITS
+
+
+OWN_UNITS = {
+    "rotor_inertia": ("kg", "kg m^2"),
+    "fv": ("N s/m", "N m s/rad"),
+    "fo": ("N", "N m"),
+    "fc": ("N", "N m"),
+    "shift": ("m/s", "rad/s"),
+    "width": ("m/s", "rad/s"),
+    "fl": ("", ""),
+    "fs": ("N", "N m"),
+    "vs": ("m/s", "rad/s"),
+}
+
+
+def blocks_of_arrays(q, qd, qdd, tau):
+    time, all_of = np.arange(len(q)) * 0.01, np.full(len(q), True)
+    return Block("arrays", time, time, all_of, q, qd, qdd, tau, all_of).parts(4)
+
+
+@pytest.mark.parametrize("seed", [64, 116, 118])
+def test_more_passes_over_the_samples_are_never_worse(seed):
+    robot = load_robot("ur10_simulated")
+    text, ends = description(robot)
+    fitter, model = _core.ArmFitter.from_urdf(text, **ends), _core.FastModel.from_urdf(text, **ends)
+    random = np.random.default_rng(seed)
+    count = int(random.choice([60, 150, 400]))
+    noise = float(random.choice([0.003, 0.03, 0.3]))
+
+    def block(scale):
+        """Steps of friction that are narrow or wide, off zero or not."""
+        width, shift, vs = (
+            10 ** random.uniform(-2.5, -0.3),
+            random.uniform(-0.15, 0.15),
+            10 ** random.uniform(-1.3, 0),
+        )
+        fs = random.choice([0, 5])
+        q, qd = random.uniform(-3, 3, (count, 6)), random.uniform(-1, 1, (count, 6)) ** 3 * 1.5
+        qdd = random.uniform(-4, 4, (count, 6))
+        tau = scale * model.regressor(q, qd, qdd) @ model.parameters + 2 * qd
+        tau += (3 + fs * np.exp(-((qd / vs) ** 2))) * np.tanh((qd + shift) / width)
+        return q, qd, qdd, tau + random.normal(0, noise, tau.shape)
+
+    one, other = block(1.0), block(1.3)
+    for law in LAWS:
+        start = fitter.fit([one], law=law, prior_strength=10)
+        costs = [
+            fitter.fit([other], law=law, prior_strength=10, start=start, most_passes=passes).cost
+            for passes in (1, 2, 3, 4)
+        ]
+        assert (np.diff(costs) <= 1e-6 * np.abs(costs[1:])).all(), (law, costs)

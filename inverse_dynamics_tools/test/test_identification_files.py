@@ -288,6 +288,38 @@ def test_a_recording_that_was_held_out_is_a_table_of_its_own(found, tmp_path):
     assert "Error on tuesday" in files.page.read_text()
 
 
+def test_errors_of_blocks_are_of_the_samples_that_count(found, tmp_path):
+    blocks = []
+    for block in found.blocks:
+        counts, measured = block.counts.copy(), block.measured.copy()
+        counts[:30] = False
+        measured[:30] += 100.0  # a start transient
+        blocks.append(replace(block, counts=counts, measured=measured))
+    files = write_identification(replace(found, blocks=tuple(blocks)), tmp_path / "arm.yaml")
+    written = json.loads(files.figures.read_text())["blocks"]
+    for block, figures in zip(blocks, written, strict=True):
+        errors = (block.computed["urdf"] - block.measured)[30:]
+        np.testing.assert_allclose(figures["rmse"]["urdf"], np.sqrt((errors**2).mean(0)))
+        assert figures["samples"] == 270
+
+
+def test_a_recording_that_was_held_out_has_the_refitted_present_model_too(found, tmp_path):
+    q, qd, qdd, stamps = motion()
+    log = JointLog(JOINTS, stamps, stamps, q, qd, simulated_torques(q, qd, qdd, seed=7))
+    write_joint_logs(tmp_path / "tuesday", {log.topic: log})
+    # the present model: the description, whose friction is refitted
+    blocks = tuple(
+        replace(b, computed={**b.computed, "present": b.computed["urdf"]}) for b in found.blocks
+    )
+    held = {**found.held_out, "present": found.held_out["urdf"]}
+    test = hold_out(replace(found, blocks=blocks, held_out=held), tmp_path / "tuesday")
+    assert set(test.rmse) == {"urdf", "present", "present_refitted", "identified"}
+    np.testing.assert_allclose(test.rmse["present"], test.rmse["urdf"])
+    # viscous friction, step and offset are those of the blocks; links are 5 % too light
+    assert (test.rmse["present_refitted"] < 0.5 * test.rmse["present"]).all()
+    assert (test.rmse["present_refitted"] > test.rmse["identified"]).all()
+
+
 def test_a_recording_that_was_fitted_to_is_not_held_out(found):
     with pytest.raises(IdentificationError, match="nothing was fitted to"):
         hold_out(found, found.recordings[0])

@@ -69,6 +69,17 @@ def test_a_joint_that_hardly_moves(log, tmp_path):
     assert "ids excite" in text
 
 
+def test_a_prismatic_joint_that_hardly_moves_does_so_in_metres(log, tmp_path):
+    q, qd = log.q.copy(), log.qd.copy()
+    q[:, 3], qd[:, 3] = 0.7 + 0.02 * q[:, 3], 0.02 * qd[:, 3]
+    evaluation = evaluated(tmp_path, replace(log, q=q, qd=qd))
+    units = tuple("N" if j == 3 else "N m" for j in range(6))
+    text = str(reason([replace(evaluation, units=units)]))
+    assert "wrist_1_joint: expected every joint to move by 0.1 rad (prismatic: 0.1 m) or" in text
+    assert " m, so that neither" in text
+    assert " rad, so that neither" in str(reason([evaluation]))
+
+
 def test_efforts_without_gravity(log, tmp_path):
     solver = Solver(
         "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody",
@@ -230,3 +241,17 @@ def test_the_panda_is_identified_by_the_command(recordings, tmp_path, ids):
     write_joint_logs(tmp_path / "fast", {log.topic: fast})
     notes = evaluate(tmp_path / "fast", tmp_path / "arm.yaml").notes
     assert any("leaves the range" in note for note in notes)
+
+
+def test_means_over_joints_have_the_unit_of_the_joints(found):
+    same = dict.fromkeys(found.held_out, found.held_out["identified"])
+    for units, unit in (
+        (("N",) * 6, " N "),
+        (("N m",) * 6, " N m "),
+        (("N m", *["N"] * 5), " N m and N "),
+    ):
+        with pytest.raises(IdentificationError) as caught:
+            check_result(replace(found, held_out=same, units=units))
+        assert f"{found.rmse('identified'):.3g}{unit}on data that were held out" in str(
+            caught.value
+        )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import RIGID_BODY, with_changes
 from inverse_dynamics.robot.solvers import open_solver
 
@@ -42,24 +43,47 @@ class Baselines:
 
     def _refitted(self, solver: Solver, block: Block, others: Sequence[Block]) -> Floats:
         """Rigid bodies as they are; step, viscous friction and offset of each joint refitted."""
-        rigid, columns = _parts(solver, block)
-        parts = [_parts(solver, other) for other in others]
-        errors = np.concatenate(
-            [(b.tau - r)[b.counts] for b, (r, _) in zip(others, parts, strict=True)]
+        refitted = RefittedFriction(
+            solver,
+            [
+                (b.q[b.counts], b.qd[b.counts], solver.torques(*b.fitted[:3]), b.fitted[3])
+                for b in others
+            ],
         )
-        known = np.concatenate([c[b.counts] for b, (_, c) in zip(others, parts, strict=True)])
-        for j in range(rigid.shape[1]):
-            figures = np.linalg.lstsq(known[:, :, j], errors[:, j])[0]
-            rigid[:, j] += columns[:, :, j] @ figures
-        return rigid
+        return refitted.torques(block.q, block.qd, solver.torques(block.q, block.qd, block.qdd))
 
 
-def _parts(solver: Solver, block: Block) -> tuple[Floats, Floats]:
-    """Torques without friction, (M, n); and its columns, (M, 3, n): its own law's shape, qd, 1."""
-    friction = solver.friction_vector(block.qd, q=block.q)
-    rigid = solver.torques(block.q, block.qd, block.qdd) - friction
-    shape = friction if friction.any() else np.tanh(block.qd / _STEP_WIDTH)
-    return rigid, np.stack([shape, block.qd, np.ones_like(block.qd)], axis=1)
+def solver_of(robot: Robot) -> Solver:
+    """The solver of a run configuration with its description. Raises UserError."""
+    return open_solver(robot, "" if robot.urdf is None else read_description(robot.urdf))
+
+
+class RefittedFriction:
+    """A solver's rigid bodies; step, viscous friction and offset of each joint fitted to samples."""
+
+    def __init__(
+        self, solver: Solver, samples: Sequence[tuple[Floats, Floats, Floats, Floats]]
+    ) -> None:
+        """samples: q, qd, torques of the solver and measured ones, (M, n) each."""
+        self._solver = solver
+        parts = [self._parts(q, qd, computed) for q, qd, computed, _ in samples]
+        errors = np.concatenate([s[3] - r for s, (r, _) in zip(samples, parts, strict=True)])
+        columns = np.concatenate([c for _, c in parts])
+        self._figures = np.stack(
+            [np.linalg.lstsq(columns[:, :, j], e)[0] for j, e in enumerate(errors.T)], axis=1
+        )  # (3, n)
+
+    def torques(self, q: Floats, qd: Floats, computed: Floats) -> Floats:
+        """(M, n) with that friction; computed: the solver's torques."""
+        rigid, columns = self._parts(q, qd, computed)
+        refitted: Floats = rigid + np.einsum("kcj,cj->kj", columns, self._figures)
+        return refitted
+
+    def _parts(self, q: Floats, qd: Floats, computed: Floats) -> tuple[Floats, Floats]:
+        """Torques without friction, (M, n); and its columns, (M, 3, n): its law's shape, qd, 1."""
+        friction = self._solver.friction_vector(qd, q=q)
+        shape = friction if friction.any() else np.tanh(qd / _STEP_WIDTH)
+        return computed - friction, np.stack([shape, qd, np.ones_like(qd)], axis=1)
 
 
 def root_mean_squares(columns: Sequence[Mapping[str, Floats]]) -> dict[str, Floats]:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,13 +17,14 @@ from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.identification.baselines import Baselines, root_mean_squares
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import Chosen, choose, errors_of
+from inverse_dynamics.identification.drive_gains import check_gains, identify_drive_gains
 from inverse_dynamics.identification.knowledge import (
     independent_samples,
     intervals,
     knowledge,
     prior_decided,
 )
-from inverse_dynamics.identification.refusals import check_recordings, check_result
+from inverse_dynamics.identification.refusals import check_recordings, check_result, mean_unit
 from inverse_dynamics.identification.result import (
     Finding,
     HeldOutBlock,
@@ -40,6 +42,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.identification.drive_gains import KnownPayload
+    from inverse_dynamics.identification.result import DriveGain
 
 BLOCKS = 5
 """Contiguous blocks that all recordings are cut into, of which each is predicted by the others."""
@@ -58,6 +62,7 @@ def identify(
     robot: Robot | Path | str,
     *,
     blocks: int | None = None,
+    known_payloads: Sequence[KnownPayload] = (),
     progress: Progress = no_progress,
     **options: Any,
 ) -> Identification:
@@ -65,8 +70,9 @@ def identify(
 
     robot: as in evaluate(); its description is the prior, its model, if it has one, is compared
     with. blocks: how many the recordings are cut into altogether, at least three; none: BLOCKS, or
-    fewer where they would be shorter than 2.5 s. options: others of evaluate(), as effort_is, start,
-    end.
+    fewer where they would be shorter than 2.5 s. known_payloads: further recordings of motor currents,
+    each with a load as the parameters payload.* of solvers: they tell the drive gains. options: others of
+    evaluate(), as effort_is, start, end.
 
     Raises UserError: those of evaluate(), IdentificationError.
     """
@@ -74,22 +80,32 @@ def identify(
     if not isinstance(robot, Robot):
         robot = load_robot(robot)
     description = _description(robot)
-    _check_distinct(recordings)
+    _check_distinct([*recordings, *(path for path, _ in known_payloads)])
+    fitter = _core.ArmFitter.from_urdf(
+        description, root=robot.root, tip=robot.tip, gravity=robot.gravity
+    )
+    gains: tuple[DriveGain, ...] = ()
+    if known_payloads and recordings:
+        gains = identify_drive_gains(
+            recordings, known_payloads, robot, fitter, progress=progress, **options
+        )
+        robot = replace(robot, drive_gains=tuple(gain.value for gain in gains))
+    check_gains(robot, options.get("effort_is"))
+    seconds = {"drive gains": time.perf_counter() - begin} if gains else {}
+    begin = time.perf_counter()
     evaluations = [evaluate(path, robot, progress=progress, **options) for path in recordings]
     robot = evaluations[0].robot if evaluations else robot
     _check(evaluations)
     check_recordings(evaluations)
     blocks = _block_count(evaluations, blocks)
-    fitter = _core.ArmFitter.from_urdf(
-        description, root=robot.root, tip=robot.tip, gravity=robot.gravity
-    )
     cut = _cut(evaluations, blocks)
-    seconds = {"reading": time.perf_counter() - begin}
+    seconds["reading"] = time.perf_counter() - begin
     begin = time.perf_counter()
     held_out = _held_out(fitter, Baselines(robot, description), cut, progress)
     chosen = choose(fitter, cut)
     seconds["fitting"] = time.perf_counter() - begin
     found = _result(robot, description, evaluations, fitter, cut, held_out, chosen, seconds)
+    found = replace(found, drive_gains=gains)
     check_result(found)
     return found
 
@@ -205,7 +221,7 @@ def _result(
         description, root=robot.root, tip=robot.tip, gravity=robot.gravity
     )
     blocks = tuple(block for block, _ in held_out)
-    held, coverage = _held_out_errors(blocks, cut)
+    held, coverage = _held_out_errors(blocks)
     return Identification(
         robot=robot,
         recordings=tuple(e.bag for e in evaluations),
@@ -228,10 +244,10 @@ def _result(
         noise=np.sqrt((np.concatenate(errors) ** 2).mean(0)),
         independent=independent,
         choices=chosen.choices,
-        intervals=intervals(known, model),
+        intervals=intervals(known, model, first.units),
         prior_decided=prior_decided(known, fitter.prior, links),
         findings=(
-            *_findings(fitter, links, held),
+            *_findings(fitter, links, held, first.units),
             *_motion_findings(fitter, chosen, later, independent),
         ),
         notes=tuple(note for e in evaluations for note in e.notes),
@@ -255,23 +271,15 @@ def _model(
     )
 
 
-def _held_out_errors(
-    blocks: Sequence[HeldOutBlock], cut: Sequence[Block]
-) -> tuple[dict[str, Floats], Floats]:
+def _held_out_errors(blocks: Sequence[HeldOutBlock]) -> tuple[dict[str, Floats], Floats]:
     """RMSE (n,) of each column over the valid samples, and the share within the band."""
-    columns, within = [], []
-    for held_out, block in zip(blocks, cut, strict=True):
-        errors = {
-            name: (held_out.measured - computed)[block.counts]
-            for name, computed in held_out.computed.items()
-        }
-        columns.append(errors)
-        within.append(np.abs(errors["identified"]) <= held_out.band)
+    columns = [block.errors for block in blocks]
+    within = [np.abs(e["identified"]) <= b.band for e, b in zip(columns, blocks, strict=True)]
     return root_mean_squares(columns), np.concatenate(within).mean(0)
 
 
 def _findings(
-    fitter: ArmFitter, links: Sequence[str], held: dict[str, Floats]
+    fitter: ArmFitter, links: Sequence[str], held: dict[str, Floats], units: Sequence[str]
 ) -> tuple[Finding, ...]:
     found = [
         Finding("floor", f"link {link}: the description can't be meant: the prior has {text}", link)
@@ -284,7 +292,7 @@ def _findings(
         found.append(
             Finding(
                 "gain",
-                f"no gain: {identified:.3g} N m on blocks held out, where column {baseline[1]} has "
+                f"no gain: {identified:.3g} {mean_unit(units)} on blocks held out, where column {baseline[1]} has "
                 f"{baseline[0]:.3g}; stay with it, or record a longer or richer motion",
             )
         )

@@ -38,20 +38,20 @@ _OWN = (
     ("fs", False),
     ("vs", True),
 )
-_OWN_UNITS = {
-    "rotor_inertia": "kg m^2",
-    "fv": "N m s/rad",
-    "fo": "N m",
-    "fc": "N m",
-    "shift": "rad/s",
-    "width": "rad/s",
-    "fl": "",
-    "fs": "N m",
-    "vs": "rad/s",
+_OWN_UNITS = {  # of a revolute joint, and of a prismatic one
+    "rotor_inertia": ("kg m^2", "kg"),
+    "fv": ("N m s/rad", "N s/m"),
+    "fo": ("N m", "N"),
+    "fc": ("N m", "N"),
+    "shift": ("rad/s", "m/s"),
+    "width": ("rad/s", "m/s"),
+    "fl": ("", ""),
+    "fs": ("N m", "N"),
+    "vs": ("rad/s", "m/s"),
 }
 
 _CLUSTERS = 10
-# Student's t, 97.5 %, by degrees of freedom.
+# Student's t, 97.5 %, by degrees of freedom, from one.
 _T = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160)
 _KNOWN = 0.5  # share of the information that must be the data's
 
@@ -97,6 +97,11 @@ class Knowledge:
         posterior = np.diag(_inverse(self.worth * self.data + prior))
         shares: Floats = 1 - posterior / np.diag(_inverse(prior))
         return shares
+
+
+def student_t(clusters: int) -> float:
+    """Half width of a 95 % interval, in standard deviations that so many clusters tell."""
+    return float(_T[min(clusters - 2, len(_T) - 1)])
 
 
 def _inverse(matrix: Floats) -> Floats:
@@ -158,12 +163,16 @@ def independent_samples(errors: Sequence[Floats]) -> Floats:
     return total
 
 
-def intervals(known: Knowledge, model: _core.FastModel) -> tuple[Interval, ...]:
-    """95 % intervals of friction figures, rotor inertias, and identifiable inertial combinations."""
+def intervals(
+    known: Knowledge, model: _core.FastModel, units: Sequence[str]
+) -> tuple[Interval, ...]:
+    """95 % intervals of friction figures, rotor inertias, and identifiable inertial combinations.
+
+    units: of each joint's torque, N m or N.
+    """
     n = len(known.joints)
     covariance = known.covariance
-    clusters = len(known.scores)
-    factor: float = _T[min(clusters - 2, len(_T) - 1)]
+    factor = student_t(len(known.scores))
     found = []
     for combination, k, name in _combinations(model, known.joints):
         direction = np.zeros(len(known.values))
@@ -177,7 +186,8 @@ def intervals(known: Knowledge, model: _core.FastModel) -> tuple[Interval, ...]:
             at = 10 * n + columns * j + c
             value = float(known.values[at])
             width = half_widths[at] * (value if logarithm else 1.0)
-            found.append(Interval(f"{joint} {key}", _OWN_UNITS[key], value, width, joint))
+            unit = _OWN_UNITS[key][units[j] == "N"]
+            found.append(Interval(f"{joint} {key}", unit, value, width, joint))
     return tuple(found)
 
 

@@ -60,11 +60,16 @@ def _check_motion(evaluations: Sequence[Evaluation]) -> None:
         )
     low = np.min([e.log.q.min(axis=0) for e in evaluations], axis=0)
     travel = np.max([e.log.q.max(axis=0) for e in evaluations], axis=0) - low
-    names = evaluations[0].joint_names
-    still = [joint for joint, way in zip(names, travel, strict=True) if way < LEAST_TRAVEL]
+    names, units = evaluations[0].joint_names, evaluations[0].units
+    still = {
+        joint: f"{way:.2g} {'m' if unit == 'N' else 'rad'}"
+        for joint, way, unit in zip(names, travel, units, strict=True)
+        if way < LEAST_TRAVEL
+    }
     if still:
         raise IdentificationError(
-            f"{where}: {listed(still)}: expected every joint to move by {LEAST_TRAVEL:g} rad or more, got less, "
+            f"{where}: {listed(list(still))}: expected every joint to move by {LEAST_TRAVEL:g} rad (prismatic: "
+            f"{LEAST_TRAVEL:g} m) or more, got {listed(list(still.values()))}, "
             "so that neither friction nor load of the joint show; record a motion in which it moves "
             "(`ids excite` makes one), or end the chain before it: `root` and `tip` of a run configuration"
         )
@@ -98,9 +103,14 @@ def check_result(found: Identification) -> None:
         name = {"present": "the present model", "urdf": "the description"}[start]
         raise IdentificationError(
             f"{_named(found)}: the identified model is no gain over {name}: {found.rmse('identified'):.3g} "
-            f"against {found.rmse(start):.3g} on data that were held out; stay with {name}, or record a "
-            "longer motion (`ids excite` makes one)"
+            f"against {found.rmse(start):.3g} {mean_unit(found.units)} on data that were held out; stay with "
+            f"{name}, or record a longer motion (`ids excite` makes one)"
         )
+
+
+def mean_unit(units: Sequence[str]) -> str:
+    """Of means over the joints."""
+    return units[0] if len(set(units)) == 1 else "N m and N"
 
 
 def _named(found: Identification) -> str:

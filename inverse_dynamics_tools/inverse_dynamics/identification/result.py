@@ -99,6 +99,14 @@ class HeldOutBlock:
     prior_strength: float
     delay: float  # s
 
+    @property
+    def errors(self) -> dict[str, Floats]:
+        """Measured minus computed torques of the samples that count, by name of COLUMNS."""
+        return {
+            name: (self.measured - computed)[self.counts]
+            for name, computed in self.computed.items()
+        }
+
 
 @dataclass(frozen=True)
 class Interval:
@@ -120,6 +128,16 @@ class PriorDecided:
     prior: float
     value: float
     share: float  # of its information that comes from the data, 0 to 1
+
+
+@dataclass(frozen=True)
+class DriveGain:
+    """The gain of a joint's motor, found with a known load, or stated."""
+
+    joint: str
+    value: float  # N m/A (prismatic N/A)
+    half_width: float | None  # of the 95 % interval; None: the data don't tell it, and it is stated
+    stated: float | None  # by the run configuration or its solver's model
 
 
 @dataclass(frozen=True)
@@ -166,6 +184,7 @@ class Identification:
     findings: tuple[Finding, ...]
     notes: tuple[str, ...]  # of reading and differentiating, as evaluate() has them
     seconds: Mapping[str, float]  # what took how long
+    drive_gains: tuple[DriveGain, ...] = ()  # that known loads have told; of currents alone
 
     def rmse(self, column: str) -> float:
         """Held-out error of a name of COLUMNS: mean over the joints."""

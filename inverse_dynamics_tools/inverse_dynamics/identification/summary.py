@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.identification.result import Choice, Identification
+    from inverse_dynamics.identification.result import Choice, DriveGain, Identification
 
 TITLES = {
     "urdf": "URDF",
@@ -72,7 +72,9 @@ def choices_told(found: Identification) -> list[tuple[str, str]]:
     """What was chosen and why: name and sentence."""
     law, prior = (_best_by(found.choices, name) for name in ("law", "prior_strength"))
     late = "later" if found.delay >= 0 else "earlier"
+    told = [("drive gains", ", ".join(map(_gain_told, found.drive_gains)))]
     return [
+        *(told if found.drive_gains else []),
         ("friction law", f"{found.law}: {LAWS.get(found.law, found.law)}{_compared(law)}"),
         (
             "prior strength",
@@ -83,6 +85,13 @@ def choices_told(found: Identification) -> list[tuple[str, str]]:
         ("effort means", found.effort),
         ("data", f"{found.samples} samples, {found.duration:.1f} s"),
     ]
+
+
+def _gain_told(gain: DriveGain) -> str:
+    if gain.half_width is None:
+        return f"{gain.joint} {gain.value:.4g} as stated, which the known load doesn't tell"
+    stated = "" if gain.stated is None else f" (stated: {gain.stated:.4g})"
+    return f"{gain.joint} {gain.value:.4g} +- {gain.half_width:.2g}{stated}"
 
 
 def _best_by(choices: Iterable[Choice], name: str) -> dict[object, Choice]:

@@ -16,6 +16,7 @@ import numpy as np
 
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.identification.baselines import RefittedFriction, solver_of
 from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.results.model_files import model_file_text
 from inverse_dynamics.robot.robots import RIGID_BODY, with_changes
@@ -48,6 +49,8 @@ def hold_out(
 ) -> HoldOut:
     """Evaluate the identified model, the description, and the present model if there is one.
 
+    With its friction refitted, too: to the blocks that the identified model was fitted to.
+
     options: those of evaluate(). Raises UserError.
     """
     recording = Path(recording)
@@ -74,6 +77,8 @@ def hold_out(
             for column, robot in robots.items()
         }
     errors = {column: _errors(result) for column, result in results.items()}
+    if "present" in results:
+        errors["present_refitted"] = _refitted_errors(found, results["present"])
     return HoldOut(
         recording=recording,
         rmse={column: np.sqrt((error**2).mean(axis=0)) for column, error in errors.items()},
@@ -86,3 +91,14 @@ def _errors(result: Evaluation) -> Floats:
     """(M, n) of the valid samples."""
     kept = result.samples.kept
     return np.asarray((result.computed - result.measured)[kept])
+
+
+def _refitted_errors(found: Identification, present: Evaluation) -> Floats:
+    """(M, n) of the present model with friction and offset fitted to the identification's blocks."""
+    fitted = [
+        (b.q[b.counts], b.qd[b.counts], b.computed["present"][b.counts], b.measured[b.counts])
+        for b in found.blocks
+    ]
+    refitted = RefittedFriction(solver_of(present.robot), fitted)
+    torques = refitted.torques(present.log.q, present.log.qd, present.computed)
+    return np.asarray((torques - present.measured)[present.samples.kept])

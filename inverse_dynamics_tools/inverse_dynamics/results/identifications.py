@@ -195,14 +195,14 @@ def summary(found: Identification, tests: Sequence[HoldOut] = ()) -> dict[str, A
                 "recording": block.recording,
                 "from": float(block.time[0]),
                 "to": float(block.time[-1]),
-                "samples": len(block.time),
+                "samples": int(block.counts.sum()),
                 "law": block.law,
                 "prior_strength": block.prior_strength,
                 "delay": block.delay,
                 "band": plain(block.band),
                 "rmse": {
-                    column: plain(np.sqrt(np.mean((computed - block.measured) ** 2, axis=0)))
-                    for column, computed in block.computed.items()
+                    column: plain(np.sqrt((errors**2).mean(axis=0)))
+                    for column, errors in block.errors.items()
                 },
             }
             for block in found.blocks

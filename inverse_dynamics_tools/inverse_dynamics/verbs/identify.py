@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING
 from inverse_dynamics.verbs.common import file_name, number, progress_bar
 from inverse_dynamics.verbs.json_output import print_json
 from inverse_dynamics.verbs.options import add_verb, chosen_robot
+from inverse_dynamics.verbs.payload_option import payload
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from inverse_dynamics._core import Parameter
     from inverse_dynamics.identification.result import Identification
     from inverse_dynamics.results.hold_out import HoldOut
     from inverse_dynamics.results.identifications import IdentificationFiles
@@ -34,6 +36,11 @@ examples:
   ids identify monday tuesday --robot ur10_real --out arm.yaml \\
       --hold-out wednesday
       from two recordings; errors on a third one, which is used for no fit and no choice
+
+  ids identify alone --known-payload loaded=5.0,0,0.02,0.08 \\
+      --urdf my_arm.urdf --effort-is current --out arm.yaml
+      efforts are motor currents [A] with unknown drive gains: a second
+      recording with a known load tells them
 
 Errors are those on held-out parts of the recordings: each of several contiguous
 blocks is predicted by a model fitted to the others, with law, prior and delay chosen on the others.
@@ -94,6 +101,16 @@ def add_parser(
         help="a recording to test the model on, for example of another day; may be given several times",
     )
     parser.add_argument(
+        "--known-payload",
+        metavar="RECORDING=LOAD",
+        type=_known_payload,
+        action="append",
+        default=[],
+        help="a further recording of motor currents, with a load that is known: it tells the drive gains. "
+        "LOAD as --payload of other verbs: MASS,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz] in the tip frame, or a YAML "
+        "file; may be given several times",
+    )
+    parser.add_argument(
         "--urdf-out",
         metavar="FILE",
         type=Path,
@@ -131,6 +148,15 @@ def add_parser(
     return parser
 
 
+def _known_payload(text: str) -> tuple[Path, dict[str, Parameter]]:
+    recording, equals, load = text.rpartition("=")
+    if not equals or not recording:
+        raise argparse.ArgumentTypeError(
+            f"expected RECORDING=MASS,x,y,z, a recording and what the robot carries in it, got '{text}'"
+        )
+    return file_name(recording), payload(load)
+
+
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.identification.identify import identify
@@ -144,7 +170,8 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.verbs.screen import Screen
 
     robot = _robot(arguments)
-    inputs = (*arguments.recordings, *arguments.hold_out, *robot.files)
+    loads = [recording for recording, _ in arguments.known_payload]
+    inputs = (*arguments.recordings, *arguments.hold_out, *loads, *robot.files)
     more = {"--urdf-out": arguments.urdf_out, "--mjcf-out": arguments.mjcf_out}
     more = {option: file for option, file in more.items() if file is not None}
     check_identification_files(
@@ -154,6 +181,7 @@ def run(arguments: argparse.Namespace) -> None:
         found = identify(
             arguments.recordings,
             robot,
+            known_payloads=arguments.known_payload,
             effort_is=arguments.effort_is,
             topic=arguments.topic,
             start=arguments.start,

@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Drive gains of motor currents, from recordings without and with a known load.
+
+    found = identify_drive_gains(alone, [("loaded", {"payload.mass": 5.0})], robot, fitter)
+    print(found[1].value, found[1].half_width)     # N m/A
+
+Currents i, links p, friction f and gains k of a motion fit
+
+    k_j i_j = Y_j p + J_j qdd_j + f_j + t_j
+
+as well with all of them twice as large, except for t_j, the torque of the known load: it alone has a
+scale. The errors that are fitted are those of the currents [arm_fit.hpp]. A gain is known where data
+decide it: with a hundredth of the prior, which says what links weigh, its interval must still be narrow.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.base.wording import listed
+from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.identification.blocks import blocks_of
+from inverse_dynamics.identification.knowledge import Knowledge, student_t
+from inverse_dynamics.identification.result import DriveGain, IdentificationError
+from inverse_dynamics.robot.robots import RIGID_BODY, with_changes
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from inverse_dynamics import _core
+    from inverse_dynamics._core import ArmFit, ArmFitter, Parameter
+    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.robot.robots import Robot
+
+    KnownPayload = tuple[Path | str, Mapping[str, Parameter]]
+    """A recording, and the parameters payload.* of what the tip carries in it."""
+
+MOST_UNCERTAIN = 0.1
+"""Half width of the 95 % interval, as a share of the gain, above which data don't tell it."""
+
+_LAW = "load"  # a load shows in gravity and in friction
+_STRENGTH = 10.0
+_LOOSENED = 0.01  # share of the prior that is left where data must decide
+_PASSES = 40
+_BLOCKS = 5  # of each recording, for intervals
+_FAR = 5.0  # factor by which gains of a robot may differ from their median, to start from
+
+
+@dataclass(frozen=True)
+class _Recording:
+    """Blocks of currents, and what the tip carries: (10,) in its frame, None: nothing that is known."""
+
+    evaluation: Evaluation
+    blocks: list[_core.Block]
+    carried: Floats | None
+
+
+def identify_drive_gains(
+    recordings: Sequence[Path | str],
+    known_payloads: Sequence[KnownPayload],
+    robot: Robot,
+    fitter: ArmFitter,
+    *,
+    progress: Progress = no_progress,
+    **options: Any,
+) -> tuple[DriveGain, ...]:
+    """The gain of each joint; `robot`'s or its solver's own where the data don't tell it.
+
+    recordings: without the loads; known_payloads: recordings with them, and the parameters payload.* of
+    solvers, in the tip frame. options: of evaluate(). Raises UserError: IdentificationError where a gain
+    is neither told nor stated.
+    """
+    stated = stated_gains(robot)
+    read = [
+        _read(path, load, robot, fitter, progress, options)
+        for path, load in [*((path, None) for path in recordings), *known_payloads]
+    ]
+    fit = _fit(fitter, read)
+    half_widths = _half_widths(fitter, fit, read)
+    known = half_widths <= MOST_UNCERTAIN
+    _check(fitter, known, half_widths, stated, read)
+    gains = fit.drive_gains
+    assert gains is not None  # they were fitted
+    return tuple(
+        DriveGain(
+            joint=joint,
+            value=float(gains[j]) if known[j] or stated is None else stated[j],
+            half_width=float(half_widths[j] * gains[j]) if known[j] else None,
+            stated=None if stated is None else stated[j],
+        )
+        for j, joint in enumerate(fitter.joint_names)
+    )
+
+
+def stated_gains(robot: Robot) -> tuple[float, ...] | None:
+    """N m/A, of the run configuration, or of the model of its solver. Raises UserError."""
+    from inverse_dynamics.evaluation.evaluation import Arm
+
+    if robot.drive_gains:
+        return robot.drive_gains
+    own = Arm(robot).solver.drive_gains
+    return None if own is None else tuple(own.tolist())
+
+
+def check_gains(robot: Robot, effort_is: str | None) -> None:
+    """Raise IdentificationError for motor currents whose gains nobody states."""
+    if (effort_is or robot.effort) != "current" or stated_gains(robot) is not None:
+        return
+    raise IdentificationError(
+        f"robot {robot.name}: efforts are motor currents, and nothing states the drive gains: without a "
+        "known torque, gains, masses and friction may all be twice as large; record the motion again with a "
+        "load that was weighed and give --known-payload RECORDING=MASS,x,y,z, or add drive_gains: [...] to "
+        "the run configuration",
+        "Efforts are motor currents",
+    )
+
+
+def body(parameters: Mapping[str, Parameter]) -> Floats:
+    """(10,) m, mc, I about the tip's origin, of the parameters payload.* of solvers."""
+    mass = float(parameters["payload.mass"])  # type: ignore[arg-type]
+    xyz, rpy, center, inertia = (
+        np.array(parameters.get(f"payload.{name}", size * [0.0]), dtype=float)
+        for name, size in (
+            ("frame.xyz", 3),
+            ("frame.rpy", 3),
+            ("center_of_mass", 3),
+            ("inertia", 6),
+        )
+    )
+    R = _rotation(rpy)
+    c = xyz + R @ center
+    xx, xy, xz, yy, yz, zz = inertia
+    about_center = R @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ R.T
+    about_origin = about_center + mass * (c @ c * np.eye(3) - np.outer(c, c))
+    return np.concatenate([[mass], mass * c, about_origin[np.triu_indices(3)]])
+
+
+def _rotation(rpy: Floats) -> Floats:
+    """(3, 3): about the fixed x, then y, then z axis."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos(rpy), np.sin(rpy)
+    x = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
+    y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
+    z = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
+    return np.asarray(z @ y @ x)
+
+
+def _read(
+    path: Path | str,
+    load: Mapping[str, Parameter] | None,
+    robot: Robot,
+    fitter: ArmFitter,
+    progress: Progress,
+    options: Mapping[str, Any],
+) -> _Recording:
+    """Currents of a recording, as if each gain were one; computed: by the description with the load."""
+    if load is not None and not float(load["payload.mass"]) > 0:  # type: ignore[arg-type]
+        raise IdentificationError(
+            f"--known-payload {path}: expected a mass above zero, got {load['payload.mass']}"
+        )
+    described = replace(
+        robot,
+        plugin=RIGID_BODY,
+        model=None,
+        friction=False,
+        parameters=dict(load or {}),
+        drive_gains=(1.0,) * len(fitter.joint_names),
+    )
+    found = evaluate(path, with_changes(described), progress=progress, **options)
+    if found.effort.meaning != "current":
+        raise IdentificationError(
+            f"{path}: expected motor currents, whose gains a known load tells, got "
+            f"{found.effort.meaning} ({found.effort.stated_by}); leave out --known-payload, or give "
+            "--effort-is current",
+            "Efforts are motor currents",
+        )
+    blocks = [block.fitted for block in blocks_of(found, _BLOCKS)]
+    return _Recording(found, blocks, None if load is None else body(load))
+
+
+def _blocks(read: Sequence[_Recording]) -> tuple[list[_core.Block], list[Floats | None]]:
+    blocks = [block for recording in read for block in recording.blocks]
+    return blocks, [recording.carried for recording in read for _ in recording.blocks]
+
+
+def _fit(fitter: ArmFitter, read: Sequence[_Recording]) -> ArmFit:
+    """Links, friction and gains of all recordings."""
+    blocks, carried = _blocks(read)
+    gains = _about(read)
+    torques = [(q, qd, qdd, current * gains) for q, qd, qdd, current in blocks]
+    start = fitter.fit(torques, law=_LAW, prior_strength=_STRENGTH, carried=carried)
+    return fitter.fit(
+        blocks,
+        law=_LAW,
+        prior_strength=_STRENGTH,
+        most_passes=_PASSES,
+        start=start,
+        drive_gains=gains,
+        carried=carried,
+    )
+
+
+def _about(read: Sequence[_Recording]) -> Floats:
+    """(n,) gains to start from: what the description computes, by the currents."""
+    computed = np.concatenate([r.evaluation.computed for r in read])
+    current = np.concatenate([r.evaluation.measured for r in read])
+    power = np.maximum((current**2).mean(0), 1e-12)
+    gains = np.sqrt(np.maximum((computed**2).mean(0), 1e-12) / power)
+    middle = float(np.median(gains))
+    return np.asarray(np.clip(gains, middle / _FAR, middle * _FAR))
+
+
+def _half_widths(fitter: ArmFitter, fit: ArmFit, read: Sequence[_Recording]) -> Floats:
+    """(n,) of the 95 % intervals of log k, the widest of three.
+
+    What leaving out each block changes (the jackknife), which knows that errors are alike for a second;
+    the cluster-robust ones, with the prior and hardly without.
+    """
+    blocks, carried = _blocks(read)
+    data, prior, scores = fitter.information(
+        fit, blocks, law=_LAW, prior_strength=_STRENGTH, carried=carried
+    )
+    n = len(fitter.joint_names)
+    columns = (len(data) - 10 * n) // n
+    at = 10 * n + columns * np.arange(1, n + 1) - 1
+    values = np.zeros(len(data))
+    values[: 10 * n] = fit.parameters.ravel()
+    deviations = [_jackknife(fitter, fit, blocks, carried)]
+    for share in (1.0, _LOOSENED):
+        known = Knowledge(
+            fitter.joint_names, values, fitter.prior, data, share * prior, scores, worth=1.0
+        )
+        deviations.append(np.sqrt(np.diag(known.covariance)[at]))
+    widths: Floats = student_t(len(scores)) * np.max(deviations, axis=0)
+    return widths
+
+
+def _jackknife(
+    fitter: ArmFitter,
+    fit: ArmFit,
+    blocks: Sequence[_core.Block],
+    carried: Sequence[Floats | None],
+) -> Floats:
+    """(n,) standard deviations of log k."""
+    count, without = len(blocks), []
+    for k in range(count):
+        rest = [j for j in range(count) if j != k]
+        again = fitter.fit(
+            [blocks[j] for j in rest],
+            law=_LAW,
+            prior_strength=_STRENGTH,
+            start=fit,
+            drive_gains=fit.drive_gains,
+            carried=[carried[j] for j in rest],
+        )
+        assert again.drive_gains is not None
+        without.append(np.log(again.drive_gains))
+    deviation: Floats = np.sqrt((count - 1) * np.var(without, axis=0))
+    return deviation
+
+
+def _check(
+    fitter: ArmFitter,
+    known: Mask,
+    half_widths: Floats,
+    stated: tuple[float, ...] | None,
+    read: Sequence[_Recording],
+) -> None:
+    """Refuse joints whose gain is neither told by the data nor stated."""
+    if stated is not None or known.all():
+        return
+    unknown = [
+        f"{joint} (+- {100 * min(width, 9.99):.0f} %)"
+        for joint, width, is_known in zip(fitter.joint_names, half_widths, known, strict=True)
+        if not is_known
+    ]
+    where = ", ".join(str(recording.evaluation.bag) for recording in read)
+    raise IdentificationError(
+        f"{where}: the known load doesn't tell the drive gain of {listed(unknown)}: its torque at the joint is "
+        "too small beside what links and friction may be; fix the load with its centre beside the axis and "
+        "turn the wrist so that gravity loads the joint, or state gains that are known: `drive_gains:` in the "
+        "run configuration is taken for these joints",
+        "Efforts are motor currents",
+    )
