@@ -99,6 +99,11 @@ def test_packages_are_found_where_they_were_installed(tmp_path: Path) -> None:
     configure = ("cmake", "-S", user, "-B", tmp_path, f"-DCMAKE_PREFIX_PATH={prefix}")
     run(*configure, "-Dcomponents=")
     run(*configure, "-Dcomponents=inverse_dynamics_robots")
+    # Without components, all that was installed has to be there, with what it needs.
+    damaged = "-DCMAKE_DISABLE_FIND_PACKAGE_inverse_dynamics_robots=ON"
+    text = run(*configure, "-Dcomponents=", damaged, fails=True)
+    assert "missing: inverse_dynamics_robots" in text
+    run(*configure, "-Dcomponents=", "-UCMAKE_DISABLE_FIND_PACKAGE_inverse_dynamics_robots")
     text = run(*configure, "-Dcomponents=inverse_dynamics_control", fails=True)
     assert "missing: inverse_dynamics_control" in text
     assert (prefix / "share/inverse_dynamics_robots/urdf/ur10.urdf").is_file()
