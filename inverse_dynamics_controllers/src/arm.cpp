@@ -45,7 +45,7 @@ double requiredPeriod(const Setup& setup) {
 
 Eigen::VectorXd dampingOf(const Setup& setup) {
   const Arm& arm = setup.arm;
-  const auto& damping = setup.parameters.damping;
+  const auto& damping = setup.law.damping;
   if (!damping.values.empty()) return jointNumbers("damping.values", damping.values, arm.joints);
   if (!arm.solver->inertiaIsPhysical()) {
     throw InvalidParameterValueException(errorText(
@@ -72,9 +72,10 @@ std::string Setup::tip() const {
   return node->get_parameter("ids.tip", tip) ? tip.value_to_string() : "";
 }
 
-ArmSource::ArmSource(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node)
+ArmSource::ArmSource(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node, Use use)
     : node_(std::move(node)),
       parameters_(std::make_shared<arm_parameters::ParamListener>(node_)),
+      law_(use == Use::kCommand ? std::make_shared<law_parameters::ParamListener>(node_) : nullptr),
       description_(node_) {}
 
 Setup ArmSource::setup(const std::string& managers_description, unsigned update_rate) const {
@@ -94,7 +95,11 @@ Setup ArmSource::setup(const std::string& managers_description, unsigned update_
     RCLCPP_WARN(node_->get_logger(), "%s: %s", parameters.plugin_name.c_str(), warning.c_str());
   }
   const std::vector<std::string> joints = hardwareNames(parameters.joints, solver->jointNames());
-  return {node_, parameters, {solver, joints, urdfLimits(description, joints)}, update_rate};
+  return {node_,
+          parameters,
+          law_ ? law_->get_params() : LawParameters(),
+          {solver, joints, urdfLimits(description, joints)},
+          update_rate};
 }
 
 inverse_dynamics_control::Compensated compensatedByRobot(const Setup& setup) {
@@ -104,23 +109,23 @@ inverse_dynamics_control::Compensated compensatedByRobot(const Setup& setup) {
 
 LawOptions lawOptions(const Setup& setup, const std::string& friction_source) {
   const Arm& arm = setup.arm;
-  const ArmParameters& parameters = setup.parameters;
+  const LawParameters& law = setup.law;
   LawOptions options;
   options.compensated = compensatedByRobot(setup);
   options.friction.source = frictionSource(friction_source);
-  options.friction.dead_band = parameters.friction.dead_band;
-  options.friction.blend = parameters.friction.blend;
-  options.friction.scale = parameters.friction.scale;
+  options.friction.dead_band = law.friction.dead_band;
+  options.friction.blend = law.friction.blend;
+  options.friction.scale = law.friction.scale;
   options.limits.effort =
-      jointNumbers("limits.effort", parameters.limits.effort, arm.joints, arm.limits.effort);
-  if (parameters.limits.effort.empty() && !arm.limits.effort.allFinite()) {
+      jointNumbers("limits.effort", law.limits.effort, arm.joints, arm.limits.effort);
+  if (law.limits.effort.empty() && !arm.limits.effort.allFinite()) {
     throw ParameterUninitializedException(errorText(
         "parameter 'limits.effort'", "not set",
         "limits of effort [N m], here or in the robot description", "neither for all joints",
         "set it; .inf where the robot limits its effort by itself"));
   }
-  options.limits.rate = jointNumbers("limits.effort_rate", parameters.limits.effort_rate,
-                                     arm.joints, Eigen::VectorXd());
+  options.limits.rate =
+      jointNumbers("limits.effort_rate", law.limits.effort_rate, arm.joints, Eigen::VectorXd());
   options.damping = dampingOf(setup);
   return options;
 }

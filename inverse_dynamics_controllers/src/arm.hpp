@@ -2,13 +2,14 @@
 /// @file
 /// What the controllers have in common when they are configured: solver, joints, limits, options.
 ///
-///     ArmSource source(node);                                         // when initialized
+///     ArmSource source(node, ArmSource::Use::kCommand);               // when initialized
 ///     const Setup setup = source.setup(robotDescriptionOf(*this), get_update_rate());
 ///     LawOptions options = lawOptions(setup, params.friction.source);
 #pragma once
 
 #include <inverse_dynamics_control/control_law.hpp>
 #include <inverse_dynamics_controllers/arm_parameters.hpp>
+#include <inverse_dynamics_controllers/law_parameters.hpp>
 #include <memory>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 #include <string>
@@ -22,6 +23,9 @@ namespace inverse_dynamics_controllers {
 /// The parameters that all controllers have; see their descriptions.
 using ArmParameters = arm_parameters::Params;
 
+/// The parameters that controllers with commands have in addition.
+using LawParameters = law_parameters::Params;
+
 /// A robot arm as its controller knows it.
 struct Arm {
   std::shared_ptr<inverse_dynamics_solver::InverseDynamicsSolver> solver;
@@ -33,6 +37,7 @@ struct Arm {
 struct Setup {
   std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node;
   ArmParameters parameters;
+  LawParameters law;  ///< the defaults where nothing is commanded
   Arm arm;
   unsigned update_rate;  ///< of the controller [Hz]; 0: not known
 
@@ -46,9 +51,11 @@ struct Setup {
 /// Where a controller's robot comes from: parameters, and the robot description.
 class ArmSource {
  public:
-  /// Declares the parameters, and listens for the robot description. Throws what is wrong with a
-  /// parameter.
-  explicit ArmSource(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node);
+  enum class Use { kCommand, kMeasure };
+
+  /// Declares the parameters, those of laws only for kCommand, and listens for the robot description.
+  /// Throws what is wrong with a parameter.
+  ArmSource(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node, Use use);
 
   /// Loads and initializes the solver, with the node's parameters below `ids`. Waits for nothing.
   ///
@@ -59,6 +66,7 @@ class ArmSource {
  private:
   std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node_;
   std::shared_ptr<arm_parameters::ParamListener> parameters_;
+  std::shared_ptr<law_parameters::ParamListener> law_;  // null: nothing is commanded
   RobotDescriptionTopic description_;
 };
 

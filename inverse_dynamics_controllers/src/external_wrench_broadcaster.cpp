@@ -141,7 +141,7 @@ ExternalWrenchBroadcaster::state_interface_configuration() const {
 
 CallbackReturn ExternalWrenchBroadcaster::on_init() {
   return transition(get_node()->get_logger(), [this] {
-    arm_source_ = std::make_unique<ArmSource>(get_node());
+    arm_source_ = std::make_unique<ArmSource>(get_node(), ArmSource::Use::kMeasure);
     parameters_ = std::make_shared<external_wrench_broadcaster::ParamListener>(get_node());
   });
 }

@@ -25,7 +25,7 @@ InterfaceConfiguration FollowingController::state_interface_configuration() cons
 
 CallbackReturn FollowingController::on_init() {
   return transition(get_node()->get_logger(), [this] {
-    arm_source_ = std::make_unique<ArmSource>(get_node());
+    arm_source_ = std::make_unique<ArmSource>(get_node(), ArmSource::Use::kCommand);
     reference_parameters_ = std::make_shared<reference_parameters::ParamListener>(get_node());
     declareParameters();
   });

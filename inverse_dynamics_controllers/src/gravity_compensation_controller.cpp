@@ -34,7 +34,7 @@ GravityCompensationController::state_interface_configuration() const {
 
 CallbackReturn GravityCompensationController::on_init() {
   return transition(get_node()->get_logger(), [this] {
-    arm_source_ = std::make_unique<ArmSource>(get_node());
+    arm_source_ = std::make_unique<ArmSource>(get_node(), ArmSource::Use::kCommand);
     parameters_ = std::make_shared<gravity_compensation_controller::ParamListener>(get_node());
   });
 }

@@ -233,6 +233,14 @@ TEST_F(ExternalWrenchBroadcasterTest, SaysWhereTheJointsDoNotFeelAWrench) {
   EXPECT_TRUE(spinUntil([this] { return log.has("the joints don't feel"); })) << log.text();
 }
 
+TEST_F(ExternalWrenchBroadcasterTest, DeclaresNoParameterOfCommands) {
+  ASSERT_TRUE(configure(good())) << log.text();
+  for (const std::string prefix : {"damping", "friction", "limits"}) {
+    EXPECT_EQ(controller.get_node()->list_parameters({prefix}, 0).names,
+              std::vector<std::string>());
+  }
+}
+
 TEST_F(ExternalWrenchBroadcasterTest, RefusesToGuessTheNoise) {
   expectRefused(
       but("noise", rclcpp::ParameterValue(Numbers{})),
