@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robots.hpp"
 
-#include <ament_index_cpp/get_package_share_directory.hpp>
 #include <fstream>
+#include <inverse_dynamics_solver/installed_package.hpp>
 #include <sstream>
 #include <stdexcept>
 
@@ -13,7 +13,7 @@ namespace {
 
 std::string textOf(const std::string& file) {
   const std::string path =
-      ament_index_cpp::get_package_share_directory("inverse_dynamics_robots") + "/urdf/" + file;
+      inverse_dynamics_solver::installedPackageShare("inverse_dynamics_robots") + "/urdf/" + file;
   std::ifstream stream(path);
   if (!stream) throw std::runtime_error(path + ": can't be read");
   std::ostringstream text;

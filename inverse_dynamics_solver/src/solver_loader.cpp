@@ -2,13 +2,13 @@
 #include "inverse_dynamics_solver/solver_loader.hpp"
 
 #include <algorithm>
-#include <ament_index_cpp/get_resources.hpp>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <pluginlib/class_loader.hpp>
 #include <utility>
 
+#include "ament_index.hpp"
 #include "chain_dynamics/text.hpp"
 
 namespace inverse_dynamics_solver {
@@ -82,8 +82,7 @@ struct SolverLoader::Implementation {
     try {
       // Asked first: with an empty index Debian's pluginlib would search for ROS 1 packages, slowly
       // and loudly.
-      const Index index =
-          ament_index_cpp::get_resources("inverse_dynamics_solver__pluginlib__plugin");
+      const Index index = ament_index::resources("inverse_dynamics_solver__pluginlib__plugin");
       if (index.empty()) return;
       loader = &pluginLoader(index);
       names = loader->getDeclaredClasses();

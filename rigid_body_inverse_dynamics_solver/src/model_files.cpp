@@ -2,12 +2,12 @@
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
 
 #include <algorithm>
-#include <ament_index_cpp/get_package_share_directory.hpp>
 #include <filesystem>
 
 #include "chain_dynamics/error.hpp"
 #include "chain_dynamics/model_file.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
+#include "inverse_dynamics_solver/installed_package.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
 inline namespace v2 {
@@ -21,13 +21,11 @@ using std::filesystem::path;
 const char* const kDataPackage = "inverse_dynamics_robots";
 
 path modelsFolder() {
-  try {
-    return path(ament_index_cpp::get_package_share_directory(kDataPackage)) / "models";
-  } catch (const std::exception& e) {
-    throw Exception(errorText(std::string("package ") + kDataPackage, "not found",
-                              "an installed package of that name", e.what(),
-                              "source the workspace that has it: source install/local_setup.bash"));
-  }
+  const std::string share = inverse_dynamics_solver::installedPackageShare(kDataPackage);
+  if (!share.empty()) return path(share) / "models";
+  throw Exception(errorText(std::string("package ") + kDataPackage, "not found",
+                            "an installed package of that name", "none in the sourced workspaces",
+                            "source the workspace that has it: source install/local_setup.bash"));
 }
 
 bool isPath(const path& name_or_path) {

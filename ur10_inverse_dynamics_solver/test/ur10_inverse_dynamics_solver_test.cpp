@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ur10_inverse_dynamics_solver/ur10_inverse_dynamics_solver.hpp"
 
-#include <ament_index_cpp/get_package_share_directory.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -47,7 +46,7 @@ TEST(UR10, GivesTheValuesOfTheReferenceImplementation) {
 // base_link and tool0: lengths differ by up to 0.7 mm each.
 TEST(UR10, HasTheFramesOfTheMakersDescription) {
   const std::filesystem::path robots =
-      ament_index_cpp::get_package_share_directory("inverse_dynamics_robots");
+      inverse_dynamics_solver::installedPackageShare("inverse_dynamics_robots");
   std::ostringstream urdf;
   urdf << std::ifstream(robots / "urdf/ur10.urdf").rdbuf();
   const inverse_dynamics_solver::Parameters ends = {{"root", "base_link"}, {"tip", "tool0"}};

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <ament_index_cpp/get_package_share_directory.hpp>
 #include <chrono>
 #include <fstream>
+#include <inverse_dynamics_solver/installed_package.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <lifecycle_msgs/msg/state.hpp>
 #include <limits>
@@ -46,7 +46,7 @@ inline Eigen::VectorXd vec(std::initializer_list<double> values) {
 }
 
 inline std::string ur10Description() {
-  std::ifstream file(ament_index_cpp::get_package_share_directory("inverse_dynamics_robots") +
+  std::ifstream file(inverse_dynamics_solver::installedPackageShare("inverse_dynamics_robots") +
                      "/urdf/ur10.urdf");
   std::stringstream text;
   text << file.rdbuf();

@@ -5,27 +5,27 @@
 ///
 ///     expectReferenceValues(*solver, "ur10.json", 1e-10);
 ///
-/// For test programs only: it needs GoogleTest, yaml-cpp and ament_index_cpp.
+/// For test programs only: it needs GoogleTest and yaml-cpp.
 #pragma once
 
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Core>
-#include <ament_index_cpp/get_package_share_directory.hpp>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "inverse_dynamics_solver/installed_package.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
 namespace inverse_dynamics_solver::conformance {
 
 /// Path of a file of the installed package inverse_dynamics_robots.
 inline std::string robotsFile(const std::string& path) {
-  return ament_index_cpp::get_package_share_directory("inverse_dynamics_robots") + "/" + path;
+  return installedPackageShare("inverse_dynamics_robots") + "/" + path;
 }
 
 /// Text of a file; throws if it can't be read.
