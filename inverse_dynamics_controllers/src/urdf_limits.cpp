@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "urdf_limits.hpp"
 
-#include <urdf/model.h>
-
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <limits>
+
+#if __has_include(<urdf/model.hpp>)  // newer than jazzy
+#include <urdf/model.hpp>
+#else
+#include <urdf/model.h>
+#endif
 
 namespace inverse_dynamics_controllers {
 

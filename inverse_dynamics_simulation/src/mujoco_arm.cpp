@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mujoco_arm.hpp"
 
-#include <urdf/model.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
+
+#if __has_include(<urdf/model.hpp>)  // newer than jazzy
+#include <urdf/model.hpp>
+#else
+#include <urdf/model.h>
+#endif
 
 namespace inverse_dynamics_simulation {
 namespace {
