@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <pluginlib/class_list_macros.hpp>
+#include <inverse_dynamics_solver/plugin.hpp>
 
 #include "kdl_inverse_dynamics_solver/kdl_inverse_dynamics_solver.hpp"
 
-PLUGINLIB_EXPORT_CLASS(kdl_inverse_dynamics_solver::InverseDynamicsSolverKDL,
-                       inverse_dynamics_solver::InverseDynamicsSolver)
+INVERSE_DYNAMICS_SOLVER_EXPORT_PLUGIN(kdl_inverse_dynamics_solver::InverseDynamicsSolverKDL)

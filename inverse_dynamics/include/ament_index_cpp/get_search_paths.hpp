@@ -17,7 +17,8 @@ inline namespace without_ros {
 /// Its address is in the library that has included this.
 [[gnu::visibility("hidden")]] inline const char kThisLibrary = 0;
 
-/// The installation that this library is part of, then those of sourced workspaces.
+/// The installation that this library is part of, then those of sourced workspaces, then those in
+/// INVERSE_DYNAMICS_PREFIX_PATH, where Python names the wheels that have plugins.
 inline std::list<std::string> get_search_paths() {
   std::list<std::string> paths;
   Dl_info library{};
@@ -26,10 +27,12 @@ inline std::list<std::string> get_search_paths() {
     const auto file = std::filesystem::canonical(library.dli_fname, ignored);
     paths.push_back(file.parent_path().parent_path().string());
   }
-  const char* const sourced = std::getenv("AMENT_PREFIX_PATH");
-  std::istringstream stream(sourced == nullptr ? "" : sourced);
-  for (std::string path; std::getline(stream, path, ':');) {
-    if (!path.empty()) paths.push_back(path);
+  for (const char* const variable : {"AMENT_PREFIX_PATH", "INVERSE_DYNAMICS_PREFIX_PATH"}) {
+    const char* const value = std::getenv(variable);
+    std::istringstream stream(value == nullptr ? "" : value);
+    for (std::string path; std::getline(stream, path, ':');) {
+      if (!path.empty()) paths.push_back(path);
+    }
   }
   return paths;
 }

@@ -94,8 +94,9 @@ inline void* function_of(const std::string& path, const char* name) {
   void* const function = dlsym(library, name);
   if (function == nullptr) {
     throw PluginlibException(file +
-                             " registers its plugins with ROS's class_loader, and was built "
-                             "for a workspace; this program was built without ROS");
+                             " registers its plugins with ROS's class_loader alone, and this "
+                             "program was built without ROS; register them with "
+                             "INVERSE_DYNAMICS_SOLVER_EXPORT_PLUGIN");
   }
   return function;
 }
