@@ -21,6 +21,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.crash import crash_report
+from inverse_dynamics.base.extras import EXTRAS, missing
 from inverse_dynamics.base.help_text import HelpFormatter
 from inverse_dynamics.base.wording import did_you_mean, not_built
 from inverse_dynamics.base.wording import message as _message
@@ -170,6 +171,11 @@ def _run(given: list[str]) -> int:
         separator = "\n" if "\n" in str(error) else "; "
         _say(separator.join(filter(None, (f"error: {error}", written_before()))))
         return 3 if isinstance(error, PartialError) else 2
+    except ModuleNotFoundError as error:
+        if error.name not in EXTRAS:
+            raise
+        _say(f"error: {missing(error.name)}")
+        return 2
     except OSError as error:
         place = error.filename or "a file, or the standard output"
         _say(f"error: {place}: {error.strerror or error}; {_outcome()}")

@@ -42,4 +42,5 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindContact(module);
   inverse_dynamics_tools::bindPayload(module);
   inverse_dynamics_tools::explainRefusedArguments(module);
+  pybind11::module_::import("inverse_dynamics.base.wheels").attr("find_other_wheels")();
 }

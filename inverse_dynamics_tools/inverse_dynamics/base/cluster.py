@@ -3,7 +3,7 @@
 
     on_cluster(work, files, "tcp://10.0.0.1:8786", paths=files, done=lambda index, outcome: ...)
 
-Dask distributed is optional: `pip install distributed`.
+Dask distributed is optional: the extra `dask`.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 from uuid import uuid4
 
+from inverse_dynamics.base.extras import how_to_install
 from inverse_dynamics.base.wording import counted, listed
 from inverse_dynamics.base.workers import Failure, outcome_of
 from inverse_dynamics.errors import UserError
@@ -115,8 +116,8 @@ def _connected(address: str) -> Client:
         from distributed.comm import get_address_host_port
     except ImportError as error:
         raise ClusterError(
-            f"--scheduler {address}: needs Dask distributed, which can't be imported ({error}); install "
-            "it with `pip install distributed`, or leave --scheduler out: then the cores of this "
+            f"--scheduler {address}: needs Dask distributed, which can't be imported ({error}): "
+            f"{how_to_install('distributed')}, or leave --scheduler out: then the cores of this "
             "machine do the work"
         ) from error
     try:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import quote
 
 from inverse_dynamics._core import JointLogBuilder, JointStateWriter, Recording
+from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import harmless
 from inverse_dynamics.data.joint_log import JointLog, check_clock, check_storage
@@ -209,6 +210,7 @@ class _UriPath(type(Path())):  # type: ignore[misc]
 
 def new_recording(path: Path, storage: Storage) -> Writer:
     """Writer of a new recording of any types, in the current format of rosbag2."""
+    require("rosbags", "a recording of trajectories")
     from rosbags.rosbag2 import StoragePlugin, Writer
 
     plugin = StoragePlugin.MCAP if storage == "mcap" else StoragePlugin.SQLITE3

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics.base.decimals import LARGEST
+from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data.bags import error_text, open_recording, topic_of_type
 from inverse_dynamics.data.joint_log import JointLog
@@ -208,6 +209,7 @@ def _nanoseconds(time: Any) -> int:
 @cache
 def typestore() -> Typestore:
     """Definitions of messages. That of JointTrajectory is the same in every ROS 2 release."""
+    require("rosbags", "a recording of trajectories")
     from rosbags.typesys import Stores, get_typestore
 
     return get_typestore(Stores.ROS2_HUMBLE)

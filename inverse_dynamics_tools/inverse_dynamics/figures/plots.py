@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.wording import printable, shown
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.figures.torque_lines import TorqueLines
@@ -57,9 +58,11 @@ STYLE: Any = {
 
 
 def check_formats(figures: Sequence[str]) -> None:
-    """Raise OutputError unless figures can be saved in these formats."""
+    """Raise OutputError, or MissingPackageError, unless figures can be saved in these formats."""
     for wrong in (f for f in figures if f not in FORMATS):
         raise OutputError(f"figures: expected some of {', '.join(FORMATS)}, got {shown(wrong)}")
+    if figures:
+        require("matplotlib", "a figure")
 
 
 def save_torque_figure(

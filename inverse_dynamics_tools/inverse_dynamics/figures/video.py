@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.files import file_written_whole
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.errors import UserError
@@ -61,6 +62,8 @@ def write_video(
     """
     if file.suffix.lower() != ".gif":
         raise UserError(f"{file}: expected the name of a .gif file, the only format of videos")
+    for module in ("mujoco", "matplotlib", "PIL", "OpenGL"):
+        require(module, "a video")
     duration = float(evaluation.time[-1])
     count = max(2, round(min(seconds, duration) * _FRAMES_PER_SECOND))
     times = np.linspace(0.0, duration, count)

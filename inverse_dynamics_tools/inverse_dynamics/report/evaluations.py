@@ -8,8 +8,9 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.base.extras import is_installed
 from inverse_dynamics.figures.scene import scene_from_urdf
-from inverse_dynamics.report.figures import error_figure
+from inverse_dynamics.report.figures import error_figure, not_drawn
 from inverse_dynamics.report.page import Figure, ReportComparison, ReportRun
 from inverse_dynamics.robot.descriptions import read_description
 
@@ -61,10 +62,12 @@ def report_comparison(
     from inverse_dynamics.figures.plots import save_comparison_figure
 
     first = comparison.evaluations[0]
-    with tempfile.TemporaryDirectory() as directory:
-        file = Path(directory) / "comparison.svg"
-        save_comparison_figure(comparison, file)
-        svg = file.read_text(encoding="utf-8")
+    svg = not_drawn()
+    if is_installed("matplotlib"):
+        with tempfile.TemporaryDirectory() as directory:
+            file = Path(directory) / "comparison.svg"
+            save_comparison_figure(comparison, file)
+            svg = file.read_text(encoding="utf-8")
     return ReportComparison(
         title=title or " against ".join(comparison.labels),
         description=description or f"The same recording, {first.bag.name}, computed in more ways.",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.base.extras import how_to_install, is_installed
 from inverse_dynamics.base.wording import printable
 from inverse_dynamics.figures.plots import make_printable
 
@@ -23,6 +24,8 @@ _MUTED = "#555555"
 
 def error_figure(evaluation: Evaluation) -> str:
     """Distribution and spectrum of the errors, as SVG text. The same evaluation, the same text."""
+    if not is_installed("matplotlib"):
+        return not_drawn()
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
@@ -45,6 +48,11 @@ def error_figure(evaluation: Evaluation) -> str:
         text = StringIO()
         figure.savefig(text, format="svg", metadata={"Date": None})
     return text.getvalue()
+
+
+def not_drawn() -> str:
+    """What the page has in place of a figure where matplotlib isn't installed."""
+    return f"<p>Not drawn: a figure needs matplotlib: {how_to_install('matplotlib')}</p>"
 
 
 def _shares(evaluation: Evaluation) -> tuple[Floats, Floats]:

@@ -6,7 +6,8 @@ print(result.page)
 
 DIR/report.html             all robots on one page; comparison of two models of the real UR10
 DIR/demo.json               mean errors of each robot; marks the directory
-DIR/ur10_simulated_bag, DIR/panda_simulated_bag   recordings of the simulated robots
+DIR/ur10_simulated_bag, DIR/panda_simulated_bag   recordings of the simulated robots; without MuJoCo the
+                            shorter ones that come with the package are evaluated, and not written
 DIR/ROBOT                   an evaluation of each robot: figures, errors, bag (see evaluations.py)
 DIR/ROBOT.gif               the robot in motion beside its torques, where such pictures can be made
 DIR/ur10_real_urdf          the real UR10 computed from its URDF alone
@@ -20,6 +21,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from inverse_dynamics.base.ament import DATA_PACKAGE, package_share
+from inverse_dynamics.base.extras import MissingPackageError, how_to_install, is_installed
 from inverse_dynamics.base.files import Contents, write_text, written_whole
 from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.base.progress import no_progress
@@ -93,6 +96,11 @@ def find_recordings() -> Path | None:
     )
 
 
+def stored_recording(name: str) -> Path:
+    """The short recording of one of SIMULATED that comes with the package."""
+    return package_share(DATA_PACKAGE) / "recordings" / name
+
+
 def run_demo(
     out: Path,
     *,
@@ -116,8 +124,12 @@ def run_demo(
     ) as target:
         work = _Work(target, out, say, progress)
         for name in SIMULATED:
-            say(f"simulating {TITLES[name].partition(',')[0]}, computing its torques")
-            work.simulate(name, _QUICK_SECONDS if quick else None)
+            if is_installed("mujoco"):
+                say(f"simulating {TITLES[name].partition(',')[0]}, computing its torques")
+                work.simulate(name, _QUICK_SECONDS if quick else None)
+            else:
+                say(f"computing the torques of {TITLES[name]}")
+                work.evaluate_stored(name)
         for name, bag in real.items():
             say(f"computing the torques of {TITLES[name]}")
             work.evaluate(name, bag)
@@ -202,13 +214,22 @@ class _Work:
         notes = (*evaluation.notes, _match(run, evaluation))
         self._keep(name, replace(evaluation, bag=self.final / bag, notes=notes))
 
+    def evaluate_stored(self, name: str) -> None:
+        """The simulated recording that comes with the package."""
+        evaluation = evaluate(stored_recording(name), name)
+        note = (
+            "a recording that comes with this package: with MuJoCo the demo simulates the robots: "
+            f"{how_to_install('mujoco')}"
+        )
+        self._keep(name, replace(evaluation, notes=(*evaluation.notes, note)))
+
     def evaluate(self, name: str, bag: Path) -> None:
         self._keep(name, evaluate(bag, name, progress=self.progress))
 
     def _keep(self, name: str, evaluation: Evaluation) -> None:
         from inverse_dynamics.results.evaluations import write_evaluation
 
-        write_evaluation(evaluation, self.target / name, progress=self.progress)
+        write_evaluation(evaluation, self.target / name, figures=_figures(), progress=self.progress)
         self.evaluations[name] = evaluation
 
     def compare(self, bag: Path) -> Comparison:
@@ -224,7 +245,9 @@ class _Work:
             [rigid, self.evaluations["ur10_real"]],
             ("rigid bodies of the URDF", "identified, with friction"),
         )
-        write_comparison(comparison, self.target / "comparison", page=False)  # report.html shows it
+        write_comparison(  # report.html shows it
+            comparison, self.target / "comparison", figures=_figures(), page=False
+        )
         return comparison
 
     def film(self) -> None:
@@ -241,7 +264,7 @@ class _Work:
                     seconds=_FILM_SECONDS,
                     progress=self.progress,
                 )
-            except VideoError as error:
+            except (VideoError, MissingPackageError) as error:
                 self.notes.append(f"no videos: {error}")
                 return
             self.videos.append(file)
@@ -263,6 +286,11 @@ class _Work:
         title = f"{_COUNTS[len(runs)]} robots: measured and computed torques"
         write_page(self.target / "report.html", title, runs, comparisons, self.notes)
         write_text(self.target / MARK, json_text(summary(self.evaluations, self.notes)))
+
+
+def _figures() -> tuple[str, ...]:
+    """Formats of the figures that can be made here."""
+    return ("png",) if is_installed("matplotlib") else ()
 
 
 def _match(run: SimulatedRun, evaluation: Evaluation) -> str:

@@ -22,6 +22,7 @@ import io
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from inverse_dynamics.base.extras import how_to_install
 from inverse_dynamics.base.files import check_output_file, file_written_whole
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import printable
@@ -124,8 +125,8 @@ def check_pyarrow() -> None:
         import pyarrow  # noqa: F401
     except ImportError as error:
         raise OutputError(
-            f"tables are written by pyarrow, which can't be imported ({error}); install it with "
-            "`pip install pyarrow` (series.npz has the same series, for numpy.load())"
+            f"tables are written by pyarrow, which can't be imported ({error}): "
+            f"{how_to_install('pyarrow')} (series.npz has the same series, for numpy.load())"
         ) from error
 
 

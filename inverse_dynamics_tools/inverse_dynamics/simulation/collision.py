@@ -14,12 +14,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 
+from inverse_dynamics.base.extras import lazily_imported
+
 if TYPE_CHECKING:
+    import mujoco
+
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.simulation.model import SimulatedRobot
+else:
+    mujoco = lazily_imported("mujoco", "a simulation")
 
 TABLE = "the table"
 

@@ -18,14 +18,18 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Protocol
 
-import mujoco
 import numpy as np
 
+from inverse_dynamics.base.extras import lazily_imported
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.urdf import Inertia, UrdfChain, chain_from_urdf
 
 if TYPE_CHECKING:
+    import mujoco
+
     from inverse_dynamics.base.arrays import Floats
+else:
+    mujoco = lazily_imported("mujoco", "a simulation")
 
 GRAVITY = (0.0, 0.0, -9.81)
 """Acceleration of falling bodies in the frame of the root link [m/s^2], robot standing on the floor."""

@@ -19,18 +19,22 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 
+from inverse_dynamics.base.extras import lazily_imported
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.simulation.controller import DesiredMotion, Gains, JointTrajectoryController
 from inverse_dynamics.simulation.errors import SimulationError
 
 if TYPE_CHECKING:
+    import mujoco
+
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory
+else:
+    mujoco = lazily_imported("mujoco", "a simulation")
 
 MOST_SAMPLES = 10_000_000  # of a simulation: some gigabytes
 RATES = (125, 500, 1000)

@@ -15,14 +15,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 
 from inverse_dynamics._core import FastModel
+from inverse_dynamics.base.extras import lazily_imported
 
 if TYPE_CHECKING:
+    import mujoco
+
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.simulation.model import SimulatedRobot
+else:
+    mujoco = lazily_imported("mujoco", "a simulation")
 
 PARAMETERS_PER_LINK = 10
 

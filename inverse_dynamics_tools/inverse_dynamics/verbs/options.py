@@ -7,6 +7,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from inverse_dynamics.base.extras import is_installed
 from inverse_dynamics.base.help_text import HelpFormatter
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.robot.choices import EFFORT_CHOICES
@@ -87,8 +88,8 @@ def add_figures(parser: argparse.ArgumentParser) -> None:
         "--figures",
         metavar="FORMATS",
         type=figure_formats,
-        default=("png",),
-        help="formats of the figure: some of png,svg,pdf, or none (default: png)",
+        default=("png",) if is_installed("matplotlib") else (),
+        help="formats of the figure: some of png,svg,pdf, or none (default: png; without matplotlib: none)",
     )
     figures.add_argument(
         "--no-figures",

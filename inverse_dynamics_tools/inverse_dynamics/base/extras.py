@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Python packages that only some verbs need: extras of the package that pip installs.
+
+    mujoco = lazily_imported("mujoco", "a simulation")   # imported when it is first used
+
+One that is missing is a MissingPackageError, whose text names the command that installs it.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from inverse_dynamics.errors import UserError
+
+# Importable module to the extra of pyproject.toml that brings it.
+EXTRAS = {
+    "OpenGL": "sim",
+    "PIL": "sim",
+    "dask": "dask",
+    "distributed": "dask",
+    "matplotlib": "plots",
+    "mujoco": "sim",
+    "pyarrow": "parquet",
+    "rosbags": "rosbags",
+    "xacro": "xacro",
+    "yaml": "sim",
+}
+
+
+class MissingPackageError(UserError):
+    """A Python package that isn't installed, and that not everything needs."""
+
+
+def is_installed(module: str) -> bool:
+    """Whether a module can be imported, found without importing it."""
+    return find_spec(module) is not None
+
+
+def require(module: str, use: str) -> None:
+    """Raise MissingPackageError unless a module is installed. use: what needs it, as `a figure`."""
+    if not is_installed(module):
+        raise missing(module, use)
+
+
+def missing(module: str, use: str = "this") -> MissingPackageError:
+    """The error of a module that isn't installed."""
+    return MissingPackageError(f"{use} needs {module}: {how_to_install(module)}")
+
+
+def how_to_install(module: str) -> str:
+    """The command that installs a module, for whoever has installed this package."""
+    if not installed_by_pip():
+        return "run ./scripts/setup in the workspace"
+    return f'pip install "inverse-dynamics[{EXTRAS[module]}]"'
+
+
+def installed_by_pip() -> bool:
+    """Whether this is a wheel, which holds what other builds install elsewhere."""
+    return (Path(__file__).parents[1] / "share" / "ament_index").is_dir()
+
+
+class _LazyModule:
+    """Stands for a module until something of it is used."""
+
+    def __init__(self, name: str, use: str) -> None:
+        self._name, self._use = name, use
+
+    def __getattr__(self, attribute: str) -> Any:
+        try:
+            return getattr(import_module(self._name), attribute)
+        except ModuleNotFoundError as error:
+            if error.name != self._name:
+                raise
+            raise missing(self._name, self._use) from error
+
+
+def lazily_imported(name: str, use: str) -> Any:
+    """The module `name`, imported when it is first used. use: what needs it, as `a figure`."""
+    return _LazyModule(name, use)
