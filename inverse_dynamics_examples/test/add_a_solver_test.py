@@ -27,3 +27,9 @@ def test_blocks_equal_the_files() -> None:
             assert code in (EXAMPLE / file).read_text(encoding="utf-8"), (
                 f"{file} has no such lines:\n{code}"
             )
+
+
+def test_the_wheel_of_the_page_on_python_is_the_examples() -> None:
+    (block,) = blocks_of(page("docs/python.md"), "toml")
+    assert block.file == "pyproject.toml"
+    assert block.code in (EXAMPLE / block.file).read_text(encoding="utf-8")

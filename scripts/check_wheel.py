@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a wheel must be, as ./scripts/wheel checks it.
+
+python check_wheel.py --megabytes 15 inverse_dynamics-*.whl   # the file
+python check_wheel.py --installed --out DIR                   # installed: version, import, ids demo
+python check_wheel.py --plugin PACKAGE/CLASS                  # a solver that another wheel brings
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import subprocess
+import sys
+from pathlib import Path
+from zipfile import ZipFile
+
+ROOT = Path(__file__).resolve().parents[1]
+MOST_SECONDS_OF_IMPORT = 0.15  # of CPU, beyond numpy's
+
+# What a user finds inside, below the module's directory.
+NEEDED = (
+    "lib/libinverse_dynamics_solver.so",
+    "lib/libkdl_inverse_dynamics_solver_plugin.so",
+    "lib/cmake/inverse_dynamics/inverse_dynamicsConfig.cmake",
+    "include/inverse_dynamics_solver/inverse_dynamics_solver.hpp",
+    "include/chain_dynamics/torques.hpp",
+    "share/inverse_dynamics_robots/robots/ur10_simulated.yaml",
+    "share/inverse_dynamics_robots/recordings/ur10_simulated/ur10_simulated.mcap",
+    "share/inverse_dynamics_robots/recordings/panda_simulated/panda_simulated.mcap",
+    "_core.pyi",
+    "py.typed",
+)
+
+
+def faults_of_file(wheel: Path, megabytes: float) -> list[str]:
+    """What is wrong with a wheel, in words."""
+    faults = []
+    size = wheel.stat().st_size / 1e6
+    if size > megabytes:
+        faults.append(f"{size:.1f} MB, expected at most {megabytes:g} MB")
+    with ZipFile(wheel) as archive:
+        names = archive.namelist()
+        notices = [n for n in names if n.endswith("/licenses/licenses/THIRD_PARTY.md")]
+        text = archive.read(notices[0]).decode() if notices else ""
+    faults += [f"no {needed}" for needed in NEEDED if f"inverse_dynamics/{needed}" not in names]
+    if not any(n.endswith("/licenses/licenses/LGPL-2.1.txt") for n in names):
+        faults.append("the licence of Orocos KDL is missing")
+    faults += [
+        f"{library}: licenses/THIRD_PARTY.md doesn't name it"
+        for library in sorted(bundled_libraries(names))
+        if f"`{library}`" not in text
+    ]
+    return faults
+
+
+def bundled_libraries(names: list[str]) -> set[str]:
+    """Libraries of others, without the hash that auditwheel adds: `libyaml-cpp`."""
+    files = [Path(n).name for n in names if n.startswith("inverse_dynamics.libs/") and ".so" in n]
+    return {re.sub(r"(-[0-9a-f]{8})?\.so.*$", "", file) for file in files}
+
+
+def faults_of_installation(out: Path) -> list[str]:
+    """What is wrong with the installed package, in words."""
+    faults = []
+    version = re.search(
+        "<version>(.*)</version>", (ROOT / "inverse_dynamics_tools/package.xml").read_text()
+    )
+    told = subprocess.run(
+        [Path(sys.executable).with_name("ids"), "--version"], capture_output=True, text=True
+    ).stdout.split()
+    if version is None or told != ["ids", version[1]]:
+        faults.append(f"ids --version says {' '.join(told)}")
+    seconds = min(_seconds("import numpy, inverse_dynamics") for _ in range(5))
+    seconds -= min(_seconds("import numpy") for _ in range(5))
+    print(f"import inverse_dynamics: {seconds:.3f} s of CPU besides numpy's")
+    if seconds > MOST_SECONDS_OF_IMPORT:
+        faults.append(
+            f"import inverse_dynamics: expected {MOST_SECONDS_OF_IMPORT} s, got {seconds:.3f} s"
+        )
+    demo = subprocess.run(
+        [Path(sys.executable).with_name("ids"), "demo", "--out", out, "--overwrite"]
+    )
+    if demo.returncode != 0 or not (out / "report.html").is_file():
+        faults.append(f"ids demo: exit status {demo.returncode}")
+    return faults
+
+
+def _seconds(program: str) -> float:
+    """CPU of a program in Python."""
+    timed = (
+        f"import resource\n{program}\n"
+        "u = resource.getrusage(resource.RUSAGE_SELF); print(u.ru_utime + u.ru_stime)"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", timed], capture_output=True, text=True, check=True
+    )
+    return float(result.stdout)
+
+
+def faults_of_plugin(name: str) -> list[str]:
+    """What is wrong with the example of a plugin in a wheel of its own, in words."""
+    import numpy as np
+
+    from inverse_dynamics import Solver, available_solvers
+
+    if name not in available_solvers():
+        return [f"{name} isn't among {', '.join(available_solvers())}"]
+    solver = Solver(name, parameters={"mass": 2.0, "length": 0.5})
+    torque = float(solver.gravity_vector(np.array([np.pi / 2]))[0])
+    expected = 2.0 * 9.81 * 0.5  # m g l, held horizontally
+    return [] if abs(torque - expected) < 1e-12 else [f"{torque} N m, expected {expected}"]
+
+
+def main() -> int:
+    """Print what is wrong; give the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("wheels", nargs="*", type=Path)
+    parser.add_argument("--megabytes", type=float, default=15.0)
+    parser.add_argument("--installed", action="store_true")
+    parser.add_argument("--out", type=Path, default=Path("demo"))
+    parser.add_argument("--plugin")
+    options = parser.parse_args()
+    faults = [
+        f"{wheel.name}: {fault}"
+        for wheel in options.wheels
+        for fault in faults_of_file(wheel, options.megabytes)
+    ]
+    if options.installed:
+        faults += faults_of_installation(options.out)
+    if options.plugin:
+        faults += faults_of_plugin(options.plugin)
+    for fault in faults:
+        print(f"error: {fault}", file=sys.stderr)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
