@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Identifies the real robots whose recordings are public, and writes docs/identification_results.md.
 
-    ./scripts/identification_results            # prints the page; some minutes
+    ./scripts/identification_results            # prints the page; ten minutes
     ./scripts/identification_results --write    # replaces it
 
 The recordings are those of `ids data`, or of $IDS_DATA_DIR. All is what `ids identify` does by default.
@@ -13,7 +13,12 @@ import argparse
 import sys
 import time
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
+
+import numpy as np
+from known_truth import LEAST_DELAY_ERROR, MOST_ERROR, Truth
+from payload_truth import SECONDS, Arm, least_errors, trials
 
 from inverse_dynamics import identify
 from inverse_dynamics.data.public_recordings import data_directory
@@ -24,6 +29,9 @@ if TYPE_CHECKING:
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "identification_results.md"
 ROBOTS = {"ur10_real": "ur10_exciting_trajectory", "panda_real": "panda_exciting_trajectory"}
+SEEDS = 10
+LOADS = (("panda", 0.5), ("panda", 1.0), ("panda", 2.0), ("ur10", 1.0), ("ur10", 5.0))  # kg
+TRIALS = 100
 
 _HEAD = """\
 <!-- SPDX-License-Identifier: Apache-2.0 -->
@@ -42,7 +50,10 @@ def main() -> int:
     parser.add_argument("--write", action="store_true", help=f"replace docs/{PAGE.name}")
     given = parser.parse_args()
     bags = data_directory() / "bags"
-    text = "\n".join([_HEAD, *(_section(robot, bags / bag) for robot, bag in ROBOTS.items())])
+    sections = [_section(robot, bags / bag) for robot, bag in ROBOTS.items()]
+    with TemporaryDirectory() as directory:
+        sections += [_known_truth(bags, Path(directory)), _payloads(bags, Path(directory))]
+    text = "\n".join([_HEAD, *sections])
     print(text, end="")
     if given.write:
         PAGE.write_text(text, encoding="utf-8")
@@ -96,6 +107,91 @@ def _friction(found: Identification) -> list[str]:
             )
         ),
     ]
+
+
+_KNOWN = f"""\
+## Robots that are known
+
+Simulated arms that are what the real ones above were found to be: links, rotor inertias, friction, delay. MuJoCo moves
+them as in the recordings, for as long, with as many messages and quantised encoders; stretches of the real residuals,
+in random order, are the noise. They are identified from the description alone, as real ones are. Medians of
+{SEEDS} seeds: the error of the identified torques on states that are uniform in the ranges that were seen, mean over
+joints; the error of the delay; how many of the 95 % intervals of inertial combinations hold the truth.
+"""
+
+_PAYLOADS = f"""\
+## Payloads
+
+Simulated loads up to 15 cm in front of the flange on the torques of the real arms, {SECONDS:g} s each, {TRIALS} loads
+per row; the arm's model is fitted to other blocks of the recording, so what it gets wrong stays in the torques. In the
+first row of each load, law, prior strength and delay are those chosen on the whole recording; *nested*: chosen on the
+other blocks too. Medians. The last two columns are what no unbiased estimator can be better than (Cramér and Rao), if
+noise is Gaussian, stationary, as correlated in time and between joints as the residuals are, and the inertia about the
+centre is known.
+"""
+
+
+def _known_truth(bags: Path, directory: Path) -> str:
+    rows = []
+    for name, most in MOST_ERROR.items():
+        truth = Truth.of(bags / ROBOTS[f"{name}_real"], name, directory)
+        results = [truth.identified_again(seed) for seed in range(SEEDS)]
+        errors = [result.mean for result in results]
+        delays = [1e3 * abs(result.delay_error) for result in results]
+        inside = np.mean([result.inside for result in results])
+        rows.append(
+            _row(
+                name,
+                f"{np.median(errors):.3g} N m ({min(errors):.3g} to {max(errors):.3g})",
+                f"{most:g} N m",
+                f"{np.median(delays):.2g} ms, at most {max(delays):.2g} ms",
+                f"{1e3 * max(LEAST_DELAY_ERROR, truth.period / 2):.3g} ms",
+                f"{100 * inside:.1f} %",
+            )
+        )
+    return "\n".join(
+        [
+            _KNOWN,
+            _row("robot", "error (range)", "asked", "delay", "asked", "intervals that hold"),
+            _row(*["---"] * 6),
+            *rows,
+            "",
+        ]
+    )
+
+
+def _payloads(bags: Path, directory: Path) -> str:
+    rows = []
+    arms: dict[tuple[str, bool], Arm] = {}
+    for name, mass in LOADS:
+        for nested in (False, True):
+            if (name, nested) not in arms:
+                recording = bags / ROBOTS[f"{name}_real"]
+                arms[name, nested] = Arm.of(recording, f"{name}_real", directory, nested=nested)
+            arm = arms[name, nested]
+            found = trials(arm, mass, TRIALS)
+            least = ("", "") if nested else least_errors(arm, mass)
+            rows.append(
+                _row(
+                    f"{name}, {mass:g} kg{', nested' if nested else ''}",
+                    f"{100 * found.mass:.2g} %",
+                    f"{1e3 * found.center:.2g} mm",
+                    f"{100 * found.coverage:.0f} %",
+                    f"{found.ratio_of_mass:.2g}",
+                    f"{found.ratio_of_center:.2g}",
+                    *least,
+                )
+            )
+    names = ("load", "mass", "centre", "intervals that hold", "half width by error: mass", "centre")
+    return "\n".join(
+        [
+            _PAYLOADS,
+            _row(*names, "least: mass", "centre"),
+            _row(*["---"] * 8),
+            *rows,
+            "",
+        ]
+    )
 
 
 def _row(*cells: str) -> str:

@@ -11,6 +11,7 @@ another part of the recording. Run by hand it prints its figures:
 from __future__ import annotations
 
 import os
+import sys
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -26,6 +27,9 @@ from inverse_dynamics.identification.payload import (
     with_load,
 )
 from inverse_dynamics.robot.descriptions import parse_description, read_description
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
+import payload_truth
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 BLOCKS = 5
@@ -189,6 +193,18 @@ def test_simulated_loads_on_real_residuals(recordings, directory, name, mass):
     assert 0.90 <= found["coverage"] <= 0.99, found
     assert found["ratio of the mass"] <= 4.0, found
     assert found["ratio of the center"] <= 4.0, found
+
+
+def test_five_kilograms_on_a_ur10_whose_friction_grows_with_load(recordings, tmp_path):
+    """With the law, prior strength and delay that `ids identify` chooses."""
+    recording = recordings / "ur10_exciting_trajectory"
+    arm = payload_truth.Arm.of(recording, "ur10_real", tmp_path)
+    assert arm.solvers[0].friction_depends_on_position
+    found = payload_truth.trials(arm, 5.0, 100)
+    assert found.mass <= 0.012, found
+    assert found.center <= 0.010, found
+    assert 0.90 <= found.coverage <= 0.99, found
+    assert found.ratio_of_center <= 4.0, found
 
 
 if __name__ == "__main__":

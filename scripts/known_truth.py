@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How well a robot that is known is identified: a simulated arm that is what a real one was found to be.
+
+    truth = Truth.of(recordings / "ur10_exciting_trajectory", "ur10_real", directory)
+    result = truth.identified_again(seed=0)
+    result.error, result.delay_error
+
+The truth is the model that `ids identify` finds in a real recording: links, rotor inertias, friction, delay. MuJoCo
+moves it as the real arm was moved, for as long, and records as many messages with quantised encoders. What the real
+recording has beyond the truth, the residuals, is the noise, in other order: were they in their own places, the real
+recording would be there again. From there on nothing is known but the description: the prior, as for the real arm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics import FastModel, _core, evaluate, identify, load_robot
+from inverse_dynamics.identification.blocks import blocks_of
+from inverse_dynamics.identification.cross_validation import choose, errors_of
+from inverse_dynamics.identification.identify import BLOCKS
+from inverse_dynamics.identification.knowledge import (
+    _combinations,
+    independent_samples,
+    intervals,
+    knowledge,
+)
+from inverse_dynamics.results.identifications import write_identification
+from inverse_dynamics.results.model_files import predicted_torques, urdf_of
+from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.simulation import EffortNoise, Resolution, Sensors, simulate, write_run
+from inverse_dynamics.simulation.trajectory import WaypointTrajectory
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.identification.blocks import Block
+    from inverse_dynamics.identification.cross_validation import Chosen
+    from inverse_dynamics.identification.result import Identification
+    from inverse_dynamics.robot.robots import Robot
+
+# Mean over the joints of the RMSE on random states [N m], median of the seeds.
+MOST_ERROR = {"ur10": 0.38, "panda": 0.07}
+LEAST_DELAY_ERROR = 2e-3  # s, or half a sample where that is more
+
+STATES = 2000
+WAYPOINTS_APART = 0.1  # s
+RATES = {"ur10": 125, "panda": 1000}  # Hz, of the controllers
+ENCODER = Resolution(1e-5, 1e-4, 0.0)  # steps, rad and rad/s; standard deviations of noise too
+
+
+@dataclass(frozen=True)
+class Result:
+    """What was identified of a simulated recording. n joints."""
+
+    error: Floats  # (n,) N m, RMSE on states that are uniform in the ranges that were seen
+    delay_error: float  # s
+    law: str
+    inside: Mask  # of each inertial combination that torques depend on, whether its 95 % interval holds the truth
+
+    @property
+    def mean(self) -> float:
+        """Over the joints [N m]."""
+        return float(self.error.mean())
+
+
+@dataclass(frozen=True)
+class Truth:
+    """A real arm as it was identified, and how it was recorded."""
+
+    name: str
+    found: Identification
+    modelled: Robot  # its run configuration: what is simulated
+    noise: EffortNoise
+    motion: WaypointTrajectory
+    period: float  # s between messages
+    directory: Path
+
+    @classmethod
+    def of(cls, recording: Path, name: str, directory: Path) -> Truth:
+        """Of ur10 or panda; files go to the directory."""
+        found = identify([recording], f"{name}_real")
+        files = write_identification(found, directory / f"{name}.yaml")
+        evaluation = evaluate(recording, found.robot)
+        log = evaluation.log
+        period = float(np.median(np.diff(log.time)))
+        times = np.arange(0.0, log.time[-1], WAYPOINTS_APART)
+        positions = np.transpose([np.interp(times, log.time, column) for column in log.q.T])
+        return cls(
+            name=name,
+            found=found,
+            modelled=load_robot(files.robot),
+            noise=EffortNoise(_residuals(found, evaluation), period),
+            motion=WaypointTrajectory.through(found.joints, times, positions),
+            period=period,
+            directory=directory,
+        )
+
+    def record(self, seed: int) -> Path:
+        """A simulated recording."""
+        sensors = Sensors(
+            noise=ENCODER,
+            quantisation=ENCODER,
+            effort_noise=self.noise,
+            effort_delay=max(self.found.delay, 0.0),
+            message_rate=1 / self.period if self.name == "panda" else None,
+        )
+        run = simulate(
+            self.modelled,
+            trajectory=self.motion,
+            from_model=True,
+            rate=RATES[self.name],
+            seed=seed,
+            sensors=sensors,
+            table=False,
+        )
+        bag = self.directory / f"{self.name}_{seed}"
+        write_run(run, bag)
+        return bag
+
+    def identified_again(self, seed: int) -> Result:
+        """As `ids identify` makes the model of all data."""
+        robot = replace(self.found.robot, effort="torque")
+        bag = self.record(seed)
+        fitter = _core.ArmFitter.from_urdf(
+            read_description(urdf_of(self.found)),
+            root=robot.root,
+            tip=robot.tip,
+            gravity=robot.gravity,
+        )
+        blocks = blocks_of(evaluate(bag, robot), BLOCKS)
+        chosen = choose(fitter, blocks)
+        q, qd, qdd = self.states(seed)
+        error = fitter.torques(chosen.fit, q, qd, qdd) - _torques(self.found, q, qd, qdd)
+        return Result(
+            error=np.sqrt((error**2).mean(axis=0)),
+            delay_error=chosen.delay - max(self.found.delay, 0.0),
+            law=chosen.law,
+            inside=self._inside(fitter, chosen, blocks),
+        )
+
+    def _inside(self, fitter: _core.ArmFitter, chosen: Chosen, blocks: Sequence[Block]) -> Mask:
+        later = [block.later(chosen.delay) for block in blocks]
+        errors = [errors_of(fitter, chosen.fit, block) for block in later]
+        known = knowledge(
+            fitter,
+            chosen.fit,
+            later,
+            law=chosen.law,
+            prior_strength=chosen.prior_strength,
+            worth=float(independent_samples(errors).mean() / sum(map(len, errors))),
+        )
+        engine = _engine(self.found)
+        truth = self.found.model.parameters.ravel()
+        combinations = [c for c, _, _ in _combinations(engine, fitter.joint_names)]
+        found = intervals(known, engine, self.found.units)[: len(combinations)]
+        return np.array(
+            [
+                abs(interval.value - combination @ truth) <= interval.half_width
+                for interval, combination in zip(found, combinations, strict=True)
+            ]
+        )
+
+    def states(self, seed: int) -> tuple[Floats, Floats, Floats]:
+        """q, qd, qdd, uniform in the ranges that were seen."""
+        low, high = np.moveaxis(self.found.model.seen, 2, 0)
+        random = np.random.default_rng((seed, 1))
+        shares = random.uniform(size=(STATES, *low.shape))
+        q, qd, qdd = np.moveaxis(low + (high - low) * shares, 1, 0)
+        return q, qd, qdd
+
+    @property
+    def most_delay_error(self) -> float:
+        """Half a sample, or 2 ms."""
+        return max(LEAST_DELAY_ERROR, 0.5 * self.period)
+
+
+def _residuals(found: Identification, evaluation: Evaluation) -> Floats:
+    """(M, n) measured minus torques of the model, with the delay made up for, of samples that count."""
+    residuals = []
+    for block in blocks_of(evaluation, BLOCKS):
+        q, qd, qdd, measured = block.later(found.delay).fitted
+        residuals.append(measured - _torques(found, q, qd, qdd))
+    return np.concatenate(residuals)
+
+
+def _torques(found: Identification, q: Floats, qd: Floats, qdd: Floats) -> Floats:
+    return predicted_torques(found.model, _engine(found), q, qd, qdd)
+
+
+def _engine(found: Identification) -> FastModel:
+    robot = found.robot
+    return FastModel.from_urdf(
+        read_description(urdf_of(found)), root=robot.root, tip=robot.tip, gravity=robot.gravity
+    )

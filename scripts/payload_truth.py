@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How good estimates of payloads are: simulated loads on the real residuals of a real arm.
+
+    arm = Arm.of(recordings / "panda_exciting_trajectory", "panda_real", directory)
+    figures = figures_of(trials(arm, mass=1.0))
+
+The arm's model is fitted as by `ids identify` to other parts of the recording than those that the load is estimated
+from, and its residuals, of blocks that it hasn't seen, stay in the torques: either those of the window itself, or those
+of another part of the recording. The load's own torques, friction that grows with load included, are put on top.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics import Solver, _core, evaluate, identify
+from inverse_dynamics.identification.blocks import blocks_of, together
+from inverse_dynamics.identification.identify import BLOCKS
+from inverse_dynamics.identification.payload import Samples, fit_payload, samples_of, with_load
+from inverse_dynamics.results.model_files import model_file_text, urdf_of
+from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.robots import RIGID_BODY
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.identification.blocks import Block
+    from inverse_dynamics.identification.result import HeldOutBlock, Identification
+
+SECONDS = 4.0
+MEMORY = 1.0  # s; covariances of residuals that are further apart aren't told from zero
+EDGE = 0.3  # s at either end of the recording, where accelerations are poor
+
+_OFFSET = 0.3  # of a joint's residuals: what offsets differ by
+_RIDGE = 1e-3  # white noise beside the residuals', of their variance
+_STEP = 1e-4  # kg, m
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Of many simulated loads."""
+
+    mass: float  # median of the error, relative
+    center: float  # m, median of the distance
+    coverage: float  # of the 95 % intervals of mass and centre
+    ratio_of_mass: float  # median half width by median error
+    ratio_of_center: float
+    trials: int
+
+
+@dataclass(frozen=True)
+class Arm:
+    """A recording, and for each of its blocks a solver that was identified on the others."""
+
+    samples: Samples
+    blocks: tuple[slice, ...]
+    solvers: tuple[Solver, ...]
+    residuals: Floats  # (N, n) N m, each block's by its solver
+
+    @classmethod
+    def of(cls, recording: Path, name: str, directory: Path, *, nested: bool = False) -> Arm:
+        """nested: law, prior strength and delay are chosen without the block, not on the whole recording."""
+        found = identify([recording], name)
+        evaluation = evaluate(recording, found.robot)
+        cut = blocks_of(evaluation, BLOCKS)
+        solvers = tuple(
+            _solver(found, found.blocks[k] if nested else found, cut, k, directory)
+            for k in range(BLOCKS)
+        )
+        samples = samples_of(evaluation)
+        end = samples.time[-1] - EDGE
+        samples = part(samples, (samples.time >= samples.time[0] + EDGE) & (samples.time <= end))
+        edges = np.searchsorted(samples.time, [block.time[0] for block in cut[1:]]).tolist()
+        blocks = tuple(map(slice, [0, *edges], [*edges, len(samples.time)]))
+        residuals = np.concatenate(
+            [
+                held_out.measured - torques(solver, held_out)
+                for block, solver in zip(blocks, solvers, strict=True)
+                for held_out in [part(samples, block)]
+            ]
+        )
+        return cls(samples, blocks, solvers, residuals)
+
+    def window(self, k: int, random: np.random.Generator) -> slice:
+        """SECONDS of a block."""
+        block = self.blocks[k]
+        count = int(SECONDS / np.median(np.diff(self.samples.time)))
+        first = block.start + int(random.integers(block.stop - block.start - count + 1))
+        return slice(first, first + count)
+
+
+def _solver(
+    found: Identification,
+    chosen: Identification | HeldOutBlock,
+    cut: Sequence[Block],
+    k: int,
+    directory: Path,
+) -> Solver:
+    """Of all blocks but one."""
+    robot = found.robot
+    fitter = _core.ArmFitter.from_urdf(
+        read_description(urdf_of(found)), root=robot.root, tip=robot.tip, gravity=robot.gravity
+    )
+    others = [block.later(chosen.delay) for i, block in enumerate(cut) if i != k]
+    fit = fitter.fit(together(others), law=chosen.law, prior_strength=chosen.prior_strength)
+    model = replace(
+        found.model,
+        parameters=fit.parameters,
+        rotor_inertia=fit.rotor_inertia,
+        friction=tuple(fit.friction),
+    )
+    file = directory / f"{robot.name}_{k}.yaml"
+    file.write_text(model_file_text(replace(found, model=model), file.stem))
+    return Solver(RIGID_BODY, model=str(file))
+
+
+def part(samples: Samples, which: slice | Mask) -> Samples:
+    """Some of the samples."""
+    return Samples(*(values[which] for values in vars(samples).values()))
+
+
+def torques(solver: Solver, samples: Samples) -> Floats:
+    """(N, n) N m, without a load."""
+    return solver.torques(samples.q, samples.qd, samples.qdd)
+
+
+def trial(arm: Arm, mass: float, random: np.random.Generator, elsewhere: bool) -> Floats:
+    """(2, 4): errors of mass [kg] and centre of mass [m], and the half widths of their intervals."""
+    k = int(random.integers(len(arm.blocks)))
+    samples, solver = part(arm.samples, arm.window(k, random)), arm.solvers[k]
+    if elsewhere:
+        other = int((k + random.integers(1, len(arm.blocks))) % len(arm.blocks))
+        residual = arm.residuals[arm.window(other, random)]
+        samples = replace(samples, measured=torques(solver, samples) + residual)
+    load = random_load(mass, random)
+    found = fit_payload(with_load(samples, solver, load), solver).estimate
+    return np.array(
+        [
+            [found.mass - mass, *(found.center_of_mass - load["center_of_mass"])],
+            [found.mass_half_width, *found.center_of_mass_half_width],
+        ]
+    )
+
+
+def random_load(mass: float, random: np.random.Generator) -> dict[str, Any]:
+    """A turned box up to 15 cm in front of the flange."""
+    turn = np.linalg.qr(random.normal(size=(3, 3)))[0]
+    squares = random.uniform(0.02, 0.06, 3) ** 2
+    return {
+        "mass": mass,
+        "center_of_mass": [*random.uniform(-0.06, 0.06, 2), random.uniform(0.0, 0.15)],
+        "inertia": mass * turn @ np.diag(squares.sum() - squares) @ turn.T,
+    }
+
+
+def trials(arm: Arm, mass: float, count: int, seed: int = 1) -> Figures:
+    """Every other trial has the residuals of its own window."""
+    random = np.random.default_rng(seed)
+    found = np.array([trial(arm, mass, random, elsewhere=bool(k % 2)) for k in range(count)])
+    errors, widths = np.abs(found[:, 0]), found[:, 1]
+    ratios = np.median(widths, axis=0) / np.median(errors, axis=0)
+    return Figures(
+        mass=float(np.median(errors[:, 0]) / mass),
+        center=float(np.median(np.linalg.norm(errors[:, 1:], axis=1))),
+        coverage=float(np.mean(errors <= widths)),
+        ratio_of_mass=float(ratios[0]),
+        ratio_of_center=float(np.median(ratios[1:])),
+        trials=count,
+    )
+
+
+# ---- what can be reached --------------------------------------------------------------------------
+
+
+def least_errors(arm: Arm, mass: float, windows: int = 40) -> tuple[str, str]:
+    """Least median errors of mass and centre of mass that an unbiased estimator has, in words.
+
+    The bound of Cramer and Rao for mass, centre of mass and an offset per joint, with the inertia about the centre
+    known, in stationary Gaussian noise of the covariances that the residuals have.
+    """
+    random = np.random.default_rng(2)
+    period = float(np.median(np.diff(arm.samples.time)))
+    count = len(arm.samples.time[arm.window(0, random)])
+    whitened = np.linalg.cholesky(_covariance(arm.residuals, count, MEMORY / period))
+    masses, centers = [], []
+    for _ in range(windows):
+        k = int(random.integers(len(arm.blocks)))
+        load = random_load(mass, random)
+        columns = _sensitivities(part(arm.samples, arm.window(k, random)), arm.solvers[k], load)
+        rows = np.linalg.solve(whitened, columns.reshape(-1, columns.shape[2]))
+        known = np.zeros(rows.shape[1])
+        known[4:] = 1 / (_OFFSET * arm.residuals.std(axis=0)) ** 2
+        variances = np.linalg.inv(rows.T @ rows + np.diag(known))[:4, :4]
+        draws = np.abs(random.multivariate_normal(np.zeros(4), variances, 500))
+        masses.append(draws[:, 0] / mass)
+        centers.append(np.linalg.norm(draws[:, 1:], axis=1))
+    return f"{100 * np.median(masses):.2g} %", f"{1e3 * np.median(centers):.2g} mm"
+
+
+def _covariance(residuals: Floats, count: int, memory: float) -> Floats:
+    """Of so many samples of all joints, one after the other; lags beyond a memory (samples) fade out."""
+    centred, n = residuals - residuals.mean(axis=0), residuals.shape[1]
+    covariance = np.zeros((count, n, count, n))
+    for lag in range(count):
+        at_lag = centred[: len(centred) - lag].T @ centred[lag:] / len(centred)
+        at_lag *= np.exp(-0.5 * (lag / memory) ** 2)
+        for i in range(count - lag):
+            covariance[i, :, i + lag], covariance[i + lag, :, i] = at_lag, at_lag.T
+    flat = covariance.reshape(count * n, count * n)
+    return flat + _RIDGE * np.diag(np.diag(flat))
+
+
+def _sensitivities(samples: Samples, solver: Solver, load: dict[str, Any]) -> Floats:
+    """(N, n, 4 + n): of the torques to mass and centre of mass, and to an offset of each joint."""
+
+    def change(mass: float, center: Floats) -> Floats:
+        changed = {
+            **load,
+            "mass": load["mass"] + mass,
+            "center_of_mass": load["center_of_mass"] + center,
+        }
+        return with_load(samples, solver, changed).measured
+
+    steps = _STEP * np.eye(3)
+    columns = [(change(_STEP, np.zeros(3)) - change(-_STEP, np.zeros(3))) / (2 * _STEP)]
+    columns += [(change(0.0, step) - change(0.0, -step)) / (2 * _STEP) for step in steps]
+    count, n = samples.q.shape
+    offsets = np.broadcast_to(np.eye(n), (count, n, n))
+    return np.concatenate([np.stack(columns, axis=2), offsets], axis=2)
