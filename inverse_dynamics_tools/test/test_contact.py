@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -319,6 +320,59 @@ def test_without_a_quiet_part_there_are_no_thresholds(recording, robot):
         find_contacts(recording, robot, quiet=(0.0, 0.2))
     with pytest.raises(InvalidParameterError, match="momentum observer: friction_band"):
         find_contacts(recording, robot, quiet=(0.0, 20.0), friction_band=[1.0, 2.0])
+
+
+MODEL = """\
+schema: 2
+name: pendulum
+source: a test
+validity: a test
+units: SI
+geometry: placements
+gravity: [0, 0, -9.81]
+parameters: about_origin
+tip: {xyz: [0, 0, 0], rpy: [0, 0, 0]}
+joints:
+  - name: swing
+    type: revolute
+    placement: {xyz: [0, 0, 0], rpy: [0, 0, 0], axis: [0, 1, 0]}
+    link: [2, 1, 0, 0, 0.02, 0, 0, 0.52, 0, 0.51]
+    torque_deviation: 0.196
+    seen: {q: [-1, 1], qd: [-1, 1], qdd: [-1, 1]}
+"""
+
+
+@pytest.fixture
+def identified(tmp_path):
+    """The pendulum with a model that states the band of its noise."""
+    (tmp_path / "arm_model.yaml").write_text(MODEL)
+    file = tmp_path / "identified.yaml"
+    plugin = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
+    file.write_text(
+        f"schema: 1\nname: arm\ndescription: a pendulum\nplugin: {plugin}\nmodel: arm_model.yaml\n"
+    )
+    return file
+
+
+def test_bands_of_the_model_stand_in_for_a_quiet_part(ids, recording, identified):
+    found = find_contacts(recording, identified)
+    (contact,) = found.contacts
+    assert contact.begin == pytest.approx(PUSH[0], abs=0.01)
+    assert contact.torque == pytest.approx(PUSH[2], abs=0.3)
+    # 1 of 18000 samples of a normal distribution is beyond 4.031 standard deviations
+    assert found.thresholds.torques[0] == pytest.approx(4.031 * 0.1, rel=1e-3)
+    assert found.thresholds.high[0] == pytest.approx(4.031 * 0.196 / 1.2816, rel=1e-3)
+    code, out, err = ids("contact", recording, "--robot", identified, "--out", "found")
+    assert (code, err) == (0, "")
+    assert "the model's 95 % torque bands" in out
+    assert "range: up to another day's" in out
+    (joint,) = json.loads(Path("found/contacts.json").read_text())["joints"]
+    assert joint["level"] == 0.196
+    more = find_contacts(recording, identified, false_alarms=100.0).thresholds.torques
+    assert more[0] < found.thresholds.torques[0]
+    for wrong in (1e-7, 901.0):
+        with pytest.raises(InvalidParameterError, match="expected 1e-06 to 900"):
+            find_contacts(recording, identified, false_alarms=wrong)
 
 
 def test_the_command_writes_table_figure_and_series(ids, tmp_path, recording, robot):

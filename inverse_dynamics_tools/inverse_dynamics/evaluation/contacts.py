@@ -30,6 +30,7 @@ from inverse_dynamics.contact import (
     contact_thresholds,
 )
 from inverse_dynamics.errors import EvaluationError, InvalidParameterError
+from inverse_dynamics.evaluation.band_thresholds import BandThresholds, band_thresholds
 from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate
 from inverse_dynamics.robot.descriptions import effort_limits, read_description
 from inverse_dynamics.robot.solvers import open_solver
@@ -98,7 +99,7 @@ class Contacts:
     contact: Mask  # (N,) from begin to end of each contact
     wrenches: Floats | None  # (N, 6) N, N m about the tip, in the axes of the root
     unseen: Integers | None  # (N,) how many directions of a wrench can't be observed
-    thresholds: ContactThresholds
+    thresholds: ContactThresholds | BandThresholds
     contacts: tuple[Contact, ...]
     interruptions: tuple[tuple[float, float], ...] = ()  # from, to [s]: no estimate in between
     quiet_part: tuple[float, float] | None = None  # from, to [s], if the thresholds are from there
@@ -121,8 +122,9 @@ def find_contacts(
 ) -> Contacts:
     """Find the contacts of a recording.
 
-    quiet: from, to [s] of a part without contact; quiet_recording: a recording without contact. One
-    of them must be given; both: that part of that recording. false_alarms: per hour. gain: 1/s;
+    quiet: from, to [s] of a part without contact; quiet_recording: a recording without contact; both:
+    that part of that recording; none: thresholds are made of the model's torque bands. false_alarms:
+    per hour. gain: 1/s;
     tracking: rad/s; friction_band: N m, one number per joint, or one for all: what the friction
     model may be wrong by beyond what the quiet part shows, whose thresholds are made without it;
     measured_velocities: recorded velocities instead of tracked positions. options: others of
@@ -130,11 +132,6 @@ def find_contacts(
 
     Raises UserError: those of evaluate(), InvalidParameterError.
     """
-    if quiet is None and quiet_recording is None:
-        raise EvaluationError(
-            "contacts: which part of the recording is without contact? give --quiet FROM,TO [s], or "
-            "--quiet-recording"
-        )
     if quiet is not None:
         _check_quiet(*quiet)  # before anything is read
     evaluation = evaluate(bag, robot, progress=progress, **options)
@@ -146,9 +143,13 @@ def find_contacts(
     without_contact = evaluation
     if quiet_recording is not None:
         without_contact = evaluate(quiet_recording, robot, progress=progress, **options)
-    # What the quiet part shows of the friction's error is in the thresholds: no band there.
-    of_quiet = _estimate(without_contact, replace(chosen, friction_band=()))
-    where, thresholds = _thresholds(of_quiet, quiet, solver, false_alarms)
+    thresholds: ContactThresholds | BandThresholds
+    if quiet is None and quiet_recording is None:
+        where, thresholds = _thresholds_of_bands(evaluation, solver, false_alarms)
+    else:
+        # What the quiet part shows of the friction's error is in the thresholds: no band there.
+        of_quiet = _estimate(without_contact, replace(chosen, friction_band=()))
+        where, thresholds = _thresholds(of_quiet, quiet, solver, false_alarms)
     wrenches, unseen, wrench_notes = _wrenches(solver, estimates, thresholds)
     found = Contacts(
         evaluation=evaluation,
@@ -274,8 +275,25 @@ def _thresholds(
     return f"{where}: {chosen.sum()} samples, {chosen.sum() * _period(time):.3g} s", thresholds
 
 
+def _thresholds_of_bands(
+    evaluation: Evaluation, solver: Solver, false_alarms: float
+) -> tuple[str, BandThresholds]:
+    """What they are made of, in words, and the thresholds."""
+    bands = solver.torque_deviation
+    if bands is None:
+        raise EvaluationError(
+            "contacts: which part of the recording is without contact? give --quiet FROM,TO [s], or "
+            f"--quiet-recording; the model of {evaluation.robot.name} states no torque bands to take instead, as "
+            "those of `ids identify` do"
+        )
+    return (
+        "the model's 95 % torque bands, taken for Gaussian noise (a part without contact, --quiet, is better)",
+        band_thresholds(bands, false_alarms),
+    )
+
+
 def _wrenches(
-    solver: Solver, estimates: _Estimates, thresholds: ContactThresholds
+    solver: Solver, estimates: _Estimates, thresholds: ContactThresholds | BandThresholds
 ) -> tuple[Floats | None, Integers | None, tuple[str, ...]]:
     try:
         tip = TipWrench(solver, thresholds.noise)
@@ -348,7 +366,9 @@ def _interruption_notes(
     )
 
 
-def _threshold_notes(evaluation: Evaluation, thresholds: ContactThresholds) -> tuple[str, ...]:
+def _threshold_notes(
+    evaluation: Evaluation, thresholds: ContactThresholds | BandThresholds
+) -> tuple[str, ...]:
     """Thresholds that a contact hardly reaches, and those that may well be others."""
     names, units = evaluation.joint_names, evaluation.units
     urdf = evaluation.robot.urdf

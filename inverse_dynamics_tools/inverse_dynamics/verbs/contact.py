@@ -39,6 +39,9 @@ examples:
       error of the friction model per joint [N m] in addition to that of the quiet part, for a quiet part
       in which the robot hardly moves
 
+  ids contact recording --robot arm.yaml
+      thresholds from the torque bands that `ids identify` has put into the model of arm.yaml
+
 External torques are those that the robot exerts on its surroundings: measured torques minus the
 torques of the model for the motion, low-passed. They include what the model lacks, such as a load.
 
@@ -64,7 +67,9 @@ def add_parser(
         "bag", metavar="RECORDING", type=file_name, help="recording, as for `ids evaluate`"
     )
     add_robot(parser)
-    quiet = parser.add_argument_group("thresholds, from a part without contact")
+    quiet = parser.add_argument_group(
+        "thresholds, from a part without contact, or from the model's torque bands"
+    )
     quiet.add_argument(
         "--quiet",
         metavar="FROM,TO",

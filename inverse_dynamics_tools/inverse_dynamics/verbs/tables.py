@@ -105,7 +105,9 @@ def threshold_table(contacts: Contacts) -> Table:
         )
     rate = thresholds.false_alarms_per_hour
     alarms = f"{rate:g} false alarm{'' if rate == 1 else 's'} per hour"
-    table.caption = f"thresholds for {alarms}; range: with a confidence of 90 %"
+    fitted = any(thresholds.peaks)
+    meaning = "with a confidence of 90 %" if fitted else "up to another day's"
+    table.caption = f"thresholds for {alarms}; range: {meaning}"
     return table
 
 
