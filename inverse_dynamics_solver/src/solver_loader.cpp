@@ -19,7 +19,8 @@ using chain_dynamics::joined;
 using chain_dynamics::nearestName;
 using PluginLoader = pluginlib::ClassLoader<InverseDynamicsSolver>;
 
-const char* const kSource = "source the workspace that has it: source install/local_setup.bash";
+const char* const kSource =
+    "install its package, or source the workspace that has it: source install/local_setup.bash";
 
 /// What is installed: package and prefix of each plugin description.
 using Index = std::map<std::string, std::string>;

@@ -135,7 +135,9 @@ TEST(SolverLoader, UnknownNameListsWhatThereIsAndSuggestsTheNearest) {
   EXPECT_TRUE(
       contains(errorOf(loader, "TwoLinkSolver"), "did you mean two_link_solver/TwoLinkSolver?"));
   EXPECT_FALSE(contains(errorOf(loader, "xyz"), "did you mean"));
-  EXPECT_TRUE(contains(errorOf(loader, ""), "source install/local_setup.bash"));
+  EXPECT_TRUE(contains(errorOf(loader, ""),
+                       "; install its package, or source the workspace that has it: source "
+                       "install/local_setup.bash"));
 }
 
 TEST(SolverLoader, PluginOfAnotherInterfaceIsNotFoundInsteadOfCrashing) {

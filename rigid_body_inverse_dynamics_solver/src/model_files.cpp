@@ -25,7 +25,8 @@ path modelsFolder() {
   if (!share.empty()) return path(share) / "models";
   throw Exception(errorText(std::string("package ") + kDataPackage, "not found",
                             "an installed package of that name", "none in the sourced workspaces",
-                            "source the workspace that has it: source install/local_setup.bash"));
+                            "install it, or source the workspace that has it: "
+                            "source install/local_setup.bash"));
 }
 
 bool isPath(const path& name_or_path) {
