@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""README.md shows the examples of this package as they stand, and their true output."""
+"""README.md and docs/index.md show the examples of this package as they stand, and their true output."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import pytest
 from pages import blocks_of, page
 
 PACKAGE = Path(__file__).resolve().parent.parent
-README = page("README.md")
+PAGES = {"torques.cpp": "docs/index.md", "torques.py": "README.md"}
 
 
 def code(file: Path) -> str:
@@ -21,17 +21,18 @@ def code(file: Path) -> str:
 
 
 @pytest.mark.parametrize(("name", "language"), [("torques.cpp", "cpp"), ("torques.py", "python")])
-def test_readme_shows_the_example_as_it_stands(name: str, language: str) -> None:
-    assert code(PACKAGE / name) in [block.code for block in blocks_of(README, language)]
+def test_the_page_shows_the_example_as_it_stands(name: str, language: str) -> None:
+    assert code(PACKAGE / name) in [block.code for block in blocks_of(page(PAGES[name]), language)]
 
 
 @pytest.mark.parametrize(
-    ("command", "output"),
+    ("name", "command"),
     [
-        ([os.environ.get("TORQUES", "torques")], 0),
-        ([sys.executable, str(PACKAGE / "torques.py")], 1),
+        ("torques.cpp", [os.environ.get("TORQUES", "torques")]),
+        ("torques.py", [sys.executable, str(PACKAGE / "torques.py")]),
     ],
 )
-def test_readme_shows_the_output_of_the_example(command: list[str], output: int) -> None:
+def test_the_page_shows_the_output_of_the_example(name: str, command: list[str]) -> None:
     run = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert run.stdout == blocks_of(README, "text")[output].code
+    (output,) = blocks_of(page(PAGES[name]), "text")
+    assert run.stdout == output.code

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Hooks of MkDocs: what the pages of docs/ need to be pages of a site, too.
+
+Pages link to files of the repository beyond docs/, as on GitHub. On the site such a link leads to the
+repository where DOCS_REPOSITORY_URL names it, and is plain text elsewhere; a link to a file that
+doesn't exist is an error.
+"""
+
+from __future__ import annotations
+
+import os
+import posixpath
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+ROOT = Path(__file__).resolve().parent.parent
+
+# [text](target), not of a picture. Text may hold code and brackets of code.
+LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^()\s]+)\)")
+FENCE = re.compile(r"^ *```.*?^ *```", re.MULTILINE | re.DOTALL)
+
+
+def beyond_docs(text: str, page: str, repository: str = "") -> str:
+    """The page with its links to files beyond docs/ made links into the repository, or plain text."""
+
+    def replaced(match: re.Match[str]) -> str:
+        text, target = match[1], match[2]
+        if target.startswith("#") or "://" in target:
+            return match[0]
+        path = posixpath.normpath(
+            posixpath.join("docs", posixpath.dirname(page), target.split("#")[0])
+        )
+        if path.startswith("docs/"):
+            return match[0]
+        if not (ROOT / path).exists():
+            raise FileNotFoundError(f"docs/{page}: link to {path}, which doesn't exist")
+        return f"[{text}]({repository}/blob/main/{path})" if repository else text
+
+    parts, end = [], 0
+    for fence in FENCE.finditer(text):
+        parts += [LINK.sub(replaced, text[end : fence.start()]), fence[0]]
+        end = fence.end()
+    return "".join([*parts, LINK.sub(replaced, text[end:])])
+
+
+def on_page_markdown(markdown: str, *, page: Any, **_: Mapping[str, Any]) -> str:
+    """Called by MkDocs for each page."""
+    repository = os.environ.get("DOCS_REPOSITORY_URL", "").rstrip("/")
+    return beyond_docs(markdown, page.file.src_uri, repository)
