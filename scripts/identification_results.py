@@ -116,7 +116,8 @@ Simulated arms that are what the real ones above were found to be: links, rotor 
 them as in the recordings, for as long, with as many messages and quantised encoders; stretches of the real residuals,
 in random order, are the noise. They are identified from the description alone, as real ones are. Medians of
 {SEEDS} seeds: the error of the identified torques on states that are uniform in the ranges that were seen, mean over
-joints; the error of the delay; how many of the 95 % intervals of inertial combinations hold the truth.
+joints; the error of the delay; how many of the 95 % intervals of inertial combinations hold the truth. The bounds are
+those of inverse_dynamics_tools/test/test_known_truth.py.
 """
 
 _PAYLOADS = f"""\
@@ -152,7 +153,14 @@ def _known_truth(bags: Path, directory: Path) -> str:
     return "\n".join(
         [
             _KNOWN,
-            _row("robot", "error (range)", "asked", "delay", "asked", "intervals that hold"),
+            _row(
+                "robot",
+                "error (range)",
+                "bound",
+                "error of the delay",
+                "bound",
+                "intervals that hold",
+            ),
             _row(*["---"] * 6),
             *rows,
             "",
