@@ -33,7 +33,7 @@ MEASUREMENT = re.compile(
     r"|\bon data that it hasn't seen\b",
     re.MULTILINE,
 )
-BACKED = re.compile(r"(?<!`)<!-- backed by: (.*?) -->", re.DOTALL)
+BACKED = re.compile(r"(?<!`)<!--\s+backed\s+by:\s+(.*?)\s+-->", re.DOTALL)
 GENERATED = re.compile(r"<!-- (?:ids bench|long_recording\.py|scripts/\w+)\b.*?-->")
 REPEAT = re.compile(r"To repeat:(.*?)(?:\n\n|\Z)", re.DOTALL)
 WRITTEN = re.compile(r"\A.*\n<!-- Written by (\S+?)\.? -->")
