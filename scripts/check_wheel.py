@@ -72,7 +72,7 @@ def faults_of_installation(out: Path) -> list[str]:
     if version is None or told != ["ids", version[1]]:
         faults.append(f"ids --version says {' '.join(told)}")
     seconds = min(_seconds("import numpy, inverse_dynamics") for _ in range(5))
-    seconds -= min(_seconds("import numpy") for _ in range(5))
+    seconds = max(0.0, seconds - min(_seconds("import numpy") for _ in range(5)))
     print(f"import inverse_dynamics: {seconds:.3f} s of CPU besides numpy's")
     if seconds > MOST_SECONDS_OF_IMPORT:
         faults.append(

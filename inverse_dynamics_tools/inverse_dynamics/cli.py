@@ -174,7 +174,7 @@ def _run(given: list[str]) -> int:
     except ModuleNotFoundError as error:
         if error.name not in EXTRAS:
             raise
-        _say(f"error: {missing(error.name)}")
+        _say(f"error: {missing('this', error.name)}")
         return 2
     except OSError as error:
         place = error.filename or "a file, or the standard output"

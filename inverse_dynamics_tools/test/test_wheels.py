@@ -35,7 +35,7 @@ def test_the_version_is_that_of_package_xml(pyproject):
 
 def test_what_pip_installs_is_what_the_virtual_environment_has(pyproject):
     lines = (ROOT / "inverse_dynamics_tools/requirements.txt").read_text().splitlines()
-    asked = {line for line in lines if line and not line.startswith("#")}
+    asked = {re.split("[;#]", line)[0].strip() for line in lines}
     project = pyproject["project"]
     needed = [*project["dependencies"]]
     for extra, packages in project["optional-dependencies"].items():
@@ -117,7 +117,19 @@ def test_demo_shows_the_stored_recordings_without_extras(monkeypatch, tmp_path):
         assert evaluation.mean_rmse < 0.1  # N m, of torques up to 180 N m
         assert any("with MuJoCo the demo simulates the robots" in n for n in evaluation.notes)
     assert "UR10, simulated" in result.page.read_text(encoding="utf-8")
-    assert any(note.startswith("no videos: a video needs ") for note in result.notes)
+    expected = "no videos: a video needs mujoco, matplotlib, PIL, OpenGL: "
+    assert any(note.startswith(expected) for note in result.notes)
+    assert not list(result.directory.glob("*/*.png"))
+
+
+def test_the_extras_of_several_packages_are_named_at_once(monkeypatch):
+    without(monkeypatch, "mujoco", "matplotlib", "OpenGL")
+    monkeypatch.setattr(extras, "installed_by_pip", lambda: True)
+    with pytest.raises(extras.MissingPackageError) as caught:
+        extras.require("a video", "mujoco", "json", "matplotlib", "OpenGL")
+    assert str(caught.value) == (
+        'a video needs mujoco, matplotlib, OpenGL: pip install "inverse-dynamics[plots,sim]"'
+    )
 
 
 def declare(site: Path, name: str, module: str) -> None:

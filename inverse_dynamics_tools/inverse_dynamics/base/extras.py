@@ -39,22 +39,24 @@ def is_installed(module: str) -> bool:
     return find_spec(module) is not None
 
 
-def require(module: str, use: str) -> None:
-    """Raise MissingPackageError unless a module is installed. use: what needs it, as `a figure`."""
-    if not is_installed(module):
-        raise missing(module, use)
+def require(use: str, *modules: str) -> None:
+    """Raise MissingPackageError unless all modules are installed. use: what needs them, as `a figure`."""
+    absent = [module for module in modules if not is_installed(module)]
+    if absent:
+        raise missing(use, *absent)
 
 
-def missing(module: str, use: str = "this") -> MissingPackageError:
-    """The error of a module that isn't installed."""
-    return MissingPackageError(f"{use} needs {module}: {how_to_install(module)}")
+def missing(use: str, *modules: str) -> MissingPackageError:
+    """The error of modules that aren't installed."""
+    return MissingPackageError(f"{use} needs {', '.join(modules)}: {how_to_install(*modules)}")
 
 
-def how_to_install(module: str) -> str:
-    """The command that installs a module, for whoever has installed this package."""
+def how_to_install(*modules: str) -> str:
+    """The command that installs modules, for whoever has installed this package."""
     if not installed_by_pip():
         return "run ./scripts/setup in the workspace"
-    return f'pip install "inverse-dynamics[{EXTRAS[module]}]"'
+    extras = ",".join(sorted({EXTRAS[module] for module in modules}))
+    return f'pip install "inverse-dynamics[{extras}]"'
 
 
 def installed_by_pip() -> bool:
@@ -74,7 +76,7 @@ class _LazyModule:
         except ModuleNotFoundError as error:
             if error.name != self._name:
                 raise
-            raise missing(self._name, self._use) from error
+            raise missing(self._use, self._name) from error
 
 
 def lazily_imported(name: str, use: str) -> Any:

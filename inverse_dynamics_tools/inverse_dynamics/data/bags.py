@@ -210,7 +210,7 @@ class _UriPath(type(Path())):  # type: ignore[misc]
 
 def new_recording(path: Path, storage: Storage) -> Writer:
     """Writer of a new recording of any types, in the current format of rosbag2."""
-    require("rosbags", "a recording of trajectories")
+    require("a recording of trajectories", "rosbags")
     from rosbags.rosbag2 import StoragePlugin, Writer
 
     plugin = StoragePlugin.MCAP if storage == "mcap" else StoragePlugin.SQLITE3

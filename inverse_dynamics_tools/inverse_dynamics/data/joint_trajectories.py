@@ -209,7 +209,7 @@ def _nanoseconds(time: Any) -> int:
 @cache
 def typestore() -> Typestore:
     """Definitions of messages. That of JointTrajectory is the same in every ROS 2 release."""
-    require("rosbags", "a recording of trajectories")
+    require("a recording of trajectories", "rosbags")
     from rosbags.typesys import Stores, get_typestore
 
     return get_typestore(Stores.ROS2_HUMBLE)

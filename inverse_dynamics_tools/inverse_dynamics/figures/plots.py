@@ -62,7 +62,7 @@ def check_formats(figures: Sequence[str]) -> None:
     for wrong in (f for f in figures if f not in FORMATS):
         raise OutputError(f"figures: expected some of {', '.join(FORMATS)}, got {shown(wrong)}")
     if figures:
-        require("matplotlib", "a figure")
+        require("a figure", "matplotlib")
 
 
 def save_torque_figure(

@@ -62,8 +62,7 @@ def write_video(
     """
     if file.suffix.lower() != ".gif":
         raise UserError(f"{file}: expected the name of a .gif file, the only format of videos")
-    for module in ("mujoco", "matplotlib", "PIL", "OpenGL"):
-        require(module, "a video")
+    require("a video", "mujoco", "matplotlib", "PIL", "OpenGL")
     duration = float(evaluation.time[-1])
     count = max(2, round(min(seconds, duration) * _FRAMES_PER_SECOND))
     times = np.linspace(0.0, duration, count)

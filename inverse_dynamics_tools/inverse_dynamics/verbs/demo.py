@@ -92,7 +92,8 @@ def _print(demo: Demo, console: Screen) -> None:
         console.print(comparison_table(demo.comparison))
     for note in demo.notes:
         console.print(f"note           {note}")
-    console.print(f"figures        {demo.directory}/*/torques.png")
+    if any(demo.directory.glob("*/torques.png")):
+        console.print(f"figures        {demo.directory}/*/torques.png")
     for video in demo.videos:
         console.print(f"video          {video}")
     console.print(f"page           {demo.page.absolute()}")
