@@ -3,6 +3,7 @@
 #include "inverse_dynamics_evaluation/joint_log.hpp"
 
 #include <algorithm>
+#include <chain_dynamics/text.hpp>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -14,11 +15,27 @@ namespace {
 
 using Eigen::Index;
 
+constexpr std::size_t kLongestName = 60;  // characters of it in a message
+
 std::vector<std::string> withoutRepeats(std::vector<std::string> joints) {
   if (std::set<std::string>(joints.begin(), joints.end()).size() != joints.size()) {
     throw RecordingError("joints: expected each name once, got " + listed(joints));
   }
   return joints;
+}
+
+// "; did you mean X?", of the names in a message that aren't those of other joints; or nothing. One
+// or two letters are like any other.
+std::string didYouMean(const std::string& missing, std::vector<std::string> names,
+                       const std::vector<std::string>& joints) {
+  constexpr std::size_t kShort = 2;
+  const auto taken = [&joints](const std::string& name) {
+    return std::find(joints.begin(), joints.end(), name) != joints.end();
+  };
+  names.erase(std::remove_if(names.begin(), names.end(), taken), names.end());
+  const std::string nearest = chain_dynamics::nearestName(missing, names);
+  if (missing.size() <= kShort || nearest.empty()) return "";
+  return "; did you mean " + chain_dynamics::printable(nearest, kLongestName) + "?";
 }
 
 std::string numberText(double number) {
@@ -237,10 +254,12 @@ bool JointLogBuilder::matches(const JointSample& sample) {
       }
       return false;
     case JointMatching::Found::kMissing:
-      throw RecordingError(place(sample) + ": expected the joints " + listed(matching_.joints()) +
-                           ", got " + listed(sample.names) + "; missing: " +
-                           listed(matching_.culprits()) + "; give the recording's names with " +
-                           options_.joints_option + ", in the order of the chain");
+      throw RecordingError(
+          place(sample) + ": expected the joints " + listed(matching_.joints()) + ", got " +
+          listed(sample.names) + "; missing: " + listed(matching_.culprits()) +
+          "; give the recording's names with " + options_.joints_option +
+          ", in the order of the chain" +
+          didYouMean(matching_.culprits().front(), sample.names, matching_.joints()));
     case JointMatching::Found::kRepeated:
       throw RecordingError(place(sample) + ": expected each joint once, got " +
                            listed(sample.names) + "; repeated: " + listed(matching_.culprits()) +

@@ -13,6 +13,7 @@ namespace inverse_dynamics_evaluation {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using Strings = std::vector<std::string>;
 using Doubles = std::vector<double>;
@@ -216,6 +217,20 @@ TEST(JointLog, SaysWhichJointsAreMissing) {
   EXPECT_EQ(logErrorOf(message, {true, "--joints"}),
             "bag: /joint_states, message 1: expected the joints a, b, got c, gripper, a; missing: "
             "b; give the recording's names with --joints, in the order of the chain");
+}
+
+TEST(JointLog, ProposesANameThatIsLikeAMissingOne) {
+  const Message message{{"joint_1", "jiont_2", "finger"}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {}};
+  JointLogBuilder builder("bag", {"joint_1", "joint_2"});
+  EXPECT_THAT(errorOf<RecordingError>([&] { builder.add(message.sample()); }),
+              HasSubstr("in the order of the chain; did you mean jiont_2?"));
+}
+
+TEST(JointLog, ProposesNoNameOfAnotherJoint) {
+  const Message message{{"joint_1", "finger"}, {1, 2}, {1, 2}, {1, 2}, {}};
+  JointLogBuilder builder("bag", {"joint_1", "joint_2"});
+  const auto error = errorOf<RecordingError>([&] { builder.add(message.sample()); });
+  EXPECT_THAT(error, EndsWith("in the order of the chain"));
 }
 
 TEST(JointLog, SaysWhichJointsAreThereTwice) {
