@@ -30,13 +30,13 @@ class Solver:
     """An inverse dynamics solver, made by name and ready to compute. Threads: safe.
 
     rad, rad/s, rad/s^2, N m (prismatic m, m/s, m/s^2, N); joints in the order of joint_names. out:
-    an array of doubles, of any layout, that takes the result; it is given back.
+    an array of doubles, of any layout, that takes the result; it is returned.
     """
 
     def __init__(
         self,
         plugin: str,
-        urdf: str = "",
+        urdf: str | Path = "",
         root: str = "",
         tip: str = "",
         gravity: Sequence[float] | None = None,
@@ -55,7 +55,7 @@ class Solver:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is odd about the robot but doesn't prevent computing, a sentence each."""
+        """Warnings about the robot that don't prevent computing, one sentence each."""
 
     @property
     def inertia_is_physical(self) -> bool:
@@ -147,7 +147,7 @@ class Solver:
         """The bodies: name to the arguments of set_payload()."""
 
     def set_gravity(self, gravity: ArrayLike) -> None:
-        """Where things fall from now on: (3,) m/s^2, in the axes of the root link."""
+        """Sets the gravitational acceleration: (3,) m/s^2, in the axes of the root link."""
 
     def set_base_acceleration(self, acceleration: ArrayLike) -> None:
         """How the root link accelerates, (3,) m/s^2 in its axes. Not for a base that rotates."""
@@ -210,7 +210,7 @@ class Solver:
     def accelerations(
         self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, out: Floats | None = None
     ) -> Floats:
-        """Qdd under these torques, friction taken off."""
+        """Qdd under these torques, friction subtracted."""
 
 class FastModel:
     """The engine without a plugin, of many states at a time, and Gram matrices. Threads: safe.
@@ -221,14 +221,14 @@ class FastModel:
 
     @staticmethod
     def from_urdf(
-        urdf: str,
+        urdf: str | Path,
         *,
         root: str = "",
         tip: str = "",
         gravity: Sequence[float] | None = None,
         threads: int = 1,
     ) -> FastModel:
-        """Of a URDF's text; without the friction that it states."""
+        """Of a URDF: its text or its path; without the friction that it states."""
 
     @staticmethod
     def from_file(path: str, *, threads: int = 1) -> FastModel:
@@ -261,7 +261,7 @@ class FastModel:
     def forward_dynamics(
         self, q: ArrayLike, qd: ArrayLike, tau: ArrayLike, *, out: Floats | None = None
     ) -> Floats:
-        """Accelerations under these torques, friction taken off."""
+        """Accelerations under these torques, friction subtracted."""
 
     def torque_derivatives(
         self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike
@@ -1131,7 +1131,7 @@ class YamlMap:
         """The value of a key, or None if it is absent or null."""
 
     def reject_others(self) -> None:
-        """Raise the error for a key that nobody has asked for."""
+        """Raise the error for a key that hasn't been read."""
 
 def read_yaml(path: bytes | str, error: type[UserError]) -> YamlValue:
     """The value that a YAML file is. error: what is raised, now and by the value."""

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "description.hpp"
 #include "initialized.hpp"
 #include "solver_call.hpp"
 
@@ -212,7 +213,7 @@ class FastModel {
 
 using Vector = std::array<double, 3>;
 
-std::unique_ptr<FastModel> fromUrdf(const std::string& urdf, const std::string& root,
+std::unique_ptr<FastModel> fromUrdf(const Description& urdf, const std::string& root,
                                     const std::string& tip, const std::optional<Vector>& gravity,
                                     std::int64_t threads) {
   chain_dynamics::UrdfOptions options;
@@ -220,7 +221,7 @@ std::unique_ptr<FastModel> fromUrdf(const std::string& urdf, const std::string& 
   options.tip = tip;
   if (gravity) options.gravity = Eigen::Vector3d(gravity->data());
   return std::make_unique<FastModel>(
-      chain_dynamics::Model(chain_dynamics::chainFromUrdf(urdf, options)), threads);
+      chain_dynamics::Model(chain_dynamics::chainFromUrdf(urdf.text, options)), threads);
 }
 
 std::unique_ptr<FastModel> fromFile(const std::string& path, std::int64_t threads) {
@@ -280,7 +281,9 @@ void bindFastModel(py::module_& module) {
       "is released.")
       .def_static("from_urdf", &fromUrdf, py::arg("urdf"), py::kw_only(), py::arg("root") = "",
                   py::arg("tip") = "", py::arg("gravity") = none, py::arg("threads") = 1,
-                  "Of a URDF's text; without the friction that it states.")
+                  "Of a URDF: its text, or the path of a .urdf or .xacro file; without the "
+                  "friction that it\n"
+                  "states.")
       .def_static("from_file", &fromFile, py::arg("path"), py::kw_only(), py::arg("threads") = 1,
                   "Of a model file, with its friction.")
       .def_static("from_joints", &fromJoints, py::arg("names"), py::arg("prismatic"),
@@ -296,7 +299,7 @@ void bindFastModel(py::module_& module) {
                              "Iyz, Izz of each link, in its frame and about its origin.")
       .def("forward_dynamics", &FastModel::forwardDynamics, py::arg("q"), py::arg("qd"),
            py::arg("tau"), py::kw_only(), py::arg("out") = none,
-           "Accelerations under these torques, friction taken off.")
+           "Accelerations under these torques, friction subtracted.")
       .def("torque_derivatives", &FastModel::torqueDerivatives, py::arg("q"), py::arg("qd"),
            py::arg("qdd"),
            "dtau/dq, dtau/dqd and dtau/dqdd = H, (n, n) or (N, n, n): entry (i, j) is that of\n"

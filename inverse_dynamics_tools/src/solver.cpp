@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "description.hpp"
 #include "initialized.hpp"
 #include "solver_call.hpp"
 #include "solver_capabilities.hpp"
@@ -156,7 +157,7 @@ class Solver {
 
   bool frictionDependsOnPosition() const { return solver_->frictionDependsOnPosition(); }
 
-  /// Half the width of the band that holds 95 % of the torques; None where nobody knows.
+  /// Half the width of the band that holds 95 % of the torques; None where it is unknown.
   py::object torqueDeviation() const {
     const auto* band = dynamic_cast<const ids::TorqueDeviation*>(solver_.get());
     if (band == nullptr || !band->hasTorqueDeviation()) return py::none();
@@ -164,7 +165,7 @@ class Solver {
     return py::array_t<double>(deviation.size(), deviation.data());
   }
 
-  /// (3, n, 2): q, qd, qdd; joint; least and greatest. None where nobody knows.
+  /// (3, n, 2): q, qd, qdd; joint; least and greatest. None where it is unknown.
   py::object seenRanges() const {
     const auto* band = dynamic_cast<const ids::TorqueDeviation*>(solver_.get());
     if (band == nullptr || band->seenRanges().empty()) return py::none();
@@ -222,13 +223,13 @@ INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::Solver)
 namespace inverse_dynamics_tools {
 namespace {
 
-std::unique_ptr<Solver> makeSolver(const std::string& plugin, const std::string& urdf,
+std::unique_ptr<Solver> makeSolver(const std::string& plugin, const Description& urdf,
                                    const std::string& root, const std::string& tip,
                                    const std::optional<std::array<double, 3>>& gravity,
                                    bool friction, const std::string& attached,
                                    const std::optional<std::string>& model,
                                    const py::dict& parameters) {
-  Origin origin{plugin, urdf, root, tip, gravity, friction, attached, model, {}};
+  Origin origin{plugin, urdf.text, root, tip, gravity, friction, attached, model, {}};
   for (const auto& [key, value] : parameters) {
     const auto name = key.cast<std::string>();
     origin.parameters[name] = parameterOf(name, value);
@@ -281,7 +282,7 @@ void bindCapabilities(py::class_<Solver>& solver) {
       .def("regressor", of(&regressor), q, qd, qdd, keywords, out,
            "Y, (n, 10 n) or (N, n, 10 n): torques of rigid bodies are Y p.")
       .def("accelerations", of(&accelerations), q, qd, tau, keywords, out,
-           "qdd under these torques, friction taken off.");
+           "qdd under these torques, friction subtracted.");
 }
 
 std::string represented(const Solver& solver) {
@@ -317,24 +318,26 @@ void bindSolver(py::module_& module) {
       "Any layout, without copies. Threads: safe; the GIL is released. Pickled, it is\n"
       "made again.");
   solver
-      .def(py::init(&makeSolver), py::arg("plugin"), py::arg("urdf") = "", py::arg("root") = "",
-           py::arg("tip") = "", py::arg("gravity") = py::none(), py::arg("friction") = true,
-           py::arg("attached") = "", py::arg("model") = py::none(),
-           py::arg("parameters") = py::dict(),
-           "plugin: package/Class, one of available_solvers(). urdf: text. root, tip: links;\n"
-           "empty: the first and the last. gravity: 3 numbers, m/s^2, in the frame of the root\n"
-           "link. friction: whether the solver adds its friction model. attached: 'lump' or\n"
-           "'ignore' what hangs on the chain. model: file or name of a model. parameters: others\n"
-           "of the solver, by name; batch_threads: among how many threads a large batch may be\n"
-           "shared. What isn't given is left to the solver.\n\n"
-           "Raises SolverError: see inverse_dynamics.errors.")
+      .def(
+          py::init(&makeSolver), py::arg("plugin"), py::arg("urdf") = "", py::arg("root") = "",
+          py::arg("tip") = "", py::arg("gravity") = py::none(), py::arg("friction") = true,
+          py::arg("attached") = "", py::arg("model") = py::none(),
+          py::arg("parameters") = py::dict(),
+          "plugin: package/Class, one of available_solvers(). urdf: its text, or the path\n"
+          "of a .urdf or .xacro file. root, tip: links; empty: the first and the last. gravity:\n"
+          "3 numbers, m/s^2, in the frame of the root link. friction: whether the solver adds its\n"
+          "friction model. attached: 'lump' or 'ignore' the links that are attached to the chain.\n"
+          "model: file or name of a model. parameters: other parameters of the solver, by name;\n"
+          "batch_threads: number of threads that may share a large batch. Arguments that are not\n"
+          "given have the solver's defaults.\n\n"
+          "Raises SolverError: see inverse_dynamics.errors.")
       .def_property_readonly("plugin", [](const Solver& s) { return s.origin().plugin; })
       .def_property_readonly(
           "joint_names", [](const Solver& s) { return py::tuple(py::cast(s.get().jointNames())); },
           "Names of the joints, from root to tip: the order of all arrays.")
       .def_property_readonly(
           "warnings", [](const Solver& s) { return py::tuple(py::cast(s.get().warnings())); },
-          "What is odd about the robot but doesn't prevent computing, a sentence each.")
+          "Warnings about the robot that don't prevent computing, one sentence each.")
       .def_property_readonly(
           "inertia_is_physical", [](const Solver& s) { return s.get().inertiaIsPhysical(); },
           "Whether H is symmetric and positive definite by construction.")
@@ -383,7 +386,7 @@ void bindSolver(py::module_& module) {
       .def_property_readonly("payloads", &Solver::payloads,
                              "The bodies: name to the arguments of set_payload().")
       .def("set_gravity", &Solver::setGravity, py::arg("gravity"),
-           "Where things fall from now on: (3,) m/s^2, in the axes of the root link.")
+           "Sets the gravitational acceleration: (3,) m/s^2, in the axes of the root link.")
       .def("set_base_acceleration", &Solver::setBaseAcceleration, py::arg("acceleration"),
            "How the root link accelerates, (3,) m/s^2 in its axes. Not for a base that rotates.")
       .def_property_readonly("gravity", &Solver::gravity, "(3,) m/s^2.")
