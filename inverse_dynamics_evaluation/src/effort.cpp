@@ -146,7 +146,7 @@ std::vector<std::string> effortNotes(const Effort& effort, const EffortOptions& 
         "all recorded efforts are zero: does the robot's driver measure them? Some publish zeros");
   }
   if (effort.verdict && !effort.verdict->sure) {
-    notes.push_back("the data don't tell what effort means: " + effort.verdict->reason +
+    notes.push_back("the data don't determine what effort means: " + effort.verdict->reason +
                     "; taken as " + effort.meaning + ", " + effort.stated_by + " (" +
                     effort.verdict->summary() + ")");
   }

@@ -83,7 +83,7 @@ std::string EffortVerdict::summary() const {
             formatted("%.3g", other.margin) + " times)";
     current = current || other.meaning == kCurrent;
   }
-  return current ? text : text + "; current wasn't looked at, no drive gains are known";
+  return current ? text : text + "; current wasn't considered, as no drive gains are known";
 }
 
 EffortSums::EffortSums(Index count, Index joints, std::vector<double> drive_gains)
@@ -200,8 +200,8 @@ std::vector<EffortCandidate> EffortSums::ranked(const std::vector<Matrix>& error
 std::string EffortSums::doubt(const EffortVerdict& verdict,
                               const std::vector<Matrix>& errors) const {
   if (count_ < kLeastSamples) {
-    return std::to_string(count_) + " samples that count are too few, " +
-           std::to_string(kLeastSamples) + " are needed";
+    return std::to_string(count_) + " valid samples are too few, " + std::to_string(kLeastSamples) +
+           " are needed";
   }
   std::vector<std::string> open = verdict.rivals();
   if (!open.empty()) {
@@ -248,7 +248,7 @@ std::string EffortSums::gainsThatWouldFit() const {
              ": if they are currents, state drive_gains, from the robot's data sheet";
     }
   }
-  return "; gravity, payload, joint order and units are worth a look";
+  return "; check gravity, payload, joint order and units";
 }
 
 EffortVerdict compareMeanings(const ConstMatrix& computed, const ConstMatrix& gravity,

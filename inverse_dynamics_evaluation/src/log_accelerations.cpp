@@ -42,10 +42,10 @@ void addFilterFindings(const FilterChoice& filter, std::vector<std::string>& fou
   }
   if (choice.cutoff <= choice.lowest) {
     found.push_back("the chosen cut-off, " + formatted("%.3g", choice.cutoff) +
-                    " Hz, is the lowest possible: the data don't tell motion from noise");
+                    " Hz, is the lowest possible: the data don't distinguish motion from noise");
   } else if (choice.cutoff >= choice.highest) {
     found.push_back("the chosen cut-off, " + formatted("%.3g", choice.cutoff) +
-                    " Hz, is the highest possible: the data don't tell noise from motion");
+                    " Hz, is the highest possible: the data don't distinguish noise from motion");
   }
 }
 

@@ -70,7 +70,7 @@ TEST(EffortVerdict, HasTheValuesWorkedByHand) {
   EXPECT_EQ(verdict.candidates[1].worse_in, 20);
   EXPECT_EQ(verdict.summary(),
             "torque is 12 % of the range off, torque_without_gravity 50 % (worse in 20 of 20 "
-            "stretches, 2 times); current wasn't looked at, no drive gains are known");
+            "stretches, 2 times); current wasn't considered, as no drive gains are known");
 }
 
 TEST(EffortVerdict, RecognisesEachMeaning) {
@@ -107,7 +107,7 @@ TEST(EffortVerdict, NeedsEnoughSamplesThatCountAndAreFinite) {
   Mask few = Mask::Constant(2000, false);
   few.head(100).setConstant(true);
   const EffortVerdict verdict = compareMeanings(arm.computed, arm.gravity, effort, {}, few);
-  EXPECT_EQ(verdict.reason, "99 samples that count are too few, 100 are needed");
+  EXPECT_EQ(verdict.reason, "99 valid samples are too few, 100 are needed");
   EXPECT_EQ(EffortSums(0, 2, {}).verdict().stretches, 1);
 }
 
@@ -157,7 +157,7 @@ TEST(EffortOfData, FallsBackOnWhatIsStated) {
   EXPECT_THAT(effort.summary(), StartsWith("torque, as nothing is stated; not sure: "));
   EXPECT_THAT(effortNotes(effort, options, true, {}),
               ElementsAre(HasSubstr("all recorded efforts are zero"),
-                          StartsWith("the data don't tell what effort means: ")));
+                          StartsWith("the data don't determine what effort means: ")));
 }
 
 }  // namespace

@@ -125,9 +125,10 @@ TEST(LogAccelerations, SayWhatTheDataCannotTell) {
 
   log.qd.setZero();
   log.q.setZero();
-  EXPECT_THAT(logAccelerations(log).findings,
-              Contains("the chosen cut-off, 40 Hz, is the highest possible: the data don't tell "
-                       "noise from motion"));
+  EXPECT_THAT(
+      logAccelerations(log).findings,
+      Contains("the chosen cut-off, 40 Hz, is the highest possible: the data don't distinguish "
+               "noise from motion"));
 }
 
 TEST(LogAccelerations, RefuseAnUnknownMethodAndACutOffWithoutAFilter) {

@@ -88,13 +88,21 @@ class _Parser(argparse.ArgumentParser):
     """Says what is wrong in one line, and where help is: pages of usage would hide it."""
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """What is given; an unknown option is an error of the verb, whose help knows the right one."""
+        """What is given; an unknown option is an error of the verb, whose help lists the known ones."""
+        first = "" if not args else args[0].partition("=")[0]
+        if first.startswith("-") and not any(
+            o.startswith(first) for o in self._option_string_actions
+        ):
+            self._refuse([first])
         options, unknown = self.parse_known_args(args, namespace)
         if unknown:
-            parser = getattr(options, "parser", self)
-            hint = did_you_mean(unknown[0].partition("=")[0], parser._option_string_actions)
-            parser.error(f"unrecognized arguments: {' '.join(unknown)}{hint and f'; {hint}'}")
+            getattr(options, "parser", self)._refuse(unknown)
         return options
+
+    def _refuse(self, unknown: list[str]) -> NoReturn:
+        known = (option for option in self._option_string_actions if option.startswith("--"))
+        hint = did_you_mean(unknown[0].partition("=")[0], known)
+        self.error(f"unrecognized arguments: {' '.join(unknown)}{hint and f'; {hint}'}")
 
     def error(self, message: str) -> NoReturn:
         wrong = _CHOICE.search(message)
@@ -157,6 +165,8 @@ def _run(given: list[str]) -> int:
 
     start_noting_outputs()
     parser = make_parser()
+    if given[:1] == ["help"]:  # as many programs have it
+        given = [*given[1:2], "--help"]
     if not given:
         parser.print_help(sys.stderr)
         return 2

@@ -169,7 +169,7 @@ void bindAccelerations(py::module_& module) {
              "Derivative of low_pass() of equidistant samples (N, n), good at both ends too.");
   module.def("sample_findings", &sampleFindings, py::arg("clock"), py::arg("samples"),
              py::arg("filter") = std::nullopt,
-             "What is odd about the samples, and what follows, one sentence each.");
+             "Findings about the samples and their consequences, one sentence each.");
   module.def("low_pass_gain", &evaluation::lowPassGain, py::arg("frequency"), py::arg("cutoff"),
              py::arg("sampling_frequency"), py::arg("order") = 2,
              "Gain of low_pass() at a frequency.");

@@ -207,7 +207,7 @@ void bindEffort(py::module_& module) {
              py::arg("effort"), py::arg("drive_gains") = std::vector<double>(),
              py::arg("mask") = py::none(),
              "Which meaning of recorded efforts fits the data. computed, gravity, effort: (N, n);\n"
-             "drive_gains: (n,) or none; mask: (N,) samples that count.");
+             "drive_gains: (n,) or none; mask: (N,) marks the valid samples.");
   module.def("effort_summary", &effortSummary, py::arg("meaning"), py::arg("stated_by"),
              py::arg("drive_gains"), py::arg("verdict"), "What efforts mean, in words.");
 }

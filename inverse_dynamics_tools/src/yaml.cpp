@@ -58,7 +58,7 @@ void bindYaml(py::module_& module) {
       .def("optional", &LocatedMap::optional, py::arg("key"),
            "The value of a key, or None if it is absent or null.")
       .def("reject_others", &LocatedMap::rejectOthers,
-           "Raise the error for a key that nobody has asked for.");
+           "Raise the error for a key that hasn't been read.");
   module.def(
       "read_yaml",
       [](const std::string& path, const py::type& error) {

@@ -326,7 +326,12 @@ def test_a_wrong_command_line_takes_one_line_that_names_the_help(ids):
         ),
         (("robots", "--list", "x"), "unrecognized arguments: --list; see `ids robots --help`\n"),
         (("report", "a", "--ou=b"), None),
-        (("--vision",), "see `ids --help`\n"),
+        (
+            ("--vision",),
+            "unrecognized arguments: --vision; did you mean --version?; see `ids --help`\n",
+        ),
+        (("-v", "robots"), "unrecognized arguments: -v; see `ids --help`\n"),
+        (("completion",), "are required: shell; see `ids completion --help`\n"),
     ],
 )
 def test_what_is_like_something_known_is_proposed_and_the_right_help_named(
@@ -389,6 +394,20 @@ def test_help_teaches_by_examples(ids, verb):
     code, out, _ = ids(*verb, "--help")
     assert code == 0
     assert re.search(rf"^  ids {verb[0] if verb else ''}", out, re.MULTILINE)
+
+
+def test_help_is_a_verb_too(ids):
+    assert ids("help") == ids("--help")
+    assert ids("help", "robots") == ids("robots", "--help")
+
+
+def test_a_description_in_place_of_a_run_configuration_names_the_option(ids, bag, tmp_path):
+    fails(
+        ids("evaluate", bag, "--robot", "arm.urdf"),
+        "--robot arm.urdf: expected a run configuration, got a description; give it as --urdf arm.urdf",
+    )
+    (tmp_path / "empty.urdf").write_text(" \n")
+    fails(ids("evaluate", bag, "--urdf", "empty.urdf"), "empty.urdf: is empty; expected a URDF")
 
 
 def test_a_verb_whose_package_is_not_built_names_the_remedy(ids, monkeypatch):

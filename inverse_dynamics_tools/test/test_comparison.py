@@ -44,7 +44,7 @@ def test_other_recordings_are_refused(evaluation):
             Effort(stated_by=FORMAT),
             currents(2.0, 3.0, 4.0),
             "got 'torque, as the recording's format says' and 'current, as given, with drive gains 2 "
-            "3 4 N m/A': measured torques aren't the same then; evaluate again with the same "
+            "3 4 N m/A', so measured torques differ; evaluate again with the same "
             "--effort-is",
         ),
         (currents(2.0, 3.0, 4.0), currents(2.0, 3.0, 5.0), "with drive gains 2 3 5 N m/A'"),
@@ -56,7 +56,7 @@ def test_other_meanings_of_the_same_efforts_are_refused_with_the_reason(
     runs = [replace(evaluation, effort=effort) for effort in (first, other)]
     with pytest.raises(UserError, match=re.escape(said)) as caught:
         compare(runs)
-    assert str(caught.value).startswith("compare: recording: expected evaluations that take its")
+    assert str(caught.value).startswith("compare: recording: expected evaluations with one mea")
 
 
 def test_the_verb_says_what_it_needs(tmp_path, evaluation, capsys):

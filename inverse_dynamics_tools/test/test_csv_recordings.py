@@ -181,8 +181,8 @@ def test_what_urs_record_tool_should_have_recorded_is_said(file):
     fails(
         file,
         "timestamp target_q_0 target_qd_0 target_current_0\n0 0 0 0\n",
-        "missing: actual_q_0; target_q_0, target_qd_0, target_current_0 are what was asked for, "
-        "not what was measured; have the RTDE record tool's configuration list actual_q",
+        "missing: actual_q_0; target_q_0, target_qd_0, target_current_0 are commanded values, "
+        "not measured ones; have the RTDE record tool's configuration list actual_q",
     )
     fails(
         file,

@@ -103,7 +103,7 @@ def test_where_the_data_dont_tell_the_configuration_counts(tmp_path, robot, conf
     result = evaluate(tmp_path / "bag", weightless, effort_is="auto")
     assert (result.effort.meaning, result.effort.verdict.sure) == (configured, False)
     note = " ".join(result.notes)
-    assert "the data don't tell what effort means" in note
+    assert "the data don't determine what effort means" in note
     assert "as gravity hardly loads the joints" in note
     assert f"taken as {configured}, as the run configuration says" in note
     nothing = evaluate(tmp_path / "bag", replace(weightless, effort="auto"))

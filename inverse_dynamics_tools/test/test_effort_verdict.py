@@ -129,7 +129,7 @@ def test_currents_without_known_gains_fit_nothing_and_the_gains_that_would_are_n
     computed, gravity = arm()
     verdict = compare_meanings(computed, gravity, recorded("current", computed, gravity))
     unsure(verdict, "no meaning fits", "proportional to torque, by 10, 12, 8", "drive_gains")
-    assert "current wasn't looked at, no drive gains are known" in verdict.summary
+    assert "current wasn't considered, as no drive gains are known" in verdict.summary
 
 
 def test_gravity_the_wrong_way_round_isnt_taken_for_torque_without_gravity():
@@ -137,7 +137,7 @@ def test_gravity_the_wrong_way_round_isnt_taken_for_torque_without_gravity():
     upside_down = computed - 2 * gravity
     verdict = compare_meanings(upside_down, -gravity, computed)
     assert verdict.best == "torque_without_gravity"
-    unsure(verdict, "no meaning fits; gravity, payload, joint order and units are worth a look")
+    unsure(verdict, "no meaning fits; check gravity, payload, joint order and units")
 
 
 @pytest.mark.parametrize("samples", [0, 1, 19, 99])

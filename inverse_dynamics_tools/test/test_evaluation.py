@@ -176,8 +176,9 @@ def test_another_gravity(tmp_path, robot):
 
 def test_another_topic(tmp_path, robot, solver):
     recording(tmp_path / "bag", solver, topic="/arm/joint_states")
-    with pytest.raises(BagError, match="has no topic /joint_states"):
-        evaluate(tmp_path / "bag", robot)
+    found = evaluate(tmp_path / "bag", robot)
+    assert found.robot.topic == "/arm/joint_states"
+    assert any("bag has no topic /joint_states: its only one" in note for note in found.notes)
     result = evaluate(tmp_path / "bag", robot, topic="/arm/joint_states")
     assert result.robot.topic == "/arm/joint_states"
 
@@ -196,7 +197,7 @@ def test_another_description_root_and_tip(tmp_path, robot, bag):
 
 def test_a_description_that_a_solver_has_no_use_for_is_said_to_be_drawn_only(bag, robot):
     said = (
-        f"{URDF} is drawn, not computed from: {UR10} brings its own model, so a tool or payload in the "
+        f"{URDF} is used only for drawing: {UR10} brings its own model, so a tool or payload in the "
         "description isn't included in the torques"
     )
     assert said in " ".join(evaluate(bag, robot, plugin=UR10, urdf=URDF).notes)

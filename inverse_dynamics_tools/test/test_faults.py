@@ -368,8 +368,8 @@ def test_an_unexpected_error_is_one_line_with_a_report(ids, tmp_path, monkeypatc
     code, out, err = ids("robots", "my robot")
     assert (code, out) == (1, "")
     assert re.fullmatch(
-        r"ids: error: unexpected RuntimeError: a fault; this is a fault of ids, not of yours: please "
-        r"report it, with \S+ids-error-\w+\.txt; nothing was written\n",
+        r"ids: error: unexpected RuntimeError: a fault; this is a bug in ids: please "
+        r"report it with \S+ids-error-\w+\.txt; nothing was written\n",
         err,
     )
     (file,) = tmp_path.iterdir()

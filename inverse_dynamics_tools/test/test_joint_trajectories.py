@@ -131,7 +131,7 @@ ONE = (0, [1], [1], [1], [1])
         (
             [trajectory(["a"], [ONE, ONE]), trajectory(["a"], [ONE])],
             "expected one trajectory, or messages of one point each, got 2 messages with up to 2 "
-            "points: which of them belong together isn't known; `ids torques` takes any number",
+            "points: it isn't known which of them belong together; `ids torques` takes any number",
         ),
         ([trajectory(["a"], [(0, [np.nan], [1], [1], [1])])], "positions of joint a: expected a f"),
         ([trajectory(["b"], [ONE])], "expected the joints a, got b; missing: a; give the"),

@@ -111,7 +111,10 @@ def test_massless_links_can_be_allowed(ids, tmp_path):
         ("gravity=[0, 0, 0]", "gravity: has an option of its own: give --gravity instead; see"),
         ("friction=false", "friction: has an option of its own: give --no-friction instead; see"),
         ("robot_description=x", "robot_description: has an option of its own: give --urdf instead"),
-        ("model=x.yaml", "model: is no option: put it at the top of the run configuration; see"),
+        (
+            "model=x.yaml",
+            "model: is not an option: put it at the top of the run configuration; see",
+        ),
         ("a: 1\nb=1", "expected NAME=VALUE"),
     ],
 )

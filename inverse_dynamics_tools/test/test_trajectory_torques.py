@@ -288,7 +288,7 @@ def test_another_description_and_chain_may_be_given(tmp_path, capsys):
     assert "999 N m" in printed
     assert "computed from" not in printed
     assert cli.main([*arguments, "--robot", "ur10_real", "--urdf", str(strong)]) == 0
-    said = f"note          {strong} is where limits are from, not computed from: "
+    said = f"note          {strong} is used only for effort limits: "
     assert said in capsys.readouterr().out
     assert cli.main([*arguments, "--robot", "ur10_simulated", "--tip", "nowhere"]) == 2
     assert "nowhere" in capsys.readouterr().err

@@ -81,7 +81,7 @@ def test_a_users_mistake_is_a_failure_in_one_line_and_the_others_are_done():
 
 def test_an_unexpected_error_is_a_failure_with_a_report_that_stays():
     failure = outcomes(stumble_at_two, [2])[0]
-    assert "unexpected ZeroDivisionError: an accident; this is a fault of ids" in failure.text
+    assert "unexpected ZeroDivisionError: an accident; this is a bug in ids" in failure.text
     report = Path(failure.text.rpartition("with ")[2])
     assert "stumble_at_two" in report.read_text()
     report.unlink()

@@ -27,7 +27,7 @@ def crash_report(error: Exception, arguments: Sequence[str]) -> str:
             file.write(_report(error, arguments))
     except Exception as problem:
         return f"{line} (no report of it could be written: {problem})"
-    return f"{line}; this is a fault of ids, not of yours: please report it, with {name}"
+    return f"{line}; this is a bug in ids: please report it with {name}"
 
 
 def _report(error: Exception, arguments: Sequence[str]) -> str:

@@ -87,7 +87,7 @@ def restore_interrupted(target: Path) -> None:
         return
     if not path.is_dir() or path.is_symlink() or set(os.listdir(path)) - {"new", "old"}:
         raise OutputError(
-            f"{target}: can't be written: {path} is in the way, and isn't of this command; remove it "
+            f"{target}: can't be written: {path} is in the way and was not written by this command; remove it "
             "by hand, or name another output"
         )
     with suppress(FileNotFoundError):  # its process has ended just now

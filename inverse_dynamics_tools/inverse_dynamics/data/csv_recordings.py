@@ -212,7 +212,7 @@ def _rtde_columns(
     for kind, names in columns.items():
         if missing := [name for name in names if name not in table.names]:
             targets = [name for name in table.names if name.startswith("target_")]
-            only = f"; {listed(targets)} are what was asked for, not what was measured"
+            only = f"; {listed(targets)} are commanded values, not measured ones"
             raise BagError(
                 f"{table.path}: expected the columns {names[0]} to {names[-1]} ({kind}, a joint "
                 f"each), missing: {listed(missing)}{only if targets else ''}; have the RTDE "

@@ -158,8 +158,8 @@ def joint_log_of(
     if len(filled) > 1 and max(map(len, filled)) > 1:
         raise BagError(
             f"{where}: expected one trajectory, or messages of one point each, got {len(filled)} "
-            f"messages with up to {max(map(len, filled))} points: which of them belong together "
-            "isn't known; `ids torques` takes any number of trajectories"
+            f"messages with up to {max(map(len, filled))} points: it isn't known which of them "
+            "belong together; `ids torques` takes any number of trajectories"
         )
     joints = tuple(joints) or filled[0].joint_names
     q = _joined(filled, "positions", joints, "joint positions are needed")

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 # What each rule does, as --help says it.
 RULES = {
-    "repeated": "samples that repeat the one before are left out of the differentiation",
-    "non-increasing": "so are those whose stamp isn't later than all before it",
-    "time-base": "stamps that positions and velocities contradict give way to equal distances",
+    "repeated": "samples that repeat the previous one are left out of the differentiation",
+    "non-increasing": "samples whose stamp isn't later than all previous ones are left out of it too",
+    "time-base": "stamps that contradict positions and velocities are replaced by equidistant ones",
     "start-transient": "efforts that jump at the very start are left out of the second metrics",
 }
 

@@ -63,10 +63,10 @@ def _check_same_recording(first: Evaluation, other: Evaluation) -> None:
         return
     if np.array_equal(other.log.effort, first.log.effort):
         raise UserError(
-            f"compare: {first.bag}: expected evaluations that take its efforts for the same, got "
-            f"'{first.effort.summary}' and '{other.effort.summary}': measured torques aren't the "
-            "same then; evaluate again with the same --effort-is and drive gains (which meaning "
-            "fits, `ids evaluate --effort-is auto` says)"
+            f"compare: {first.bag}: expected evaluations with one meaning of its efforts, got "
+            f"'{first.effort.summary}' and '{other.effort.summary}', so measured torques differ; "
+            "evaluate again with the same --effort-is and drive gains (`ids evaluate --effort-is "
+            "auto` finds the meaning that fits)"
         )
     raise UserError(
         f"compare: expected evaluations of one recording, got {first.bag} ({len(first.log)} samples) "

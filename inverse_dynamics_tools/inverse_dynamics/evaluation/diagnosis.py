@@ -325,7 +325,7 @@ def _mounts(
             diagnosis = Diagnosis(
                 "ceiling" if ceiling else "wall",
                 "The robot hangs from the ceiling" if ceiling else "The robot hangs on a wall",
-                f"torques match if things fall along {option} m/s² in the frame of the root link",
+                f"torques match if gravity acts along {option} m/s² in the frame of the root link",
                 f"give --gravity {option}, or `gravity:` in the run configuration",
             )
             compared = replace(model, torques=model.mounted(direction)).compared
@@ -591,6 +591,6 @@ def _friction(
     return Diagnosis(
         "friction",
         "Friction",
-        "the error is little else than friction and offset, which the model lacks",
+        "the error is mostly friction and offset, which the model lacks",
         "take a model with friction, or make one: ids identify RECORDING --robot NAME --out arm.yaml",
     )

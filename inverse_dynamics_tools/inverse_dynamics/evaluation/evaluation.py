@@ -184,7 +184,7 @@ def evaluate(
         series=series or SeriesInMemory(),
     )
     seconds["reading"] += result.seconds["reading"]
-    notes = description_notes(robot, "drawn") if urdf is not None else ()
+    notes = description_notes(robot, "drawing") if urdf is not None else ()
     notes = (*window.notes, *_topic_notes(bag, motion, topic or robot.topic), *notes)
     result = replace(result, notes=(*notes, *result.notes), seconds={**result.seconds, **seconds})
     states = (result.log.q, result.log.qd, result.qdd)

@@ -62,7 +62,7 @@ def contact_figure(contacts: Contacts) -> Figure:
     if contacts.wrenches is not None:
         _draw(axes[-1], contacts, np.linalg.norm(contacts.wrenches[:, :3], axis=1))
         axes[-1].set_title(
-            "force at the tip, as if only it was touched [N]", loc="left", fontsize=9, pad=3
+            "force at the tip, if nothing else is touched [N]", loc="left", fontsize=9, pad=3
         )
     axes[-1].set_xlabel("time [s]", color=_MUTED)
     axes[-1].set_xlim(contacts.time[0], contacts.time[-1])
@@ -106,7 +106,7 @@ def _write_heading(figure: Figure, contacts: Contacts, height: float) -> None:
         Patch(label="contact", **_CONTACT),
     ]
     if contacts.quiet_part is not None:
-        handles.append(Patch(label="part that the thresholds are from", **_QUIET))
+        handles.append(Patch(label="part used for the thresholds", **_QUIET))
     if contacts.interruptions:
         handles.append(Patch(label="no estimate", **_UNKNOWN))
     figure.legend(

@@ -282,7 +282,7 @@ def _findings(
     fitter: ArmFitter, links: Sequence[str], held: dict[str, Floats], units: Sequence[str]
 ) -> tuple[Finding, ...]:
     found = [
-        Finding("floor", f"link {link}: the description can't be meant: the prior has {text}", link)
+        Finding("floor", f"link {link}: the description is implausible: the prior has {text}", link)
         for link, text in zip(links, fitter.changes, strict=True)
         if text
     ]
@@ -318,7 +318,8 @@ def _motion_findings(
         moved, fastest = float(np.ptp(q[:, j])), float(np.abs(qd[:, j]).max())
         if moved < _LITTLE_MOTION:
             text = (
-                f"{joint} moves by {moved:.2g} only: its friction and what it turns are the prior's"
+                f"{joint} moves by {moved:.2g} only: its friction and the inertia that it moves are "
+                "those of the prior"
             )
             found.append(Finding("motion", text, joint))
         if independent[j] < _FEW_SAMPLES:

@@ -267,7 +267,7 @@ def _require_gravity(evaluation: Evaluation) -> None:
         return
     raise PayloadError(
         f"{evaluation.bag}: expected efforts with gravity, got torque_without_gravity "
-        f"({evaluation.effort.stated_by}): the robot's controller has taken off what the load weighs; "
+        f"({evaluation.effort.stated_by}): the robot's controller has subtracted the weight of the load; "
         "record currents or joint torques with gravity, or state another meaning with --effort-is"
     )
 
@@ -318,7 +318,7 @@ def _check(found: Fit, samples: Samples, evaluation: Evaluation) -> None:
     ]
     if axes:
         raise PayloadError(
-            f"{where}: mass {mass:.3g} +- {half:.2g} kg, but where it is can't be told along {listed(axes)} "
+            f"{where}: mass {mass:.3g} +- {half:.2g} kg, but its position is uncertain along {listed(axes)} "
             "of the tip frame: gravity hardly loads the wrist in these poses; turn the wrist so that each "
             "of its axes is horizontal for some time"
         )
@@ -344,7 +344,7 @@ def _notes(found: Fit, evaluation: Evaluation) -> list[str]:
         )
     if not found.estimate.inertia_is_known:
         notes.append(
-            "inertia: the data don't tell it, so the load is written as a point mass; faster motion of "
+            "the inertia isn't determined by the data, so the load is written as a point mass; faster motion of "
             "the wrist, or a heavier load, would"
         )
     if not evaluation.robot.friction:

@@ -131,7 +131,7 @@ def _friction(found: Identification) -> ReportTable:
 
 def _intervals(found: Identification) -> ReportTable:
     return ReportTable(
-        title="What the data tell, with 95 % intervals",
+        title="What the data determine, with 95 % intervals",
         headings=("number", "value", "±", "unit"),
         rows=[(i.name, i.value, i.half_width, i.unit) for i in found.intervals],
         note="Intervals count how long residuals stay alike, not each sample for itself.",
@@ -143,6 +143,6 @@ def _prior(found: Identification) -> ReportTable:
         title="What the prior decided",
         headings=("link", "number", "prior", "value", "from the data [%]"),
         rows=[(p.link, p.parameter, p.prior, p.value, 100 * p.share) for p in found.prior_decided],
-        note="These numbers are the description's more than the data's: torques don't tell them. "
-        "`ids excite --given RECORDING` looks for a motion that tells more.",
+        note="These numbers are the description's more than the data's: torques don't determine them. "
+        "`ids excite --given RECORDING` searches for a motion with more information.",
     )

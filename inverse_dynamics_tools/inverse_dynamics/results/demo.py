@@ -277,7 +277,7 @@ class _Work:
             comparisons.append(
                 report_comparison(
                     comparison,
-                    "What identification brings",
+                    "Gain by identification",
                     "The same recording of the real UR10, computed from the masses and inertia that its "
                     "URDF states, and from the model identified on the robot, with friction.",
                 )

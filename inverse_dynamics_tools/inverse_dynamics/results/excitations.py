@@ -99,7 +99,7 @@ def excite(
     if options.payload and given:
         raise SimulationError(
             "expected either recordings that are given or a motion for a payload, got both: "
-            "recordings of the arm say nothing of a payload"
+            "recordings of the arm contain no information about a payload"
         )
     if robot.urdf is None:
         raise SimulationError(
@@ -251,7 +251,7 @@ def _read(recording: Path | str, robot: Robot, progress: Progress) -> Evaluation
     """Valid samples of a recording. Raises UserError."""
     found = evaluate(recording, robot, progress=progress)
     if not found.samples.kept.any():
-        raise EvaluationError(f"{recording}: expected samples of a motion, got none that counts")
+        raise EvaluationError(f"{recording}: expected samples of a motion, got no valid one")
     return found
 
 

@@ -128,7 +128,7 @@ def _run_configuration(found: Identification, files: IdentificationFiles, name: 
         f"description: {yaml_text(f'{robot.name}, identified from {_names(found)}')}",
         f"plugin: {RIGID_BODY}",
         f"model: {yaml_text(files.model.name)}",
-        f"urdf: {yaml_text(_reference(robot.urdf, files.robot.parent))}  # drawn; the model counts",
+        f"urdf: {yaml_text(_reference(robot.urdf, files.robot.parent))}  # for drawing; torques come from the model",
     ]
     lines += [
         f"{key}: {yaml_text(value)}"

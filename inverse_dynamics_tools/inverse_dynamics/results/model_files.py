@@ -151,7 +151,7 @@ def _validity(found: Identification) -> str:
         "All links are physically consistent, so H is positive definite. Root mean square error on "
         f"data that were held out: {error}. Within the ranges stated as `seen`, of the robot, load and "
         "temperature of the recordings: friction and offset differ on another day. Masses of single "
-        "links are mostly those of the description: torques don't tell them."
+        "links are mostly those of the description: torques don't determine them."
     )
 
 

@@ -84,7 +84,7 @@ def yaml_text(payload: Payload) -> str:
             + ", ".join(f"{width:.2g}" for width in widths)
         )
     else:
-        lines.append("# inertia: the data don't tell it")
+        lines.append("# inertia: not determined by the data")
     return "\n".join(lines) + "\n"
 
 

@@ -220,7 +220,7 @@ def _comment(found: Identification, lumped: Mapping[str, Sequence[str]]) -> str:
     parts = [f"{link} has {', '.join(names)} in it" for link, names in lumped.items() if names]
     sentences = [
         f"Inertia and friction by `ids identify` from {', '.join(p.name for p in found.recordings)}.",
-        "Masses of single links are mostly those of the description before: torques don't tell them.",
+        "Masses of single links are mostly those of the description before: torques don't determine them.",
         f"Not held here: {'; '.join(left_out)}.",
     ]
     if lumped:

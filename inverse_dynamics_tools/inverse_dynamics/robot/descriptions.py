@@ -45,6 +45,8 @@ def read_description(file: Path) -> str:
         raise RobotError(f"{file}: can't be read ({error.strerror})") from error
     if len(data) > _MOST_BYTES:
         raise RobotError(f"{file}: expected a URDF of at most {_MOST_BYTES >> 20} MiB, got more")
+    if not data.strip():
+        raise RobotError(f"{file}: is empty; expected a URDF")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -67,11 +67,11 @@ def _made(robot: Robot, description: str) -> _core.Solver:
 
 
 def description_notes(robot: Robot, use: str) -> list[str]:
-    """What a reader should know of a description that was given: what it is of use for, if no more."""
+    """A warning where a description that was given is used for nothing but `use`."""
     if not brings_own_model(robot):
         return []
     return [
-        f"{robot.urdf} is {use}, not computed from: {robot.plugin} brings its own model, so a tool or "
+        f"{robot.urdf} is used only for {use}: {robot.plugin} brings its own model, so a tool or "
         "payload in the description isn't included in the torques: give --payload for it; another "
         "--plugin computes from a description"
     ]

@@ -124,7 +124,7 @@ def parameter(text: str) -> tuple[str, Parameter]:
     name, _, value = text.partition("=")
     if name == "model":
         raise argparse.ArgumentTypeError(
-            "model: is no option: put it at the top of the run configuration"
+            "model: is not an option: put it at the top of the run configuration"
         )
     if name in _OPTIONS:
         raise argparse.ArgumentTypeError(

@@ -75,7 +75,8 @@ def add_parser(
         epilog=_EPILOG,
     )
     parser.add_argument("shell", choices=tuple(_SCRIPTS), help="the shell that reads the script")
-    parser.add_argument("words", nargs=argparse.REMAINDER, help=argparse.SUPPRESS)
+    words = parser.add_argument("words", nargs=argparse.REMAINDER, help=argparse.SUPPRESS)
+    words.required = False
     return parser
 
 

@@ -88,7 +88,7 @@ def _print(demo: Demo, console: Screen) -> None:
 
     console.print(mean_table({TITLES[name]: e for name, e in demo.evaluations.items()}))
     if demo.comparison is not None:
-        console.print("UR10, real: what identification brings")
+        console.print("UR10, real: gain by identification")
         console.print(comparison_table(demo.comparison))
     for note in demo.notes:
         console.print(f"note           {note}")

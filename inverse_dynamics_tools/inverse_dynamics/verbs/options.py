@@ -73,6 +73,11 @@ def chosen_robot(arguments: argparse.Namespace) -> Robot:
     from inverse_dynamics.robot.robots import load_robot, robot_of_description
 
     if arguments.robot is not None:
+        if arguments.robot.endswith((".urdf", ".xacro")):
+            raise UserError(
+                f"--robot {arguments.robot}: expected a run configuration, got a description; give it "
+                f"as --urdf {arguments.robot}"
+            )
         return load_robot(arguments.robot)
     if arguments.urdf is None:
         raise UserError(

@@ -286,10 +286,10 @@ def excitation_table(result: ExcitationResult) -> Table:
             unit,
         )
     table.caption = (
-        "speed, acceleration, torque: the greatest, of their limits here; then the standard deviation of "
-        "predicted torques, mean over random states within the limits: before any recording"
-        + (", after those given" if "given" in result.deviation else "")
-        + (", after the stored motion in the same time" if "stored" in result.deviation else "")
+        "speed, acceleration, torque: greatest values as shares of their limits; then the standard "
+        "deviation of predicted torques, mean over random states within the limits: before any recording"
+        + (", after the given recordings" if "given" in result.deviation else "")
+        + (", after the stored motion for the same time" if "stored" in result.deviation else "")
         + ", after this motion"
     )
     return table

@@ -97,7 +97,7 @@ def run(arguments: argparse.Namespace) -> None:
         )
 
     if arguments.urdf is not None:
-        notes = (*notes, *description_notes(robot, "where limits are from"))
+        notes = (*notes, *description_notes(robot, "effort limits"))
     if arguments.json:
         found = {**summary(result), "notes": [*result.notes, *notes]}
         print_json("torques", found, [arguments.out])
