@@ -285,7 +285,7 @@ def _settings(
         if thing is None:
             return None
         if isinstance(thing, ModelFriction):
-            return {"model": robot.plugin if robot.model is None else str(robot.model)}
+            return {"model": robot.plugin if robot.model is None else robot.model.name}
         out: dict[str, Any] = {}
         for field in fields(thing):  # type: ignore[arg-type]
             value = getattr(thing, field.name)
@@ -305,7 +305,7 @@ def _settings(
         "seed": seed,
         "trajectory": source,
         "payload": plain(simulated.payload),
-        "links": str(robot.model) if from_model else str(robot.urdf),
+        "links": links.name if (links := robot.model if from_model else robot.urdf) else None,
         "joint_friction": plain(simulated.friction),
         "noise": plain(sensors.noise),
         "effort_noise": None if sensors.effort_noise is None else sensors.effort_noise.source,
