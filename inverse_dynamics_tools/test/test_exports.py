@@ -187,5 +187,5 @@ def test_what_is_no_result_is_said(tmp_path, capsys):
 def test_without_pyarrow_the_remedy_is_said(run, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     assert cli.main(["export", str(run)]) == 2
-    assert "pip install pyarrow" in capsys.readouterr().err
+    assert "./scripts/setup" in capsys.readouterr().err
     assert not (run / "series.csv").exists()
