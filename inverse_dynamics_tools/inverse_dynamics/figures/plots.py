@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures of an evaluation.
 
-Measured is black and dashed, computed red, the error blue: told apart in black and white, and by
+Measured is black and dashed, computed red, the error blue: distinguishable in black and white, and by
 colour-blind readers.
 """
 

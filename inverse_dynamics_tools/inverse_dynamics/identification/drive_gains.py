@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     """A recording, and the parameters payload.* of what the tip carries in it."""
 
 MOST_UNCERTAIN = 0.1
-"""Half width of the 95 % interval, as a share of the gain, above which data don't tell it."""
+"""Half width of the 95 % interval, as a share of the gain, above which the data don't determine it."""
 
 _LAW = "load"  # a load shows in gravity and in friction
 _STRENGTH = 10.0
@@ -71,7 +71,7 @@ def identify_drive_gains(
     progress: Progress = no_progress,
     **options: Any,
 ) -> tuple[DriveGain, ...]:
-    """The gain of each joint; `robot`'s or its solver's own where the data don't tell it.
+    """The gain of each joint; `robot`'s or its solver's own where the data don't determine it.
 
     recordings: without the loads; known_payloads: recordings with them, and the parameters payload.* of
     solvers, in the tip frame. options: of evaluate(). Raises UserError: IdentificationError where a gain

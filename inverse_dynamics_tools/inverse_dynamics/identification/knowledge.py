@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the data tell of a model's numbers, how well, and what the prior decided.
+"""Which of a model's numbers the data determine, how well, and what the prior decided.
 
 Errors of neighbouring samples are alike, so textbook intervals are far too narrow. Here the scores of
 contiguous blocks vary as they do (cluster-robust covariance with Student's t) [Cameron, Miller 2015,
@@ -83,7 +83,7 @@ class Knowledge:
         return covariance
 
     def _prior_error(self) -> float:
-        """Mean square of the prior's errors in the directions that the data tell, at least one."""
+        """Mean square of the prior's errors in the directions that the data determine, at least one."""
         rigid = slice(0, self.described.size)
         moved = self.values[rigid] - self.described.ravel()
         told = np.trace(_inverse(self.data + self.prior)[rigid] @ self.data[:, rigid])

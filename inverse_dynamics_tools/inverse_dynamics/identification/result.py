@@ -101,7 +101,7 @@ class HeldOutBlock:
 
     @property
     def errors(self) -> dict[str, Floats]:
-        """Measured minus computed torques of the samples that count, by name of COLUMNS."""
+        """Measured minus computed torques of the valid samples, by name of COLUMNS."""
         return {
             name: (self.measured - computed)[self.counts]
             for name, computed in self.computed.items()
@@ -110,7 +110,7 @@ class HeldOutBlock:
 
 @dataclass(frozen=True)
 class Interval:
-    """A number that the data tell, with its 95 % interval: an inertial combination or a friction figure."""
+    """A number that the data determine, with its 95 % interval: an inertial combination or a friction figure."""
 
     name: str  # as "elbow_joint fc", or of the parameters that move with it
     unit: str
@@ -136,7 +136,9 @@ class DriveGain:
 
     joint: str
     value: float  # N m/A (prismatic N/A)
-    half_width: float | None  # of the 95 % interval; None: the data don't tell it, and it is stated
+    half_width: (
+        float | None
+    )  # of the 95 % interval; None: the data don't determine it, and it is stated
     stated: float | None  # by the run configuration or its solver's model
 
 
