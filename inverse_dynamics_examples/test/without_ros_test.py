@@ -87,6 +87,8 @@ def test_packages_are_found_where_they_were_installed(tmp_path: Path) -> None:
     build, prefix, user = tmp_path / "build", tmp_path / "prefix", tmp_path / "user"
     run("cmake", "-S", PROJECT, "-B", build, "-DINVERSE_DYNAMICS_PACKAGES=inverse_dynamics_robots")
     run("cmake", "--install", build, "--prefix", prefix)
+    # In a workspace, colcon would take what lies there for packages.
+    assert (build / "COLCON_IGNORE").is_file()
     user.mkdir()
     (user / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.18)\n"
