@@ -17,7 +17,7 @@ using inverse_dynamics_solver::InverseDynamicsSolver;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 template <class Capability>
-const Capability& capabilityOf(const InverseDynamicsSolver* solver, const std::string& name) {
+const Capability& capabilityOf(const InverseDynamicsSolver* solver, const char* name) {
   if (solver == nullptr) {
     throw InvalidParameterValueException(errorText("payload: solver", "missing",
                                                    "an initialized solver", "none",
@@ -27,7 +27,7 @@ const Capability& capabilityOf(const InverseDynamicsSolver* solver, const std::s
   if (capability == nullptr) {
     throw InvalidParameterValueException(
         errorText("payload: solver", "it can't tell how the tip moves",
-                  "a solver with the capability " + name, "one without it",
+                  std::string("a solver with the capability ") + name, "one without it",
                   "use one of this project's solvers"));
   }
   return *capability;
