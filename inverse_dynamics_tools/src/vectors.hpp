@@ -41,25 +41,21 @@ class type_caster<Eigen::VectorXd> {
   }
 };
 
-/// An argument alone; a copy.
+/// An argument alone: a view of a copy.
 template <>
-class type_caster<Eigen::Ref<const Eigen::VectorXd>> {
+class type_caster<Eigen::Ref<const Eigen::VectorXd>> : public type_caster<Eigen::VectorXd> {
  public:
   using Type = Eigen::Ref<const Eigen::VectorXd>;
-  static constexpr auto name = EigenProps<Type>::descriptor;
-  template <class T>
-  using cast_op_type = pybind11::detail::cast_op_type<T>;
 
   bool load(handle source, bool convert) {
-    if (!vector_.load(source, convert)) return false;
-    view_ = std::make_unique<Type>(static_cast<Eigen::VectorXd&>(vector_));
+    if (!type_caster<Eigen::VectorXd>::load(source, convert)) return false;
+    view_ = std::make_unique<Type>(value);
     return true;
   }
   operator Type*() { return view_.get(); }
   operator Type&() { return *view_; }
 
  private:
-  make_caster<Eigen::VectorXd> vector_;
   std::unique_ptr<Type> view_;
 };
 
