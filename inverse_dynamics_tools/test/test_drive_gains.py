@@ -153,20 +153,20 @@ def test_a_model_of_currents_evaluates_currents(currents, bags, tmp_path, capsys
     assert again.mean_rmse < 1.3 * NOISE.mean()
 
 
-def test_a_load_on_the_axis_of_the_last_joint_tells_its_gain_not(currents, bags, tmp_path):
+def test_a_load_on_the_axis_of_the_last_joint_doesnt_determine_its_gain(currents, bags, tmp_path):
     on_axis = payload("5,0,0,0.12")
     loaded = currents.record(tmp_path / "on_axis", on_axis, seed=3)
     with pytest.raises(IdentificationError) as caught:
         identify([bags[0]], currents.robot, known_payloads=[(loaded, on_axis)])
     text = str(caught.value)
-    assert "doesn't tell the drive gain of" in text
+    assert "doesn't determine the drive gain of" in text
     assert "wrist_3_joint (+- " in text
     assert not any(name in text for name in ("elbow_joint", "shoulder_lift_joint"))
     assert "its centre beside the axis" in text
     assert "drive_gains" in text
 
 
-def test_currents_alone_tell_no_gains(currents, bags):
+def test_currents_alone_determine_no_gains(currents, bags):
     with pytest.raises(IdentificationError) as caught:
         identify([bags[0]], currents.robot)
     assert "may all be twice as large" in str(caught.value)

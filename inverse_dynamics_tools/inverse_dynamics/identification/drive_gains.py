@@ -9,8 +9,8 @@ Currents i, links p, friction f and gains k of a motion fit
     k_j i_j = Y_j p + J_j qdd_j + f_j + t_j
 
 as well with all of them twice as large, except for t_j, the torque of the known load: it alone has a
-scale. The errors that are fitted are those of the currents [arm_fit.hpp]. A gain is known where data
-decide it: with a hundredth of the prior, which says what links weigh, its interval must still be narrow.
+scale. The errors that are fitted are those of the currents [arm_fit.hpp]. A gain is known where the data
+determine it: its interval must be narrow with a hundredth of the prior, too.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     """A recording, and the parameters payload.* of what the tip carries in it."""
 
 MOST_UNCERTAIN = 0.1
-"""Half width of the 95 % interval, as a share of the gain, above which the data don't determine it."""
+"""Half width of the 95 % interval, as a share of the gain, above which it counts as unknown."""
 
 _LAW = "load"  # a load shows in gravity and in friction
 _STRENGTH = 10.0
@@ -75,7 +75,7 @@ def identify_drive_gains(
 
     recordings: without the loads; known_payloads: recordings with them, and the parameters payload.* of
     solvers, in the tip frame. options: of evaluate(). Raises UserError: IdentificationError where a gain
-    is neither told nor stated.
+    is neither determined nor stated.
     """
     stated = stated_gains(robot)
     read = [
@@ -114,9 +114,9 @@ def check_gains(robot: Robot, effort_is: str | None) -> None:
     if (effort_is or robot.effort) != "current" or stated_gains(robot) is not None:
         return
     raise IdentificationError(
-        f"robot {robot.name}: efforts are motor currents, and nothing states the drive gains: without a "
+        f"robot {robot.name}: efforts are motor currents, and the drive gains aren't stated: without a "
         "known torque, gains, masses and friction may all be twice as large; record the motion again with a "
-        "load that was weighed and give --known-payload RECORDING=MASS,x,y,z, or add drive_gains: [...] to "
+        "known load and give --known-payload RECORDING=MASS,x,y,z, or add drive_gains: [...] to "
         "the run configuration",
         "Efforts are motor currents",
     )
@@ -175,7 +175,7 @@ def _read(
     found = evaluate(path, with_changes(described), progress=progress, **options)
     if found.effort.meaning != "current":
         raise IdentificationError(
-            f"{path}: expected motor currents, whose gains a known load tells, got "
+            f"{path}: expected motor currents, whose gains a known load determines, got "
             f"{found.effort.meaning} ({found.effort.stated_by}); leave out --known-payload, or give "
             "--effort-is current",
             "Efforts are motor currents",
@@ -219,7 +219,7 @@ def _about(read: Sequence[_Recording]) -> Floats:
 def _half_widths(fitter: ArmFitter, fit: ArmFit, read: Sequence[_Recording]) -> Floats:
     """(n,) of the 95 % intervals of log k, the widest of three.
 
-    What leaving out each block changes (the jackknife), which knows that errors are alike for a second;
+    What leaving out each block changes (the jackknife), for errors that are correlated;
     the cluster-robust ones, with the prior and hardly without.
     """
     blocks, carried = _blocks(read)
@@ -272,7 +272,7 @@ def _check(
     stated: tuple[float, ...] | None,
     read: Sequence[_Recording],
 ) -> None:
-    """Refuse joints whose gain is neither told by the data nor stated."""
+    """Refuse joints whose gain is neither determined by the data nor stated."""
     if stated is not None or known.all():
         return
     unknown = [
@@ -282,9 +282,9 @@ def _check(
     ]
     where = ", ".join(str(recording.evaluation.bag) for recording in read)
     raise IdentificationError(
-        f"{where}: the known load doesn't tell the drive gain of {listed(unknown)}: its torque at the joint is "
-        "too small beside what links and friction may be; fix the load with its centre beside the axis and "
-        "turn the wrist so that gravity loads the joint, or state gains that are known: `drive_gains:` in the "
-        "run configuration is taken for these joints",
+        f"{where}: the known load doesn't determine the drive gain of {listed(unknown)}: its torque at the joint is "
+        "too small compared with noise and friction; fix the load with its centre beside the axis and "
+        "turn the wrist so that gravity loads the joint, or state these gains: `drive_gains` of the run "
+        "configuration is used for joints whose gain isn't determined",
         "Efforts are motor currents",
     )

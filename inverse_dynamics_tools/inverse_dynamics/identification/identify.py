@@ -71,7 +71,7 @@ def identify(
     robot: as in evaluate(); its description is the prior, its model, if it has one, is compared
     with. blocks: how many the recordings are cut into altogether, at least three; none: BLOCKS, or
     fewer where they would be shorter than 2.5 s. known_payloads: further recordings of motor currents,
-    each with a load as the parameters payload.* of solvers: they tell the drive gains. options: others of
+    each with a load as the parameters payload.* of solvers: they determine the drive gains. options: others of
     evaluate(), as effort_is, start, end.
 
     Raises UserError: those of evaluate(), IdentificationError.

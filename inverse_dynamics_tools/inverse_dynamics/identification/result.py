@@ -136,9 +136,7 @@ class DriveGain:
 
     joint: str
     value: float  # N m/A (prismatic N/A)
-    half_width: (
-        float | None
-    )  # of the 95 % interval; None: the data don't determine it, and it is stated
+    half_width: float | None  # of the 95 % interval; None: not determined, the stated one
     stated: float | None  # by the run configuration or its solver's model
 
 
@@ -186,7 +184,7 @@ class Identification:
     findings: tuple[Finding, ...]
     notes: tuple[str, ...]  # of reading and differentiating, as evaluate() has them
     seconds: Mapping[str, float]  # what took how long
-    drive_gains: tuple[DriveGain, ...] = ()  # that known loads have told; of currents alone
+    drive_gains: tuple[DriveGain, ...] = ()  # determined with known loads; of currents only
 
     def rmse(self, column: str) -> float:
         """Held-out error of a name of COLUMNS: mean over the joints."""

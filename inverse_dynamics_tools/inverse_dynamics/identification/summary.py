@@ -89,7 +89,7 @@ def choices_told(found: Identification) -> list[tuple[str, str]]:
 
 def _gain_told(gain: DriveGain) -> str:
     if gain.half_width is None:
-        return f"{gain.joint} {gain.value:.4g} as stated, which the known load doesn't tell"
+        return f"{gain.joint} {gain.value:.4g} as stated: the known load doesn't determine it"
     stated = "" if gain.stated is None else f" (stated: {gain.stated:.4g})"
     return f"{gain.joint} {gain.value:.4g} +- {gain.half_width:.2g}{stated}"
 

@@ -40,7 +40,7 @@ examples:
   ids identify alone --known-payload loaded=5.0,0,0.02,0.08 \\
       --urdf my_arm.urdf --effort-is current --out arm.yaml
       efforts are motor currents [A] with unknown drive gains: a second
-      recording with a known load tells them
+      recording with a known load determines them
 
 Errors are those on held-out parts of the recordings: each of several contiguous
 blocks is predicted by a model fitted to the others, with law, prior and delay chosen on the others.
@@ -106,7 +106,7 @@ def add_parser(
         type=_known_payload,
         action="append",
         default=[],
-        help="a further recording of motor currents, with a load that is known: it tells the drive gains. "
+        help="a further recording of motor currents, with a known load: it determines the drive gains. "
         "LOAD as --payload of other verbs: MASS,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz] in the tip frame, or a YAML "
         "file; may be given several times",
     )
