@@ -15,8 +15,6 @@
 #include <typeinfo>
 #include <utility>
 
-#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
-
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
