@@ -72,7 +72,7 @@ def add_parser(
         metavar="RECORDING",
         type=file_name,
         nargs="+",
-        help="recording, as for `ids evaluate`; several ones must be of one robot with the same load",
+        help="recording, as for `ids evaluate`; several recordings must be of one robot with the same load",
     )
     parser.add_argument(
         "--robot",
@@ -106,8 +106,8 @@ def add_parser(
         type=_known_payload,
         action="append",
         default=[],
-        help="a further recording of motor currents, with a known load: it determines the drive gains. "
-        "LOAD as --payload of other verbs: MASS,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz] in the tip frame, or a YAML "
+        help="a further recording of motor currents, with a known load, which determines the drive gains. "
+        "LOAD as for --payload of other verbs: MASS,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz] in the tip frame, or a YAML "
         "file; may be given several times",
     )
     parser.add_argument(
