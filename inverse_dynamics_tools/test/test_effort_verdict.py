@@ -143,7 +143,9 @@ def test_gravity_the_wrong_way_round_isnt_taken_for_torque_without_gravity():
 @pytest.mark.parametrize("samples", [0, 1, 19, 99])
 def test_few_samples_are_said_to_be_too_few(samples):
     computed, gravity = (values[:samples] for values in arm())
-    unsure(compare_meanings(computed, gravity, computed), f"{samples} samples", "100 are needed")
+    unsure(
+        compare_meanings(computed, gravity, computed), f"{samples} valid samples", "100 are needed"
+    )
 
 
 def test_a_robot_that_stands_still_without_load_tells_nothing():
