@@ -32,7 +32,7 @@ _TOOLS = "inverse_dynamics_tools/inverse_dynamics"
 SOURCES = {
     "report": (f"{_TOOLS}/report/*.js", f"{_TOOLS}/report/*.css", f"{_TOOLS}/report/page.html",
                f"{_TOOLS}/report/head.html", f"{_TOOLS}/figures/palette.py"),
-    "why": ("docs/pictures/*.py",),
+    "why": ("docs/pictures/*.py", f"{_TOOLS}/figures/palette.py"),
 }  # fmt: skip
 
 FLAGS = (
@@ -40,7 +40,7 @@ FLAGS = (
     "--use-angle=swiftshader", "--disable-dev-shm-usage", "--no-first-run",
     "--disable-background-networking", "--force-prefers-reduced-motion", "--hide-scrollbars",
 )  # fmt: skip
-WIDTH, HEIGHT = 1180, 640  # of the browser's window, in its pixels
+WIDTH, HEIGHT = 1240, 800  # of the browser's window, in its pixels
 SHOWN_WIDTH = 860  # of the GIF
 FRAMES, FRAME_TIME = 56, 120  # ms
 
@@ -146,7 +146,8 @@ def make_why() -> None:
         command = {"bash": ["bash", "-euo", "pipefail", "-c"], "python": [sys.executable, "-c"]}[
             block[1]
         ]
-        subprocess.run([*command, block[2]], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+        code = block[2].replace("ids evaluate ", "ids evaluate --figures none ")
+        subprocess.run([*command, code], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     (ROOT / "payload.xml").unlink(missing_ok=True)
     subprocess.run(
         [sys.executable, PICTURES / "make_why_pictures.py", ROOT / "out/why", PICTURES], check=True

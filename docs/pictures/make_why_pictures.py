@@ -113,13 +113,13 @@ PICTURES = {
 
 
 def draw(picture: Picture, evaluation: Evaluation) -> Figure:
-    """Torques over time, a joint a row; beside them what gives the mistake away."""
+    """Torques over time, one row per joint; beside them what reveals the mistake."""
     figure = Figure(figsize=(8.2, 3.5), layout="constrained")
     figure.suptitle(picture.title, x=0.01, ha="left", fontsize=10, fontweight="bold")
     rows = figure.subplots(len(picture.joints), 2, squeeze=False, width_ratios=(1.9, 1.0))
     for (left, right), j in zip(rows, picture.joints, strict=True):
-        left.plot(evaluation.time, evaluation.computed[:, j], **COMPUTED, label="computed")
         left.plot(evaluation.time, evaluation.measured[:, j], **MEASURED, label="measured")
+        left.plot(evaluation.time, evaluation.computed[:, j], **COMPUTED, label="computed")
         left.set_title(f"{evaluation.joint_names[j]} [N m]", loc="left", fontsize=9)
         left.set_xlim(evaluation.time[0], evaluation.time[-1])
         picture.right(right, evaluation, j)
