@@ -179,7 +179,7 @@ class Solver {
         result.mutable_at(k, j, 1) = of_joint[k].upper;
       }
     }
-    return std::move(result);
+    return py::object(std::move(result));  // GCC 14 calls a plain move redundant, others need one
   }
 
  private:
