@@ -9,6 +9,7 @@ from rosbags.rosbag2 import Reader
 from test_results import make_evaluation
 
 from inverse_dynamics import write_evaluation
+from inverse_dynamics.figures import palette
 
 
 @pytest.fixture(scope="module", params=["sqlite3", "mcap"])
@@ -28,8 +29,8 @@ def test_the_layout_shows_both_torques_of_each_joint_in_one_tab(result):
     for i, area in enumerate(plots, start=1):
         curves = [(c.get("name"), c.get("color")) for c in area.findall("plot/curve")]
         assert curves == [
-            (f"/torques_gt/joint_{i}/effort", "#000000"),
-            (f"/torques/joint_{i}/effort", "#d7191c"),
+            (f"/torques_gt/joint_{i}/effort", palette.MEASURED),
+            (f"/torques/joint_{i}/effort", palette.COMPUTED),
         ]
     assert len(layout(result).findall(".//Tab")) == 1
 

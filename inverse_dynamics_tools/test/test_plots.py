@@ -8,6 +8,7 @@ from test_results import make_evaluation
 from inverse_dynamics import save_torque_figure, torque_figure
 from inverse_dynamics.evaluation.accelerations import Accelerations
 from inverse_dynamics.evaluation.comparison import compare
+from inverse_dynamics.figures import palette
 from inverse_dynamics.figures.plots import comparison_figure
 
 
@@ -26,14 +27,15 @@ def test_every_joint_has_a_row_with_torques_and_error():
     figure = torque_figure(evaluation)
     assert len(figure.axes) == 8
     for j, (left, right) in enumerate(zip(figure.axes[::2], figure.axes[1::2], strict=True)):
-        computed, measured = left.get_lines()
+        measured, computed = left.get_lines()  # the computed one is drawn over the measured one
         np.testing.assert_array_equal(computed.get_ydata(), evaluation.computed[:, j])
         np.testing.assert_array_equal(measured.get_ydata(), evaluation.measured[:, j])
         np.testing.assert_array_equal(measured.get_xdata(), evaluation.time)
-        assert measured.get_color() == "black"
-        assert measured.is_dashed()
-        assert not computed.is_dashed()
+        assert measured.get_color() == palette.MEASURED
+        assert computed.get_color() == palette.COMPUTED
+        assert measured.get_linewidth() > 1.5 * computed.get_linewidth()
         error = right.get_lines()[-1]
+        assert error.get_color() == palette.ERROR
         np.testing.assert_array_equal(
             error.get_ydata(), evaluation.computed[:, j] - evaluation.measured[:, j]
         )
@@ -97,7 +99,7 @@ def test_many_samples_are_thinned_without_losing_an_extreme():
     spike[54_321] = 1e3
     spike[77_777] = -1e3
     left = torque_figure(replace(evaluation, computed=spike)).axes[0]
-    x, y = left.get_lines()[0].get_data()
+    x, y = left.get_lines()[1].get_data()
     assert len(x) < 7000
     assert (y.max(), y.min()) == (1e3, -1e3)
     assert x[y.argmax()] == evaluation.time[54_321]
@@ -115,3 +117,33 @@ def test_the_same_evaluation_gives_the_same_bytes(tmp_path):
         save_torque_figure(evaluation, alone)
         assert alone.read_bytes() == file.read_bytes()
         assert alone.read_bytes().startswith(start)
+
+
+def test_samples_that_are_left_out_are_shaded():
+    evaluation = make_evaluation()  # without the first five of 400
+    kept = evaluation.samples.kept.copy()
+    kept[200] = kept[390:] = False
+    figure = torque_figure(replace(evaluation, samples=replace(evaluation.samples, kept=kept)))
+    t = evaluation.time
+    for axes in figure.axes:
+        spans = [(p.get_x(), p.get_x() + p.get_width()) for p in axes.patches]
+        assert [begin for begin, _ in spans] == pytest.approx([t[0], t[200], t[390]])
+        assert spans[0][1] == pytest.approx(t[4])
+        assert spans[1][1] > t[200]  # a single sample can be seen too
+        assert spans[2][1] == pytest.approx(t[-1])
+    assert "samples left out" in texts(figure)
+    everything = replace(evaluation.samples, kept=np.ones(400, dtype=bool))
+    plain = torque_figure(replace(evaluation, samples=everything))
+    assert "samples left out" not in texts(plain)
+
+
+def test_a_comparison_uses_neither_the_colour_of_measured_torques_nor_that_of_an_error():
+    evaluation = make_evaluation()
+    runs = [replace(evaluation, computed=evaluation.computed + k) for k in range(5)]
+    left, right = comparison_figure(compare(runs, tuple("abcde"))).axes[:2]
+    measured, *computed = left.get_lines()
+    assert measured.get_color() == palette.MEASURED
+    colors = [line.get_color() for line in computed]
+    assert colors[0] == palette.COMPUTED
+    assert len({*colors, palette.MEASURED, palette.ERROR}) == 7
+    assert [line.get_color() for line in right.get_lines()[:5]] == colors

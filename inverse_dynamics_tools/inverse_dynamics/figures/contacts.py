@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.figures import palette
 from inverse_dynamics.figures.plots import save_figure
 from inverse_dynamics.figures.thinning import peaks
 
@@ -21,17 +22,17 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.contacts import Contacts
 
 _MOST_POINTS = 6000
-_LINE: dict[str, Any] = {"color": "#2c5f9e", "linewidth": 0.8}
+_LINE: dict[str, Any] = {"color": palette.ERROR, "linewidth": 0.8}
 _THRESHOLD: dict[str, Any] = {"color": "black", "linestyle": (0, (3.0, 1.6)), "linewidth": 0.8}
-_CONTACT: dict[str, Any] = {"color": "#E69F00", "alpha": 0.35, "linewidth": 0}
-_QUIET: dict[str, Any] = {"color": "#009E73", "alpha": 0.1, "linewidth": 0}
+_CONTACT: dict[str, Any] = {"color": palette.CONTACT, "alpha": 0.35, "linewidth": 0}
+_QUIET: dict[str, Any] = {"color": palette.QUIET, "alpha": 0.1, "linewidth": 0}
 _UNKNOWN: dict[str, Any] = {
     "facecolor": "none",
     "edgecolor": "#888888",
     "hatch": "////",
     "linewidth": 0,
 }
-_MUTED = "#555555"
+_MUTED = palette.MUTED
 _MARK = 0.002  # of the time shown: a shorter contact would be no pixel
 
 

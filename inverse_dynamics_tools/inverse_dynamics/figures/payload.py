@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.figures import palette
 from inverse_dynamics.figures.plots import save_figure
 from inverse_dynamics.figures.thinning import peaks
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.identification.payload import Payload
 
 _MOST_POINTS = 6000
-_BEFORE, _AFTER, _MUTED = "#E69F00", "#2c5f9e", "#555555"
+_BEFORE, _AFTER, _MUTED = palette.BEFORE, palette.ERROR, palette.MUTED
 
 
 def save_payload_figure(payload: Payload, *files: Path) -> None:

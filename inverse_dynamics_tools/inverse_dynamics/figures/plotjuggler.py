@@ -10,14 +10,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as Xml
 
-from inverse_dynamics.figures.plots import COMPUTED
+from inverse_dynamics.figures import palette
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from inverse_dynamics.data.joint_log import JointLog, Storage
-
-_BLACK = "#000000"
 
 
 def torque_layout(
@@ -39,7 +37,7 @@ def torque_layout(
         count=str(n),
         sizes=";".join([f"{1 / n:.6f}"] * n),
     )
-    colors = (_BLACK, COMPUTED["color"])
+    colors = (palette.MEASURED, palette.COMPUTED)
     for joint, unit in zip(log.joint_names, units, strict=True):
         area = _add(splitter, "DockArea", name=f"{joint} [{unit}]")
         plot = _add(area, "plot", mode="TimeSeries", style="Lines", flip_x="false", flip_y="false")

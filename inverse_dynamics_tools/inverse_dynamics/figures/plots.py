@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Figures of an evaluation.
-
-Measured is black and dashed, computed red, the error blue: distinguishable in black and white, and by
-colour-blind readers.
-"""
+"""Figures of an evaluation: measured torques below computed ones, and their difference (palette.py)."""
 
 from __future__ import annotations
 
@@ -14,6 +10,7 @@ import numpy as np
 from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.wording import printable, shown
 from inverse_dynamics.errors import OutputError
+from inverse_dynamics.figures import palette
 from inverse_dynamics.figures.torque_lines import TorqueLines
 
 if TYPE_CHECKING:
@@ -28,11 +25,16 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.comparison import Comparison
     from inverse_dynamics.evaluation.evaluation import Evaluation
 
-MEASURED: dict[str, Any] = {"color": "black", "linestyle": (0, (3.0, 1.6)), "linewidth": 0.9}
-COMPUTED: dict[str, Any] = {"color": "#d7191c", "linewidth": 1.2}
-ERROR: dict[str, Any] = {"color": "#2c5f9e", "linewidth": 0.7}
-_RUNS = ("#E69F00", "#0072B2", "#009E73", "#CC79A7", "#56B4E9")  # Okabe and Ito: for all eyes
-_MUTED = "#555555"
+MEASURED: dict[str, Any] = {"color": palette.MEASURED, "linewidth": 1.5}
+COMPUTED: dict[str, Any] = {"color": palette.COMPUTED, "linewidth": 0.9}
+ERROR: dict[str, Any] = {"color": palette.ERROR, "linewidth": 0.7}
+LEFT_OUT: dict[str, Any] = {
+    "color": palette.LEFT_OUT,
+    "alpha": palette.LEFT_OUT_ALPHA,
+    "linewidth": 0,
+    "zorder": 0.5,
+}
+_MUTED = palette.MUTED
 
 FORMATS = ("png", "svg", "pdf")
 
@@ -106,15 +108,19 @@ def torque_figure(evaluation: Evaluation, lines: TorqueLines | None = None) -> F
     """
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
     n = len(evaluation.joint_names)
     height = 1.25 * n + 1.7
     figure = Figure(figsize=(11.0, height))
     axes = _panels(figure, n, top=1.32, bottom=0.5)
     lines = lines or TorqueLines.of(evaluation)
+    left_out = evaluation.samples.left_out_spans(evaluation.time)
     for j, (left, right) in enumerate(axes):
         _draw_torques(left, evaluation, lines, j)
         _draw_error(right, evaluation, lines, j)
+        for axis in (left, right):
+            _shade(axis, left_out)
     for axis in axes[-1]:
         axis.set_xlabel("time [s]", color=_MUTED)
         axis.set_xlim(lines.begin, lines.end)
@@ -128,18 +134,21 @@ def torque_figure(evaluation: Evaluation, lines: TorqueLines | None = None) -> F
     figure.text(0.012, at(0.3), title, fontsize=size, fontweight="bold")
     figure.text(0.012, at(0.52), _subtitle(evaluation), color=_MUTED)
     figure.text(0.012, at(0.7), _assumptions(evaluation), color=_MUTED)
-    columns = (
+    columns: tuple[dict[str, Any], ...] = (
         {"measured torque": MEASURED, "computed torque": COMPUTED},
         {"error: computed - measured": ERROR},
     )
     for axis, column in zip(axes[0], columns, strict=True):
+        handles: list[Line2D | Patch] = [Line2D([], [], label=k, **v) for k, v in column.items()]
+        if left_out and axis is axes[0][0]:
+            handles.append(Patch(label="samples left out", **LEFT_OUT))
         figure.legend(
-            handles=[Line2D([], [], label=label, **style) for label, style in column.items()],
+            handles=handles,
             loc="upper left",
             bbox_to_anchor=(axis.get_position().x0, at(0.87)),
             borderaxespad=0,
             borderpad=0,
-            ncols=2,
+            ncols=3,
             frameon=False,
             fontsize=9,
         )
@@ -163,15 +172,15 @@ def comparison_figure(comparison: Comparison) -> Figure:
     axes = _panels(figure, n, top=0.55, bottom=0.8)
     runs = [TorqueLines.of(evaluation) for evaluation in comparison.evaluations]
     for j, (left, right) in enumerate(axes):
+        left.plot(*runs[0].measured(j), **MEASURED, label="measured")
         for k, run in enumerate(runs):
             style = {
-                "color": _RUNS[k % len(_RUNS)],
-                "linewidth": 1.1,
+                "color": palette.RUNS[k % len(palette.RUNS)],
+                "linewidth": 0.9,
                 "label": comparison.labels[k],
             }
             left.plot(*run.computed(j), **style)
             right.plot(*run.error(j), **style)
-        left.plot(*runs[0].measured(j), **MEASURED, label="measured")
         left.set_title(f"{comparison.joint_names[j]} [{first.units[j]}]", loc="left", fontsize=9)
         rmse = " / ".join(f"{value:.3g}" for value in comparison.rmse[:, j])
         right.set_title(
@@ -204,8 +213,8 @@ def _panels(figure: Figure, n: int, *, top: float, bottom: float) -> NDArray[np.
 
 
 def _draw_torques(axes: Axes, evaluation: Evaluation, lines: TorqueLines, j: int) -> None:
-    axes.plot(*lines.computed(j), **COMPUTED)
     axes.plot(*lines.measured(j), **MEASURED)
+    axes.plot(*lines.computed(j), **COMPUTED)
     axes.set_title(
         f"{evaluation.joint_names[j]} [{evaluation.units[j]}]", loc="left", fontsize=9, pad=3
     )
@@ -228,6 +237,14 @@ def _draw_error(axes: Axes, evaluation: Evaluation, lines: TorqueLines, j: int) 
     axes.set_title(
         f"RMSE {error.rmse:.3g} {error.unit}{share}", loc="left", fontsize=9, pad=3, color=_MUTED
     )
+
+
+def _shade(axes: Axes, spans: Sequence[tuple[float, float]]) -> None:
+    """Behind the samples of some spans of time [s], each at least as wide as can be seen."""
+    low, high = axes.get_xlim()
+    least = 0.001 * (high - low)
+    for begin, end in spans:
+        axes.axvspan(begin, max(end, begin + least), **LEFT_OUT)
 
 
 def _subtitle(evaluation: Evaluation) -> str:
