@@ -19,12 +19,14 @@ from inverse_dynamics.errors import UserError
 EXTRAS = {
     "OpenGL": "sim",
     "PIL": "sim",
+    "collada": "meshes",
     "dask": "dask",
     "distributed": "dask",
     "matplotlib": "plots",
     "mujoco": "sim",
     "pyarrow": "parquet",
     "rosbags": "rosbags",
+    "trimesh": "meshes",
     "xacro": "xacro",
     "yaml": "sim",
 }

@@ -19,6 +19,15 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
+def solver_name(plugin: str) -> str:
+    """A solver's short name for tables: its package's, without the ending that all have.
+
+    `kdl` for kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL.
+    """
+    package = plugin.partition("/")[0]
+    return package.removesuffix("_inverse_dynamics_solver") or plugin
+
+
 def shown(text: object, longest: int = 60) -> str:
     """A text from a file for an error message: in quotes, short, nothing that a terminal acts upon."""
     return f"'{harmless(text, longest)}'"

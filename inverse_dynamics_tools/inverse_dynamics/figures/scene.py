@@ -1,39 +1,74 @@
 # SPDX-License-Identifier: Apache-2.0
 """A robot's links and shapes as the report's 3D view wants them, read from a URDF.
 
-    links = scene_from_urdf(Path("ur10.urdf").read_text(), ["shoulder_pan_joint", ...])
+    scene = read_scene(Path("ur10.urdf"), ["shoulder_pan_joint", ...])
+    scene.links, scene.notes
 
-Only boxes, cylinders and spheres are drawn: a mesh lives in a file beside the URDF, and the report is one file.
+Boxes, cylinders, spheres and meshes (meshes.py). Links whose shapes can't be drawn get a skeleton instead:
+a bar to each joint below, and a drum about the axis of each joint that moves.
 """
 
 from __future__ import annotations
 
+import base64
 import math
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from inverse_dynamics.base.extras import MissingPackageError
+from inverse_dynamics.base.wording import counted, harmless
 from inverse_dynamics.errors import RobotError
-from inverse_dynamics.robot.descriptions import numbers_of, parse_description
+from inverse_dynamics.figures.meshes import MeshError, find_mesh, read_mesh
+from inverse_dynamics.robot.descriptions import (
+    numbers_of,
+    parse_description,
+    read_description,
+)
 
 Matrix = NDArray[np.float64]
 DEFAULT_COLOR = (0.72, 0.75, 0.79)
 
 
-def scene_from_urdf(urdf: str, joints: Sequence[str]) -> list[dict[str, Any]]:
-    """Links in an order in which parents come first; empty where the URDF has nothing to draw.
+BONE_COLOR = (0.62, 0.66, 0.71)
+JOINT_COLOR = (0.36, 0.45, 0.56)
+MOST_TRIANGLES = 24_000  # of a robot's meshes together: 0.4 MB of a page
 
-    `joints`: names of the joints that move, in the order of the recorded positions; all others stay at zero.
-    A link: parent (index or -1), joint (index in `joints` or -1), kind, axis, pose in its parent (4 x 4, column by
-    column, m) and shapes: kind, size (as in the URDF, m), pose in the link, color (red, green, blue in 0..1).
+
+@dataclass(frozen=True)
+class Scene:
+    """Links in an order in which parents come first, and what of them isn't drawn as described.
+
+    A link: parent (index or -1), joint (index of the joints that move or -1), kind, axis, pose in its parent
+    (4 x 4, column by column, m) and shapes: kind, pose in the link, color (red, green, blue in 0..1), and
+    size (as in the URDF, m) or, of a mesh, what encoded_mesh() gives.
     """
+
+    links: list[dict[str, Any]] = field(default_factory=list)
+    notes: tuple[str, ...] = ()
+
+
+def read_scene(file: Path, joints: Sequence[str]) -> Scene:
+    """The scene of a .urdf or .xacro file with the meshes that it names. Raises RobotError.
+
+    joints: names of the joints that move, in the order of the recorded positions; all others stay at zero.
+    """
+    return _scene(read_description(file), joints, file.parent)
+
+
+def scene_from_urdf(urdf: str, joints: Sequence[str]) -> list[dict[str, Any]]:
+    """The links of a URDF's text; relative names of meshes are those of the working directory. Raises RobotError."""
+    return _scene(urdf, joints, Path()).links
+
+
+def _scene(urdf: str, joints: Sequence[str], directory: Path) -> Scene:
     robot = parse_description(urdf)
-    shapes = _shapes_by_link(robot)
-    if not any(shapes.values()):
-        return []
+    reader = _Shapes(robot, directory)
     by_parent: dict[str, list[ElementTree.Element]] = {}
     children = set()
     for joint in robot.findall("joint"):
@@ -41,17 +76,85 @@ def scene_from_urdf(urdf: str, joints: Sequence[str]) -> list[dict[str, Any]]:
         children.add(_link_of(joint, "child"))
     index = {name: i for i, name in enumerate(joints)}
     links: list[dict[str, Any]] = []
+    bare: list[bool] = []  # of each link: whether something of it isn't drawn
     waiting: list[tuple[str, int, ElementTree.Element | None]] = [
-        (name, -1, None) for name in shapes if name not in children
+        (name, -1, None) for name in reader.by_link if name not in children
     ]
     while waiting:
         name, parent, above = waiting.pop(0)
-        if len(links) > len(shapes):
+        if len(links) > len(reader.by_link):
             raise RobotError("robot description: expected a tree, got a link below two joints")
-        links.append(_link(parent, above, index, shapes.get(name, [])))
+        links.append(_link(parent, above, index, reader.by_link.get(name, [])))
+        bare.append(name in reader.missing)
         here = len(links) - 1
         waiting.extend((_link_of(child, "child"), here, child) for child in by_parent.get(name, []))
-    return links
+    if not any(link["shapes"] for link in links):
+        bare = [True] * len(links)
+    _add_skeleton(links, bare)
+    return Scene(links if any(link["shapes"] for link in links) else [], reader.notes())
+
+
+def _add_skeleton(links: list[dict[str, Any]], bare: Sequence[bool]) -> None:
+    """Bars and drums for the links that are bare: in proportion to the robot's reach."""
+    places = [np.array(link["pose"]).reshape(4, 4).T for link in links]
+    lengths = [math.hypot(*map(float, place[:3, 3])) for place in places]
+    if not max(lengths, default=0.0) < 1e6:  # m: numbers of no robot
+        return
+    reach = sum(lengths[1:]) or 1.0
+    thick = 0.025 * min(reach, 4.0 * max(lengths, default=1.0) or reach)
+    for i, link in enumerate(links):
+        if link["joint"] >= 0 and bare[i]:
+            size = [1.5 * thick, 3.2 * thick]
+            turn = _pose_along(np.zeros(3), np.array(link["axis"]))
+            link["shapes"].append(_plain("cylinder", size, turn, JOINT_COLOR))
+        above = link["parent"]
+        if above >= 0 and bare[above] and lengths[i] > 0.2 * thick:
+            end = places[i][:3, 3]
+            bar = _pose_along(end / 2, end / lengths[i])
+            links[above]["shapes"] += [
+                _plain("cylinder", [thick, lengths[i]], bar, BONE_COLOR),
+                _plain("sphere", [thick], _pose_along(end, np.array([0.0, 0.0, 1.0])), BONE_COLOR),
+            ]
+
+
+def _plain(kind: str, size: list[float], pose: Matrix, color: Sequence[float]) -> dict[str, Any]:
+    size = [round(number, 6) for number in size]
+    return {"kind": kind, "size": size, "pose": _columns(pose), "color": list(color)}
+
+
+def _pose_along(place: Matrix, z: Matrix) -> Matrix:
+    """A pose there whose z axis has that direction, of length 1."""
+    helper = np.eye(3)[int(np.argmin(np.abs(z)))]
+    x = np.cross(helper, z)
+    x /= np.linalg.norm(x)
+    pose = np.eye(4)
+    pose[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)
+    pose[:3, 3] = place
+    return pose
+
+
+def encoded_mesh(vertices: Matrix, triangles: NDArray[np.int64]) -> dict[str, Any]:
+    """A mesh as text: middle + step * 16-bit integers, and 16-bit indices; base64, little-endian."""
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    middle = (low + high) / 2
+    step = float((high - low).max()) / 2 / 32767 or 1e-9
+    return {
+        "middle": [float(value) for value in middle],
+        "step": step,
+        "vertices": _base64(np.rint((vertices - middle) / step).astype("<i2")),
+        "triangles": _base64(triangles.astype("<u2")),
+    }
+
+
+def decoded_mesh(shape: dict[str, Any]) -> tuple[Matrix, NDArray[np.int64]]:
+    """Vertices (V, 3) m and triangles (T, 3) of a shape of kind mesh."""
+    steps = np.frombuffer(base64.b64decode(shape["vertices"]), dtype="<i2").reshape(-1, 3)
+    triangles = np.frombuffer(base64.b64decode(shape["triangles"]), dtype="<u2").reshape(-1, 3)
+    return np.array(shape["middle"]) + shape["step"] * steps, triangles.astype(np.int64)
+
+
+def _base64(array: NDArray[Any]) -> str:
+    return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii")
 
 
 def _link_of(joint: ElementTree.Element, role: str) -> str:
@@ -79,45 +182,82 @@ def _link(
     }
 
 
-def _shapes_by_link(robot: ElementTree.Element) -> dict[str, list[dict[str, Any]]]:
-    colors = {
-        material.get("name", ""): color
-        for material in robot.iter("material")
-        if (color := _color(material)) is not None
-    }
-    result: dict[str, list[dict[str, Any]]] = {}
-    for link in robot.findall("link"):
-        found = [_shape(visual, colors) for visual in link.findall("visual")]
-        result[link.get("name", "")] = [shape for shape in found if shape is not None]
-    return result
+class _Shapes:
+    """What is drawn of each link, and what isn't."""
 
+    def __init__(self, robot: ElementTree.Element, directory: Path) -> None:
+        self._directory = directory
+        self._colors = {
+            material.get("name", ""): color
+            for material in robot.iter("material")
+            if (color := _color(material)) is not None
+        }
+        meshes = sum(1 for _ in robot.iterfind("link/visual/geometry/mesh"))
+        self._most = MOST_TRIANGLES // max(1, meshes)
+        self.missing: dict[str, str] = {}  # why, by link
+        self.by_link: dict[str, list[dict[str, Any]]] = {}
+        for link in robot.findall("link"):
+            name = link.get("name", "")
+            self.by_link[name] = []
+            for visual in link.findall("visual"):
+                self.by_link[name] += self._shapes(visual, name)
 
-def _shape(visual: ElementTree.Element, colors: dict[str, list[float]]) -> dict[str, Any] | None:
-    geometry = visual.find("geometry")
-    if geometry is None or len(geometry) == 0:
-        return None
-    element = geometry[0]
-    sizes = {
-        "box": {"size": 3},
-        "cylinder": {"radius": 1, "length": 1},
-        "sphere": {"radius": 1},
-    }
-    if element.tag not in sizes:
-        return None
-    material = visual.find("material")
-    color = None
-    if material is not None:
-        color = _color(material) or colors.get(material.get("name", ""))
-    return {
-        "kind": element.tag,
-        "size": [
+    def notes(self) -> tuple[str, ...]:
+        """What isn't drawn, and the first reason."""
+        if not self.missing:
+            return ()
+        reason = next(iter(self.missing.values()))
+        count = counted(len(self.missing), "link")
+        return (f"{count} drawn as a skeleton: {harmless(reason, 300)}",)
+
+    def _shapes(self, visual: ElementTree.Element, link: str) -> list[dict[str, Any]]:
+        geometry = visual.find("geometry")
+        if geometry is None or len(geometry) == 0:
+            return []
+        element, pose, color = geometry[0], _pose(visual.find("origin")), self._color_of(visual)
+        if element.tag == "mesh":
+            try:
+                return self._meshes(element, pose, color)
+            except (MeshError, MissingPackageError) as error:
+                self.missing[link] = str(error)
+        if element.tag not in _SIZES:
+            return []
+        size = [
             number
-            for key, count in sizes[element.tag].items()
+            for key, count in _SIZES[element.tag].items()
             for number in numbers_of(element, key, count, RobotError)
-        ],
-        "pose": _columns(_pose(visual.find("origin"))),
-        "color": color or list(DEFAULT_COLOR),
-    }
+        ]
+        shape = {"kind": element.tag, "size": size}
+        return [{**shape, "pose": _columns(pose), "color": color or list(DEFAULT_COLOR)}]
+
+    def _meshes(
+        self, element: ElementTree.Element, pose: Matrix, color: list[float] | None
+    ) -> list[dict[str, Any]]:
+        scale = np.array(_numbers(element, "scale", 3, (1.0, 1.0, 1.0)))
+        file = find_mesh(element.get("filename", ""), self._directory)
+        return [
+            {
+                "kind": "mesh",
+                "size": [1.0, 1.0, 1.0],
+                "pose": _columns(pose),
+                "color": color or part.color or list(DEFAULT_COLOR),
+                **encoded_mesh(scale * part.vertices, part.triangles),
+            }
+            for part in read_mesh(file, self._most)
+        ]
+
+    def _color_of(self, visual: ElementTree.Element) -> list[float] | None:
+        material = visual.find("material")
+        if material is None:
+            return None
+        return _color(material) or self._colors.get(material.get("name", ""))
+
+
+_SIZES = {
+    "box": {"size": 3},
+    "cylinder": {"radius": 1, "length": 1},
+    "sphere": {"radius": 1},
+}
 
 
 def _color(material: ElementTree.Element) -> list[float] | None:

@@ -3,8 +3,8 @@
 
 write_video(evaluation, Path("ur10.gif"))
 
-The robot is drawn by MuJoCo without a screen, from the boxes, cylinders and spheres of its description (as in the
-report's 3D view); the environment variable MUJOCO_GL says by what: osmesa (in software, the default), egl or glfw.
+The robot is drawn by MuJoCo without a screen, from the shapes of its description (as in the report's 3D view). The
+environment variable MUJOCO_GL says by what: osmesa (in software, the default), egl or glfw.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.files import file_written_whole
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.figures.scene import scene_from_urdf
-from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.figures import palette
+from inverse_dynamics.figures.scene import decoded_mesh, read_scene
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -41,7 +41,7 @@ _PLOT_WIDTH = 520
 _FRAMES_PER_SECOND = 10  # GIF counts in hundredths of a second
 _COLORS = 64
 _FIELD_OF_VIEW = 36.0  # degrees, from top to bottom
-_CURSOR = (0, 158, 115)
+_CURSOR = palette.LIGHT["cursor"]
 
 
 class VideoError(UserError):
@@ -134,15 +134,17 @@ def _plot(
         all_axes = figure.subplots(n, 1, sharex=True, squeeze=False)[:, 0]
         figure.subplots_adjust(left=0.085, right=0.98, top=0.865, bottom=0.075, hspace=0.62)
         for j, axes in enumerate(all_axes):
-            axes.plot(evaluation.time, evaluation.computed[:, j], **COMPUTED, label="computed")
             axes.plot(evaluation.time, evaluation.measured[:, j], **MEASURED, label="measured")
+            axes.plot(evaluation.time, evaluation.computed[:, j], **COMPUTED, label="computed")
             name = f"{evaluation.joint_names[j]} [{evaluation.units[j]}]"
             axes.set_title(name, loc="left", fontsize=7, pad=2)
             axes.locator_params(axis="y", nbins=3)
         all_axes[-1].set_xlim(0.0, evaluation.time[-1])
         all_axes[-1].set_xlabel("time [s]", labelpad=1)
         figure.text(0.02, 0.95, title, fontsize=11, fontweight="bold")
-        figure.text(0.02, 0.917, f"shown {speed:.2g} times as fast", fontsize=7, color="#555555")
+        figure.text(
+            0.02, 0.917, f"shown {speed:.2g} times as fast", fontsize=7, color=palette.MUTED
+        )
         handles, labels = all_axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="upper right", ncols=2, frameon=False, fontsize=8)
         make_printable(figure)
@@ -164,11 +166,9 @@ def _pictures(evaluation: Evaluation, times: Floats) -> Iterator[NDArray[np.uint
     robot = evaluation.robot
     links = []
     if robot.urdf is not None:
-        links = scene_from_urdf(read_description(robot.urdf), evaluation.joint_names)
+        links = read_scene(robot.urdf, evaluation.joint_names).links
     if not links:
-        raise VideoError(
-            f"{robot.name}: its description has no boxes, cylinders or spheres to draw; add some as <visual>"
-        )
+        raise VideoError(f"{robot.name}: has no description with links and joints to draw")
     model = _scene(links)
     q = np.stack(
         [np.interp(times, evaluation.time, column) for column in evaluation.log.q.T], axis=1
@@ -255,15 +255,18 @@ def _scene(links: Sequence[dict[str, Any]]) -> Any:
                 axis=link["axis"],
             )
         for shape in link["shapes"]:
-            _add_shape(body, shape)
+            _add_shape(spec, body, shape)
         bodies.append(body)
     return spec.compile()
 
 
-def _add_shape(body: Any, shape: dict[str, Any]) -> None:
+def _add_shape(spec: Any, body: Any, shape: dict[str, Any]) -> None:
     """A shape, whose sizes are those of URDF, as a geom, whose are halves."""
     import mujoco
 
+    if shape["kind"] == "mesh":
+        _add_mesh(spec, body, shape)
+        return
     s = shape["size"]
     kind, size = {
         "box": lambda: (mujoco.mjtGeom.mjGEOM_BOX, [s[0] / 2, s[1] / 2, s[2] / 2]),
@@ -273,6 +276,22 @@ def _add_shape(body: Any, shape: dict[str, Any]) -> None:
     body.add_geom(
         type=kind, size=size, rgba=[*shape["color"], 1.0], mass=0.0, **_placed(shape["pose"])
     )
+
+
+def _add_mesh(spec: Any, body: Any, shape: dict[str, Any]) -> None:
+    """A mesh as a geom; MuJoCo needs a volume, so flat ones are left out."""
+    import mujoco
+
+    vertices, triangles = decoded_mesh(shape)
+    if np.linalg.matrix_rank(vertices - vertices[0], tol=1e-6) < 3:
+        return
+    name = f"mesh_{len(spec.meshes)}"
+    mesh = spec.add_mesh(name=name, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
+    mesh.uservert, mesh.userface = vertices.ravel(), triangles.ravel()
+    body.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_MESH, meshname=name, rgba=[*shape["color"], 1.0], mass=0.0,
+        contype=0, conaffinity=0, **_placed(shape["pose"]),
+    )  # fmt: skip
 
 
 def _placed(columns: Sequence[float]) -> dict[str, Any]:
