@@ -45,6 +45,9 @@ if TYPE_CHECKING:
     from inverse_dynamics.data.joint_log import Clock
     from inverse_dynamics.evaluation.series import Arrays, Series
 
+CAUSE = "likely cause of the error: "
+"""How the note begins that says a diagnosis."""
+
 
 @dataclass(frozen=True)
 class JointError:
@@ -194,7 +197,7 @@ def evaluate(
     cause = diagnosis_of(robot, arm.solver, arm.description, result.log, result.qdd, result.effort)
     if cause is None:
         return result
-    note = f"likely cause of the error: {cause.text}"
+    note = f"{CAUSE}{cause.text}"
     return replace(result, notes=(*result.notes, note), diagnosis=cause)
 
 

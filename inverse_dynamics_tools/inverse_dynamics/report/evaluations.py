@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.extras import is_installed
-from inverse_dynamics.figures.scene import scene_from_urdf
+from inverse_dynamics.evaluation.evaluation import CAUSE
+from inverse_dynamics.figures import palette
+from inverse_dynamics.figures.scene import Scene, read_scene
 from inverse_dynamics.report.figures import error_figure, not_drawn
 from inverse_dynamics.report.page import Figure, ReportComparison, ReportRun
-from inverse_dynamics.robot.descriptions import read_description
 
 if TYPE_CHECKING:
     from inverse_dynamics.evaluation.comparison import Comparison
@@ -22,10 +23,9 @@ if TYPE_CHECKING:
 def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
     """What the page shows of an evaluation; `title` stands for the robot's name."""
     robot, log = evaluation.robot, evaluation.log
-    links = []
-    if robot.urdf is not None:
-        links = scene_from_urdf(read_description(robot.urdf), evaluation.joint_names)
+    scene = Scene() if robot.urdf is None else read_scene(robot.urdf, evaluation.joint_names)
     left_out = evaluation.samples.left_out
+    causes = [note for note in evaluation.notes if note.startswith(CAUSE)]
     return ReportRun(
         title=title or robot.name,
         description=robot.description,
@@ -36,10 +36,13 @@ def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
         computed=evaluation.computed,
         table=evaluation.errors,
         other_table=evaluation.errors_of_kept if left_out else (),
-        other_table_title=f"The same without {left_out} invalid samples",
+        other_table_title=f"The same without {left_out} invalid samples (shaded)",
         assumptions=_assumptions(evaluation),
-        notes=evaluation.notes,
-        links=links,
+        cause=causes[-1].removeprefix(CAUSE) if causes else "",
+        notes=[note for note in evaluation.notes if note not in causes[-1:]],
+        links=scene.links,
+        scene_notes=scene.notes,
+        left_out=evaluation.samples.left_out_spans(evaluation.time),
         figures=[Figure(_inline(error_figure(evaluation)), _caption(evaluation))],
     )
 
@@ -77,7 +80,7 @@ def report_comparison(
         rmse=comparison.rmse,
         figure=Figure(
             _inline(svg),
-            "Left: measured torque (dashed) and what each run computes. Right: computed - measured.",
+            "Left: measured torque (wide, grey) and what each run computes. Right: computed - measured.",
         ),
     )
 
@@ -108,6 +111,25 @@ def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:
     return [(name, text) for name, text in rows if text]
 
 
+_THEMED = {  # colours of figures, by variable of the page
+    palette.PAPER: "paper",
+    "#000000": "ink",
+    palette.MUTED: "soft",
+    palette.GRID: "grid",
+    palette.COMPUTED: "computed",
+    palette.ERROR: "error",
+    **{color: f"run{k}" for k, color in enumerate(palette.RUNS) if k > 0},
+}
+
+
 def _inline(svg: str) -> str:
-    """An SVG file as an element of a page."""
-    return re.sub(r"^.*?(?=<svg)", "", svg, flags=re.DOTALL)
+    """An SVG file as an element of a page, in the page's colours, light or dark."""
+    svg = re.sub(r"^.*?(?=<svg)", "", svg, flags=re.DOTALL)
+
+    def themed(style: re.Match[str]) -> str:
+        text = style[0]
+        for color, variable in _THEMED.items():
+            text = re.sub(color, f"var(--{variable}, {color})", text, flags=re.IGNORECASE)
+        return text
+
+    return re.sub(r'style="[^"]*"', themed, svg)

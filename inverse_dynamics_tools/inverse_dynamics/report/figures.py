@@ -10,6 +10,7 @@ import numpy as np
 
 from inverse_dynamics.base.extras import how_to_install, is_installed
 from inverse_dynamics.base.wording import printable
+from inverse_dynamics.figures import palette
 from inverse_dynamics.figures.plots import make_printable
 
 if TYPE_CHECKING:
@@ -18,8 +19,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.evaluation.evaluation import Evaluation
 
-_BLUE = "#0072B2"
-_MUTED = "#555555"
+_MUTED, _GRID = palette.MUTED, palette.GRID
 
 
 def error_figure(evaluation: Evaluation) -> str:
@@ -73,10 +73,10 @@ def _draw_distribution(axes: Axes, names: tuple[str, ...], error: Floats) -> Non
         medianprops={"color": "black"},
     )
     for box in boxes["boxes"]:
-        box.set(facecolor=_BLUE, alpha=0.45)
+        box.set(facecolor=palette.ERROR, alpha=0.45)
     axes.set_yticks(range(1, len(names) + 1), names[::-1])
-    axes.axvline(0, color="#999999", linewidth=0.8)
-    axes.grid(axis="x", color="#e3e6ea")
+    axes.axvline(0, color=palette.MEASURED, linewidth=0.8)
+    axes.grid(axis="x", color=_GRID)
     axes.set_xlabel("computed - measured [% of measured range]", color=_MUTED)
 
 
@@ -84,19 +84,21 @@ def _draw_spectra(axes: Axes, evaluation: Evaluation, measured: Floats, error: F
     from matplotlib.ticker import LogLocator
 
     period = float(evaluation.time[-1]) / (len(evaluation.time) - 1)
-    for values, color, label in ((measured, "black", "measured torque"), (error, _BLUE, "error")):
+    for values, color, width, label in (
+        (measured, palette.MEASURED, 2.0, "measured torque"),
+        (error, palette.ERROR, 1.1, "error"),
+    ):
         frequency, amplitude = _spectrum(values, period)
-        axes.loglog(frequency, amplitude, color=color, linewidth=1.1, label=label,
-                    linestyle="--" if color == "black" else "-")  # fmt: skip
+        axes.loglog(frequency, amplitude, color=color, linewidth=width, label=label)
     if evaluation.accelerations.cutoff is not None:
         axes.axvline(
-            evaluation.accelerations.cutoff, color="#009E73", linewidth=1.3, label="cut-off"
+            evaluation.accelerations.cutoff, color=palette.CUTOFF, linewidth=1.3, label="cut-off"
         )
     axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))  # also where a decade is all there is
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter("")
-    axes.grid(color="#e3e6ea")
+    axes.grid(color=_GRID)
     axes.legend(frameon=False)
     axes.set_xlabel("frequency [Hz]", color=_MUTED)
     axes.set_ylabel("% of range / √Hz", color=_MUTED)

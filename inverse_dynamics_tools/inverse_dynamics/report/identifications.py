@@ -11,7 +11,7 @@ import numpy as np
 
 from inverse_dynamics.base.wording import counted
 from inverse_dynamics.evaluation.evaluation import joint_errors
-from inverse_dynamics.figures.scene import scene_from_urdf
+from inverse_dynamics.figures.scene import Scene, read_scene
 from inverse_dynamics.identification.summary import TITLES, choices_told, headings, held_out_rows
 from inverse_dynamics.report.page import (
     Band,
@@ -20,7 +20,6 @@ from inverse_dynamics.report.page import (
     ReportTable,
     render_page,
 )
-from inverse_dynamics.robot.descriptions import read_description
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,6 +50,7 @@ def _run(found: Identification, recording: str, several: bool) -> ReportRun:
     measured = np.concatenate([block.measured for block in blocks])
     identified = computed.pop("identified")
     urdf = found.robot.urdf
+    scene = Scene() if urdf is None else read_scene(urdf, found.joints)
     return ReportRun(
         title=f"Held-out blocks of {Path(recording).name}" if several else "Held-out blocks",
         description=f"{counted(len(blocks), 'block')}, each predicted by models fitted to the others. Below, "
@@ -62,7 +62,8 @@ def _run(found: Identification, recording: str, several: bool) -> ReportRun:
         computed=identified,
         table=joint_errors(found.joints, found.units, identified, measured),
         assumptions=_block_facts(blocks),
-        links=() if urdf is None else scene_from_urdf(read_description(urdf), found.joints),
+        links=scene.links,
+        scene_notes=scene.notes,
         others={TITLES[column]: values for column, values in computed.items()},
         bands=[Band(float(b.time[0]), float(b.time[-1]), b.band) for b in blocks],
     )

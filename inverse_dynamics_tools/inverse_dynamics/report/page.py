@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics.base.files import write_text_whole
-from inverse_dynamics.base.wording import printable
+from inverse_dynamics.base.wording import printable, solver_name
+from inverse_dynamics.figures import palette
 from inverse_dynamics.figures.thinning import peaks
 
 if TYPE_CHECKING:
@@ -69,17 +70,27 @@ class ReportRun:
     figures: Sequence[Figure] = field(default_factory=list)
     others: Mapping[str, Floats] = field(default_factory=dict)  # by title: torques to choose, N x n
     bands: Sequence[Band] = ()
+    left_out: Sequence[
+        tuple[float, float]
+    ] = ()  # [s] from, to: samples of other_table's difference
+    scene_notes: Sequence[str] = ()  # what of the robot isn't drawn as described
+    cause: str = ""  # why torques differ, where that was found
 
 
 @dataclass(frozen=True)
 class ReportTable:
-    """A table: rows of texts and figures, NaN for none; the last one of means or the like, or not."""
+    """A table: rows of texts and numbers, NaN where there is no number; total: the last row sums the others up."""
 
     title: str
     headings: Sequence[str]
     rows: Sequence[Sequence[str | float]]
     note: str = ""
     total: bool = False
+
+    @property
+    def cells(self) -> list[tuple[str, ...]]:
+        """The rows as texts, numbers aligned in each column."""
+        return list(zip(*(aligned(column) for column in zip(*self.rows, strict=True)), strict=True))
 
 
 @dataclass(frozen=True)
@@ -152,9 +163,17 @@ def template(name: str) -> Template:
         finalize=_printable,
     )
     environment.filters["figure"] = _figure
-    environment.filters["percent"] = lambda share: _figure(100.0 * share)
+    environment.filters["percents"] = lambda shares: [100.0 * share for share in shares]
+    environment.filters["aligned"] = aligned
     environment.globals["style"] = _asset("style.css")
+    environment.globals["light"] = _variables(palette.LIGHT)
+    environment.globals["dark"] = _variables(palette.DARK)
     return environment.get_template(name)
+
+
+def _variables(colors: Mapping[str, str]) -> str:
+    """As CSS declares them."""
+    return " ".join(f"--{name}: {color};" for name, color in colors.items())
 
 
 def _printable(value: object) -> object:
@@ -174,40 +193,54 @@ def _view(run: ReportRun, index: int) -> dict[str, Any]:
     """What the template prints."""
     rows = list(run.table)
     worst = max(rows, key=lambda row: row.nrmse if math.isfinite(row.nrmse) else -1.0)
+    shares = [row.nrmse for row in rows if math.isfinite(row.nrmse)]
+    units = {row.unit for row in rows}
     return {
         "id": _identifier(index),
         "title": run.title,
         "description": run.description,
-        "solver": run.solver.partition("/")[2] or run.solver,
-        "samples": len(run.time),
+        "solver": solver_name(run.solver),
+        "plugin": run.solver,
+        "samples": f"{len(run.time):,}",
+        "duration": f"{run.time[-1] - run.time[0]:.1f} s",
+        "unit": units.pop() if len(units) == 1 else "",
         "mean_rmse": float(np.mean([row.rmse for row in rows])),
-        "mean_nrmse": float(np.nanmean([row.nrmse for row in rows])),
-        "worst_joint": f"{worst.joint} ({_figure(100 * worst.nrmse)} %)",
+        "mean_nrmse": float(np.mean(shares)) if shares else math.nan,
+        "worst_joint": worst.joint,
+        "worst_nrmse": worst.nrmse,
         "has_scene": bool(run.links),
+        "scene_notes": run.scene_notes,
         "table": rows,
         "other_table": run.other_table,
         "other_table_title": run.other_table_title,
         "assumptions": run.assumptions,
+        "cause": run.cause,
         "notes": run.notes,
         "joints": [row.joint for row in rows],
         "figures": run.figures,
         "others": list(run.others),
         "has_band": bool(run.bands),
+        "has_left_out": bool(run.left_out),
         "thinned": f"{MAX_SAMPLES:,}" if len(run.time) > MAX_SAMPLES else "",
     }
 
 
 def _comparison_view(comparison: ReportComparison, index: int) -> dict[str, Any]:
     units = set(comparison.units)
-    rows = list(zip(comparison.joints, comparison.units, comparison.rmse.T, strict=True))
-    if len(units) == 1 and len(rows) > 1:
-        rows.append(("mean", units.pop(), comparison.rmse.mean(axis=1)))
+    names, row_units, rmse = [*comparison.joints], [*comparison.units], comparison.rmse
+    total = len(units) == 1 and len(names) > 1
+    if total:
+        names.append("mean")
+        row_units.append(units.pop())
+        rmse = np.column_stack([rmse, rmse.mean(axis=1)])
+    columns = [aligned(column) for column in rmse]
     return {
         "id": f"comparison-{index + 1}",
         "title": comparison.title,
         "description": comparison.description,
         "labels": comparison.labels,
-        "rows": rows,
+        "rows": list(zip(names, row_units, zip(*columns, strict=True), strict=True)),
+        "total": total,
         "figure": comparison.figure,
     }
 
@@ -247,6 +280,7 @@ def _data(run: ReportRun, index: int) -> dict[str, Any]:
             }
             for j, row in enumerate(run.table)
         ],
+        "left_out": [[begin - run.time[0], end - run.time[0]] for begin, end in run.left_out],
         "time": _base64(time[keep]),
         "q": _base64(run.q[keep].T),
         "links": list(run.links),
@@ -270,11 +304,47 @@ def _json_for_html(value: Any) -> str:
     return json.dumps(value, allow_nan=False).replace("<", "\\u003c")
 
 
+_MOST_DECIMALS = 6
+_FIGURE_SPACE, _PUNCTUATION_SPACE = "\N{FIGURE SPACE}", "\N{PUNCTUATION SPACE}"
+
+
 def _figure(value: float) -> str:
-    """Three significant digits; a dash where there is no figure."""
+    """Three significant digits; a dash where there is no number."""
+    return aligned([value])[0].rstrip()
+
+
+def aligned(values: Sequence[str | float]) -> list[str]:
+    """The numbers of a column with three significant digits each, their decimal points below each other.
+
+    All plain, or, where one of them would need more than six decimals, all with exponents. Texts stay.
+    """
+    numbers = [v for v in values if not isinstance(v, str) and math.isfinite(v) and v != 0.0]
+    plain = all(_decimals(value) <= _MOST_DECIMALS for value in numbers)
+    texts = [v if isinstance(v, str) else _text(v, plain=plain) for v in values]
+    longest = max((len(t.partition(".")[2]) for t in texts if _is_number(t)), default=0)
+    return [_padded(text, longest) if _is_number(text) else text for text in texts]
+
+
+def _decimals(value: float) -> int:
+    """How many decimals show three significant digits of a number, which isn't zero."""
+    exponent = int(f"{abs(value):.2e}".partition("e")[2])  # of the rounded number: 0.9999 is 1.00
+    return max(0, 2 - exponent)
+
+
+def _text(value: float, *, plain: bool) -> str:
     if not math.isfinite(value):
         return "\N{EN DASH}"
-    if value == 0.0:
-        return "0"
-    digits = max(0, 2 - math.floor(math.log10(abs(value))))
-    return f"{value:.{digits}f}" if digits <= 6 else f"{value:.2e}"
+    if not plain:
+        return f"{value:.2e}"
+    return "0" if value == 0.0 else f"{value:.{_decimals(value)}f}"
+
+
+def _is_number(text: str) -> bool:
+    return text[-1:].isdigit() and text.lstrip("-").replace(".", "", 1).isdigit()
+
+
+def _padded(text: str, decimals: int) -> str:
+    """With spaces as wide as the decimals that other numbers have."""
+    own = len(text.partition(".")[2])
+    point = _PUNCTUATION_SPACE if decimals and not own else ""
+    return text + point + _FIGURE_SPACE * (decimals - own)

@@ -7,21 +7,25 @@
 //   group.setCursor(1.5);
 //   group.setHidden("URDF", true);
 //
-// time: s, increasing, of a series as many as its values. A series may be hidden at first. band: [{from, to, half}], half
-// the width of a band about the first series, or about zero where there is `error`. Dragging zooms, shift and dragging pans, a click sets
+// time: s, increasing, of a series as many as its values. A series may be hidden at first. band: [{about, from, to, half}]:
+// half the width of a band about the series of that name, or about zero where there is `error`. left_out: [[from, to]],
+// shaded. Colours are those of the page's CSS variables. Dragging zooms, shift and dragging pans, a click sets
 // the cursor, a double click shows everything.
 "use strict";
 
-// Told apart by colour-blind readers and in print: dashes and lightness differ, not only hue (Okabe and Ito's palette).
-const kStyles = {
-  measured: {color: "#111111", width: 1.3, dash: [5, 3]},
-  computed: {color: "#D55E00", width: 1.5, dash: []},
-  error: {color: "#0072B2", width: 1.2, dash: []},
-  other0: {color: "#CC79A7", width: 1.2, dash: []},
-  other1: {color: "#56B4E9", width: 1.2, dash: []},
-  other2: {color: "#009E73", width: 1.2, dash: [2, 2]},
-};
-const kBand = "rgba(213, 94, 0, 0.18)";
+// Measured is wide and below the computed line, so that both are visible where many samples share a pixel.
+const kWidths = {measured: 2.2, computed: 1.3, error: 1.1, other0: 1.2, other1: 1.2, other2: 1.2};
+
+// A colour of the page, light or dark (figures/palette.py).
+const theme = new Map();  // empty it where the scheme changes
+
+function themeColor(name) {
+  if (!theme.has(name)) {
+    theme.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  }
+  return theme.get(name);
+}
+
 const kMargin = {left: 54, right: 10, top: 18, bottom: 20};
 
 // Round numbers between low and high, about `count` of them.
@@ -106,8 +110,9 @@ class Plot {
     this.setRange();
     this.base = makeCanvas(element, "plot-base");
     this.overlay = makeCanvas(element, "plot-overlay");
+    this.base.setAttribute("aria-hidden", "true");
     this.overlay.setAttribute("role", "img");
-    this.overlay.setAttribute("aria-label", `${options.label} over time, ${options.unit}`);
+    this.describe();
   }
 
   shown() {
@@ -116,6 +121,19 @@ class Plot {
 
   setRange() {
     this.range = range(this.shown(), this.options);
+  }
+
+  // The plot in words, for those who don't see it.
+  describe() {
+    const texts = this.shown().map(({name, values}) => {
+      let low = Infinity, high = -Infinity;
+      for (const value of values) {
+        low = Math.min(low, value);
+        high = Math.max(high, value);
+      }
+      return `${name} from ${low.toPrecision(3)} to ${high.toPrecision(3)} ${this.options.unit}`;
+    });
+    this.overlay.setAttribute("aria-label", `${this.options.label} over time: ${texts.join(", ")}`);
   }
 
   x(t, view) {
@@ -141,6 +159,7 @@ class Plot {
     context.beginPath();
     context.rect(kMargin.left, kMargin.top, width - kMargin.left - kMargin.right, height - kMargin.top - kMargin.bottom);
     context.clip();
+    this.drawLeftOut(context, height, view);
     this.drawBand(context, view);
     for (const series of this.shown()) this.drawSeries(context, series, width, view);
     context.restore();
@@ -148,8 +167,8 @@ class Plot {
 
   drawAxes(context, width, height, view) {
     context.font = "11px system-ui, sans-serif";
-    context.fillStyle = "#333";
-    context.strokeStyle = "#e3e6ea";
+    context.fillStyle = themeColor("soft");
+    context.strokeStyle = themeColor("grid");
     context.lineWidth = 1;
     const vertical = ticks(this.range[0], this.range[1], height / 26);
     context.textAlign = "right";
@@ -176,14 +195,28 @@ class Plot {
     context.textAlign = "left";
     context.textBaseline = "alphabetic";
     context.font = "600 12px system-ui, sans-serif";
+    context.fillStyle = themeColor("ink");
     const title = `${this.options.label} [${this.options.unit}]`;
     context.fillText(title, kMargin.left, 12);
     this.title_end = kMargin.left + context.measureText(title).width;
   }
 
+  // Samples that the second metrics leave out: at least a pixel wide.
+  drawLeftOut(context, height, view) {
+    context.fillStyle = themeColor("measured");
+    context.globalAlpha = 0.28;
+    for (const [from, to] of this.options.left_out || []) {
+      if (to < view.low || from > view.high) continue;
+      const x = this.x(from, view);
+      context.fillRect(x, kMargin.top, Math.max(1, this.x(to, view) - x), height - kMargin.top - kMargin.bottom);
+    }
+    context.globalAlpha = 1;
+  }
+
   drawBand(context, view) {
-    context.fillStyle = kBand;
-    const about = this.options.series[0];
+    context.fillStyle = themeColor("computed");
+    context.globalAlpha = 0.18;
+    const about = this.options.series.find((series) => series.name === "computed");
     for (const {from, to, half} of this.options.band || []) {
       if (to < view.low || from > view.high) continue;
       const first = this.options.error ? 0 : indexAt(about.time, Math.max(from, view.low));
@@ -194,13 +227,13 @@ class Plot {
       for (let i = last; i >= first; --i) context.lineTo(this.x(point(i)[0], view), this.y(point(i)[1] - half));
       context.fill();
     }
+    context.globalAlpha = 1;
   }
 
   drawSeries(context, series, width, view) {
-    const style = kStyles[series.style];
-    context.strokeStyle = style.color;
-    context.lineWidth = style.width;
-    context.setLineDash(style.dash);
+    context.strokeStyle = themeColor(series.style);
+    context.lineWidth = kWidths[series.style];
+    context.lineJoin = "round";
     context.beginPath();
     const {time, values} = series;
     const first = indexAt(time, view.low);
@@ -211,40 +244,37 @@ class Plot {
       for (let i = first; i <= last; ++i) context.lineTo(this.x(time[i], view), this.y(values[i]));
     }
     context.stroke();
-    context.setLineDash([]);
   }
 
-  // More samples than pixels: from each column of pixels its least and greatest value, so that no peak is lost.
+  // More samples than pixels: from each column of pixels its first, least, greatest and last value in the order of
+  // time. That covers the pixels that a line through all samples covers.
   traceColumns(context, {time, values}, first, last, view) {
-    let column = -1, low = 0, high = 0;
-    for (let i = first; i <= last; ++i) {
-      const x = Math.round(this.x(time[i], view));
-      if (x !== column) {
-        if (column >= 0) {
-          context.lineTo(column, this.y(low));
-          context.lineTo(column, this.y(high));
-        }
-        column = x;
-        low = high = values[i];
+    let begin = first;
+    while (begin <= last) {
+      const column = Math.round(this.x(time[begin], view));
+      let low = begin, high = begin, end = begin;
+      for (; end <= last && Math.round(this.x(time[end], view)) === column; ++end) {
+        if (values[end] < values[low]) low = end;
+        if (values[end] > values[high]) high = end;
       }
-      low = Math.min(low, values[i]);
-      high = Math.max(high, values[i]);
+      for (const i of [begin, Math.min(low, high), Math.max(low, high), end - 1]) context.lineTo(column, this.y(values[i]));
+      begin = end;
     }
-    context.lineTo(column, this.y(low));
-    context.lineTo(column, this.y(high));
   }
 
   drawOverlay(view, cursor, selection) {
     const {context, width, height} = prepare(this.overlay, 1);
     if (width === 0) return;
     if (selection) {
-      context.fillStyle = "rgba(0, 114, 178, 0.15)";
+      context.fillStyle = themeColor("error");
+      context.globalAlpha = 0.15;
       const [low, high] = selection.map((t) => this.x(t, view));
       context.fillRect(low, kMargin.top, high - low, height - kMargin.top - kMargin.bottom);
+      context.globalAlpha = 1;
     }
     const x = this.x(cursor, view);
     if (x >= kMargin.left && x <= width - kMargin.right) {
-      context.strokeStyle = "#009E73";
+      context.strokeStyle = themeColor("cursor");
       context.lineWidth = 1.5;
       context.beginPath();
       context.moveTo(x, kMargin.top);
@@ -254,21 +284,25 @@ class Plot {
     this.drawReadout(context, width, cursor);
   }
 
-  // Values at the cursor: with their names; where these would touch the title, in their colours alone; else none.
+  // Values at the cursor, each beside a piece of its line: with their names, without them where these would touch the
+  // title, or none.
   drawReadout(context, width, cursor) {
     context.font = "11px system-ui, sans-serif";
     context.textAlign = "right";
     const all = this.shown().reverse();
     const values = all.map((series) => short(series.values[indexAt(series.time, cursor)], 3));
     const named = values.map((value, i) => `${all[i].name} ${value}`);
-    const length = (texts) => texts.reduce((sum, text) => sum + context.measureText(text).width + 12, 0);
+    const length = (texts) => texts.reduce((sum, text) => sum + context.measureText(text).width + 26, 0);
     const room = width - kMargin.right - this.title_end;
     const texts = [named, values, []].find((candidate) => length(candidate) <= room) || [];
     let x = width - kMargin.right;
     texts.forEach((text, i) => {
-      context.fillStyle = kStyles[all[i].style].color;
+      context.fillStyle = themeColor("ink");
       context.fillText(text, x, 12);
-      x -= context.measureText(text).width + 12;
+      x -= context.measureText(text).width;
+      context.fillStyle = themeColor(all[i].style);
+      context.fillRect(x - 13, 8.5 - kWidths[all[i].style] / 2, 9, kWidths[all[i].style]);
+      x -= 26;
     });
   }
 }
@@ -348,6 +382,7 @@ function createPlotGroup(time, {onCursor}) {
       for (const plot of plots) {
         for (const series of plot.options.series) if (series.name === name) series.hidden = hidden;
         plot.setRange();
+        plot.describe();
       }
       drawAll();
     },

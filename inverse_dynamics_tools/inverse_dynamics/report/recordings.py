@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from inverse_dynamics.base.files import write_text_whole
-from inverse_dynamics.base.wording import counted, listed
-from inverse_dynamics.report.page import template
+from inverse_dynamics.base.wording import counted, listed, solver_name
+from inverse_dynamics.report.page import aligned, template
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,9 +29,9 @@ _EARLIEST = 1e9  # s, September 2001: an earlier stamp is no date
 
 @dataclass(frozen=True)
 class _Cell:
-    """A figure of the table, and how dark it is: 0 to 1."""
+    """A number of the table, and how dark it is: 0 to 1."""
 
-    value: float
+    text: str
     shade: float
 
 
@@ -58,14 +58,26 @@ def render_recordings_page(
 ) -> str:
     """The page as text."""
     middle = [median(column) for column in _columns(summaries)]
+    means = [summary.mean_rmse for summary in summaries]
+    columns = [aligned([*c, m]) for c, m in zip(_columns(summaries), middle, strict=True)]
+    mean_texts = aligned([*means, median(means)])
+    cutoffs = aligned([summary.accelerations.cutoff or math.nan for summary in summaries])
     return template("recordings.html").render(
         title=title,
         facts=_facts(summaries, failures),
         failures=failures.items(),
         joints=_joints(summaries, middle),
-        rows=[_row(summary, middle, links.get(summary.name, "")) for summary in summaries],
-        median=middle,
-        median_mean=median(summary.mean_rmse for summary in summaries),
+        rows=[
+            {
+                **_row(summary, middle, [column[k] for column in columns]),
+                "link": f"{quote(summary.name)}/{links.get(summary.name, '')}",
+                "mean": mean_texts[k],
+                "cutoff": cutoffs[k],
+            }
+            for k, summary in enumerate(summaries)
+        ],
+        median=[column[-1] for column in columns],
+        median_mean=mean_texts[-1],
         dated=any(summary.start > _EARLIEST for summary in summaries),
         filtered=any(summary.accelerations.cutoff for summary in summaries),
         one_unit=len({error.unit for error in summaries[0].errors}) == 1,
@@ -88,7 +100,7 @@ def _facts(
     efforts = sorted({summary.effort.replace("_", " ") for summary in summaries})
     return [
         ("robot", first.robot),
-        ("solver", first.plugin),
+        ("solver", solver_name(first.plugin)),
         ("recordings", count),
         ("motion", f"{_duration(seconds)}, {sum(s.samples for s in summaries):,} samples"),
         *([("part of each", str(first.window))] if first.window else []),
@@ -121,22 +133,18 @@ def _joints(
     return joints
 
 
-def _row(summary: EvaluationSummary, middle: Sequence[float], linked: str) -> dict[str, Any]:
+def _row(
+    summary: EvaluationSummary, middle: Sequence[float], texts: Sequence[str]
+) -> dict[str, Any]:
     ratios = [e.rmse / m if m else 1.0 for e, m in zip(summary.errors, middle, strict=True)]
     start = datetime.fromtimestamp(max(summary.start, 0.0), timezone.utc)
     return {
         "name": summary.name,
-        "link": f"{quote(summary.name)}/{linked}",
         "start": f"{start:%Y-%m-%d %H:%M:%S}" if summary.start > _EARLIEST else "\N{EN DASH}",
         "seconds": summary.start,
         "duration": _duration(summary.duration),
         "samples": f"{summary.samples:,}",
-        "cutoff": summary.accelerations.cutoff or math.nan,
-        "cells": [
-            _Cell(error.rmse, _shade(ratio))
-            for error, ratio in zip(summary.errors, ratios, strict=True)
-        ],
-        "mean": summary.mean_rmse,
+        "cells": [_Cell(text, _shade(ratio)) for text, ratio in zip(texts, ratios, strict=True)],
         "badness": f"{sum(ratios) / len(ratios):.6g}",
     }
 

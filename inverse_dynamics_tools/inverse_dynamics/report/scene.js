@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A robot in 3D: links posed by forward kinematics, drawn with WebGL from boxes, cylinders and spheres.
+// A robot in 3D: links posed by forward kinematics, drawn with WebGL from boxes, cylinders, spheres and meshes.
 //
 //   const scene = createScene(canvas, run.links, motion);   // null where WebGL is missing
 //   scene.draw(q);   // q: joint positions, rad or m
 //
 // motion: some joint positions of the recording; the view is made wide enough for all of them.
 // A link: {parent, joint, kind, axis, pose, shapes}. parent: index or -1; joint: index in q or -1 (fixed);
-// pose: of its frame in the parent's at q = 0; a shape: {kind, size, pose, color}. Poses are 4 x 4,
-// column by column. The z axis points up, lengths in m.
+// pose: of its frame in the parent's at q = 0; a shape: {kind, size, pose, color}, of kind mesh with
+// {middle, step, vertices, triangles} (figures/scene.py). Poses are 4 x 4, column by column. The z axis points up, lengths in m.
 "use strict";
 
 // ---- 4 x 4 matrices, column by column ---------------------------------------------------------
@@ -112,6 +112,38 @@ function unitSphere() {
   });
 }
 
+// ---- meshes -----------------------------------------------------------------------------------
+
+function bytesOf(base64) {
+  return Uint8Array.from(atob(base64), (character) => character.charCodeAt(0)).buffer;
+}
+
+const kSmooth = 0.8;  // cosine of the largest angle between faces that look like one curved face
+
+// Positions and normals of a mesh's triangles.
+function meshTriangles({middle, step, vertices, triangles}) {
+  const steps = new Int16Array(bytesOf(vertices)), corners = new Uint16Array(bytesOf(triangles));
+  const place = (i) => middle.map((value, k) => value + step * steps[3 * i + k]);
+  const normals = [];  // of each triangle, as long as twice its area
+  const around = Array.from({length: steps.length / 3}, () => []);
+  for (let f = 0; f < corners.length; f += 3) {
+    const [a, b, c] = [0, 1, 2].map((k) => place(corners[f + k]));
+    normals.push(cross(b.map((value, k) => value - a[k]), c.map((value, k) => value - a[k])));
+    for (let k = 0; k < 3; ++k) around[corners[f + k]].push(f / 3);
+  }
+  const directions = normals.map(normalised);
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const result = [];
+  corners.forEach((corner, i) => {
+    const own = directions[Math.floor(i / 3)], sum = [0, 0, 0];
+    for (const face of around[corner]) {
+      if (dot(own, directions[face]) > kSmooth) normals[face].forEach((value, k) => { sum[k] += value; });
+    }
+    result.push(...place(corner), ...normalised(sum));
+  });
+  return result;
+}
+
 // ---- drawing ----------------------------------------------------------------------------------
 
 const kFieldOfView = 0.62;  // rad, from top to bottom
@@ -192,19 +224,62 @@ function linkPoses(links, q) {
   return poses;
 }
 
-// Middle and radius of the space that the robot's links need in some positions, m.
-function spaceOf(links, motion) {
-  const low = [0, 0, 0], high = [0, 0, 0];
-  for (const q of motion) {
-    for (const pose of linkPoses(links, q)) {
-      for (let k = 0; k < 3; ++k) {
-        low[k] = Math.min(low[k], pose[12 + k]);
-        high[k] = Math.max(high[k], pose[12 + k]);
-      }
+// Corners of the boxes about a link's shapes, or its origin where it has none, in the link's frame.
+function cornersOf(link) {
+  const corners = link.shapes.length ? [] : [[0, 0, 0]];
+  for (const shape of link.shapes) {
+    let middle = [0, 0, 0], half;
+    if (shape.kind === "mesh") {
+      const steps = new Int16Array(bytesOf(shape.vertices));
+      half = [0, 0, 0];
+      steps.forEach((value, i) => { half[i % 3] = Math.max(half[i % 3], Math.abs(value) * shape.step); });
+      middle = shape.middle;
+    } else if (shape.kind === "box") half = shape.size.map((size) => size / 2);
+    else if (shape.kind === "cylinder") half = [0.7 * shape.size[0], 0.7 * shape.size[0], shape.size[1] / 2];
+    else half = [0.6, 0.6, 0.6].map((share) => share * shape.size[0]);
+    for (let k = 0; k < 8; ++k) {
+      const corner = half.map((size, axis) => middle[axis] + (k >> axis & 1 ? size : -size));
+      corners.push(transformed(shape.pose, corner));
     }
   }
-  const middle = low.map((value, k) => (value + high[k]) / 2);
-  return {middle, radius: 0.12 + Math.hypot(...high.map((value, k) => value - middle[k]))};
+  return corners;
+}
+
+function transformed(m, [x, y, z]) {
+  return [0, 1, 2].map((row) => m[row] * x + m[4 + row] * y + m[8 + row] * z + m[12 + row]);
+}
+
+// What the robot fills in some positions: points, m.
+function pointsOf(links, motion) {
+  const corners = links.map(cornersOf);
+  return motion.flatMap((q) => linkPoses(links, q).flatMap((pose, i) => corners[i].map((corner) => transformed(pose, corner))));
+}
+
+// Where a camera looking that way sees all the points as large as they fit: its target, and its distance from there.
+function fitted(points, azimuth, elevation, aspect) {
+  const back = [
+    Math.cos(elevation) * Math.cos(azimuth), Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation)];
+  const right = normalised(cross([0, 0, 1], back)), up = cross(back, right);
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const slope = 0.94 * Math.tan(kFieldOfView / 2);
+  // |x - centre| <= slope (distance - depth) for each point, and so for y: the tightest of these.
+  const extent = (axis, tangent) => {
+    let least = Infinity, most = -Infinity;
+    for (const point of points) {
+      const across = dot(point, axis), depth = tangent * dot(point, back);
+      least = Math.min(least, across - depth);
+      most = Math.max(most, across + depth);
+    }
+    return {centre: (least + most) / 2, distance: (most - least) / (2 * tangent)};
+  };
+  const x = extent(right, slope * aspect), y = extent(up, slope);
+  return {
+    target: right.map((value, k) => x.centre * value + y.centre * up[k]),
+    distance: Math.max(x.distance, y.distance)};
+}
+
+function rgb(hex) {
+  return [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255);
 }
 
 // Lines of the floor as thin boxes: a square of 2.4 m, every 0.2 m.
@@ -235,10 +310,13 @@ function createScene(canvas, links, motion) {
   const locations = Object.fromEntries(
       ["view_projection", "pose", "scale", "color", "eye", "shadow"].map((name) => [name, uniform(name)]));
   const lines = floorLines();
-  const space = spaceOf(links, motion);
-  const home = {azimuth: -0.9, elevation: 0.38, distance: 0.85 * space.radius / Math.tan(kFieldOfView / 2)};
+  links.forEach((link) => link.shapes.filter((shape) => shape.kind === "mesh").forEach((shape) => {
+    shape.mesh = upload(gl, meshTriangles(shape));
+  }));
+  const points = pointsOf(links, motion);
+  const home = {azimuth: -0.9, elevation: 0.38, zoom: 1};
   const view = {...home};
-  let last_q = null;
+  let last_q = null, fit = {aspect: 0};
 
   function bind(mesh) {
     gl.bindBuffer(gl.ARRAY_BUFFER, mesh.buffer);
@@ -260,7 +338,7 @@ function createScene(canvas, links, motion) {
   function drawRobot(poses) {
     links.forEach((link, i) => {
       for (const shape of link.shapes) {
-        drawMesh(meshes[shape.kind], multiply(poses[i], shape.pose), shapeScale(shape), shape.color);
+        drawMesh(shape.mesh || meshes[shape.kind], multiply(poses[i], shape.pose), shapeScale(shape), shape.color);
       }
     });
   }
@@ -290,21 +368,24 @@ function createScene(canvas, links, motion) {
       canvas.width = width;
       canvas.height = height;
     }
-    const target = space.middle;
-    const horizontal = view.distance * Math.cos(view.elevation);
+    const aspect = width / height;
+    if (fit.aspect !== aspect) fit = {aspect, ...fitted(points, home.azimuth, home.elevation, aspect)};
+    const target = fit.target, distance = view.zoom * fit.distance;
+    const horizontal = distance * Math.cos(view.elevation);
     const eye = [
       target[0] + horizontal * Math.cos(view.azimuth), target[1] + horizontal * Math.sin(view.azimuth),
-      target[2] + view.distance * Math.sin(view.elevation)];
+      target[2] + distance * Math.sin(view.elevation)];
     gl.viewport(0, 0, width, height);
-    gl.clearColor(0.965, 0.97, 0.98, 1);
+    gl.clearColor(...rgb(themeColor("scene")), 1);
     gl.enable(gl.DEPTH_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
     gl.useProgram(program);
     gl.uniformMatrix4fv(locations.view_projection, false,
-        multiply(perspective(kFieldOfView, width / height, 0.05, 30), lookAt(eye, target)));
+        multiply(perspective(kFieldOfView, aspect, 0.02 * distance, 20 * distance), lookAt(eye, target)));
     gl.uniform3fv(locations.eye, eye);
     gl.uniform1f(locations.shadow, 0);
-    for (const line of lines) drawMesh(meshes.box, line.pose, line.scale, [0.86, 0.88, 0.91]);
+    const floor = rgb(themeColor("floor"));
+    for (const line of lines) drawMesh(meshes.box, line.pose, line.scale, floor);
     const poses = linkPoses(links, q);
     drawShadow(poses);
     drawRobot(poses);
@@ -313,7 +394,7 @@ function createScene(canvas, links, motion) {
   function turn(azimuth, elevation, zoom) {
     view.azimuth += azimuth;
     view.elevation = Math.min(1.5, Math.max(-0.2, view.elevation + elevation));
-    view.distance = Math.min(8, Math.max(0.8, view.distance * zoom));
+    view.zoom = Math.min(5, Math.max(0.25, view.zoom * zoom));
     if (last_q) draw(last_q);
   }
 

@@ -44,12 +44,13 @@ class Player {
     // A series has times of its own where the page holds only its peaks.
     const series = (name, data, style = name, hidden = false) => ({
       name, style, hidden, values: decode(data.values), time: data.time ? decode(data.time) : this.time});
+    const left_out = run.left_out;
     run.joints.forEach((joint, j) => {
       const [torque_element, error_element] = this.section.querySelectorAll(`[data-joint="${j}"] .plot`);
       const others = (what) => joint.others.map((other, i) => series(other.name, other[what], `other${i}`, true));
-      this.plots.add(torque_element, {label: joint.name, unit: joint.unit, band: joint.band, series: [
-        series("computed", joint.computed), ...others("computed"), series("measured", joint.measured)]});
-      this.plots.add(error_element, {label: "computed - measured", unit: joint.unit, band: joint.band, error: true, series: [
+      this.plots.add(torque_element, {label: joint.name, unit: joint.unit, band: joint.band, left_out, series: [
+        series("measured", joint.measured), ...others("computed"), series("computed", joint.computed)]});
+      this.plots.add(error_element, {label: "computed - measured", unit: joint.unit, band: joint.band, left_out, error: true, series: [
         ...others("error"), series("error", joint.error)]});
     });
   }
@@ -66,6 +67,13 @@ class Player {
     this.slider.max = this.end;
     this.button.addEventListener("click", () => this.toggle());
     this.slider.addEventListener("input", () => this.seek(Number(this.slider.value)));
+    this.slider.addEventListener("keydown", (event) => {
+      if (event.key.startsWith("Arrow") || event.key === "Home" || event.key === "End") {
+        const back = event.key === "ArrowLeft" || event.key === "ArrowDown";
+        this.key(event.key.startsWith("Arrow") ? (back ? "ArrowLeft" : "ArrowRight") : event.key, event.shiftKey);
+        event.preventDefault();
+      }
+    });
     this.section.querySelector(".show-all").addEventListener("click", () => this.plots.showAll());
     this.section.querySelector(".reset-view").addEventListener("click", () => this.scene?.reset());
   }
@@ -74,6 +82,7 @@ class Player {
     this.now = Math.min(Math.max(t, this.time[0]), this.end);
     this.slider.value = this.now;
     this.clock.textContent = `${this.now.toFixed(2)} s of ${this.end.toFixed(2)} s`;
+    this.slider.setAttribute("aria-valuetext", this.clock.textContent);
     this.section.dataset.time = this.now.toFixed(4);
     this.plots.setCursor(this.now);
     this.scene?.draw(positionsAt(this.time, this.q, this.now));
@@ -143,11 +152,23 @@ function start() {
   };
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.target.closest("input, select, button, a, summary")) return;  // they have keys of their own
+    if (event.target.closest("input, select")) return;  // they have keys of their own
+    if (event.target.closest("button, a, summary") && (event.key === " " || event.key === "Enter")) return;
+    if (event.target.closest(".scroll") && event.key.startsWith("Arrow")) return;
     const player = players.reduce((a, b) => visibleHeight(b) > visibleHeight(a) ? b : a);
     if (player.key(event.key, event.shiftKey)) event.preventDefault();
   });
   new ResizeObserver(redraw).observe(document.body);
+  // Lines are drawn in the page's colours. Paper shows them inverted if they were drawn for a dark page (style.css).
+  const dark = window.matchMedia("screen and (prefers-color-scheme: dark)");
+  const note = () => { document.documentElement.dataset.drawn = dark.matches ? "dark" : "light"; };
+  dark.addEventListener("change", () => {
+    if (window.matchMedia("print").matches) return;
+    note();
+    theme.clear();
+    redraw();
+  });
+  note();
   // On paper everything is unfolded. Plots aren't redrawn then: Chromium may print a canvas empty that this event has drawn upon.
   window.addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((part) => { part.open = true; }));
   redraw();

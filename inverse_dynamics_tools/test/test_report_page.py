@@ -1,0 +1,393 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The page as readers meet it: its lines, a phone, a dark screen, a keyboard, a screen reader."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import report_pictures as pictures
+from PIL import Image
+from test_palette import contrast
+from test_recordings_page import summary
+from test_report import browser, child, press, time_of
+
+from inverse_dynamics.figures import palette
+from inverse_dynamics.report.page import (
+    Figure,
+    ReportComparison,
+    ReportSummary,
+    ReportTable,
+    aligned,
+    render_page,
+)
+from inverse_dynamics.report.recordings import render_recordings_page
+
+WIDE = (
+    '<svg viewBox="0 0 1100 300" width="1100" height="300"><text x="9" y="20">a figure</text></svg>'
+)
+SCREENS = [(390, "light"), (390, "dark"), (1300, "light"), (1920, "dark")]
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    """Files by name: each kind of page, with names as long as users have them."""
+    run = pictures.run_of(
+        "UR10, simulated", pictures.read_description(pictures.load_robot("ur10_simulated").urdf)
+    )
+    run = replace(
+        run,
+        cause="the elbow is reversed",
+        notes=("the first 300 samples are a start transient",),
+        other_table=run.table,
+        other_table_title="The same without the 300 samples that are left out (shaded)",
+        figures=[Figure(WIDE, "What it shows.")],
+    )
+    rmse = np.array([[1.5] * 6, [0.12] * 6])
+    names = [row.joint for row in run.table]
+    comparison = ReportComparison(
+        "What identification brings", "The same recording.", ("rigid bodies", "identified"), names,
+        ["N m"] * 6, rmse, Figure(WIDE, "Left and right."),
+    )  # fmt: skip
+    headings = (
+        "joint",
+        "unit",
+        "URDF",
+        "present model",
+        "refitted",
+        "identified",
+        "in 95 % band [%]",
+    )
+    table = ReportTable(
+        "Held-out error", headings, [(name, "N m", 12.5, 2.26, 1.47, 1.08, 95.0) for name in names]
+    )
+    found = ReportSummary(
+        table, "What was chosen, and why", [("law", "smooth_coulomb")], ["one finding"], [table]
+    )
+    summaries = [
+        summary(f"a_recording_with_a_long_name_{k}", 1.0 + k, start=1_767_000_000.0)
+        for k in range(5)
+    ]
+    texts = {
+        "evaluation": render_page("An arm of a long name: measured and computed torques", [run]),
+        "comparison": render_page(
+            "Two runs", [run, replace(run, title="second")], [comparison], ["A note."]
+        ),
+        "identification": render_page("ur10_real: identified model", [run], summary=found),
+        "recordings": render_recordings_page("A week", summaries, {"fourth": "gone"}, {}),
+        "pictures": pictures.page(),
+    }
+    directory = tmp_path_factory.mktemp("pages")
+    for name, text in texts.items():
+        (directory / f"{name}.html").write_text(text, encoding="utf-8")
+    return directory
+
+
+@pytest.fixture(scope="module")
+def driver(tmp_path_factory):
+    with browser(tmp_path_factory.mktemp("profile")) as opened:
+        yield opened
+
+
+@pytest.fixture
+def show(driver, pages):
+    """Opens a page by name on a screen of some size."""
+
+    def opened(name, width=1400, height=900, scheme="light", **features):
+        pictures.set_screen(driver, width, height, scheme, **features)
+        driver.get((pages / f"{name}.html").as_uri())
+        return driver
+
+    return opened
+
+
+# ---- lines -----------------------------------------------------------------------------------------------------------
+
+
+def test_a_column_of_pixels_is_drawn_in_the_order_of_time(show):
+    """A falling slope with 100 samples per pixel is a falling line, not a zigzag."""
+    points = show("evaluation").execute_script(
+        """
+        const count = 10000, time = Array.from({length: count}, (_, i) => i / count);
+        const values = time.map((t, i) => -t + (i % 7 === 3 ? 0.004 : 0)), points = [];
+        const plot = {x: (t) => 100 * t, y: (value) => value};
+        Plot.prototype.traceColumns.call(
+            plot, {lineTo: (x, y) => points.push([x, y])}, {time, values}, 0, count - 1, {});
+        return points;
+        """
+    )
+    x, y = np.transpose(points)
+    assert (np.diff(x) >= 0).all()
+    assert len(x) <= 4 * 101
+    assert np.diff(y).max() < 0.005  # never back up by a column's fall, 0.01
+    assert y.max() == pytest.approx(0.004, abs=0.001)  # but every peak is there
+    assert y.min() == pytest.approx(-1.0, abs=0.001)
+
+
+def test_measured_and_computed_are_both_visible_at_1_khz(show):
+    driver = show("evaluation")
+    plot = child(driver, "#run-1 [data-joint='1'] .plot-base")
+    count = """
+        const {width, height} = arguments[0];
+        const data = arguments[0].getContext("2d").getImageData(0, 0, width, height).data;
+        let found = 0;
+        for (let i = 0; i < data.length; i += 4) {
+          if (data[i + 3] > 200 && arguments[1].every((v, k) => Math.abs(data[i + k] - v) < 24)) ++found;
+        }
+        return found;
+    """
+
+    def drawn(name):
+        color = palette.LIGHT[name]
+        return driver.execute_script(count, plot, [int(color[i : i + 2], 16) for i in (1, 3, 5)])
+
+    columns = driver.execute_script("return arguments[0].width", plot)
+    assert drawn("measured") > columns
+    assert drawn("computed") > columns
+
+
+def test_numbers_of_a_column_are_written_alike():
+    assert aligned([1.234, 0.01234, 250.0, float("nan"), 0.0, "text"]) == [
+        "1.23\u2007\u2007",
+        "0.0123",
+        "250\u2008\u2007\u2007\u2007\u2007",
+        "\u2013",
+        "0\u2008\u2007\u2007\u2007\u2007",
+        "text",
+    ]
+    assert aligned([0.9999, -2.0]) == ["1.00", "-2.00"]
+    assert aligned([5.0, 1.2e-7]) == ["5.00e+00", "1.20e-07"]  # never a mixture
+
+
+# ---- screens ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["evaluation", "comparison", "identification", "recordings"])
+@pytest.mark.parametrize(("width", "scheme"), SCREENS)
+def test_nothing_is_wider_than_the_screen(show, name, width, scheme):
+    driver = show(name, width, 844, scheme)
+    assert driver.execute_script("return document.documentElement.scrollWidth") <= width
+    too_far = driver.execute_script(
+        "return [...document.querySelectorAll('body *')].filter((e) => !e.closest('.scroll, .hidden, .skip') &&"
+        "e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.outerHTML.slice(0, 80))"
+    )
+    assert too_far == []
+
+
+@pytest.mark.parametrize("name", ["evaluation", "comparison", "identification"])
+def test_the_first_screen_shows_the_robot_and_a_plot(show, name):
+    driver = show(name)
+    for selector in (".robot canvas", ".plot-base"):
+        box = driver.execute_script(
+            "return document.querySelector(arguments[0]).getBoundingClientRect().toJSON()", selector
+        )
+        assert box["bottom"] <= 900, selector
+        assert box["width"] > 300
+
+
+@pytest.mark.parametrize("name", ["evaluation", "comparison", "identification", "recordings"])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_texts_stand_out_from_what_is_behind_them(show, name, scheme):
+    driver = show(name, 1300, 900, scheme)
+    pairs = driver.execute_script(
+        """
+        const opaque = (color) => !/^rgba?\\(.*, 0\\)$|transparent/.test(color) && !color.startsWith("color(");
+        const behind = (element) => {
+          while (element) {
+            const color = getComputedStyle(element).backgroundColor;
+            if (opaque(color)) return color;
+            element = element.parentElement;
+          }
+        };
+        const found = new Map();
+        for (const element of document.querySelectorAll("body *")) {
+          const own = [...element.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim());
+          if (!own || element.closest("script, .hidden, .skip, option, .cell, svg")) continue;
+          const pair = [getComputedStyle(element).color, behind(element)];
+          found.set(pair.join(), [...pair, element.outerHTML.slice(0, 80)]);
+        }
+        return [...found.values()];
+        """
+    )
+    assert len(pairs) > 2
+
+    def color(text):
+        return "#" + "".join(f"{int(float(v)):02X}" for v in re.findall(r"[\d.]+", text)[:3])
+
+    weak = [pair for pair in pairs if contrast(color(pair[0]), color(pair[1])) < 4.5]
+    assert weak == []
+    ground = color(driver.execute_script("return getComputedStyle(document.body).backgroundColor"))
+    assert ground == (palette.LIGHT if scheme == "light" else palette.DARK)["paper"]
+
+
+def test_a_change_of_the_scheme_draws_plots_and_robot_again(show):
+    driver = show("evaluation")
+    corner = """
+        const gl = document.querySelector(".robot canvas").getContext("webgl"), robot = new Uint8Array(4);
+        gl.readPixels(2, gl.drawingBufferHeight - 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, robot);
+        return [...robot].slice(0, 3);
+    """
+    light = driver.execute_script(corner)
+    pictures.set_screen(driver, 1400, 900, "dark")
+    driver.execute_async_script("const done = arguments[0]; setTimeout(done, 300);")
+    dark = driver.execute_script(corner)
+    assert min(light) > 200
+    assert max(dark) < 80
+    assert driver.execute_script("return document.documentElement.dataset.drawn") == "dark"
+
+
+def test_smooth_scrolling_is_for_readers_who_like_motion(tmp_path, pages):
+    """The browser of the other tests asks for reduced motion in its flags."""
+    style = (pages / "evaluation.html").read_text(encoding="utf-8")
+    reduced = style[style.index("@media (prefers-reduced-motion: reduce)") :]
+    assert "scroll-behavior: auto" in reduced[:200]
+
+
+def test_the_robot_fills_its_panel(show):
+    """In the directions that limit it, the motion takes 94 % of the panel, and never more."""
+    found = show("pictures").execute_script(
+        """
+        const run = JSON.parse(document.getElementById("runs").textContent)[0];
+        const time = decode(run.time), q = rows(run.q, run.joints.length);
+        const motion = Array.from({length: 30}, (_, k) => positionsAt(time, q, 8 * k / 29));
+        const points = pointsOf(run.links, motion);
+        const [azimuth, elevation, aspect] = [-0.9, 0.38, 1.1];
+        const {target, distance} = fitted(points, azimuth, elevation, aspect);
+        const flat = distance * Math.cos(elevation);
+        const eye = [target[0] + flat * Math.cos(azimuth), target[1] + flat * Math.sin(azimuth),
+                     target[2] + distance * Math.sin(elevation)];
+        const all = multiply(perspective(kFieldOfView, aspect, 0.1, 50), lookAt(eye, target));
+        return points.map(([x, y, z]) => {
+          const w = all[3] * x + all[7] * y + all[11] * z + all[15];
+          return [0, 1].map((row) => (all[row] * x + all[4 + row] * y + all[8 + row] * z + all[12 + row]) / w);
+        });
+        """
+    )
+    low, high = np.min(found, axis=0), np.max(found, axis=0)
+    assert (low >= -0.95).all()
+    assert (high <= 0.95).all()
+    assert max(high - low) > 1.7
+
+
+# ---- keyboard and screen reader --------------------------------------------------------------------------------------
+
+
+def test_the_keyboard_reaches_everything_and_shows_where_it_is(show):
+    from selenium.webdriver import ActionChains
+    from selenium.webdriver.common.keys import Keys
+
+    driver = show("comparison")
+    section = child(driver, "#run-1")
+    reached = []
+    for _ in range(24):
+        ActionChains(driver).send_keys(Keys.TAB).perform()
+        kind, outline = driver.execute_script(
+            "const e = document.activeElement, style = getComputedStyle(e);"
+            "return [e.className || e.tagName, style.outlineStyle === 'none' ? 0 : parseFloat(style.outlineWidth)]"
+        )
+        reached.append(kind)
+        assert outline >= 2, kind
+        if kind == "reset-view":
+            break
+    assert reached[0] == "skip"
+    for control in ("play", "speed", "scrub", "show-all", "reset-view"):
+        assert control in reached
+    driver.execute_script("arguments[0].focus()", child(section, ".play"))
+    press(driver, "Right")  # steps although a button has the focus
+    assert time_of(section) == pytest.approx(0.1, abs=1e-3)
+    press(driver, " ")
+    assert child(section, ".play").text == "Pause"
+    press(driver, " ")
+    assert child(section, ".play").text == "Play"
+    slider = child(section, ".scrub")
+    driver.execute_script("arguments[0].focus()", slider)
+    press(driver, "Home")
+    press(driver, "Right")
+    assert time_of(section) == pytest.approx(0.1, abs=1e-3)
+    assert slider.get_attribute("aria-valuetext") == "0.10 s of 8.00 s"
+
+
+@pytest.mark.parametrize("name", ["evaluation", "comparison", "identification", "recordings"])
+def test_a_screen_reader_finds_names_for_everything(show, name):
+    nameless = show(name).execute_script(
+        """
+        const nameless = [];
+        const note = (element) => nameless.push(element.outerHTML.slice(0, 80));
+        document.querySelectorAll("table").forEach((table) => {
+          if (!table.caption || !table.caption.textContent.trim()) note(table);
+          if (table.querySelector("thead th:not([scope=col])")) note(table);
+          table.querySelectorAll("tbody tr").forEach((row) => { if (!row.querySelector("th[scope=row]")) note(row); });
+        });
+        document.querySelectorAll("canvas").forEach((canvas) => {
+          if (!canvas.getAttribute("aria-label") && !canvas.ariaHidden) note(canvas);
+        });
+        document.querySelectorAll("svg").forEach((svg) => {
+          if (!svg.closest("[aria-hidden=true], [aria-label]")) note(svg);
+        });
+        document.querySelectorAll("button, select, input, nav").forEach((control) => {
+          const label = control.getAttribute("aria-label") || control.textContent.trim() || control.closest("label");
+          if (!label) note(control);
+        });
+        return nameless;
+        """
+    )
+    assert nameless == []
+
+
+def test_a_plot_is_described_in_words(show):
+    label = child(show("evaluation"), "[data-joint='1'] .plot-overlay").get_attribute("aria-label")
+    assert re.fullmatch(
+        r"shoulder_lift_joint over time: measured from -?[\d.]+ to [\d.]+ N m, computed from -?[\d.]+ to [\d.]+ N m",
+        label,
+    )
+
+
+def test_names_of_solvers_are_short_and_the_cause_of_an_error_stands_above_the_plots(pages):
+    text = (pages / "comparison.html").read_text(encoding="utf-8")
+    assert (
+        '<td title="rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody">rigid_body</td>'
+        in text
+    )
+    section = text[text.index('id="run-1"') :]
+    assert section.index("Likely cause of the error:</b> the elbow is reversed") < section.index(
+        "<canvas"
+    )
+
+
+# ---- pictures --------------------------------------------------------------------------------------------------------
+
+TOLERANCE = 3.0  # of 255, mean over what is drawn
+
+
+@pytest.fixture(scope="module")
+def taken(driver, pages):
+    return pictures.take(driver, (pages / "pictures.html").as_uri())
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        f"{kind}_{s}"
+        for kind in ("torques", "error", "robot", "skeleton")
+        for s in ("light", "dark")
+    ],
+)
+def test_the_picture_is_the_one_that_is_kept(taken, name):
+    with Image.open(pictures.PICTURES / f"{name}.png") as kept:
+        expected = np.asarray(kept.convert("RGB"))
+    assert pictures.difference(taken[name], expected) < TOLERANCE
+
+
+@pytest.mark.parametrize("kind", ["measured", "computed", "error"])
+def test_a_missing_curve_would_be_noticed(driver, pages, taken, kind):
+    uri = (pages / "pictures.html").as_uri()
+    without = pictures.take(driver, uri, f"kWidths.{kind} = 0.001;")
+    name = "error_light" if kind == "error" else "torques_light"
+    assert pictures.difference(without[name], taken[name]) > 2 * TOLERANCE
+
+
+def test_a_missing_robot_would_be_noticed(taken):
+    robot = taken["robot_light"]
+    empty = np.broadcast_to(np.median(robot, axis=(0, 1)), robot.shape)
+    for other in (empty, taken["skeleton_light"], taken["robot_dark"]):
+        assert pictures.difference(robot, other) > 5 * TOLERANCE
