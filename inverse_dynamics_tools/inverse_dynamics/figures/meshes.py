@@ -104,12 +104,12 @@ def read_mesh(file: Path, most: int) -> list[MeshPart]:
 
 def _load(file: Path) -> Any:
     """A file as a scene of trimesh."""
-    require("trimesh", "a mesh of the robot")
+    require("a mesh of the robot", "trimesh")
     import trimesh
 
     kind = file.suffix[1:].lower()
     if kind == "dae":
-        require("collada", "a mesh of the format DAE")
+        require("a mesh of the format DAE", "collada")
     try:
         with file.open("rb") as stream:
             data = stream.read(_MOST_BYTES + 1)
