@@ -159,6 +159,12 @@ def test_numbers_of_a_column_are_written_alike():
     assert aligned([5.0, 1.2e-7]) == ["5.00e+00", "1.20e-07"]  # never a mixture
 
 
+def test_no_escapes_stand_in_the_tables(pages):
+    for file in sorted(pages.glob("*.html")):
+        body = file.read_text(encoding="utf-8").partition("<script")[0]
+        assert re.findall(r">[^<>]*\\[ux][0-9a-f]{2}[^<>]*<", body) == [], file.name
+
+
 # ---- screens ---------------------------------------------------------------------------------------------------------
 
 

@@ -344,7 +344,9 @@ def _is_number(text: str) -> bool:
 
 
 def _padded(text: str, decimals: int) -> str:
-    """With spaces as wide as the decimals that other numbers have."""
+    """With spaces as wide as the decimals that other numbers have, which no page may escape."""
+    from markupsafe import Markup
+
     own = len(text.partition(".")[2])
     point = _PUNCTUATION_SPACE if decimals and not own else ""
-    return text + point + _FIGURE_SPACE * (decimals - own)
+    return Markup(text + point + _FIGURE_SPACE * (decimals - own))
