@@ -44,11 +44,11 @@ macro(inverse_dynamics_solver_add_plugin)
   ament_export_dependencies(${_solver_DEPENDENCIES})
 endmacro()
 
-# inverse_dynamics_solver_conformance_tests(<variable>)
+# inverse_dynamics_solver_link_conformance_tests(<test>)
 #
-# The library of the conformance tests: the one that was built with the interface, where it was built with its tests, by
-# the same compiler and with the same flags; else one of this project's own.
-function(inverse_dynamics_solver_conformance_tests variable)
+# Links a test that instantiates the conformance tests with their library: the one that was built with the interface,
+# where it was built with its tests, by the same compiler and with the same flags; else one of this project's own.
+function(inverse_dynamics_solver_link_conformance_tests test)
   set(library inverse_dynamics_solver::conformance_tests)
   if(TARGET ${library})
     get_target_property(built_by ${library} BUILT_BY)
@@ -63,7 +63,7 @@ function(inverse_dynamics_solver_conformance_tests variable)
       target_link_libraries(${library} PUBLIC inverse_dynamics_solver::inverse_dynamics_solver)
     endif()
   endif()
-  set(${variable} ${library} PARENT_SCOPE)
+  target_link_libraries(${test} ${library})
 endfunction()
 
 # inverse_dynamics_solver_add_plugin_test(<test> <source>... PLUGIN <target> [DESCRIPTION <file>]
@@ -104,8 +104,7 @@ function(inverse_dynamics_solver_add_plugin_test test)
   endif()
   ament_add_gtest(${test} ${ARG_UNPARSED_ARGUMENTS}
     TIMEOUT ${ARG_TIMEOUT} ENV "AMENT_PREFIX_PATH=${prefixes}")
-  inverse_dynamics_solver_conformance_tests(conformance_tests)
-  target_link_libraries(${test} ${conformance_tests})
+  target_link_libraries(${test} inverse_dynamics_solver::inverse_dynamics_solver)
   add_dependencies(${test} ${ARG_PLUGIN})
 endfunction()
 

@@ -26,7 +26,7 @@ def test_without_dask_the_error_says_what_to_install(ids, bags, tmp_path, monkey
     fails(
         ids("evaluate", bags, *ROBOT, "--scheduler", "tcp://127.0.0.1:8786"),
         "--scheduler tcp://127.0.0.1:8786: needs Dask distributed",
-        "install it with `pip install distributed`",
+        "run ./scripts/setup in the workspace",
     )
     assert os.listdir(tmp_path) == []
 

@@ -370,7 +370,7 @@ def test_a_folder_of_somebody_else_is_not_taken_for_a_leftover(tmp_path):
     (tmp_path / ".result.part").mkdir()
     (tmp_path / ".result.part" / "film.mkv").touch()
     with pytest.raises(
-        OutputError, match=r"\.result\.part is in the way, and isn't of this command"
+        OutputError, match=r"\.result\.part is in the way and was not written by this command"
     ):
         write(tmp_path / "result")
     assert os.listdir(tmp_path / ".result.part") == ["film.mkv"]

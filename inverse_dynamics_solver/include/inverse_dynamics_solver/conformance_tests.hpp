@@ -12,7 +12,8 @@
 ///     INVERSE_DYNAMICS_SOLVER_CONFORMANCE(MySolver, MySolverTraits);
 ///
 /// In CMake: `inverse_dynamics_solver_add_plugin_test(my_solver_conformance_test
-/// test/my_solver_conformance_test.cpp PLUGIN my_solver_plugin)`.
+/// test/my_solver_conformance_test.cpp PLUGIN my_solver_plugin)`, then
+/// `inverse_dynamics_solver_link_conformance_tests(my_solver_conformance_test)`.
 ///
 /// Parts one to four, initialization_tests.hpp, contract_tests.hpp, batch_tests.hpp and
 /// real_time_tests.hpp, are what callers are promised; part five, law_tests.hpp, is physics; part
@@ -24,8 +25,7 @@
 /// The plugin is loaded by name, as users do. Random states have a fixed seed, and a failure prints
 /// its state as C++ to be pasted. Tolerances and their reasons stand in solver_fixture.hpp.
 ///
-/// The tests are a library, compiled with the interface and linked by
-/// inverse_dynamics_solver_add_plugin_test.
+/// The tests are a library, compiled with the interface.
 #pragma once
 
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
