@@ -12,6 +12,7 @@ from simulation_arms import joint, link, robot
 from test_solver_parameters import efforts, planned, write
 
 from inverse_dynamics import Solver, errors
+from inverse_dynamics.verbs.payload_option import payload
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
@@ -209,6 +210,26 @@ def test_payload_of_configuration_option_and_file_are_the_same(ids, tmp_path):
     option = ("--payload", "2,0.5,0,0")
     np.testing.assert_array_equal(
         torques(ids, tmp_path, made(tmp_path, inertia), *option), expected
+    )
+
+
+def test_option_and_file_state_mass_center_and_inertia(tmp_path):
+    inertia = [0.11, 0.01, 0.02, 0.15, 0.03, 0.2]  # xx xy xz yy yz zz
+    stated = payload("2,0.5,0.1,0.2," + ",".join(map(str, inertia)))
+    assert stated["payload.mass"] == 2.0
+    assert stated["payload.center_of_mass"] == [0.5, 0.1, 0.2]
+    assert stated["payload.inertia"] == inertia
+    file = tmp_path / "part.yaml"
+    file.write_text(f"mass: 2\ncenter_of_mass: [0.5, 0.1, 0.2]\ninertia: {inertia}\n")
+    assert payload(str(file)) == stated
+
+
+@pytest.mark.parametrize("text", ["-2,0.5,0,0", "2,0.5,0,0,0.1,0,0,0.1,0,0.3"])
+def test_impossible_bodies_are_refused(ids, tmp_path, text):
+    plan = planned(tmp_path, ("swing",))
+    fails(
+        ids("torques", plan, "--out", "x.csv", "--robot", made(tmp_path, ""), f"--payload={text}"),
+        "payload",
     )
 
 
