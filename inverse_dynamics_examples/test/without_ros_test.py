@@ -195,12 +195,17 @@ def test_sourced_workspaces_come_after_the_installation(shapes: Path, tmp_path: 
     assert text.endswith(f"{shapes}/share/shapes\n")
 
 
-def test_a_description_that_cant_be_read_is_named(shapes: Path, tmp_path: Path) -> None:
-    describe(tmp_path, "broken", "<library")
-    text = run(shapes / "bin/load_shapes", AMENT_PREFIX_PATH=str(tmp_path))
-    assert text.startswith(
-        f"error: {tmp_path}/share/broken/plugins.xml: expected descriptions of plugins: "
-    )
+@pytest.mark.parametrize("description", ["<library", "<!-- nothing -->", None])
+def test_a_description_that_cant_be_read_is_reported_and_left_out(
+    shapes: Path, tmp_path: Path, description: str | None
+) -> None:
+    describe(tmp_path, "broken", description or "")
+    file = tmp_path / "share/broken/plugins.xml"
+    if description is None:
+        file.unlink()
+    text = run(shapes / "bin/load_shapes", "shapes/Square", AMENT_PREFIX_PATH=str(tmp_path))
+    assert "four corners" in text
+    assert f"{file}: expected descriptions of plugins: " in text
 
 
 def test_the_page_shows_the_projects_as_they_are() -> None:

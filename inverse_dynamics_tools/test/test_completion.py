@@ -58,6 +58,11 @@ def shells():
     return ["bash", "zsh"]
 
 
+def test_nothing_is_completed_with_nothing(capsys):
+    assert cli.main(["completion", "bash", "ids", "evaluate", "--nosuch"]) == 0
+    assert capsys.readouterr().out == ""
+
+
 @pytest.mark.parametrize("shell", shells())
 def test_verbs_options_values_robots_and_files_are_completed(completed, shell):
     assert completed(shell, "ids", "ev") == ["evaluate"]

@@ -151,6 +151,23 @@ def test_a_mesh_with_an_entity_is_refused(tmp_path):
     assert "root:" not in str(error.value)
 
 
+def test_a_document_type_in_utf_16_is_refused(tmp_path):
+    pytest.importorskip("trimesh")
+    file = tmp_path / "evil.dae"
+    file.write_bytes('<?xml version="1.0"?><!DOCTYPE a><COLLADA/>'.encode("utf-16-le"))
+    with pytest.raises(MeshError, match="without a document type"):
+        read_mesh(file, 100)
+
+
+def test_triangles_without_an_area_are_refused(tmp_path):
+    pytest.importorskip("trimesh")
+    file = tmp_path / "flat.stl"
+    corners = np.array([[0.0, 0, 0], [0, 0, 0], [1, 0, 0]])
+    write_stl(file, MeshPart(corners, np.array([[0, 1, 2]]), None))
+    with pytest.raises(MeshError, match="expected triangles with an area"):
+        read_mesh(file, 100)
+
+
 @pytest.mark.parametrize("data", [b"", b"solid", b"\xff" * 200, b"<COLLADA/>", b"v 1 2\nf 1 2 3\n"])
 @pytest.mark.parametrize("kind", ["stl", "dae", "obj"])
 def test_a_damaged_mesh_is_refused_in_one_line(tmp_path, kind, data):

@@ -220,9 +220,10 @@ def test_residuals_that_are_no_use_are_refused(tmp_path: Path) -> None:
         Sensors(effort_noise=EffortNoise(np.zeros((5000, 3)), 1e-3)).record(motion(), 0)
     with pytest.raises(SimulationError, match="expected a result of `ids evaluate`"):
         EffortNoise.of_result(tmp_path)
-    (tmp_path / "series.npz").write_bytes(b"PK")
-    with pytest.raises(SimulationError, match="expected a result of `ids evaluate`"):
-        EffortNoise.of_result(tmp_path)
+    for damaged in (b"", b"PK", b"PK\3\4" * 10):
+        (tmp_path / "series.npz").write_bytes(damaged)
+        with pytest.raises(SimulationError, match="expected a result of `ids evaluate`"):
+            EffortNoise.of_result(tmp_path)
 
 
 def test_residuals_are_those_of_an_evaluation(tmp_path: Path) -> None:

@@ -23,9 +23,9 @@ inline std::list<std::string> get_search_paths() {
   std::list<std::string> paths;
   Dl_info library{};
   if (dladdr(&kThisLibrary, &library) != 0 && library.dli_fname != nullptr) {
-    std::error_code ignored;
-    const auto file = std::filesystem::canonical(library.dli_fname, ignored);
-    paths.push_back(file.parent_path().parent_path().string());
+    std::error_code error;
+    const auto file = std::filesystem::canonical(library.dli_fname, error);
+    if (!error) paths.push_back(file.parent_path().parent_path().string());
   }
   for (const char* const variable : {"AMENT_PREFIX_PATH", "INVERSE_DYNAMICS_PREFIX_PATH"}) {
     const char* const value = std::getenv(variable);

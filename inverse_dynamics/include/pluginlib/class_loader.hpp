@@ -8,6 +8,7 @@
 
 #include <ament_index_cpp/get_resources.hpp>
 #include <fstream>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -43,15 +44,19 @@ inline std::string attribute(const tinyxml2::XMLElement& element, const char* na
   return value == nullptr ? "" : value;
 }
 
-/// Adds what a file describes: a `library`, or several in a `class_libraries`.
+/// Adds what a file describes: a `library`, or several in a `class_libraries`. A file that can't be
+/// read is reported and left out, as by pluginlib: the other packages' plugins are there.
 inline void read_descriptions(const std::string& file, const std::string& prefix,
                               const std::string& package, const std::string& base,
                               PluginDescriptions& found) {
   tinyxml2::XMLDocument document;
-  if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) {
-    throw PluginlibException(file + ": expected descriptions of plugins: " + document.ErrorStr());
-  }
+  document.LoadFile(file.c_str());
   const tinyxml2::XMLElement* library = document.RootElement();
+  if (document.Error() || library == nullptr) {
+    std::cerr << file << ": expected descriptions of plugins: "
+              << (document.Error() ? document.ErrorStr() : "there is no element") << "\n";
+    return;
+  }
   if (library->Name() == std::string("class_libraries")) {
     library = library->FirstChildElement("library");
   }

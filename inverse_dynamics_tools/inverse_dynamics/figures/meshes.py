@@ -99,7 +99,11 @@ def read_mesh(file: Path, most: int) -> list[MeshPart]:
     if not parts or not all(np.all(np.isfinite(part.vertices)) for part in parts):
         raise MeshError(f"{file}: expected triangles with finite coordinates")
     total = sum(len(part.triangles) for part in parts)
-    return [simplified(part, max(12, most * len(part.triangles) // total)) for part in parts]
+    parts = [simplified(part, max(12, most * len(part.triangles) // total)) for part in parts]
+    parts = [part for part in parts if len(part.triangles)]
+    if not parts:
+        raise MeshError(f"{file}: expected triangles with an area")
+    return parts
 
 
 def _load(file: Path) -> Any:
@@ -118,7 +122,8 @@ def _load(file: Path) -> Any:
     if len(data) > _MOST_BYTES:
         raise MeshError(f"{file}: expected a mesh of at most {_MOST_BYTES >> 20} MiB, got more")
     if kind == "dae" and (
-        b"<!" in data.replace(b"<!--", b"")
+        b"\0" in data  # UTF-16, in which the next line would see nothing
+        or b"<!" in data.replace(b"<!--", b"")
         or not data.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
     ):
         raise MeshError(f"{file}: expected a COLLADA document without a document type")

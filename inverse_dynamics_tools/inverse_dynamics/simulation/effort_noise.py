@@ -59,7 +59,7 @@ class EffortNoise:
         try:
             with np.load(file, allow_pickle=False) as series:
                 arrays = {name: series[name] for name in ("time", "measured", "computed", "kept")}
-        except (OSError, ValueError, KeyError) as error:
+        except Exception as error:  # of damaged files, whatever their reader raises
             raise SimulationError(
                 f"effort noise: {directory}: expected a result of `ids evaluate`, with measured and computed torques "
                 f"in {_FILE}, got none that can be read"

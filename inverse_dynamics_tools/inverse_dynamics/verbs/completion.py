@@ -83,7 +83,8 @@ def add_parser(
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     if arguments.words:
-        print(*candidates(arguments.program, arguments.words[1:]), sep="\n")
+        for candidate in candidates(arguments.program, arguments.words[1:]):
+            print(candidate)
     else:
         print(_SCRIPTS[arguments.shell], end="")
 
