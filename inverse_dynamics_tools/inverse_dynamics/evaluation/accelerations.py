@@ -10,8 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 if TYPE_CHECKING:
     from inverse_dynamics._core import Evaluated
     from inverse_dynamics.base.arrays import Floats, Mask
@@ -70,6 +68,8 @@ class Samples:
 
         time: (N,) s, of all samples. most: of more spans, the ones of the most samples.
         """
+        import numpy as np  # late: --help needs the rules alone
+
         edges = np.flatnonzero(np.diff(np.concatenate([[True], self.kept, [True]])))
         first, end = edges[::2], edges[1::2]
         longest = np.sort(np.argsort(first - end, kind="stable")[:most])
