@@ -40,6 +40,7 @@ bool registerPluginClass(const char* name) {
 }  // namespace inverse_dynamics_solver
 
 /// A new object as a pointer to its base class; null if the library has no such class.
+// NOLINTNEXTLINE(readability-identifier-naming): a symbol that is found by name, as C's are
 extern "C" [[gnu::weak, gnu::visibility("default")]] void* inverse_dynamics_make_plugin(
     const char* base, const char* name) {
   const auto& classes = inverse_dynamics_solver::pluginClassesOfThisLibrary();
