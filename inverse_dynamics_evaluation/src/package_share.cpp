@@ -59,7 +59,7 @@ std::string homeOf(const std::string& user) {
 }  // namespace
 
 std::string packageShare(const std::string& package) {
-  const std::string share = inverse_dynamics_solver::installedPackageShare(package);
+  std::string share = inverse_dynamics_solver::installedPackageShare(package);
   if (!share.empty()) return share;
   const std::vector<std::string> known = prefixes();
   const std::string where = "package " + package + ": ";
