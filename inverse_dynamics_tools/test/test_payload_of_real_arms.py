@@ -3,16 +3,12 @@
 
 The arm's model is fitted to other parts of the recording than those that the load is estimated from, and its
 residuals, of blocks that it hasn't seen, stay in the torques: either those of the window itself, or those of
-another part of the recording. Run by hand it prints its figures:
-
-    IDS_DATA_DIR=... python test_payload_of_real_arms.py
+another part of the recording.
 """
 
 from __future__ import annotations
 
-import os
 import sys
-from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
@@ -20,20 +16,14 @@ import numpy as np
 import pytest
 
 from inverse_dynamics import Solver, _core, evaluate, load_robot
-from inverse_dynamics.identification.payload import (
-    Samples,
-    fit_payload,
-    samples_of,
-    with_load,
-)
+from inverse_dynamics.identification.payload import samples_of
 from inverse_dynamics.robot.descriptions import parse_description, read_description
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-import payload_truth
+from payload_truth import Arm, part, torques, trials
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 BLOCKS = 5
-SECONDS = 4.0
 TRIALS = 200
 TIP = {"panda": [0, 0, 0.107]}  # m, flange in the frame of the last link
 EDGE = 10  # samples at either end of the recording, where accelerations are poor
@@ -44,20 +34,9 @@ MOST = {
 }
 
 
-@dataclass(frozen=True)
-class Arm:
-    """A recording, and for each of its blocks a solver that was fitted to the others."""
-
-    samples: Samples
-    blocks: tuple[slice, ...]
-    solvers: tuple[Solver, ...]
-    residuals: np.ndarray  # (N, n) N m, each block's by its solver
-
-
 def make_arm(recordings: Path, name: str, directory: Path) -> Arm:
     evaluation = evaluate(recordings / f"{name}_exciting_trajectory", f"{name}_real")
-    kept = samples_of(evaluation)
-    samples = Samples(*(part[EDGE:-EDGE] for part in vars(kept).values()))
+    samples = part(samples_of(evaluation), slice(EDGE, -EDGE))
     robot = load_robot(f"{name}_real")
     description = read_description(robot.urdf)
     fitter = _core.ArmFitter.from_urdf(description, root=robot.root, tip=robot.tip)
@@ -117,100 +96,23 @@ def sigmoid(law) -> str:
     return "law: viscous_offset_sigmoid, " + ", ".join(f"{k}: {v!r}" for k, v in figures.items())
 
 
-def part(samples: Samples, which: slice) -> Samples:
-    return Samples(*(values[which] for values in vars(samples).values()))
-
-
-def torques(solver: Solver, samples: Samples) -> np.ndarray:
-    return solver.torques(samples.q, samples.qd, samples.qdd)
-
-
-def window(block: slice, time: np.ndarray, random: np.random.Generator) -> slice:
-    """SECONDS of a block."""
-    count = int(SECONDS / np.median(np.diff(time)))
-    first = block.start + int(random.integers(block.stop - block.start - count + 1))
-    return slice(first, first + count)
-
-
-def trial(arm: Arm, mass: float, random: np.random.Generator, elsewhere: bool) -> np.ndarray:
-    """(2, 4): errors of mass [kg] and centre of mass [m], and the half widths of their intervals."""
-    k = int(random.integers(BLOCKS))
-    here = window(arm.blocks[k], arm.samples.time, random)
-    samples, solver = part(arm.samples, here), arm.solvers[k]
-    if elsewhere:
-        other = int((k + random.integers(1, BLOCKS)) % BLOCKS)
-        residual = arm.residuals[window(arm.blocks[other], arm.samples.time, random)]
-        samples = Samples(*list(vars(samples).values())[:4], torques(solver, samples) + residual)
-    load = random_load(mass, random)
-    found = fit_payload(with_load(samples, solver, load), solver).estimate
-    return np.array(
-        [
-            [found.mass - mass, *(found.center_of_mass - load["center_of_mass"])],
-            [found.mass_half_width, *found.center_of_mass_half_width],
-        ]
-    )
-
-
-def random_load(mass: float, random: np.random.Generator) -> dict[str, object]:
-    """A turned box up to 15 cm in front of the flange."""
-    turn = np.linalg.qr(random.normal(size=(3, 3)))[0]
-    squares = random.uniform(0.02, 0.06, 3) ** 2
-    return {
-        "mass": mass,
-        "center_of_mass": [*random.uniform(-0.06, 0.06, 2), random.uniform(0.0, 0.15)],
-        "inertia": mass * turn @ np.diag(squares.sum() - squares) @ turn.T,
-    }
-
-
-def trials(arm: Arm, mass: float) -> np.ndarray:
-    random = np.random.default_rng(1)
-    return np.array([trial(arm, mass, random, elsewhere=bool(k % 2)) for k in range(TRIALS)])
-
-
-def figures(found: np.ndarray, mass: float) -> dict[str, float]:
-    errors, widths = np.abs(found[:, 0]), found[:, 1]
-    ratios = np.median(widths, axis=0) / np.median(errors, axis=0)
-    return {
-        "mass": float(np.median(errors[:, 0]) / mass),
-        "center": float(np.median(np.linalg.norm(errors[:, 1:], axis=1))),
-        "coverage": float(np.mean(errors <= widths)),
-        "ratio of the mass": float(ratios[0]),
-        "ratio of the center": float(np.median(ratios[1:])),
-    }
-
-
-@pytest.fixture(scope="module")
-def directory(tmp_path_factory):
-    return tmp_path_factory.mktemp("arms")
-
-
 @pytest.mark.parametrize(("name", "mass"), MOST)
-def test_simulated_loads_on_real_residuals(recordings, directory, name, mass):
-    found = figures(trials(make_arm(recordings, name, directory), mass), mass)
+def test_simulated_loads_on_real_residuals(recordings, tmp_path, name, mass):
+    found = trials(make_arm(recordings, name, tmp_path), mass, TRIALS)
     most_mass, most_center = MOST[name, mass]
-    assert found["mass"] <= most_mass, found
-    assert found["center"] <= most_center, found
-    assert 0.90 <= found["coverage"] <= 0.99, found
-    assert found["ratio of the mass"] <= 4.0, found
-    assert found["ratio of the center"] <= 4.0, found
+    assert found.mass <= most_mass, found
+    assert found.center <= most_center, found
+    assert 0.90 <= found.coverage <= 0.99, found
+    assert found.ratio_of_mass <= 4.0, found
+    assert found.ratio_of_center <= 4.0, found
 
 
 def test_five_kilograms_on_a_ur10_whose_friction_grows_with_load(recordings, tmp_path):
     """With the law, prior strength and delay that `ids identify` chooses."""
-    recording = recordings / "ur10_exciting_trajectory"
-    arm = payload_truth.Arm.of(recording, "ur10_real", tmp_path)
+    arm = Arm.of(recordings / "ur10_exciting_trajectory", "ur10_real", tmp_path)
     assert arm.solvers[0].friction_depends_on_position
-    found = payload_truth.trials(arm, 5.0, 100)
+    found = trials(arm, 5.0, 100)
     assert found.mass <= 0.012, found
     assert found.center <= 0.010, found
     assert 0.90 <= found.coverage <= 0.99, found
     assert found.ratio_of_center <= 4.0, found
-
-
-if __name__ == "__main__":
-    from tempfile import TemporaryDirectory
-
-    with TemporaryDirectory() as place:
-        for arm_name, carried in (*MOST, ("panda", 0.5), ("panda", 2.0)):
-            arm = make_arm(Path(os.environ["IDS_DATA_DIR"]) / "bags", arm_name, Path(place))
-            print(arm_name, carried, "kg", figures(trials(arm, carried), carried))

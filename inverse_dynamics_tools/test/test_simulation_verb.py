@@ -134,13 +134,19 @@ def test_options_without_a_value_have_stated_defaults(arm: list[str], tmp_path: 
     assert made["payload"] == {"mass": 1.0, "center": [0.0, 0.0, 0.0]}
 
 
-def test_optimise_stores_what_it_found(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def searched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *options: str) -> Path:
+    """A recording whose motion a short search has found."""
     monkeypatch.setattr(run_module, "ExcitationOptions", partial(ExcitationOptions, iterations=6))
     robot, bag = write_robot(tmp_path, two_links(), "", "tip: tip\n"), tmp_path / "bag"
     command = ["simulate", "--robot", str(robot), "--rate", "125", "--duration", "0.2"]
-    assert main([*command, "--out", str(bag), "--optimise", "--seed", "1"]) == 0
+    assert main([*command, "--out", str(bag), *options]) == 0
+    return bag
+
+
+def test_optimise_stores_what_it_found(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bag = searched(tmp_path, monkeypatch, "--optimise", "--seed", "1")
     printed = capsys.readouterr()
     assert "condition number of the base regressor" in printed.out
     assert printed.err == SEARCHING.format("")
@@ -152,10 +158,7 @@ def test_optimise_stores_what_it_found(
 def test_a_search_that_nobody_asked_for_is_announced(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(run_module, "ExcitationOptions", partial(ExcitationOptions, iterations=6))
-    robot, bag = write_robot(tmp_path, two_links(), "", "tip: tip\n"), tmp_path / "bag"
-    command = ["simulate", "--robot", str(robot), "--rate", "125", "--duration", "0.2"]
-    assert main([*command, "--out", str(bag)]) == 0
+    searched(tmp_path, monkeypatch)
     why = "the run configuration names no trajectory: "
     assert capsys.readouterr().err == SEARCHING.format(why)
 
