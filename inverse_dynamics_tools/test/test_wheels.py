@@ -148,13 +148,16 @@ def site(monkeypatch, tmp_path):
         declare(site, name, name)
         (site / name).mkdir()
     declare(site, "gone_solver", "gone_solver.plugins")
+    declare(site, "rude_solver", "rude_solver.plugins")
+    (site / "rude_solver" / "plugins").mkdir(parents=True)
+    (site / "rude_solver" / "__init__.py").write_text("raise RuntimeError('imported')\n")
     monkeypatch.syspath_prepend(site)
     monkeypatch.delenv(wheels.VARIABLE, raising=False)
     return site
 
 
 def test_packages_that_declare_a_prefix_are_found_in_the_order_of_their_names(site):
-    expected = [str(site / "alpha_solver"), str(site / "zeta_solver")]
+    expected = [str(site / name) for name in ("alpha_solver", "rude_solver/plugins", "zeta_solver")]
     assert [p for p in wheels.declared_prefixes() if p.startswith(str(site))] == expected
     assert "alpha_solver" not in sys.modules
 
@@ -164,7 +167,8 @@ def test_they_come_after_what_the_variable_names_each_once(site, monkeypatch):
     monkeypatch.setenv(wheels.VARIABLE, f"/given:{site / 'zeta_solver'}")
     wheels.find_other_wheels()
     found = os.environ[wheels.VARIABLE].split(":")
-    assert found == ["/given", str(site / "zeta_solver"), str(site / "alpha_solver")]
+    others = [str(site / "alpha_solver"), str(site / "rude_solver/plugins")]
+    assert found == ["/given", str(site / "zeta_solver"), *others]
 
 
 def test_a_package_of_a_workspace_looks_in_workspaces_alone(site):

@@ -49,9 +49,12 @@ def declared_prefixes() -> list[str]:
 
 
 def _directories_of(module: str) -> list[str]:
-    """Where a package's modules are; none where it isn't there any more. It isn't imported."""
+    """Where a package's modules are; none where it isn't there any more. Nothing of it is imported."""
+    package, *inner = module.split(".")
     try:
-        spec = find_spec(module)
-    except ImportError:
+        spec = find_spec(package)
+    except (ImportError, ValueError):  # ValueError: of a module that doesn't say where it is
         return []
-    return list(spec.submodule_search_locations or []) if spec is not None else []
+    places = [] if spec is None else spec.submodule_search_locations or []
+    directories = [os.path.join(place, *inner) for place in places]
+    return [directory for directory in directories if os.path.isdir(directory)]

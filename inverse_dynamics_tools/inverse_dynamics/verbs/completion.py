@@ -12,6 +12,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.base.extras import installed_by_pip
 from inverse_dynamics.verbs.common import file_name
 from inverse_dynamics.verbs.options import add_verb
 from inverse_dynamics.verbs.payload_option import payload
@@ -163,7 +164,8 @@ def _values(action: argparse.Action) -> list[str]:
 
 def _robot_names() -> Iterable[str]:
     """As robots.robot_names(), where it can be without loading the libraries, which takes 0.1 s."""
-    for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
+    workspaces = "" if installed_by_pip() else os.environ.get("AMENT_PREFIX_PATH", "")
+    for prefix in workspaces.split(os.pathsep):
         directory = Path(prefix) / "share" / "inverse_dynamics_robots" / "robots"
         if prefix and directory.is_dir():
             return sorted(file.stem for file in directory.glob("*.yaml"))
