@@ -6,6 +6,7 @@ import pytest
 
 from inverse_dynamics.base.extras import EXTRAS, how_to_install
 from inverse_dynamics.errors import RobotError
+from inverse_dynamics.figures import scene as scenes
 from inverse_dynamics.figures.meshes import (
     MeshError,
     MeshPart,
@@ -84,6 +85,22 @@ def test_a_mesh_that_is_missing_gives_its_link_a_skeleton_and_a_note(tmp_path):
     assert note.startswith(
         "2 links drawn as a skeleton: mesh package://gone/upper.stl: no such file"
     )
+
+
+def test_a_mesh_that_is_drawn_twice_is_read_once(tmp_path, monkeypatch):
+    read = []
+    part = sphere(4)
+    monkeypatch.setattr(scenes, "read_mesh", lambda file, most: read.append((file, most)) or [part])
+    (tmp_path / "upper.stl").touch()
+    file = tmp_path / "arm.urdf"
+    file.write_text(ARM.format(base=mesh("upper.stl"), upper=mesh("upper.stl")))
+    drawn = [shape for link in read_scene(file, ["a", "b"]).links for shape in link["shapes"]]
+    count = sum(shape["kind"] == "mesh" for shape in drawn)
+    assert count >= 2
+    assert read == [(tmp_path / "upper.stl", MOST_TRIANGLES // count)]
+    monkeypatch.setattr(scenes, "MOST_MESHES", count - 1)
+    (note,) = read_scene(file, ["a", "b"]).notes
+    assert f"expected at most {count - 1} meshes, got {count}" in note
 
 
 def test_without_the_reader_the_note_says_how_to_get_it(tmp_path, monkeypatch):

@@ -19,6 +19,7 @@ from urllib.parse import unquote
 import numpy as np
 
 from inverse_dynamics.base.extras import require
+from inverse_dynamics.base.reading import read_bytes
 from inverse_dynamics.errors import RobotError
 
 if TYPE_CHECKING:
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     Triangles = NDArray[np.int64]
 
 FORMATS = (".stl", ".dae", ".obj")
-_MOST_BYTES = 64 * 2**20
 _MOST_VERTICES = 60_000  # an index of the page has 16 bits
 
 
@@ -114,13 +114,7 @@ def _load(file: Path) -> Any:
     kind = file.suffix[1:].lower()
     if kind == "dae":
         require("a mesh of the format DAE", "collada")
-    try:
-        with file.open("rb") as stream:
-            data = stream.read(_MOST_BYTES + 1)
-    except OSError as error:
-        raise MeshError(f"{file}: can't be read ({error.strerror})") from error
-    if len(data) > _MOST_BYTES:
-        raise MeshError(f"{file}: expected a mesh of at most {_MOST_BYTES >> 20} MiB, got more")
+    data = read_bytes(file, "a mesh", MeshError)
     if kind == "dae" and (
         b"\0" in data  # UTF-16, in which the next line would see nothing
         or b"<!" in data.replace(b"<!--", b"")

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from inverse_dynamics.base.extras import MissingPackageError
 from inverse_dynamics.base.wording import counted, harmless
 from inverse_dynamics.errors import RobotError
-from inverse_dynamics.figures.meshes import MeshError, find_mesh, read_mesh
+from inverse_dynamics.figures.meshes import MeshError, MeshPart, find_mesh, read_mesh
 from inverse_dynamics.robot.descriptions import (
     numbers_of,
     parse_description,
@@ -37,6 +37,7 @@ DEFAULT_COLOR = (0.72, 0.75, 0.79)
 
 BONE_COLOR = (0.62, 0.66, 0.71)
 JOINT_COLOR = (0.36, 0.45, 0.56)
+MOST_MESHES = 500  # of a robot
 MOST_TRIANGLES = 24_000  # of a robot's meshes together: 0.4 MB of a page
 
 
@@ -192,8 +193,8 @@ class _Shapes:
             for material in robot.iter("material")
             if (color := _color(material)) is not None
         }
-        meshes = sum(1 for _ in robot.iterfind("link/visual/geometry/mesh"))
-        self._most = MOST_TRIANGLES // max(1, meshes)
+        self._mesh_count = sum(1 for _ in robot.iterfind("link/visual/geometry/mesh"))
+        self._parts: dict[Path, list[MeshPart]] = {}  # a file may be drawn several times
         self.missing: dict[str, str] = {}  # why, by link
         self.by_link: dict[str, list[dict[str, Any]]] = {}
         for link in robot.findall("link"):
@@ -234,7 +235,11 @@ class _Shapes:
         self, element: ElementTree.Element, pose: Matrix, color: list[float] | None
     ) -> list[dict[str, Any]]:
         scale = np.array(_numbers(element, "scale", 3, (1.0, 1.0, 1.0)))
+        if self._mesh_count > MOST_MESHES:
+            raise MeshError(f"expected at most {MOST_MESHES} meshes, got {self._mesh_count}")
         file = find_mesh(element.get("filename", ""), self._directory)
+        if file not in self._parts:
+            self._parts[file] = read_mesh(file, MOST_TRIANGLES // self._mesh_count)
         return [
             {
                 "kind": "mesh",
@@ -243,7 +248,7 @@ class _Shapes:
                 "color": color or part.color or list(DEFAULT_COLOR),
                 **encoded_mesh(scale * part.vertices, part.triangles),
             }
-            for part in read_mesh(file, self._most)
+            for part in self._parts[file]
         ]
 
     def _color_of(self, visual: ElementTree.Element) -> list[float] | None:

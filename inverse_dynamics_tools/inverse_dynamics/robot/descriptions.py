@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.decimals import decimal
+from inverse_dynamics.base.reading import read_bytes
 from inverse_dynamics.base.wording import harmless, shown
 from inverse_dynamics.errors import RobotError
 
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.errors import UserError
 
-_MOST_BYTES = 64 * 2**20
 _MOST_LEVELS = 50
 
 
@@ -38,13 +38,7 @@ def read_description(file: Path) -> str:
         raise RobotError(f"{file}: no such file; expected a robot description (URDF or .xacro)")
     if file.suffix == ".xacro":
         return _expanded(file)
-    try:
-        with file.open("rb") as stream:
-            data = stream.read(_MOST_BYTES + 1)
-    except OSError as error:
-        raise RobotError(f"{file}: can't be read ({error.strerror})") from error
-    if len(data) > _MOST_BYTES:
-        raise RobotError(f"{file}: expected a URDF of at most {_MOST_BYTES >> 20} MiB, got more")
+    data = read_bytes(file, "a URDF", RobotError)
     if not data.strip():
         raise RobotError(f"{file}: is empty; expected a URDF")
     try:
