@@ -156,6 +156,7 @@ def test_numbers_of_a_column_are_written_alike():
         "text",
     ]
     assert aligned([0.9999, -2.0]) == ["1.00", "-2.00"]
+    assert aligned([2.26, 5.25e-6]) == ["2.26" + 6 * "\u2007", "0.00000525"]
     assert aligned([5.0, 1.2e-7]) == ["5.00e+00", "1.20e-07"]  # never a mixture
 
 

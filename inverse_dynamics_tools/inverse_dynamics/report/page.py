@@ -304,7 +304,7 @@ def _json_for_html(value: Any) -> str:
     return json.dumps(value, allow_nan=False).replace("<", "\\u003c")
 
 
-_MOST_DECIMALS = 6
+_MOST_DECIMALS = 8
 _FIGURE_SPACE, _PUNCTUATION_SPACE = "\N{FIGURE SPACE}", "\N{PUNCTUATION SPACE}"
 
 
@@ -316,7 +316,7 @@ def _figure(value: float) -> str:
 def aligned(values: Sequence[str | float]) -> list[str]:
     """The numbers of a column with three significant digits each, their decimal points below each other.
 
-    All plain, or, where one of them would need more than six decimals, all with exponents. Texts stay.
+    All plain, or, where one of them would need more than eight decimals, all with exponents. Texts stay.
     """
     numbers = [v for v in values if not isinstance(v, str) and math.isfinite(v) and v != 0.0]
     plain = all(_decimals(value) <= _MOST_DECIMALS for value in numbers)
