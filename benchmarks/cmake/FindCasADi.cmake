@@ -11,6 +11,10 @@ if(Python3_Interpreter_FOUND AND NOT CasADi_package)
     OUTPUT_VARIABLE CasADi_package OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 endif()
 
+if(CasADi_INCLUDE_DIR AND NOT EXISTS "${CasADi_INCLUDE_DIR}/casadi/casadi.hpp") # uninstalled since
+  unset(CasADi_INCLUDE_DIR CACHE)
+  unset(CasADi_LIBRARY CACHE)
+endif()
 find_path(CasADi_INCLUDE_DIR casadi/casadi.hpp HINTS "${CasADi_package}/include")
 # A wheel's library may have its version in its name only.
 file(GLOB CasADi_versioned "${CasADi_package}/libcasadi.so*")
