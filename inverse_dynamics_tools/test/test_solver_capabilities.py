@@ -61,7 +61,13 @@ METHODS = {
     "regressor": "q qd qdd",
     "accelerations": "q qd qdd",
 }
-OF_KDL = ("tip_pose", "tip_jacobian", "tip_jacobian_derivative", "external_torques")
+OF_KDL = (
+    "tip_pose",
+    "tip_jacobian",
+    "tip_jacobian_derivative",
+    "external_torques",
+    "accelerations",
+)
 
 
 def call(solver: Solver, method: str, states: Motion, **more: Any) -> Any:

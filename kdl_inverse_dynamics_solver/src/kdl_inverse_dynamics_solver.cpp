@@ -35,5 +35,15 @@ void InverseDynamicsSolverKDL::computeExternalTorques(const ConstVectorRef& q, W
   borrow<KdlWorkspace>()->externalTorques(q, frame, wrench, tau);
 }
 
+void InverseDynamicsSolverKDL::computeAccelerations(const ConstVectorRef& q,
+                                                    const ConstVectorRef& qd,
+                                                    const ConstVectorRef& tau,
+                                                    VectorRef qdd) const {
+  // qdd holds the torques without friction until then
+  computeFriction(q, qd, qdd);
+  qdd = tau - qdd;
+  borrow<KdlWorkspace>()->accelerations(q, qd, qdd, qdd);
+}
+
 }  // namespace v2
 }  // namespace kdl_inverse_dynamics_solver

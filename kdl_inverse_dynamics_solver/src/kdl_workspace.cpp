@@ -31,9 +31,11 @@ KdlWorkspace::KdlWorkspace(const KDL::Chain& chain, const KDL::Vector& gravity,
     : chain_(chain),
       components_(chain_, gravity),
       newton_euler_(chain_, gravity),
+      forward_(chain_, gravity),
       q_(chain_.getNrOfJoints()),
       qd_(chain_.getNrOfJoints()),
       qdd_(chain_.getNrOfJoints()),
+      tau_(chain_.getNrOfJoints()),
       result_(chain_.getNrOfJoints()),
       H_(chain_.getNrOfJoints()),
       no_forces_(chain_.getNrOfSegments(), KDL::Wrench::Zero()),
@@ -70,6 +72,15 @@ void KdlWorkspace::torques(const ConstVectorRef& q, const ConstVectorRef& qd,
   qdd_.data = qdd;
   check(newton_euler_.CartToJnt(q_, qd_, qdd_, no_forces_, result_), newton_euler_, "torques");
   tau = result_.data;
+}
+
+void KdlWorkspace::accelerations(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                 const ConstVectorRef& tau, VectorRef qdd) {
+  q_.data = q;
+  qd_.data = qd;
+  tau_.data = tau;
+  check(forward_.CartToJnt(q_, qd_, tau_, no_forces_, result_), forward_, "accelerations");
+  qdd = result_.data;
 }
 
 // ---------------------------------------------------------------- tip

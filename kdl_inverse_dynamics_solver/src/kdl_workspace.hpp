@@ -5,6 +5,7 @@
 
 #include <kdl/chain.hpp>
 #include <kdl/chaindynparam.hpp>
+#include <kdl/chainfdsolver_recursive_newton_euler.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <kdl/chainjnttojacdotsolver.hpp>
@@ -40,13 +41,15 @@ class KdlWorkspace : public inverse_dynamics_solver::Workspace {
   void torques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
                VectorRef tau) override;
 
-  /// @name As the compute... of Kinematics and ExternalWrench
+  /// @name As the compute... of Kinematics, ExternalWrench and, without friction, ForwardDynamics
   /// @{
   void tipPose(const ConstVectorRef& q, chain_dynamics::Transform<double>& pose);
   void tipJacobian(const ConstVectorRef& q, MatrixRef J);
   void tipJacobianDerivative(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef dJ);
   void externalTorques(const ConstVectorRef& q, WrenchFrame frame, const ConstVectorRef& wrench,
                        VectorRef tau);
+  void accelerations(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& tau,
+                     VectorRef qdd);
   /// @}
 
  private:
@@ -56,7 +59,8 @@ class KdlWorkspace : public inverse_dynamics_solver::Workspace {
   KDL::Chain chain_;  // KDL's solvers refer to it; its joints remember the last position
   KDL::ChainDynParam components_;
   KDL::ChainIdSolver_RNE newton_euler_;
-  KDL::JntArray q_, qd_, qdd_, result_;
+  KDL::ChainFdSolver_RNE forward_;
+  KDL::JntArray q_, qd_, qdd_, tau_, result_;
   KDL::JntSpaceInertiaMatrix H_;
   KDL::Wrenches no_forces_;
 

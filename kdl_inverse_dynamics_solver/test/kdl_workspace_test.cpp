@@ -41,6 +41,10 @@ TEST(KdlWorkspace, CountsRotorInertiaAndSlides) {
   EXPECT_TRUE(c.isApprox(Eigen::Vector2d(8.4, -2.8), 1e-14)) << c;
   EXPECT_TRUE(g.isApprox(Eigen::Vector2d(-17, 0), 1e-14)) << g;
   EXPECT_TRUE(tau.isApprox(Eigen::Vector2d(1.29 + 8.4 - 17, 4 - 2.8), 1e-14)) << tau;
+
+  Eigen::VectorXd accelerations(2);
+  workspace.accelerations(q, qd, tau, accelerations);
+  EXPECT_TRUE(accelerations.isApprox(qdd, 1e-14)) << accelerations;
 }
 
 TEST(KdlWorkspace, IsNotSpoiltByNan) {
@@ -51,6 +55,12 @@ TEST(KdlWorkspace, IsNotSpoiltByNan) {
   workspace.torques(nan, q, q, after);
   EXPECT_TRUE(after.array().isNaN().all());
   workspace.torques(q, q, q, after);
+  EXPECT_EQ(before, after);
+
+  workspace.accelerations(q, q, q, before);
+  workspace.accelerations(nan, q, q, after);
+  EXPECT_TRUE(after.array().isNaN().all());
+  workspace.accelerations(q, q, q, after);
   EXPECT_EQ(before, after);
 }
 

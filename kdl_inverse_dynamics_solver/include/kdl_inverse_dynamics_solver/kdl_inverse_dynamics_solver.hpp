@@ -8,6 +8,7 @@
 #pragma once
 
 #include "inverse_dynamics_solver/external_wrench.hpp"
+#include "inverse_dynamics_solver/forward_dynamics.hpp"
 #include "inverse_dynamics_solver/kinematics.hpp"
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 
@@ -20,11 +21,13 @@ using inverse_dynamics_solver::VectorRef;
 
 /// Torques by KDL's recursive Newton-Euler solver, H, C qd and g by its ChainDynParam [Featherstone
 /// 2008, ch. 5 and 6], the tip by ChainFkSolverPos_recursive, ChainJntToJacSolver and
-/// ChainJntToJacDotSolver. KDL's solvers keep state: parameters and promises are those of
-/// PooledSolver. (KDL has no Coriolis matrix, derivatives or regressor.)
+/// ChainJntToJacDotSolver, accelerations by ChainFdSolver_RNE. KDL's solvers keep state: parameters
+/// and promises are those of PooledSolver. (KDL has no Coriolis matrix, energies, derivatives or
+/// regressor.)
 class InverseDynamicsSolverKDL : public inverse_dynamics_solver::PooledSolver,
                                  public inverse_dynamics_solver::Kinematics,
-                                 public inverse_dynamics_solver::ExternalWrench {
+                                 public inverse_dynamics_solver::ExternalWrench,
+                                 public inverse_dynamics_solver::ForwardDynamics {
  public:
   using ExternalWrench::getTorques;
   using ExternalWrench::getTorquesBatch;
@@ -41,6 +44,8 @@ class InverseDynamicsSolverKDL : public inverse_dynamics_solver::PooledSolver,
                                     MatrixRef dJ) const override;
   void computeExternalTorques(const ConstVectorRef& q, inverse_dynamics_solver::WrenchFrame frame,
                               const ConstVectorRef& wrench, VectorRef tau) const override;
+  void computeAccelerations(const ConstVectorRef& q, const ConstVectorRef& qd,
+                            const ConstVectorRef& tau, VectorRef qdd) const override;
 };
 
 }  // namespace v2
