@@ -45,6 +45,7 @@ ExternalTorqueEstimator::ExternalTorqueEstimator(
   requireNumber(name + ": longest_period", longest_period_, Range::kPositive, "s");
   if (velocity_ == VelocitySource::kPositions) {
     requireNumber(name + ": tracking", options.tracking, Range::kRate, "rad/s");
+    for (double& gain : gain_) gain = tracker_.lowPassBehind(gain);
     settling_time_ = tracker_.settlingTime();
     settling_updates_ = MotionTracker::kSettlingUpdates;
   }

@@ -1,15 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/motion_tracker.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace inverse_dynamics_control {
 inline namespace v2 {
+namespace {
+
+/// Response of tracker and low-pass to a unit step, in the time unit 1 / bandwidth.
+///
+/// Of `(3 s + 1) / (s + 1)^3  k / (s + k)  1 / s` by partial fractions; k below one.
+double stepResponse(double time, double k) noexcept {
+  const double d = 1.0 - k, residue = (1.0 - 3.0 * k) / (d * d * d);
+  const double linear = residue * d - 1.0, quadratic = -k / d;
+  return 1.0 - residue * std::exp(-k * time) +
+         std::exp(-time) * (residue - 1.0 + time * (linear + time * quadratic));
+}
+
+}  // namespace
 
 MotionTracker::MotionTracker(Eigen::Index joints, double bandwidth) : bandwidth_(bandwidth) {
   for (OwnedVector* vector : {&q_, &qd_, &qdd_, &dx_, &dv_, &push_, &filtered_}) {
     vector->setZero(joints);
   }
+}
+
+double MotionTracker::lowPassBehind(double gain) const noexcept {
+  const double designed = std::min(gain / bandwidth_, 0.3);
+  double low = 0.5 * designed, high = 1.2 * designed;
+  for (int k = 0; k < 50; ++k) {
+    const double middle = 0.5 * (low + high);
+    (stepResponse(1.0 / designed, middle) < 1.0 - std::exp(-1.0) ? low : high) = middle;
+  }
+  return gain * (low / designed);
 }
 
 void MotionTracker::start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept {

@@ -51,6 +51,7 @@ FORCE = 20.0  # N
 PUSHED = 0.6  # s, when the force begins
 LEAST_SINGULAR_VALUE = 0.1
 FALSE_ALARMS = 0.1  # per hour
+QUIET = 600.0  # s; wrists of the UR10 turn back slowly, with their greatest errors, once in minutes
 
 
 @pytest.fixture(scope="module", params=CHAINS)
@@ -59,14 +60,14 @@ def bench(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
 
 
 class Bench:
-    """A robot, the solver that knows it, and what was learned from five minutes without contact."""
+    """A robot, the solver that knows it, and what was learned from ten minutes without contact."""
 
     def __init__(self, name: str, directory: Path) -> None:
         self.name = name
         self.arm = ContactArm(name)
         self.solver = Solver(RIGID_BODY, model=str(write_model(name, directory / "model.yaml")))
         self.kinematics = Solver(KDL, urdf_of(name), *CHAINS[name])
-        quiet = self.arm.carry_out(RandomMotion(self.arm, 1000, 300.0), 300.0, 1000)
+        quiet = self.arm.carry_out(RandomMotion(self.arm, 1000, QUIET), QUIET, 1000)
         torques, valid = self.estimate(quiet)
         assert valid[51:].all()
         self.thresholds: ContactThresholds = contact_thresholds(
@@ -136,6 +137,7 @@ def test_a_step_of_the_force_is_found_within_ten_percent_after_50_ms(
         f"singular value {min(singular_values):.2f} to {max(singular_values):.2f}"
     )
     assert max(errors) < 0.1
+    assert min(singular_values) >= LEAST_SINGULAR_VALUE
 
 
 @pytest.mark.parametrize("place", ["tip", "elbow"])
@@ -187,7 +189,7 @@ def test_both_estimators_find_the_same(bench: Bench) -> None:
 def kdl_forces(arm: ContactArm, recorded: Recorded, cutoff: float) -> Floats:
     """By KDL's ChainExternalWrenchEstimator, with velocities from low-passed differences; (N, 3) N.
 
-    Its filter is a sum: this gain gives it the pole of the observer's.
+    Its filter is a sum: this gain gives it the time constant of the observer.
     """
     qd = np.diff(recorded.q, axis=0, prepend=recorded.q[:1]) / PERIOD
     for k in range(1, len(qd)):

@@ -14,8 +14,11 @@
 /// with w the wrench that the tip exerts **on its surroundings** [external_wrench.hpp of
 /// inverse_dynamics_solver]. A hand that pushes the robot gives the opposite sign.
 ///
-/// An estimate follows the external torque of its joint with the time constant 1 / gain. It holds
-/// whatever the model doesn't know: errors of its friction, loads that it wasn't told of.
+/// An estimate follows the external torque of its joint with the time constant 1 / gain, in which it
+/// rises to 1 - 1/e of a step: exactly with measured velocities, as a first-order filter; within 2 %
+/// with velocities from positions, for gains up to 0.3 tracking and periods up to 2 / tracking. An
+/// estimate holds whatever the model doesn't know: errors of its friction, loads that it wasn't told
+/// of.
 #pragma once
 
 #include <memory>
@@ -58,7 +61,8 @@ struct EstimatorOptions {
 
   VelocitySource velocity = VelocitySource::kPositions;
 
-  /// Of the MotionTracker; from 0.001 to 1e6; rad/s. Lower: less noise of encoders, and more overshoot.
+  /// Of the MotionTracker; from 0.001 to 1e6; rad/s; at least gain / 0.3 for the time constant to be
+  /// 1 / gain. Lower: less noise of encoders, and more overshoot.
   double tracking = 200.0;
 
   /// What the measured efforts don't contain. A Panda's torque sensors are behind its gears:

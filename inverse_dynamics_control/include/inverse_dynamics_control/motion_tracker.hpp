@@ -39,6 +39,14 @@ class MotionTracker {
   /// How long after start() the velocity of a joint that was moving is off by more than 0.3 % [s].
   double settlingTime() const noexcept { return 10.0 / bandwidth_; }
 
+  /// Gain of a low-pass behind filter() such that both together rise to 1 - 1/e of a step within
+  /// 1 / gain: within 2 % for gains up to 0.3 bandwidth and periods up to 2 / bandwidth. Alone with
+  /// its gain the low-pass would give from 0.94 to 1.05 / gain. Beyond 0.3 bandwidth the rise takes
+  /// longer, at least 1 / bandwidth.
+  ///
+  /// @param gain  > 0; 1/s.
+  double lowPassBehind(double gain) const noexcept;
+
   /// How many update() it takes at least, however long the periods are: a position is known after
   /// one, a velocity after two, an acceleration after three.
   static constexpr int kSettlingUpdates = 4;
