@@ -19,7 +19,17 @@ QUANTITIES = ("torques", "inertia", "coriolis", "gravity", "components")
 _THREE = ("inertia", "coriolis", "gravity")
 _ENGINE = (("derivatives", 3.0), ("forward_dynamics", 1.0), ("regressor", 1.0))
 _ENGINE_BATCHES = (("derivatives", 15.0), ("forward_dynamics", 15.0), ("regressor", 10.0))
-_KINEMATICS = (("coriolis_matrix", 6.0), ("tip_jacobian", 4.0))
+_KINEMATICS = (
+    ("coriolis_matrix", "Coriolis matrix", 6.0),
+    ("tip_jacobian", "Jacobian of the tip", 4.0),
+)
+_OBSERVERS = (
+    ("panda_feasible", "momentum_observer"),
+    ("panda_feasible", "acceleration_residual"),
+    ("panda_identified", "acceleration_residual"),
+)
+_OBSERVER_TIME = 500.0  # ns, of an update for 7 joints, friction included
+_PAYLOAD_COST = {"torques": 2.0, "torques_payload": 5.0}  # ns, beside a solver without payloads
 
 
 @dataclass(frozen=True)
@@ -64,12 +74,14 @@ def bounds(result: Measurement) -> tuple[Bound, ...]:
     optional = (
         *_beside_generated_code(result),
         *_engine_batches(result),
-        *_kinematics(result),
     )
     return (
         *_single_calls(result),
         *_identified(result),
         *_batches(result),
+        *_kinematics(result),
+        *_payload(result),
+        _observers(result),
         *(bound for bound in optional if bound.reached is not None),
         *_beside_other_calls(result),
     )
@@ -122,9 +134,29 @@ def _engine_batches(result: Measurement) -> Iterator[Bound]:
 
 
 def _kinematics(result: Measurement) -> Iterator[Bound]:
-    for quantity, times in _KINEMATICS:
-        what = f"{quantity.replace('_', ' ')}: UR10, Panda"
-        yield _of_pinocchio(result, what, times, REAL, quantity)
+    for quantity, title, times in _KINEMATICS:
+        yield _of_pinocchio(result, f"{title}: UR10, Panda", times, REAL, quantity)
+
+
+def _payload(result: Measurement) -> Iterator[Bound]:
+    for quantity, cost in _PAYLOAD_COST.items():
+        ratios = []
+        for robot in REAL:
+            fixed = result.time(robot, "torques_fixed", "ours")
+            limit = None if fixed is None else fixed + cost
+            ratios.append((robot, ratio(limit, result.time(robot, quantity, "ours"))))
+        what = (
+            "torques, payload set" if quantity == "torques_payload" else "torques, payload not set"
+        )
+        yield _least(what, f"{cost:g} ns more than without payloads", 1.0, ratios)
+
+
+def _observers(result: Measurement) -> Bound:
+    ratios = (
+        (f"{robot}, {quantity}", ratio(_OBSERVER_TIME, result.time(robot, quantity, "ours")))
+        for robot, quantity in _OBSERVERS
+    )
+    return _least("external torques, 7 joints, one update", "0.5 µs", 1.0, ratios)
 
 
 def _beside_other_calls(result: Measurement) -> Iterator[Bound]:

@@ -11,6 +11,7 @@ QUANTITIES = {
     "gravity": "gravity",
     "components": "H, C qd, g",
     "friction": "friction",
+    "torques_fixed": "torques of a solver without payloads",
     "torques_payload": "torques with a payload",
     "set_payload": "setting a payload",
     "set_gravity": "setting gravity",
@@ -26,6 +27,12 @@ ENGINE = {
 }
 """What the engine computes besides."""
 
+OBSERVERS = {
+    "momentum_observer": "momentum observer",
+    "acceleration_residual": "residual of inverse dynamics",
+}
+"""Estimators of external torques."""
+
 ENGINE_BATCHES = {**ENGINE, "gram": "Gram matrices of the regressor"}
 """The same of many states."""
 
@@ -38,5 +45,6 @@ ROBOTS = {
     "turning7": "7 joints, all turn",
     "ur10_identified": "UR10, identified",
     "panda_identified": "Panda, identified",
+    "panda_feasible": "Panda, identified as bodies that can exist",
 }
 """Arms, and chains that are generated."""

@@ -16,6 +16,7 @@ from inverse_dynamics_benchmarks.names import (
     ENGINE,
     ENGINE_BATCHES,
     LIBRARIES,
+    OBSERVERS,
     QUANTITIES,
     ROBOTS,
 )
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from inverse_dynamics_benchmarks.measurement import Measurement
 
 _MARKED = re.compile(r"<!-- ids bench: (\w+) -->\n(.*?)<!-- ids bench: end -->", re.DOTALL)
+
+_NOTHING = "Not measured.\n"
 
 
 def page(result: Measurement) -> str:
@@ -41,7 +44,8 @@ def updated(text: str, result: Measurement, where: str) -> str:
     _check_parts(text, where)
     return _MARKED.sub(
         lambda match: (
-            f"<!-- ids bench: {match[1]} -->\n{PARTS[match[1]](result)}<!-- ids bench: end -->"
+            f"<!-- ids bench: {match[1]} -->\n{PARTS[match[1]](result) or _NOTHING}"
+            "<!-- ids bench: end -->"
         ),
         text,
     )
@@ -215,6 +219,17 @@ def engine_batches(result: Measurement) -> str:
     return _table(["robot", "batch of [ns]", "this library", "Pinocchio", "ratio"], rows, 2)
 
 
+def observers(result: Measurement) -> str:
+    """Updates of estimators of external torques [ns]."""
+    rows = [
+        [ROBOTS[robot], title, _time(ours)]
+        for robot in ROBOTS
+        for quantity, title in OBSERVERS.items()
+        if (ours := result.time(robot, quantity, "ours")) is not None
+    ]
+    return _table(["robot", "one update of [ns]", "this library"], rows, 2)
+
+
 def memory(result: Measurement) -> str:
     """A batch beyond the caches, and threads [ns per state]."""
     rows = [
@@ -248,7 +263,7 @@ def _judged(bound: asked.Bound) -> tuple[str, str]:
 
 def _in_words(names: str) -> str:
     """Names of robots and quantities as the other tables have them."""
-    words = {**ROBOTS, **QUANTITIES}
+    words = {**ROBOTS, **QUANTITIES, **OBSERVERS}
     chains = re.sub(r"\bmixed(\d+)", r"\1 joints", re.sub(r"\bmixed1\b", "1 joint", names))
     return re.sub(r"\w+", lambda name: words.get(name[0], name[0]), words.get(names, chains))
 
@@ -310,6 +325,7 @@ PARTS: Mapping[str, Callable[[Measurement], str]] = {
     "chains": chains,
     "engine": engine,
     "engine_batches": engine_batches,
+    "observers": observers,
     "latency": latency,
     "bounds": bounds,
 }

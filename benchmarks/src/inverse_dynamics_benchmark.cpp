@@ -2,7 +2,7 @@
 
 // Times every solver through the public interface, into the caller's memory, and other libraries on
 // the same states. Names: ROBOT/QUANTITY/LIBRARY. `ids bench` runs it and makes tables of it; they
-// know, of the engine, `derivatives`, `forward_dynamics`, `regressor` and `gram`.
+// know those in names.py.
 
 #include <benchmark/benchmark.h>
 
@@ -15,6 +15,8 @@
 
 #include "context.hpp"
 #include "engine_benchmarks.hpp"
+#include "fixed_robot.hpp"
+#include "observer_benchmarks.hpp"
 #include "peers.hpp"
 #include "program.hpp"
 #include "robots.hpp"
@@ -61,14 +63,17 @@ void registerRobot(const SolverLoader& loader, const Robot& robot) {
   registerSingleCalls(robot.name, solver);
   const Eigen::Index n = solver->jointCount();
   if (isArm(n)) registerBatches(robot.name, solver);
+  const chain_dynamics::Chain chain = chain_dynamics::chainFromUrdf(robot.urdf);
   if (robot.name == "ur10" || robot.name == "panda") {
+    const auto fixed = std::make_shared<FixedRobot>(chain);
+    fixed->initialize();
+    registerTorques(robot.name + "/torques_fixed/ours", fixed);
     const auto loaded = loader.load(kRigidBody);
     loaded->initialize({}, "", robot.urdf);
     registerPayload(robot.name, loaded);
   }
   if (robot.name == "ur10") registerLargerBatches(loader, robot, solver);
 
-  const chain_dynamics::Chain chain = chain_dynamics::chainFromUrdf(robot.urdf);
   if (isArm(n)) registerEngine(robot.name, chain);
   const States states(n);
   registerPeers({robot.name, robot.urdf, chain,
@@ -85,6 +90,13 @@ void registerIdentified(const SolverLoader& loader, const std::string& robot,
   const auto loaded = loader.load(plugin);
   loaded->initialize();
   registerPayload(robot, loaded);
+  registerObservers(robot, solver);
+}
+
+void registerFeasiblePanda(const SolverLoader& loader) {
+  const auto solver = loader.load(kRigidBody);
+  solver->initialize(std::map<std::string, ParameterValue>{{"model", feasiblePandaFile()}});
+  registerObservers("panda_feasible", solver);
 }
 
 int run(int argc, char** argv) {
@@ -98,6 +110,7 @@ int run(int argc, char** argv) {
                      "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10");
   registerIdentified(loader, "panda_identified",
                      "franka_inria_inverse_dynamics_solver/InverseDynamicsSolverFrankaInria");
+  registerFeasiblePanda(loader);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::ClearRegisteredBenchmarks();  // before the loader, which holds the solvers' libraries
   benchmark::Shutdown();

@@ -11,9 +11,12 @@
 namespace inverse_dynamics_benchmarks {
 namespace {
 
+std::string pathOf(const std::string& file) {
+  return inverse_dynamics_solver::installedPackageShare("inverse_dynamics_robots") + "/" + file;
+}
+
 std::string textOf(const std::string& file) {
-  const std::string path =
-      inverse_dynamics_solver::installedPackageShare("inverse_dynamics_robots") + "/urdf/" + file;
+  const std::string path = pathOf("urdf/" + file);
   std::ifstream stream(path);
   if (!stream) throw std::runtime_error(path + ": can't be read");
   std::ostringstream text;
@@ -26,6 +29,8 @@ std::string textOf(const std::string& file) {
 std::vector<Robot> realRobots() {
   return {{"ur10", textOf("ur10.urdf")}, {"panda", textOf("panda.urdf")}};
 }
+
+std::string feasiblePandaFile() { return pathOf("models/franka_gaz2019_feasible.yaml"); }
 
 std::vector<Robot> robots() {
   std::vector<Robot> all = realRobots();

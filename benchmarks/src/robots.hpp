@@ -22,6 +22,10 @@ inline bool isArm(std::ptrdiff_t joints) { return joints == 6 || joints == 7; }
 /// UR10 and Panda.
 std::vector<Robot> realRobots();
 
+/// A Panda whose parameters were identified as those of bodies that can exist, with friction: the
+/// path of its model file.
+std::string feasiblePandaFile();
+
 /// These, chains of 1 to 30 joints that turn and slide, and of 6 and 7 that turn.
 std::vector<Robot> robots();
 

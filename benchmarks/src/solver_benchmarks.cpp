@@ -82,6 +82,15 @@ void registerFriction(const std::string& robot, const Solver& solver) {
   });
 }
 
+void registerTorques(const std::string& name, const Solver& solver) {
+  const auto subject = std::make_shared<Subject>(solver, kStates);
+  registerOverStates(name, [subject](Eigen::Index k) {
+    const States& s = subject->states;
+    subject->solver->getTorques(s.q.col(k), s.qd.col(k), s.qdd.col(k), subject->tau);
+    benchmark::ClobberMemory();
+  });
+}
+
 void registerPayload(
     const std::string& robot,
     const std::shared_ptr<inverse_dynamics_solver::InverseDynamicsSolver>& solver) {
@@ -90,18 +99,13 @@ void registerPayload(
   inverse_dynamics_solver::RigidBody body{2.0};
   body.center_of_mass = {0.0, 0.0, 0.1};
   payload->setPayload("part", body);
-  const auto subject = std::make_shared<Subject>(solver, kStates);
-  registerOverStates(robot + "/torques_payload/ours", [subject](Eigen::Index k) {
-    const States& s = subject->states;
-    subject->solver->getTorques(s.q.col(k), s.qd.col(k), s.qdd.col(k), subject->tau);
-    benchmark::ClobberMemory();
-  });
-  registerOverStates(robot + "/set_payload/ours", [subject, payload, body](Eigen::Index k) {
+  registerTorques(robot + "/torques_payload/ours", solver);
+  registerOverStates(robot + "/set_payload/ours", [solver, payload, body](Eigen::Index k) {
     RigidBody changed = body;
     changed.mass += 1e-3 * static_cast<double>(k);
     payload->setPayload("part", changed);
   });
-  registerOverStates(robot + "/set_gravity/ours", [subject, mount](Eigen::Index k) {
+  registerOverStates(robot + "/set_gravity/ours", [solver, mount](Eigen::Index k) {
     mount->setGravity({1e-3 * static_cast<double>(k + 1), 0.0, -9.81});
   });
 }

@@ -43,6 +43,11 @@ void registerLargeBatch(
     const std::string& robot,
     const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver);
 
+/// Benchmark of torques alone, by its whole name.
+void registerTorques(
+    const std::string& name,
+    const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver);
+
 /// Torques with a body at the tip that was set after initialize(), and setting it and gravity.
 void registerPayload(const std::string& robot,
                      const std::shared_ptr<inverse_dynamics_solver::InverseDynamicsSolver>& solver);
