@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which friction law, prior strength and delay: by predicting each block from the others.
 
-The simplest alternative within one standard error of the best is taken: laws in the order of LAWS,
-then stronger priors.
+The simplest alternative within two standard errors of the best is taken: laws in the order of LAWS,
+then stronger priors. The standard error is that of the difference, so a richer model needs evidence at the level of 95 %:
+one that predicts only a little better by chance is a worse model of what the motion excites less, as a load at the tip.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 STRENGTHS = (1000.0, 100.0, 10.0)
 """Prior strengths to choose from, the simplest first."""
 
+_STANDARD_ERRORS = 2.0  # by which a simpler alternative may be worse than the best
 _PASSES = 3  # over the samples, from a fit to nearly the same ones
 _BAND = 0.95
 _FOLDS = 8  # parts of blocks that are left out in turn, about
@@ -182,7 +184,7 @@ def _simplest(
     best = scores[scores.mean(1).argmin()]
     worse = (scores - best).mean(1)
     deviation = (scores - best).std(1, ddof=1) / np.sqrt(scores.shape[1])
-    chosen = int(np.flatnonzero(worse <= deviation)[0])
+    chosen = int(np.flatnonzero(worse <= _STANDARD_ERRORS * deviation)[0])
     choices = tuple(
         Choice(
             law=a.law,

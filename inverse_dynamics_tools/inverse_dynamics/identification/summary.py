@@ -114,4 +114,4 @@ def _compared(best: dict[object, Choice]) -> str:
         else f"{value} {choice.error:.3f}"
         for value, choice in best.items()
     )
-    return f"; the simplest within one standard error of the best (error over noise: {errors})"
+    return f"; the simplest within two standard errors of the best (error over noise: {errors})"
