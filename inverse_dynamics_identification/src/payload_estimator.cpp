@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,6 +62,8 @@ void check(const PayloadOptions& options, Index n) {
   positive(options.noise.correlation_time, "noise.correlation_time", "s");
   positive(options.extent, "extent", "m");
   positive(options.block, "block", "s");
+  require(options.model_error >= 0 && std::isfinite(options.model_error), "model_error",
+          "a finite number >= 0", std::to_string(options.model_error));
   if (options.offset.size() > 0) requireNumbers(options.offset, n, any, "offset");
   if (options.offset_deviation.size() > 0) {
     requireNumbers(options.offset_deviation, n, 0.0, "offset_deviation");
@@ -111,6 +114,7 @@ struct PayloadEstimator::Impl {
     check(given, n);
     const auto joints = static_cast<std::size_t>(n);
     extent = given.extent;
+    model_error = given.model_error;
     carried = inverse_dynamics_solver::inTipFrame(given.carried).toVector();
     estimates_offsets = given.offset_deviation.size() == 0;
     for (Index j = 0; j < n; ++j) {
@@ -145,13 +149,13 @@ struct PayloadEstimator::Impl {
   Normal sumOfJoints();
   Vector10 solve(Normal& normal, Matrix10& H);
   Matrix10 jackknife(std::size_t blocks, const Vector10& phi, const Matrix10& H);
-  void fill(const Vector10& phi, const Matrix10& V, const Matrix10& A, const Matrix10& H,
+  void fill(const Vector10& phi, const Matrix10& jackknife, const Matrix10& A, const Matrix10& H,
             std::size_t blocks, PayloadEstimate& found) const;
 
   TipRegressor regressor;
   std::shared_ptr<const InverseDynamicsSolver> solver;
   PayloadSums sums;
-  double extent = 0.0;
+  double extent = 0.0, model_error = 0.0;
   Vector10 carried = Vector10::Zero();
   bool estimates_offsets = true;
   std::vector<NoiseFilter> filters;
@@ -266,14 +270,20 @@ Matrix10 PayloadEstimator::Impl::jackknife(std::size_t blocks, const Vector10& p
   return V * ((count - 1.0) / count);
 }
 
-/// Half widths of linear functions of the body: what leaving data out changes, but no less than
-/// independent noise gives, which is infinite where no sample tells anything.
+/// Half widths of linear functions of the body: what leaving data out changes and what the arm's
+/// model is wrong by, but no less than the noise gives, which is infinite where no sample tells
+/// anything.
 struct HalfWidths {
   Matrix10 jackknife, textbook;
-  double t;
+  double model_error;
+  double freedom;  // degrees of, of the jackknife
 
   double of(const Vector10& slope) const {
-    return t * std::sqrt(std::max(slope.dot(jackknife * slope), slope.dot(textbook * slope)));
+    const double varies = slope.dot(jackknife * slope), noise = slope.dot(textbook * slope);
+    const double sum = varies + model_error * noise;
+    // Welch and Satterthwaite: only the jackknife's variance is an estimate
+    const double ratio = varies > 0 ? sum / varies : std::numeric_limits<double>::infinity();
+    return studentT(freedom * ratio * ratio) * std::sqrt(std::max(sum, noise));
   }
 };
 
@@ -301,11 +311,12 @@ void fillInertia(const Vector10& phi, const Matrix10& V, const Matrix10& A, doub
       found.inertia_half_width.diagonal().maxCoeff() < kKnownInertia * found.inertia.trace() / 3.0;
 }
 
-void PayloadEstimator::Impl::fill(const Vector10& phi, const Matrix10& V, const Matrix10& A,
+void PayloadEstimator::Impl::fill(const Vector10& phi, const Matrix10& jackknife, const Matrix10& A,
                                   const Matrix10& H, std::size_t blocks,
                                   PayloadEstimate& found) const {
-  const double m = phi[0], t = studentT(static_cast<Index>(blocks) - 1);
-  const HalfWidths half_widths{V, covarianceOf(H), t};
+  const double m = phi[0], freedom = static_cast<double>(blocks) - 1.0;
+  const HalfWidths half_widths{jackknife, covarianceOf(H), model_error, freedom};
+  const Matrix10 V = jackknife + model_error * half_widths.textbook;
   found.mass = m;
   found.mass_half_width = half_widths.of(Vector10::Unit(0));
   found.center_of_mass = phi.segment<3>(1) / m;
@@ -315,7 +326,7 @@ void PayloadEstimator::Impl::fill(const Vector10& phi, const Matrix10& V, const 
     slope[1 + i] = 1.0 / m;
     found.center_of_mass_half_width[i] = half_widths.of(slope);
   }
-  fillInertia(phi, V, A, t, found);
+  fillInertia(phi, V, A, studentT(freedom), found);
   found.covariance = V;
   for (std::size_t j = 0; j < total.size(); ++j) {
     found.offset[static_cast<Index>(j)] = offsetOf(total[j], priors[j], phi, V).mean;

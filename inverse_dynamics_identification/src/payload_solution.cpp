@@ -145,12 +145,18 @@ Matrix10 covarianceOf(const Matrix10& information) {
   return vectors * inverse.asDiagonal() * vectors.transpose();
 }
 
-double studentT(Eigen::Index degrees_of_freedom) {
-  if (degrees_of_freedom < 1) return std::numeric_limits<double>::infinity();
-  constexpr double kFew[] = {12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469};
-  if (degrees_of_freedom <= 6) return kFew[degrees_of_freedom - 1];
+double studentT(double degrees_of_freedom) {
+  if (!(degrees_of_freedom >= 1)) return std::numeric_limits<double>::infinity();
+  constexpr double kFew[] = {12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646};
+  const double n = degrees_of_freedom;
+  if (n < 7) {  // between whole numbers in 1 / n, to 1 %
+    const auto k = static_cast<std::size_t>(n);
+    const double lower = static_cast<double>(k);
+    const double share = (n - lower) * (lower + 1) / n;
+    return kFew[k - 1] + share * (kFew[k] - kFew[k - 1]);
+  }
   // Cornish and Fisher's expansion: to 1e-4 from 7 on
-  const double z = 1.959964, n = static_cast<double>(degrees_of_freedom);
+  const double z = 1.959964;
   const double z2 = z * z;
   return z + z * (z2 + 1) / (4 * n) + z * ((5 * z2 + 16) * z2 + 3) / (96 * n * n) +
          z * (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n);

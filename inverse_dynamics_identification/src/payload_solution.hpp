@@ -61,8 +61,8 @@ Vector10 mostLikelyBody(const Normal& normal, const BodyPrior& prior);
 /// The inverse of an information matrix: very large, but finite, where it says nothing.
 Matrix10 covarianceOf(const Matrix10& information);
 
-/// The upper 97.5 % point of Student's t.
-double studentT(Eigen::Index degrees_of_freedom);
+/// The upper 97.5 % point of Student's t; degrees_of_freedom >= 1, infinity included.
+double studentT(double degrees_of_freedom);
 
 /// Inertia about the centre of mass, and its derivative by phi along a direction.
 Eigen::Matrix3d centralInertia(const Vector10& phi);

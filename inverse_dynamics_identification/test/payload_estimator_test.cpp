@@ -51,9 +51,11 @@ std::shared_ptr<Solver> pandaWith(const RigidBody& body) {
   return solver;
 }
 
+/// Of an arm whose model is exact.
 PayloadOptions optionsWith(const ResidualNoise& noise) {
   PayloadOptions options;
   options.noise = noise;
+  options.model_error = 0.0;
   return options;
 }
 
@@ -264,6 +266,39 @@ TEST(PayloadEstimator, IntervalsHoldTheTruth) {
   EXPECT_LE(widths[kTrials / 2], 4.5 * errors[kTrials / 2]);
 }
 
+/// How many of the intervals hold the truth where the arm's model carries what the noise of another
+/// recording of the same motion looks like.
+double coverageWithWrongModel(double model_error) {
+  const RigidBody body = box(1.0);
+  const auto arm = panda(), loaded = pandaWith(body);
+  const Eigen::VectorXd no_offset = Eigen::VectorXd::Zero(kJoints);
+  std::mt19937 random(11);
+  constexpr int kTrials = 40;
+  int held = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    PayloadOptions options = optionsWith(noiseOf(0.1, 0.3));
+    options.model_error = model_error;
+    std::vector<PayloadEstimate> found;
+    for (int recording = 0; recording < 2; ++recording) {
+      Noise noise{options.noise, random};
+      PayloadEstimator estimator(arm, options);
+      found.push_back(estimateOf(estimator, *loaded, 20.0, &noise, no_offset, 0.9 * trial));
+    }
+    const Eigen::Vector3d off = found[0].center_of_mass - found[1].center_of_mass;
+    held += std::abs(found[0].mass - found[1].mass) <= found[0].mass_half_width;
+    held +=
+        static_cast<int>((off.array().abs() <= found[0].center_of_mass_half_width.array()).count());
+  }
+  return held / (4.0 * kTrials);
+}
+
+TEST(PayloadEstimator, IntervalsHoldTheTruthWhereTheArmsModelIsWrong) {
+  EXPECT_LT(coverageWithWrongModel(0.0), 0.90);
+  const double coverage = coverageWithWrongModel(1.0);
+  EXPECT_GE(coverage, 0.90);
+  EXPECT_LE(coverage, 0.995);
+}
+
 TEST(PayloadEstimator, TellsTheInertiaOnlyWhereTheDataDo) {
   std::mt19937 random(8);
   Noise noise{noiseOf(0.1, 0.3), random};
@@ -345,6 +380,9 @@ TEST(PayloadEstimator, RefusesOptionsThatCantBe) {
   PayloadOptions options = optionsWith(noiseOf(0.1, 0.1));
   options.block = 0.0;
   EXPECT_THAT(error(options), HasSubstr("payload: block"));
+  options = optionsWith(noiseOf(0.1, 0.1));
+  options.model_error = -1.0;
+  EXPECT_THAT(error(options), HasSubstr("payload: model_error: expected a finite number >= 0"));
   options = optionsWith(noiseOf(0.1, 0.1));
   options.offset_deviation = Eigen::VectorXd::Zero(kJoints);
   EXPECT_THAT(error(options), HasSubstr("offset_deviation"));

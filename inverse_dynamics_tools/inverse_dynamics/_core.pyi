@@ -1264,10 +1264,12 @@ class PayloadEstimator:
         carried: dict[str, Any] | None = None,
         extent: float = ...,
         block: float = ...,
+        model_error: float = ...,
     ) -> None:
         """offset, offset_deviation: (n,) N m, what is known of the offsets.
 
         carried: the body among solver.payloads that belongs to the estimate. extent: m; block: s.
+        model_error: variance of what the arm's model is wrong by, in units of what the noise gives.
         """
 
     def update(

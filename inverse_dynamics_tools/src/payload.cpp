@@ -68,7 +68,7 @@ std::unique_ptr<SharedEstimator> makeEstimator(const py::object& solver, const R
                                                const std::optional<Vector>& offset,
                                                const std::optional<Vector>& offset_deviation,
                                                const py::object& carried, double extent,
-                                               double block) {
+                                               double block, double model_error) {
   PayloadOptions options;
   options.noise = noise;
   if (offset) options.offset = *offset;
@@ -76,6 +76,7 @@ std::unique_ptr<SharedEstimator> makeEstimator(const py::object& solver, const R
   options.carried = carriedBody(carried);
   options.extent = extent;
   options.block = block;
+  options.model_error = model_error;
   return std::make_unique<SharedEstimator>(solverOf(solver), options);
 }
 
@@ -200,10 +201,11 @@ void bindPayload(py::module_& module) {
       .def(py::init(&makeEstimator), py::arg("solver"), py::arg("noise"), py::kw_only(),
            py::arg("offset") = py::none(), py::arg("offset_deviation") = py::none(),
            py::arg("carried") = py::none(), py::arg("extent") = usual.extent,
-           py::arg("block") = usual.block,
+           py::arg("block") = usual.block, py::arg("model_error") = usual.model_error,
            "offset, offset_deviation: (n,) N m, what is known of the offsets; carried: the body "
            "among "
-           "solver.payloads that belongs to the estimate; extent: m; block: s.")
+           "solver.payloads that belongs to the estimate; extent: m; block: s; model_error: "
+           "variance of what the arm's model is wrong by, in units of what the noise gives.")
       .def("update", &update, py::arg("time"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
            py::arg("measured"), "Adds a sample: s, (n,) each; PayloadStatus.")
       .def("run", &run, py::arg("time"), py::arg("q"), py::arg("qd"), py::arg("qdd"),

@@ -26,10 +26,16 @@
 /// decides the inertia where the data don't tell, and nothing else.
 ///
 /// Intervals rest on how much the estimate changes as each block of each joint is left out (the
-/// cluster-robust CR3, or jackknife [Bell, McCaffrey 2002]) and on Student's t with one degree of
-/// freedom less than there are blocks: residuals are correlated and the arm's model isn't exact, so
-/// the textbook's intervals would be far too narrow. They are never narrower than those, which have
-/// no limit in a direction that no sample tells anything of.
+/// cluster-robust CR3, or jackknife [Bell, McCaffrey 2002]): residuals are correlated, so the
+/// textbook's intervals would be far too narrow. What the arm's model is wrong by throughout shows in
+/// no block. It is taken for `model_error` times the variance that the noise gives,
+///
+///     V = V_jackknife + model_error V_noise,
+///
+/// since a model that was fitted to a motion like this one, about as long, is as wrong as that in the
+/// directions that a load acts in. Student's t has (blocks - 1) (V / V_jackknife)^2 degrees of freedom
+/// [Welch 1947; Satterthwaite 1946]. Intervals are never narrower than those of V_noise, which have no
+/// limit in a direction that no sample tells anything of.
 ///
 /// **Friction that grows with load** isn't linear in the body. Set the estimate as a payload of the
 /// solver, name it in `options.carried`, and estimate again from the same samples: two or three times.
@@ -63,6 +69,8 @@ struct PayloadOptions {
 
   double extent = 0.04;  ///< standard deviation of mass about its centre that is expected, > 0; m
   double block = 0.8;    ///< of time, several correlation times long, > 0; s
+  /// Variance of what the arm's model is wrong by, in units of what the noise gives, >= 0; 0: exact.
+  double model_error = 1.0;
 };
 
 /// Result of a call.
@@ -95,7 +103,7 @@ struct PayloadEstimate {
   bool inertia_is_known = false;
 
   chain_dynamics::OwnedVector offset;      ///< n; N m (prismatic N)
-  chain_dynamics::OwnedMatrix covariance;  ///< 10 x 10, of [m, mc, I] about the tip's origin
+  chain_dynamics::OwnedMatrix covariance;  ///< V, 10 x 10, of [m, mc, I] about the tip's origin
   Eigen::Index blocks = 0;                 ///< of time that the intervals rest on
   double duration = 0.0;                   ///< from the first sample to the last; s
 
