@@ -77,7 +77,8 @@ using ForKinematics = std::conditional_t<S::kAligned, S, AnyStructure>;
 template <typename... S>
 struct Tables {
   template <typename V>
-  static constexpr Recursions<V> kRecursions[] = {{torques<S, V>, gravity<S, V>, inertia<S, V>}...};
+  static constexpr Recursions<V> kRecursions[] = {
+      {torques<S, V>(), gravity<S, V>, inertia<S, V>}...};
 
   template <typename V>
   static constexpr Derivatives<V> kDerivatives[] = {torqueDerivatives<ForDerivatives<S, V>, V>...};

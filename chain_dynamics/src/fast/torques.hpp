@@ -60,12 +60,10 @@ FAST_APART void torquesByRow(const Robot& robot, const State<V>& state, const do
   });
 }
 
-/// The same; with one set of parameters for all rows, if the robot has no more.
+/// The same with one set of parameters for all rows.
 template <typename S, typename V>
-void torques(const Robot& robot, const State<V>& state, const double* root, V* tau) {
-  if constexpr (S::kRows) {
-    if (robot.rows != nullptr) return torquesByRow<S>(robot, state, root, tau);
-  }
+FAST_APART void torquesByBody(const Robot& robot, const State<V>& state, const double* root,
+                              V* tau) {
   Wrench<V> own[S::kJoints];
   forEachMotion<S>(robot, state, root, [&](auto i, const LinkMotion<V>& U) FAST_LAMBDA {
     own[i] = wrenchOfLink<S>(robot, i, U, robot.bodies[i]);
@@ -74,6 +72,22 @@ void torques(const Robot& robot, const State<V>& state, const double* root, V* t
       robot, state, Constant<0>(), [&](auto i) FAST_LAMBDA { return own[i]; },
       [&](auto i, const V& force)
           FAST_LAMBDA { tau[i] = force + robot.placements[i].rotor_inertia * state.qdd[i]; });
+}
+
+/// By row or by body, as the robot has its parameters: each has stack of its own only.
+template <typename S, typename V>
+void torquesByRowOrBody(const Robot& robot, const State<V>& state, const double* root, V* tau) {
+  if (robot.rows != nullptr) return torquesByRow<S>(robot, state, root, tau);
+  return torquesByBody<S>(robot, state, root, tau);
+}
+
+template <typename S, typename V>
+constexpr auto torques() {
+  if constexpr (S::kRows) {
+    return torquesByRowOrBody<S, V>;
+  } else {
+    return torquesByBody<S, V>;
+  }
 }
 
 }  // namespace
