@@ -27,6 +27,12 @@ Status ControlLaw::hold(const JointState& state, double period, VectorRef tau) n
   return status == Status::kOk ? limited : status;
 }
 
+bool ControlLaw::setDamping(const ConstVectorRef& damping) noexcept {
+  if (!areJointNumbers(damping, Range::kNotNegative, jointCount())) return false;
+  damping_ = damping;
+  return true;
+}
+
 Status ControlLaw::check(const JointState& state, const VectorRef& tau) const noexcept {
   const Eigen::Index n = jointCount();
   if (state.q.size() != n || state.qd.size() != n || tau.size() != n) return Status::kWrongSize;

@@ -63,5 +63,21 @@ TEST(GravityCompensation, ANonPhysicalInertiaMatrixIsWelcome) {
   EXPECT_NEAR(torqueOf(law, 0.0, 0.0), 9.81, kRounding);
 }
 
+TEST(GravityCompensation, DampingChangesWhileTheLoopRuns) {
+  LawOptions options = unlimited(1);
+  options.friction.source = FrictionSource::kNone;
+  GravityCompensation law(Pendulum::make(), options);
+  const JointState state = stateOf(vec({0.7}), vec({0.5}));
+  Eigen::VectorXd tau(1);
+  EXPECT_TRUE(law.setDamping(vec({7.0})));
+  ASSERT_EQ(law.update(state, 1e-3, tau), Status::kOk);
+  EXPECT_NEAR(tau[0], 9.81 * std::cos(0.7) - 7.0 * 0.5, kRounding);
+  for (const Eigen::VectorXd& bad : {vec({-1.0}), vec({kNan}), vec({kInfinity}), vec({1.0, 2.0})}) {
+    EXPECT_FALSE(law.setDamping(bad));
+  }
+  ASSERT_EQ(law.hold(state, 1e-3, tau), Status::kOk);
+  EXPECT_NEAR(tau[0], 9.81 * std::cos(0.7) - 7.0 * 0.5, kRounding);
+}
+
 }  // namespace
 }  // namespace inverse_dynamics_control

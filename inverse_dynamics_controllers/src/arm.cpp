@@ -2,11 +2,11 @@
 #include "arm.hpp"
 
 #include <chain_dynamics/text.hpp>
-#include <inverse_dynamics_control/damping.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <utility>
 
+#include "changing_damping.hpp"
 #include "joint_numbers.hpp"
 
 namespace inverse_dynamics_controllers {
@@ -34,30 +34,6 @@ FrictionSource frictionSource(const std::string& name) {
   if (name == "reference_velocity") return FrictionSource::kReferenceVelocity;
   if (name == "measured_velocity") return FrictionSource::kMeasuredVelocity;
   return FrictionSource::kNone;
-}
-
-double requiredPeriod(const Setup& setup) {
-  if (const double period = setup.period(); period > 0) return period;
-  throw ParameterUninitializedException(errorText(
-      "parameter 'period'", "not set", "the period of the control loop [s], for damping.rate",
-      "nothing", "set it, or 'update_rate' [Hz], or 'damping.values'"));
-}
-
-Eigen::VectorXd dampingOf(const Setup& setup) {
-  const Arm& arm = setup.arm;
-  const auto& damping = setup.law.damping;
-  if (!damping.values.empty()) return jointNumbers("damping.values", damping.values, arm.joints);
-  if (!arm.solver->inertiaIsPhysical()) {
-    throw InvalidParameterValueException(errorText(
-        "parameter 'damping.values'", "not set", "a damping of each joint [N m s/rad]", "nothing",
-        "set it: damping.rate needs a solver whose inertiaIsPhysical() is true, "
-        "and that of " +
-            setup.parameters.plugin_name + " is false"));
-  }
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arm.solver->jointCount());
-  return inverse_dynamics_control::dampingFor(
-      *arm.solver, jointNumbers("damping.posture", damping.posture, arm.joints, zero), damping.rate,
-      requiredPeriod(setup));
 }
 
 }  // namespace
@@ -126,7 +102,7 @@ LawOptions lawOptions(const Setup& setup, const std::string& friction_source) {
   }
   options.limits.rate =
       jointNumbers("limits.effort_rate", law.limits.effort_rate, arm.joints, Eigen::VectorXd());
-  options.damping = dampingOf(setup);
+  options.damping = changingDamping(setup).initial();
   return options;
 }
 

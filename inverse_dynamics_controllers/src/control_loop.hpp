@@ -20,6 +20,7 @@
 #include "arm.hpp"
 #include "arm_interfaces.hpp"
 #include "carried_body.hpp"
+#include "changing_damping.hpp"
 #include "state_publisher.hpp"
 #include "update_report.hpp"
 
@@ -36,6 +37,7 @@ class ControlLoop {
         report_(std::make_shared<UpdateReport>(setup.arm.joints)),
         timer_(logEverySecond(setup.node, report_)),
         carried_(setup),
+        damping_(changingDamping(setup)),
         publisher_(setup.node, setup.arm.joints, setup.parameters.state_publish_rate) {}
 
   const ArmInterfaces& interfaces() const noexcept { return interfaces_; }
@@ -78,6 +80,7 @@ class ControlLoop {
     using controller_interface::return_type;
     const double dt = static_cast<double>(period.nanoseconds()) * 1e-9;
     interfaces_.read(states, state_);
+    if (const Eigen::VectorXd* const changed = damping_.changed()) law.setDamping(*changed);
     const auto status = fault_.latched() ? law.hold(state_, dt, tau_) : update(state_, dt, tau_);
     if (!interfaces_.write(tau_, commands)) report_->noteNotWritten();
 
@@ -110,6 +113,7 @@ class ControlLoop {
   std::shared_ptr<UpdateReport> report_;
   rclcpp::TimerBase::SharedPtr timer_;
   CarriedBody carried_;
+  ChangingGains<Eigen::VectorXd> damping_;
   StatePublisher publisher_;
 };
 

@@ -70,9 +70,10 @@ std::unique_ptr<Follower> InverseDynamicsController::makeFollower(
   const auto params = parameters_->get_params();
   requirePhysicalInertia(setup);
   const ReferenceLayout layout(params.reference_interfaces, setup.arm.joints);
-  const auto make = [T = setup.period(), joints = setup.arm.joints](
-                        const std::vector<double>& frequency, const std::vector<double>& damping) {
-    return gainsOf(frequency, damping, T, joints);
+  const auto make = [T = setup.period(), joints = setup.arm.joints](const ParameterValues& values) {
+    using Numbers = std::vector<double>;
+    return gainsOf(values.at("gains.natural_frequency").get<Numbers>(),
+                   values.at("gains.damping_ratio").get<Numbers>(), T, joints);
   };
   return std::make_unique<FollowerWithGains<ComputedTorque, Gains>>(
       setup, referenceInput(setup, layout, references),

@@ -16,10 +16,11 @@ namespace inverse_dynamics_controllers {
 /// Throws inverse_dynamics_solver::InvalidParameterValueException: neither one number nor one per
 /// joint.
 inline ChangingGains<inverse_dynamics_control::PdGains> pdGains(const Setup& setup) {
-  const auto make = [joints = setup.arm.joints](const std::vector<double>& p,
-                                                const std::vector<double>& d) {
-    return inverse_dynamics_control::PdGains{jointNumbers("gains.p", p, joints),
-                                             jointNumbers("gains.d", d, joints)};
+  const auto make = [joints = setup.arm.joints](const ParameterValues& values) {
+    const auto numbers = [&](const std::string& name) {
+      return jointNumbers(name, values.at(name).get<std::vector<double>>(), joints);
+    };
+    return inverse_dynamics_control::PdGains{numbers("gains.p"), numbers("gains.d")};
   };
   return {setup.node, {"gains.p", "gains.d"}, make};
 }

@@ -67,6 +67,58 @@ TEST_F(GravityCompensationControllerTest, DampingCanBeMadeOfARate) {
   EXPECT_LT((hardware.effort() - expected).norm(), kRounding);
 }
 
+TEST_F(GravityCompensationControllerTest, DampingChangesWhileItRuns) {
+  using Numbers = std::vector<double>;
+  const auto damped = [&](const Eigen::VectorXd& damping) {
+    return Eigen::VectorXd(solver()->getGravityVector(q) - damping.cwiseProduct(qd));
+  };
+  Parameters parameters = good();
+  parameters["period"] = rclcpp::ParameterValue(kPeriod);
+  ASSERT_TRUE(configure(parameters) && activate()) << log.text();
+  EXPECT_EQ(update(), return_type::OK);
+  EXPECT_EQ(set("damping.values", rclcpp::ParameterValue(Numbers{6, 5, 4, 3, 2, 1})), "");
+  ASSERT_TRUE(effortChanges()) << log.text();
+  EXPECT_LT((hardware.effort() - damped(vec({6, 5, 4, 3, 2, 1}))).norm(), kRounding);
+
+  // By the rate instead of the numbers, and another rate.
+  const Eigen::VectorXd inertia = solver()->getInertiaMatrix(Eigen::VectorXd::Zero(6)).diagonal();
+  EXPECT_EQ(set("damping.rate", rclcpp::ParameterValue(0.01)), "");
+  EXPECT_EQ(set("damping.values", rclcpp::ParameterValue(Numbers{})), "");
+  ASSERT_TRUE(effortChanges()) << log.text();
+  EXPECT_LT((hardware.effort() - damped(0.01 * inertia)).norm(), kRounding);
+  EXPECT_EQ(set("damping.rate", rclcpp::ParameterValue(0.02)), "");
+  ASSERT_TRUE(effortChanges()) << log.text();
+  EXPECT_LT((hardware.effort() - damped(0.02 * inertia)).norm(), kRounding);
+}
+
+TEST_F(GravityCompensationControllerTest, DampingThatDoesNotFitIsRefusedAndTheOldOneStays) {
+  using Numbers = std::vector<double>;
+  Parameters parameters = good();
+  parameters["period"] = rclcpp::ParameterValue(kPeriod);
+  ASSERT_TRUE(configure(parameters) && activate()) << log.text();
+  EXPECT_EQ(update(), return_type::OK);
+  const Eigen::VectorXd before = hardware.effort();
+  const auto refused = [this](const std::string& name, const rclcpp::ParameterValue& value,
+                              const std::string& why) {
+    const std::string reason = set(name, value);
+    EXPECT_NE(reason.find(why), std::string::npos) << name << ": " << reason;
+  };
+  refused("damping.values", rclcpp::ParameterValue(Numbers{1.0, 2.0}),
+          "parameter 'damping.values': wrong size: expected 6 numbers, or one for all, got 2; ");
+  refused("damping.values", rclcpp::ParameterValue(Numbers{kNan}),
+          "parameter 'damping.values': joint shoulder_pan_joint: wrong value: expected a finite "
+          "number, 0 or more [N m s/rad], got nan; ");
+  EXPECT_NE(set("damping.values", rclcpp::ParameterValue(Numbers{-1.0})), "");
+  EXPECT_NE(set("damping.values", rclcpp::ParameterValue(Numbers{1e6})), "");
+  EXPECT_NE(set("damping.rate", rclcpp::ParameterValue(0.0)), "");
+  // Numbers take precedence: the rate counts, and is refused, once there are none.
+  EXPECT_EQ(set("damping.rate", rclcpp::ParameterValue(1e6)), "");
+  refused("damping.values", rclcpp::ParameterValue(Numbers{}), "no decay faster than 1 / period");
+  const auto fails = [this] { return update() != return_type::OK; };
+  EXPECT_FALSE(spinUntil(fails, std::chrono::milliseconds(300)));
+  EXPECT_EQ(hardware.effort(), before);
+}
+
 TEST_F(GravityCompensationControllerTest, OtherNamesOfTheHardwareAreTakenInTheOrderOfTheChain) {
   std::vector<std::string> left;
   for (const std::string& joint : ur10Joints()) left.push_back("left_" + joint);

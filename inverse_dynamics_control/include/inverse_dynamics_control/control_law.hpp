@@ -71,6 +71,13 @@ class ControlLaw {
   /// @return kOk, kSaturated, kRateLimited, kStateNotFinite or kWrongSize.
   Status hold(const JointState& state, double period, VectorRef tau) noexcept;
 
+  /// Other damping from the next call of hold() or update() on; for the thread that calls them. The
+  /// output steps by the change times the present velocity, within its rate limit.
+  ///
+  /// @param damping  as LawOptions::damping.
+  /// @return false, and the damping is as it was, where the constructor would throw.
+  bool setDamping(const ConstVectorRef& damping) noexcept;
+
   /// Whether the last output of each joint was cut to its effort limit; after refusals too.
   const OutputStage::Joints& saturated() const noexcept { return output_.saturated(); }
 
