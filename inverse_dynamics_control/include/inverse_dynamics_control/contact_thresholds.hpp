@@ -3,7 +3,7 @@
 /// Which external torques are a contact: thresholds from a recording without any.
 ///
 ///     ContactThresholds thresholds = contactThresholds(quiet, 1e-3, 1.0, solver->jointNames());
-///     ContactDetector detector(thresholds.torques);
+///     ContactDetector detector(thresholds.torques, {}, solver->jointNames());
 ///
 /// A recording of a minute is to tell how high a threshold must be for one false alarm an hour, so
 /// something must be assumed beyond what was seen. For each joint:

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// What the examples at the heads of headers take for granted. Compiled, never linked.
+#pragma once
+
+#include <Eigen/Core>
+#include <inverse_dynamics_control/inverse_dynamics_control.hpp>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/payload.hpp>
+#include <memory>
+#include <vector>
+
+using namespace inverse_dynamics_control;
+using namespace inverse_dynamics_solver;
+
+// A robot, its state, and a cycle of its control loop.
+extern std::shared_ptr<InverseDynamicsSolver> solver;
+extern const Eigen::Index n;
+extern Eigen::VectorXd q, qd, qdd, tau, effort, a, f;
+extern const double period;
+extern JointState state;
+extern Reference reference;
+
+// Numbers of joints that somebody has chosen or measured.
+extern const Eigen::VectorXd effort_limits, measured_effort, pid_effort, torques;
+extern const Eigen::VectorXd q_home, damping, stiffness, deceleration;
+extern Eigen::MatrixXd quiet;
+
+// What other examples make.
+extern ComputedTorque law;
+extern Gains gains;
+extern Compensated compensated;
+extern MomentumObserver observer;
+extern ContactThresholds thresholds;
+extern SafeStop stop;
+extern RigidBody part;
+extern Eigen::Matrix3d R_root_world;
+
+// What a program does with results.
+template <class... Results>
+void use(const Results&...);
+template <class... Results>
+void report(const Results&...);
+
+// Of ROS.
+struct StateInterface {
+  double get_value() const;
+};
+extern StateInterface position_interface;
+#define RCLCPP_ERROR_THROTTLE(logger, clock, milliseconds, format, text) report(format, text)
