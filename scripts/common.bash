@@ -37,8 +37,8 @@ optional_packages=(inverse_dynamics_benchmarks pinocchio_inverse_dynamics_solver
 
 # Debian and Ubuntu packages, in groups.
 apt_packages=(
-  # Fetching, compiling, checking.
-  ca-certificates git g++ cmake ninja-build ccache clang-tidy shellcheck
+  # Fetching, compiling (make: a plain `colcon build` of a user's workspace), checking.
+  ca-certificates git g++ cmake make ninja-build ccache clang-tidy shellcheck
   # Python and its virtual environment.
   python3 python3-dev python3-venv
   # The colcon command and the extensions that the builds here need.

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import subprocess
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -31,6 +32,18 @@ def found(package: Path) -> set[str]:
     calls = re.findall(r"^\s*find_package\((\w[\w-]*)([^)]*)\)", "\n".join(texts), re.MULTILINE)
     names = {name for name, rest in calls if not rest.endswith("COMPONENTS Interpreter")}
     return {KEYS.get(name, name) for name in names - WITHOUT_KEY}
+
+
+def test_what_a_plain_colcon_build_needs_is_installed() -> None:
+    """Users build packages of their own without ./scripts/build, so with CMake's default, make."""
+    packages = subprocess.run(
+        ["bash", "-c", 'source scripts/common.bash && echo "${apt_packages[@]}"'],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout.split()
+    assert {"g++", "cmake", "make", "colcon"} <= set(packages)
 
 
 @pytest.mark.parametrize(

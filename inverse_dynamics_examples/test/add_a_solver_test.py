@@ -3,6 +3,10 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+from pathlib import Path
+
 from pages import REPOSITORY, blocks_of, page
 
 EXAMPLE = REPOSITORY / "inverse_dynamics_solver/examples/pendulum_inverse_dynamics_solver"
@@ -27,6 +31,17 @@ def test_blocks_equal_the_files() -> None:
             assert code in (EXAMPLE / file).read_text(encoding="utf-8"), (
                 f"{file} has no such lines:\n{code}"
             )
+
+
+def test_the_example_is_renamed_by_the_commands_of_the_page(tmp_path: Path) -> None:
+    commands = blocks_of(page("docs/add_a_solver.md"), "console")[0].code
+    environment = {**os.environ, "HOME": str(tmp_path)}
+    subprocess.run(["bash", "-euc", commands], cwd=REPOSITORY, env=environment, check=True)
+    package = tmp_path / "workspace/src/spring_inverse_dynamics_solver"
+    assert (package / "src/spring_inverse_dynamics_solver.cpp").is_file()
+    for file in package.rglob("*"):
+        assert "pendulum" not in file.name
+        assert file.is_dir() or "pendulum" not in file.read_text(encoding="utf-8").lower()
 
 
 def test_the_wheel_of_the_page_on_python_is_the_examples() -> None:
