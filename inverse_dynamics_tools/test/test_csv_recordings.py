@@ -201,6 +201,7 @@ def test_what_urs_record_tool_should_have_recorded_is_said(file):
         (" \n\n", "is empty; expected a header line and rows"),
         (ROWS, ":1: expected a header line that names the columns, got numbers"),
         ("time,q\n0,1\n", "expected columns time, position.JOINT"),
+        ("time,q\n0,1\n", "got time, q; give them these names, in s, rad, rad/s and N m (or A)"),
         (HEADER.replace("time", "t") + ROWS, "expected a column time [s], got t, position.a"),
         (HEADER.replace("effort.a", "x") + ROWS, "joint a: expected a column effort.a, got none"),
         (HEADER.replace("effort.a", "x") + ROWS, "`ids torques` computes them"),

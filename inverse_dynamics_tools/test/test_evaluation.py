@@ -2,6 +2,7 @@
 import re
 import shutil
 import sqlite3
+import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -387,6 +388,21 @@ def test_broken_xacro_file_is_an_error_with_the_tools_words(bag, robot, xacro_fi
     xacro_file.write_text(XACRO.replace("${mass}", "${weight}"))
     with pytest.raises(RobotError, match=r"slide.urdf.xacro: xacro can't expand it: .*weight"):
         evaluate(bag, robot, urdf=xacro_file)
+
+
+def test_an_xacro_file_that_needs_ros_is_an_error_with_the_remedy(
+    bag, robot, xacro_file, monkeypatch
+):
+    words = "error: substitution args not supported:  No module named 'ament_index_python'"
+    failed = subprocess.CompletedProcess([], 2, "", words)
+    monkeypatch.setattr(subprocess, "run", lambda *_, **__: failed)
+    monkeypatch.setattr(shutil, "which", lambda *_, **__: "xacro")
+    with pytest.raises(RobotError) as caught:
+        evaluate(bag, robot, urdf=xacro_file)
+    assert str(caught.value).endswith(
+        f"{words}; source the ROS workspace that has its packages, or expand it there: "
+        "xacro slide.urdf.xacro > slide.urdf"
+    )
 
 
 @pytest.mark.parametrize("effort_is", ["torque", "auto"])

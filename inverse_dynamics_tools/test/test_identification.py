@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,8 +13,10 @@ import pytest
 from inverse_dynamics import _core, evaluate, identify, load_robot, write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import EvaluationError
+from inverse_dynamics.evaluation.evaluation import CAUSE
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import choose, errors_of
+from inverse_dynamics.identification.identify import _notes
 from inverse_dynamics.identification.knowledge import independent_samples, intervals, knowledge
 from inverse_dynamics.identification.result import COLUMNS, LAWS, IdentificationError
 from inverse_dynamics.robot.descriptions import read_description
@@ -58,6 +61,11 @@ def test_unseen_blocks_are_predicted_better_than_by_all_others(identified, name)
     assert found.rmse("identified") < found.rmse("present_refitted") < found.rmse("present")
     assert found.rmse("present") < found.rmse("urdf")
     assert found.law in LAWS
+
+
+def test_notes_leave_out_that_a_model_could_be_identified():
+    evaluation = SimpleNamespace(notes=("2 columns left out", f"{CAUSE}friction; identify a model"))
+    assert _notes([evaluation, evaluation]) == ("2 columns left out",) * 2
 
 
 @ROBOTS

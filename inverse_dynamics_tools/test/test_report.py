@@ -528,7 +528,9 @@ def test_demo_shows_the_simulated_robots_and_how_to_get_the_others(tmp_path, cap
     assert cli.main(["demo", "--quick", "--out", str(out)]) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "Panda, simulated" in printed
-    assert "`ids data` fetches the recordings" in printed
+    assert printed.count("`ids data` fetches the recordings") == 1
+    assert "UR10, real and Panda, real: left out" in printed
+    assert "UR10, simulated kdl " in printed
     assert str(out / "report.html") in printed
     html = (out / "report.html").read_text()
     assert "Two robots" in html

@@ -79,8 +79,9 @@ def test_figures_need_matplotlib_if_they_are_asked_for(monkeypatch, ids):
     arguments = ("evaluate", bag, "--robot", "ur10_simulated", "--out")
     fails(ids(*arguments, "asked", "--figures", "png"), "a figure needs matplotlib: ")
     assert not Path("asked").exists()
-    code, _, err = ids(*arguments, "result")
+    code, out, err = ids(*arguments, "result")
     assert (code, err) == (0, "")
+    assert f"figure         none, it needs matplotlib: {extras.how_to_install('matplotlib')}" in out
     assert Path("result/metrics.json").is_file()
     assert not Path("result/torques.png").exists()
 
@@ -111,7 +112,9 @@ def test_a_package_works_without_its_extras():
 
 def test_demo_shows_the_stored_recordings_without_extras(monkeypatch, tmp_path):
     without(monkeypatch, "mujoco", "matplotlib", "PIL", "OpenGL", "rosbags", "yaml")
-    result = demo.run_demo(tmp_path / "demo")
+    said: list[str] = []
+    result = demo.run_demo(tmp_path / "demo", say=said.append)
+    assert not any(text.startswith("filming") for text in said)
     assert set(result.evaluations) == {"ur10_simulated", "panda_simulated"}
     for evaluation in result.evaluations.values():
         assert evaluation.mean_rmse < 0.1  # N m, of torques up to 180 N m

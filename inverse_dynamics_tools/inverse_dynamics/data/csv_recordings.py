@@ -124,7 +124,8 @@ def generic_columns(
     if not there:
         raise BagError(
             f"{table.path}: expected columns {TIME}, position.JOINT, velocity.JOINT, effort.JOINT "
-            f"(or current.JOINT), or those of UR's RTDE record tool, got {listed(table.names)}"
+            f"(or current.JOINT), or those of UR's RTDE record tool, got {listed(table.names)}; give them "
+            "these names, in s, rad, rad/s and N m (or A): docs/tutorials/my_robot.md"
         )
     joints = tuple(joints) or tuple(there)
     if unknown := [joint for joint in joints if joint not in there]:

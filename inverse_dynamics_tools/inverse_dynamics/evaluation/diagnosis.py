@@ -592,5 +592,6 @@ def _friction(
         "friction",
         "Friction",
         "the error is mostly friction and offset, which the model lacks",
-        "take a model with friction, or make one: ids identify RECORDING --robot NAME --out arm.yaml",
+        "take a model with friction, or make one: ids identify RECORDING --robot NAME --out arm.yaml, or "
+        "with --urdf FILE instead of --robot NAME",
     )

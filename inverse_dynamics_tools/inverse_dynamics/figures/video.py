@@ -48,6 +48,11 @@ class VideoError(UserError):
     """Pictures of the robot can't be made here, or not of this robot."""
 
 
+def require_packages() -> None:
+    """Raise MissingPackageError unless everything that films a robot is installed."""
+    require("a video", "mujoco", "matplotlib", "PIL", "OpenGL")
+
+
 def write_video(
     evaluation: Evaluation,
     file: Path,
@@ -62,7 +67,7 @@ def write_video(
     """
     if file.suffix.lower() != ".gif":
         raise UserError(f"{file}: expected the name of a .gif file, the only format of videos")
-    require("a video", "mujoco", "matplotlib", "PIL", "OpenGL")
+    require_packages()
     duration = float(evaluation.time[-1])
     count = max(2, round(min(seconds, duration) * _FRAMES_PER_SECOND))
     times = np.linspace(0.0, duration, count)

@@ -13,7 +13,7 @@ import numpy as np
 from inverse_dynamics import _core
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.evaluation.evaluation import CAUSE, evaluate
 from inverse_dynamics.identification.baselines import Baselines, root_mean_squares
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import Chosen, choose, errors_of
@@ -250,9 +250,14 @@ def _result(
             *_findings(fitter, links, held, first.units),
             *_motion_findings(fitter, chosen, later, independent),
         ),
-        notes=tuple(note for e in evaluations for note in e.notes),
+        notes=_notes(evaluations),
         seconds={**seconds, "intervals": time.perf_counter() - begin},
     )
+
+
+def _notes(evaluations: Sequence[Evaluation]) -> tuple[str, ...]:
+    """Those of the evaluations, but for the cause of the present model's errors, which the fit removes."""
+    return tuple(n for e in evaluations for n in e.notes if not n.startswith(CAUSE))
 
 
 def _model(

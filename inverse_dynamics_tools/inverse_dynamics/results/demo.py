@@ -133,12 +133,12 @@ def run_demo(
         for name, bag in real.items():
             say(f"computing the torques of {TITLES[name]}")
             work.evaluate(name, bag)
-        for name, directory in REAL.items():
-            if name not in real:
-                work.notes.append(
-                    f"{TITLES[name]}: left out, there is no recording {directory}: "
-                    f"{HOW_TO_GET_RECORDINGS}"
-                )
+        absent = {TITLES[name]: file for name, file in REAL.items() if name not in real}
+        if absent:
+            work.notes.append(
+                f"{' and '.join(absent)}: left out, there is no recording "
+                f"{' or '.join(absent.values())}: {HOW_TO_GET_RECORDINGS}"
+            )
         comparison = None
         if "ur10_real" in real:
             say("comparing the URDF's rigid bodies with the identified model on the real UR10")
@@ -251,12 +251,13 @@ class _Work:
         return comparison
 
     def film(self) -> None:
-        from inverse_dynamics.figures.video import VideoError, write_video
+        from inverse_dynamics.figures.video import VideoError, require_packages, write_video
 
         for name, evaluation in self.evaluations.items():
-            self.say(f"filming {TITLES[name]}")
             file = self.target / f"{name}.gif"
             try:
+                require_packages()
+                self.say(f"filming {TITLES[name]}")
                 write_video(
                     evaluation,
                     file,

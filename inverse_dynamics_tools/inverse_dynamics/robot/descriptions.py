@@ -144,5 +144,12 @@ def _expanded(file: Path) -> str:
     result = subprocess.run([tool, str(file)], capture_output=True, text=True, check=False)
     if result.returncode != 0:
         lines = result.stderr.strip().splitlines() or [f"exit code {result.returncode}"]
-        raise RobotError(f"{file}: xacro can't expand it: {harmless('; '.join(lines), 500)}")
+        remedy = (  # $(find PACKAGE)
+            f"; source the ROS workspace that has its packages, or expand it there: xacro {file.name} > {file.stem}"
+            if "ament_index_python" in result.stderr
+            else ""
+        )
+        raise RobotError(
+            f"{file}: xacro can't expand it: {harmless('; '.join(lines), 500)}{remedy}"
+        )
     return result.stdout

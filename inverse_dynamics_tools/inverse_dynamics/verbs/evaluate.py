@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from inverse_dynamics.base.extras import how_to_install, is_installed
 from inverse_dynamics.verbs.common import (
     file_name,
     number,
@@ -329,6 +330,8 @@ def _print(evaluation: Evaluation, out: Path, figures: Sequence[str]) -> None:
     console.print(error_table(evaluation))
     for suffix in figures:
         console.print(f"figure         {out / f'torques.{suffix}'}")
+    if not figures and not is_installed("matplotlib"):
+        console.print(f"figure         none, it needs matplotlib: {how_to_install('matplotlib')}")
     console.print(f"bag            {out / 'bag'}: /torques (computed), /torques_gt (measured)")
     console.print(f"errors         {out / 'metrics.json'}")
 

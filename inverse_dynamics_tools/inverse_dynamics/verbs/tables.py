@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from rich import box
 from rich.table import Table
 
+from inverse_dynamics.base.wording import solver_name
 from inverse_dynamics.identification.summary import headings
 
 if TYPE_CHECKING:
@@ -198,7 +199,7 @@ def mean_table(evaluations: Mapping[str, Evaluation]) -> Table:
         shares = [e.nrmse for e in evaluation.errors if not math.isnan(e.nrmse)]
         table.add_row(
             title,
-            evaluation.robot.plugin.partition("/")[2],
+            solver_name(evaluation.robot.plugin),
             str(len(evaluation.log)),
             mean,
             _percent(_mean(shares)) if shares else "-",
