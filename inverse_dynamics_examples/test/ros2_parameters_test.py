@@ -14,6 +14,7 @@ from inverse_dynamics import Solver
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
 CONTROLLERS = REPOSITORY / "inverse_dynamics_controllers"
 PAGE = "docs/ros2_controllers.md"
@@ -51,10 +52,14 @@ def declared(controller: str) -> dict[str, dict[str, Any]]:
     """Parameters with their declarations, by their whole names."""
     found: dict[str, dict[str, Any]] = {}
     for name in DECLARED[controller]:
-        file = CONTROLLERS / f"src/{name}_parameters.yaml"
-        for library in yaml.safe_load(file.read_text(encoding="utf-8")).values():
-            found |= flat(library, lambda node: isinstance(node.get("type"), str))
+        found |= declared_in(CONTROLLERS / f"src/{name}_parameters.yaml")
     return found
+
+
+def declared_in(file: Path) -> dict[str, dict[str, Any]]:
+    """The same, of one declaration."""
+    (library,) = yaml.safe_load(file.read_text(encoding="utf-8")).values()
+    return flat(library, lambda node: isinstance(node.get("type"), str))
 
 
 def flat(node: dict[str, Any], is_leaf: Any, prefix: str = "") -> dict[str, Any]:
@@ -174,20 +179,38 @@ def test_what_a_controller_would_refuse_fails(parameters: dict[str, Any], expect
         requires("InverseDynamicsController", parameters)
 
 
-def test_tables_name_parameters_that_are_declared() -> None:
-    """`.posture` stands for `damping.posture` behind another parameter of damping."""
-    known = {name for controller in DECLARED for name in declared(controller)}
-    groups = {name.rpartition(".")[0] for name in known}
-    tables = re.findall(r"^\| parameter \|.*?\n\n", page(PAGE), re.MULTILINE | re.DOTALL)
-    assert len(tables) == 2
-    named = set()
+def names_in_tables(text: str, head: str) -> list[str]:
+    """Of first columns; `.posture` stands for `damping.posture` behind another parameter of damping."""
+    tables = re.findall(rf"^\| {head} \|.*?\n\n", text, re.MULTILINE | re.DOTALL)
+    named = []
     for cells in re.findall(r"^\| (`.*?) \|", "".join(tables), re.MULTILINE):
         group = ""
         for name in re.findall(r"`(.*?)`", cells):
-            whole = group + name if name.startswith(".") else name
-            group = whole.rpartition(".")[0]
-            assert whole in known or (whole.endswith(".*") and whole[:-2] in {*groups, "ids"}), (
-                whole
-            )
-            named.add(whole)
+            named.append(group + name if name.startswith(".") else name)
+            group = named[-1].rpartition(".")[0]
+    return named
+
+
+def test_tables_name_parameters_that_controllers_declare() -> None:
+    known = {name for controller in DECLARED for name in declared(controller)}
+    known |= {f"{name.rpartition('.')[0]}.*" for name in known} | {"ids.*"}
+    named = set(names_in_tables(page(PAGE), "parameter"))
     assert {"damping.rate", "gains.p", "noise", "contact.thresholds", "payload.mass"} <= named
+    assert named <= known
+
+
+@pytest.mark.parametrize(
+    ("head", "declaration", "group", "least"),
+    [
+        ("parameter", "evaluate_solver", "", 10),
+        ("parameter of `external_torques`", "live_node", "external_torques.", 10),
+    ],
+)
+def test_tables_name_parameters_that_nodes_declare(
+    head: str, declaration: str, group: str, least: int
+) -> None:
+    known = declared_in(REPOSITORY / f"inverse_dynamics_ros/src/{declaration}_parameters.yaml")
+    named = [group + name for name in names_in_tables(page("docs/ros2.md"), head)]
+    of_the_node = {name for name in named if not name.startswith("ids.")}
+    assert len(of_the_node) >= least
+    assert of_the_node <= set(known)

@@ -7,7 +7,10 @@
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/payload.hpp>
+#include <inverse_dynamics_solver/solver_loader.hpp>
+#include <iostream>
 #include <memory>
+#include <string>
 #include <vector>
 
 using namespace inverse_dynamics_control;
@@ -20,6 +23,10 @@ extern Eigen::VectorXd q, qd, qdd, tau, effort, a, f;
 extern const double period;
 extern JointState state;
 extern Reference reference;
+
+// What makes a robot.
+extern const std::string urdf;
+extern const Parameters parameters;
 
 // Numbers of joints that somebody has chosen or measured.
 extern const Eigen::VectorXd effort_limits, measured_effort, pid_effort, torques;
@@ -36,7 +43,9 @@ extern SafeStop stop;
 extern RigidBody part;
 extern Eigen::Matrix3d R_root_world;
 
-// What a program does with results.
+// What a program does with results and errors.
+void ask_user(const char* text);
+void give_up(const char* text);
 template <class... Results>
 void use(const Results&...);
 template <class... Results>
