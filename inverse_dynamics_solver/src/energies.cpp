@@ -10,26 +10,50 @@ inline namespace v2 {
 // Out of line, so that there is one type information for dynamic_cast across plugin libraries.
 Energies::~Energies() = default;
 
+namespace {
+
+void require(bool has_energies, const char* method) {
+  if (has_energies) return;
+  throw Exception(errorText(method, "the robot has no energies",
+                            "a symmetric inertia matrix, and gravity torques that are the gradient "
+                            "of a potential",
+                            "parameters that differ from row to row",
+                            "use a solver of a robot description, or ask hasEnergies() first"));
+}
+
+}  // namespace
+
+bool Energies::hasEnergies() const {
+  jointsFor("hasEnergies");
+  return hasEnergiesImpl();
+}
+
+bool Energies::hasEnergiesImpl() const { return torqueSolver().inertiaIsPhysical(); }
+
 double Energies::getKineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) const {
-  MethodCall("getKineticEnergy", torqueSolver()).vector("q", q).vector("qd", qd).physicalInertia();
+  MethodCall("getKineticEnergy", torqueSolver()).vector("q", q).vector("qd", qd);
+  require(hasEnergiesImpl(), "getKineticEnergy");
   return computeKineticEnergy(q, qd);
 }
 
 double Energies::getPotentialEnergy(const ConstVectorRef& q) const {
-  MethodCall("getPotentialEnergy", torqueSolver()).vector("q", q).physicalInertia();
+  MethodCall("getPotentialEnergy", torqueSolver()).vector("q", q);
+  require(hasEnergiesImpl(), "getPotentialEnergy");
   return computePotentialEnergy(q);
 }
 
 void Energies::getKineticEnergyBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
                                      const States& T) const {
   const BatchCall call("getKineticEnergyBatch", torqueSolver(), q.count);
-  call.states("q", q).states("qd", qd).rows("T", T, 1).physicalInertia();
+  call.states("q", q).states("qd", qd).rows("T", T, 1);
+  require(hasEnergiesImpl(), "getKineticEnergyBatch");
   call.share([this](const auto&... part) { computeKineticEnergyBatch(part...); }, q, qd, T);
 }
 
 void Energies::getPotentialEnergyBatch(const ConstStatesRef& q, const States& U) const {
   const BatchCall call("getPotentialEnergyBatch", torqueSolver(), q.count);
-  call.states("q", q).rows("U", U, 1).physicalInertia();
+  call.states("q", q).rows("U", U, 1);
+  require(hasEnergiesImpl(), "getPotentialEnergyBatch");
   call.share([this](const auto&... part) { computePotentialEnergyBatch(part...); }, q, U);
 }
 

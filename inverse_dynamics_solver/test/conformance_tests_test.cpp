@@ -105,6 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"Coriolis matrix is doubled", "RateOfInertiaIsTheCoriolisMatrixPlusItsTranspose"},
         Fault{"Coriolis matrix is transposed", "CoriolisMatrixIsThatOfChristoffelsSymbols"},
         Fault{"kinetic energy is doubled", "EnergyGrowsWithThePowerOfTheTorques"},
+        Fault{"energies are refused without a reason", "EnergyGrowsWithThePowerOfTheTorques"},
         Fault{"potential energy falls", "EnergyGrowsWithThePowerOfTheTorques"},
         Fault{"derivatives lack gravity", "TorqueDerivativesAreThoseOfTheTorques"},
         Fault{"derivatives lack friction", "TorqueDerivativesIncludeFriction"},

@@ -192,10 +192,13 @@ class Solver:
         """C(q, qd) of Christoffel's symbols, (n, n) or (N, n, n)."""
 
     def kinetic_energy(self, q: ArrayLike, qd: ArrayLike) -> np.float64 | Floats:
-        """1/2 qd^T H qd [J], a number or (N,)."""
+        """1/2 qd^T H qd [J], a number or (N,); where H is symmetric."""
 
     def potential_energy(self, q: ArrayLike) -> np.float64 | Floats:
-        """Of gravity [J], a number or (N,); zero where all masses are at the root's origin."""
+        """Of gravity [J], a number or (N,); zero where all masses are at the root's origin.
+
+        Where H is symmetric.
+        """
 
     def torque_derivatives(
         self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike

@@ -274,9 +274,11 @@ void bindCapabilities(py::class_<Solver>& solver) {
            "origin, in the axes of frame, 'root' or 'tip'.")
       .def("coriolis_matrix", of(&coriolisMatrix), q, qd, keywords, out,
            "C(q, qd) of Christoffel's symbols, (n, n) or (N, n, n).")
-      .def("kinetic_energy", of(&kineticEnergy), q, qd, "1/2 qd^T H qd [J], a number or (N,).")
+      .def("kinetic_energy", of(&kineticEnergy), q, qd,
+           "1/2 qd^T H qd [J], a number or (N,); where H is symmetric.")
       .def("potential_energy", of(&potentialEnergy), q,
-           "Of gravity [J], a number or (N,); zero where all masses are at the root's origin.")
+           "Of gravity [J], a number or (N,); zero where all masses are at the root's origin.\n"
+           "Where H is symmetric.")
       .def("torque_derivatives", of(&torqueDerivatives), q, qd, qdd,
            "dtau/dq, dtau/dqd and dtau/dqdd = H, (n, n) or (N, n, n) each, friction included.")
       .def("regressor", of(&regressor), q, qd, qdd, keywords, out,

@@ -17,13 +17,17 @@ inline namespace v2 {
 /// Kinetic and potential energy. Their sum grows with the power of all torques but friction:
 /// `d(T + U)/dt = qd^T (tau - f)`.
 ///
-/// A robot whose H isn't that of rigid bodies has no energy: all methods throw Exception where
-/// inertiaIsPhysical() is false.
+/// A robot whose H isn't symmetric, or whose g isn't the gradient of a potential, has no energy: all
+/// methods but hasEnergies() throw Exception.
 class Energies : public Capability {
  public:
   ~Energies() override;
 
-  /// `T(q, qd) = 1/2 qd^T H(q) qd` [J].
+  /// Whether the robot has energies: always where inertiaIsPhysical(), and for identified models
+  /// that have one set of parameters for all rows of H.
+  bool hasEnergies() const;
+
+  /// `T(q, qd) = 1/2 qd^T H(q) qd` [J]; where not inertiaIsPhysical() it may be negative.
   double getKineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) const;
 
   /// `U(q)` [J], of which g is the gradient; zero where all masses are at the root's origin.
@@ -51,8 +55,12 @@ class Energies : public Capability {
 
  protected:
   /// @name What a solver implements
-  /// As the compute... of InverseDynamicsSolver; called where inertiaIsPhysical() is true.
+  /// As the compute... of InverseDynamicsSolver; called where hasEnergiesImpl() is true.
   /// @{
+
+  /// Answer of hasEnergies(); by default that of inertiaIsPhysical().
+  virtual bool hasEnergiesImpl() const;
+
   virtual double computeKineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) const = 0;
   virtual double computePotentialEnergy(const ConstVectorRef& q) const = 0;
 

@@ -62,6 +62,7 @@ class TwoLinkSolver : public InverseDynamicsSolver,
                               const ConstVectorRef& wrench, VectorRef tau) const override;
   void computeCoriolisMatrix(const ConstVectorRef& q, const ConstVectorRef& qd,
                              MatrixRef C) const override;
+  bool hasEnergiesImpl() const override { return !has("energies are refused without a reason"); }
   double computeKineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) const override;
   double computePotentialEnergy(const ConstVectorRef& q) const override;
   void computeTorqueDerivatives(const ConstVectorRef& q, const ConstVectorRef& qd,

@@ -59,8 +59,8 @@ struct ReadyModel {
 /// Without a model file, friction is that of the description where `urdf_friction` is true, else
 /// zero.
 ///
-/// Capabilities: all of rigid bodies; where the inertia isn't physical, energies and accelerations
-/// are refused. TorqueDeviation: of a model file that states it.
+/// Capabilities: all of rigid bodies; accelerations are refused where the inertia isn't physical,
+/// energies where rows have parameters of their own. TorqueDeviation: of a model file that states it.
 ///
 /// Real time and threads: as the base class promises, for up to 64 joints.
 class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDynamicsSolver,
@@ -158,6 +158,7 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
 
   void computeParts(bool shared, const std::function<void()>& compute) const override;
   bool inertiaIsPhysicalImpl() const override { return inertia_is_physical_; }
+  bool hasEnergiesImpl() const override { return model().row_parameters.empty(); }
   bool frictionDependsOnPositionImpl() const override {
     return chain_dynamics::frictionDependsOnLoad(model());
   }

@@ -195,7 +195,7 @@ inline void addMethods(const ForwardDynamics& f, Eigen::Index n,
 }
 
 /// The methods of all capabilities that a solver of n joints has; those that need an inertia of rigid
-/// bodies where it has that, or isn't initialized.
+/// bodies, or energies, where it has these, or isn't initialized.
 inline std::vector<CapabilityMethod> capabilityMethods(const InverseDynamicsSolver& solver,
                                                        Eigen::Index n) {
   std::vector<CapabilityMethod> all;
@@ -207,9 +207,12 @@ inline std::vector<CapabilityMethod> capabilityMethods(const InverseDynamicsSolv
   if (const auto* c = dynamic_cast<const CoriolisMatrix*>(&solver)) addMethods(*c, n, all);
   if (const auto* d = dynamic_cast<const TorqueDerivatives*>(&solver)) addMethods(*d, n, all);
   if (const auto* r = dynamic_cast<const Regressor*>(&solver)) addMethods(*r, n, all);
-  if (!solver.isInitialized() || solver.inertiaIsPhysical()) {
-    if (const auto* e = dynamic_cast<const Energies*>(&solver)) addMethods(*e, all);
-    if (const auto* f = dynamic_cast<const ForwardDynamics*>(&solver)) addMethods(*f, n, all);
+  const bool fresh = !solver.isInitialized();
+  if (const auto* e = dynamic_cast<const Energies*>(&solver)) {
+    if (fresh || e->hasEnergies()) addMethods(*e, all);
+  }
+  if (const auto* f = dynamic_cast<const ForwardDynamics*>(&solver)) {
+    if (fresh || solver.inertiaIsPhysical()) addMethods(*f, n, all);
   }
   return all;
 }
