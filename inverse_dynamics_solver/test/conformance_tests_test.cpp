@@ -73,6 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"layouts are ignored", "BatchesOfAnyLayoutGiveTheBitsOfColumns"},
         Fault{"parts of a batch differ", "ThreadsThatShareABatchGiveTheBitsOfOne"},
         Fault{"allocates", "CallsIntoMemoryOfTheCallerDoNotAllocate"},
+        Fault{"currents allocate", "CallsIntoMemoryOfTheCallerDoNotAllocate"},
         Fault{"state is shared", "ManyThreadsGetTheNumbersOfOne"},
         Fault{"NaN is swallowed", "NanGoesToEveryEntryThatDependsOnIt"},
         Fault{"members set before checks", "FailedInitializeLeavesTheSolverAsItWas"},
@@ -109,6 +110,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"potential energy falls", "EnergyGrowsWithThePowerOfTheTorques"},
         Fault{"derivatives lack gravity", "TorqueDerivativesAreThoseOfTheTorques"},
         Fault{"derivatives lack friction", "TorqueDerivativesIncludeFriction"},
+        Fault{"regressor lacks gravity", "RegressorTimesParametersAreTheTorques"},
+        Fault{"regressor has columns of another order", "RegressorTimesParametersAreTheTorques"},
         Fault{"accelerations without friction", "AccelerationsInvertTorques"}),
     nameOf);
 
@@ -122,6 +125,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"inertia of a body is negative", "InertiaWithABodyIsAsPhysicalAsWithout"},
         Fault{"the base accelerates backwards", "GravityThatIsSetEqualsThatOfInitialize"},
         Fault{"allocates with a body", "CallsWithABodyNeitherAllocateNorMakeASystemCall"},
+        Fault{"allocates while the robot changes",
+              "CallsDoNotAllocateWhileAnotherThreadChangesTheRobot"},
         Fault{"a call mixes two robots",
               "ThreadsThatComputeWhileTheRobotChangesGetOldOrNewNumbers"},
         Fault{"states of a batch mix two robots",

@@ -5,12 +5,28 @@
 
 #include <limits>
 #include <memory>
+#include <type_traits>
 
 #include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
+#include "inverse_dynamics_solver/external_wrench.hpp"
 #include "node_parameters_stand_in.hpp"
 
 namespace inverse_dynamics_solver {
 namespace {
+
+// A wrench without a frame doesn't compile, nor does one of another frame.
+template <class W, class = void>
+constexpr bool kIsTaken = false;
+template <class W>
+constexpr bool
+    kIsTaken<W, std::void_t<decltype(std::declval<const ExternalWrench&>().getExternalTorques(
+                    Eigen::VectorXd(), std::declval<W>()))>> = true;
+using SixNumbers = Eigen::Matrix<double, 6, 1>;
+static_assert(kIsTaken<WrenchInRoot> && kIsTaken<WrenchInTip>);
+static_assert(!kIsTaken<SixNumbers> && !kIsTaken<Eigen::VectorXd>);
+static_assert(!std::is_constructible_v<WrenchInRoot, WrenchInTip>);
+static_assert(!std::is_convertible_v<Eigen::MatrixXd&, WrenchesInRoot>);
+static_assert(!std::is_convertible_v<WrenchesInRoot, WrenchesInTip>);
 
 /// Made-up dynamics of any number of joints, with terms that can be told apart: H = diag(2) + 0.1,
 /// c = q qd, g = 100 q.

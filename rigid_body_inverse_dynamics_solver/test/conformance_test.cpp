@@ -7,6 +7,7 @@
 #include <string>
 #include <system_error>
 
+#include "chain_dynamics/model_file.hpp"
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
 
@@ -41,8 +42,13 @@ struct PandaDescriptionWithFriction : PandaDescription {
   static ParameterMap parameters() { return {{"urdf_friction", true}}; }
 };
 
+std::optional<chain_dynamics::Model> modelOf(const std::string& name) {
+  return chain_dynamics::modelFromFile(robotsFile("models/" + name + ".yaml"));
+}
+
 struct FeasiblePandaModel : RigidBody {
   static ParameterMap parameters() { return {{"model", std::string("franka_gaz2019_feasible")}}; }
+  static std::optional<chain_dynamics::Model> model() { return modelOf("franka_gaz2019_feasible"); }
 };
 
 /// A file of the process's own, removed with it.
@@ -90,10 +96,13 @@ struct LoadedPandaModel : RigidBody {
     static const TemporaryFile file("loaded_panda.yaml", loadedPanda());
     return {{"model", file.path()}};
   }
+  // (the other friction isn't part of the regressor)
+  static std::optional<chain_dynamics::Model> model() { return modelOf("franka_gaz2019_feasible"); }
 };
 
 struct IdentifiedUr10Model : RigidBody {
   static ParameterMap parameters() { return {{"model", std::string("ur10_identified")}}; }
+  static std::optional<chain_dynamics::Model> model() { return modelOf("ur10_identified"); }
   static constexpr const char* kGravityIsNotConservative =
       "each row of the identified UR10 has parameters of its own";
 };

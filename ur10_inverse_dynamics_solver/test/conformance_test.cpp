@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "chain_dynamics/model_file.hpp"
+#include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
 
 namespace {
@@ -7,6 +9,9 @@ using namespace inverse_dynamics_solver::conformance;
 
 struct UR10 : SolverTraits {
   static constexpr const char* kPlugin = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10";
+  static std::optional<chain_dynamics::Model> model() {
+    return chain_dynamics::modelFromFile(robotsFile("models/ur10_identified.yaml"));
+  }
   static constexpr const char* kGravityIsNotConservative =
       "each row of the identified model has parameters of its own";
 };

@@ -37,10 +37,11 @@ auto CarryingSolver::configure(const Configuration& configuration) -> JointInfo 
 
 auto CarryingSolver::robotUnder(const Conditions& conditions) const
     -> std::unique_ptr<const Pendulum> {
+  const int change = ++changes_;
   auto body = conditions.payload();
   Eigen::Vector3d gravity = conditions.base.apparentGravity();
   if (has("bodies interact")) body.mass *= body.mass;
-  if (has("bodies leave a trace")) body.mass += 1e-9 * ++changes_;
+  if (has("bodies leave a trace")) body.mass += 1e-9 * change;
   if (has("inertia of a body is negative")) body.inertia(1, 1) -= 100.0 * body.mass;
   if (has("the base accelerates backwards")) gravity += 2.0 * conditions.base.acceleration;
 
@@ -64,7 +65,8 @@ void CarryingSolver::computeCoriolisVector(const ConstVectorRef&, const ConstVec
 void CarryingSolver::computeGravityVector(const ConstVectorRef& q, VectorRef g) const {
   const auto pendulum = currentRobot();
   g[0] = gravityTorque(*pendulum, q[0]);
-  if (has("allocates with a body") && pendulum->along != kMass * kLength) {
+  if ((has("allocates with a body") && pendulum->along != kMass * kLength) ||
+      (has("allocates while the robot changes") && changes_ > 20)) {
     g = Eigen::VectorXd(g + g) / 2.0;
   }
 }

@@ -44,8 +44,8 @@ class CarryingSolver : public InverseDynamicsSolver, public ChangeableRobot<Pend
   bool has(const char* fault) const { return fault_ == fault; }
 
   std::string fault_;
-  mutable int changes_ = 0;            // for the fault that counts them
-  mutable std::atomic<int> calls_{0};  // likewise
+  mutable std::atomic<int> changes_{0};  // for faults that count them
+  mutable std::atomic<int> calls_{0};    // likewise
 };
 
 }  // namespace carrying_solver

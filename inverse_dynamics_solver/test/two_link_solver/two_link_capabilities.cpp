@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The capabilities of the two-link arm, in closed form.
+// The capabilities of the two-link arm, in closed form but for the regressor.
 
 #include <Eigen/LU>
+#include <chain_dynamics/regressor.hpp>
 #include <cmath>
 
 #include "two_link_arm.hpp"
@@ -108,6 +109,12 @@ void TwoLinkSolver::computeTorqueDerivatives(const ConstVectorRef& q, const Cons
     dtau_dqd.diagonal().array() += 1.3 - qd.array().tanh().square();
   }
   computeInertiaMatrix(q, dtau_dqdd);
+}
+
+void TwoLinkSolver::computeRegressor(const ConstVectorRef& q, const ConstVectorRef& qd,
+                                     const ConstVectorRef& qdd, MatrixRef Y) const {
+  chain_dynamics::regressor(*chain_, q, qd, qdd, Y);
+  if (has("regressor has columns of another order")) Y.col(1).swap(Y.col(2));
 }
 
 void TwoLinkSolver::computeAccelerations(const ConstVectorRef& q, const ConstVectorRef& qd,

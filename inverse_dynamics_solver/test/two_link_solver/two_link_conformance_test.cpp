@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "inverse_dynamics_solver/conformance_tests.hpp"
+#include "two_link_arm.hpp"
 
 namespace {
 
@@ -12,6 +13,9 @@ using namespace inverse_dynamics_solver::conformance;
 struct TwoLink : SolverTraits {
   static constexpr const char* kPlugin = "two_link_solver/TwoLinkSolver";
   static std::string robotDescription() { return "<robot/>"; }
+  static std::optional<chain_dynamics::Model> model() {
+    return chain_dynamics::Model(two_link_solver::chain({0.0, 0.0, -9.81}));
+  }
   static ParameterMap parameters() {
     const char* const fault = std::getenv("FAULT");
     return {{"fault", std::string(fault == nullptr ? "" : fault)}};

@@ -48,6 +48,9 @@ auto TwoLinkSolver::configure(const Configuration& configuration) -> JointInfo {
     if (g) gravity_ = Eigen::Vector3d((*g)[0], (*g)[1], (*g)[2]);
   }
   fault_ = fault;
+  const bool falls = !has("regressor lacks gravity");
+  chain_ = std::make_unique<const chain_dynamics::Chain>(
+      chain(falls ? gravity_ : Eigen::Vector3d(0.0, 0.0, 0.0)));
   return info;
 }
 
@@ -124,6 +127,7 @@ void TwoLinkSolver::computeTorquesBatch(const ConstStates& q, const ConstStates&
 
 TwoLinkSolver::Gains TwoLinkSolver::driveGains() const {
   static constexpr double kGains[] = {2.0, 4.0}, kZero[] = {2.0, 0.0};  // N m/A
+  if (has("currents allocate")) fault_.reserve(2 * fault_.capacity());
   return Gains(has("a drive gain is zero") ? kZero : kGains, 2);
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <atomic>
+#include <memory>
 #include <string>
 
 #include "inverse_dynamics_solver/coriolis_matrix.hpp"
@@ -15,6 +16,7 @@
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "inverse_dynamics_solver/kinematics.hpp"
 #include "inverse_dynamics_solver/motor_currents.hpp"
+#include "inverse_dynamics_solver/regressor.hpp"
 #include "inverse_dynamics_solver/torque_derivatives.hpp"
 
 namespace two_link_solver {
@@ -28,6 +30,7 @@ class TwoLinkSolver : public InverseDynamicsSolver,
                       public CoriolisMatrix,
                       public Energies,
                       public TorqueDerivatives,
+                      public Regressor,
                       public ForwardDynamics {
  public:
   using ExternalWrench::getTorques;
@@ -68,6 +71,8 @@ class TwoLinkSolver : public InverseDynamicsSolver,
   void computeTorqueDerivatives(const ConstVectorRef& q, const ConstVectorRef& qd,
                                 const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
                                 MatrixRef dtau_dqdd) const override;
+  void computeRegressor(const ConstVectorRef& q, const ConstVectorRef& qd,
+                        const ConstVectorRef& qdd, MatrixRef Y) const override;
   void computeAccelerations(const ConstVectorRef& q, const ConstVectorRef& qd,
                             const ConstVectorRef& tau, VectorRef qdd) const override;
 
@@ -76,7 +81,8 @@ class TwoLinkSolver : public InverseDynamicsSolver,
 
   Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero();
   bool friction_ = true;
-  std::string fault_;
+  std::unique_ptr<const chain_dynamics::Chain> chain_;
+  mutable std::string fault_;                // mutable for the fault that allocates
   mutable std::atomic<double> shared_{0.0};  // for the fault that isn't thread-safe
 };
 

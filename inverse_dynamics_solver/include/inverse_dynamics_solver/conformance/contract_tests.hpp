@@ -13,6 +13,8 @@
 #include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
 #include "inverse_dynamics_solver/conformance/capabilities.hpp"
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
+#include "inverse_dynamics_solver/motor_currents.hpp"
+#include "inverse_dynamics_solver/torque_deviation.hpp"
 
 namespace inverse_dynamics_solver::conformance {
 
@@ -159,6 +161,17 @@ TEST_P(SolverConformance, CallsIntoMemoryOfTheCallerDoNotAllocate) {
   for (const CapabilityMethod& method : capabilityMethods(s)) {
     Matrices out = method.shapes.memory();
     EXPECT_EQ(allocations([&] { method.into_memory(x, out); }), 0) << method.name;
+  }
+  if (const auto* motors = dynamic_cast<const MotorCurrents*>(&s)) {
+    EXPECT_EQ(allocations([&] { motors->getCurrents(x.q, x.qd, x.qdd, tau); }), 0);
+    EXPECT_EQ(allocations([&] { motors->getInertiaCurrents(x.q, H); }), 0);
+    EXPECT_EQ(allocations([&] { motors->getCoriolisCurrents(x.q, x.qd, c); }), 0);
+    EXPECT_EQ(allocations([&] { motors->getGravityCurrents(x.q, g); }), 0);
+    EXPECT_EQ(allocations([&] { motors->getFrictionCurrents(x.q, x.qd, f); }), 0);
+  }
+  const auto* const band = dynamic_cast<const TorqueDeviation*>(&s);
+  if (band != nullptr && band->hasTorqueDeviation()) {
+    EXPECT_EQ(allocations([&] { band->getTorqueDeviation(tau); }), 0);
   }
 }
 

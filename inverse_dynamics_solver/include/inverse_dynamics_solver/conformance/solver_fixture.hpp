@@ -13,12 +13,14 @@
 #include <iomanip>
 #include <map>
 #include <memory>
+#include <optional>
 #include <random>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "chain_dynamics/model.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
 
@@ -59,6 +61,10 @@ struct SolverTraits {
   /// Text of the URDF; empty for a solver that doesn't need one.
   static std::string robotDescription() { return ""; }
 
+  /// The model that the solver computes with, where it isn't that of the robot description: its
+  /// parameters are what the regressor is tested with.
+  static std::optional<chain_dynamics::Model> model() { return {}; }
+
   /// For a model whose gravity torques aren't the gradient of a potential: the reason.
   static constexpr const char* kGravityIsNotConservative = nullptr;
 
@@ -76,6 +82,7 @@ struct TestedSolver {
   const char* plugin;
   ParameterMap (*parameters)();
   std::string (*robotDescription)();
+  std::optional<chain_dynamics::Model> (*model)();
   std::vector<std::pair<ParameterMap, std::string>> (*badInitializations)();
   const char* gravity_is_not_conservative;
   double position, velocity, acceleration;
@@ -83,14 +90,9 @@ struct TestedSolver {
 
 template <class Traits>
 TestedSolver testedSolver() {
-  return {Traits::kPlugin,
-          &Traits::parameters,
-          &Traits::robotDescription,
-          &Traits::badInitializations,
-          Traits::kGravityIsNotConservative,
-          Traits::kPosition,
-          Traits::kVelocity,
-          Traits::kAcceleration};
+  return {Traits::kPlugin,   &Traits::parameters,         &Traits::robotDescription,
+          &Traits::model,    &Traits::badInitializations, Traits::kGravityIsNotConservative,
+          Traits::kPosition, Traits::kVelocity,           Traits::kAcceleration};
 }
 
 /// Defined beside the tests: GoogleTest prints parameters, so a program that instantiates the suite
