@@ -46,6 +46,9 @@ def faults_of_file(wheel: Path, megabytes: float) -> list[str]:
     faults += [f"no {needed}" for needed in NEEDED if f"inverse_dynamics/{needed}" not in names]
     if not any(n.endswith("/licenses/licenses/LGPL-2.1.txt") for n in names):
         faults.append("the licence of Orocos KDL is missing")
+    kdl = re.search(r"/liborocos-kdl(-[0-9a-f]{8})?\.so\.([0-9.]+)", "\n".join(names))
+    if kdl and f"Orocos KDL {kdl[2]}" not in text:
+        faults.append(f"licenses/THIRD_PARTY.md doesn't name the source of Orocos KDL {kdl[2]}")
     faults += [
         f"{library}: licenses/THIRD_PARTY.md doesn't name it"
         for library in sorted(bundled_libraries(names))

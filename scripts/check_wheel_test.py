@@ -42,6 +42,13 @@ def test_a_library_without_a_notice_is_named(tmp_path: Path) -> None:
     ]
 
 
+def test_a_version_of_kdl_whose_source_is_not_named_is_a_fault(tmp_path: Path) -> None:
+    file = wheel(tmp_path, libraries=("liborocos-kdl-0dc34d62.so.1.5.3",))
+    assert check_wheel.faults_of_file(file, 15) == [
+        "licenses/THIRD_PARTY.md doesn't name the source of Orocos KDL 1.5.3"
+    ]
+
+
 def test_a_large_wheel_is_a_fault(tmp_path: Path) -> None:
     (fault,) = check_wheel.faults_of_file(wheel(tmp_path), 0.001)
     assert fault.endswith("MB, expected at most 0.001 MB")
