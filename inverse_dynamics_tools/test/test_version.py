@@ -29,7 +29,7 @@ def test_modules_that_were_not_installed_have_none_and_say_so(monkeypatch, ids):
 
     monkeypatch.setattr(metadata, "version", missing)
     with pytest.raises(
-        AttributeError, match="installed by pip or by colcon.*got the modules alone"
+        AttributeError, match="installed by pip, colcon or CMake.*got the modules alone"
     ):
         _ = inverse_dynamics.__version__
     fails(ids("--version"), "ids: error: inverse_dynamics.__version__: expected the package")

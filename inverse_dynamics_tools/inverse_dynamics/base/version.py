@@ -9,13 +9,13 @@ from inverse_dynamics.errors import UserError
 
 
 def version() -> str:
-    """As pip and colcon have noted it beside the modules, from package.xml. Raises UserError."""
+    """As pip, colcon and CMake have noted it beside the modules, from package.xml. Raises UserError."""
     from importlib import metadata
 
     try:
         return metadata.version("inverse_dynamics")
     except metadata.PackageNotFoundError:
         raise UserError(
-            "inverse_dynamics.__version__: expected the package to be installed by pip or by colcon, "
-            f"which note its version, got the modules alone, in {Path(__file__).parents[1]}; install it"
+            "inverse_dynamics.__version__: expected the package to be installed by pip, colcon or "
+            f"CMake, which note its version, got the modules alone, in {Path(__file__).parents[1]}; install it"
         ) from None
