@@ -151,7 +151,7 @@ double studentT(double degrees_of_freedom) {
   const double n = degrees_of_freedom;
   if (n < 7) {  // between whole numbers in 1 / n, to 1 %
     const auto k = static_cast<std::size_t>(n);
-    const double lower = static_cast<double>(k);
+    const auto lower = static_cast<double>(k);
     const double share = (n - lower) * (lower + 1) / n;
     return kFew[k - 1] + share * (kFew[k] - kFew[k - 1]);
   }
