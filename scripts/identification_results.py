@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Identifies the real robots whose recordings are public, and writes docs/identification_results.md.
 
-    ./scripts/identification_results            # prints the page; ten minutes
-    ./scripts/identification_results --write    # replaces it
+    ./scripts/identification_results                          # prints the page; ten minutes
+    ./scripts/identification_results --write                  # replaces it
+    ./scripts/identification_results --write --only payloads  # replaces these sections alone
 
 The recordings are those of `ids data`, or of $IDS_DATA_DIR. All is what `ids identify` does by default.
 """
@@ -18,19 +19,32 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from known_truth import LEAST_DELAY_ERROR, MOST_ERROR, Truth
-from payload_truth import SECONDS, Arm, least_errors, trials
+from payload_truth import STEP, Arm, least_errors, trials
 
 from inverse_dynamics import identify
 from inverse_dynamics.data.public_recordings import data_directory
 from inverse_dynamics.identification.summary import choices_told, headings, held_out_rows
 
 if TYPE_CHECKING:
+    from payload_truth import Figures
+
     from inverse_dynamics import Identification
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "identification_results.md"
 ROBOTS = {"ur10_real": "ur10_exciting_trajectory", "panda_real": "panda_exciting_trajectory"}
 SEEDS = 10
-LOADS = (("panda", 0.5), ("panda", 1.0), ("panda", 2.0), ("ur10", 1.0), ("ur10", 5.0))  # kg
+# Robot, kg, s, and whether everything is chosen without the window, too.
+LOADS = (
+    ("panda", 0.5, 4.0, True),
+    ("panda", 1.0, 4.0, True),
+    ("panda", 1.0, 5.0, False),
+    ("panda", 1.0, 6.0, False),
+    ("panda", 1.0, 8.0, True),
+    ("panda", 2.0, 4.0, True),
+    ("ur10", 1.0, 4.0, True),
+    ("ur10", 5.0, 4.0, True),
+    ("ur10", 5.0, 8.0, True),
+)
 TRIALS = 100
 
 _HEAD = """\
@@ -48,16 +62,40 @@ def main() -> int:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--write", action="store_true", help=f"replace docs/{PAGE.name}")
+    parser.add_argument(
+        "--only",
+        choices=SECTIONS,
+        action="append",
+        help="write these sections anew, and take the others from the page",
+    )
     given = parser.parse_args()
     bags = data_directory() / "bags"
-    sections = [_section(robot, bags / bag) for robot, bag in ROBOTS.items()]
+    stored = _stored(PAGE.read_text(encoding="utf-8")) if given.only else {}
     with TemporaryDirectory() as directory:
-        sections += [_known_truth(bags, Path(directory)), _payloads(bags, Path(directory))]
+        sections = [
+            stored[name] if given.only and name not in given.only else write(bags, Path(directory))
+            for name, write in SECTIONS.items()
+        ]
     text = "\n".join([_HEAD, *sections])
     print(text, end="")
     if given.write:
         PAGE.write_text(text, encoding="utf-8")
     return 0
+
+
+def _stored(page: str) -> dict[str, str]:
+    """The sections of a page that was written before."""
+    first = page.index("## ")
+    known, payloads = page.index(_KNOWN.split("\n")[0]), page.index(_PAYLOADS.split("\n")[0])
+    return {
+        "identified": page[first : known - 1],
+        "known": page[known : payloads - 1],
+        "payloads": page[payloads:],
+    }
+
+
+def _identified(bags: Path, _: Path) -> str:
+    return "\n".join(_section(robot, bags / bag) for robot, bag in ROBOTS.items())
 
 
 def _section(robot: str, bag: Path) -> str:
@@ -123,12 +161,12 @@ those of inverse_dynamics_tools/test/test_known_truth.py.
 _PAYLOADS = f"""\
 ## Payloads
 
-Simulated loads up to 15 cm in front of the flange on the torques of the real arms, {SECONDS:g} s each, {TRIALS} loads
-per row; the arm's model is fitted to other blocks of the recording, so what it gets wrong stays in the torques. In the
-first row of each load, law, prior strength and delay are those chosen on the whole recording; *nested*: chosen on the
-other blocks too. Medians. The last two columns are what no unbiased estimator can be better than (Cramér and Rao), if
-noise is Gaussian, stationary, as correlated in time and between joints as the residuals are, and the inertia about the
-centre is known.
+Simulated loads up to 15 cm in front of the flange on the torques of the real arms, {TRIALS} loads per row, in windows
+of the recording that overlap, one every {STEP:g} s; the arm's model is fitted to what is outside of the window, so what
+it gets wrong stays in the torques. In the first row of each load, law, prior strength and delay are those chosen on the
+whole recording; *nested*: chosen outside of the window, too. Medians. The last two columns are what no unbiased
+estimator can be better than (Cramér and Rao) whose model of the arm is exact, if noise is Gaussian, stationary, as
+correlated in time and between joints as the residuals are, and the inertia about the centre is known.
 """
 
 
@@ -169,27 +207,20 @@ def _known_truth(bags: Path, directory: Path) -> str:
 
 
 def _payloads(bags: Path, directory: Path) -> str:
+    found = {
+        name: identify([bags / ROBOTS[f"{name}_real"]], f"{name}_real")
+        for name in dict.fromkeys(load[0] for load in LOADS)
+    }
+    arms: dict[tuple[str, float, bool], Arm] = {}
     rows = []
-    arms: dict[tuple[str, bool], Arm] = {}
-    for name, mass in LOADS:
-        for nested in (False, True):
-            if (name, nested) not in arms:
-                recording = bags / ROBOTS[f"{name}_real"]
-                arms[name, nested] = Arm.of(recording, f"{name}_real", directory, nested=nested)
-            arm = arms[name, nested]
-            found = trials(arm, mass, TRIALS)
-            least = ("", "") if nested else least_errors(arm, mass)
-            rows.append(
-                _row(
-                    f"{name}, {mass:g} kg{', nested' if nested else ''}",
-                    f"{100 * found.mass:.2g} %",
-                    f"{1e3 * found.center:.2g} mm",
-                    f"{100 * found.coverage:.0f} %",
-                    f"{found.ratio_of_mass:.2g}",
-                    f"{found.ratio_of_center:.2g}",
-                    *least,
-                )
-            )
+    for name, mass, seconds, also_nested in LOADS:
+        for nested in (False, True) if also_nested else (False,):
+            key = name, seconds, nested
+            if key not in arms:
+                arms[key] = Arm.of(found[name], directory, seconds=seconds, nested=nested)
+            label = f"{name}, {mass:g} kg, {seconds:g} s{', nested' if nested else ''}"
+            least = ("", "") if nested else least_errors(arms[key], mass)
+            rows.append(_row(label, *_told(trials(arms[key], mass, TRIALS)), *least))
     names = ("load", "mass", "centre", "intervals that hold", "half width by error: mass", "centre")
     return "\n".join(
         [
@@ -200,6 +231,19 @@ def _payloads(bags: Path, directory: Path) -> str:
             "",
         ]
     )
+
+
+def _told(found: Figures) -> tuple[str, ...]:
+    return (
+        f"{100 * found.mass:.2g} %",
+        f"{1e3 * found.center:.2g} mm",
+        f"{100 * found.coverage:.0f} %",
+        f"{found.ratio_of_mass:.2g}",
+        f"{found.ratio_of_center:.2g}",
+    )
+
+
+SECTIONS = {"identified": _identified, "known": _known_truth, "payloads": _payloads}
 
 
 def _row(*cells: str) -> str:

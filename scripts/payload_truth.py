@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """How good estimates of payloads are: simulated loads on the real residuals of a real arm.
 
-    arm = Arm.of(recordings / "panda_exciting_trajectory", "panda_real", directory)
+    arm = Arm.of(identify([recordings / "panda_exciting_trajectory"], "panda_real"), directory)
     figures = figures_of(trials(arm, mass=1.0))
 
-The arm's model is fitted as by `ids identify` to other parts of the recording than those that the load is estimated
-from, and its residuals, of blocks that it hasn't seen, stay in the torques: either those of the window itself, or those
-of another part of the recording. The load's own torques, friction that grows with load included, are put on top.
+The load is estimated from windows of the recording, which overlap. The arm's model is fitted as by `ids identify` to
+what is outside of the window, and its residuals, of samples that it hasn't seen, stay in the torques: either those of
+the window itself, or those of another window. The load's own torques, friction that grows with load included, are put
+on top.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics import Solver, _core, evaluate, identify
-from inverse_dynamics.identification.blocks import blocks_of, together
-from inverse_dynamics.identification.identify import BLOCKS
+from inverse_dynamics import Solver, _core, evaluate
+from inverse_dynamics.identification.blocks import blocks_outside, together
+from inverse_dynamics.identification.cross_validation import choose
 from inverse_dynamics.identification.payload import Samples, fit_payload, samples_of, with_load
 from inverse_dynamics.results.model_files import model_file_text, urdf_of
 from inverse_dynamics.robot.descriptions import read_description
@@ -30,9 +31,10 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.base.arrays import Floats, Mask
     from inverse_dynamics.identification.blocks import Block
-    from inverse_dynamics.identification.result import HeldOutBlock, Identification
+    from inverse_dynamics.identification.result import Identification
 
 SECONDS = 4.0
+STEP = 2.0  # s between the beginnings of windows
 MEMORY = 1.0  # s; covariances of residuals that are further apart aren't told from zero
 EDGE = 0.3  # s at either end of the recording, where accelerations are poor
 
@@ -55,59 +57,61 @@ class Figures:
 
 @dataclass(frozen=True)
 class Arm:
-    """A recording, and for each of its blocks a solver that was identified on the others."""
+    """Windows of a recording, and for each a solver that was identified on what is outside of it."""
 
-    samples: Samples
-    blocks: tuple[slice, ...]
+    windows: tuple[Samples, ...]
     solvers: tuple[Solver, ...]
-    residuals: Floats  # (N, n) N m, each block's by its solver
+    residuals: tuple[Floats, ...]  # (N, n) N m, each window's by its solver
 
     @classmethod
-    def of(cls, recording: Path, name: str, directory: Path, *, nested: bool = False) -> Arm:
-        """nested: law, prior strength and delay are chosen without the block, not on the whole recording."""
-        found = identify([recording], name)
-        evaluation = evaluate(recording, found.robot)
-        cut = blocks_of(evaluation, BLOCKS)
-        solvers = tuple(
-            _solver(found, found.blocks[k] if nested else found, cut, k, directory)
-            for k in range(BLOCKS)
-        )
-        samples = samples_of(evaluation)
-        end = samples.time[-1] - EDGE
-        samples = part(samples, (samples.time >= samples.time[0] + EDGE) & (samples.time <= end))
-        edges = np.searchsorted(samples.time, [block.time[0] for block in cut[1:]]).tolist()
-        blocks = tuple(map(slice, [0, *edges], [*edges, len(samples.time)]))
-        residuals = np.concatenate(
-            [
-                held_out.measured - torques(solver, held_out)
-                for block, solver in zip(blocks, solvers, strict=True)
-                for held_out in [part(samples, block)]
-            ]
-        )
-        return cls(samples, blocks, solvers, residuals)
+    def of(
+        cls,
+        found: Identification,
+        directory: Path,
+        *,
+        seconds: float = SECONDS,
+        nested: bool = False,
+    ) -> Arm:
+        """found: of the recording, as by `ids identify`.
 
-    def window(self, k: int, random: np.random.Generator) -> slice:
-        """SECONDS of a block."""
-        block = self.blocks[k]
-        count = int(SECONDS / np.median(np.diff(self.samples.time)))
-        first = block.start + int(random.integers(block.stop - block.start - count + 1))
-        return slice(first, first + count)
+        nested: law, prior strength and delay are chosen without the window, not on the whole recording.
+        """
+        evaluation = evaluate(found.recordings[0], found.robot)
+        samples, windows, solvers = samples_of(evaluation), [], []
+        for begin in _begins(evaluation.time, seconds):
+            rest = blocks_outside(evaluation, begin, begin + seconds)
+            within = (samples.time >= begin) & (samples.time < begin + seconds)
+            windows.append(part(samples, within))
+            solvers.append(_solver(found, rest, directory, len(solvers), nested=nested))
+        residuals = [w.measured - torques(s, w) for w, s in zip(windows, solvers, strict=True)]
+        return cls(tuple(windows), tuple(solvers), tuple(residuals))
+
+    def elsewhere(self, k: int, random: np.random.Generator) -> int:
+        """Another window that has no sample of window k, if there is one."""
+        of = self.windows[k].time
+        apart = [i for i, w in enumerate(self.windows) if w.time[0] > of[-1] or w.time[-1] < of[0]]
+        return int(random.choice(apart)) if apart else k
+
+
+def _begins(time: Floats, seconds: float) -> Floats:
+    """Of windows that overlap, about every STEP."""
+    first, last = time[0] + EDGE, time[-1] - EDGE - seconds
+    return np.linspace(first, last, 1 + round((last - first) / STEP))
 
 
 def _solver(
-    found: Identification,
-    chosen: Identification | HeldOutBlock,
-    cut: Sequence[Block],
-    k: int,
-    directory: Path,
+    found: Identification, rest: Sequence[Block], directory: Path, k: int, *, nested: bool
 ) -> Solver:
-    """Of all blocks but one."""
+    """Of some blocks."""
     robot = found.robot
     fitter = _core.ArmFitter.from_urdf(
         read_description(urdf_of(found)), root=robot.root, tip=robot.tip, gravity=robot.gravity
     )
-    others = [block.later(chosen.delay) for i, block in enumerate(cut) if i != k]
-    fit = fitter.fit(together(others), law=chosen.law, prior_strength=chosen.prior_strength)
+    if nested:
+        fit = choose(fitter, rest).fit
+    else:
+        later = together([block.later(found.delay) for block in rest])
+        fit = fitter.fit(later, law=found.law, prior_strength=found.prior_strength)
     model = replace(
         found.model,
         parameters=fit.parameters,
@@ -131,12 +135,13 @@ def torques(solver: Solver, samples: Samples) -> Floats:
 
 def trial(arm: Arm, mass: float, random: np.random.Generator, elsewhere: bool) -> Floats:
     """(2, 4): errors of mass [kg] and centre of mass [m], and the half widths of their intervals."""
-    k = int(random.integers(len(arm.blocks)))
-    samples, solver = part(arm.samples, arm.window(k, random)), arm.solvers[k]
+    k = int(random.integers(len(arm.windows)))
+    samples, solver = arm.windows[k], arm.solvers[k]
     if elsewhere:
-        other = int((k + random.integers(1, len(arm.blocks))) % len(arm.blocks))
-        residual = arm.residuals[arm.window(other, random)]
-        samples = replace(samples, measured=torques(solver, samples) + residual)
+        residual = arm.residuals[arm.elsewhere(k, random)]
+        samples = part(samples, slice(len(residual)))
+        computed = torques(solver, samples)
+        samples = replace(samples, measured=computed + residual[: len(computed)])
     load = random_load(mass, random)
     found = fit_payload(with_load(samples, solver, load), solver).estimate
     return np.array(
@@ -184,17 +189,18 @@ def least_errors(arm: Arm, mass: float, windows: int = 40) -> tuple[str, str]:
     known, in stationary Gaussian noise of the covariances that the residuals have.
     """
     random = np.random.default_rng(2)
-    period = float(np.median(np.diff(arm.samples.time)))
-    count = len(arm.samples.time[arm.window(0, random)])
+    period = float(np.median(np.diff(arm.windows[0].time)))
+    count = min(len(window.time) for window in arm.windows)
+    residuals = np.concatenate(arm.residuals)
     whitened = np.linalg.cholesky(_covariance(arm.residuals, count, MEMORY / period))
     masses, centers = [], []
     for _ in range(windows):
-        k = int(random.integers(len(arm.blocks)))
+        k = int(random.integers(len(arm.windows)))
         load = random_load(mass, random)
-        columns = _sensitivities(part(arm.samples, arm.window(k, random)), arm.solvers[k], load)
+        columns = _sensitivities(part(arm.windows[k], slice(count)), arm.solvers[k], load)
         rows = np.linalg.solve(whitened, columns.reshape(-1, columns.shape[2]))
         known = np.zeros(rows.shape[1])
-        known[4:] = 1 / (_OFFSET * arm.residuals.std(axis=0)) ** 2
+        known[4:] = 1 / (_OFFSET * residuals.std(axis=0)) ** 2
         variances = np.linalg.inv(rows.T @ rows + np.diag(known))[:4, :4]
         draws = np.abs(random.multivariate_normal(np.zeros(4), variances, 500))
         masses.append(draws[:, 0] / mass)
@@ -202,12 +208,13 @@ def least_errors(arm: Arm, mass: float, windows: int = 40) -> tuple[str, str]:
     return f"{100 * np.median(masses):.2g} %", f"{1e3 * np.median(centers):.2g} mm"
 
 
-def _covariance(residuals: Floats, count: int, memory: float) -> Floats:
+def _covariance(windows: Sequence[Floats], count: int, memory: float) -> Floats:
     """Of so many samples of all joints, one after the other; lags beyond a memory (samples) fade out."""
-    centred, n = residuals - residuals.mean(axis=0), residuals.shape[1]
+    mean = np.concatenate(windows).mean(axis=0)
+    centred, n = [residuals[:count] - mean for residuals in windows], len(mean)
     covariance = np.zeros((count, n, count, n))
     for lag in range(count):
-        at_lag = centred[: len(centred) - lag].T @ centred[lag:] / len(centred)
+        at_lag = sum(c[: count - lag].T @ c[lag:] for c in centred) / (count * len(centred))
         at_lag *= np.exp(-0.5 * (lag / memory) ** 2)
         for i in range(count - lag):
             covariance[i, :, i + lag], covariance[i + lag, :, i] = at_lag, at_lag.T

@@ -78,9 +78,21 @@ def _at(at: Floats, time: Floats, values: Floats) -> Floats:
     return np.ascontiguousarray(np.transpose(columns))
 
 
+def blocks_outside(evaluation: Evaluation, begin: float, end: float) -> list[Block]:
+    """What a recording has before and after a part of it [s], each if it is long enough."""
+    count = len(evaluation.time)
+    first, after = np.searchsorted(evaluation.time, [begin, end]).tolist()
+    edges = [(a, b) for a, b in ((0, first), (after, count)) if b - a >= _FEWEST]
+    return [_block(evaluation, _used(evaluation), a, b) for a, b in edges]
+
+
+def _used(evaluation: Evaluation) -> Mask:
+    return ~(evaluation.samples.repeated | evaluation.samples.non_increasing)
+
+
 def blocks_of(evaluation: Evaluation, count: int) -> list[Block]:
     """A recording cut into so many blocks of equally many samples."""
-    used = ~(evaluation.samples.repeated | evaluation.samples.non_increasing)
+    used = _used(evaluation)
     edges = np.linspace(0, len(evaluation.time), count + 1).round().astype(int)
     if np.diff(edges).min() < _FEWEST:
         raise IdentificationError(

@@ -2,8 +2,9 @@
 """Which friction law, prior strength and delay: by predicting each block from the others.
 
 The simplest alternative within two standard errors of the best is taken: laws in the order of LAWS,
-then stronger priors. The standard error is that of the difference, so a richer model needs evidence at the level of 95 %:
-one that predicts only a little better by chance is a worse model of what the motion excites less, as a load at the tip.
+then stronger priors. The standard error is that of the difference, so a richer model needs evidence at the
+level of 95 %: one that predicts only a little better by chance is a worse model of what the motion excites
+less, as a load at the tip.
 """
 
 from __future__ import annotations
