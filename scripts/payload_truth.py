@@ -192,13 +192,14 @@ def least_errors(arm: Arm, mass: float, windows: int = 40) -> tuple[str, str]:
     period = float(np.median(np.diff(arm.windows[0].time)))
     count = min(len(window.time) for window in arm.windows)
     residuals = np.concatenate(arm.residuals)
-    whitened = np.linalg.cholesky(_covariance(arm.residuals, count, MEMORY / period))
+    covariance = _covariance(arm.residuals, count, MEMORY / period)
+    whitening = np.linalg.inv(np.linalg.cholesky(covariance))
     masses, centers = [], []
     for _ in range(windows):
         k = int(random.integers(len(arm.windows)))
         load = random_load(mass, random)
         columns = _sensitivities(part(arm.windows[k], slice(count)), arm.solvers[k], load)
-        rows = np.linalg.solve(whitened, columns.reshape(-1, columns.shape[2]))
+        rows = whitening @ columns.reshape(-1, columns.shape[2])
         known = np.zeros(rows.shape[1])
         known[4:] = 1 / (_OFFSET * residuals.std(axis=0)) ** 2
         variances = np.linalg.inv(rows.T @ rows + np.diag(known))[:4, :4]
