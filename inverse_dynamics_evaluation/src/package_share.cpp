@@ -7,12 +7,9 @@
 
 #include <algorithm>
 #include <array>
-#include <chain_dynamics/text.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <inverse_dynamics_solver/installed_package.hpp>
-#include <sstream>
-#include <vector>
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -21,20 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPackage = "package://";
-constexpr const char* kSource = "run `source install/local_setup.bash` in the workspace first";
-
-/// Where the sourced workspaces are installed, the last sourced first.
-std::vector<std::string> prefixes() {
-  const char* const path = std::getenv("AMENT_PREFIX_PATH");
-  std::vector<std::string> found;
-  std::istringstream stream(path == nullptr ? "" : path);
-  for (std::string prefix; std::getline(stream, prefix, ':');) {
-    if (!prefix.empty()) {
-      found.push_back(prefix);
-    }
-  }
-  return found;
-}
 
 /// Home of a user; empty: of the one who runs the program.
 std::string homeOf(const std::string& user) {
@@ -60,14 +43,10 @@ std::string homeOf(const std::string& user) {
 
 std::string packageShare(const std::string& package) {
   std::string share = inverse_dynamics_solver::installedPackageShare(package);
-  if (!share.empty()) return share;
-  const std::vector<std::string> known = prefixes();
-  const std::string where = "package " + package + ": ";
-  if (known.empty()) {
-    throw PackageNotFoundError(where + "no workspace is sourced; " + kSource);
+  if (share.empty()) {
+    throw PackageNotFoundError(inverse_dynamics_solver::packageNotFoundText(package));
   }
-  throw PackageNotFoundError(where + "not in any of the sourced workspaces (" +
-                             chain_dynamics::joined(known) + "); build it, then " + kSource);
+  return share;
 }
 
 std::string resolvedPath(const std::string& path, const std::string& directory) {

@@ -2,11 +2,30 @@
 #include "inverse_dynamics_solver/installed_package.hpp"
 
 #include <exception>
+#include <set>
 
 #include "ament_index.hpp"
+#include "inverse_dynamics_solver/exceptions.hpp"
 
 namespace inverse_dynamics_solver {
 inline namespace v2 {
+namespace {
+
+/// The installations that have packages, as `/a, /b`; empty if there are none.
+std::string installations() {
+  std::set<std::string> prefixes;
+  try {
+    for (const auto& [package, prefix] : ament_index::resources("packages")) {
+      prefixes.insert(prefix);
+    }
+  } catch (const std::exception&) {  // no workspace is sourced
+  }
+  std::string list;
+  for (const std::string& prefix : prefixes) list += (list.empty() ? "" : ", ") + prefix;
+  return list;
+}
+
+}  // namespace
 
 std::string installedPackageShare(const std::string& package) {
   try {
@@ -14,6 +33,15 @@ std::string installedPackageShare(const std::string& package) {
   } catch (const std::exception&) {  // not found, or no workspace is sourced
     return "";
   }
+}
+
+std::string packageNotFoundText(const std::string& package) {
+  const std::string known = installations();
+  return errorText(
+      "package " + package, "not found", "an installed package of that name",
+      known.empty() ? "no installed package, as no workspace is sourced" : "none in " + known,
+      "install it, or source the workspace that has it: "
+      "source install/local_setup.bash");
 }
 
 }  // namespace v2

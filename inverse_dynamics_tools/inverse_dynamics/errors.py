@@ -34,7 +34,7 @@ class RobotError(UserError):
 
 
 class PackageNotFoundError(UserError):
-    """A package that no sourced workspace has."""
+    """A package that isn't installed."""
 
 
 class RecordingsError(UserError):

@@ -334,3 +334,14 @@ def test_a_backward_stamp_is_no_obstacle(found):
     check_result(
         replace(found, blocks=(replace(block, time=time, counts=counts), *found.blocks[1:]))
     )
+
+
+def test_a_description_of_an_installed_package_is_named_by_it_without_a_workspace(
+    tmp_path, monkeypatch
+):
+    share = tmp_path / "wheel/share"
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    monkeypatch.setattr(identifications, "package_share", lambda name: share / "arm")
+    inside, outside = share / "arm/urdf/arm.urdf", share / "other/arm.urdf"
+    assert identifications._reference(inside, tmp_path) == "package://arm/urdf/arm.urdf"
+    assert identifications._reference(outside, tmp_path) == "wheel/share/other/arm.urdf"

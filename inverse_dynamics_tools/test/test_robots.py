@@ -233,14 +233,23 @@ def test_unknown_name_lists_what_there_is():
 
 def test_without_a_workspace_the_remedy_is_named(monkeypatch):
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
-    with pytest.raises(PackageNotFoundError, match="no workspace is sourced; run `source install"):
+    with pytest.raises(
+        PackageNotFoundError, match="not found: .*; install it, or source the workspace"
+    ):
         load_robot("ur10_real")
 
 
 def test_in_a_workspace_without_the_data_it_is_named(monkeypatch, tmp_path):
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
-    with pytest.raises(PackageNotFoundError, match="package inverse_dynamics_robots: not in any"):
+    index = tmp_path / "share/ament_index/resource_index/packages"
+    index.mkdir(parents=True)
+    (index / "other").touch()
+    with pytest.raises(PackageNotFoundError) as caught:
         robot_names()
+    assert str(caught.value).startswith(
+        "package inverse_dynamics_robots: not found: expected an installed package of that name, "
+        f"got none in {tmp_path}"
+    )
 
 
 def test_the_projects_robots_are_there():

@@ -6,6 +6,7 @@ import pytest
 
 from inverse_dynamics.base.extras import EXTRAS, how_to_install
 from inverse_dynamics.errors import RobotError
+from inverse_dynamics.figures import meshes
 from inverse_dynamics.figures import scene as scenes
 from inverse_dynamics.figures.meshes import (
     MeshError,
@@ -219,3 +220,12 @@ def test_a_mesh_comes_through_its_text():
     vertices, triangles = decoded_mesh(encoded_mesh(part.vertices, part.triangles))
     np.testing.assert_array_equal(triangles, part.triangles)
     np.testing.assert_allclose(vertices, part.vertices, atol=100 / 32767)
+
+
+def test_meshes_of_installed_packages_are_found_without_a_sourced_workspace(tmp_path, monkeypatch):
+    share = tmp_path / "wheel/share/arm"
+    share.mkdir(parents=True)
+    (share / "upper.stl").touch()
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    monkeypatch.setattr(meshes, "package_share", lambda name: tmp_path / "wheel/share" / name)
+    assert meshes.find_mesh("package://arm/upper.stl", tmp_path) == share / "upper.stl"

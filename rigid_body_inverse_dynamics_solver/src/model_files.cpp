@@ -23,10 +23,7 @@ const char* const kDataPackage = "inverse_dynamics_robots";
 path modelsFolder() {
   const std::string share = inverse_dynamics_solver::installedPackageShare(kDataPackage);
   if (!share.empty()) return path(share) / "models";
-  throw Exception(errorText(std::string("package ") + kDataPackage, "not found",
-                            "an installed package of that name", "none in the sourced workspaces",
-                            "install it, or source the workspace that has it: "
-                            "source install/local_setup.bash"));
+  throw Exception(inverse_dynamics_solver::packageNotFoundText(kDataPackage));
 }
 
 bool isPath(const path& name_or_path) {

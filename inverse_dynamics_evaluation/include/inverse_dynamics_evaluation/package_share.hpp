@@ -14,7 +14,7 @@
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
-/// A package that no sourced workspace has.
+/// A package that isn't installed.
 class PackageNotFoundError : public ConfigurationError {
  public:
   using ConfigurationError::ConfigurationError;
@@ -22,7 +22,7 @@ class PackageNotFoundError : public ConfigurationError {
 
 /// Directory `share/PACKAGE` of an installed package.
 ///
-/// @throws PackageNotFoundError: no sourced workspace has it.
+/// Looked for as inverse_dynamics_solver::installedPackageShare does. @throws PackageNotFoundError.
 std::string packageShare(const std::string& package);
 
 /// File that a path in a configuration names.

@@ -16,5 +16,10 @@ inline namespace v2 {
 /// looks first in the installation that it is part of. Threads: safe.
 std::string installedPackageShare(const std::string& package);
 
+/// Text of the error of a package that isn't installed: where it was looked for, and the remedy.
+///
+/// `package arm: not found: expected an installed package of that name, got none in /opt/arm; ...`
+std::string packageNotFoundText(const std::string& package);
+
 }  // namespace v2
 }  // namespace inverse_dynamics_solver

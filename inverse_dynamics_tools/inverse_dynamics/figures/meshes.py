@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import io
 import os
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,9 +19,10 @@ from urllib.parse import unquote
 
 import numpy as np
 
+from inverse_dynamics.base.ament import package_share
 from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.reading import read_bytes
-from inverse_dynamics.errors import RobotError
+from inverse_dynamics.errors import PackageNotFoundError, RobotError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,7 +51,7 @@ class MeshPart:
 def find_mesh(name: str, directory: Path) -> Path:
     """The file that a URDF in a directory calls a mesh. Raises MeshError.
 
-    package://PACKAGE/FILE is looked for in the sourced workspaces (AMENT_PREFIX_PATH), in ROS_PACKAGE_PATH,
+    package://PACKAGE/FILE is looked for in the installed packages [base/ament.py], in ROS_PACKAGE_PATH,
     and in each directory above the URDF's that has PACKAGE's name or holds a directory of that name.
     """
     scheme, separator, rest = name.partition("://")
@@ -70,7 +72,9 @@ def find_mesh(name: str, directory: Path) -> Path:
 
 
 def _package_roots(package: str, directory: Path) -> list[Path]:
-    roots = [prefix / "share" / package for prefix in _paths("AMENT_PREFIX_PATH")]
+    roots = []
+    with suppress(PackageNotFoundError):
+        roots.append(package_share(package))
     start = directory.absolute()
     for place in (*_paths("ROS_PACKAGE_PATH"), start, *start.parents):
         roots += [place, place / package] if place.name == package else [place / package]

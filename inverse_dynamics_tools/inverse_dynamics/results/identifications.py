@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from inverse_dynamics import _core
+from inverse_dynamics.base.ament import package_share
 from inverse_dynamics.base.files import check_output_file, files_written_whole, write_text
 from inverse_dynamics.base.plain import json_text, plain
-from inverse_dynamics.errors import OutputError
+from inverse_dynamics.errors import OutputError, PackageNotFoundError
 from inverse_dynamics.identification.summary import error_rows
 from inverse_dynamics.report.identifications import error_table, render_identification
 from inverse_dynamics.results.model_files import model_file_text
@@ -164,11 +165,17 @@ def _reference(urdf: Path | None, directory: Path) -> str:
     """How a run configuration names a description: by its package, else relative to the configuration."""
     assert urdf is not None  # the model file's geometry is from it
     place = urdf.resolve()
-    for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
-        share = (Path(prefix) / "share").resolve()
-        if place.is_relative_to(share):
-            return f"package://{place.relative_to(share)}"
+    for share in place.parents:
+        if share.parent.name == "share" and _is_share_of(share.name, share):
+            return f"package://{place.relative_to(share.parent)}"
     return os.path.relpath(place, directory.resolve())
+
+
+def _is_share_of(package: str, directory: Path) -> bool:
+    try:
+        return package_share(package).resolve() == directory
+    except PackageNotFoundError:
+        return False
 
 
 def _table_of(found: Identification, test: HoldOut) -> ReportTable:
