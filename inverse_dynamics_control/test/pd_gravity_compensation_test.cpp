@@ -7,6 +7,7 @@
 #include "inverse_dynamics_control/computed_torque.hpp"
 #include "inverse_dynamics_control/feed_forward.hpp"
 #include "inverse_dynamics_control/gravity_compensation.hpp"
+#include "inverse_dynamics_solver/load_friction.hpp"
 
 namespace inverse_dynamics_control {
 namespace {
@@ -44,7 +45,7 @@ TEST(PdGravityCompensation, FrictionIsThatOfTheReferenceVelocity) {
 }
 
 /// A pendulum whose friction grows with the gravity torque.
-class LoadedPendulum : public Pendulum {
+class LoadedPendulum : public Pendulum, public inverse_dynamics_solver::LoadFriction {
  public:
   static std::shared_ptr<LoadedPendulum> make() {
     auto solver = std::make_shared<LoadedPendulum>();
@@ -57,6 +58,7 @@ class LoadedPendulum : public Pendulum {
                        VectorRef f) const override {
     f[0] = 0.5 * std::abs(9.81 * std::cos(q[0])) * std::tanh(qd[0]);
   }
+  const InverseDynamicsSolver& torqueSolver() const override { return *this; }
   bool frictionDependsOnPositionImpl() const override { return true; }
 };
 

@@ -60,11 +60,6 @@ bool InverseDynamicsSolver::inertiaIsPhysical() const {
   return inertiaIsPhysicalImpl();
 }
 
-bool InverseDynamicsSolver::frictionDependsOnPosition() const {
-  requireInitialized("frictionDependsOnPosition");
-  return frictionDependsOnPositionImpl();
-}
-
 void InverseDynamicsSolver::requireInitialized(const char* method) const {
   MethodCall(method, *this);
 }
@@ -118,15 +113,9 @@ void InverseDynamicsSolver::getTorques(const ConstVectorRef& q, const ConstVecto
 
 // ---------------------------------------------------------------- defaults
 
-bool InverseDynamicsSolver::frictionDependsOnPositionImpl() const { return false; }
-
 void InverseDynamicsSolver::computeFriction(const ConstVectorRef&, const ConstVectorRef&,
                                             VectorRef f) const {
   f.setZero();
-}
-
-void InverseDynamicsSolver::computeParts(bool, const std::function<void()>& compute) const {
-  compute();
 }
 
 void InverseDynamicsSolver::computeDynamicComponents(const ConstVectorRef& q,

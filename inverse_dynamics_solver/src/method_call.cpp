@@ -4,6 +4,8 @@
 #include <string>
 
 #include "chain_dynamics/text.hpp"
+#include "inverse_dynamics_solver/changeable_robot.hpp"
+#include "inverse_dynamics_solver/load_friction.hpp"
 
 namespace inverse_dynamics_solver {
 inline namespace v2 {
@@ -33,7 +35,14 @@ void MethodCall::throwMismatch(const char* argument, const std::string& expected
                                         "the joints are " + chain_dynamics::joined(jointNames())));
 }
 
-void MethodCall::throwNoPositions() const {
+void MethodCall::computeParts(bool shared, const std::function<void()>& compute) const {
+  const auto* const changing = dynamic_cast<const ChangingConditions*>(&solver_);
+  if (changing == nullptr) return compute();
+  changing->computeParts(shared, compute);
+}
+
+void MethodCall::requirePositions() const {
+  if (!frictionDependsOnPosition(solver_)) return;
   throw SizeMismatchException(errorText(
       std::string(method_) + ": argument q", "missing",
       std::to_string(joints()) + " numbers, as friction depends on the position", "0",

@@ -55,7 +55,7 @@ class MethodCall {
 
   /// @throws SizeMismatchException  no positions, but friction depends on them.
   const MethodCall& positionsOfFriction(Eigen::Index size) const {
-    if (size == 0 && solver_.frictionDependsOnPositionImpl()) throwNoPositions();
+    if (size == 0) requirePositions();
     return *this;
   }
 
@@ -69,10 +69,8 @@ class MethodCall {
   [[noreturn]] void throwMismatch(const char* argument, Eigen::Index rows, Eigen::Index cols,
                                   Eigen::Index got_rows, Eigen::Index got_cols) const;
   std::int64_t batchThreads() const { return solver_.batch_threads_; }
-  template <class Compute>
-  void computeParts(bool shared, const Compute& compute) const {
-    solver_.computeParts(shared, std::cref(compute));
-  }
+  /// Calls compute(), on several threads where `shared`, with a robot that doesn't change meanwhile.
+  void computeParts(bool shared, const std::function<void()>& compute) const;
 
  private:
   const std::vector<std::string>& jointNames() const { return solver_.info_.joint_names; }
@@ -81,7 +79,7 @@ class MethodCall {
   [[noreturn]] void throwMismatch(const char* argument, const std::string& expected,
                                   const std::string& got) const;
   [[noreturn]] void throwUnphysical() const;
-  [[noreturn]] void throwNoPositions() const;
+  void requirePositions() const;
 
   const char* method_;
   const InverseDynamicsSolver& solver_;
@@ -120,11 +118,12 @@ class BatchCall : public MethodCall {
   /// Calls compute() with parts of the views, on as many threads as `batch_threads` allows.
   template <class Compute, class... Views>
   void share(const Compute& compute, const Views&... views) const {
-    computeParts(batchThreads() > 1, [&] {
+    const auto parts = [&] {
       chain_dynamics::shareStates(
           count_, batchThreads(),
           [&](Eigen::Index first, Eigen::Index size) { compute(views.middle(first, size)...); });
-    });
+    };
+    computeParts(batchThreads() > 1, std::cref(parts));
   }
 
  private:

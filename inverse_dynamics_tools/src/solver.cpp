@@ -5,6 +5,7 @@
 
 #include <array>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/load_friction.hpp>
 #include <inverse_dynamics_solver/motor_currents.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <inverse_dynamics_solver/torque_deviation.hpp>
@@ -155,7 +156,7 @@ class Solver {
     return py::array_t<double>(gains.size(), gains.data());
   }
 
-  bool frictionDependsOnPosition() const { return solver_->frictionDependsOnPosition(); }
+  bool frictionDependsOnPosition() const { return ids::frictionDependsOnPosition(*solver_); }
 
   /// Half the width of the band that holds 95 % of the torques; None where it is unknown.
   py::object torqueDeviation() const {

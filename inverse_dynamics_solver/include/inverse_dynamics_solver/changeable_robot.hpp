@@ -11,7 +11,7 @@
 ///         ...
 ///
 /// What is made of several such functions reads the robot as often: such a solver overrides
-/// computeTorques() and computeDynamicComponents(), and computeParts() for batches.
+/// computeTorques() and computeDynamicComponents().
 #pragma once
 
 #include <functional>
@@ -68,7 +68,14 @@ class ChangingConditions : public Payload, public VariableGravity {
   /// Computes under these conditions from the next call on, or throws. One thread at a time.
   virtual void changeTo(const Conditions& conditions) = 0;
 
+  /// Calls `compute`, which computes a batch part by part, on several threads where `shared`: by
+  /// default while nothing changes. A solver that reads the robot once per part needs that only where
+  /// there are several.
+  virtual void computeParts(bool shared, const std::function<void()>& compute) const;
+
  private:
+  friend class MethodCall;  // computeParts()
+
   void changePayloads(const std::function<void(Payloads&)>& change) final;
   Payloads currentPayloads() const final;
   void changeBaseMotion(const std::function<void(BaseMotion&)>& change) final;

@@ -9,7 +9,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -88,10 +87,6 @@ class InverseDynamicsSolver {
   /// taken away. Only then may a controller invert H or feed back through it.
   bool inertiaIsPhysical() const;
 
-  /// Whether friction grows with the gravity torques that joints carry: then it must be asked for with
-  /// the position, as it also depends on payloads and gravity.
-  bool frictionDependsOnPosition() const;
-
   /// @name By value
   /// @{
 
@@ -108,7 +103,7 @@ class InverseDynamicsSolver {
     return c;
   }
   /// Friction torques `f(qd)`; zero where the solver has no friction model or the parameter
-  /// `friction` is false. Throws SizeMismatchException where frictionDependsOnPosition().
+  /// `friction` is false. Throws SizeMismatchException where it depends on q [load_friction.hpp].
   Eigen::VectorXd getFrictionVector(const ConstVectorRef& qd) const {
     Eigen::VectorXd f = vector("getFrictionVector");
     getFrictionVector(qd, f);
@@ -158,7 +153,7 @@ class InverseDynamicsSolver {
   void getFrictionVector(const ConstVectorRef& qd, VectorRef f) const {
     getFrictionVector(Eigen::VectorXd(), qd, f);
   }
-  /// q may be empty where not frictionDependsOnPosition(); as in batches.
+  /// q may be empty where friction doesn't depend on it; as in batches.
   void getFrictionVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef f) const;
   void getGravityVector(const ConstVectorRef& q, VectorRef g) const;
   void getDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
@@ -261,7 +256,7 @@ class InverseDynamicsSolver {
   virtual void computeGravityVector(const ConstVectorRef& q, VectorRef g) const = 0;
 
   /// Zero by default. With Configuration::friction false it gives zero, and computeTorques() leaves
-  /// it out. q may be empty where frictionDependsOnPositionImpl() is false.
+  /// it out. q may be empty, unless the solver has LoadFriction that depends on it.
   virtual void computeFriction(const ConstVectorRef& q, const ConstVectorRef& qd,
                                VectorRef f) const;
 
@@ -288,16 +283,8 @@ class InverseDynamicsSolver {
   virtual void computeTorquesBatch(const ConstStates& q, const ConstStates& qd,
                                    const ConstStates& qdd, const States& tau) const;
 
-  /// Calls `compute`, which computes a batch part by part, on several threads where `shared`. By
-  /// default that is all. A solver whose robot may change meanwhile sees to it that all parts are
-  /// computed with one robot [changeable_robot.hpp].
-  virtual void computeParts(bool shared, const std::function<void()>& compute) const;
-
   /// Answer of inertiaIsPhysical(). No default: a wrong yes makes robots oscillate.
   virtual bool inertiaIsPhysicalImpl() const = 0;
-
-  /// Answer of frictionDependsOnPosition(); false by default.
-  virtual bool frictionDependsOnPositionImpl() const;
   /// @}
 
  private:

@@ -102,10 +102,6 @@ class PooledSolver : public InverseDynamicsSolver, public ChangeableRobot<Pooled
                                 VectorRef c, VectorRef g) const final;
   void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
                       VectorRef tau) const final;
-  /// One state after the other, each with a workspace of its own.
-  void computeParts(bool, const std::function<void()>& compute) const final {
-    whileUnchanged(compute);
-  }
   bool inertiaIsPhysicalImpl() const final { return inertia_is_physical_; }
 
   void addFriction(const ConstVectorRef& qd, VectorRef f) const;

@@ -22,6 +22,7 @@
 #include "inverse_dynamics_solver/forward_dynamics.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 #include "inverse_dynamics_solver/kinematics.hpp"
+#include "inverse_dynamics_solver/load_friction.hpp"
 #include "inverse_dynamics_solver/regressor.hpp"
 #include "inverse_dynamics_solver/torque_derivatives.hpp"
 #include "inverse_dynamics_solver/torque_deviation.hpp"
@@ -72,6 +73,7 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
                                        public inverse_dynamics_solver::TorqueDerivatives,
                                        public inverse_dynamics_solver::Regressor,
                                        public inverse_dynamics_solver::ForwardDynamics,
+                                       public inverse_dynamics_solver::LoadFriction,
                                        public inverse_dynamics_solver::TorqueDeviation {
  public:
   using ExternalWrench::getTorques;

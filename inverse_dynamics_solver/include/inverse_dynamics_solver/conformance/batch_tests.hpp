@@ -201,7 +201,7 @@ TEST_P(SolverConformance, FrictionWithoutPositionsIsTheSameOrRefused) {
   const Eigen::MatrixXd q = randomColumns(3);
   const Eigen::MatrixXd qd = randomColumns(3);
   const Eigen::VectorXd none;
-  if (s.frictionDependsOnPosition()) {
+  if (frictionDependsOnPosition(s)) {
     for (const auto& call : std::vector<std::function<void()>>{
              [&] { s.getFrictionVector(qd.col(0)); }, [&] { s.getFrictionVectorBatch(qd); },
              [&] { s.getFrictionVector(none, qd.col(0)); }}) {

@@ -22,6 +22,7 @@
 
 #include "chain_dynamics/model.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
+#include "inverse_dynamics_solver/load_friction.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
 
 namespace inverse_dynamics_solver::conformance {

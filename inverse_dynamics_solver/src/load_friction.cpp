@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_solver/load_friction.hpp"
+
+namespace inverse_dynamics_solver {
+inline namespace v2 {
+
+// Out of line, so that there is one type information for dynamic_cast across plugin libraries.
+LoadFriction::~LoadFriction() = default;
+
+bool LoadFriction::frictionDependsOnPosition() const {
+  jointsFor("frictionDependsOnPosition");
+  return frictionDependsOnPositionImpl();
+}
+
+bool frictionDependsOnPosition(const InverseDynamicsSolver& solver) {
+  const auto* const friction = dynamic_cast<const LoadFriction*>(&solver);
+  return friction != nullptr && friction->frictionDependsOnPosition();
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_solver
