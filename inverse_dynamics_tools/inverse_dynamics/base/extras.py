@@ -8,6 +8,7 @@ One that is missing is a MissingPackageError, whose text names the command that 
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -71,10 +72,17 @@ class _LazyModule:
 
     def __init__(self, name: str, use: str) -> None:
         self._name, self._use = name, use
+        self._module: Any = None
 
     def __getattr__(self, attribute: str) -> Any:
+        # import_module() takes 10 microseconds even for a module that is there
+        if self._module is None or sys.modules.get(self._name) is not self._module:
+            self._module = self._imported()
+        return getattr(self._module, attribute)
+
+    def _imported(self) -> Any:
         try:
-            return getattr(import_module(self._name), attribute)
+            return import_module(self._name)
         except ModuleNotFoundError as error:
             if error.name != self._name:
                 raise

@@ -80,11 +80,13 @@ class ContactChecker:
         self._data.qpos[self.robot.dofs] = q
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_collision(self._model, self._data)
+        if self._data.ncon == 0:
+            return []
         contacts = self._data.contact
         return [
-            (float(distance), pair)
-            for distance, a, b in zip(contacts.dist, contacts.geom1, contacts.geom2, strict=True)
-            if (pair := (int(a), int(b))) not in self._ignored and distance < self.clearance
+            (distance, pair)
+            for distance, (a, b) in zip(contacts.dist.tolist(), contacts.geom.tolist(), strict=True)
+            if (pair := (a, b)) not in self._ignored and distance < self.clearance
         ]
 
     def _always_touching(self) -> set[tuple[int, int]]:

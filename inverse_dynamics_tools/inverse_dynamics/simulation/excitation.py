@@ -326,20 +326,17 @@ class _Judge:
         U = -(Z @ B) * weight[:, None]
         excess = np.maximum(np.abs(tau) / self._limits.effort - _AIM, 0.0)
         U_tau = 2.0 * self.weight * excess * np.sign(tau) / self._limits.effort
-        slopes = self._slopes(states, Z, U, tau, U_tau)
+        slopes = self._slopes(states, U, U_tau)
         value += self.weight * float((excess**2).sum())
         return value, self._family.pulled_back(slopes, self._basis)
 
     def _slopes(
-        self,
-        states: tuple[Floats, Floats, Floats],
-        Z: Floats,
-        U: Floats,
-        tau: Floats,
-        U_tau: Floats,
+        self, states: tuple[Floats, Floats, Floats], U: Floats, U_tau: Floats
     ) -> list[Floats]:
         """Derivatives (N, n) by q, qd, qdd of sum U . Z + sum U_tau . tau."""
+        weighted = self._unknowns.weighted_sum(U, U_tau)
         gravity = self._unknowns.gravity(states[0])
+        here = weighted(*states, gravity)
         slopes = []
         for which in range(3):
             slope = np.empty_like(states[which])
@@ -348,12 +345,8 @@ class _Judge:
                     values.copy() if k == which else values for k, values in enumerate(states)
                 )
                 (q, qd, qdd)[which][:, j] += step
-                Z_moved, tau_moved = self._unknowns.rows_and_torques(
-                    q, qd, qdd, None if which == 0 else gravity
-                )
-                change = ((Z_moved - Z) * U).sum(axis=(1, 2))
-                change += ((tau_moved - tau) * U_tau).sum(axis=1)
-                slope[:, j] = change / step
+                there = weighted(q, qd, qdd, None if which == 0 else gravity)
+                slope[:, j] = (there - here) / step
             slopes.append(slope)
         return slopes
 

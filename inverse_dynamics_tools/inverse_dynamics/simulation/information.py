@@ -28,6 +28,10 @@ import numpy as np
 from inverse_dynamics.simulation.regressor import PARAMETERS_PER_LINK, ArmGeometry
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
     from inverse_dynamics._core import FastModel
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.simulation.limits import MotionLimits
@@ -146,22 +150,43 @@ class Unknowns:
         """z, (N, n, m), of states (N, n)."""
         return self.rows_and_torques(q, qd, qdd)[0]
 
-    def rows_and_torques(
-        self, q: Floats, qd: Floats, qdd: Floats, gravity: Floats | None = None
-    ) -> tuple[Floats, Floats]:
-        """z, (N, n, m), and the description's torques without friction, (N, n) N m.
-
-        gravity: self.gravity(q), where it is known already.
-        """
-        gravity = self.gravity(q) if gravity is None else gravity
+    def rows_and_torques(self, q: Floats, qd: Floats, qdd: Floats) -> tuple[Floats, Floats]:
+        """z, (N, n, m), and the description's torques without friction, (N, n) N m."""
         count, joints = q.shape
         Y = self.model.regressor(q, qd, qdd)
-        inertial = len(self.scale) - OWN * joints
         Z = np.zeros((count, joints, len(self.scale)))
-        Z[:, :, :inertial] = Y[:, :, self.columns]
-        at = inertial + np.arange(OWN * joints).reshape(joints, OWN)
-        Z[:, np.arange(joints)[:, None], at] = self._own(gravity, qd, qdd)
+        Z[:, :, : self._inertial] = Y[:, :, self.columns]
+        Z[:, np.arange(joints)[:, None], self._places] = self._own(self.gravity(q), qd, qdd)
         return Z, np.asarray(Y @ self.model.parameters)
+
+    def weighted_sum(self, U: Floats, U_tau: Floats) -> Callable[..., Floats]:
+        """What computes `sum_jm U z + sum_j U_tau tau`, (N,), of other states, without their z (N, n, m).
+
+        U: (N, n, m), U_tau: (N, n). Its arguments: q, qd, qdd, (N, n), and gravity(q) or None.
+        """
+        of_regressor = U_tau[:, :, None] * self.model.parameters
+        of_regressor[:, :, self.columns] += U[:, :, : self._inertial]
+        of_own = U[:, np.arange(U.shape[1])[:, None], self._places]
+
+        def weighted(q: Floats, qd: Floats, qdd: Floats, gravity: Floats | None) -> Floats:
+            gravity = self.gravity(q) if gravity is None else gravity
+            Y, own = self.model.regressor(q, qd, qdd), self._own(gravity, qd, qdd)
+            return np.asarray(
+                np.einsum("kjm,kjm->k", of_regressor, Y) + np.einsum("kjm,kjm->k", of_own, own)
+            )
+
+        return weighted
+
+    @property
+    def _inertial(self) -> int:
+        """How many unknowns belong to links."""
+        return len(self.scale) - OWN * len(self.model.joint_names)
+
+    @property
+    def _places(self) -> NDArray[np.intp]:
+        """(n, OWN): where each joint's own unknowns are."""
+        joints = len(self.model.joint_names)
+        return self._inertial + np.arange(OWN * joints).reshape(joints, OWN)
 
     def gravity(self, q: Floats) -> Floats:
         """Gravity torques (N, n) N m, of the description."""
