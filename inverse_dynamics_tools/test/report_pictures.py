@@ -85,13 +85,15 @@ def set_screen(driver, width, height, scheme="light", **features):
     driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": listed})
 
 
-def take(driver, uri: str, before: str = "") -> dict[str, np.ndarray]:
+def take(driver, uri: str, before: str = "", only: str = "") -> dict[str, np.ndarray]:
     """The pictures by name, (rows, columns, 3) of 0 to 255, an eighth as large as on the screen.
 
-    before: a script that changes the page.
+    before: a script that changes the page. only: the name of the one that is wanted.
     """
     found = {}
     for scheme in ("light", "dark"):
+        if only and not only.endswith(scheme):
+            continue
         set_screen(driver, 1400, 900, scheme)
         driver.get(uri)
         driver.execute_script(
@@ -110,9 +112,10 @@ def take(driver, uri: str, before: str = "") -> dict[str, np.ndarray]:
         paper = driver.execute_script("return getComputedStyle(document.body).backgroundColor")
         for run, elements in (("run-1", ELEMENTS), ("run-2", {"robot": ELEMENTS["robot"]})):
             for name, selector in elements.items():
-                data = driver.execute_script(_DRAWN, f"#{run} {selector}", paper)
-                title = "skeleton" if run == "run-2" else name
-                found[f"{title}_{scheme}"] = _small(data)
+                title = f"{'skeleton' if run == 'run-2' else name}_{scheme}"
+                if only in ("", title):
+                    data = driver.execute_script(_DRAWN, f"#{run} {selector}", paper)
+                    found[title] = _small(data)
     return found
 
 

@@ -136,24 +136,32 @@ class Plot {
     this.overlay.setAttribute("aria-label", `${this.options.label} over time: ${texts.join(", ")}`);
   }
 
+  // Whoever draws measures first: asking the page for a size takes longer than drawing a sample.
+  measure() {
+    this.width = this.base.clientWidth;
+    this.height = this.base.clientHeight;
+  }
+
   x(t, view) {
-    const width = this.base.clientWidth - kMargin.left - kMargin.right;
+    const width = this.width - kMargin.left - kMargin.right;
     return kMargin.left + width * (t - view.low) / (view.high - view.low);
   }
 
   t(x, view) {
-    const width = this.base.clientWidth - kMargin.left - kMargin.right;
+    this.measure();
+    const width = this.width - kMargin.left - kMargin.right;
     return view.low + (view.high - view.low) * (x - kMargin.left) / width;
   }
 
   y(value) {
-    const height = this.base.clientHeight - kMargin.top - kMargin.bottom;
+    const height = this.height - kMargin.top - kMargin.bottom;
     return kMargin.top + height * (this.range[1] - value) / (this.range[1] - this.range[0]);
   }
 
   draw(view) {
     const {context, width, height} = prepare(this.base, 2);  // fine enough for paper
     if (width === 0) return;
+    this.measure();
     this.drawAxes(context, width, height, view);
     context.save();
     context.beginPath();
@@ -265,6 +273,7 @@ class Plot {
   drawOverlay(view, cursor, selection) {
     const {context, width, height} = prepare(this.overlay, 1);
     if (width === 0) return;
+    this.measure();
     if (selection) {
       context.fillStyle = themeColor("error");
       context.globalAlpha = 0.15;

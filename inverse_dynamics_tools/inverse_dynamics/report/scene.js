@@ -115,7 +115,9 @@ function unitSphere() {
 // ---- meshes -----------------------------------------------------------------------------------
 
 function bytesOf(base64) {
-  return Uint8Array.from(atob(base64), (character) => character.charCodeAt(0)).buffer;
+  const text = atob(base64), bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  return bytes.buffer;
 }
 
 const kSmooth = 0.8;  // cosine of the largest angle between faces that look like one curved face

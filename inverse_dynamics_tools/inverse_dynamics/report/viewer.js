@@ -5,8 +5,7 @@
 "use strict";
 
 function decode(base64) {
-  const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
-  return new Float32Array(bytes.buffer);
+  return new Float32Array(bytesOf(base64));
 }
 
 // Rows of a matrix stored joint by joint.
