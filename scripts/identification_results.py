@@ -155,7 +155,7 @@ them as in the recordings, for as long, with as many messages and quantised enco
 in random order, are the noise. They are identified from the description alone, as real ones are. Medians of
 {SEEDS} seeds: the error of the identified torques on states that are uniform in the ranges that were seen, mean over
 joints; the error of the delay; how many of the 95 % intervals of inertial combinations hold the truth. The bounds are
-those of inverse_dynamics_tools/test/test_known_truth.py.
+those of inverse_dynamics_tools/test/identification/test_known_truth.py.
 """
 
 _PAYLOADS = f"""\
@@ -173,7 +173,8 @@ correlated in time and between joints as the residuals are, and the inertia abou
 def _known_truth(bags: Path, directory: Path) -> str:
     rows = []
     for name, most in MOST_ERROR.items():
-        truth = Truth.of(bags / ROBOTS[f"{name}_real"], name, directory)
+        recording = bags / ROBOTS[f"{name}_real"]
+        truth = Truth.of(recording, name, directory, identify([recording], f"{name}_real"))
         results = [truth.identified_again(seed) for seed in range(SEEDS)]
         errors = [result.mean for result in results]
         delays = [1e3 * abs(result.delay_error) for result in results]

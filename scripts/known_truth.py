@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """How well a robot that is known is identified: a simulated arm that is what a real one was found to be.
 
-    truth = Truth.of(recordings / "ur10_exciting_trajectory", "ur10_real", directory)
+    recording = recordings / "ur10_exciting_trajectory"
+    truth = Truth.of(recording, "ur10", directory, identify([recording], "ur10_real"))
     result = truth.identified_again(seed=0)
     result.error, result.delay_error
 
@@ -19,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics import FastModel, _core, evaluate, identify, load_robot
+from inverse_dynamics import FastModel, _core, evaluate, load_robot
 from inverse_dynamics.identification.blocks import blocks_of
 from inverse_dynamics.identification.cross_validation import choose, errors_of
 from inverse_dynamics.identification.identify import BLOCKS
@@ -83,9 +84,8 @@ class Truth:
     directory: Path
 
     @classmethod
-    def of(cls, recording: Path, name: str, directory: Path) -> Truth:
-        """Of ur10 or panda; files go to the directory."""
-        found = identify([recording], f"{name}_real")
+    def of(cls, recording: Path, name: str, directory: Path, found: Identification) -> Truth:
+        """Of ur10 or panda, as it was identified from the recording; files go to the directory."""
         files = write_identification(found, directory / f"{name}.yaml")
         evaluation = evaluate(recording, found.robot)
         log = evaluation.log

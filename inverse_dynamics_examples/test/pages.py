@@ -45,11 +45,21 @@ def page(name: str) -> str:
     return (REPOSITORY / name).read_text(encoding="utf-8")
 
 
-def run(block: Block, directory: Path) -> str:
-    """Run a block of bash or python word for word; give what it prints. A failure ends the test."""
+# Makes evaluations without the figures that nothing looks at: half a second each.
+NO_FIGURES = 'ids() { command ids "$@" $([ "$1" != evaluate ] || echo --figures none); }\n'
+
+
+def run(block: Block, directory: Path, before: str = "") -> str:
+    """Run a block of bash or python word for word; give what it prints. A failure ends the test.
+
+    before: what is run in front of it, in the same shell or program.
+    """
     command = {"bash": ["bash", "-euo", "pipefail", "-c"], "python": [sys.executable, "-c"]}
     done = subprocess.run(
-        [*command[block.language], block.code], cwd=directory, capture_output=True, text=True
+        [*command[block.language], before + block.code],
+        cwd=directory,
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, f"{block.code}\n{done.stdout}\n{done.stderr}"
     return done.stdout

@@ -53,9 +53,9 @@ def configured(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     ("compiler", "program"),
     [
         ("c++", "avx2"),
-        ("c++", "avx512"),
+        pytest.param("c++", "avx512", marks=pytest.mark.nightly),
         ("c++", "address_sanitizer"),
-        ("clang++", "plain"),
+        pytest.param("clang++", "plain", marks=pytest.mark.nightly),
     ],
 )
 def test_program_runs_with_flags_of_its_own(

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pages import REPOSITORY, blocks_of, page, run
+from pages import NO_FIGURES, REPOSITORY, blocks_of, page, run
 
 from inverse_dynamics import Evaluation, read_evaluation
 
@@ -31,7 +31,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
         if block.language == "xml":
             (root / "payload.xml").write_text(block.code)
         else:
-            run(block, root)
+            run(block, root, NO_FIGURES if block.language == "bash" else "")
     return root / "out/why"
 
 

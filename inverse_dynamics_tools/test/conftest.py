@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
-from inverse_dynamics import cli
+from inverse_dynamics import Identification, cli, identify
 from inverse_dynamics.data.joint_log import JointLog
 
 STORE = get_typestore(Stores.ROS2_HUMBLE)
@@ -91,6 +92,14 @@ def recordings() -> Path:
     if not directory:
         pytest.skip("IDS_DATA_DIR is not set: no recordings of real robots")
     return Path(directory) / "bags"
+
+
+@pytest.fixture(scope="session")
+def identified(recordings: Path) -> Callable[[str], Identification]:
+    """Models of the real ur10 and panda by name, made once for all of test/identification: ten seconds each."""
+    return cache(
+        lambda name: identify([recordings / f"{name}_exciting_trajectory"], f"{name}_real")
+    )
 
 
 @pytest.fixture(autouse=True)

@@ -46,7 +46,13 @@ if TYPE_CHECKING:
 
 KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
 GAIN = 60.0  # 1/s
-SEEDS = range(10)
+SEEDS = pytest.mark.parametrize(
+    "seeds",
+    [
+        pytest.param(range(3), id="three seeds"),
+        pytest.param(range(3, 10), id="seven more", marks=pytest.mark.nightly),
+    ],
+)
 FORCE = 20.0  # N
 PUSHED = 0.6  # s, when the force begins
 LEAST_SINGULAR_VALUE = 0.1
@@ -120,13 +126,14 @@ def least_singular_value(arm: ContactArm, q: Floats) -> float:
     return float(np.linalg.svd(arm.jacobian(q), compute_uv=False)[-1])
 
 
+@SEEDS
 @pytest.mark.parametrize("moving", [False, True], ids=["at rest", "moving"])
 def test_a_step_of_the_force_is_found_within_ten_percent_after_50_ms(
-    bench: Bench, moving: bool
+    bench: Bench, moving: bool, seeds: range
 ) -> None:
     begin = round(PUSHED / PERIOD)
     errors, singular_values = [], []
-    for seed in SEEDS:
+    for seed in seeds:
         recorded = bench.pushed(seed, moving)
         window = slice(begin + 50, begin + 100)
         error = (bench.forces(recorded)[window] - recorded.force[window]).mean(axis=0)
@@ -140,11 +147,12 @@ def test_a_step_of_the_force_is_found_within_ten_percent_after_50_ms(
     assert min(singular_values) >= LEAST_SINGULAR_VALUE
 
 
+@SEEDS
 @pytest.mark.parametrize("place", ["tip", "elbow"])
-def test_a_ball_of_1_joule_is_noticed_within_30_ms(bench: Bench, place: str) -> None:
+def test_a_ball_of_1_joule_is_noticed_within_30_ms(bench: Bench, place: str, seeds: range) -> None:
     link = bench.arm.tip if place == "tip" else ELBOW[bench.name]
     delays = []
-    for seed in SEEDS:
+    for seed in seeds:
         posture = bench.posture(seed)
         J = bench.arm.jacobian(posture, link)[:3]
         random = np.random.default_rng((seed, 11))
@@ -168,9 +176,10 @@ def test_a_ball_of_1_joule_is_noticed_within_30_ms(bench: Bench, place: str) -> 
     assert max(delays) <= 0.03
 
 
-def test_no_false_alarm_in_ten_minutes_of_random_motion(bench: Bench) -> None:
+@SEEDS
+def test_no_false_alarm_in_minutes_of_random_motion(bench: Bench, seeds: range) -> None:
     greatest = np.zeros(len(bench.arm.home))
-    for seed in SEEDS:
+    for seed in seeds:
         recorded = bench.arm.carry_out(RandomMotion(bench.arm, seed, 60.0), 60.0, seed)
         assert not bench.alarms(recorded).any(), f"seed {seed}"
         greatest = np.maximum(greatest, np.abs(bench.estimate(recorded)[0]).max(axis=0))
@@ -205,12 +214,13 @@ def kdl_forces(arm: ContactArm, recorded: Recorded, cutoff: float) -> Floats:
     return np.array([line.split() for line in done.stdout.splitlines()], dtype=float)
 
 
-def test_forces_are_more_exact_than_those_of_kdl(bench: Bench) -> None:
+@SEEDS
+def test_forces_are_more_exact_than_those_of_kdl(bench: Bench, seeds: range) -> None:
     """While the arm moves, at the same bandwidth; KDL is given the best of four low-passes."""
     if not os.environ.get("KDL_WRENCHES"):
         pytest.skip("KDL isn't there")
     steady = np.r_[300:600, 800:1600]  # not while the filters follow the step
-    runs = [bench.pushed(seed, True) for seed in SEEDS]
+    runs = [bench.pushed(seed, True) for seed in seeds]
 
     def rmse(forces: list[Floats]) -> Floats:
         """Of each run."""

@@ -40,19 +40,6 @@ def description(robot):
     return read_description(robot.urdf), {"root": robot.root, "tip": robot.tip}
 
 
-@pytest.fixture(scope="session")
-def identified(recordings):
-    """Models of the real robots, made once."""
-    made = {}
-
-    def get(name):
-        if name not in made:
-            made[name] = identify([recordings / f"{name}_exciting_trajectory"], f"{name}_real")
-        return made[name]
-
-    return get
-
-
 @ROBOTS
 def test_unseen_blocks_are_predicted_better_than_by_all_others(identified, name):
     found = identified(name)
@@ -272,8 +259,8 @@ def test_independent_samples_of_white_noise_are_all():
 
 def test_several_recordings_are_used_together(known, tmp_path):
     bags = [known.record(tmp_path / f"bag{k}", 10.0, seed=k) for k in (1, 2, 3)]
-    several = identify(bags, known.robot)
-    assert len(several.recordings) == 3
+    several = identify(bags, known.robot, blocks=3)
+    assert len(several.recordings) == len(several.blocks) == 3
     assert {block.recording for block in several.blocks} == {str(bag) for bag in bags}
     assert several.rmse("identified") < 0.3
 

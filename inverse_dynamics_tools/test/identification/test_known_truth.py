@@ -11,18 +11,24 @@ import pytest
 
 from inverse_dynamics import evaluate
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "scripts"))
 from known_truth import MOST_ERROR, Truth
 
-SEEDS = 3  # ./scripts/identification_results takes ten
 LEAST_INSIDE, MOST_INSIDE = 0.85, 0.99  # of intervals that mean 95 %
 
 
 @pytest.mark.parametrize("name", MOST_ERROR)
-def test_a_robot_that_is_known_is_identified(recordings, tmp_path, name):
+@pytest.mark.parametrize(
+    "seeds",  # ./scripts/identification_results takes ten
+    [
+        pytest.param(range(2), id="two seeds"),
+        pytest.param(range(3), id="three seeds", marks=pytest.mark.nightly),
+    ],
+)
+def test_a_robot_that_is_known_is_identified(recordings, identified, tmp_path, name, seeds):
     recording = recordings / f"{name}_exciting_trajectory"
-    truth = Truth.of(recording, name, tmp_path)
-    results = [truth.identified_again(seed) for seed in range(SEEDS)]
+    truth = Truth.of(recording, name, tmp_path, identified(name))
+    results = [truth.identified_again(seed) for seed in seeds]
     assert np.median([result.mean for result in results]) <= MOST_ERROR[name], results
     for result in results:
         assert abs(result.delay_error) <= truth.most_delay_error, results

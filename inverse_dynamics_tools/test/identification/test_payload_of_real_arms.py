@@ -8,14 +8,11 @@ law, prior strength and delay that `ids identify` chooses, and its residuals sta
 from __future__ import annotations
 
 import sys
-from functools import cache
 from pathlib import Path
 
 import pytest
 
-from inverse_dynamics import identify
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "scripts"))
 from payload_truth import Arm, trials
 
 TRIALS = 100
@@ -28,15 +25,9 @@ MOST = {
 }
 
 
-@cache
-def identified(recording, robot):
-    return identify([recording], robot)
-
-
 @pytest.mark.parametrize(("name", "mass", "seconds"), MOST)
-def test_simulated_loads_on_real_residuals(recordings, tmp_path, name, mass, seconds):
-    found = identified(recordings / f"{name}_exciting_trajectory", f"{name}_real")
-    figures = trials(Arm.of(found, tmp_path, seconds=seconds), mass, TRIALS)
+def test_simulated_loads_on_real_residuals(identified, tmp_path, name, mass, seconds):
+    figures = trials(Arm.of(identified(name), tmp_path, seconds=seconds), mass, TRIALS)
     most_mass, most_center, most_ratio = MOST[name, mass, seconds]
     assert figures.mass <= most_mass, figures
     assert figures.center <= most_center, figures
