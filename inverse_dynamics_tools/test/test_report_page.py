@@ -10,7 +10,7 @@ import report_pictures as pictures
 from PIL import Image
 from test_palette import contrast
 from test_recordings_page import summary
-from test_report import browser, child, press, time_of
+from test_report import browser, child, play_slowly, press, time_of
 
 from inverse_dynamics.figures import palette
 from inverse_dynamics.report.page import (
@@ -320,8 +320,7 @@ def test_the_keyboard_reaches_everything_and_shows_where_it_is(show):
     driver.execute_script("arguments[0].focus()", child(section, ".play"))
     press(driver, "Right")  # steps although a button has the focus
     assert time_of(section) == pytest.approx(0.1, abs=1e-3)
-    # A busy machine presses late.
-    driver.execute_script("arguments[0].value = '0.25';", child(section, ".speed"))
+    play_slowly(driver, section)
     press(driver, " ")
     assert child(section, ".play").text == "Pause"
     press(driver, " ")
