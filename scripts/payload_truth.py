@@ -77,7 +77,9 @@ class Arm:
         nested: law, prior strength and delay are chosen without the window, not on the whole recording.
         """
         evaluation = evaluate(found.recordings[0], found.robot)
-        samples, windows, solvers = samples_of(evaluation), [], []
+        samples = samples_of(evaluation)
+        windows: list[Samples] = []
+        solvers: list[Solver] = []
         for begin in _begins(evaluation.time, seconds):
             rest = blocks_outside(evaluation, begin, begin + seconds)
             within = (samples.time >= begin) & (samples.time < begin + seconds)
