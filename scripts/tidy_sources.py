@@ -8,13 +8,17 @@ push), else from the commit before. Files that aren't committed count. A change 
 is changed, includes a changed header (Ninja knows that from the last build), or lies below a changed
 CMakeLists.txt.
 
-Prints the sources, one per line, and on the standard error output why it is these.
+Prints the sources, one per line, and on the standard error output why it is these. First writes
+build/clang_tidy/compile_commands.json: how each of them is compiled by itself, also where the build
+compiles several at a time (a unity build).
 """
 
 from __future__ import annotations
 
+import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path, PurePosixPath
@@ -22,6 +26,8 @@ from pathlib import Path, PurePosixPath
 MAIN_BRANCHES = ("origin/HEAD", "origin/main", "main")
 RULES = {".clang-tidy", "scripts/lint"}
 _OBJECT = re.compile(r"^\S.*: #deps \d+")
+_INCLUDE = re.compile(r'^#include "(.*\.cpp)"$', re.MULTILINE)
+GCC_ONLY = {"-flive-range-shrinkage"}  # an error for Clang
 
 
 def sources_to_check(root: Path, everything: bool = False) -> tuple[list[str], str]:
@@ -66,17 +72,42 @@ def changed_files(root: Path, base: str) -> set[str]:
     return {*differing, *_lines(root, "ls-files", "--others", "--exclude-standard")}
 
 
+def write_database(root: Path) -> None:
+    """Writes build/clang_tidy/compile_commands.json."""
+    entries = json.loads((root / "build/compile_commands.json").read_text())
+    database = root / "build/clang_tidy/compile_commands.json"
+    database.parent.mkdir(exist_ok=True)
+    database.write_text(json.dumps([own for e in entries for own in _own_commands(e)], indent=1))
+
+
+def _own_commands(entry: dict[str, str]) -> list[dict[str, str]]:
+    words = [word for word in shlex.split(entry["command"]) if word not in GCC_ONLY]
+    file = Path(entry["directory"], entry["file"])
+    sources = _INCLUDE.findall(file.read_text()) if "Unity" in file.parts else [entry["file"]]
+    return [
+        entry
+        | {
+            "file": source,
+            "command": shlex.join(source if word == entry["file"] else word for word in words),
+        }
+        for source in sources
+    ]
+
+
 def included_files(root: Path) -> dict[str, set[str]]:
-    """By source: what it includes, itself among it, as the last build of each package found."""
+    """By source: what it includes, itself among it, as the last build of each package found.
+
+    Sources that are compiled at a time count with all headers of them all.
+    """
     includes: dict[str, set[str]] = {}
     for log in sorted(root.glob("build/*/.ninja_deps")):
         command = ["ninja", "-C", str(log.parent), "-t", "deps"]
         deps = subprocess.run(command, capture_output=True, text=True, check=False)
         for files in _files_of_objects(deps.stdout):
             names = {_in_repository(root, log.parent, file) for file in files}
-            for name in names:
-                if name.endswith(".cpp"):
-                    includes.setdefault(name, set()).update(names)
+            sources = {name for name in names if name.endswith(".cpp")}
+            for name in sources:
+                includes.setdefault(name, {name}).update(names - sources)
     return includes
 
 
@@ -132,6 +163,7 @@ def _lines(root: Path, *arguments: str) -> list[str]:
 def main() -> None:
     """Print them."""
     root = Path(__file__).resolve().parent.parent
+    write_database(root)
     sources, reason = sources_to_check(root, everything="--all" in sys.argv[1:])
     print(f"    clang-tidy: {reason}", file=sys.stderr)
     for source in sources:

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests of tidy_sources.py, on small repositories with a build by Ninja."""
 
+import json
 import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
-from tidy_sources import sources_to_check
+from tidy_sources import sources_to_check, write_database
 
 NINJA = """\
 rule compile
@@ -131,6 +132,50 @@ def test_a_header_touches_those_that_include_it_installed_or_not(root: Path) -> 
     write(root, "engine/include/engine/chain.hpp", "#pragma once\n// changed\n")
     commit(root)
     assert sources_to_check(root)[0] == ["engine/src/chain.cpp", "solver/src/solver.cpp"]
+
+
+def build_solver_at_a_time(root: Path) -> str:
+    """As a unity build compiles it; the name of the source that includes them both."""
+    both = "build/solver/CMakeFiles/solver.dir/Unity/unity_0_cxx.cxx"
+    names = [str(root / "solver/src" / file) for file in ("solver.cpp", "plugin.cpp")]
+    write(root, both, "".join(f'#include "{name}"\n' for name in names))
+    rules = f"build unity_0_cxx.o: compile ../../{both}\n"
+    write(root, "build/solver/build.ninja", NINJA.format("install/engine") + rules)
+    (root / "build/solver/.ninja_deps").unlink()
+    command = ["ninja", "-C", str(root / "build/solver")]
+    subprocess.run(command, check=True, capture_output=True)
+    return both
+
+
+def test_a_source_touches_no_other_that_is_compiled_with_it(root: Path) -> None:
+    build_solver_at_a_time(root)
+    write(root, "solver/src/plugin.cpp", "// changed\n")
+    sources, _ = sources_to_check(root)
+    assert sources == ["engine/src/text.cpp", "solver/src/plugin.cpp"]
+
+
+def test_a_header_touches_all_that_are_compiled_with_one_that_includes_it(root: Path) -> None:
+    build_solver_at_a_time(root)
+    write(root, "engine/include/engine/chain.hpp", "#pragma once\n// changed\n")
+    assert sources_to_check(root)[0] == ALL
+
+
+def test_clang_tidy_gets_each_source_by_itself(root: Path) -> None:
+    both = root / build_solver_at_a_time(root)
+    chain = root / "engine/src/chain.cpp"
+    command = 'g++ -DNAME=\\"a\\" -flive-range-shrinkage -c {}'
+    entries = [
+        {"directory": str(root), "command": command.format(file), "file": str(file)}
+        for file in (chain, both)
+    ]
+    write(root, "build/compile_commands.json", json.dumps(entries))
+    write_database(root)
+    database = json.loads((root / "build/clang_tidy/compile_commands.json").read_text())
+    files = [str(chain), *(str(root / f"solver/src/{f}.cpp") for f in ("solver", "plugin"))]
+    assert [entry["file"] for entry in database] == files
+    assert [entry["command"] for entry in database] == [
+        f"g++ '-DNAME=\"a\"' -c {file}" for file in files
+    ]
 
 
 def test_what_is_not_committed_counts(root: Path) -> None:

@@ -9,7 +9,7 @@ namespace inverse_dynamics_control {
 inline namespace v2 {
 namespace {
 
-const char* const kLaw = "computed torque";
+const char* const kComputedTorque = "computed torque";
 
 }  // namespace
 
@@ -31,8 +31,8 @@ Gains Gains::uniform(Eigen::Index joints, double natural_frequency, double dampi
 
 ComputedTorque::ComputedTorque(std::shared_ptr<const InverseDynamicsSolver> solver, Gains gains,
                                const LawOptions& options)
-    : ControlLaw(std::move(solver), options, kLaw), gains_(std::move(gains)) {
-  const std::string law = kLaw;
+    : ControlLaw(std::move(solver), options, kComputedTorque), gains_(std::move(gains)) {
+  const std::string law = kComputedTorque;
   if (!model().inertiaIsPhysical()) {
     throw inverse_dynamics_solver::InvalidParameterValueException(
         inverse_dynamics_solver::errorText(

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <random>
-#include <sstream>
 #include <utility>
 
 #include "option_checks.hpp"
@@ -25,12 +24,6 @@ constexpr double kMostShape = 0.5;
 constexpr double kHour = 3600.0;       // s
 constexpr double kLeastAlarms = 1e-6;  // per hour: one in a century
 constexpr std::size_t kDraws = 400;    // of the bootstrap
-
-std::string number(double value) {
-  std::ostringstream stream;
-  stream << value;
-  return stream.str();
-}
 
 [[noreturn]] void refuse(const std::string& joint, const std::string& what,
                          const std::string& expected, const std::string& got,

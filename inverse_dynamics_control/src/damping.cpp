@@ -4,9 +4,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <sstream>
 
 #include "inverse_dynamics_control/model_terms.hpp"
+#include "option_checks.hpp"
 
 namespace inverse_dynamics_control {
 inline namespace v2 {
@@ -20,12 +20,6 @@ void require(bool fulfilled, const std::string& argument, const std::string& exp
   if (fulfilled) return;
   throw InvalidParameterValueException(
       errorText("dampingFor: " + argument, "wrong value", expected, got, remedy));
-}
-
-std::string number(double value) {
-  std::ostringstream stream;
-  stream << value;
-  return stream.str();
 }
 
 }  // namespace

@@ -8,17 +8,17 @@ namespace inverse_dynamics_control {
 inline namespace v2 {
 namespace {
 
-const char* const kName = "momentum observer";
+const char* const kObserver = "momentum observer";
 
 }  // namespace
 
 MomentumObserver::MomentumObserver(std::shared_ptr<const InverseDynamicsSolver> solver,
                                    const EstimatorOptions& options)
-    : ExternalTorqueEstimator(std::move(solver), options, kName) {
+    : ExternalTorqueEstimator(std::move(solver), options, kObserver) {
   if (!model().inertiaIsPhysical()) {
     throw inverse_dynamics_solver::InvalidParameterValueException(
         inverse_dynamics_solver::errorText(
-            std::string(kName) + ": solver", "its inertia matrix isn't physical",
+            std::string(kObserver) + ": solver", "its inertia matrix isn't physical",
             "a symmetric, positive definite H(q), whose product with qd is a momentum",
             "inertiaIsPhysical() is false",
             "use AccelerationResidual, or a solver made from the robot's URDF"));

@@ -42,13 +42,13 @@ const char* inWords(Range range) {
   return "";
 }
 
+}  // namespace
+
 std::string number(double value) {
   std::ostringstream stream;
   stream << value;
   return stream.str();
 }
-
-}  // namespace
 
 void requireJointNumbers(const std::string& where, const Eigen::Ref<const Eigen::VectorXd>& values,
                          Range range, const std::string& unit,

@@ -48,5 +48,8 @@ bool replaceGains(const PairOfGains& gains, PairOfGains& kept) noexcept {
 /// The same of one number.
 void requireNumber(const std::string& where, double value, Range range, const std::string& unit);
 
+/// As a message has it: six digits.
+std::string number(double value);
+
 }  // namespace v2
 }  // namespace inverse_dynamics_control

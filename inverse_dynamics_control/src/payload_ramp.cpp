@@ -13,7 +13,7 @@ using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
 using inverse_dynamics_solver::Payload;
 
-const char* const kName = "carried";  // among the solver's bodies
+const char* const kCarried = "carried";  // among the solver's bodies
 
 Eigen::Matrix3d symmetric(const std::vector<double>& i) {
   Eigen::Matrix3d tensor;
@@ -105,9 +105,9 @@ RigidBody PayloadRamp::target() const {
 
 void PayloadRamp::set(const RigidBody& body) {
   if (body.mass > 0) {
-    carrier_->setPayload(kName, body);
+    carrier_->setPayload(kCarried, body);
   } else {
-    carrier_->removePayload(kName);
+    carrier_->removePayload(kCarried);
   }
 }
 

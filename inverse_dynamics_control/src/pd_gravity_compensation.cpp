@@ -10,14 +10,14 @@ namespace inverse_dynamics_control {
 inline namespace v2 {
 namespace {
 
-const char* const kLaw = "PD with gravity compensation";
+const char* const kPdLaw = "PD with gravity compensation";
 
 }  // namespace
 
 PdGravityCompensation::PdGravityCompensation(std::shared_ptr<const InverseDynamicsSolver> solver,
                                              PdGains gains, const LawOptions& options)
-    : ControlLaw(std::move(solver), options, kLaw), gains_(std::move(gains)) {
-  const std::string law = kLaw;
+    : ControlLaw(std::move(solver), options, kPdLaw), gains_(std::move(gains)) {
+  const std::string law = kPdLaw;
   const auto joints = model().jointNames();
   requireJointNumbers(law + ": Kp", gains_.Kp, Range::kNotNegative, "N m/rad", joints);
   requireJointNumbers(law + ": Kd", gains_.Kd, Range::kNotNegative, "N m s/rad", joints);

@@ -19,10 +19,10 @@ using inverse_dynamics_solver::Kinematics;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-const char* const kName = "tip wrench";
+const char* const kTipWrench = "tip wrench";
 
 const Kinematics* kinematicsOf(const inverse_dynamics_solver::InverseDynamicsSolver* solver) {
-  const std::string where = std::string(kName) + ": solver";
+  const std::string where = std::string(kTipWrench) + ": solver";
   if (solver == nullptr) {
     throw InvalidParameterValueException(
         errorText(where, "missing", "an initialized solver", "none", "load one with SolverLoader"));
@@ -55,7 +55,7 @@ const char* text(WrenchStatus status) noexcept {
 TipWrench::TipWrench(std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
                      const WrenchOptions& options)
     : solver_(std::move(solver)), kinematics_(kinematicsOf(solver_.get())), noise_(options.noise) {
-  const std::string name = kName;
+  const std::string name = kTipWrench;
   const Eigen::Index n = solver_->jointCount();
   requireJointNumbers(name + ": noise", noise_, Range::kPositive, "N m", solver_->jointNames());
   requireNumber(name + ": force", options.force, Range::kPositive, "N");

@@ -9,6 +9,7 @@
 
 #include "figures.hpp"
 #include "spectrum.hpp"
+#include "zero_phase.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -19,8 +20,6 @@ using Eigen::MatrixXd;
 
 // Equidistant samples whose spectra are computed at once: longer pieces are cut for that.
 constexpr Index kMostInStretch = 262144;
-
-Index leastSamples(int order) { return 3 * (order + 1) + 1; }
 
 AccelerationMethod methodOf(const AccelerationOptions& options, const Census& census) {
   if (options.method == AccelerationMethod::kAuto) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "checks.hpp"
+#include "pi.hpp"
 #include "quantile.hpp"
 #include "spectrum.hpp"
 
@@ -15,7 +16,6 @@ namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kCandidates = 100;        // cut-offs tried, in equal ratios
 constexpr double kHighest = 0.4;        // of the sampling frequency
 constexpr double kLowest = 0.25;        // Hz

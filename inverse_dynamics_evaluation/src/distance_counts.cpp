@@ -10,13 +10,13 @@ namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
 
-constexpr std::size_t kMost = 65536;  // different distances, and distances that wait
+constexpr std::size_t kMostDistances = 65536;  // different distances, and distances that wait
 
 }  // namespace
 
 void DistanceCounts::add(std::int64_t distance) {
   waiting_.push_back(distance);
-  if (waiting_.size() == kMost) {
+  if (waiting_.size() == kMostDistances) {
     merge();
   }
 }
@@ -43,7 +43,7 @@ void DistanceCounts::merge() const {
   }
   std::for_each(counted, counts_.end(), put);
   waiting_.clear();
-  while (merged.size() > kMost) {
+  while (merged.size() > kMostDistances) {
     ++shift_;
     const std::vector<Count> finer = std::move(merged);
     merged.clear();

@@ -21,7 +21,7 @@ using inverse_dynamics_solver::InverseDynamicsSolver;
 // Who stated a meaning.
 constexpr const char* kOption = "as given";
 constexpr const char* kFormat = "as the recording's format says";
-constexpr const char* kData = "found from the data";
+constexpr const char* kFromData = "found from the data";
 constexpr const char* kNothingStated = "as nothing is stated";
 
 bool isMeaning(const std::string& word) {
@@ -124,7 +124,7 @@ Effort effortOfData(EffortVerdict verdict, const EffortOptions& options) {
   Effort effort;
   if (verdict.sure) {
     effort.meaning = verdict.best();
-    effort.stated_by = kData;
+    effort.stated_by = kFromData;
   } else if (!options.format.empty()) {
     effort.meaning = options.format;
     effort.stated_by = kFormat;

@@ -5,13 +5,14 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "pi.hpp"
+
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
 
 using Eigen::Index;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr Index kCoefficients = 4;  // of a cubic
 
 // Powers of the instants, in units of the fitted length; one row per instant.

@@ -166,7 +166,7 @@ auto named(const EvaluationOptions& options, Call call) {
 }
 
 // The columns where `mask` is true.
-MatrixXd selected(const Eigen::Ref<const MatrixXd>& columns, const Flags& mask) {
+MatrixXd keptColumns(const Eigen::Ref<const MatrixXd>& columns, const Flags& mask) {
   MatrixXd result(columns.rows(), mask.count());
   Index next = 0;
   for (Index k = 0; k < mask.size(); ++k) {
@@ -245,8 +245,8 @@ class Evaluator {
                     options_.effort.drive_gains);
     if (recorded) {
       forEachBlock([&](const TimedBlock& block, const MatrixXd& computed) {
-        sums.add(selected(computed, block.kept), selected(gravity(block), block.kept),
-                 selected(block.effort, block.kept));
+        sums.add(keptColumns(computed, block.kept), keptColumns(gravity(block), block.kept),
+                 keptColumns(block.effort, block.kept));
         torque_seconds_ += watch_.lap();
       });
     }

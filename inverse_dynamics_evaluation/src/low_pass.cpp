@@ -6,17 +6,12 @@
 #include <cmath>
 
 #include "checks.hpp"
+#include "pi.hpp"
 #include "zero_phase.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-Eigen::Index leastSamples(int order) { return 3 * (order + 1) + 1; }
-
-}  // namespace
+namespace {}  // namespace
 
 double lowPassGain(double frequency, double cutoff, double sampling_frequency, int order) {
   if (frequency >= sampling_frequency / 2) {

@@ -6,12 +6,12 @@
 #include <string>
 
 #include "inverse_dynamics_evaluation/error.hpp"
+#include "pi.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kSettled = 6.6384;  // (1 + x) exp(-x) = 0.01: what is left of a start, x = w t
 
 double requirePositive(const char* what, double value) {

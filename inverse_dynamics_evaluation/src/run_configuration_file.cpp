@@ -25,7 +25,7 @@ using chain_dynamics::LocatedValue;
 using inverse_dynamics_solver::ParameterValue;
 
 constexpr std::int64_t kSchema = 1;
-constexpr const char* kData = "inverse_dynamics_robots";
+constexpr const char* kRobotsPackage = "inverse_dynamics_robots";
 
 /// Whether it can be the name of a file: results are called after a robot.
 bool isPlainName(const std::string& text) {
@@ -275,7 +275,7 @@ std::vector<std::string> robotNames() {
   std::vector<std::string> names;
   std::error_code ignored;
   for (const auto& entry :
-       fs::directory_iterator(fs::path(packageShare(kData)) / "robots", ignored)) {
+       fs::directory_iterator(fs::path(packageShare(kRobotsPackage)) / "robots", ignored)) {
     if (entry.path().extension() == ".yaml") {
       names.push_back(entry.path().stem());
     }
@@ -309,7 +309,8 @@ RunConfiguration readRunConfiguration(const std::string& name_or_file) {
     }
     return readFile(file);
   }
-  const std::string file = fs::path(packageShare(kData)) / "robots" / (name_or_file + ".yaml");
+  const std::string file =
+      fs::path(packageShare(kRobotsPackage)) / "robots" / (name_or_file + ".yaml");
   if (!isFile(file)) {
     refuseName(name_or_file);
   }

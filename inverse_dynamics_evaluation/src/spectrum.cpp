@@ -8,6 +8,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "activity.hpp"
+#include "pi.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -15,7 +16,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kSegmentSeconds = 20.0;
 constexpr double kEndSeconds = 0.05;  // over which the value at an end is averaged
 // a central difference hardly sees frequencies near half the sampling frequency: no more than this

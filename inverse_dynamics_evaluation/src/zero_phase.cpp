@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "inverse_dynamics_evaluation/error.hpp"
+#include "pi.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -16,7 +17,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kGreatestOrder = 12;
 constexpr Index kLeastBlock = 512;        // samples
 constexpr double kBits = 60.0;            // of a wrong start's error that must be gone

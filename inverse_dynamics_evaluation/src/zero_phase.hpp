@@ -36,6 +36,9 @@
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
+/// What a filter of this order needs, of which each end is continued.
+constexpr Eigen::Index leastSamples(int order) { return 3 * (order + 1) + 1; }
+
 /// Takes the next columns of a result; the reference holds during the call.
 using TakeColumns = std::function<void(const Eigen::Ref<const Eigen::MatrixXd>&)>;
 

@@ -20,7 +20,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kSettled = 0.02;  // Gauss-Newton step, relative to the width, that ends it
+constexpr double kSettledStep = 0.02;  // Gauss-Newton step, relative to the width, that ends it
 const double kGainDeviation = std::log(kDriveGainFactor);
 constexpr double kSettledGain = 1e-3;  // the same, of the logarithm of a drive gain
 constexpr double kFixed = 1e-9;        // deviation of a column that is switched off
@@ -304,8 +304,8 @@ class Rounds {
   static bool settled(const std::vector<Eigen::Vector4d>& by, const ArmFit& fit) {
     for (std::size_t j = 0; j < by.size(); ++j) {
       const Eigen::Vector4d step(by[j][0] / fit.friction[j].width, by[j][1], by[j][2],
-                                 by[j][3] * kSettled / kSettledGain);
-      if (step.cwiseAbs().maxCoeff() > kSettled) return false;
+                                 by[j][3] * kSettledStep / kSettledGain);
+      if (step.cwiseAbs().maxCoeff() > kSettledStep) return false;
     }
     return true;
   }

@@ -19,12 +19,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kParameters = 10;
 constexpr double kPathFactor = 8;         // of gamma, from one stage of the path to the next
 constexpr double kStageTolerance = 1e-2;  // of the cost, relative to gamma
 constexpr double kTolerance = 1e-9;       // of the cost, relative
 constexpr int kMostSteps = 200;
-constexpr double kSettled = 1e-3;  // relative change of the noise that ends the iteration
+constexpr double kSettledNoise = 1e-3;  // relative change of the noise that ends the iteration
 
 void requireSize(const char* what, Index expected, Index got) {
   if (expected == got) return;
@@ -234,7 +233,7 @@ Fit consistentFit(const RegressorGram& gram, const Prior& prior, const FitOption
     started = true;
     const VectorXd next = data.noise(x);
     const double change = (next.array() / noise.array() - 1).abs().maxCoeff();
-    if (k + 1 >= options.noise_iterations || change < kSettled) {
+    if (k + 1 >= options.noise_iterations || change < kSettledNoise) {
       Fit fit = fitOf(x, data);
       fit.weighed_by = noise;
       fit.cost = cost.value(strength, x);

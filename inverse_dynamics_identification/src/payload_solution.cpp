@@ -13,7 +13,7 @@ namespace inverse_dynamics_identification {
 inline namespace v2 {
 namespace {
 
-constexpr int kMostSteps = 100;
+constexpr int kMostNewtonSteps = 100;
 constexpr double kSmallDecrement = 1e-18;  // of Newton's decrement, squared
 constexpr double kLeastStep = 1e-12;
 constexpr double kNothing = 1e-13;  // eigenvalue by the greatest: rounding
@@ -114,7 +114,7 @@ Matrix10 BodyPrior::inertiaInformation(const Vector10& phi) const {
 Vector10 mostLikelyBody(const Normal& normal, const BodyPrior& prior) {
   Vector10 phi = prior.body();
   double value = valueOf(normal, phi) + prior.value(phi);
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMostNewtonSteps; ++step) {
     const Vector10 gradient = normal.A * phi - normal.b + prior.gradient(phi);
     const Matrix10 H = normal.A + prior.hessian(phi);
     const Vector10 direction = -H.ldlt().solve(gradient);

@@ -14,7 +14,6 @@ namespace {
 using Eigen::Index;
 using Vector10 = Eigen::Matrix<double, 10, 1>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Index kParameters = 10;
 
 Eigen::Matrix4d pseudoInertiaAt(const Eigen::VectorXd& x, Index link) {
   const Vector10 p = x.segment<10>(kParameters * link);

@@ -13,6 +13,9 @@
 namespace inverse_dynamics_identification {
 inline namespace v2 {
 
+/// Of a link: [m, mc, I].
+constexpr Eigen::Index kParameters = 10;
+
 /// The sum of gamma [tr(P0^-1 P) - log det P] over the links and of the penalties of own columns, as
 /// a function of all unknowns.
 class Penalties {

@@ -41,8 +41,8 @@ double misfit(const Eigen::Ref<const Eigen::VectorXd>& time,
   return samples * std::log(squares / samples + std::numeric_limits<double>::min()) + logarithms;
 }
 
-void require(bool fine, const std::string& argument, const std::string& expected,
-             const std::string& got) {
+void requireArgument(bool fine, const std::string& argument, const std::string& expected,
+                     const std::string& got) {
   if (fine) return;
   throw inverse_dynamics_solver::InvalidParameterValueException(
       inverse_dynamics_solver::errorText("residualNoise: " + argument, "", expected, got));
@@ -55,13 +55,13 @@ double ResidualNoise::total(Index j) const { return std::hypot(white[j], correla
 ResidualNoise residualNoise(const Eigen::Ref<const Eigen::VectorXd>& time,
                             const Eigen::Ref<const Eigen::MatrixXd>& residuals,
                             double correlation_time) {
-  require(time.size() >= 2, "time", "two samples or more", std::to_string(time.size()));
-  require(residuals.cols() == time.size(), "residuals", std::to_string(time.size()) + " samples",
-          std::to_string(residuals.cols()));
-  require(time.allFinite() && residuals.allFinite(), "residuals", "finite numbers",
-          "a NaN or infinity");
-  require(correlation_time > 0 && std::isfinite(correlation_time), "correlation_time",
-          "a finite number above zero [s]", std::to_string(correlation_time));
+  requireArgument(time.size() >= 2, "time", "two samples or more", std::to_string(time.size()));
+  requireArgument(residuals.cols() == time.size(), "residuals",
+                  std::to_string(time.size()) + " samples", std::to_string(residuals.cols()));
+  requireArgument(time.allFinite() && residuals.allFinite(), "residuals", "finite numbers",
+                  "a NaN or infinity");
+  requireArgument(correlation_time > 0 && std::isfinite(correlation_time), "correlation_time",
+                  "a finite number above zero [s]", std::to_string(correlation_time));
   ResidualNoise noise;
   noise.correlation_time = correlation_time;
   noise.white.setZero(residuals.rows());

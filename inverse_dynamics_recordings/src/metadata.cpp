@@ -117,7 +117,8 @@ Compression compressionOf(const YAML::Node& about) {
   }
   if (mode == "file") return Compression::kFiles;
   if (mode == "message") return Compression::kMessages;
-  throw DamageError("compression mode: expected file or message, got " + quoted(mode));
+  throw DamageError("compression mode: expected file or message, got " +
+                    inverse_dynamics_recordings::quoted(mode));
 }
 
 // As YAML has it within a line: in quotes unless it consists of letters, digits and a few signs.

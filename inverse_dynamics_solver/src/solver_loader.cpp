@@ -23,7 +23,7 @@ const char* const kSource =
     "install its package, or source the workspace that has it: source install/local_setup.bash";
 
 /// What is installed: package and prefix of each plugin description.
-using Index = std::map<std::string, std::string>;
+using PluginIndex = std::map<std::string, std::string>;
 
 /// pluginlib's loader isn't thread-safe.
 std::mutex& pluginlibMutex() {
@@ -35,8 +35,8 @@ std::mutex& pluginlibMutex() {
 ///
 /// Never destroyed, and so its libraries stay open: an exception that a plugin has thrown needs the
 /// plugin's code until it has been handled, and a solver may live until the end of the program.
-PluginLoader& pluginLoader(const Index& index) {
-  static auto& loaders = *new std::map<Index, std::unique_ptr<PluginLoader>>;
+PluginLoader& pluginLoader(const PluginIndex& index) {
+  static auto& loaders = *new std::map<PluginIndex, std::unique_ptr<PluginLoader>>;
   std::unique_ptr<PluginLoader>& loader = loaders[index];
   if (loader == nullptr) {
     loader = std::make_unique<PluginLoader>("inverse_dynamics_solver",
@@ -83,7 +83,8 @@ struct SolverLoader::Implementation {
     try {
       // Asked first: with an empty index Debian's pluginlib would search for ROS 1 packages, slowly
       // and loudly.
-      const Index index = ament_index::resources("inverse_dynamics_solver__pluginlib__plugin");
+      const PluginIndex index =
+          ament_index::resources("inverse_dynamics_solver__pluginlib__plugin");
       if (index.empty()) return;
       loader = &pluginLoader(index);
       names = loader->getDeclaredClasses();

@@ -31,16 +31,16 @@ using evaluation::FilterChoice;
 using evaluation::SampleReport;
 using evaluation::SampleRules;
 
-using Vector = Eigen::Map<const Eigen::VectorXd>;
+using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 
-Vector vectorOf(const Array& array) { return {array.data(), array.size()}; }
+ConstVector viewOf(const Array& array) { return {array.data(), array.size()}; }
 
 py::array backwardDifference(const Array& time, const Array& qd) {
   const ConstMap qd_in = states(qd, "qd");
   chain_dynamics::OwnedMatrix qdd;
   {
     const py::gil_scoped_release release;
-    qdd = evaluation::backwardDifference(vectorOf(time), qd_in);
+    qdd = evaluation::backwardDifference(viewOf(time), qd_in);
   }
   return rowsOf(std::move(qdd));
 }
@@ -55,7 +55,7 @@ py::tuple lowPassAccelerations(const Array& time, const Array& q, const Array& q
   evaluation::AccelerationEstimate estimate;
   {
     const py::gil_scoped_release release;
-    estimate = evaluation::lowPassAccelerations(vectorOf(time), q_in, qd_in, effort_in, options);
+    estimate = evaluation::lowPassAccelerations(viewOf(time), q_in, qd_in, effort_in, options);
   }
   return py::make_tuple(rowsOf(std::move(estimate.qdd)), std::move(estimate.filter),
                         std::move(estimate.samples));
@@ -66,7 +66,7 @@ SampleReport examineSamples(const Array& time, const Array& q, const Array& qd, 
   const ConstMap q_in = states(q, "q"), qd_in = states(qd, "qd"),
                  effort_in = states(effort, "effort");
   const py::gil_scoped_release release;
-  return evaluation::examineSamples(vectorOf(time), q_in, qd_in, effort_in, rules);
+  return evaluation::examineSamples(viewOf(time), q_in, qd_in, effort_in, rules);
 }
 
 py::array lowPass(const Array& samples, double sampling_frequency, double cutoff, int order,

@@ -151,7 +151,7 @@ py::tuple runTipWrench(TipWrench& tip, const Array& q, const Array& torques) {
   return py::make_tuple(wrenches, unseen);
 }
 
-void bindEnums(py::module_& module) {
+void bindEstimateEnums(py::module_& module) {
   py::enum_<EstimateStatus>(module, "EstimateStatus",
                             "How an update ended; unless it is OK, the torques are zero.")
       .value("OK", EstimateStatus::kOk)
@@ -311,7 +311,7 @@ void bindTipWrench(py::module_& module) {
 }  // namespace
 
 void bindContact(py::module_& module) {
-  bindEnums(module);
+  bindEstimateEnums(module);
   bindEstimators(module);
   bindThresholds(module);
   bindDetector(module);

@@ -97,7 +97,7 @@ Result feedForward(FeedForward& law, const Vector& q, const Vector& qd, const Ve
   return {tau, status};
 }
 
-void bindEnums(py::module_& module) {
+void bindLawEnums(py::module_& module) {
   py::enum_<Status>(module, "Status", "How an update ended: see inverse_dynamics_control.")
       .value("OK", Status::kOk)
       .value("SATURATED", Status::kSaturated)
@@ -251,7 +251,7 @@ void bindSafeStop(py::module_& module) {
 }  // namespace
 
 void bindControl(py::module_& module) {
-  bindEnums(module);
+  bindLawEnums(module);
   bindOptions(module);
   bindDamping(module);
   bindLaws(module);

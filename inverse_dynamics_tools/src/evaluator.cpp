@@ -16,6 +16,7 @@
 #include "initialized.hpp"
 #include "joint_log.hpp"
 #include "joint_states.hpp"
+#include "run_configuration.hpp"
 #include "solver.hpp"
 
 namespace inverse_dynamics_tools {
@@ -35,7 +36,6 @@ using Evaluated = evaluation::Evaluation;
 
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::EffortCandidate)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::EffortVerdict)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::EffortOptions)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::Evaluation)
 
 namespace inverse_dynamics_tools {

@@ -211,10 +211,10 @@ class FastModel {
   chain_dynamics::FastModel fast_;
 };
 
-using Vector = std::array<double, 3>;
+using Numbers3 = std::array<double, 3>;
 
 std::unique_ptr<FastModel> fromUrdf(const Description& urdf, const std::string& root,
-                                    const std::string& tip, const std::optional<Vector>& gravity,
+                                    const std::string& tip, const std::optional<Numbers3>& gravity,
                                     std::int64_t threads) {
   chain_dynamics::UrdfOptions options;
   options.root = root;
@@ -232,7 +232,7 @@ std::unique_ptr<FastModel> fromFile(const std::string& path, std::int64_t thread
 std::unique_ptr<FastModel> fromJoints(const std::vector<std::string>& names,
                                       const std::vector<bool>& prismatic, const Array& rotations,
                                       const Array& offsets, const Array& links,
-                                      const Vector& gravity, std::int64_t threads) {
+                                      const Numbers3& gravity, std::int64_t threads) {
   const auto n = static_cast<py::ssize_t>(names.size());
   if (static_cast<py::ssize_t>(prismatic.size()) != n || rotations.size() != 9 * n ||
       offsets.size() != 3 * n || links.size() != kParameters * n) {

@@ -36,9 +36,9 @@ using identification::StepFriction;
 // q, qd, qdd, tau of a block, (N, n) each.
 using Block = std::tuple<Array, Array, Array, Array>;
 
-std::unique_ptr<ArmFitter> fromUrdf(const std::string& urdf, const std::string& root,
-                                    const std::string& tip,
-                                    const std::optional<std::array<double, 3>>& gravity) {
+std::unique_ptr<ArmFitter> fitterFromUrdf(const std::string& urdf, const std::string& root,
+                                          const std::string& tip,
+                                          const std::optional<std::array<double, 3>>& gravity) {
   chain_dynamics::UrdfOptions options;
   options.root = root;
   options.tip = tip;
@@ -49,7 +49,7 @@ std::unique_ptr<ArmFitter> fromUrdf(const std::string& urdf, const std::string& 
 // (10,) of what the tip carries in each block, or none.
 using Carried = std::vector<std::optional<Array>>;
 
-chain_dynamics::LinkParameters bodyOf(const Array& numbers) {
+chain_dynamics::LinkParameters linkOf(const Array& numbers) {
   if (numbers.ndim() != 1 || numbers.shape(0) != 10) {
     throw py::value_error("carried: expected an array (10,) for each block, or None, got " +
                           std::string(py::str(numbers.attr("shape"))));
@@ -70,7 +70,7 @@ std::vector<ArmSamples> samplesOf(const std::vector<Block>& blocks, const Carrie
     samples.push_back({states(q, "q"), states(qd, "qd"), states(qdd, "qdd"), states(tau, "tau")});
     if (carried.empty()) continue;
     const std::optional<Array>& body = carried[samples.size() - 1];
-    if (body) samples.back().carried = bodyOf(*body);
+    if (body) samples.back().carried = linkOf(*body);
   }
   return samples;
 }
@@ -156,7 +156,7 @@ py::dict figures(const StepFriction& law) {
   return result;
 }
 
-py::array vectorOf(const chain_dynamics::OwnedVector& vector) {
+py::array copyOf(const chain_dynamics::OwnedVector& vector) {
   return py::array_t<double>(vector.size(), vector.data());
 }
 
@@ -166,7 +166,7 @@ void bindFit(py::module_& module) {
           "parameters", [](const ArmFit& f) { return rowsOf(f.parameters); },
           "(n, 10) m, mc, I of each link, in its frame and about its origin.")
       .def_property_readonly(
-          "rotor_inertia", [](const ArmFit& f) { return vectorOf(f.rotor_inertia); },
+          "rotor_inertia", [](const ArmFit& f) { return copyOf(f.rotor_inertia); },
           "(n,) kg m^2 (prismatic kg).")
       .def_property_readonly(
           "friction",
@@ -177,13 +177,13 @@ void bindFit(py::module_& module) {
           },
           "Figures of smooth_coulomb of each joint, by the keys of the model file.")
       .def_property_readonly(
-          "noise", [](const ArmFit& f) { return vectorOf(f.noise); },
+          "noise", [](const ArmFit& f) { return copyOf(f.noise); },
           "(n,) root mean squares of the errors of the samples that it was fitted to.")
       .def_property_readonly(
           "drive_gains",
           [](const ArmFit& f) -> py::object {
             if (f.drive_gains.size() == 0) return py::none();
-            return vectorOf(f.drive_gains);
+            return copyOf(f.drive_gains);
           },
           "(n,) N m/A (prismatic N/A) that were fitted; None: of measured torques.")
       .def_readonly("cost", &ArmFit::cost, "What was minimised, up to a constant.")
@@ -198,8 +198,8 @@ void bindIdentification(py::module_& module) {
       module, "ArmFitter",
       "Fits models of one arm: arm_fit.hpp. Threads: safe; the GIL is released.\n\n"
       "blocks: tuples q, qd, qdd, tau, (N, n) each. law: step, load, stribeck.")
-      .def_static("from_urdf", &fromUrdf, py::arg("urdf"), py::kw_only(), py::arg("root") = "",
-                  py::arg("tip") = "", py::arg("gravity") = py::none(),
+      .def_static("from_urdf", &fitterFromUrdf, py::arg("urdf"), py::kw_only(),
+                  py::arg("root") = "", py::arg("tip") = "", py::arg("gravity") = py::none(),
                   "Of a URDF's text, whose links are the prior.")
       .def_property_readonly(
           "joint_names",

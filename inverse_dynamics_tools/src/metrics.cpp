@@ -28,8 +28,8 @@ std::vector<JointMetrics> metricsOf(const Array& computed, const Array& measured
     const py::gil_scoped_release release;
     return evaluation::metrics(computed_in, measured_in);
   }
-  using Booleans = Eigen::Array<bool, Eigen::Dynamic, 1>;
-  const evaluation::Mask counts = Eigen::Map<const Booleans>(mask->data(), mask->size());
+  using Rows = Eigen::Array<bool, Eigen::Dynamic, 1>;
+  const evaluation::Mask counts = Eigen::Map<const Rows>(mask->data(), mask->size());
   const py::gil_scoped_release release;
   return evaluation::metrics(computed_in, measured_in, counts);
 }

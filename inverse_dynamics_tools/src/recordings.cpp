@@ -96,7 +96,7 @@ py::tuple nextBlock(Messages& messages) {
   return py::make_tuple(connections, received, data);
 }
 
-Array arrayOf(const inverse_dynamics_evaluation::JointStateNumbers& numbers, std::size_t count) {
+Array rowsOf(const inverse_dynamics_evaluation::JointStateNumbers& numbers, std::size_t count) {
   Array array(std::vector<py::ssize_t>{static_cast<py::ssize_t>(count),
                                        static_cast<py::ssize_t>(numbers.columns)});
   std::copy(numbers.values.begin(), numbers.values.end(), array.mutable_data());
@@ -117,8 +117,8 @@ py::tuple nextStates(JointStates& states) {
   };
   const std::size_t count = block.size();
   return py::make_tuple(py::tuple(names), textOf(block.frame_id), stamps(block.header_stamps),
-                        stamps(block.receive_stamps), arrayOf(block.position, count),
-                        arrayOf(block.velocity, count), arrayOf(block.effort, count));
+                        stamps(block.receive_stamps), rowsOf(block.position, count),
+                        rowsOf(block.velocity, count), rowsOf(block.effort, count));
 }
 
 /// Of a topic: header and receive stamps, position, velocity, effort.

@@ -14,9 +14,6 @@
 #include "solver.hpp"
 #include "solver_origin.hpp"
 
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(chain_dynamics::LocatedMap)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::EffortOptions)
-
 namespace inverse_dynamics_tools {
 namespace {
 

@@ -5,6 +5,14 @@
 
 #include <pybind11/pybind11.h>
 
+#include <chain_dynamics/located_yaml.hpp>
+#include <inverse_dynamics_evaluation/effort.hpp>
+
+#include "initialized.hpp"
+
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(chain_dynamics::LocatedMap)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::EffortOptions)
+
 namespace inverse_dynamics_tools {
 
 void bindRunConfiguration(pybind11::module_& module);

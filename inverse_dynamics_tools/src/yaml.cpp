@@ -5,11 +5,9 @@
 #include <optional>
 #include <string>
 
-#include "initialized.hpp"
 #include "run_configuration.hpp"
 
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(chain_dynamics::LocatedValue)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(chain_dynamics::LocatedMap)
 
 namespace inverse_dynamics_tools {
 namespace {
