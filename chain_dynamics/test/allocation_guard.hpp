@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// Counts heap allocations of the calling thread. Include it in one source file of a test program.
+/// Counts heap allocations of the calling thread.
 ///
 ///     AllocationGuard guard;
 ///     torques(chain, q, qd, qdd, tau);
 ///     EXPECT_EQ(guard.count(), 0);
 ///
 /// The program's own malloc and its relatives stand before those of the C library, which
-/// operator new and Eigen call. Needs the GNU C library and no sanitizer that does the same.
+/// operator new and Eigen call; they are weak, so that several source files of a program may
+/// include them. Needs the GNU C library and no sanitizer that does the same.
 
 #pragma once
 
@@ -47,27 +48,28 @@ void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* memory, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 
-void* malloc(std::size_t size) noexcept {
+__attribute__((weak)) void* malloc(std::size_t size) noexcept {
   ++chain_dynamics::test::allocation_count;
   return __libc_malloc(size);
 }
 
-void* calloc(std::size_t count, std::size_t size) noexcept {
+__attribute__((weak)) void* calloc(std::size_t count, std::size_t size) noexcept {
   ++chain_dynamics::test::allocation_count;
   return __libc_calloc(count, size);
 }
 
-void* realloc(void* memory, std::size_t size) noexcept {
+__attribute__((weak)) void* realloc(void* memory, std::size_t size) noexcept {
   ++chain_dynamics::test::allocation_count;
   return __libc_realloc(memory, size);
 }
 
-void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+__attribute__((weak)) void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
   ++chain_dynamics::test::allocation_count;
   return __libc_memalign(alignment, size);
 }
 
-int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
+__attribute__((weak)) int posix_memalign(void** memory, std::size_t alignment,
+                                         std::size_t size) noexcept {
   ++chain_dynamics::test::allocation_count;
   *memory = __libc_memalign(alignment, size);
   return *memory == nullptr ? ENOMEM : 0;

@@ -14,8 +14,7 @@
 #include "chain_dynamics/error.hpp"
 #include "reference.hpp"
 
-namespace chain_dynamics {
-namespace {
+namespace chain_dynamics::friction_test {
 
 using ::testing::HasSubstr;
 
@@ -261,5 +260,4 @@ TEST(FrictionVector, EachJointHasItsOwnLaw) {
   }
 }
 
-}  // namespace
-}  // namespace chain_dynamics
+}  // namespace chain_dynamics::friction_test

@@ -12,8 +12,7 @@
 #include "example_models.hpp"
 #include "example_robots.hpp"
 
-namespace chain_dynamics {
-namespace {
+namespace chain_dynamics::load_friction_test {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 using Eigen::MatrixXd;
@@ -157,5 +156,4 @@ TEST(LoadFriction, AllocatesNothing) {
   }
 }
 
-}  // namespace
-}  // namespace chain_dynamics
+}  // namespace chain_dynamics::load_friction_test

@@ -10,8 +10,7 @@
 
 #include "chain_dynamics/error.hpp"
 
-namespace chain_dynamics {
-namespace {
+namespace chain_dynamics::located_yaml_test {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
@@ -133,5 +132,4 @@ TEST(LocatedYaml, ErrorsAreOfTheKindThatTheCallerChooses) {
   EXPECT_THROW(map.required("c"), std::out_of_range);
 }
 
-}  // namespace
-}  // namespace chain_dynamics
+}  // namespace chain_dynamics::located_yaml_test

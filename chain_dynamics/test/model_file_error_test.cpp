@@ -10,8 +10,7 @@
 
 #include "model_file_texts.hpp"
 
-namespace chain_dynamics {
-namespace {
+namespace chain_dynamics::model_file_error_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -304,5 +303,4 @@ TEST(ModelFileError, WhatCannotBeARobotNamesFileAndJoint) {
               HasSubstr("checks: tolerance: expected a number > 0"));
 }
 
-}  // namespace
-}  // namespace chain_dynamics
+}  // namespace chain_dynamics::model_file_error_test

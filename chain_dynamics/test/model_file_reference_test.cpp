@@ -9,8 +9,7 @@
 
 #include "model_file_texts.hpp"
 
-namespace chain_dynamics {
-namespace {
+namespace chain_dynamics::model_file_reference_test {
 
 void expectReference(const std::string& model_file, const std::string& reference) {
   constexpr double kReference = 1e-10;  // greatest difference, in kg m^2, N m
@@ -77,5 +76,4 @@ TEST(ModelFileReference, FiguresAreThoseOfTheSource) {
   }
 }
 
-}  // namespace
-}  // namespace chain_dynamics
+}  // namespace chain_dynamics::model_file_reference_test

@@ -20,8 +20,7 @@
 #include "chain_dynamics/urdf.hpp"
 #include "model_file_texts.hpp"
 
-namespace chain_dynamics {
-namespace {
+namespace chain_dynamics::model_file_test {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -369,5 +368,4 @@ TEST(ModelFile, NumbersDoNotDependOnTheLocale) {
   EXPECT_EQ(error, "no error");
 }
 
-}  // namespace
-}  // namespace chain_dynamics
+}  // namespace chain_dynamics::model_file_test

@@ -17,8 +17,7 @@
 #include "example_robots.hpp"
 #include "reference.hpp"
 
-namespace chain_dynamics {
-namespace {
+namespace chain_dynamics::model_test {
 
 using ::testing::HasSubstr;
 
@@ -301,5 +300,4 @@ TEST(ModelError, PartsMustFit) {
   EXPECT_THAT(error(model), HasSubstr("parameter set of gravity"));
 }
 
-}  // namespace
-}  // namespace chain_dynamics
+}  // namespace chain_dynamics::model_test

@@ -16,8 +16,7 @@
 #include "chain_dynamics/tip_kinematics.hpp"
 #include "example_models.hpp"
 
-namespace chain_dynamics {
-namespace {
+namespace chain_dynamics::not_finite_test {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 using Eigen::MatrixXd;
@@ -286,5 +285,4 @@ TEST_P(NotFinite, FirstJointCountsWhereGravityIsAlongItsAxisAndFrictionIsUnknown
 INSTANTIATE_TEST_SUITE_P(Every, NotFinite, ::testing::ValuesIn(FastModel::instructionSets()),
                          [](const auto& test) { return test.param; });
 
-}  // namespace
-}  // namespace chain_dynamics
+}  // namespace chain_dynamics::not_finite_test

@@ -8,8 +8,7 @@
 #include <locale>
 #include <string>
 
-namespace chain_dynamics {
-namespace {
+namespace chain_dynamics::number_test {
 
 TEST(Number, DecimalNumbersAreRead) {
   EXPECT_EQ(finiteNumber("0.1273"), 0.1273);
@@ -94,5 +93,4 @@ TEST(Number, TheLocaleHasNoInfluence) {
   EXPECT_FALSE(comma);
 }
 
-}  // namespace
-}  // namespace chain_dynamics
+}  // namespace chain_dynamics::number_test

@@ -17,8 +17,7 @@
 #include "reference.hpp"
 #include "urdf_texts.hpp"
 
-namespace chain_dynamics {
-namespace {
+namespace chain_dynamics::robot_description_test {
 
 using ::testing::AllOf;
 using ::testing::Contains;
@@ -551,5 +550,4 @@ TEST(RobotDescription, DeeplyNestedElementsAreAnError) {
   EXPECT_THAT(urdfError("<robot name='r'>" + nested), HasSubstr("expected well-formed XML"));
 }
 
-}  // namespace
-}  // namespace chain_dynamics
+}  // namespace chain_dynamics::robot_description_test

@@ -7,8 +7,7 @@
 
 #include "chain_dynamics/error.hpp"
 
-namespace chain_dynamics {
-namespace {
+namespace chain_dynamics::text_test {
 
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
@@ -99,5 +98,4 @@ TEST(Text, NearestNameIsOneThatIsNear) {
   EXPECT_EQ(nearestName("a", {"b"}), "");
 }
 
-}  // namespace
-}  // namespace chain_dynamics
+}  // namespace chain_dynamics::text_test

@@ -17,8 +17,7 @@
 #include "reference.hpp"
 #include "urdf_texts.hpp"
 
-namespace chain_dynamics {
-namespace {
+namespace chain_dynamics::urdf_test {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -575,5 +574,4 @@ TEST(UrdfReference, PandaLink4BreaksTheTriangleInequality) {
   EXPECT_THAT(chain.warnings()[0], HasSubstr("fer_joint4"));
 }
 
-}  // namespace
-}  // namespace chain_dynamics
+}  // namespace chain_dynamics::urdf_test
