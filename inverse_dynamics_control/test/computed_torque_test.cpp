@@ -7,8 +7,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::computed_torque_test {
 
 constexpr double kPeriod = 1e-3;  // s
 
@@ -121,5 +120,4 @@ TEST(ComputedTorque, ASolverThatIsNotReadyIsRefused) {
                inverse_dynamics_solver::UninitializedException);
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::computed_torque_test

@@ -8,8 +8,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::contact_test {
 
 constexpr double kPeriod = 1e-3;  // s
 const std::vector<std::string> kJoints{"shoulder", "elbow"};
@@ -250,5 +249,4 @@ TEST(ContactDetector, BadOptionsAreRefused) {
   EXPECT_NE(text(vec({1.0, 1.0}), {0.5, -0.1}), "");
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::contact_test

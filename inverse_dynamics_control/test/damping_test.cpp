@@ -7,8 +7,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::damping_test {
 
 constexpr double kPeriod = 1e-3;  // s
 
@@ -54,5 +53,4 @@ TEST(Damping, BadArgumentsAreRefused) {
             "the damping of each joint");
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::damping_test

@@ -8,8 +8,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::external_torque_test {
 
 constexpr double kPeriod = 1e-3;  // s
 constexpr double kGain = 60.0;    // 1/s
@@ -475,5 +474,4 @@ TEST(MotionTracker, NoiseOfAnEncoderIsAFractionOfThatOfDifferences) {
   EXPECT_LT(std::sqrt(tracked), 0.1 * std::sqrt(difference));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::external_torque_test

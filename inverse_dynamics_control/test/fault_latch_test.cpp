@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::fault_latch_test {
 
 TEST(FaultLatch, ShortFaultsAreTolerated) {
   FaultLatch fault(0.05);
@@ -39,5 +38,4 @@ TEST(FaultLatch, WithoutToleranceTheFirstRefusalLatches) {
   EXPECT_TRUE(fault.latched());
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::fault_latch_test

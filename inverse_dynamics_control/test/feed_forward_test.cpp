@@ -7,8 +7,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::feed_forward_test {
 
 constexpr double kPeriod = 1e-3;  // s
 
@@ -55,5 +54,4 @@ TEST(FeedForward, GivesTheTorquesOfTheIdentifiedUr10) {
   EXPECT_LT((tau - ur10->getTorques(r.q, r.qd, r.qdd)).norm(), 1e-11);
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::feed_forward_test

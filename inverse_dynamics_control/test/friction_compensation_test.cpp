@@ -5,8 +5,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::friction_compensation_test {
 
 const FrictionOptions kOptions{FrictionSource::kMeasuredVelocity, 0.1, 0.2, 0.8};
 
@@ -65,5 +64,4 @@ TEST(FrictionCompensation, BadOptionsAreRefused) {
   EXPECT_NE(text(wished, 0.0, 0.1, kNan), "");
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::friction_compensation_test

@@ -5,8 +5,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::gravity_compensation_test {
 
 constexpr double kPeriod = 1e-3;  // s
 
@@ -79,5 +78,4 @@ TEST(GravityCompensation, DampingChangesWhileTheLoopRuns) {
   EXPECT_NEAR(tau[0], 9.81 * std::cos(0.7) - 7.0 * 0.5, kRounding);
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::gravity_compensation_test

@@ -9,8 +9,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::linearisation_test {
 
 constexpr double kStep = 1e-3;  // s, of the Runge-Kutta method
 constexpr int kSteps = 800;
@@ -80,5 +79,4 @@ TEST(Linearisation, ErrorsAreThoseOfIndependentLinearSystems) {
   }
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::linearisation_test

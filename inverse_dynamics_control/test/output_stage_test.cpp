@@ -5,8 +5,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::output_stage_test {
 
 constexpr double kPeriod = 0.01;  // s
 
@@ -78,5 +77,4 @@ TEST(OutputStage, BadLimitsAreRefused) {
             "for no limit [N m/s], got nan; correct this number");
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::output_stage_test

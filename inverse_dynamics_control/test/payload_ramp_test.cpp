@@ -9,8 +9,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::payload_ramp_test {
 
 using Solver = ur10_inverse_dynamics_solver::InverseDynamicsSolverUR10;
 
@@ -180,5 +179,4 @@ TEST(BodyOf, AMessageIsInTheTipFrame) {
       "or leave frame_id empty");
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::payload_ramp_test

@@ -9,8 +9,7 @@
 #include "inverse_dynamics_control/gravity_compensation.hpp"
 #include "inverse_dynamics_solver/load_friction.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::pd_gravity_compensation_test {
 
 constexpr double kPeriod = 1e-3;  // s
 
@@ -154,5 +153,4 @@ TEST(PdGravityCompensation, BadGainsAreRefused) {
             "that isn't negative [N m s/rad], got -2; correct this number");
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::pd_gravity_compensation_test

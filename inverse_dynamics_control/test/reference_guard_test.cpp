@@ -5,8 +5,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::reference_guard_test {
 
 constexpr double kPeriod = 0.1;  // s
 const std::vector<std::string> kNames = {"a", "b"};
@@ -114,5 +113,4 @@ TEST(ReferenceGuard, BadLimitsAreRefused) {
             "infinity for no limit [rad], got nan; correct this number");
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::reference_guard_test

@@ -5,8 +5,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::refusals_test {
 
 constexpr double kPeriod = 1e-3;  // s
 constexpr double kLimit = 20.0;   // N m
@@ -194,5 +193,4 @@ TEST(Status, RefusalsAreTold) {
   EXPECT_STREQ(text(Status::kSaturated), "a joint's torque was cut to its effort limit");
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::refusals_test

@@ -5,8 +5,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::safe_stop_test {
 
 const std::vector<std::string> kNames = {"a", "b"};
 
@@ -68,5 +67,4 @@ TEST(SafeStop, BadDecelerationsAreRefused) {
             "[rad/s^2], got 0; correct this number");
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::safe_stop_test

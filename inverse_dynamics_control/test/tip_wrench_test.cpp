@@ -7,8 +7,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_control {
-namespace {
+namespace inverse_dynamics_control::tip_wrench_test {
 
 using inverse_dynamics_solver::Kinematics;
 using inverse_dynamics_solver::MatrixRef;
@@ -195,5 +194,4 @@ TEST(TipWrench, BadOptionsAreRefused) {
                inverse_dynamics_solver::UninitializedException);
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_control
+}  // namespace inverse_dynamics_control::tip_wrench_test
