@@ -10,8 +10,7 @@
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "motion.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::accelerations_test {
 
 using ::testing::HasSubstr;
 
@@ -380,5 +379,4 @@ TEST(LowPassAccelerations, RefuseWhatTheyCannotFilter) {
   EXPECT_TRUE(estimate(few, cutoffOf(10.0)).qdd.allFinite());  // enough where it is given
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::accelerations_test

@@ -14,8 +14,7 @@
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "motion.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::cutoff_test {
 
 using ::testing::HasSubstr;
 
@@ -252,5 +251,4 @@ TEST(ChooseCutoff, RefusesTooFewSamples) {
               HasSubstr("cut-off: q: expected 1 joints x 15"));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::cutoff_test

@@ -12,8 +12,7 @@
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::effort_verdict_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -160,5 +159,4 @@ TEST(EffortOfData, FallsBackOnWhatIsStated) {
                           StartsWith("the data don't determine what effort means: ")));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::effort_verdict_test

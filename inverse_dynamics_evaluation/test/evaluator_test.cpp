@@ -10,8 +10,7 @@
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "two_joint_solver.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::evaluator_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -266,5 +265,4 @@ TEST(RulesWithout, SwitchOffTheRulesThatAreNamed) {
   EXPECT_THAT(errorOf<EvaluationError>([] { rulesWithout({"all"}); }), HasSubstr("got 'all'"));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::evaluator_test

@@ -9,8 +9,7 @@
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/log_accelerations.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::joint_log_test {
 
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
@@ -340,5 +339,4 @@ TEST(JointLog, RefusesANameTwice) {
               HasSubstr("expected each name once, got a, a"));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::joint_log_test

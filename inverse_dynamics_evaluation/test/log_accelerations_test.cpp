@@ -11,8 +11,7 @@
 #include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::log_accelerations_test {
 
 using ::testing::Contains;
 using ::testing::ContainsRegex;
@@ -140,5 +139,4 @@ TEST(LogAccelerations, RefuseAnUnknownMethodAndACutOffWithoutAFilter) {
               HasSubstr("backward-difference has no cut-off, got 5 Hz"));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::log_accelerations_test

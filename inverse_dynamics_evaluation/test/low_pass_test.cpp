@@ -11,8 +11,7 @@
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "motion.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::low_pass_test {
 
 using ::testing::HasSubstr;
 
@@ -189,5 +188,4 @@ TEST(LowPass, RefusesWhatItCannotFilter) {
               HasSubstr("got nan for joint 2 in sample 18"));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::low_pass_test

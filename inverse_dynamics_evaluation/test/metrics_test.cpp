@@ -10,8 +10,7 @@
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::metrics_test {
 
 using ::testing::HasSubstr;
 
@@ -160,5 +159,4 @@ TEST(ErrorSums, LoseNothingInALongRecording) {
   EXPECT_NEAR(joint.rmse, 0.1, kRounding);
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::metrics_test

@@ -10,8 +10,7 @@
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::online_derivative_test {
 
 using ::testing::HasSubstr;
 using Step = OnlineDerivative::Step;
@@ -125,5 +124,4 @@ TEST(OnlineDerivative, RefusesACutOffThatIsNone) {
               HasSubstr("longest gap [s]: expected a number"));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::online_derivative_test

@@ -13,8 +13,7 @@
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "inverse_dynamics_evaluation/package_share.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::run_configuration_test {
 
 namespace fs = std::filesystem;
 using inverse_dynamics_solver::ParameterValue;
@@ -184,5 +183,4 @@ TEST_F(RunConfigurations, NameTheJointsOfRecordingsInTheOrderOfTheChain) {
   EXPECT_THAT(error({"a"}), StartsWith("parameter 'joints': expected 1 names"));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::run_configuration_test

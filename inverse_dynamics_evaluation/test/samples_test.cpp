@@ -10,8 +10,7 @@
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "motion.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::samples_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -292,5 +291,4 @@ TEST(ExamineSamples, RefusesWhatItCannotExamine) {
               HasSubstr("2 or more that differ"));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::samples_test

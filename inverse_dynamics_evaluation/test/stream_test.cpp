@@ -25,8 +25,7 @@
 #include "motion.hpp"
 #include "two_joint_solver.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::stream_test {
 
 namespace fs = std::filesystem;
 using Eigen::Index;
@@ -403,5 +402,4 @@ TEST(DistanceCounts, AreCloseForAnyNumberOfDifferentDistances) {
   EXPECT_EQ(counts.count(none), 1000000);
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::stream_test

@@ -8,8 +8,7 @@
 
 #include "error_of.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::time_window_test {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -177,5 +176,4 @@ TEST(TimeWindow, TakesAnyTwoStamps) {
   EXPECT_THAT(messagesOf(source), ElementsAre(1));  // 1.8e10 s later
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::time_window_test

@@ -11,8 +11,7 @@
 #include "low_pass_differentiator.hpp"
 #include "motion.hpp"
 
-namespace inverse_dynamics_evaluation {
-namespace {
+namespace inverse_dynamics_evaluation::zero_phase_test {
 
 using Eigen::Index;
 
@@ -116,5 +115,4 @@ TEST(LowPassDifferentiator, GivesByPartsWhatTheFilterGivesOfTheWhole) {
   }
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_evaluation
+}  // namespace inverse_dynamics_evaluation::zero_phase_test
