@@ -9,8 +9,7 @@
 
 #include "error_of.hpp"
 
-namespace inverse_dynamics_recordings {
-namespace {
+namespace inverse_dynamics_recordings::joint_state_cdr_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -212,5 +211,4 @@ TEST(Utf8, IsWhatTheStandardSays) {
   }
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_recordings
+}  // namespace inverse_dynamics_recordings::joint_state_cdr_test

@@ -12,8 +12,7 @@
 
 #include "error_of.hpp"
 
-namespace inverse_dynamics_recordings {
-namespace {
+namespace inverse_dynamics_recordings::joint_state_writer_test {
 
 namespace fs = std::filesystem;
 using inverse_dynamics_evaluation::RecordingError;
@@ -131,5 +130,4 @@ INSTANTIATE_TEST_SUITE_P(Storages, JointStateWriterTest,
                          ::testing::Values(Storage::kSqlite3, Storage::kMcap),
                          [](const auto& storage) { return name(storage.param); });
 
-}  // namespace
-}  // namespace inverse_dynamics_recordings
+}  // namespace inverse_dynamics_recordings::joint_state_writer_test

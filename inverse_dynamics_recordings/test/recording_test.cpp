@@ -20,8 +20,7 @@
 #include "inverse_dynamics_recordings/joint_state_writer.hpp"
 #include "mcap_format.hpp"
 
-namespace inverse_dynamics_recordings {
-namespace {
+namespace inverse_dynamics_recordings::recording_test {
 
 namespace fs = std::filesystem;
 using inverse_dynamics_evaluation::JointStateBlock;
@@ -584,5 +583,4 @@ TEST(NoRecording, IsToldByWhatItIs) {
   EXPECT_THAT(errorOfReading("/etc/passwd"), HasSubstr("got 'passwd'"));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_recordings
+}  // namespace inverse_dynamics_recordings::recording_test

@@ -12,8 +12,7 @@
 #include "crc32.hpp"
 #include "error_of.hpp"
 
-namespace inverse_dynamics_recordings {
-namespace {
+namespace inverse_dynamics_recordings::unpack_test {
 
 using ::testing::HasSubstr;
 
@@ -113,5 +112,4 @@ TEST(Crc32, HasThePublishedCheckValue) {
   EXPECT_EQ(crc32(nullptr, 0), 0U);
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_recordings
+}  // namespace inverse_dynamics_recordings::unpack_test
