@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -47,6 +48,20 @@ def test_rows_times_parameters_are_the_torques_and_friction() -> None:
     expected = rotor * qdd + viscous * qd + (step + load * np.abs(gravity)) * tanh + offset
     np.testing.assert_allclose((Z @ b)[:, 3], expected, rtol=1e-9, atol=1e-9)
     np.testing.assert_array_equal(np.delete(Z @ b, 3, axis=1), 0.0)
+
+
+@pytest.mark.parametrize("kind", [Unknowns.of_arm, Unknowns.of_payload])
+def test_a_weighted_sum_is_that_of_rows_and_torques(kind: Callable[..., Unknowns]) -> None:
+    robot = simulated("panda")
+    unknowns = kind(robot, ExcitationOptions().limits(robot))
+    states = unknowns.random_states(50)
+    Z, tau = unknowns.rows_and_torques(*states)
+    random = np.random.default_rng(2)
+    U, U_tau = random.standard_normal(Z.shape), random.standard_normal(tau.shape)
+    expected = (U * Z).sum(axis=(1, 2)) + (U_tau * tau).sum(axis=1)
+    weighted = unknowns.weighted_sum(U, U_tau)
+    for gravity in (None, unknowns.gravity(states.q)):
+        np.testing.assert_allclose(weighted(*states, gravity), expected, rtol=1e-9, atol=1e-9)
 
 
 def test_deviation_is_that_of_estimates_from_simulated_noise() -> None:
