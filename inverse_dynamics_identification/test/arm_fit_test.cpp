@@ -11,8 +11,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_identification {
-namespace {
+namespace inverse_dynamics_identification::arm_fit_test {
 
 using chain_dynamics::FastModel;
 using chain_dynamics::Model;
@@ -366,5 +365,4 @@ TEST(ArmFitter, RefusesAFitOfAnotherArm) {
   EXPECT_THROW(fitter.fit({samplesOf(motion)}, none), chain_dynamics::ModelError);
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_identification
+}  // namespace inverse_dynamics_identification::arm_fit_test

@@ -12,8 +12,7 @@
 #include "arms.hpp"
 #include "penalties.hpp"
 
-namespace inverse_dynamics_identification {
-namespace {
+namespace inverse_dynamics_identification::consistent_fit_test {
 
 using chain_dynamics::FastModel;
 using chain_dynamics::Model;
@@ -267,5 +266,4 @@ TEST(ConsistentFit, RefusesAColumnThatNothingDetermines) {
   }
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_identification
+}  // namespace inverse_dynamics_identification::consistent_fit_test

@@ -5,8 +5,7 @@
 
 #include <cmath>
 
-namespace inverse_dynamics_identification {
-namespace {
+namespace inverse_dynamics_identification::friction_step_test {
 
 constexpr double kRounding = 1e-14;
 constexpr double kDifference = 1e-6;    // of central differences
@@ -60,5 +59,4 @@ TEST(FrictionStep, ColumnsOfShiftWidthAndVelocityAreDerivatives) {
   }
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_identification
+}  // namespace inverse_dynamics_identification::friction_step_test

@@ -9,8 +9,7 @@
 
 #include "arms.hpp"
 
-namespace inverse_dynamics_identification {
-namespace {
+namespace inverse_dynamics_identification::pseudo_inertia_test {
 
 using ::testing::HasSubstr;
 constexpr double kRounding = 1e-14;
@@ -99,5 +98,4 @@ TEST(LinkPrior, RefusesNumbersThatAreNotFinite) {
   EXPECT_THROW(linkPrior(link), chain_dynamics::ModelError);
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_identification
+}  // namespace inverse_dynamics_identification::pseudo_inertia_test

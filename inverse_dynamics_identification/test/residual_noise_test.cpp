@@ -10,8 +10,7 @@
 
 #include "whitening.hpp"
 
-namespace inverse_dynamics_identification {
-namespace {
+namespace inverse_dynamics_identification::residual_noise_test {
 
 using testing::HasSubstr;
 
@@ -89,5 +88,4 @@ TEST(ResidualNoise, RefusesWhatIsNoSeries) {
   EXPECT_THAT(error(time, residuals, 0.2), HasSubstr("finite"));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_identification
+}  // namespace inverse_dynamics_identification::residual_noise_test
