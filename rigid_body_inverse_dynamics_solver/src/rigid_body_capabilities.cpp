@@ -51,8 +51,8 @@ class OneState {
 void InverseDynamicsSolverRigidBody::computeTipPose(const ConstVectorRef& q,
                                                     Transform<double>& pose) const {
   // (Payload and gravity change nothing about it: any robot will do.)
-  const FastModel* const fast = initialRobot().fast.get();
-  if (fast == nullptr) {
+  const auto& fast = initialRobot().fast;
+  if (!fast) {
     pose = chain_dynamics::tipPose(model().chain, q);
   } else {
     fast->tipPose(q.data(), pose.R.data(), pose.p.data());
@@ -61,16 +61,16 @@ void InverseDynamicsSolverRigidBody::computeTipPose(const ConstVectorRef& q,
 
 void InverseDynamicsSolverRigidBody::computeTipJacobian(const ConstVectorRef& q,
                                                         MatrixRef J) const {
-  const FastModel* const fast = initialRobot().fast.get();
-  if (fast == nullptr) return chain_dynamics::tipJacobian(model().chain, q, J);
+  const auto& fast = initialRobot().fast;
+  if (!fast) return chain_dynamics::tipJacobian(model().chain, q, J);
   fast->tipJacobian(q.data(), J.data(), J.outerStride());
 }
 
 void InverseDynamicsSolverRigidBody::computeTipJacobianDerivative(const ConstVectorRef& q,
                                                                   const ConstVectorRef& qd,
                                                                   MatrixRef dJ) const {
-  const FastModel* const fast = initialRobot().fast.get();
-  if (fast == nullptr) return chain_dynamics::tipJacobianDerivative(model().chain, q, qd, dJ);
+  const auto& fast = initialRobot().fast;
+  if (!fast) return chain_dynamics::tipJacobianDerivative(model().chain, q, qd, dJ);
   fast->tipJacobianDerivative(q.data(), qd.data(), dJ.data(), dJ.outerStride());
 }
 
@@ -101,7 +101,7 @@ void InverseDynamicsSolverRigidBody::computeCoriolisMatrix(const ConstVectorRef&
                                                            const ConstVectorRef& qd,
                                                            MatrixRef C) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return chain_dynamics::coriolisMatrix(robot->model, q, qd, C);
+  if (!robot->fast) return chain_dynamics::coriolisMatrix(robot->model, q, qd, C);
   robot->fast->coriolisMatrix(q.data(), qd.data(), C.data(), C.outerStride());
 }
 
@@ -124,7 +124,7 @@ void InverseDynamicsSolverRigidBody::computeTorqueDerivatives(const ConstVectorR
   const auto robot = currentRobot();
   const Eigen::Index step = dtau_dq.outerStride();
   const bool same_steps = dtau_dqd.outerStride() == step && dtau_dqdd.outerStride() == step;
-  if (robot->fast != nullptr && same_steps) {
+  if (robot->fast && same_steps) {
     robot->fast->torqueDerivatives(q.data(), qd.data(), qdd.data(), dtau_dq.data(), dtau_dqd.data(),
                                    dtau_dqdd.data(), step);
     return;
@@ -138,7 +138,7 @@ void InverseDynamicsSolverRigidBody::computeRegressor(const ConstVectorRef& q,
                                                       const ConstVectorRef& qdd,
                                                       MatrixRef Y) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) {
+  if (!robot->fast) {
     return chain_dynamics::regressor(robot->model.chain, q, qd, qdd, Y);
   }
   robot->fast->regressor(q.data(), qd.data(), qdd.data(), Y.data(), Y.outerStride());
@@ -149,7 +149,7 @@ void InverseDynamicsSolverRigidBody::computeAccelerations(const ConstVectorRef& 
                                                           const ConstVectorRef& tau,
                                                           VectorRef qdd) const {
   const auto robot = currentRobot();
-  if (robot->fast != nullptr) {
+  if (robot->fast) {
     return robot->fast->forwardDynamics(q.data(), qd.data(), tau.data(), qdd.data());
   }
   // What the chain's own bodies are accelerated by.
@@ -171,22 +171,22 @@ void InverseDynamicsSolverRigidBody::computeAccelerations(const ConstVectorRef& 
 void InverseDynamicsSolverRigidBody::computeTipPoseBatch(const ConstStates& q,
                                                          const StridedMatrices& R,
                                                          const States& p) const {
-  const FastModel* const fast = initialRobot().fast.get();
-  if (fast == nullptr) return Kinematics::computeTipPoseBatch(q, R, p);
+  const auto& fast = initialRobot().fast;
+  if (!fast) return Kinematics::computeTipPoseBatch(q, R, p);
   fast->tipPoseBatch(q, R, p);
 }
 
 void InverseDynamicsSolverRigidBody::computeTipJacobianBatch(const ConstStates& q,
                                                              const StridedMatrices& J) const {
-  const FastModel* const fast = initialRobot().fast.get();
-  if (fast == nullptr) return Kinematics::computeTipJacobianBatch(q, J);
+  const auto& fast = initialRobot().fast;
+  if (!fast) return Kinematics::computeTipJacobianBatch(q, J);
   fast->tipJacobianBatch(q, J);
 }
 
 void InverseDynamicsSolverRigidBody::computeTipJacobianDerivativeBatch(
     const ConstStates& q, const ConstStates& qd, const StridedMatrices& dJ) const {
-  const FastModel* const fast = initialRobot().fast.get();
-  if (fast == nullptr) return Kinematics::computeTipJacobianDerivativeBatch(q, qd, dJ);
+  const auto& fast = initialRobot().fast;
+  if (!fast) return Kinematics::computeTipJacobianDerivativeBatch(q, qd, dJ);
   fast->tipJacobianDerivativeBatch(q, qd, dJ);
 }
 
@@ -194,8 +194,8 @@ void InverseDynamicsSolverRigidBody::computeExternalTorquesBatch(const ConstStat
                                                                  WrenchFrame frame,
                                                                  const ConstStates& wrenches,
                                                                  const States& tau) const {
-  const FastModel* const fast = initialRobot().fast.get();
-  if (fast == nullptr) {
+  const auto& fast = initialRobot().fast;
+  if (!fast) {
     return ExternalWrench::computeExternalTorquesBatch(q, frame, wrenches, tau);
   }
   constexpr Eigen::Index kBlock = 8;  // states: their Jacobians take 24 kB at most
@@ -226,7 +226,7 @@ void InverseDynamicsSolverRigidBody::computeCoriolisMatrixBatch(const ConstState
                                                                 const ConstStates& qd,
                                                                 const StridedMatrices& C) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return CoriolisMatrix::computeCoriolisMatrixBatch(q, qd, C);
+  if (!robot->fast) return CoriolisMatrix::computeCoriolisMatrixBatch(q, qd, C);
   robot->fast->coriolisMatrixBatch(q, qd, C);
 }
 
@@ -234,7 +234,7 @@ void InverseDynamicsSolverRigidBody::computeKineticEnergyBatch(const ConstStates
                                                                const ConstStates& qd,
                                                                const States& T) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return Energies::computeKineticEnergyBatch(q, qd, T);
+  if (!robot->fast) return Energies::computeKineticEnergyBatch(q, qd, T);
   OneState q_of(q), qd_of(qd);
   for (Eigen::Index k = 0; k < q.count; ++k) {
     T(0, k) = chain_dynamics::kineticEnergy(robot->model, q_of(k), qd_of(k));
@@ -244,7 +244,7 @@ void InverseDynamicsSolverRigidBody::computeKineticEnergyBatch(const ConstStates
 void InverseDynamicsSolverRigidBody::computePotentialEnergyBatch(const ConstStates& q,
                                                                  const States& U) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return Energies::computePotentialEnergyBatch(q, U);
+  if (!robot->fast) return Energies::computePotentialEnergyBatch(q, U);
   OneState q_of(q);
   for (Eigen::Index k = 0; k < q.count; ++k) {
     U(0, k) = chain_dynamics::potentialEnergy(robot->model, q_of(k));
@@ -256,7 +256,7 @@ void InverseDynamicsSolverRigidBody::computeTorqueDerivativesBatch(
     const StridedMatrices& dtau_dq, const StridedMatrices& dtau_dqd,
     const StridedMatrices& dtau_dqdd) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) {
+  if (!robot->fast) {
     return TorqueDerivatives::computeTorqueDerivativesBatch(q, qd, qdd, dtau_dq, dtau_dqd,
                                                             dtau_dqdd);
   }
@@ -268,7 +268,7 @@ void InverseDynamicsSolverRigidBody::computeRegressorBatch(const ConstStates& q,
                                                            const ConstStates& qdd,
                                                            const StridedMatrices& Y) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return Regressor::computeRegressorBatch(q, qd, qdd, Y);
+  if (!robot->fast) return Regressor::computeRegressorBatch(q, qd, qdd, Y);
   if (Y.row_step == 1 && q.joints > 1) return robot->fast->regressorBatch(q, qd, qdd, Y);
 
   // The kernels round otherwise where rows don't stand side by side. A layout mustn't change the bits:
@@ -293,7 +293,7 @@ void InverseDynamicsSolverRigidBody::computeAccelerationsBatch(const ConstStates
                                                                const ConstStates& tau,
                                                                const States& qdd) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) {
+  if (!robot->fast) {
     return ForwardDynamics::computeAccelerationsBatch(q, qd, tau, qdd);
   }
   robot->fast->forwardDynamicsBatch(q, qd, tau, qdd);

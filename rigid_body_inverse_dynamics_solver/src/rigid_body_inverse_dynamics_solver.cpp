@@ -195,9 +195,9 @@ auto InverseDynamicsSolverRigidBody::keep(chain_dynamics::Model model,
   JointInfo info{model.chain.jointNames(), warningsOf(model, inertia_is_physical)};
   for (std::string& warning : warnings) info.warnings.push_back(std::move(warning));
   auto conditions = readConditions(configuration, model.chain.gravity());
-  auto robot = std::make_unique<ReadyModel>(ReadyModel{conditions->appliedTo(model), nullptr});
+  auto robot = std::make_unique<ReadyModel>(conditions->appliedTo(model));
   if (model.chain.jointCount() <= FastModel::kMaxJoints) {
-    robot->fast = std::make_unique<const FastModel>(robot->model);
+    robot->fast.emplace(robot->model);
     const Sentences& more = robot->fast->warnings();
     info.warnings.insert(info.warnings.end(), more.begin(), more.end());
   }
@@ -213,9 +213,9 @@ auto InverseDynamicsSolverRigidBody::keep(chain_dynamics::Model model,
 
 auto InverseDynamicsSolverRigidBody::robotUnder(const Conditions& conditions) const
     -> std::unique_ptr<const ReadyModel> {
-  auto robot = std::make_unique<ReadyModel>(ReadyModel{conditions.appliedTo(model()), nullptr});
-  if (initialRobot().fast != nullptr) {
-    robot->fast = std::make_unique<const FastModel>(robot->model, *initialRobot().fast);
+  auto robot = std::make_unique<ReadyModel>(conditions.appliedTo(model()));
+  if (initialRobot().fast) {
+    robot->fast.emplace(robot->model, *initialRobot().fast);
   }
   return robot;
 }
@@ -225,7 +225,7 @@ auto InverseDynamicsSolverRigidBody::robotUnder(const Conditions& conditions) co
 void InverseDynamicsSolverRigidBody::computeInertiaMatrix(const ConstVectorRef& q,
                                                           MatrixRef H) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return chain_dynamics::inertiaMatrix(robot->model, q, H);
+  if (!robot->fast) return chain_dynamics::inertiaMatrix(robot->model, q, H);
   robot->fast->inertiaMatrix(q.data(), H.data(), H.outerStride());
 }
 
@@ -233,21 +233,21 @@ void InverseDynamicsSolverRigidBody::computeCoriolisVector(const ConstVectorRef&
                                                            const ConstVectorRef& qd,
                                                            VectorRef c) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return chain_dynamics::coriolisVector(robot->model, q, qd, c);
+  if (!robot->fast) return chain_dynamics::coriolisVector(robot->model, q, qd, c);
   robot->fast->coriolisVector(q.data(), qd.data(), c.data());
 }
 
 void InverseDynamicsSolverRigidBody::computeGravityVector(const ConstVectorRef& q,
                                                           VectorRef g) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return chain_dynamics::gravityVector(robot->model, q, g);
+  if (!robot->fast) return chain_dynamics::gravityVector(robot->model, q, g);
   robot->fast->gravityVector(q.data(), g.data());
 }
 
 void InverseDynamicsSolverRigidBody::computeFriction(const ConstVectorRef& q,
                                                      const ConstVectorRef& qd, VectorRef f) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return chain_dynamics::frictionVector(robot->model, q, qd, f);
+  if (!robot->fast) return chain_dynamics::frictionVector(robot->model, q, qd, f);
   robot->fast->frictionVector(q.data(), qd.data(), f.data());
 }
 
@@ -255,8 +255,7 @@ void InverseDynamicsSolverRigidBody::computeDynamicComponents(const ConstVectorR
                                                               const ConstVectorRef& qd, MatrixRef H,
                                                               VectorRef c, VectorRef g) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr)
-    return chain_dynamics::dynamicComponents(robot->model, q, qd, H, c, g);
+  if (!robot->fast) return chain_dynamics::dynamicComponents(robot->model, q, qd, H, c, g);
   robot->fast->dynamicComponents(q.data(), qd.data(), H.data(), H.outerStride(), c.data(),
                                  g.data());
 }
@@ -266,8 +265,7 @@ void InverseDynamicsSolverRigidBody::computeTorques(const ConstVectorRef& q,
                                                     const ConstVectorRef& qdd,
                                                     VectorRef tau) const {
   const auto robot = currentRobot();
-  if (robot->fast != nullptr)
-    return robot->fast->torques(q.data(), qd.data(), qdd.data(), tau.data());
+  if (robot->fast) return robot->fast->torques(q.data(), qd.data(), qdd.data(), tau.data());
 
   // tau = H qdd + C qd + g, and f on top
   Eigen::VectorXd f(q.size());
@@ -281,7 +279,7 @@ void InverseDynamicsSolverRigidBody::computeTorques(const ConstVectorRef& q,
 void InverseDynamicsSolverRigidBody::computeParts(bool shared,
                                                   const std::function<void()>& compute) const {
   // A fast model computes all states of a part; that is the batch where nobody shares it.
-  if (!shared && initialRobot().fast != nullptr) {
+  if (!shared && initialRobot().fast) {
     compute();
   } else {
     whileUnchanged(compute);
@@ -291,7 +289,7 @@ void InverseDynamicsSolverRigidBody::computeParts(bool shared,
 void InverseDynamicsSolverRigidBody::computeInertiaMatrixBatch(const ConstStates& q,
                                                                const StridedMatrices& H) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return InverseDynamicsSolver::computeInertiaMatrixBatch(q, H);
+  if (!robot->fast) return InverseDynamicsSolver::computeInertiaMatrixBatch(q, H);
   robot->fast->inertiaMatrixBatch(q, H);
 }
 
@@ -299,7 +297,7 @@ void InverseDynamicsSolverRigidBody::computeCoriolisVectorBatch(const ConstState
                                                                 const ConstStates& qd,
                                                                 const States& c) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return InverseDynamicsSolver::computeCoriolisVectorBatch(q, qd, c);
+  if (!robot->fast) return InverseDynamicsSolver::computeCoriolisVectorBatch(q, qd, c);
   robot->fast->coriolisVectorBatch(q, qd, c);
 }
 
@@ -307,14 +305,14 @@ void InverseDynamicsSolverRigidBody::computeFrictionBatch(const ConstStates& q,
                                                           const ConstStates& qd,
                                                           const States& f) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return InverseDynamicsSolver::computeFrictionBatch(q, qd, f);
+  if (!robot->fast) return InverseDynamicsSolver::computeFrictionBatch(q, qd, f);
   robot->fast->frictionVectorBatch(q, qd, f);
 }
 
 void InverseDynamicsSolverRigidBody::computeGravityVectorBatch(const ConstStates& q,
                                                                const States& g) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return InverseDynamicsSolver::computeGravityVectorBatch(q, g);
+  if (!robot->fast) return InverseDynamicsSolver::computeGravityVectorBatch(q, g);
   robot->fast->gravityVectorBatch(q, g);
 }
 
@@ -324,8 +322,7 @@ void InverseDynamicsSolverRigidBody::computeDynamicComponentsBatch(const ConstSt
                                                                    const States& c,
                                                                    const States& g) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr)
-    return InverseDynamicsSolver::computeDynamicComponentsBatch(q, qd, H, c, g);
+  if (!robot->fast) return InverseDynamicsSolver::computeDynamicComponentsBatch(q, qd, H, c, g);
   robot->fast->dynamicComponentsBatch(q, qd, H, c, g);
 }
 
@@ -334,7 +331,7 @@ void InverseDynamicsSolverRigidBody::computeTorquesBatch(const ConstStates& q,
                                                          const ConstStates& qdd,
                                                          const States& tau) const {
   const auto robot = currentRobot();
-  if (robot->fast == nullptr) return InverseDynamicsSolver::computeTorquesBatch(q, qd, qdd, tau);
+  if (!robot->fast) return InverseDynamicsSolver::computeTorquesBatch(q, qd, qdd, tau);
   robot->fast->torquesBatch(q, qd, qdd, tau);
 }
 

@@ -10,7 +10,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chain_dynamics/fast_model.hpp"
@@ -41,8 +43,10 @@ using inverse_dynamics_solver::WrenchFrame;
 
 /// A model made ready to compute with.
 struct ReadyModel {
+  explicit ReadyModel(chain_dynamics::Model of) : model(std::move(of)) {}
+
   chain_dynamics::Model model;
-  std::unique_ptr<const chain_dynamics::FastModel> fast;  ///< null: a chain too long for it
+  std::optional<const chain_dynamics::FastModel> fast;  ///< unless the chain is too long for it
 };
 
 /// The engine as a solver.
