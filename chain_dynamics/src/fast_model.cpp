@@ -200,44 +200,44 @@ FastModel::~FastModel() = default;
 const fast::Robot& FastModel::robot() const { return data_->robot; }
 
 void FastModel::torques(const double* q, const double* qd, const double* qdd, double* tau) const {
-  kernels_->torques(robot(), structure_, q, qd, qdd, tau);
+  kernels_->torques(data_->robot, structure_, q, qd, qdd, tau);
 }
 
 void FastModel::inertiaMatrix(const double* q, double* H, std::ptrdiff_t outer_step) const {
-  kernels_->inertia(robot(), structure_, q, {H, 1, outer_step, 0});
+  kernels_->inertia(data_->robot, structure_, q, {H, 1, outer_step, 0});
 }
 
 void FastModel::coriolisVector(const double* q, const double* qd, double* c) const {
-  kernels_->coriolis(robot(), structure_, q, qd, c);
+  kernels_->coriolis(data_->robot, structure_, q, qd, c);
 }
 
 void FastModel::gravityVector(const double* q, double* g) const {
-  kernels_->gravity(robot(), structure_, q, g);
+  kernels_->gravity(data_->robot, structure_, q, g);
 }
 
-bool FastModel::frictionDependsOnLoad() const { return robot().load_friction; }
+bool FastModel::frictionDependsOnLoad() const { return data_->robot.load_friction; }
 
 void FastModel::frictionVector(const double* q, const double* qd, double* f) const {
-  kernels_->friction(robot(), structure_, q, qd, f);
+  kernels_->friction(data_->robot, structure_, q, qd, f);
 }
 
 void FastModel::dynamicComponents(const double* q, const double* qd, double* H,
                                   std::ptrdiff_t outer_step, double* c, double* g) const {
-  kernels_->components(robot(), structure_, q, qd, {H, 1, outer_step, 0}, c, g);
+  kernels_->components(data_->robot, structure_, q, qd, {H, 1, outer_step, 0}, c, g);
 }
 
 void FastModel::forwardDynamics(const double* q, const double* qd, const double* tau,
                                 double* qdd) const {
   const Chain& chain = data_->chain;
   const Eigen::Index n = chain.jointCount();
-  if (n <= kSolvedJoints || robot().rows != nullptr || robot().gravity_bodies != nullptr) {
-    kernels_->forward_dynamics(robot(), structure_, q, qd, tau, qdd);
+  if (n <= kSolvedJoints || data_->robot.rows != nullptr || data_->robot.gravity_bodies != nullptr) {
+    kernels_->forward_dynamics(data_->robot, structure_, q, qd, tau, qdd);
     return;
   }
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
   using Given = Eigen::Map<const Eigen::VectorXd>;
   Vector without_friction(n);
-  kernels_->friction(robot(), structure_, q, qd, without_friction.data());
+  kernels_->friction(data_->robot, structure_, q, qd, without_friction.data());
   without_friction = Given(tau, n) - without_friction;
   chain_dynamics::forwardDynamics(chain, Given(q, n), Given(qd, n), without_friction,
                                   Eigen::Map<Eigen::VectorXd>(qdd, n));
@@ -245,32 +245,32 @@ void FastModel::forwardDynamics(const double* q, const double* qd, const double*
 
 void FastModel::regressor(const double* q, const double* qd, const double* qdd, double* Y,
                           std::ptrdiff_t outer_step) const {
-  kernels_->regressor(robot(), q, qd, qdd, Y, outer_step);
+  kernels_->regressor(data_->robot, q, qd, qdd, Y, outer_step);
 }
 
 void FastModel::torqueDerivatives(const double* q, const double* qd, const double* qdd,
                                   double* dtau_dq, double* dtau_dqd, double* dtau_dqdd,
                                   std::ptrdiff_t outer_step) const {
-  kernels_->torque_derivatives(robot(), structure_, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd,
+  kernels_->torque_derivatives(data_->robot, structure_, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd,
                                outer_step);
 }
 
 void FastModel::coriolisMatrix(const double* q, const double* qd, double* C,
                                std::ptrdiff_t outer_step) const {
-  kernels_->coriolis_matrix(robot(), structure_, q, qd, C, outer_step);
+  kernels_->coriolis_matrix(data_->robot, structure_, q, qd, C, outer_step);
 }
 
 void FastModel::tipPose(const double* q, double* R, double* p) const {
-  kernels_->tip_pose(robot(), structure_, q, R, p);
+  kernels_->tip_pose(data_->robot, structure_, q, R, p);
 }
 
 void FastModel::tipJacobian(const double* q, double* J, std::ptrdiff_t outer_step) const {
-  kernels_->tip_jacobian(robot(), structure_, q, J, outer_step);
+  kernels_->tip_jacobian(data_->robot, structure_, q, J, outer_step);
 }
 
 void FastModel::tipJacobianDerivative(const double* q, const double* qd, double* dJ,
                                       std::ptrdiff_t outer_step) const {
-  kernels_->tip_jacobian_derivative(robot(), structure_, q, qd, dJ, outer_step);
+  kernels_->tip_jacobian_derivative(data_->robot, structure_, q, qd, dJ, outer_step);
 }
 
 }  // namespace v2

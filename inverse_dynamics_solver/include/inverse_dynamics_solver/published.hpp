@@ -69,6 +69,11 @@ class Published {
   /// The value of reset(), whatever has been published since.
   const T& initial() const noexcept { return *initial_; }
 
+  /// The value of reset() while it is the current one, else null. It needs no reader: it stays.
+  const T* initialIfCurrent() const noexcept {
+    return current_.load(std::memory_order_acquire) == nullptr ? initial_.get() : nullptr;
+  }
+
   /// The current value; after reset().
   Reader read() const noexcept {
     Slot* const slot = current_.load(std::memory_order_acquire);
