@@ -230,7 +230,8 @@ void FastModel::forwardDynamics(const double* q, const double* qd, const double*
                                 double* qdd) const {
   const Chain& chain = data_->chain;
   const Eigen::Index n = chain.jointCount();
-  if (n <= kSolvedJoints || data_->robot.rows != nullptr || data_->robot.gravity_bodies != nullptr) {
+  if (n <= kSolvedJoints || data_->robot.rows != nullptr ||
+      data_->robot.gravity_bodies != nullptr) {
     kernels_->forward_dynamics(data_->robot, structure_, q, qd, tau, qdd);
     return;
   }
