@@ -13,14 +13,6 @@ from inverse_dynamics_benchmarks.pages import PARTS, updated
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = ("speed.md", "real_time.md")
-SINCE_THE_LAST_MEASUREMENT = {
-    "Coriolis matrix: UR10, Panda",
-    "Jacobian of the tip: UR10, Panda",
-    "torques, payload not set",
-    "torques, payload set",
-    "external torques, 7 joints, one update",
-}
-"""Asked for since docs/speed.json was measured on a quiet machine."""
 
 
 def fails(result, *expected):
@@ -333,8 +325,7 @@ def test_bounds_that_were_not_measured_are_named(speed_json):
     assert set(re.findall(r"^\| (.*?) \|", text, re.M)) <= set(
         re.findall(r"^\| (.*?) \|", complete, re.M)
     )
-    missing = re.findall(r"^\| (.*?) \|.*not measured", complete, re.M)
-    assert set(missing) <= SINCE_THE_LAST_MEASUREMENT
+    assert "not measured" not in complete
 
 
 def test_without_any_bound_measured_there_is_no_table_of_them():
