@@ -122,7 +122,7 @@ prepare_build() {
     -DPYTHON_EXECUTABLE="$venv/bin/python"
   )
   if command -v ccache >/dev/null; then
-    # Another clone finds what this one has compiled.
+    # Another clone finds what this one has compiled, but for sources of a unity build: they name its paths.
     export CCACHE_BASEDIR=$workspace CCACHE_NOHASHDIR=1
     cmake_arguments+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   fi
