@@ -66,7 +66,7 @@ def main() -> int:
         "--only",
         choices=SECTIONS,
         action="append",
-        help="write these sections anew, and take the others from the page",
+        help="write only these sections, and take the others from the page",
     )
     given = parser.parse_args()
     bags = data_directory() / "bags"

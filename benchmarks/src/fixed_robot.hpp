@@ -40,7 +40,7 @@ class FixedRobot : public inverse_dynamics_solver::InverseDynamicsSolver {
   }
   void computeTorques(const ConstVectorRef& q, const ConstVectorRef& qd, const ConstVectorRef& qdd,
                       VectorRef tau) const override {
-    // A chain too long for a fast model has none.
+    // A branch as in the rigid body solver: it isn't what a payload costs.
     if (fast_ == nullptr) return chain_dynamics::torques(model_, q, qd, qdd, tau);
     fast_->torques(q.data(), qd.data(), qdd.data(), tau.data());
   }

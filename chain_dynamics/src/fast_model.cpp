@@ -197,6 +197,7 @@ std::string FastModel::instructionSet() const { return kernels_->name; }
 
 FastModel::~FastModel() = default;
 
+// For fast_model_batches.cpp. Here it would be a call through the table of exported symbols, each time.
 const fast::Robot& FastModel::robot() const { return data_->robot; }
 
 void FastModel::torques(const double* q, const double* qd, const double* qdd, double* tau) const {

@@ -11,7 +11,6 @@
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
-namespace {}  // namespace
 
 double lowPassGain(double frequency, double cutoff, double sampling_frequency, int order) {
   if (frequency >= sampling_frequency / 2) {

@@ -81,6 +81,7 @@ void torquesByRowOrBody(const Robot& robot, const State<V>& state, const double*
   return torquesByBody<S>(robot, state, root, tau);
 }
 
+/// The function for robots of structure S.
 template <typename S, typename V>
 constexpr auto torques() {
   if constexpr (S::kRows) {

@@ -108,8 +108,8 @@ class ChangeableRobot : public ChangingConditions {
   /// call mixes two.
   typename Published<Robot>::Reader currentRobot() const noexcept { return robot_.read(); }
 
-  /// Calls `compute(robot)` with the current robot: as currentRobot(), and 2 ns faster while the
-  /// robot is that of beginWith(), as nothing is left to do after the call.
+  /// Calls `compute(robot)` with the current robot: as currentRobot(), but for single
+  /// calls: while the robot is that of beginWith(), nothing is left to do after `compute`.
   template <class Compute>
   void withCurrentRobot(const Compute& compute) const {
     if (const Robot* const robot = robot_.initialIfCurrent()) return compute(*robot);
