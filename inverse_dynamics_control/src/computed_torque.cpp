@@ -54,12 +54,12 @@ Status ComputedTorque::update(const JointState& state, const Reference& referenc
        {check(state, tau), check(reference.q), check(reference.qd), check(reference.qdd)}) {
     if (status != Status::kOk) return refuse(status, state, period, tau);
   }
-  return output(state, period, tau, [&](VectorRef wished) {
+  return output(state, period, tau, [&](VectorRef desired) {
     // a = qdd_ref + Kp e + Kd ed,  tau = H a + C qd + g + f
     acceleration_ = reference.qdd + gains_.Kp.cwiseProduct(reference.q - state.q) +
                     gains_.Kd.cwiseProduct(reference.qd - state.qd);
-    model().torques(state.q, state.qd, acceleration_, wished);
-    addFriction(state.q, state.qd, reference.qd, wished);
+    model().torques(state.q, state.qd, acceleration_, desired);
+    addFriction(state.q, state.qd, reference.qd, desired);
   });
 }
 

@@ -16,7 +16,7 @@ ControlLaw::ControlLaw(std::shared_ptr<const InverseDynamicsSolver> solver,
       damping_(options.damping) {
   requireJointNumbers(law + ": damping", damping_, Range::kNotNegative, "N m s/rad",
                       model_.jointNames());
-  for (OwnedVector* vector : {&wished_, &f_, &gravity_, &gravity_candidate_}) {
+  for (OwnedVector* vector : {&desired_, &f_, &gravity_, &gravity_candidate_}) {
     *vector = Eigen::VectorXd::Zero(model_.jointCount());
   }
 }
@@ -63,9 +63,9 @@ Status ControlLaw::refuse(Status why, const JointState& state, double period,
   }
   // g(q) - damping qd, of what is known
   if (state.q.size() == n && state.q.allFinite()) updateGravity(state.q);
-  wished_ = gravity_;
-  if (state.qd.size() == n && state.qd.allFinite()) wished_ -= damping_.cwiseProduct(state.qd);
-  const Status limited = output_.apply(wished_, period, tau);
+  desired_ = gravity_;
+  if (state.qd.size() == n && state.qd.allFinite()) desired_ -= damping_.cwiseProduct(state.qd);
+  const Status limited = output_.apply(desired_, period, tau);
   return why == Status::kOk ? limited : why;
 }
 

@@ -16,13 +16,13 @@ Status FeedForward::update(const JointState& state, const Reference& reference,
                               check(reference.qdd), check(effort)}) {
     if (status != Status::kOk) return refuse(status, state, period, tau);
   }
-  return output(state, period, tau, [&](VectorRef wished) {
+  return output(state, period, tau, [&](VectorRef desired) {
     // tau = effort + H qdd_ref + C qd + g + f
     const bool measured = at_ == ModelState::kMeasured;
     const auto& q = measured ? state.q : reference.q;
-    model().torques(q, measured ? state.qd : reference.qd, reference.qdd, wished);
-    addFriction(q, state.qd, reference.qd, wished);
-    wished += effort;
+    model().torques(q, measured ? state.qd : reference.qd, reference.qdd, desired);
+    addFriction(q, state.qd, reference.qd, desired);
+    desired += effort;
   });
 }
 

@@ -20,10 +20,10 @@ Status GravityCompensation::update(const JointState& state, const ConstVectorRef
   for (const Status status : {check(state, tau), check(qd_reference)}) {
     if (status != Status::kOk) return refuse(status, state, period, tau);
   }
-  return output(state, period, tau, [&](VectorRef wished) {
-    model().gravity(state.q, wished);
-    wished -= damping().cwiseProduct(state.qd);
-    addFriction(state.q, state.qd, qd_reference, wished);
+  return output(state, period, tau, [&](VectorRef desired) {
+    model().gravity(state.q, desired);
+    desired -= damping().cwiseProduct(state.qd);
+    addFriction(state.q, state.qd, qd_reference, desired);
   });
 }
 

@@ -31,18 +31,18 @@ void OutputStage::start(const Eigen::Ref<const Eigen::VectorXd>& effort) noexcep
   if (started_) last_ = effort;
 }
 
-Status OutputStage::apply(const Eigen::Ref<const Eigen::VectorXd>& wished, double period,
+Status OutputStage::apply(const Eigen::Ref<const Eigen::VectorXd>& desired, double period,
                           Eigen::Ref<Eigen::VectorXd> tau) noexcept {
   for (Eigen::Index j = 0; j < last_.size(); ++j) {
     // Infinity times zero is NaN, so joints without a rate limit are left out.
-    double reachable = wished[j];
+    double reachable = desired[j];
     if (started_ && std::isfinite(limits_.rate[j])) {
       const double change = period > 0 ? limits_.rate[j] * period : 0.0;
-      reachable = std::clamp(wished[j], last_[j] - change, last_[j] + change);
+      reachable = std::clamp(desired[j], last_[j] - change, last_[j] + change);
     }
-    saturated_[j] = std::abs(wished[j]) > limits_.effort[j];
+    saturated_[j] = std::abs(desired[j]) > limits_.effort[j];
     last_[j] = std::clamp(reachable, -limits_.effort[j], limits_.effort[j]);
-    rate_limited_[j] = reachable != wished[j];
+    rate_limited_[j] = reachable != desired[j];
   }
   tau = last_;
   started_ = true;

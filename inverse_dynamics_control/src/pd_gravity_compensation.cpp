@@ -32,11 +32,11 @@ Status PdGravityCompensation::update(const JointState& state, const Reference& r
   for (const Status status : {check(state, tau), check(reference.q), check(reference.qd)}) {
     if (status != Status::kOk) return refuse(status, state, period, tau);
   }
-  return output(state, period, tau, [&](VectorRef wished) {
-    model().gravity(state.q, wished);
-    wished += gains_.Kp.cwiseProduct(reference.q - state.q) +
-              gains_.Kd.cwiseProduct(reference.qd - state.qd);
-    addFriction(state.q, state.qd, reference.qd, wished);
+  return output(state, period, tau, [&](VectorRef desired) {
+    model().gravity(state.q, desired);
+    desired += gains_.Kp.cwiseProduct(reference.q - state.q) +
+               gains_.Kd.cwiseProduct(reference.qd - state.qd);
+    addFriction(state.q, state.qd, reference.qd, desired);
   });
 }
 

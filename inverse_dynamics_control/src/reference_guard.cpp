@@ -20,14 +20,14 @@ struct Fault {
   Eigen::Index joint = -1;
 };
 
-Fault faultOf(const Reference& wished, const ReferenceLimits& limits) noexcept {
+Fault faultOf(const Reference& desired, const ReferenceLimits& limits) noexcept {
   const Eigen::Index n = limits.velocity.size();
-  if (wished.q.size() != n || wished.qd.size() != n || wished.qdd.size() != n) {
+  if (desired.q.size() != n || desired.qd.size() != n || desired.qdd.size() != n) {
     return {StopReason::kWrongSize, -1};
   }
   for (Eigen::Index j = 0; j < n; ++j) {
-    const double q = wished.q[j], qd = wished.qd[j];
-    if (!std::isfinite(q) || !std::isfinite(qd) || !std::isfinite(wished.qdd[j])) {
+    const double q = desired.q[j], qd = desired.qd[j];
+    if (!std::isfinite(q) || !std::isfinite(qd) || !std::isfinite(desired.qdd[j])) {
       return {StopReason::kNotFinite, j};
     }
     if (q < limits.lower[j] - kRounding || q > limits.upper[j] + kRounding) {
@@ -92,13 +92,13 @@ void ReferenceGuard::start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept 
   joint_ = -1;
 }
 
-const Reference& ReferenceGuard::next(const Reference& wished, double period) noexcept {
+const Reference& ReferenceGuard::next(const Reference& desired, double period) noexcept {
   if (!stopped()) {
-    const Fault fault = faultOf(wished, limits_);
+    const Fault fault = faultOf(desired, limits_);
     if (fault.reason == StopReason::kNone) {
-      followed_.q = wished.q;
-      followed_.qd = wished.qd;
-      followed_.qdd = wished.qdd;
+      followed_.q = desired.q;
+      followed_.qd = desired.qd;
+      followed_.qdd = desired.qdd;
       return followed_;
     }
     stop(fault.reason, fault.joint);

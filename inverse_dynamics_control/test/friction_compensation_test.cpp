@@ -45,23 +45,23 @@ TEST(FrictionCompensation, BadOptionsAreRefused) {
     return thrownBy([&] { FrictionCompensation({source, dead_band, blend, scale}, "law"); });
   };
   const auto measured = FrictionSource::kMeasuredVelocity;
-  const auto wished = FrictionSource::kReferenceVelocity;
-  EXPECT_EQ(text(wished, 0.0, 0.1, 1.0), "");
-  EXPECT_EQ(text(wished, -0.1, 0.1, 1.0),
+  const auto desired = FrictionSource::kReferenceVelocity;
+  EXPECT_EQ(text(desired, 0.0, 0.1, 1.0), "");
+  EXPECT_EQ(text(desired, -0.1, 0.1, 1.0),
             "law: friction: dead_band: wrong value: expected a speed that isn't negative [rad/s], "
             "got -0.1; correct this number");
   EXPECT_EQ(text(measured, 0.0, 0.1, 1.0),
             "law: friction: dead_band: wrong value: expected a speed above zero [rad/s] with the "
             "measured velocity, got 0; take what the noise of a resting joint's velocity stays "
             "below");
-  EXPECT_EQ(text(wished, 0.0, 0.0, 1.0),
+  EXPECT_EQ(text(desired, 0.0, 0.0, 1.0),
             "law: friction: blend: wrong value: expected a speed above zero [rad/s], got 0; "
             "friction jumps at rest, so it must be blended in");
-  EXPECT_EQ(text(wished, 0.0, 0.1, 1.5),
+  EXPECT_EQ(text(desired, 0.0, 0.1, 1.5),
             "law: friction: scale: wrong value: expected a part from 0 to 1, got 1.5; more "
             "friction than there is would push the arm on");
-  EXPECT_NE(text(wished, 0.0, kNan, 1.0), "");
-  EXPECT_NE(text(wished, 0.0, 0.1, kNan), "");
+  EXPECT_NE(text(desired, 0.0, kNan, 1.0), "");
+  EXPECT_NE(text(desired, 0.0, 0.1, kNan), "");
 }
 
 }  // namespace inverse_dynamics_control::friction_compensation_test

@@ -17,7 +17,7 @@ constexpr int kSteps = 800;
 /// Runge-Kutta of order four with steps of 1e-3 s, frequencies of 12 rad/s: (w h)^5 per step.
 constexpr double kIntegration = 1e-8;
 
-/// A fast wished motion, at which the arm doesn't start.
+/// A fast desired motion, at which the arm doesn't start.
 Reference referenceAt(double t) {
   return referenceOf(vec({std::sin(3.0 * t), 0.5 * std::cos(5.0 * t)}),
                      vec({3.0 * std::cos(3.0 * t), -2.5 * std::sin(5.0 * t)}),

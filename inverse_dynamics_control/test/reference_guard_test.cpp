@@ -29,17 +29,17 @@ TEST(ReferenceGuard, RestsWhereItStartsUntilTheFirstReference) {
 TEST(ReferenceGuard, SoundReferencesPassAsTheyAre) {
   ReferenceGuard g = guard();
   g.start(vec({0.0, 0.0}));
-  const Reference wished = moving();
-  const Reference& followed = g.next(wished, kPeriod);
-  EXPECT_EQ(followed.q, wished.q);
-  EXPECT_EQ(followed.qd, wished.qd);
-  EXPECT_EQ(followed.qdd, wished.qdd);
+  const Reference desired = moving();
+  const Reference& followed = g.next(desired, kPeriod);
+  EXPECT_EQ(followed.q, desired.q);
+  EXPECT_EQ(followed.qd, desired.qd);
+  EXPECT_EQ(followed.qdd, desired.qdd);
   EXPECT_TRUE(g.isMoving());
   EXPECT_FALSE(g.stopped());
 }
 
 struct Case {
-  Reference wished;
+  Reference desired;
   StopReason reason;
   Eigen::Index joint;
 };
@@ -63,7 +63,7 @@ TEST(ReferenceGuard, TheFirstUnsoundReferenceStopsForGood) {
     g.next(moving(), kPeriod);
     // from 0.4 rad/s with 1 rad/s^2: 0.4 s, 0.08 rad
     for (int k = 0; k < 3; ++k) {
-      const Reference& stopping = g.next(k == 0 ? each.wished : moving(), kPeriod);
+      const Reference& stopping = g.next(k == 0 ? each.desired : moving(), kPeriod);
       EXPECT_NEAR(stopping.qd[0], 0.4 - 0.1 * (k + 1), kRounding);
       EXPECT_NEAR(stopping.qdd[0], -1.0, kRounding);
       EXPECT_EQ(g.reason(), each.reason);

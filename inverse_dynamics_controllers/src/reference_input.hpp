@@ -35,7 +35,7 @@ class ReferenceInput {
       : layout_(layout),
         topic_(node, layout, joints),
         guard_(std::move(guard)),
-        wished_(static_cast<Eigen::Index>(joints.size())),
+        desired_(static_cast<Eigen::Index>(joints.size())),
         timeout_(timeout) {}
 
   const ReferenceLayout& layout() const noexcept { return layout_; }
@@ -72,8 +72,8 @@ class ReferenceInput {
         guard_.stop(StopReason::kStale);
       }
     }
-    if (motion_written_) layout_.readMotion(values, wished_);
-    motion_ = motion_written_ ? &guard_.next(wished_, period) : &guard_.again(period);
+    if (motion_written_) layout_.readMotion(values, desired_);
+    motion_ = motion_written_ ? &guard_.next(desired_, period) : &guard_.again(period);
     if (guard_.stopped() && !was_stopped) report.noteStop(guard_.reason(), guard_.joint());
   }
 
@@ -96,7 +96,7 @@ class ReferenceInput {
   ReferenceLayout layout_;
   ReferenceTopic topic_;
   inverse_dynamics_control::ReferenceGuard guard_;
-  inverse_dynamics_control::Reference wished_;
+  inverse_dynamics_control::Reference desired_;
   const inverse_dynamics_control::Reference* motion_ = nullptr;  // of the guard, from advance() on
   bool motion_written_ = false, effort_written_ = false;
   double timeout_, age_ = 0.0;  // s

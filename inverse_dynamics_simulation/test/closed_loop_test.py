@@ -198,8 +198,8 @@ class TestFollowing(unittest.TestCase):
         self.assert_settles(since)
         first = self.joint_states[0].name.index("elbow_joint" if robot == "ur10" else "fer_joint4")
         positions = [state.position[first] for state in self.joint_states]
-        wished = abs(amplitudes[self.joint_states[0].name[first]])
-        assert max(positions) - min(positions) > 0.9 * wished
+        desired = abs(amplitudes[self.joint_states[0].name[first]])
+        assert max(positions) - min(positions) > 0.9 * desired
         error = max(abs(e) for state in states for e in state.error.positions)
         assert_times_increase(self.joint_states)
         print(f"{robot}, {controller}, payload {payload:g} kg: greatest error {error:.2e} rad")

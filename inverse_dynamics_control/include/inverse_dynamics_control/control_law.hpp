@@ -110,13 +110,13 @@ class ControlLaw {
   Status output(const JointState& state, double period, VectorRef tau,
                 const Compute& compute) noexcept {
     try {
-      compute(wished_);
+      compute(desired_);
     } catch (...) {
       return refuse(Status::kSolverFailed, state, period, tau);
     }
-    if (!wished_.allFinite()) return refuse(Status::kTorqueNotFinite, state, period, tau);
+    if (!desired_.allFinite()) return refuse(Status::kTorqueNotFinite, state, period, tau);
     updateGravity(state.q);  // for cycles to come that don't know it
-    return output_.apply(wished_, period, tau);
+    return output_.apply(desired_, period, tau);
   }
 
   ModelTerms& model() noexcept { return model_; }
@@ -129,7 +129,7 @@ class ControlLaw {
   FrictionCompensation friction_;
   OutputStage output_;
   OwnedVector damping_;
-  OwnedVector wished_, f_;                   // scratch
+  OwnedVector desired_, f_;                  // scratch
   OwnedVector gravity_, gravity_candidate_;  // last known; scratch
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Feed-forward: the model's torque of a wished motion, added to the effort of another controller.
+/// Feed-forward: the model's torque of a desired motion, added to the effort of another controller.
 ///
 ///     FeedForward law(solver, ModelState::kReference, options);
 ///     const Status status = law.update(state, reference, pid_effort, period, tau);

@@ -26,7 +26,7 @@ inline namespace v2 {
 /// Whose velocity v decides about friction.
 enum class FrictionSource {
   kNone,               ///< no friction compensation
-  kReferenceVelocity,  ///< the wished one: free of noise, no feedback. The choice for tracking.
+  kReferenceVelocity,  ///< the desired one: free of noise, no feedback. The choice for tracking.
   kMeasuredVelocity,   ///< the measured one: for hand guiding, which has no reference
 };
 

@@ -4,7 +4,7 @@
 ///
 ///     OutputStage output(limits, solver->jointNames(), "computed torque");
 ///     output.start(measured_effort);              // when the controller is activated
-///     output.apply(wished, period, tau);          // in each cycle
+///     output.apply(desired, period, tau);          // in each cycle
 #pragma once
 
 #include <Eigen/Core>
@@ -47,14 +47,14 @@ class OutputStage {
   /// as start().
   void start(const Eigen::Ref<const Eigen::VectorXd>& effort) noexcept;
 
-  /// The torque nearest to the wished one that the limits allow.
+  /// The torque nearest to the desired one that the limits allow.
   ///
-  /// @param wished    n, finite; N m (prismatic N).
+  /// @param desired    n, finite; N m (prismatic N).
   /// @param period    s since the last call, for the rate limit; one that isn't above zero (a clock
   ///                  that stands or jumps back) allows no change.
   /// @param[out] tau  n; N m (prismatic N).
   /// @return kSaturated, kRateLimited or kOk, the first that is true of a joint.
-  Status apply(const Eigen::Ref<const Eigen::VectorXd>& wished, double period,
+  Status apply(const Eigen::Ref<const Eigen::VectorXd>& desired, double period,
                Eigen::Ref<Eigen::VectorXd> tau) noexcept;
 
   /// Whether the last output of each joint was cut to its effort limit.

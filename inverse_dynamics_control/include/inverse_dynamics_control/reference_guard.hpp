@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Which reference a law follows: the wished one while it is sound, else a stop that lasts.
+/// Which reference a law follows: the desired one while it is sound, else a stop that lasts.
 ///
 ///     ReferenceGuard guard(limits, deceleration, solver->jointNames());
 ///     guard.start(state.q);                                       // when the loop begins
-///     const Reference& reference = guard.next(wished, period);    // in each cycle
+///     const Reference& reference = guard.next(desired, period);    // in each cycle
 ///     if (guard.stopped()) report(text(guard.reason()));
 ///
 /// A law answers to a NaN with its safe torque and then follows the next finite reference, from
@@ -61,10 +61,10 @@ class ReferenceGuard {
   /// Rest at q, n finite numbers, until the first call of next(); forgets an earlier stop.
   void start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept;
 
-  /// The reference to follow now: `wished`, or the next one of the stop.
+  /// The reference to follow now: `desired`, or the next one of the stop.
   ///
   /// @param period  s since the last call.
-  const Reference& next(const Reference& wished, double period) noexcept;
+  const Reference& next(const Reference& desired, double period) noexcept;
 
   /// The last reference again, where no new one has come.
   const Reference& again(double period) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The model's torque for the wished motion, added to the effort of another controller.
+/// The model's torque for the desired motion, added to the effort of another controller.
 ///
 ///     tau = effort + P e + D ed + H qdd_ref + C qd + g + f
 ///

@@ -20,9 +20,9 @@ GIVEN = {
     "feed_forward": _LAW,
     "gravity_compensation": _LAW,
     "momentum_observer": _ESTIMATOR,
-    "output_stage": "extern OutputLimits limits; extern Eigen::VectorXd wished;",
+    "output_stage": "extern OutputLimits limits; extern Eigen::VectorXd desired;",
     "pd_gravity_compensation": _LAW,
-    "reference_guard": "extern ReferenceLimits limits; extern Reference wished;",
+    "reference_guard": "extern ReferenceLimits limits; extern Reference desired;",
     "tip_wrench": "extern WrenchOptions options;",
 }
 """What examples are given beside context.hpp, where a name means something else in each."""
