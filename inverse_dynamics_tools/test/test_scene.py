@@ -158,6 +158,61 @@ def test_collada_and_obj_are_read_with_unit_and_colour(tmp_path):
     assert len(part.triangles) == 12
 
 
+OBJ_CORNERS = "".join(f"v {x} {y} {z}\n" for x in (0, 1) for y in (0, 2) for z in (0, 3))
+OBJ_TEXTURE = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 1 0 0\n"
+OBJ_FACES = ((1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4))
+
+
+def obj_box(corner: str = "{0}", before: str = "", offset: int = 0) -> str:
+    """An OBJ file; corner: how a corner is written, of its index and its place 1 to 4 in the face."""
+    faces = "".join(
+        f"f {' '.join(corner.format(c + offset, k) for k, c in enumerate(face, 1))}\n"
+        for face in OBJ_FACES
+    )
+    return OBJ_CORNERS + before + faces
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        obj_box().encode(),
+        ("mtllib not there.mtl\no Box\n" + obj_box(before="g a b\nusemtl grey\ns off\n")).encode(),
+        obj_box("{0}/{1}/1", OBJ_TEXTURE).encode(),
+        obj_box("{0}//1", OBJ_TEXTURE).encode(),
+        obj_box(offset=-9).encode(),
+        obj_box("{0}/{1}/1", OBJ_TEXTURE).replace("\n", "\r\n").encode(),
+        obj_box().replace("\n", "\r").encode(),
+        obj_box().replace(" ", "\t").encode(),
+        obj_box().encode("utf-8-sig"),
+        "# Gehäuse\n{}".format(obj_box(before="g Gehäuse\n")).encode("latin-1"),
+    ],
+    ids=[
+        "quads",
+        "without its materials",
+        "texture and normals",
+        "normals",
+        "indices from the end",
+        "CR LF",
+        "CR",
+        "tabs",
+        "byte order mark",
+        "names in Latin-1",
+    ],
+)
+def test_obj_files_as_programs_write_them_are_read(tmp_path, data):
+    pytest.importorskip("trimesh")
+    file = tmp_path / "box.obj"
+    file.write_bytes(data)
+    (part,) = read_mesh(file, 1000)
+    assert len(part.triangles) == 12
+    corners = part.vertices[part.triangles]
+    areas = np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
+    assert areas.sum() / 2 == pytest.approx(2 * (1 * 2 + 2 * 3 + 3 * 1))
+    assert part.color is None
+
+
 def test_a_mesh_with_an_entity_is_refused(tmp_path):
     pytest.importorskip("trimesh")
     file = tmp_path / "evil.dae"

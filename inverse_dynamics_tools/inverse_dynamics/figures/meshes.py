@@ -99,7 +99,9 @@ def read_mesh(file: Path, most: int) -> list[MeshPart]:
         if not len(triangles):
             continue
         vertices = np.asarray(geometry.vertices) @ pose[:3, :3].T + pose[:3, 3]
-        parts.append(MeshPart(_metres(scene) * vertices, triangles, _color(geometry)))
+        textured_obj = file.suffix.lower() == ".obj" and geometry.visual.kind == "texture"
+        color = None if textured_obj else _color(geometry)  # an OBJ's materials aren't read
+        parts.append(MeshPart(_metres(scene) * vertices, triangles, color))
     if not parts or not all(np.all(np.isfinite(part.vertices)) for part in parts):
         raise MeshError(f"{file}: expected triangles with finite coordinates")
     total = sum(len(part.triangles) for part in parts)
@@ -125,11 +127,22 @@ def _load(file: Path) -> Any:
         or not data.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
     ):
         raise MeshError(f"{file}: expected a COLLADA document without a document type")
+    if kind == "obj":
+        data = _tidied_obj(data)
     try:
         # From memory and without a resolver: materials and textures elsewhere aren't opened.
         return trimesh.load_scene(io.BytesIO(data), file_type=kind, process=False)
     except Exception as error:  # of damaged files, whatever their readers raise
         raise MeshError(f"{file}: isn't a mesh of the format {kind.upper()}") from error
+
+
+def _tidied_obj(data: bytes) -> bytes:
+    """The same text in UTF-8 without a byte order mark, with spaces for tabs and lines that end in LF."""
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")  # only names and comments aren't ASCII, and they aren't used
+    return text.replace("\t", " ").replace("\r\n", "\n").replace("\r", "\n").encode()
 
 
 def _metres(scene: Any) -> float:
