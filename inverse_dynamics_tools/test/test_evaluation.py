@@ -2,8 +2,6 @@
 import re
 import shutil
 import sqlite3
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +10,7 @@ import pytest
 from conftest import joint_log
 
 from inverse_dynamics import Solver, evaluate, load_robot, read_recording
+from inverse_dynamics.base import extras
 from inverse_dynamics.base.ament import package_share
 from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
@@ -25,6 +24,7 @@ from inverse_dynamics.errors import (
 )
 from inverse_dynamics.evaluation import evaluation
 from inverse_dynamics.results.evaluations import evaluate_into, write_evaluation
+from inverse_dynamics.robot.descriptions import read_description
 
 UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
@@ -360,11 +360,8 @@ def slide_recording(tmp_path: Path) -> Path:
     return tmp_path / "slide"
 
 
-@pytest.mark.skipif(
-    not (shutil.which("xacro") or (Path(sys.executable).parent / "xacro").exists()),
-    reason="the tool xacro isn't installed",
-)
 def test_xacro_files_are_expanded_and_forces_of_prismatic_joints_are_newtons(tmp_path, xacro_file):
+    pytest.importorskip("xacro")
     robot = replace(
         load_robot("ur10_simulated"), plugin=RIGID_BODY, joints=(), root="base", tip="cart"
     )
@@ -374,35 +371,34 @@ def test_xacro_files_are_expanded_and_forces_of_prismatic_joints_are_newtons(tmp
     assert result.errors[0].nrmse < 0.01
 
 
-def test_without_the_tool_xacro_the_error_names_it(bag, robot, xacro_file, monkeypatch):
-    monkeypatch.setattr(shutil, "which", lambda *_, **__: None)
-    with pytest.raises(RobotError, match=r"needs the tool xacro, which isn't installed; `pip inst"):
+def test_without_xacro_the_error_says_how_to_install_it(bag, robot, xacro_file, monkeypatch):
+    monkeypatch.setattr(extras, "is_installed", lambda module: module != "xacro")
+    with pytest.raises(extras.MissingPackageError, match=r"slide.urdf.xacro: needs xacro: "):
         evaluate(bag, robot, urdf=xacro_file)
 
 
-@pytest.mark.skipif(
-    not (shutil.which("xacro") or (Path(sys.executable).parent / "xacro").exists()),
-    reason="the tool xacro isn't installed",
-)
 def test_broken_xacro_file_is_an_error_with_the_tools_words(bag, robot, xacro_file):
+    pytest.importorskip("xacro")
     xacro_file.write_text(XACRO.replace("${mass}", "${weight}"))
     with pytest.raises(RobotError, match=r"slide.urdf.xacro: xacro can't expand it: .*weight"):
         evaluate(bag, robot, urdf=xacro_file)
 
 
-def test_an_xacro_file_that_needs_ros_is_an_error_with_the_remedy(
-    bag, robot, xacro_file, monkeypatch
-):
-    words = "error: substitution args not supported:  No module named 'ament_index_python'"
-    failed = subprocess.CompletedProcess([], 2, "", words)
-    monkeypatch.setattr(subprocess, "run", lambda *_, **__: failed)
-    monkeypatch.setattr(shutil, "which", lambda *_, **__: "xacro")
-    with pytest.raises(RobotError) as caught:
-        evaluate(bag, robot, urdf=xacro_file)
-    assert str(caught.value).endswith(
-        f"{words}; source the ROS workspace that has its packages, or expand it there: "
-        "xacro slide.urdf.xacro > slide.urdf"
-    )
+def test_an_xacro_file_in_its_makers_package_needs_no_ros(tmp_path, monkeypatch):
+    pytest.importorskip("xacro")
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    folder = tmp_path / "maker_description/urdf"
+    folder.mkdir(parents=True)
+    (folder / "slide.urdf.xacro").write_text(XACRO)
+    whole = folder / "whole.urdf.xacro"
+    text = """<robot name="whole" xmlns:xacro="http://www.ros.org/wiki/xacro">
+      <xacro:include filename="$(find {})/urdf/slide.urdf.xacro"/></robot>"""
+    whole.write_text(text.format("maker_description"))
+    assert '<link name="cart">' in read_description(whole)
+
+    whole.write_text(text.format("makers_description"))
+    with pytest.raises(RobotError, match="package makers_description: not found: expected an inst"):
+        read_description(whole)
 
 
 @pytest.mark.parametrize("effort_is", ["torque", "auto"])

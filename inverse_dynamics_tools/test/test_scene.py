@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
+from inverse_dynamics.base import ament
 from inverse_dynamics.base.extras import EXTRAS, how_to_install
 from inverse_dynamics.errors import RobotError
-from inverse_dynamics.figures import meshes
 from inverse_dynamics.figures import scene as scenes
 from inverse_dynamics.figures.meshes import (
     MeshError,
@@ -282,5 +282,5 @@ def test_meshes_of_installed_packages_are_found_without_a_sourced_workspace(tmp_
     share.mkdir(parents=True)
     (share / "upper.stl").touch()
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
-    monkeypatch.setattr(meshes, "package_share", lambda name: tmp_path / "wheel/share" / name)
-    assert meshes.find_mesh("package://arm/upper.stl", tmp_path) == share / "upper.stl"
+    monkeypatch.setattr(ament, "package_share", lambda name: tmp_path / "wheel/share" / name)
+    assert find_mesh("package://arm/upper.stl", tmp_path) == share / "upper.stl"

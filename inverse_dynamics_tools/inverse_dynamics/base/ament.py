@@ -1,18 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where installed packages keep their files, by the ament index, as ROS 2 tools find them."""
+"""Where packages keep their files: the installed ones by the ament index, as ROS 2 tools find them."""
 
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from contextlib import suppress
+from pathlib import Path
 
 from inverse_dynamics import _core
 from inverse_dynamics.errors import PackageNotFoundError
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
-__all__ = ["DATA_PACKAGE", "PackageNotFoundError", "package_share", "path_bytes", "resolve"]
+__all__ = [
+    "DATA_PACKAGE",
+    "PackageNotFoundError",
+    "package_roots",
+    "package_share",
+    "path_bytes",
+    "resolve",
+]
 
 DATA_PACKAGE = "inverse_dynamics_robots"  # run configurations, and where recordings are
 
@@ -20,6 +25,22 @@ DATA_PACKAGE = "inverse_dynamics_robots"  # run configurations, and where record
 def package_share(package: str) -> Path:
     """Directory `share/PACKAGE` of an installed package. Raises PackageNotFoundError."""
     return _core.package_share(package)
+
+
+def package_roots(package: str, directory: Path) -> list[Path]:
+    """Where the files of a package may be that a file in a directory names, the likeliest first.
+
+    The installed package, then in ROS_PACKAGE_PATH, and in each directory above that has the package's
+    name or holds a directory of that name. They need not exist.
+    """
+    roots = []
+    with suppress(PackageNotFoundError):
+        roots.append(package_share(package))
+    listed = os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)
+    start = directory.absolute()
+    for place in (*(Path(path) for path in listed if path), start, *start.parents):
+        roots += [place, place / package] if place.name == package else [place / package]
+    return roots
 
 
 def resolve(path: str, base: Path) -> Path:

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import io
 import os
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,10 +18,10 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from inverse_dynamics.base.ament import package_share
+from inverse_dynamics.base.ament import package_roots
 from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.reading import read_bytes
-from inverse_dynamics.errors import PackageNotFoundError, RobotError
+from inverse_dynamics.errors import RobotError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -51,14 +50,13 @@ class MeshPart:
 def find_mesh(name: str, directory: Path) -> Path:
     """The file that a URDF in a directory calls a mesh. Raises MeshError.
 
-    package://PACKAGE/FILE is looked for in the installed packages [base/ament.py], in ROS_PACKAGE_PATH,
-    and in each directory above the URDF's that has PACKAGE's name or holds a directory of that name.
+    package://PACKAGE/FILE is looked for as package_roots() says [base/ament.py].
     """
     scheme, separator, rest = name.partition("://")
     path = unquote(rest) if separator else name
     if scheme == "package" and separator:
         package, _, inside = path.partition("/")
-        candidates = [root / inside for root in _package_roots(package, directory)]
+        candidates = [root / inside for root in package_roots(package, directory)]
     elif separator and scheme != "file":
         raise MeshError(f"mesh {name}: expected a file or package://PACKAGE/FILE, got {scheme}://")
     else:
@@ -69,20 +67,6 @@ def find_mesh(name: str, directory: Path) -> Path:
     if Path(path).suffix.lower() not in FORMATS:
         raise MeshError(f"mesh {name}: expected a file of the format STL, DAE or OBJ")
     raise MeshError(f"mesh {name}: no such file; source the workspace that holds it")
-
-
-def _package_roots(package: str, directory: Path) -> list[Path]:
-    roots = []
-    with suppress(PackageNotFoundError):
-        roots.append(package_share(package))
-    start = directory.absolute()
-    for place in (*_paths("ROS_PACKAGE_PATH"), start, *start.parents):
-        roots += [place, place / package] if place.name == package else [place / package]
-    return roots
-
-
-def _paths(variable: str) -> list[Path]:
-    return [Path(path) for path in os.environ.get(variable, "").split(os.pathsep) if path]
 
 
 def read_mesh(file: Path, most: int) -> list[MeshPart]:

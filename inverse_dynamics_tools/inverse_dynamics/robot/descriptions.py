@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Robot descriptions: the text of a URDF file, or of a .xacro file after the xacro tool."""
+"""Robot descriptions: the text of a URDF file, or of a .xacro file after xacro."""
 
 from __future__ import annotations
 
 import math
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.decimals import decimal
+from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.reading import read_bytes
 from inverse_dynamics.base.wording import harmless, shown
 from inverse_dynamics.errors import RobotError
@@ -33,7 +33,7 @@ class _DocumentTypeError(Exception):
 
 
 def read_description(file: Path) -> str:
-    """URDF text of a .urdf or .xacro file. Raises RobotError."""
+    """URDF text of a .urdf or .xacro file. Raises RobotError, MissingPackageError."""
     if not os.path.isfile(file):  # Path.is_file() raises where the path is too long
         raise RobotError(f"{file}: no such file; expected a robot description (URDF or .xacro)")
     if file.suffix == ".xacro":
@@ -135,21 +135,12 @@ def _joints(file: Path | None, description: str) -> list[Element]:
 
 
 def _expanded(file: Path) -> str:
-    tool = shutil.which("xacro") or shutil.which("xacro", path=str(Path(sys.executable).parent))
-    if tool is None:
-        raise RobotError(
-            f"{file}: needs the tool xacro, which isn't installed; `pip install xacro`, or expand "
-            f"it elsewhere: xacro {file.name} > {file.stem}"
-        )
-    result = subprocess.run([tool, str(file)], capture_output=True, text=True, check=False)
+    require(f"{file}:", "xacro")
+    tool = Path(__file__).with_name("xacro_tool.py")
+    result = subprocess.run(
+        [sys.executable, str(tool), str(file)], capture_output=True, text=True, check=False
+    )
     if result.returncode != 0:
         lines = result.stderr.strip().splitlines() or [f"exit code {result.returncode}"]
-        remedy = (  # $(find PACKAGE)
-            f"; source the ROS workspace that has its packages, or expand it there: xacro {file.name} > {file.stem}"
-            if "ament_index_python" in result.stderr
-            else ""
-        )
-        raise RobotError(
-            f"{file}: xacro can't expand it: {harmless('; '.join(lines), 500)}{remedy}"
-        )
+        raise RobotError(f"{file}: xacro can't expand it: {harmless('; '.join(lines), 500)}")
     return result.stdout

@@ -141,7 +141,7 @@ def add_robot_changes(parser: argparse.ArgumentParser, what: str) -> argparse._A
         "--urdf",
         metavar="FILE",
         type=Path,
-        help="robot description, with or without --robot; a .xacro file needs the tool xacro",
+        help="robot description, with or without --robot; a .xacro file needs xacro",
     )
     group.add_argument("--root", metavar="LINK", help="first link of the chain")
     group.add_argument("--tip", metavar="LINK", help="last link of the chain")
