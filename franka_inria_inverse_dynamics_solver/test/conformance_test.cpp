@@ -3,7 +3,7 @@
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
 
-namespace {
+namespace franka_inria_inverse_dynamics_solver::conformance_test {
 
 using namespace inverse_dynamics_solver::conformance;
 
@@ -17,4 +17,4 @@ struct FrankaInria : SolverTraits {
 
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(FrankaInria, FrankaInria);
 
-}  // namespace
+}  // namespace franka_inria_inverse_dynamics_solver::conformance_test

@@ -7,8 +7,7 @@
 #include "inverse_dynamics_solver/motor_currents.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
 
-namespace franka_inria_inverse_dynamics_solver {
-namespace {
+namespace franka_inria_inverse_dynamics_solver::franka_inria_inverse_dynamics_solver_test {
 
 using inverse_dynamics_solver::Exception;
 using inverse_dynamics_solver::conformance::expectReferenceValues;
@@ -102,5 +101,4 @@ TEST(FrankaInria, AbsentDataPackageIsNamed) {
   EXPECT_FALSE(solver.isInitialized());
 }
 
-}  // namespace
-}  // namespace franka_inria_inverse_dynamics_solver
+}  // namespace franka_inria_inverse_dynamics_solver::franka_inria_inverse_dynamics_solver_test

@@ -13,7 +13,6 @@
 #include <fstream>
 #include <inverse_dynamics_evaluation/error.hpp>
 #include <random>
-#include <regex>
 #include <sstream>
 
 #include "error_of.hpp"
@@ -47,11 +46,14 @@ void put(const fs::path& file, const std::string& content) {
   std::ofstream(file, std::ios::binary | std::ios::trunc) << content;
 }
 
-void replace(const fs::path& file, const std::string& pattern, const std::string& instead) {
-  const std::string before = contentOf(file);
-  const std::string after = std::regex_replace(before, std::regex(pattern), instead);
-  ASSERT_NE(after, before) << pattern;
-  put(file, after);
+void replace(const fs::path& file, const std::string& old, const std::string& instead) {
+  std::string content = contentOf(file);
+  std::size_t at = content.find(old);
+  ASSERT_NE(at, std::string::npos) << old;
+  for (; at != std::string::npos; at = content.find(old, at + instead.size())) {
+    content.replace(at, old.size(), instead);
+  }
+  put(file, content);
 }
 
 // The content of an MCAP file whose first chunk may be changed.
@@ -209,7 +211,8 @@ TEST_P(RecordingTest, ReadsFilesOfASplitRecordingOneAfterAnother) {
   write("more", evenly(200));
   const std::string name = "more" + file("bag").extension().string();
   fs::copy(file("more"), directory_ / "bag" / name);
-  replace(directory_ / "bag/metadata.yaml", "(relative_file_paths:\n)", "$1  - " + name + "\n");
+  replace(directory_ / "bag/metadata.yaml", "relative_file_paths:\n",
+          "relative_file_paths:\n  - " + name + "\n");
   EXPECT_THAT(errorOfReading(bag),
               HasSubstr("expected 300 messages, as its metadata say, got more"));
   replace(directory_ / "bag/metadata.yaml", "message_count: 300", "message_count: 500");

@@ -14,8 +14,7 @@
 #include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
-namespace inverse_dynamics_solver {
-namespace {
+namespace inverse_dynamics_solver::batches_test {
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -199,5 +198,4 @@ TEST(Batches, PassExceptionsOfThreadsOn) {
   }
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_solver
+}  // namespace inverse_dynamics_solver::batches_test

@@ -7,8 +7,7 @@
 
 #include "inverse_dynamics_solver/exceptions.hpp"
 
-namespace inverse_dynamics_solver {
-namespace {
+namespace inverse_dynamics_solver::configuration_test {
 
 template <class E, class Call>
 std::string errorOf(Call call) {
@@ -176,5 +175,4 @@ TEST(ChainFromDescription, RefusesWhatIsNoRobot) {
             "prismatic m], got nan; give the position at which the joint is held");
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_solver
+}  // namespace inverse_dynamics_solver::configuration_test

@@ -5,8 +5,7 @@
 
 #include <type_traits>
 
-namespace inverse_dynamics_solver {
-namespace {
+namespace inverse_dynamics_solver::exceptions_test {
 
 TEST(ErrorText, JoinsItsPartsAndLeavesOutEmptyOnes) {
   EXPECT_EQ(errorText("a.yaml:3", "wrong value", "3", "2", "add one"),
@@ -39,5 +38,4 @@ TEST(Exceptions, UninitializedNamesTheMethodAndTheRemedy) {
                "doesn't throw");
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_solver
+}  // namespace inverse_dynamics_solver::exceptions_test

@@ -11,8 +11,7 @@
 #include "inverse_dynamics_solver/external_wrench.hpp"
 #include "node_parameters_stand_in.hpp"
 
-namespace inverse_dynamics_solver {
-namespace {
+namespace inverse_dynamics_solver::inverse_dynamics_solver_test {
 
 // A wrench without a frame doesn't compile, nor does one of another frame.
 template <class W, class = void>
@@ -294,5 +293,4 @@ TEST(InverseDynamicsSolver, FailedInitializeKeepsTheJoints) {
   EXPECT_EQ(solver.jointNames(), (std::vector<std::string>{"joint0", "joint1"}));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_solver
+}  // namespace inverse_dynamics_solver::inverse_dynamics_solver_test

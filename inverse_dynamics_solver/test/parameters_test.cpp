@@ -11,8 +11,7 @@
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "node_parameters_stand_in.hpp"
 
-namespace inverse_dynamics_solver {
-namespace {
+namespace inverse_dynamics_solver::parameters_test {
 
 using stand_in::MinimalParameters;
 using stand_in::NodeParameters;
@@ -282,5 +281,4 @@ TEST(ParametersFromYaml, FilesAreReadOrTheErrorNamesThem) {
                        "exists, is a file and may be read");
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_solver
+}  // namespace inverse_dynamics_solver::parameters_test

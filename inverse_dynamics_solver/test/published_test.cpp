@@ -11,8 +11,7 @@
 
 #include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
 
-namespace inverse_dynamics_solver {
-namespace {
+namespace inverse_dynamics_solver::published_test {
 
 using conformance::AllocationGuard;
 using conformance::kAllocationGuardWorks;
@@ -137,5 +136,4 @@ TEST(Published, ManyThreadsSeeWholeValuesInTheOrderOfPublication) {
   EXPECT_EQ(disordered, 0) << "an older value was read after a newer one";
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_solver
+}  // namespace inverse_dynamics_solver::published_test

@@ -10,8 +10,7 @@
 #include <string>
 #include <thread>
 
-namespace inverse_dynamics_solver {
-namespace {
+namespace inverse_dynamics_solver::solver_loader_test {
 
 const char* const kPendulum = "pendulum_inverse_dynamics_solver/InverseDynamicsSolverPendulum";
 const Parameters kPendulumParameters = {{"mass", 2.0}, {"length", 0.5}};
@@ -237,5 +236,4 @@ TEST(SolverLoader, PluginsOfEachIndexAreTheirOwn) {
   EXPECT_NE(here.load("two_link_solver/TwoLinkSolver"), nullptr);
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_solver
+}  // namespace inverse_dynamics_solver::solver_loader_test

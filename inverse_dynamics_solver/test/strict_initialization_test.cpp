@@ -7,8 +7,7 @@
 #include "inverse_dynamics_solver/solver_loader.hpp"
 #include "node_parameters_stand_in.hpp"
 
-namespace inverse_dynamics_solver {
-namespace {
+namespace inverse_dynamics_solver::strict_initialization_test {
 
 class StrictInitialization : public ::testing::Test {
  protected:
@@ -86,5 +85,4 @@ TEST_F(StrictInitialization, OtherwiseAnUnknownParameterIsAWarning) {
                 "parameter 'x' isn't used, the solver doesn't know it; correct or remove it"}));
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_solver
+}  // namespace inverse_dynamics_solver::strict_initialization_test

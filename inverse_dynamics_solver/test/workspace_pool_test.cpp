@@ -10,8 +10,7 @@
 #include "inverse_dynamics_solver/conformance/allocation_guard.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 
-namespace inverse_dynamics_solver {
-namespace {
+namespace inverse_dynamics_solver::workspace_pool_test {
 
 using conformance::AllocationGuard;
 using conformance::kAllocationGuardWorks;
@@ -92,5 +91,4 @@ TEST(ReadMaxThreads, MistakesAreNamed) {
             "where it is set");
 }
 
-}  // namespace
-}  // namespace inverse_dynamics_solver
+}  // namespace inverse_dynamics_solver::workspace_pool_test

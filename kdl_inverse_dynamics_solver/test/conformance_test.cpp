@@ -2,7 +2,7 @@
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
 
-namespace {
+namespace kdl_inverse_dynamics_solver::conformance_test {
 
 using namespace inverse_dynamics_solver::conformance;
 
@@ -33,4 +33,4 @@ INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Oblique, KdlOblique);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Ur10, KdlUr10);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaWithFriction, KdlPandaWithFriction);
 
-}  // namespace
+}  // namespace kdl_inverse_dynamics_solver::conformance_test

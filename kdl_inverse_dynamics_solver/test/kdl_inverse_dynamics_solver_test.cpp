@@ -14,8 +14,7 @@
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 
-namespace kdl_inverse_dynamics_solver {
-namespace {
+namespace kdl_inverse_dynamics_solver::kdl_inverse_dynamics_solver_test {
 
 using inverse_dynamics_solver::InvalidRobotDescriptionException;
 using inverse_dynamics_solver::Parameters;
@@ -174,5 +173,4 @@ TEST(InverseDynamicsSolverKDL, OddInertiaIsAWarningAndStillPhysical) {
       << solver.warnings()[0];
 }
 
-}  // namespace
-}  // namespace kdl_inverse_dynamics_solver
+}  // namespace kdl_inverse_dynamics_solver::kdl_inverse_dynamics_solver_test

@@ -7,8 +7,7 @@
 
 #include "kdl_chain.hpp"
 
-namespace kdl_inverse_dynamics_solver {
-namespace {
+namespace kdl_inverse_dynamics_solver::kdl_workspace_test {
 
 /// A rod that turns about y, 2 kg at 0.5 m, with a rotor of 0.3 kg m^2; then a slide along its x.
 chain_dynamics::Chain arm() {
@@ -64,5 +63,4 @@ TEST(KdlWorkspace, IsNotSpoiltByNan) {
   EXPECT_EQ(before, after);
 }
 
-}  // namespace
-}  // namespace kdl_inverse_dynamics_solver
+}  // namespace kdl_inverse_dynamics_solver::kdl_workspace_test

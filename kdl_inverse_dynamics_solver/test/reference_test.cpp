@@ -6,7 +6,7 @@
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
 
-namespace {
+namespace kdl_inverse_dynamics_solver::reference_test {
 
 using namespace inverse_dynamics_solver;
 using namespace inverse_dynamics_solver::conformance;
@@ -47,4 +47,4 @@ TEST_P(MakersDescription, GivesPinocchiosValues) {
 
 INSTANTIATE_TEST_SUITE_P(Robots, MakersDescription, ::testing::Values(kUr10, kPanda));
 
-}  // namespace
+}  // namespace kdl_inverse_dynamics_solver::reference_test

@@ -16,8 +16,7 @@
 #include "kdl_chain.hpp"
 #include "kdl_workspace.hpp"
 
-namespace kdl_inverse_dynamics_solver {
-namespace {
+namespace kdl_inverse_dynamics_solver::sharing_test {
 
 /// Calls until threads must have met: one is interrupted within a call every few milliseconds.
 constexpr int kMostCalls = 10'000'000;
@@ -94,5 +93,4 @@ TEST(ThreadsThatShare, AWorkspaceRace) {
   });
 }
 
-}  // namespace
-}  // namespace kdl_inverse_dynamics_solver
+}  // namespace kdl_inverse_dynamics_solver::sharing_test

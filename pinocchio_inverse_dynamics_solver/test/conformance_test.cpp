@@ -2,7 +2,7 @@
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
 
-namespace {
+namespace pinocchio_inverse_dynamics_solver::conformance_test {
 
 using namespace inverse_dynamics_solver::conformance;
 
@@ -35,4 +35,4 @@ INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Oblique, PinocchioOblique);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(Panda, PinocchioPanda);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(PandaWithFriction, PinocchioPandaWithFriction);
 
-}  // namespace
+}  // namespace pinocchio_inverse_dynamics_solver::conformance_test

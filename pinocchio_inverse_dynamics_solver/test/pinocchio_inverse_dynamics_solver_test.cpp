@@ -5,8 +5,7 @@
 
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 
-namespace pinocchio_inverse_dynamics_solver {
-namespace {
+namespace pinocchio_inverse_dynamics_solver::pinocchio_inverse_dynamics_solver_test {
 
 using inverse_dynamics_solver::Parameters;
 using inverse_dynamics_solver::conformance::expectReferenceValues;
@@ -43,5 +42,4 @@ TEST(InverseDynamicsSolverPinocchio, PositionsOfContinuousJointsAreAngles) {
   EXPECT_FALSE(solver.getGravityVector(q).isApprox(g, 1e-3));
 }
 
-}  // namespace
-}  // namespace pinocchio_inverse_dynamics_solver
+}  // namespace pinocchio_inverse_dynamics_solver::pinocchio_inverse_dynamics_solver_test

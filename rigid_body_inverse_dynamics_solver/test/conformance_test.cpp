@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <string>
 #include <system_error>
 
@@ -11,7 +10,7 @@
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
 
-namespace {
+namespace rigid_body_inverse_dynamics_solver::conformance_test {
 
 using namespace inverse_dynamics_solver::conformance;
 using inverse_dynamics_solver::conformance::robotsFile;
@@ -77,16 +76,18 @@ class TemporaryFile {
 std::string loadedPanda() {
   std::string text = textOf(robotsFile("models/franka_gaz2019_feasible.yaml"));
   text = text.substr(0, text.find("\nchecks:") + 1);  // of the other friction
-  text = std::regex_replace(text, std::regex("schema: 1"), "schema: 2");
-  text = std::regex_replace(text, std::regex("\\n    friction:"),
-                            "\n    torque_deviation: 0.4\n    seen: {q: [-1, 1.5], qd: [-2, 2], "
-                            "qdd: [-9, 8]}\n    friction:");
-  const std::regex law("\\{law: centered_sigmoid[^}]*\\}");
-  for (const char* figures : {"fv: 1.5, fc: 0.6, width: 0.05, fl: 0.02",
-                              "fv: 2.5, fc: 0.9, width: 0.08, shift: 0.01, fo: 0.1, fl: 0.05",
-                              "fv: 0.5, fc: 0.4, width: 0.05, fl: 0.03, fs: 0.3, vs: 0.2"}) {
-    text = std::regex_replace(text, law, std::string("{law: smooth_coulomb, ") + figures + "}",
-                              std::regex_constants::format_first_only);
+  text.replace(text.find("schema: 1"), 9, "schema: 2");
+  const std::string measured =
+      "\n    torque_deviation: 0.4\n    seen: {q: [-1, 1.5], qd: [-2, 2], qdd: [-9, 8]}";
+  for (std::size_t at = 0; (at = text.find("\n    friction:", at)) != std::string::npos;) {
+    text.insert(at, measured);
+    at += measured.size() + 1;
+  }
+  for (const std::string figures : {"fv: 1.5, fc: 0.6, width: 0.05, fl: 0.02",
+                                    "fv: 2.5, fc: 0.9, width: 0.08, shift: 0.01, fo: 0.1, fl: 0.05",
+                                    "fv: 0.5, fc: 0.4, width: 0.05, fl: 0.03, fs: 0.3, vs: 0.2"}) {
+    const std::size_t begin = text.find("{law: centered_sigmoid");
+    text.replace(begin, text.find('}', begin) - begin, "{law: smooth_coulomb, " + figures);
   }
   return text;
 }
@@ -114,4 +115,4 @@ INVERSE_DYNAMICS_SOLVER_CONFORMANCE(FeasiblePandaModel, FeasiblePandaModel);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(LoadedPandaModel, LoadedPandaModel);
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(IdentifiedUr10Model, IdentifiedUr10Model);
 
-}  // namespace
+}  // namespace rigid_body_inverse_dynamics_solver::conformance_test

@@ -9,7 +9,7 @@
 #include "chain_dynamics/urdf.hpp"
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 
-namespace {
+namespace rigid_body_inverse_dynamics_solver::long_chain_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -104,4 +104,4 @@ TEST_F(LongChain, HasDynamicsOfRigidBodies) {
   EXPECT_EQ(solver_.getPotentialEnergyBatch(q_)[0], solver_.getPotentialEnergy(q_));
 }
 
-}  // namespace
+}  // namespace rigid_body_inverse_dynamics_solver::long_chain_test

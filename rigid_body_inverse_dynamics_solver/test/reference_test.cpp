@@ -2,8 +2,7 @@
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 
-namespace rigid_body_inverse_dynamics_solver {
-namespace {
+namespace rigid_body_inverse_dynamics_solver::reference_test {
 
 using inverse_dynamics_solver::InverseDynamicsSolver;
 using inverse_dynamics_solver::conformance::expectEntry;
@@ -84,5 +83,4 @@ TEST(Reference, ModelFilesOfIdentifiedRobotsGiveTheValuesOfTheirSolvers) {
   expectReferenceValues(panda, "franka_inria.json", kTolerance);
 }
 
-}  // namespace
-}  // namespace rigid_body_inverse_dynamics_solver
+}  // namespace rigid_body_inverse_dynamics_solver::reference_test

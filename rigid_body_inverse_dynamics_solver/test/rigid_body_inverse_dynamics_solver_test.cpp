@@ -9,8 +9,7 @@
 #include "inverse_dynamics_solver/solver_loader.hpp"
 #include "rigid_body_inverse_dynamics_solver/model_files.hpp"
 
-namespace rigid_body_inverse_dynamics_solver {
-namespace {
+namespace rigid_body_inverse_dynamics_solver::rigid_body_inverse_dynamics_solver_test {
 
 using inverse_dynamics_solver::Exception;
 using inverse_dynamics_solver::InvalidParameterValueException;
@@ -416,5 +415,4 @@ TEST(ModelFiles, InstalledModelsAreTheThreeOfTheProject) {
             (std::vector<std::string>{kFeasible, "franka_inria_identified", kUr10}));
 }
 
-}  // namespace
-}  // namespace rigid_body_inverse_dynamics_solver
+}  // namespace rigid_body_inverse_dynamics_solver::rigid_body_inverse_dynamics_solver_test

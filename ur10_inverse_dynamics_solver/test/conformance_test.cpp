@@ -3,7 +3,7 @@
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/conformance_tests.hpp"
 
-namespace {
+namespace ur10_inverse_dynamics_solver::conformance_test {
 
 using namespace inverse_dynamics_solver::conformance;
 
@@ -18,4 +18,4 @@ struct UR10 : SolverTraits {
 
 INVERSE_DYNAMICS_SOLVER_CONFORMANCE(UR10, UR10);
 
-}  // namespace
+}  // namespace ur10_inverse_dynamics_solver::conformance_test

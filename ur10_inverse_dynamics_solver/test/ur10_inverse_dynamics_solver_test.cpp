@@ -10,8 +10,7 @@
 #include "inverse_dynamics_solver/conformance/reference_values.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
 
-namespace ur10_inverse_dynamics_solver {
-namespace {
+namespace ur10_inverse_dynamics_solver::ur10_inverse_dynamics_solver_test {
 
 using inverse_dynamics_solver::Exception;
 using inverse_dynamics_solver::MotorCurrents;
@@ -234,5 +233,4 @@ TEST(UR10, ModelOfAnotherRobotIsRefused) {
       << error;
 }
 
-}  // namespace
-}  // namespace ur10_inverse_dynamics_solver
+}  // namespace ur10_inverse_dynamics_solver::ur10_inverse_dynamics_solver_test
