@@ -123,7 +123,8 @@ prepare_build() {
   )
   if command -v ccache >/dev/null; then
     # Another clone finds what this one has compiled, but for sources of a unity build: they name its paths.
-    export CCACHE_BASEDIR=$workspace CCACHE_NOHASHDIR=1
+    # What a source includes is taken from the compiler's list of it, not by preprocessing the source once more.
+    export CCACHE_BASEDIR=$workspace CCACHE_NOHASHDIR=1 CCACHE_DEPEND=1
     cmake_arguments+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   fi
 }
