@@ -3,27 +3,40 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+#include <utility>
 
 #include "arms.hpp"
 
 namespace inverse_dynamics_control::damping_test {
 
-constexpr double kPeriod = 1e-3;  // s
+constexpr double kPeriod = 1e-3;      // s
+constexpr double kBisection = 1e-11;  // relative: it ends at 1e-13
 
 TEST(Damping, PendulumByHand) {
   EXPECT_NEAR(dampingFor(*Pendulum::make(), vec({1.0}), 4.0, kPeriod)[0], 4.0 * 0.5, kRounding);
+}
+
+/// Slowest and fastest decay of two joints: the s of det(D - s H) = 0.
+std::pair<double, double> decays(const Eigen::Matrix2d& H, const Eigen::Matrix2d& D) {
+  const Eigen::Matrix2d A = H.inverse() * D;
+  const double mean = A.trace() / 2, half = std::sqrt(mean * mean - A.determinant());
+  return {mean - half, mean + half};
 }
 
 TEST(Damping, SlowestMotionDecaysWithItsPartOfTheRate) {
   const auto solver = ChainSolver::make(twoBars());
   for (const double elbow : {-2.0, -1.0, 0.0, 1.0, 3.0}) {
     const Eigen::VectorXd q = vec({0.3, elbow});
-    const Eigen::MatrixXd D = dampingFor(*solver, q, 5.0, kPeriod).asDiagonal();
-    const Eigen::VectorXd rates =
-        Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(D, solver->getInertiaMatrix(q))
-            .eigenvalues();
-    EXPECT_GT(rates.minCoeff(), 5.0 / 2) << "elbow at " << elbow;
+    const OwnedVector damping = dampingFor(*solver, q, 5.0, kPeriod);
+    const auto [slowest, fastest] = decays(solver->getInertiaMatrix(q), damping.asDiagonal());
+    EXPECT_GT(slowest, 5.0 / 2) << "elbow at " << elbow;
+    EXPECT_NO_THROW(dampingFor(*solver, q, 5.0, (1 - kBisection) / fastest))
+        << "elbow at " << elbow;
+    EXPECT_THROW(dampingFor(*solver, q, 5.0, (1 + kBisection) / fastest),
+                 inverse_dynamics_solver::InvalidParameterValueException)
+        << "elbow at " << elbow;
   }
 }
 
