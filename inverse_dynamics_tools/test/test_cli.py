@@ -408,6 +408,11 @@ def test_a_description_in_place_of_a_run_configuration_names_the_option(ids, bag
     )
     (tmp_path / "empty.urdf").write_text(" \n")
     fails(ids("evaluate", bag, "--urdf", "empty.urdf"), "empty.urdf: is empty; expected a URDF")
+    (tmp_path / "log.csv").write_text("time,position.a\n0,1\n")
+    fails(
+        ids("evaluate", bag, "--urdf", "log.csv"),
+        "log.csv: isn't XML; expected a URDF, got 'time,position.a\\n0,1'",
+    )
 
 
 def test_a_verb_whose_package_is_not_built_names_the_remedy(ids, monkeypatch):

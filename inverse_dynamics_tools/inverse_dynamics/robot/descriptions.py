@@ -42,9 +42,12 @@ def read_description(file: Path) -> str:
     if not data.strip():
         raise RobotError(f"{file}: is empty; expected a URDF")
     try:
-        return data.decode("utf-8-sig")
+        text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise RobotError(f"{file}: isn't text in UTF-8; expected a URDF") from error
+    if not text.lstrip().startswith("<"):
+        raise RobotError(f"{file}: isn't XML; expected a URDF, got {shown(text.strip(), 20)}")
+    return text
 
 
 def parse_description(
