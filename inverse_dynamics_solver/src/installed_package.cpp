@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/installed_package.hpp"
 
+#include <cstdlib>
 #include <exception>
 #include <set>
+#include <sstream>
 
 #include "ament_index.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
@@ -11,9 +13,14 @@ namespace inverse_dynamics_solver {
 inline namespace v2 {
 namespace {
 
-/// The installations that have packages, as `/a, /b`; empty if there are none.
+/// The installations where packages are looked for, as `/a, /b`; empty if there are none.
 std::string installations() {
   std::set<std::string> prefixes;
+  const char* const sourced = std::getenv("AMENT_PREFIX_PATH");
+  std::istringstream listed(sourced == nullptr ? "" : sourced);
+  for (std::string prefix; std::getline(listed, prefix, ':');) {
+    if (!prefix.empty()) prefixes.insert(prefix);
+  }
   try {
     for (const auto& [package, prefix] : ament_index::resources("packages")) {
       prefixes.insert(prefix);

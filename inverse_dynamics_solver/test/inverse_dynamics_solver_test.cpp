@@ -25,7 +25,9 @@ static_assert(kIsTaken<WrenchInRoot> && kIsTaken<WrenchInTip>);
 static_assert(!kIsTaken<SixNumbers> && !kIsTaken<Eigen::VectorXd>);
 static_assert(!std::is_constructible_v<WrenchInRoot, WrenchInTip>);
 static_assert(!std::is_convertible_v<Eigen::MatrixXd&, WrenchesInRoot>);
-static_assert(!std::is_convertible_v<WrenchesInRoot, WrenchesInTip>);
+static_assert(!std::is_constructible_v<WrenchesInTip, WrenchesInRoot>);
+static_assert(!std::is_constructible_v<WrenchesInTip, const WrenchesInRoot&>);
+static_assert(std::is_constructible_v<WrenchesInTip, Eigen::MatrixXd&>);
 
 /// Made-up dynamics of any number of joints, with terms that can be told apart: H = diag(2) + 0.1,
 /// c = q qd, g = 100 q.

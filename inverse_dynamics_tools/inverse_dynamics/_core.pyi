@@ -96,7 +96,7 @@ class Solver:
     ) -> Floats:
         """Tau = H(q) qdd + C(q, qd) qd + f(q, qd) + g(q); with a wrench + J(q)^T wrench.
 
-        wrench, frame: as in external_torques().
+        wrench, frame: as in external_torques(); frame="tip" without a wrench is an error.
         """
 
     def inertia_matrix(self, q: ArrayLike, *, out: Floats | None = None) -> Floats:

@@ -52,6 +52,11 @@ class Solver {
                      const py::object& wrench, const std::string& frame,
                      const py::object& out) const {
     if (!wrench.is_none()) return torquesWithWrench(named(), q, qd, qdd, wrench, frame, out);
+    if (frame != "root") {
+      throw ids::InvalidParameterValueException(ids::errorText(
+          "torques: argument frame", "without effect", "a wrench whose axes it names",
+          "'" + frame + "' and no wrench", "give wrench=, or leave frame= out"));
+    }
     return vectors("torques", {{"q", q}, {"qd", qd}, {"qdd", qdd}}, out, [&](auto& call) {
       get().getTorquesBatch(call.in(0), call.in(1), call.in(2), call.states(0));
     });
@@ -361,7 +366,7 @@ void bindSolver(py::module_& module) {
       .def("torques", &Solver::torques, py::arg("q"), py::arg("qd"), py::arg("qdd"), py::kw_only(),
            py::arg("wrench") = py::none(), py::arg("frame") = "root", py::arg("out") = py::none(),
            "tau = H(q) qdd + C(q, qd) qd + f(q, qd) + g(q); with a wrench + J(q)^T wrench, as in\n"
-           "external_torques().")
+           "external_torques(); frame='tip' without a wrench is an error.")
       .def("inertia_matrix", &Solver::inertiaMatrix, py::arg("q"), py::kw_only(),
            py::arg("out") = py::none(), "H(q), (n, n) or (N, n, n).")
       .def("coriolis_vector", &Solver::coriolisVector, py::arg("q"), py::arg("qd"), py::kw_only(),

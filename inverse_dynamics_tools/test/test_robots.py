@@ -240,15 +240,15 @@ def test_without_a_workspace_the_remedy_is_named(monkeypatch):
 
 
 def test_in_a_workspace_without_the_data_it_is_named(monkeypatch, tmp_path):
-    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
-    index = tmp_path / "share/ament_index/resource_index/packages"
+    index = tmp_path / "full/share/ament_index/resource_index/packages"
     index.mkdir(parents=True)
     (index / "other").touch()
+    monkeypatch.setenv("AMENT_PREFIX_PATH", f"{tmp_path}/full:{tmp_path}/empty")
     with pytest.raises(PackageNotFoundError) as caught:
         robot_names()
     assert str(caught.value).startswith(
         "package inverse_dynamics_robots: not found: expected an installed package of that name, "
-        f"got none in {tmp_path}"
+        f"got none in {tmp_path}/empty, {tmp_path}/full"
     )
 
 

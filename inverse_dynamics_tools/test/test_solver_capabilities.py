@@ -194,6 +194,12 @@ def test_results_go_into_memory_of_any_layout(method: str) -> None:
         call(solver, method, states, out=out[:-1])
 
 
+def test_a_frame_without_a_wrench_is_an_error() -> None:
+    solver = made(RIGID_BODY, "ur10")
+    with pytest.raises(errors.InvalidParameterError, match="argument frame: .*'tip' and no wrench"):
+        solver.torques(*motion(solver)[:3], frame="tip")
+
+
 def test_one_wrench_serves_all_states() -> None:
     solver = made(RIGID_BODY, "ur10")
     states = motion(solver)

@@ -37,8 +37,8 @@ using WrenchInTip = Wrench<WrenchFrame::kTip>;
 /// same in each state: `WrenchesInTip(ConstStates(six_numbers, 6, N, 1, 0))`.
 template <WrenchFrame Frame>
 struct Wrenches : ConstStatesRef {
-  template <class Expression,
-            typename = std::enable_if_t<!std::is_base_of_v<Wrenches, std::decay_t<Expression>>>>
+  template <class Expression, typename = std::enable_if_t<
+                                  !std::is_base_of_v<ConstStatesRef, std::decay_t<Expression>>>>
   explicit Wrenches(Expression&& values) : ConstStatesRef(std::forward<Expression>(values)) {}
 };
 using WrenchesInRoot = Wrenches<WrenchFrame::kRoot>;
