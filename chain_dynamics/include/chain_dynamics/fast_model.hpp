@@ -3,9 +3,9 @@
 /// @file
 /// The dynamics of a Model, about ten times as fast as the functions of model.hpp, for double.
 ///
-///     const FastModel fast(model);              // once: allocates
-///     fast.torques(q, qd, qdd, tau);            // pointers to n numbers each, friction included
-///     fast.torquesBatch(Q, QD, QDD, TAU);       // n x N matrices of any layout: states.hpp
+///     const FastModel fast(model);                                     // once: allocates
+///     fast.torques(q.data(), qd.data(), qdd.data(), tau.data());       // friction included
+///     fast.torquesBatch(Q, QD, QDD, TAU);                              // n x N each [states.hpp]
 ///
 /// The same recursions as in torques.hpp, inertia_matrix.hpp and gravity_vector.hpp, with what can
 /// be done once done once [docs/speed.md]: frames whose placements have few numbers, inertial

@@ -3,8 +3,8 @@
 /// @file
 /// The passes from root to tip: where the links are, how they move, how gravity looks from them.
 ///
-///     Scratch<Transform<Scalar>> X(n);
-///     Scratch<Motion<Scalar>> V(n);
+///     Scratch<Transform<double>> X(n);
+///     Scratch<Motion<double>> V(n);
 ///     internal::linkPoses(chain, q, X);
 ///     internal::linkVelocities(chain, X, qd, V);
 ///

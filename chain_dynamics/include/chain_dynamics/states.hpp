@@ -2,12 +2,12 @@
 /// @file
 /// Many states where they stand in memory, whatever their layout: pointers and steps, no copy.
 ///
-///     const Eigen::MatrixXd columns = ...;                  // n x N, one state a column
-///     const ConstStates q = columns;                        // or columns.leftCols(10), a Map ...
-///     const ConstStates from_rows = rows.transpose();       // N x n, one state a row
-///     const ConstStates numpy{data, n, N, 1, n};            // any steps, negative ones too
+///     const ConstStates q = columns;                     // n x N, one state per column
+///     const ConstStates first_ten = columns.leftCols(10);
+///     const ConstStates from_rows = rows.transpose();    // N x n, one state per row
+///     const ConstStates numpy{data, n, N, 1, n};         // any steps, negative ones too
 ///
-/// In Eigen's terms states are n x N always, one state a column; how the numbers stand in memory
+/// In Eigen's terms states are always n x N, one state per column; how the numbers stand in memory
 /// (column after column, row after row, with gaps) is the expression's affair. A view doesn't own:
 /// it is for arguments of functions, and what it looks at must live as long.
 #pragma once

@@ -4,7 +4,7 @@
 /// Which meaning of the recorded efforts fits the data, and how sure that is.
 ///
 ///     EffortSums sums(count, 6, drive_gains);
-///     while (...) sums.add(computed, gravity, effort);   // of the samples that count
+///     for (const auto& [computed, gravity, effort] : blocks) sums.add(computed, gravity, effort);
 ///     EffortVerdict verdict = sums.verdict();
 ///     if (verdict.sure) std::cout << verdict.best() << ": " << verdict.summary() << "\n";
 ///
@@ -114,7 +114,7 @@ class EffortSums {
 /// @param computed,gravity  n x N; N m (prismatic N).
 /// @param effort            n x N; as recorded.
 /// @param drive_gains       n, or none.
-/// @param mask              N; samples that count. Those that aren't finite don't, either.
+/// @param mask              N; valid samples. Those that aren't finite are left out, too.
 /// @throws EvaluationError: sizes differ.
 EffortVerdict compareMeanings(const Eigen::Ref<const Eigen::MatrixXd>& computed,
                               const Eigen::Ref<const Eigen::MatrixXd>& gravity,

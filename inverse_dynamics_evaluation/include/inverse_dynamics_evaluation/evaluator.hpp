@@ -4,14 +4,16 @@
 /// From recorded joint states to computed torques and their errors.
 ///
 ///     Evaluation evaluation = evaluate(log, *solver, options, [&](const EvaluatedSamples& next) {
-///       bag.write(next.stamps, next.q, next.qd, next.computed);
+///       table.append(next.time, next.computed);
 ///     });
 ///     std::cout << evaluation.errors[0].rmse << " N m\n";
 ///
 /// A recording of any length is read from its file, several times, in bounded memory:
 ///
 ///     const auto source = Recording("motion").jointStates();   // inverse_dynamics_recordings
-///     Evaluation evaluation = evaluate(*source, {solver->jointNames()}, *solver, options, take);
+///     RecordingOptions recording;
+///     recording.joints = solver->jointNames();
+///     Evaluation evaluation = evaluate(*source, recording, *solver, options);
 ///
 /// The steps, in the order in which they are taken; docs/evaluation.md has the formulas:
 ///
@@ -20,9 +22,7 @@
 /// 3. Torques by the solver, block by block.
 /// 4. What efforts mean by the data, if they are to tell (effort_verdict.hpp).
 /// 5. Errors of the computed against the measured torques (metrics.hpp): over all samples, and over
-///    those that were kept.
-///
-/// All of it is said in words too: findings and notes, a sentence each.
+///    those that were kept. Findings and notes say the same in words.
 
 #pragma once
 
@@ -64,12 +64,12 @@ struct RecordingOptions {
   std::vector<std::string> joints;  ///< n; their names there, in the order of the chain
   Clock clock = Clock::kAuto;
   JointLogOptions log;
-  std::string scratch;  ///< directory for a file without a name that keeps the samples of the first
+  std::string scratch;  ///< directory for an unnamed file that keeps the samples of the first
                         ///< pass, 192 bytes each with seven joints; empty: the source is read again
   TimeSpan window = {};  ///< the others aren't evaluated
 };
 
-/// Some samples of a result: n x B, a sample a column, valid during a call.
+/// Some samples of a result: n x B, one sample per column, valid during a call.
 struct EvaluatedSamples {
   using Block = Eigen::Ref<const Eigen::MatrixXd>;
   using Stamps = Eigen::Ref<const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>>;

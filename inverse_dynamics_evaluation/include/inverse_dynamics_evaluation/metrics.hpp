@@ -10,7 +10,7 @@
 /// Or block by block, for a recording of any length:
 ///
 ///     ErrorSums sums(6);
-///     while (...) sums.add(computed, measured, first);   // first: number of the first sample
+///     for (const auto& [first, computed, measured] : blocks) sums.add(computed, measured, first);
 ///     std::vector<JointMetrics> all = sums.metrics();
 ///
 /// The formulas are those of docs/notation.md. Metrics over a selection are to be shown beside
@@ -37,7 +37,7 @@ using Mask = chain_dynamics::Owned<Eigen::Array<bool, Eigen::Dynamic, 1>>;
 ///
 /// With the error `e = computed - measured`; in N m (prismatic N) but for nrmse and r2.
 struct JointMetrics {
-  Eigen::Index count = 0;     ///< samples that count
+  Eigen::Index count = 0;     ///< valid samples
   double mae = 0;             ///< mean absolute error: mean of |e|
   double rmse = 0;            ///< root of the mean of e^2
   double nrmse = 0;           ///< rmse / (max - min of measured): 0.01 is 1 %
@@ -50,7 +50,7 @@ struct JointMetrics {
 
 /// Errors of every joint, over all samples.
 ///
-/// @param computed,measured  n x N, a sample a column; N m (prismatic N).
+/// @param computed,measured  n x N, one sample per column; N m (prismatic N).
 /// @return n, in the order of the rows. nrmse and r2 are NaN where the measured torque is the same
 ///         in all samples: there is no range to compare with.
 /// @throws EvaluationError: sizes differ, no sample, a number that isn't finite (joint and sample
@@ -76,9 +76,9 @@ class ErrorSums {
 
   /// Adds samples, which come after all that were added.
   ///
-  /// @param computed,measured  n x N, a sample a column.
+  /// @param computed,measured  n x N, one sample per column.
   /// @param first              number of the first of them in the recording.
-  /// @param mask               N; those that count. What it leaves out may be anything.
+  /// @param mask               N; the valid samples. The others may be anything.
   /// @throws EvaluationError: sizes differ; a number that isn't finite.
   void add(const Eigen::Ref<const Eigen::MatrixXd>& computed,
            const Eigen::Ref<const Eigen::MatrixXd>& measured, Eigen::Index first);
@@ -88,7 +88,7 @@ class ErrorSums {
   /// Adds those of samples that come after all that were added.
   void merge(const ErrorSums& later);
 
-  /// Samples that count.
+  /// Valid samples.
   Eigen::Index count() const { return joints_.empty() ? 0 : joints_.front().count; }
 
   /// n. @throws EvaluationError: no sample counts.

@@ -5,7 +5,7 @@
 ///
 ///     SampleReport samples = examineSamples(time, q, qd, effort);
 ///     samples.repeated.count();                      // messages that say nothing new
-///     metrics(computed, measured, samples.kept);     // beside metrics(computed, measured)
+///     metrics(computed, measured, samples.kept);     // in addition to metrics(computed, measured)
 ///
 /// Recordings of real robots have faults that a derivative doesn't forgive. Each is found by a rule
 /// that uses the data only, is reported always, and is acted upon unless it is switched off:
@@ -130,7 +130,7 @@ struct SampleReport {
 /// Looks at recorded joint states by the rules above. O(N).
 ///
 /// @param time    N; s; stamps.
-/// @param q       n x N, a sample a column; rad (prismatic m).
+/// @param q       n x N, one sample per column; rad (prismatic m).
 /// @param qd      n x N; rad/s (prismatic m/s).
 /// @param effort  n x N; N m (prismatic N), or empty (0 x 0): then repeats are found by q and qd,
 /// and

@@ -1,70 +1,46 @@
 # SPDX-License-Identifier: Apache-2.0
 """The examples at the heads of public headers as functions, so that they are compiled.
 
-generate.py OUTPUT HEADER...: the example of a header is the first indented block of the comment at its head.
+generate.py OUTPUT CONTEXT HEADER...: examples of a header are the indented blocks of the comment at its head that
+have a semicolon (those without are formulas). CONTEXT declares what they take for granted: namespace given, for
+all headers, and given::X_examples, for X.hpp.
 """
 
 from __future__ import annotations
 
 import sys
-from itertools import dropwhile, takewhile
+from itertools import groupby, takewhile
 from pathlib import Path
 
-_ESTIMATOR = "extern EstimatorOptions options;"
-_LAW = "extern LawOptions options;"
-GIVEN = {
-    "acceleration_residual": _ESTIMATOR,
-    "computed_torque": _LAW,
-    "damping": _LAW,
-    "estimator_choice": _ESTIMATOR,
-    "feed_forward": _LAW,
-    "gravity_compensation": _LAW,
-    "momentum_observer": _ESTIMATOR,
-    "output_stage": "extern OutputLimits limits; extern Eigen::VectorXd desired;",
-    "pd_gravity_compensation": _LAW,
-    "reference_guard": "extern ReferenceLimits limits; extern Reference desired;",
-    "tip_wrench": "extern WrenchOptions options;",
-}
-"""What examples are given beside context.hpp, where a name means something else in each."""
 
-
-def example(header: Path) -> tuple[int, list[str]]:
-    """Number of its first line, and its lines; none: no example."""
+def examples(header: Path) -> list[tuple[int, list[str]]]:
+    """Number of the first line, and the lines, of each example."""
     lines = list(enumerate(header.read_text(encoding="utf-8").splitlines(), start=1))
-    head = list(takewhile(lambda line: line[1] != "#pragma once", lines))
-    block = list(
-        takewhile(
-            lambda line: line[1].startswith("///     "),
-            dropwhile(lambda line: not line[1].startswith("///     "), head),
-        )
-    )
-    return (block[0][0], [text[8:] for _, text in block]) if block else (0, [])
+    head = takewhile(lambda line: line[1] != "#pragma once", lines)
+    blocks = [
+        list(block)
+        for indented, block in groupby(head, lambda line: line[1].startswith("///     "))
+        if indented
+    ]
+    codes = [(block[0][0], [text[8:] for _, text in block]) for block in blocks]
+    return [(number, code) for number, code in codes if ";" in "".join(code)]
 
 
-def function(header: Path) -> str:
-    """A function with the example of a header, as that header's lines to the compiler."""
-    number, lines = example(header)
-    if not lines:
+def functions(header: Path) -> str:
+    """A function for each example of a header, as that header's lines to the compiler."""
+    texts = [
+        "\n".join([f"void example{k}() {{", f'#line {number} "{header}"', *code, "}"])
+        for k, (number, code) in enumerate(examples(header))
+    ]
+    if not texts:
         return ""
-    include = f"{header.parent.name}/{header.name}"
-    return "\n".join(
-        [
-            f'#include "{include}"',
-            f"namespace example_{header.stem} {{",
-            GIVEN.get(header.stem, ""),
-            "void example() {",
-            f'#line {number} "{header}"',
-            *lines,
-            "}",
-            "}",
-            "",
-        ]
-    )
+    include = f'#include "{header.parent.name}/{header.name}"'
+    return "\n".join([include, f"namespace given::{header.stem}_examples {{", *texts, "}", ""])
 
 
 def main() -> None:
-    output, *headers = map(Path, sys.argv[1:])
-    texts = ['#include "context.hpp"\n', *map(function, headers)]
+    output, context, *headers = map(Path, sys.argv[1:])
+    texts = [f'#include "{context}"\n', *map(functions, headers)]
     output.write_text("\n".join(texts), encoding="utf-8")
 
 

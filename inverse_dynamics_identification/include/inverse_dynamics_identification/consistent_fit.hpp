@@ -5,7 +5,7 @@
 ///
 ///     RegressorGram gram(n, 2);                        // own columns: qdd (rotor inertia), qd
 ///     fast.addToGram(samples, gram);                   // any number of times, blocks, recordings
-///     Prior prior(description.links(), OwnColumn::positive(), OwnColumn::positive());
+///     const Prior prior{chain.links(), std::vector<OwnColumn>(2 * n, OwnColumn::positive())};
 ///     Fit fit = consistentFit(gram, prior, options);   // every link is a body
 ///
 /// The least squares on the regressor [regressor_gram.hpp] leave most of the ten numbers of each link

@@ -4,7 +4,7 @@
 /// New rosbag2 recordings of joint states (sqlite3 and MCAP), written without ROS.
 ///
 ///     JointStateWriter writer("torques", Storage::kMcap, {{"/torques", {"joint_1", "joint_2"}}});
-///     writer.write({{stamps.size(), stamps.data(), stamps.data(), q, qd, tau}});
+///     writer.write({{stamps.size(), stamps.data(), stamps.data(), q.data(), qd.data(), tau.data()}});
 ///     writer.finish();
 ///
 /// The format is rosbag2's current one: metadata.yaml of version 9, messages with an index by time,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What the examples at the heads of headers take for granted. Compiled, never linked.
+/// What the examples of inverse_dynamics_control and inverse_dynamics_solver take for granted. Compiled,
+/// never linked.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,6 +16,8 @@
 
 using namespace inverse_dynamics_control;
 using namespace inverse_dynamics_solver;
+
+namespace given {
 
 // A robot, its state, and a cycle of its control loop.
 extern std::shared_ptr<InverseDynamicsSolver> solver;
@@ -56,4 +59,44 @@ struct StateInterface {
   double get_value() const;
 };
 extern StateInterface position_interface;
+
+// What means something else in each header.
+namespace acceleration_residual_examples {
+extern EstimatorOptions options;
+}
+namespace computed_torque_examples {
+extern LawOptions options;
+}
+namespace damping_examples {
+extern LawOptions options;
+}
+namespace estimator_choice_examples {
+extern EstimatorOptions options;
+}
+namespace feed_forward_examples {
+extern LawOptions options;
+}
+namespace gravity_compensation_examples {
+extern LawOptions options;
+}
+namespace momentum_observer_examples {
+extern EstimatorOptions options;
+}
+namespace output_stage_examples {
+extern OutputLimits limits;
+extern Eigen::VectorXd desired;
+}  // namespace output_stage_examples
+namespace pd_gravity_compensation_examples {
+extern LawOptions options;
+}
+namespace reference_guard_examples {
+extern ReferenceLimits limits;
+extern Reference desired;
+}  // namespace reference_guard_examples
+namespace tip_wrench_examples {
+extern WrenchOptions options;
+}
+
+}  // namespace given
+
 #define RCLCPP_ERROR_THROTTLE(logger, clock, milliseconds, format, text) report(format, text)
