@@ -199,6 +199,23 @@ def test_nothing_is_wider_than_the_screen(show, name, width, scheme):
     assert too_far == []
 
 
+@pytest.mark.parametrize("width", [390, 1300, 1920])
+def test_lines_break_between_words_and_parts_of_names(show, width):
+    broken = show("evaluation", width).execute_script(
+        r"""
+        const lines = (node) => {
+          const range = document.createRange();
+          range.selectNodeContents(node);
+          return new Set(Array.from(range.getClientRects(), (box) => box.top)).size;
+        };
+        return [...document.querySelectorAll("dd, th")].flatMap((cell) => [...cell.childNodes])
+            .filter((node) => node.nodeType === Node.TEXT_NODE && !/\s/.test(node.data.trim()))
+            .filter((node) => lines(node) > 1).map((node) => node.data);
+        """
+    )
+    assert broken == []
+
+
 @pytest.mark.parametrize("name", ["evaluation", "comparison", "identification"])
 def test_the_first_screen_shows_the_robot_and_a_plot(show, name):
     driver = show(name)

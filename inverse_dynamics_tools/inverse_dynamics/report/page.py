@@ -9,6 +9,7 @@ from __future__ import annotations
 import base64
 import json
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import resources
@@ -24,6 +25,7 @@ from inverse_dynamics.figures.thinning import peaks
 
 if TYPE_CHECKING:
     from jinja2 import Template
+    from markupsafe import Markup
 
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.evaluation.evaluation import JointError
@@ -152,7 +154,7 @@ def render_page(
 
 
 def template(name: str) -> Template:
-    """A page to be filled in; it has the style, and the filters figure and percent."""
+    """A page to be filled in; it has the style, and the filters below."""
     from jinja2 import Environment, FunctionLoader, StrictUndefined
 
     environment = Environment(
@@ -165,6 +167,7 @@ def template(name: str) -> Template:
     environment.filters["figure"] = _figure
     environment.filters["percents"] = lambda shares: [100.0 * share for share in shares]
     environment.filters["aligned"] = aligned
+    environment.filters["breakable"] = _breakable
     environment.globals["style"] = _asset("style.css")
     environment.globals["light"] = _variables(palette.LIGHT)
     environment.globals["dark"] = _variables(palette.DARK)
@@ -179,6 +182,13 @@ def _variables(colors: Mapping[str, str]) -> str:
 def _printable(value: object) -> object:
     """Names without control characters; what is markup already stays."""
     return printable(value) if type(value) is str else value
+
+
+def _breakable(text: str) -> Markup:
+    """Text whose long names may break between their parts; units, as in N m/A, may not."""
+    from markupsafe import Markup, escape
+
+    return Markup(re.sub(r"(?<=\w\w)(::|[/_])(?=\w\w)", r"\1<wbr>", str(escape(printable(text)))))
 
 
 def _asset(name: str) -> str:

@@ -129,7 +129,7 @@ def _joints(
     ):
         highest = max([*column, typical]) or 1.0
         bars = "".join(f"M{k + 0.5} 1V{1 - value / highest:.3f}" for k, value in enumerate(column))
-        joints.append({"parts": error.joint.split("_"), "unit": error.unit, "bars": bars})
+        joints.append({"name": error.joint, "unit": error.unit, "bars": bars})
     return joints
 
 
