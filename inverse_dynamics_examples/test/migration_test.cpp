@@ -44,16 +44,16 @@ TEST(Migration, CallsOfTheReferenceImplementationHaveTheirCounterparts) {
   const Eigen::Vector3d force(20.0, 0.0, -5.0), torque(0.0, 1.0, 0.0);
   testing::internal::CaptureStdout();
 
-  // Headers end in .hpp. pluginlib::ClassLoader works as before; SolverLoader saves its arguments.
+  // Headers end in .hpp. pluginlib::ClassLoader works as before; SolverLoader needs no arguments.
   const auto solver = SolverLoader().load("ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10");
 
-  // Identified solvers must be initialized, too: without it, methods throw UninitializedException.
+  // Identified solvers must be initialized, too: until then, methods throw UninitializedException.
   solver->initialize();
 
-  // getDynamicParameters(), which is there too
+  // getDynamicParameters(), which still exists, too
   const auto [H, c, g] = solver->getDynamicComponents(q, qd);
 
-  // The free function getCurrents(q, qd, qdd, i), which has no friction. Likewise getInertiaCurrents(),
+  // The free function getCurrents(q, qd, qdd, i), without friction. Likewise getInertiaCurrents(),
   // getCoriolisCurrents() and getGravityCurrents().
   const auto& motors = dynamic_cast<const MotorCurrents&>(*solver);
   const Eigen::VectorXd i = motors.getCurrents(q, qd, qdd) - motors.getFrictionCurrents(qd);
@@ -62,7 +62,7 @@ TEST(Migration, CallsOfTheReferenceImplementationHaveTheirCounterparts) {
   const Eigen::VectorXd K = motors.getDriveGainsMatrix().diagonal();
   const Eigen::Index n = solver->jointCount();
 
-  // rclcpp::exceptions::InvalidParameterValueException; all of the family are solver exceptions now,
+  // rclcpp::exceptions::InvalidParameterValueException. All exceptions of that family now derive from
   // inverse_dynamics_solver::Exception, a std::runtime_error.
   try {
     solver->initialize({{"gravity", std::vector<double>{0.0, -9.81}}});
@@ -70,13 +70,13 @@ TEST(Migration, CallsOfTheReferenceImplementationHaveTheirCounterparts) {
     std::cout << e.what() << "\n";
   }
 
-  // A description as an argument, parameters from a map instead of a node; the parameter `tip` may be
-  // left out: it is then the leaf of the URDF. Bodies fixed beyond the tip, or beside the chain, count,
-  // unless they are ignored, as by KDL there.
+  // The description is an argument, and parameters come from a map instead of a node. Without the
+  // parameter `tip`, the tip is the leaf of the URDF. Bodies fixed beyond the tip, or beside the chain,
+  // are included, unless `attached` is "ignore", as in the released solver.
   const auto kdl = SolverLoader().load("kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL");
   kdl->initialize({{"tip", "tool0"}, {"attached", "ignore"}}, "", urdf);
 
-  // getJacobian(q) and getTorques(q, qd, qdd, external_wrench), which are not in a release yet
+  // getJacobian(q) and getTorques(q, qd, qdd, external_wrench), which haven't been released yet
   const Eigen::MatrixXd J = dynamic_cast<const Kinematics&>(*kdl).getTipJacobian(q);
   const Eigen::VectorXd tau =
       dynamic_cast<const ExternalWrench&>(*kdl).getTorques(q, qd, qdd, WrenchInRoot{force, torque});
