@@ -182,7 +182,7 @@ class Truth:
 
 
 def _residuals(found: Identification, evaluation: Evaluation) -> Floats:
-    """(M, n) measured minus torques of the model, with the delay made up for, of samples that count."""
+    """(M, n) measured minus torques of the model, with the delay made up for, of valid samples."""
     residuals = []
     for block in blocks_of(evaluation, BLOCKS):
         q, qd, qdd, measured = block.later(found.delay).fitted

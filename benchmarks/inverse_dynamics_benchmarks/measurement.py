@@ -104,7 +104,7 @@ def read_measurement(file: Path) -> Measurement:
 
 
 def write_measurement(result: Measurement, file: Path) -> None:
-    """Write it, a benchmark a line. Raises OutputError."""
+    """Write it, one benchmark per line. Raises OutputError."""
     document = result.document
     parts = [f' "context": {json.dumps(document["context"], indent=2)}']
     for key in ("benchmarks", "latency"):

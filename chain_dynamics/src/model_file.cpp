@@ -36,7 +36,7 @@ Chain makeChain(const std::string& name, const std::vector<JointEntry>& entries,
                 const Eigen::Vector3d& gravity, const Transform<double>& X_U_tip) {
   std::vector<Joint> joints;
   std::vector<LinkParameters> links;
-  Transform<double> X_EU = Transform<double>::identity();  // of the link before
+  Transform<double> X_EU = Transform<double>::identity();  // of the parent link
   for (const JointEntry& entry : entries) {
     joints.push_back(entry.joint);
     joints.back().placement = X_EU * entry.joint.placement;

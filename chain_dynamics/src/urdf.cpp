@@ -25,7 +25,7 @@ using Path = std::vector<std::size_t>;  // joints
 
 constexpr std::size_t kNone = RobotDescription::kNone;
 
-/// Parameters of a link in its frame, without what hangs on it.
+/// Parameters of a link in its frame, without attached bodies.
 LinkParameters parameters(const Link& link) {
   if (!link.inertial) {
     return LinkParameters::zero();
@@ -315,7 +315,7 @@ class Builder {
     X_EU_ = {R_UE.transpose(), Eigen::Vector3d::Zero()};
   }
 
-  /// Adds what hangs on a link of the path, beside the path or beyond its end.
+  /// Adds bodies attached to a link of the path, beside the path or beyond its end.
   void lumpBranches(const Link& link) {
     if (!options_.lump_attached) {
       return;
@@ -327,7 +327,7 @@ class Builder {
     }
   }
 
-  /// A branch as one rigid body, in the frame of the link it hangs on.
+  /// A branch as one rigid body, in the frame of the link that carries it.
   LinkParameters branch(std::size_t joint) {
     body_.resize(robot_.joints.size(), LinkParameters::zero());
     const std::vector<std::size_t> links = robot_.linksBelow(robot_.joints[joint].child);

@@ -69,7 +69,7 @@ class YamlValue {
 /// A map whose keys must all be asked for.
 class YamlMap {
  public:
-  /// @param name  whether the map's own name goes before its keys' names in messages.
+  /// @param name  whether messages put the map's own name before its keys' names.
   explicit YamlMap(const YamlValue& value, bool name = true);
 
   YamlValue required(const std::string& key);

@@ -261,7 +261,7 @@ TEST(Urdf, LooksAndUnknownElementsHaveNoInfluence) {
   EXPECT_EQ(someTorques(plain), someTorques(dressed));
 }
 
-// --- what hangs on the chain ---
+// --- bodies attached to the chain ---
 
 const char* const kFocusOrigin = "<origin xyz='0.2 0 0' rpy='0.3 0.7 0'/>";
 

@@ -8,7 +8,7 @@ namespace inverse_dynamics_control::fault_latch_test {
 TEST(FaultLatch, ShortFaultsAreTolerated) {
   FaultLatch fault(0.05);
   for (int k = 0; k < 4; ++k) fault.note(Status::kStateNotFinite, 0.01);
-  fault.note(Status::kSaturated, 0.01);  // a torque of the law: counting starts anew
+  fault.note(Status::kSaturated, 0.01);  // a torque of the law: counting restarts
   for (int k = 0; k < 4; ++k) fault.note(Status::kStateNotFinite, 0.01);
   EXPECT_FALSE(fault.latched());
 }

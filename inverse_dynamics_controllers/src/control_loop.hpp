@@ -46,7 +46,7 @@ class ControlLoop {
   /// The measured state of the last cycle, or of start().
   const inverse_dynamics_control::JointState& state() const noexcept { return state_; }
 
-  /// Finds the interfaces, and begins anew, with the law's safe torque: what is written now may be
+  /// Finds the interfaces, and restarts, with the law's safe torque: what is written now may be
   /// the hardware's for a cycle before the first update.
   ///
   /// Throws inverse_dynamics_solver::Exception: one is missing; the hardware doesn't know where its

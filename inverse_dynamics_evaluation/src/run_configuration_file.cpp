@@ -87,7 +87,7 @@ std::vector<double> driveGainsOf(const std::optional<LocatedValue>& value) {
   for (const LocatedValue& entry : value->entries()) {
     gains.push_back(entry.number());
     if (gains.back() <= 0) {
-      entry.fail("a drive gain above zero, in N m/A", "turn the sign of the efforts instead");
+      entry.fail("a drive gain above zero, in N m/A", "change the sign of the efforts instead");
     }
   }
   if (gains.empty()) {

@@ -25,7 +25,7 @@ inline namespace v2 {
 /// enough to stay in the cache.
 constexpr Eigen::Index kSamplesAtOnce = 4096;
 
-/// B consecutive samples of n joints, a sample a column.
+/// B consecutive samples of n joints, one sample per column.
 struct SampleBlock {
   using StampVector = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>;
 

@@ -115,7 +115,7 @@ inline double rms(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return std::sqrt((a - b).squaredNorm() / static_cast<double>(a.size()));
 }
 
-/// Derivative of equidistant samples, a sample a column: central differences of fourth order; of
+/// Derivative of equidistant samples, one sample per column: central differences of fourth order; of
 /// second order beside the ends, one-sided at the ends.
 inline Eigen::MatrixXd derivative(const Eigen::MatrixXd& x, double period) {
   const Eigen::Index last = x.cols() - 1;

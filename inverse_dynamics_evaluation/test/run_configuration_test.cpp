@@ -128,7 +128,7 @@ TEST_F(RunConfigurations, AreReadStrictly) {
   EXPECT_EQ(error("drive_gains: [1, -2]\n"),
             file +
                 ":6: drive_gains[1]: expected a drive gain above zero, in N m/A, got '-2'; "
-                "turn the sign of the efforts instead");
+                "change the sign of the efforts instead");
   EXPECT_EQ(error("accelerations: {method: lowpass}\n"),
             file +
                 ":6: accelerations.method: expected one of auto, low-pass, given, "

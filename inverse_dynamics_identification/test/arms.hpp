@@ -62,7 +62,7 @@ inline Chain withFramesMoved(const Chain& chain) {
   return Chain(chain.name(), joints, links, chain.gravity());
 }
 
-/// States and torques, a sample a column.
+/// States and torques, one sample per column.
 struct Motion {
   Eigen::MatrixXd q, qd, qdd, tau;
 };

@@ -18,7 +18,7 @@ inline namespace v2 {
 /// How many bytes may come out of so many. @throws ReadingError: the variable isn't a number.
 std::uint64_t mostUnpacked(std::uint64_t packed);
 
-/// What is said of something that would unpack to more.
+/// The error for something that would unpack to more.
 ReadingError beyondLimit(const std::string& what, std::uint64_t packed, std::uint64_t most);
 
 /// Unpacks zstd, reusing its memory.

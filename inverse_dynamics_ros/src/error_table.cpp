@@ -112,8 +112,8 @@ std::string errorTable(const Evaluation& evaluation, const std::vector<std::stri
     if (rows.back()[0] == "mean") {
       rows.back().push_back(figure(meanOf(evaluation.errors_of_kept, &JointMetrics::rmse)));
     }
-    caption = "* over the " + std::to_string(kept.count()) + " of " + std::to_string(kept.size()) +
-              " samples that count\n";
+    caption = "* over the " + std::to_string(kept.count()) + " valid samples of " +
+              std::to_string(kept.size()) + "\n";
   }
   return tableOf(rows) + caption;
 }

@@ -18,7 +18,7 @@ namespace inverse_dynamics_ros {
 
 using inverse_dynamics_evaluation::EvaluationOptions;
 
-/// Computed and measured torques of N samples of n joints, a sample a column; N m (prismatic N).
+/// Computed and measured torques of N samples of n joints, one sample per column; N m (prismatic N).
 struct Evaluation : inverse_dynamics_evaluation::Evaluation {
   Eigen::MatrixXd computed;  ///< n x N; without gravity where the efforts are
   Eigen::MatrixXd measured;  ///< n x N; empty (0 x 0) where no efforts are recorded

@@ -234,13 +234,13 @@ class LiveNode::Implementation {
       ++diagnostics_.counts().clock_jumps;
       RCLCPP_WARN(
           logger(),
-          "the clock jumped back behind %.9f s: the filter of the accelerations starts anew",
+          "the clock jumped back to before %.9f s: the filter of the accelerations restarts",
           1e-9 * static_cast<double>(previous_stamp_));
     } else if (live_->step() == OnlineDerivative::Step::kGap) {
       ++diagnostics_.counts().gaps;
       RCLCPP_WARN_THROTTLE(logger(), steady_, kReminder,
                            "no joint states for more than %g s: the filter of the accelerations "
-                           "starts anew",
+                           "restarts",
                            params_.longest_gap);
     }
   }

@@ -43,10 +43,10 @@ void readGravity(Configuration& configuration) {
 void readAttached(Configuration& configuration) {
   const std::string attached = configuration.get<std::string>("attached").value_or("lump");
   if (attached != "lump" && attached != "ignore") {
-    throw InvalidParameterValueException(
-        errorText("parameter '" + configuration.fullName("attached") + "'", "wrong value",
-                  R"("lump" or "ignore")", "\"" + attached + "\"",
-                  "lump: what hangs on the chain beside or beyond it counts; ignore: it doesn't"));
+    throw InvalidParameterValueException(errorText(
+        "parameter '" + configuration.fullName("attached") + "'", "wrong value",
+        R"("lump" or "ignore")", "\"" + attached + "\"",
+        "lump: bodies attached beside or beyond the chain are included; ignore: they aren't"));
   }
   configuration.lump_attached = attached == "lump";
 }

@@ -77,7 +77,7 @@ TEST(Batches, TakeEveryKindOfMatrix) {
   EXPECT_EQ(expected.cols(), 4);
   EXPECT_EQ(expected.col(2), solver->getTorques(q.col(2), q.col(2), q.col(2)));
 
-  // Row after row, a state a row, with gaps, mapped, expressions, one state.
+  // Row after row, one state per row, with gaps, mapped, expressions, one state.
   const Rows q_rows = q;
   const Eigen::MatrixXd turned = q.transpose();
   Eigen::MatrixXd larger = Eigen::MatrixXd::Zero(5, 8);

@@ -94,7 +94,7 @@ TEST(Configuration, MistakesNameTheParameterWithItsNamespace) {
             std::string::npos);
   EXPECT_EQ(error("attached", "keep"),
             "parameter 'ids.attached': wrong value: expected \"lump\" or \"ignore\", got \"keep\"; "
-            "lump: what hangs on the chain beside or beyond it counts; ignore: it doesn't");
+            "lump: bodies attached beside or beyond the chain are included; ignore: they aren't");
   EXPECT_EQ(error("batch_threads", 0),
             "parameter 'ids.batch_threads': wrong value: expected 1 to 4096, got 0; give how many "
             "threads may share a batch; 1: the library starts none");

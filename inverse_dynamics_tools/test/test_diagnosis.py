@@ -320,8 +320,8 @@ def test_a_joint_of_a_real_recording_that_is_turned_is_found(recordings, robot, 
     effort[:, log.joint_names.index(name)] *= -1
     write_joint_logs(tmp_path / "turned", {log.topic: replace(log, effort=effort)})
     (note,) = notes_of(evaluate(tmp_path / "turned", robot))
-    assert f"joint {name}: torques match if its effort counts the other way" in note
-    assert f"{PAGE}#a-joint-counts-the-other-way" in note
+    assert f"joint {name}: torques match if its effort is reversed" in note
+    assert f"{PAGE}#a-joint-is-reversed" in note
 
 
 def evaluate_names(robot: str) -> tuple[str, ...]:

@@ -148,7 +148,7 @@ def test_joints_in_another_order_than_the_chain_are_an_error(bag, robot):
         evaluate(bag, robot, joints=JOINTS[::-1])
 
 
-# What is given goes before what the configuration says.
+# What is given takes precedence over what the configuration says.
 
 
 def test_another_plugin(bag, robot):
@@ -232,7 +232,7 @@ def test_unknown_method_and_rule_are_errors(bag, robot):
         evaluate(bag, robot, without_rules=["all"])
 
 
-# What is odd about samples is said.
+# What is odd about samples is reported.
 
 
 def test_repeated_samples_are_found_said_and_left_out_unless_told_otherwise(

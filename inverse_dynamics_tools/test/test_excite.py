@@ -116,7 +116,7 @@ def test_share_of_the_limits_is_kept(arm: Path) -> None:
 
 
 def test_given_recording_that_never_moves_the_wrist_is_completed(tmp_path: Path) -> None:
-    """The arm moved, the last three joints stood still: that is said, and they are what moves most."""
+    """The arm moved, the last three joints stood still: that is reported, and they are what moves most."""
     robot = load_robot("ur10_simulated")
     stored, _ = read_trajectory(robots_package() / "trajectories/ur10.yaml", tuple(robot.joints))
     still = WaypointTrajectory.through(

@@ -89,9 +89,10 @@ def test_efforts_without_gravity(log, tmp_path):
     )
     effort = log.effort - 1.05 * solver.gravity_vector(log.q)
     error = reason([evaluated(tmp_path, replace(log, effort=effort))])
-    assert error.mistake == "Gravity is taken off the efforts"
-    assert f"--effort-is torque_without_gravity ({PAGE}#gravity-is-taken-off-the-efforts)" in str(
-        error
+    assert error.mistake == "Gravity is subtracted from the efforts"
+    assert (
+        f"--effort-is torque_without_gravity ({PAGE}#gravity-is-subtracted-from-the-efforts)"
+        in str(error)
     )
 
 
@@ -103,7 +104,7 @@ def test_currents(log, tmp_path):
 
 def test_a_turned_joint(log, tmp_path):
     error = reason([evaluated(tmp_path, replace(log, effort=log.effort * [1, 1, -1, 1, 1, 1]))])
-    assert error.mistake == "A joint counts the other way"
+    assert error.mistake == "A joint is reversed"
     assert "joint elbow_joint" in str(error)
 
 

@@ -50,7 +50,7 @@ def rows(bag: Path) -> list[tuple[str, int, bytes]]:
 
 
 def by_program(bag: Path, robot: Path | str, out: Path) -> list[list[float]]:
-    """Metrics of the program, a joint a row."""
+    """Metrics of the program, one row per joint."""
     done = subprocess.run([PROGRAM, bag, robot, out], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return [[float(word) for word in line.split()] for line in done.stdout.splitlines()]

@@ -85,7 +85,7 @@ def test_a_name_that_is_taken_is_told_apart_too(tmp_path):
 
 def test_names_that_cannot_be_told_apart_are_an_error():
     with pytest.raises(
-        BagError, match="/x_y/r, /x/y/r: their results would have one name, 'x_y_r'"
+        BagError, match="/x_y/r, /x/y/r: their results would have the same name, 'x_y_r'"
     ):
         named_recordings(["/x_y/r", "/x/y/r", "/y/r"])
 

@@ -40,7 +40,7 @@ KDL::Chain toKdl(const chain_dynamics::Chain& chain) {
     const chain_dynamics::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
     const KDL::Frame X = toKdl(joint.placement);
 
-    // The axis is z of the link's frame; KDL wants it in the frame of the link before.
+    // The axis is z of the link's frame; KDL wants it in the frame of the parent link.
     const auto type = isPrismatic(joint) ? KDL::Joint::TransAxis : KDL::Joint::RotAxis;
     const KDL::Joint kdl_joint(joint.name, X.p, X.M.UnitZ(), type, 1.0, 0.0, joint.rotor_inertia);
     result.addSegment(KDL::Segment(joint.name, kdl_joint, X,

@@ -39,7 +39,7 @@ struct JointLimits {
   double effort = std::numeric_limits<double>::infinity();    ///< N m; N
 };
 
-/// One movable joint, and where it sits on the link before it.
+/// One movable joint, and where it sits on its parent link.
 struct Joint {
   std::string name;
   JointType type = JointType::kRevolute;

@@ -51,7 +51,7 @@ void coriolisUpToDiagonal(const Chain& chain, const SpatialInertia<Scalar>& I_c,
     C(i, j) = alongAxis(joint(chain, j), coriolis) + dot(S_rate[j], inertial);
     if (j >= first && j < i) C(j, i) = alongAxis(joint(chain, j), F);
 
-    // on to the link before
+    // on to the parent link
     F = X[j] * F;
     inertial = X[j] * inertial;
     coriolis = {X[j].R * coriolis.moment, coriolis.force};
@@ -76,7 +76,7 @@ void coriolisOfMotion(const Chain& chain, const std::vector<LinkParameters>& lin
     flow += flowOf(I, V[i]);
     coriolisUpToDiagonal(chain, I_c, flow, X, S_rate, i, first, C);
 
-    // on to the link before
+    // on to the parent link
     I_c = X[i] * I_c;
     flow = X[i] * flow;
   }

@@ -49,7 +49,7 @@ void articulate(const Chain& chain, const Scratch<Transform<Scalar>>& X,
     out.inverse_D = Scalar(1) / (alongAxis(at, out.U) + Scalar(at.rotor_inertia));
     out.u = tau[i] - alongAxis(at, p_A);
 
-    // what the link before feels: I_a = I_A - U U' / D, p_a = p_A + I_a c + U u / D
+    // what the parent link feels: I_a = I_A - U U' / D, p_a = p_A + I_a c + U u / D
     if (i > 0) {
       const ArticulatedInertia<Scalar> I_a = I_A.released(out.U, out.inverse_D);
       p_A = X[i] * (p_A + I_a * out.c + out.U * (out.u * out.inverse_D));
@@ -58,7 +58,7 @@ void articulate(const Chain& chain, const Scratch<Transform<Scalar>>& X,
   }
 }
 
-// From root to tip: each joint's acceleration, given that of the link before.
+// From root to tip: each joint's acceleration, given that of the parent link.
 template <typename Scalar, typename Qdd>
 void accelerate(const Chain& chain, const Scratch<Transform<Scalar>>& X,
                 const Scratch<ArticulatedJoint<Scalar>>& joints, Qdd& qdd) {

@@ -54,7 +54,7 @@ void gravityOfPoses(const Chain& chain, const std::vector<LinkParameters>& links
     // g = S' (mc x a, m a)
     g[i] = alongAxis(joint(chain, i), point.forceFor(a[i]));
 
-    // on to the link before
+    // on to the parent link
     if (i > first) {
       point = X[i] * point;
     }

@@ -43,7 +43,7 @@ void inertiaOfPoses(const Chain& chain, const std::vector<LinkParameters>& links
     I_c += link<Scalar>(links, i);
     inertiaUpToDiagonal(chain, I_c, X, i, first, H);
 
-    // on to the link before
+    // on to the parent link
     if (i > first) {
       I_c = X[i] * I_c;
     }

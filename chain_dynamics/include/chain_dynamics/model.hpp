@@ -177,7 +177,7 @@ double potentialEnergy(const Model& model, const ConstVectorRef& q);
 /// Whether friction depends on the gravity torques, and so on q: a law has a load coefficient.
 bool frictionDependsOnLoad(const Model& model);
 
-/// Friction torques: `f(q, qd)`; zero where the model knows no friction, but NaN for NaN.
+/// Friction torques: `f(q, qd)`; zero where the model has no friction, but NaN for NaN.
 ///
 /// The load of a joint is its gravityVector(), of the model as it is.
 ///
@@ -189,7 +189,7 @@ void frictionVector(const Model& model, const ConstVectorRef& q, const ConstVect
                     VectorRef f);
 
 /// Derivatives of the friction torques by velocity: the diagonal of `df/dqd`; zero where the model
-/// knows no friction, but NaN for NaN.
+/// has no friction, but NaN for NaN.
 ///
 /// @param q           n; rad (prismatic m); may be empty where frictionDependsOnLoad() is false.
 /// @param qd          n; rad/s (prismatic m/s).

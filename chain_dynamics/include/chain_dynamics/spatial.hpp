@@ -13,7 +13,7 @@
 /// another vector than velocity at the origin of A, even when the axes are parallel, and so is the
 /// moment of a force. Changing the frame therefore mixes the two halves:
 ///
-///     motion (angular w, linear v)     v moves by  w x p     a turning body is faster farther out
+///     motion (angular w, linear v)     v moves by  w x p     a turning body is faster off its axis
 ///     force  (moment n,  force f)      n moves by  p x f     a lever arm
 ///
 /// Motions and forces change frame differently and must never be added: they are distinct types

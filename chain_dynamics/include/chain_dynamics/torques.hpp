@@ -33,7 +33,7 @@ void torquesOfMotion(const Chain& chain, const std::vector<LinkParameters>& link
     // tau = S' F
     tau[i] = alongAxis(joint(chain, i), F);
 
-    // on to the link before
+    // on to the parent link
     if (i > first) {
       F = X[i] * F;
     }

@@ -3,7 +3,7 @@
 /// @file
 /// A chain from a URDF robot description.
 ///
-///     Chain arm = chainFromUrdf(urdf_xml);                             // root to leaf
+///     Chain robot = chainFromUrdf(urdf_xml);                           // root to leaf
 ///     Chain arm = chainFromUrdf(urdf_xml, {"base_link", "tool0"});     // a part of the robot
 ///     UrdfOptions options; options.gravity = {0, -9.81, 0};            // mounted on a wall
 ///
@@ -14,9 +14,9 @@
 /// - URDF joint axes are arbitrary, a chain's are z: where it isn't z already, the link's frame is
 ///   turned so that it is. Joint torques don't depend on how.
 /// - Inertia before the first movable joint doesn't move, and so has no influence.
-/// - What hangs on the chain beside the path or beyond the tip moves with it and is lumped into
-///   the link it hangs on, unless `lump_attached` is false. Movable joints out there are held at
-///   `locked_position`; one that mimics another follows it.
+/// - Bodies attached to the chain beside the path or beyond the tip move with it and are lumped into
+///   the link that carries them, unless `lump_attached` is false. Movable joints among them are held
+///   at `locked_position`; one that mimics another follows it.
 /// - `<dynamics damping friction>` becomes Joint::damping and Joint::friction, which no algorithm
 ///   reads (simulators disagree on its meaning).
 ///
@@ -44,9 +44,9 @@ struct UrdfOptions {
   /// same joints, the one with most joints (fixed ones too) above it. Leaves that differ in movable
   /// joints are ambiguous: an error. (A leaf moved by fewer of the same joints isn't one of them.)
   std::string tip = {};
-  /// Where things fall, in the frame of root; m/s^2.
+  /// Gravitational acceleration, in the frame of root; m/s^2.
   Eigen::Vector3d gravity = {0, 0, -9.81};
-  /// Whether what hangs on the chain beside the path or beyond the tip counts.
+  /// Whether bodies attached beside the path or beyond the tip are included.
   bool lump_attached = true;
   /// Whether a movable body may be without mass and inertia even where H isn't proved to be
   /// positive definite at every position. (Where it is, as within a joint of two crossing axes, it

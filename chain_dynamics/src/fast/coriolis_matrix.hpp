@@ -154,7 +154,7 @@ FAST_INLINE void coriolisOfMotion(const Robot& robot, const State<V>& state,
     });
     if (i == first) return;
 
-    // on to the link before
+    // on to the parent link
     carry<S>(i, robot, state, m, I);
     flow.template carry<S>(i, robot, state);
   });

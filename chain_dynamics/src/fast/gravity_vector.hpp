@@ -14,7 +14,7 @@ inline namespace v2 {
 namespace fast {
 namespace {
 
-/// First moment of what hangs on joint i, on to the link before; m is its mass.
+/// First moment of all bodies distal to joint i, on to the parent link; m is their mass.
 template <typename S, typename I, typename V, typename P, typename M>
 FAST_INLINE void carryPoint(I i, const Robot& robot, const State<V>& state, const M& m,
                             Vec<P>& mc) {
@@ -28,7 +28,7 @@ FAST_INLINE void carryPoint(I i, const Robot& robot, const State<V>& state, cons
   }
 }
 
-/// Gravity in the links' frames, then what hangs on each joint as a heavy point, from tip to
+/// Gravity in the links' frames, then the bodies distal to each joint as one heavy point, from tip to
 /// `first`; each(i, torque).
 template <typename S, typename V, typename P, typename First, typename BodyOf, typename Each>
 FAST_INLINE void forEachGravity(const Robot& robot, const State<V>& state, First first,

@@ -92,7 +92,7 @@ FAST_INLINE void shift(int i, const Placement& X, const M& m, Composite<P>& I) {
   }
 }
 
-/// On to the link before joint i; m is the mass of the body.
+/// On to the parent link of joint i; m is the mass of the body.
 template <typename S, typename I, typename V, typename P, typename M>
 FAST_INLINE void carry(I i, const Robot& robot, const State<V>& state, const M& m,
                        Composite<P>& body) {
@@ -130,7 +130,7 @@ FAST_INLINE void forEachInertia(const Robot& robot, const State<V>& state, First
     if (prismatic) F = {{zero, zero, body.mass_beyond + zero}, {I.mc.y, -I.mc.x, zero}};
     each(i, i, (prismatic ? F.f.z : F.n.z) + X.rotor_inertia);
 
-    // on to the link before; first, since what follows can wait
+    // on to the parent link; first, since what follows can wait
     if (i != first) carry<S>(i, robot, state, body.mass_beyond, I);
 
     // H_ji = S_j' F in the frames of the joints before

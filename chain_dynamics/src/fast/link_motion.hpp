@@ -135,7 +135,7 @@ struct State {
   const V* qdd;
 };
 
-/// On to the link before joint i.
+/// On to the parent link of joint i.
 template <typename S, typename I, typename V, typename P>
 FAST_INLINE void carry(I i, const Robot& robot, const State<V>& state, Wrench<P>& W) {
   const Placement& X = robot.placements[i];
@@ -250,7 +250,7 @@ struct Rows {
   static FAST_INLINE const V& number(const V& value, int) { return value; }
 };
 
-/// ... and of one state a row in each lane.
+/// ... and of one state, one row per lane.
 template <>
 struct Rows<double> {
   using P = Short;

@@ -39,7 +39,7 @@ struct Flow {
     }
   }
 
-  /// On to the link before.
+  /// On to the parent link.
   template <typename S, typename I>
   FAST_INLINE void carry(I i, const Robot& robot, const State<V>& state) {
     constexpr Twist kTwist = S::twist(I());

@@ -17,7 +17,7 @@ inline namespace v2 {
 namespace fast {
 namespace {
 
-/// Axes and origin of a link's frame in that of the link before; z depends on no position.
+/// Axes and origin of a link's frame in that of the parent link; z depends on no position.
 template <typename V>
 struct Pose {
   Vec<V> x, y;

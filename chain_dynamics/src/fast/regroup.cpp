@@ -136,7 +136,7 @@ Matter takeInvariant(const Placement& X, Matter& link) {
   return invariant;
 }
 
-/// The same in the frame of the link before, at the angle of the offset.
+/// The same in the frame of the parent link, at the angle of the offset.
 Matter moved(const Placement& X, const Matter& part) {
   Matrix3<double> R;
   R << 1, 0, 0, 0, X.cos_twist, -X.sin_twist, 0, X.sin_twist, X.cos_twist;

@@ -35,7 +35,7 @@ Frames framesOf(const Chain& chain);
 /// The parameters that torques depend on, from those of the links in the chain's own frames.
 ///
 /// What turns about z without changing (mass, its moment and second moment along the axis), or
-/// slides along z without changing (the second moment), is moved to the link before.
+/// slides along z without changing (the second moment), is moved to the parent link.
 std::vector<Body> regrouped(const Frames& frames, const std::vector<LinkParameters>& links);
 
 /// The chain's own frames, with the angles of the new ones: each is turned back by the offset.

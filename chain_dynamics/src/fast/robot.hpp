@@ -22,7 +22,7 @@ namespace fast {
 
 constexpr int kMaxJoints = 64;
 
-/// One joint's place on the link before it. The first joint's is the root itself.
+/// One joint's place on its parent link. The first joint's is the root itself.
 struct Placement {
   double sin_twist, cos_twist;
   double px, py;         ///< origin of frame i in frame i - 1 at q = 0, whose z is zero; m
@@ -33,7 +33,7 @@ struct Placement {
 };
 
 /// What is left of a link's ten parameters when those that torques don't depend on have been moved
-/// to the link before: seven for a joint that turns, four for one that slides; the others are zero.
+/// to the parent link: seven for a joint that turns, four for one that slides; the others are zero.
 ///
 /// S is the second moment of mass, `S = integral of r r' dm`, so that I = trace(S) 1 - S; Szz is
 /// always zero.

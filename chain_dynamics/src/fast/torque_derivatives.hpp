@@ -243,7 +243,7 @@ FAST_INLINE void derivativesOfMotion(const Robot& robot, const State<V>& state,
     });
     if (i == first) return;
 
-    // on to the link before
+    // on to the parent link
     carry<S>(i, robot, state, m, I);
     carry<S>(i, robot, state, W);
     flow.template carry<S>(i, robot, state);

@@ -38,7 +38,7 @@ class ContactDetector {
   /// Takes external torques.
   ///
   /// @param torques  n; N m (prismatic N). What isn't finite or of another size counts as contact.
-  /// @param period   s since the last call; one that isn't above zero doesn't count as time.
+  /// @param period   s since the last call; a non-positive one doesn't count as time.
   /// @return contact().
   bool update(const Eigen::Ref<const Eigen::VectorXd>& torques, double period) noexcept;
 

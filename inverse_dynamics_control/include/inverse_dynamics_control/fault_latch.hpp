@@ -26,7 +26,7 @@ class FaultLatch {
 
   /// Counts a cycle.
   ///
-  /// @param period  s since the last cycle; one that isn't above zero doesn't count as time.
+  /// @param period  s since the last cycle; a non-positive one doesn't count as time.
   void note(Status status, double period) noexcept {
     if (latched_) return;
     if (!isRefusal(status)) {

@@ -8,7 +8,7 @@
 ///     if (guard.stopped()) report(text(guard.reason()));
 ///
 /// A law answers to a NaN with its safe torque and then follows the next finite reference, from
-/// wherever the arm is by then. A guard goes before it: the first reference that isn't finite or
+/// wherever the arm is by then. A guard precedes it: the first reference that isn't finite or
 /// lies beyond a limit begins a SafeStop from the last good one, and nothing is followed any more
 /// until start().
 #pragma once

@@ -46,7 +46,7 @@ class SafeStop {
 
   /// The reference one period later; before begin() nothing is written.
   ///
-  /// @param period          s; one that isn't above zero (a clock that jumps back) stands still.
+  /// @param period          s; a non-positive one (a clock that jumps back) changes nothing.
   /// @param[out] reference  n.
   /// @return kOk; kReferenceNotFinite before begin(); kWrongSize.
   Status advance(double period, Reference& reference) noexcept;

@@ -27,7 +27,7 @@ struct JointState {
   OwnedVector qd;  ///< n; rad/s (prismatic m/s)
 };
 
-/// Wished motion of n joints, in the order of the solver's jointNames().
+/// Desired motion of n joints, in the order of the solver's jointNames().
 struct Reference {
   /// At rest in q = 0.
   explicit Reference(Eigen::Index joints)

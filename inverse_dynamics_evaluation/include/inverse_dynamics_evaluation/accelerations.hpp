@@ -31,7 +31,7 @@ inline namespace v2 {
 /// whose stamp isn't later than the one before. No filter, no rule of samples.hpp.
 ///
 /// @param time  N; s.
-/// @param qd    n x N, a sample a column; rad/s (prismatic m/s).
+/// @param qd    n x N, one sample per column; rad/s (prismatic m/s).
 /// @return n x N; rad/s^2 (prismatic m/s^2).
 /// @throws EvaluationError: sizes differ, no sample, a number that isn't finite.
 OwnedMatrix backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time,
@@ -43,7 +43,7 @@ OwnedMatrix backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time,
 /// so the derivative at the ends is about as good as samples of one side allow: better than with
 /// the point reflection of lowPass(), which turns the noise of the last sample into a step.
 ///
-/// @param samples             n x N, a sample a column.
+/// @param samples             n x N, one sample per column.
 /// @param sampling_frequency  Hz.
 /// @param cutoff              Hz, below half the sampling frequency; gain one half there.
 /// @param order               of the Butterworth filter that runs twice; 1 to 12.
@@ -87,7 +87,7 @@ struct AccelerationEstimate {
 /// gets the acceleration of its instant.
 ///
 /// @param time    N; s; stamps.
-/// @param q       n x N, a sample a column; rad (prismatic m).
+/// @param q       n x N, one sample per column; rad (prismatic m).
 /// @param qd      n x N; rad/s (prismatic m/s).
 /// @param effort  n x N; N m (prismatic N), or empty (0 x 0); for rules 1 and 4 of samples.hpp
 /// only.

@@ -70,7 +70,7 @@ struct JointSample {
   std::string_view frame_id{};       ///< of the header
 };
 
-/// Joint states of one chain over time: N samples of n joints, a sample a column.
+/// Joint states of one chain over time: N samples of n joints, one sample per column.
 struct JointLog {
   std::vector<std::string> joint_names;  ///< n; the order of the rows
   Stamps header_stamps;                  ///< N; as the publisher wrote them

@@ -39,7 +39,7 @@ Eigen::Index defaultPadding(Eigen::Index samples, double sampling_frequency, dou
 
 /// Each row of `samples`, zero-phase low-passed. O(n N).
 ///
-/// @param samples             n x N, a sample a column, at equal distances in time.
+/// @param samples             n x N, one sample per column, at equal distances in time.
 /// @param sampling_frequency  Hz.
 /// @param cutoff              Hz, below half the sampling frequency; gain one half there.
 /// @param order               of the Butterworth filter that runs twice; 1 to 12.

@@ -39,8 +39,8 @@ class OnlineDerivative {
     kStarted,    ///< it is the first one
     kContinued,  ///< it was filtered
     kRepeated,   ///< its stamp is that of the sample before: left out
-    kWentBack,   ///< its stamp is earlier: the filter starts anew with it
-    kGap,        ///< it comes too late to go on: the filter starts anew with it
+    kWentBack,   ///< its stamp is earlier: the filter restarts with it
+    kGap,        ///< it comes too late to go on: the filter restarts with it
   };
 
   /// @param size         n.

@@ -37,7 +37,7 @@
 namespace inverse_dynamics_identification {
 inline namespace v2 {
 
-/// N samples of n joints: a block of a recording, a sample a column. Views.
+/// N samples of n joints: a block of a recording, one sample per column. Views.
 struct ArmSamples {
   chain_dynamics::ConstStates q, qd, qdd;  ///< rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2)
   chain_dynamics::ConstStates tau;         ///< N m (prismatic N); A where drive gains are fitted

@@ -34,7 +34,7 @@ inline namespace v2 {
 ///
 /// As in InverseDynamicsSolver, public methods aren't virtual: they check, then call a protected
 /// virtual `compute...`. Every quantity comes by value, into memory of the caller, and for many
-/// states at once (`...Batch`: one state a column); joints, units, errors (uninitialized, wrong
+/// states at once (`...Batch`: one state per column); joints, units, errors (uninitialized, wrong
 /// size), and the promises about NaN, real time and threads are those of InverseDynamicsSolver.
 class Capability {
  public:

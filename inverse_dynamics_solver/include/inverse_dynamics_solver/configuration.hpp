@@ -55,7 +55,7 @@ struct Configuration {
   /// Whether `gravity` was given: a model file may state a default of its own.
   bool gravity_given = false;
 
-  /// Whether what hangs on the chain beside it or beyond the tip counts (`attached`: "lump" or
+  /// Whether bodies attached beside the chain or beyond the tip are included (`attached`: "lump" or
   /// "ignore").
   bool lump_attached = true;
 

@@ -33,7 +33,7 @@ struct Wrench {
 using WrenchInRoot = Wrench<WrenchFrame::kRoot>;
 using WrenchInTip = Wrench<WrenchFrame::kTip>;
 
-/// The wrenches of many states, 6 x N: force, then torque, one state a column, of any layout. For the
+/// The wrenches of many states, 6 x N: force, then torque, one state per column, of any layout. For the
 /// same in each state: `WrenchesInTip(ConstStates(six_numbers, 6, N, 1, 0))`.
 template <WrenchFrame Frame>
 struct Wrenches : ConstStatesRef {

@@ -113,7 +113,7 @@ def _names(paths: Sequence[Path], taken: Sequence[str]) -> list[str]:
             name = min(clashes)
             same = [str(p) for p, other in zip(paths, names, strict=True) if other == name]
             raise BagError(
-                f"{listed(same)}: their results would have one name, {shown(name)}; rename one of "
+                f"{listed(same)}: their results would have the same name, {shown(name)}; rename one of "
                 "them, or evaluate them one after the other"
             )
         names = [

@@ -295,8 +295,8 @@ _CURRENTS = Diagnosis(
 )
 _NO_GRAVITY = Diagnosis(
     "no_gravity",
-    "Gravity is taken off the efforts",
-    "the error is the torque of gravity: the robot's driver takes it off its efforts",
+    "Gravity is subtracted from the efforts",
+    "the error is the gravity torque: the robot's driver subtracts it from its efforts",
     "give --effort-is torque_without_gravity",
 )
 _DEGREES = Diagnosis(
@@ -345,14 +345,14 @@ def _directions(
         sign = np.ones(len(names))
         sign[j] = -1.0
         for kind, what in (
-            ("effort_direction", "effort counts"),
-            ("direction", "position, velocity and effort count"),
+            ("effort_direction", "effort is"),
+            ("direction", "position, velocity and effort are"),
         ):
             diagnosis = Diagnosis(
                 kind,
-                "A joint counts the other way",
-                f"joint {name}: torques match if its {what} the other way",
-                "turn the sign where the recording is made"
+                "A joint is reversed",
+                f"joint {name}: torques match if its {what} reversed",
+                "change the sign where the recording is made"
                 + (", or the <axis> in the description" if kind == "direction" else ""),
                 (name,),
             )
@@ -387,7 +387,7 @@ def _orders(
             swapped,
             kind="effort_order",
             reason=f"torques match if joints {pair[0]} and {pair[1]} have each other's efforts",
-            remedy="mend where the recording is made: positions are in order, efforts aren't",
+            remedy="correct this where the recording is made: positions are in order, efforts aren't",
         )
         moved = [values[:, order] for values in (q, qd, qdd)]
         yield _Hypothesis(swapped, measured[:, order], model.compared(*moved), moved[1])

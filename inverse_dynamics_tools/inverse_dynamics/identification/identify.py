@@ -144,7 +144,7 @@ def _check(evaluations: Sequence[Evaluation]) -> None:
             raise IdentificationError(
                 f"{evaluation.bag}: expected efforts with gravity, as masses show in it alone, got "
                 "torques without; record the motor currents, or torques as the motors have them",
-                "Gravity is taken off the efforts",
+                "Gravity is subtracted from the efforts",
             )
 
 

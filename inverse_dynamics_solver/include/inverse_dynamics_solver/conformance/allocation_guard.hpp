@@ -7,7 +7,7 @@
 ///     EXPECT_EQ(guard.count(), 0);
 ///
 /// How: this header defines malloc and its relatives, which count and pass the call on to the C
-/// library. A definition in the program goes before the C library's in all shared libraries,
+/// library. A definition in the program takes precedence over the C library's in all shared libraries,
 /// operator new and Eigen included. Each thread counts for itself.
 ///
 /// Include it in test programs only. Where it can't work (another C library than glibc; a

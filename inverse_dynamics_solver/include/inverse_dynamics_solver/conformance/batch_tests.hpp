@@ -28,14 +28,14 @@ struct BatchLayout {
 inline std::vector<BatchLayout> batchLayouts() {
   using I = Eigen::Index;
   const auto side_by_side = [](I, I N) { return Steps{N, 0, 1}; };
-  return {{"a state a column",
+  return {{"one state per column",
            [](I r, I) {
              return Steps{1, 0, r};
            },
            [](I r, I c, I) {
              return Steps{1, r, r * c};
            }},
-          {"a state a row, matrices in C order", side_by_side,
+          {"one state per row, matrices in C order", side_by_side,
            [](I r, I c, I) {
              return Steps{c, 1, r * c};
            }},

@@ -140,7 +140,7 @@ TEST_P(SolverConformance, RobotDescriptionComesFromArgumentOrParameter) {
       [&] { solver->initialize(GetParam().parameters(), "", ""); });
   EXPECT_TRUE(contains(error, {"robot description", "'robot_description'", "third argument"}));
 
-  // From the parameter, which has no namespace; the argument goes before it.
+  // From the parameter, which has no namespace; the argument takes precedence.
   ParameterMap parameters;
   for (const auto& [name, value] : GetParam().parameters()) parameters["ids." + name] = value;
   parameters["robot_description"] = description;

@@ -248,7 +248,7 @@ class SolverConformance : public ::testing::TestWithParam<TestedSolver> {
     return result;
   }
 
-  /// n x count, a state a column, of numbers that are small enough for a velocity.
+  /// n x count, one state per column, of numbers that are small enough for a velocity.
   Eigen::MatrixXd randomColumns(Eigen::Index count) {
     Eigen::MatrixXd result(solver_->jointCount(), count);
     for (Eigen::Index k = 0; k < count; ++k) result.col(k) = randomVector(GetParam().velocity);
