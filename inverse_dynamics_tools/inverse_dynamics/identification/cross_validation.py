@@ -33,6 +33,7 @@ _BAND = 0.95
 _FOLDS = 8  # parts of blocks that are left out in turn, about
 _MOST_SAMPLES = 15_000  # that choices are made with; neighbours' errors are alike
 _DELAY_STEP = 0.008  # s, at least
+_LEAST_DELAY = 1e-4  # s; a shorter one counts as none
 _DELAY_LAW = "load"  # what delays are looked for with
 
 
@@ -129,9 +130,9 @@ def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> float:
             return 0.0
         center += step * float(np.clip(0.5 * (costs[0] - costs[2]) / curvature, -3, 3))
         step *= 0.5
-    if start is None or not _predicts_better(fitter, blocks, center, thinned, start):
+    if start is None or abs(center) < _LEAST_DELAY:
         return 0.0
-    return center
+    return center if _predicts_better(fitter, blocks, center, thinned, start) else 0.0
 
 
 def _period(blocks: Sequence[Block]) -> float:

@@ -32,6 +32,7 @@ from inverse_dynamics.identification.result import (
     IdentificationError,
     IdentifiedModel,
 )
+from inverse_dynamics.identification.summary import delay_told
 from inverse_dynamics.robot.descriptions import parse_description, read_description
 from inverse_dynamics.robot.robots import Robot, load_robot
 
@@ -313,7 +314,7 @@ def _motion_findings(
         found.append(
             Finding(
                 "delay",
-                f"recorded efforts are {1e3 * chosen.delay:.1f} ms later than the states: fits make up "
+                f"recorded efforts are {delay_told(chosen.delay)} than the states: fits make up "
                 "for it, held-out errors and bands don't, as solvers don't",
             )
         )

@@ -71,7 +71,6 @@ def error_rows(
 def choices_told(found: Identification) -> list[tuple[str, str]]:
     """What was chosen and why: name and sentence."""
     law, prior = (_best_by(found.choices, name) for name in ("law", "prior_strength"))
-    late = "later" if found.delay >= 0 else "earlier"
     told = [("drive gains", ", ".join(map(_gain_told, found.drive_gains)))]
     return [
         *(told if found.drive_gains else []),
@@ -80,11 +79,19 @@ def choices_told(found: Identification) -> list[tuple[str, str]]:
             "prior strength",
             f"{found.prior_strength:g}: how much the description counts{_compared(prior)}",
         ),
-        ("torque delay", f"{abs(1e3 * found.delay):.1f} ms {late} than positions, of least error"),
+        (
+            "torque delay",
+            f"{delay_told(found.delay)} than positions, of least error" if found.delay else "none",
+        ),
         ("filter", found.filter),
         ("effort means", found.effort),
         ("data", f"{found.samples} samples, {found.duration:.1f} s"),
     ]
+
+
+def delay_told(delay: float) -> str:
+    """A delay of efforts behind the states [s], in words."""
+    return f"{abs(1e3 * delay):.1f} ms {'later' if delay > 0 else 'earlier'}"
 
 
 def _gain_told(gain: DriveGain) -> str:

@@ -14,11 +14,13 @@ from inverse_dynamics import _core, evaluate, identify, load_robot, write_joint_
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import CAUSE
+from inverse_dynamics.identification import cross_validation
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import choose, errors_of
 from inverse_dynamics.identification.identify import _notes
 from inverse_dynamics.identification.knowledge import independent_samples, intervals, knowledge
 from inverse_dynamics.identification.result import COLUMNS, LAWS, IdentificationError
+from inverse_dynamics.identification.summary import delay_told
 from inverse_dynamics.robot.descriptions import read_description
 
 # Mean over the joints of the RMSE on five held-out blocks [N m].
@@ -234,6 +236,23 @@ def test_a_known_robot_comes_back(known, found):
     assert rms(computed - truth).mean() < 0.1  # less than the noise, which is 0.12 N m
     assert found.delay == pytest.approx(DELAY, abs=0.004)
     assert "present" not in found.held_out
+
+
+@pytest.mark.parametrize(("best", "found"), [(3e-5, 0.0), (0.003, 0.003), (-0.003, -0.003)])
+def test_a_delay_of_less_than_a_tenth_of_a_millisecond_counts_as_none(monkeypatch, best, found):
+    # the logarithm of the noise is a parabola of the delay, and each gain counts
+    fitter = SimpleNamespace(
+        fit=lambda delays, **_: SimpleNamespace(noise=np.exp((np.array(delays) - best) ** 2))
+    )
+    monkeypatch.setattr(cross_validation, "_period", lambda _: 0.008)
+    monkeypatch.setattr(cross_validation, "_later", lambda _, delay, __: [delay])
+    monkeypatch.setattr(cross_validation, "together", lambda delays: delays)
+    monkeypatch.setattr(cross_validation, "_predicts_better", lambda *_: True)
+    assert cross_validation._delay(fitter, [], 1) == pytest.approx(found, abs=1e-9)
+
+
+def test_a_negative_delay_is_told_as_earlier():
+    assert delay_told(-0.0052) == "5.2 ms earlier"
 
 
 def test_intervals_hold_the_truth(known, found):
