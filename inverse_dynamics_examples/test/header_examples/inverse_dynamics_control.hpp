@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
+#include <inverse_dynamics_solver/configuration.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/payload.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
@@ -89,13 +90,36 @@ extern Eigen::VectorXd desired;
 namespace pd_gravity_compensation_examples {
 extern LawOptions options;
 }
+namespace published_examples {
+struct Robot {
+  explicit Robot(int model);
+  void torques(const Eigen::VectorXd& q, const Eigen::VectorXd& qd, const Eigen::VectorXd& qdd,
+               Eigen::VectorXd& tau) const;
+};
+extern const int model, with_tool;
+}  // namespace published_examples
 namespace reference_guard_examples {
 extern ReferenceLimits limits;
 extern Reference desired;
 }  // namespace reference_guard_examples
+namespace states_examples {
+extern const Eigen::MatrixXd rows;
+extern const double* data;
+extern const Eigen::Index N;
+extern Eigen::MatrixXd g;
+}  // namespace states_examples
 namespace tip_wrench_examples {
 extern WrenchOptions options;
 }
+namespace workspace_pool_examples {
+struct Workspace {
+  explicit Workspace(int model);
+  void torques(const Eigen::VectorXd& q, const Eigen::VectorXd& qd, const Eigen::VectorXd& qdd,
+               Eigen::VectorXd& tau);
+};
+extern const Configuration configuration;
+extern const int model;
+}  // namespace workspace_pool_examples
 
 }  // namespace given
 

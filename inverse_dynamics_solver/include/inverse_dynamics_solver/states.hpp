@@ -2,8 +2,8 @@
 /// @file
 /// Arguments of the methods that compute many states: any layout, without a copy.
 ///
-///     solver->getTorquesBatch(q, qd, qdd, tau);              // n x N, one state per column
-///     solver->getTorquesBatch(rows.transpose(), ...);        // N x n, one state per row
+///     solver->getTorquesBatch(q, qd, qdd, tau);                              // one state per column
+///     solver->getTorquesBatch(rows.transpose(), qd, qdd, tau);               // one state per row
 ///     solver->getGravityVectorBatch(ConstStates{data, n, N, 1, 3 * n}, g);   // any steps
 ///
 /// The views themselves, and how an N x n x n array of inertia matrices is given:
