@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/damping.hpp"
 
-#include <Eigen/Core>
+#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "inverse_dynamics_control/model_terms.hpp"
@@ -21,33 +21,6 @@ void require(bool fulfilled, const std::string& argument, const std::string& exp
       errorText("dampingFor: " + argument, "wrong value", expected, got, remedy));
 }
 
-/// Of a symmetric matrix: whether elimination has positive pivots only.
-bool isPositiveDefinite(Eigen::MatrixXd A) {
-  const Eigen::Index n = A.cols();
-  for (Eigen::Index k = 0; k < n; ++k) {
-    if (!(A(k, k) > 0)) return false;
-    for (Eigen::Index j = k + 1; j < n; ++j) {
-      A.col(j).tail(n - j) -= A(j, k) / A(k, k) * A.col(k).tail(n - j);
-    }
-  }
-  return true;
-}
-
-/// The greatest s of D v = s H v, above which s H - D is positive definite, by bisection; infinite
-/// if H isn't positive definite. D = rate diag(H): a unit vector's v'Dv / v'Hv is `rate`.
-double fastestDecay(const Eigen::MatrixXd& H, const Eigen::MatrixXd& D, double rate) {
-  double low = rate, high = 2 * rate;
-  while (std::isfinite(high) && !isPositiveDefinite(high * H - D)) {
-    low = high;
-    high *= 2;
-  }
-  while (high - low > 1e-13 * high) {
-    const double middle = 0.5 * (low + high);
-    (isPositiveDefinite(middle * H - D) ? high : low) = middle;
-  }
-  return high;
-}
-
 }  // namespace
 
 OwnedVector dampingFor(const InverseDynamicsSolver& solver, const ConstVectorRef& q, double rate,
@@ -63,9 +36,11 @@ OwnedVector dampingFor(const InverseDynamicsSolver& solver, const ConstVectorRef
 
   const Eigen::MatrixXd H = solver.getInertiaMatrix(q);
   OwnedVector damping = rate * H.diagonal();
-  const double fastest = fastestDecay(H, damping.asDiagonal(), rate);
-  require(fastest * period < 1.0, "rate",
-          "no decay faster than 1 / period, " + number(1.0 / period) + " 1/s", number(fastest),
+  // Decays are the s of D v = s H v: all are slower than 1 / period if H / period - D is positive definite.
+  Eigen::MatrixXd difference = H / period;
+  difference.diagonal() -= damping;
+  require(difference.llt().info() == Eigen::Success, "rate",
+          "no decay faster than 1 / period, " + number(1.0 / period) + " 1/s", "a faster one",
           "lower the rate " + number(rate) + " 1/s");
   return damping;
 }
