@@ -101,6 +101,22 @@ def show(driver, pages):
     return opened
 
 
+@pytest.fixture(scope="module", params=["evaluation", "comparison", "identification", "recordings"])
+def turn(request, driver, pages):
+    """Shows a page, which is opened once and on a phone, on another screen."""
+
+    def turned(width, scheme):
+        pictures.set_screen(driver, width, 844, scheme)
+        driver.execute_async_script(
+            "requestAnimationFrame(() => requestAnimationFrame(arguments[0]));"
+        )
+        return driver
+
+    pictures.set_screen(driver, 390, 844)
+    driver.get((pages / f"{request.param}.html").as_uri())
+    return turned
+
+
 # ---- lines -----------------------------------------------------------------------------------------------------------
 
 
@@ -187,10 +203,10 @@ def test_no_escapes_stand_in_the_tables(pages):
 # ---- screens ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["evaluation", "comparison", "identification", "recordings"])
 @pytest.mark.parametrize(("width", "scheme"), SCREENS)
-def test_nothing_is_wider_than_the_screen(show, name, width, scheme):
-    driver = show(name, width, 844, scheme)
+def test_nothing_is_wider_than_the_screen(turn, width, scheme):
+    driver = turn(width, scheme)
+    assert driver.execute_script("return innerWidth") == width
     assert driver.execute_script("return document.documentElement.scrollWidth") <= width
     too_far = driver.execute_script(
         "return [...document.querySelectorAll('body *')].filter((e) => !e.closest('.scroll, .hidden, .skip') &&"
@@ -227,10 +243,9 @@ def test_the_first_screen_shows_the_robot_and_a_plot(show, name):
         assert box["width"] > 300
 
 
-@pytest.mark.parametrize("name", ["evaluation", "comparison", "identification", "recordings"])
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_texts_stand_out_from_what_is_behind_them(show, name, scheme):
-    driver = show(name, 1300, 900, scheme)
+def test_texts_stand_out_from_what_is_behind_them(turn, scheme):
+    driver = turn(1300, scheme)
     pairs = driver.execute_script(
         """
         const opaque = (color) => !/^rgba?\\(.*, 0\\)$|transparent/.test(color) && !color.startsWith("color(");
@@ -350,9 +365,8 @@ def test_the_keyboard_reaches_everything_and_shows_where_it_is(show):
     assert slider.get_attribute("aria-valuetext") == "0.10 s of 8.00 s"
 
 
-@pytest.mark.parametrize("name", ["evaluation", "comparison", "identification", "recordings"])
-def test_a_screen_reader_finds_names_for_everything(show, name):
-    nameless = show(name).execute_script(
+def test_a_screen_reader_finds_names_for_everything(turn):
+    nameless = turn(1300, "light").execute_script(
         """
         const nameless = [];
         const note = (element) => nameless.push(element.outerHTML.slice(0, 80));
