@@ -33,6 +33,8 @@ _BAND = 0.95
 _FOLDS = 8  # parts of blocks that are left out in turn, about
 _MOST_SAMPLES = 15_000  # that choices are made with; neighbours' errors are alike
 _DELAY_STEP = 0.008  # s, at least
+_MOST_DELAY_STEPS = 8
+_VERTICES = 2
 _LEAST_DELAY = 1e-4  # s; a shorter one counts as none
 _DELAY_LAW = "load"  # what delays are looked for with
 
@@ -112,11 +114,12 @@ def _later(blocks: Sequence[Block], delay: float, step: int) -> list[Block]:
 def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> float:
     """By how much the torques are later than the states [s]; zero where that predicts as well.
 
-    The vertex of the parabola through three costs, gone to twice.
+    The vertex of the parabola through three costs, gone to twice. Far from the least cost, where there
+    is none, the way leads downhill.
     """
     step, center = max(_period(blocks), _DELAY_STEP), 0.0
-    start = None
-    for _ in range(2):
+    start, vertices = None, 0
+    for _ in range(_MOST_DELAY_STEPS):
         costs = []
         for delay in (center - step, center, center + step):
             later = together(_later(blocks, delay, thinned))
@@ -125,11 +128,17 @@ def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> float:
             )
             # samples at the ends of blocks are fewer where the delay is greater
             costs.append(2 * float(np.log(start.noise).sum()))
-        curvature = costs[0] - 2 * costs[1] + costs[2]
+        slope, curvature = costs[0] - costs[2], costs[0] - 2 * costs[1] + costs[2]
         if curvature <= 0:
-            return 0.0
-        center += step * float(np.clip(0.5 * (costs[0] - costs[2]) / curvature, -3, 3))
+            center += 2 * step * float(np.sign(slope))
+            continue
+        center += step * float(np.clip(0.5 * slope / curvature, -3, 3))
         step *= 0.5
+        vertices += 1
+        if vertices == _VERTICES:
+            break
+    else:
+        return 0.0  # no least cost
     if start is None or abs(center) < _LEAST_DELAY:
         return 0.0
     return center if _predicts_better(fitter, blocks, center, thinned, start) else 0.0

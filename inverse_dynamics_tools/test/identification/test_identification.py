@@ -238,17 +238,32 @@ def test_a_known_robot_comes_back(known, found):
     assert "present" not in found.held_out
 
 
-@pytest.mark.parametrize(("best", "found"), [(3e-5, 0.0), (0.003, 0.003), (-0.003, -0.003)])
-def test_a_delay_of_less_than_a_tenth_of_a_millisecond_counts_as_none(monkeypatch, best, found):
-    # the logarithm of the noise is a parabola of the delay, and each gain counts
+def delay_where(monkeypatch, noise_of):
+    """What is found where the noise depends on the delay like this, and each gain counts."""
     fitter = SimpleNamespace(
-        fit=lambda delays, **_: SimpleNamespace(noise=np.exp((np.array(delays) - best) ** 2))
+        fit=lambda delays, **_: SimpleNamespace(noise=noise_of(np.array(delays)))
     )
     monkeypatch.setattr(cross_validation, "_period", lambda _: 0.008)
     monkeypatch.setattr(cross_validation, "_later", lambda _, delay, __: [delay])
     monkeypatch.setattr(cross_validation, "together", lambda delays: delays)
     monkeypatch.setattr(cross_validation, "_predicts_better", lambda *_: True)
-    assert cross_validation._delay(fitter, [], 1) == pytest.approx(found, abs=1e-9)
+    return cross_validation._delay(fitter, [], 1)
+
+
+@pytest.mark.parametrize(("best", "found"), [(3e-5, 0.0), (0.003, 0.003), (-0.003, -0.003)])
+def test_a_delay_of_less_than_a_tenth_of_a_millisecond_counts_as_none(monkeypatch, best, found):
+    delay = delay_where(monkeypatch, lambda delays: np.exp((delays - best) ** 2))
+    assert delay == pytest.approx(found, abs=1e-9)
+
+
+@pytest.mark.parametrize("late", [0.02, 0.03, -0.05])
+def test_a_delay_of_several_steps_is_found(monkeypatch, late):
+    delay = delay_where(monkeypatch, lambda delays: np.hypot(1e-4, delays - late))
+    assert delay == pytest.approx(late, abs=0.002)
+
+
+def test_without_a_least_noise_there_is_no_delay(monkeypatch):
+    assert delay_where(monkeypatch, lambda delays: 1.0 - delays) == 0.0
 
 
 def test_a_negative_delay_is_told_as_earlier():
