@@ -5,7 +5,6 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include "inverse_dynamics_solver/conformance/solver_fixture.hpp"
 #include "inverse_dynamics_solver/motor_currents.hpp"
@@ -132,8 +131,7 @@ TEST_P(SolverConformance, PhysicalInertiaIsSymmetricPositiveDefinite) {
     SCOPED_TRACE(toString(x));
     const Eigen::MatrixXd H = s.getInertiaMatrix(x.q);
     EXPECT_TRUE(near(H, H.transpose(), kRounding, sizeOf(H)));
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigenvalues(H, Eigen::EigenvaluesOnly);
-    EXPECT_GT(eigenvalues.eigenvalues().minCoeff(), 0.0);
+    EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(H).info(), Eigen::Success);  // has positive pivots only
   }
 }
 
