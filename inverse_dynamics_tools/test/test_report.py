@@ -519,6 +519,18 @@ def test_video_says_so_where_nothing_can_be_drawn(evaluation, tmp_path, monkeypa
     assert list(tmp_path.iterdir()) == []
 
 
+def test_video_names_the_library_that_is_absent(evaluation, tmp_path, monkeypatch):
+    from inverse_dynamics.figures import video
+
+    monkeypatch.delenv("MUJOCO_GL", raising=False)
+    monkeypatch.setattr(video, "find_library", lambda _: None)
+    monkeypatch.setattr(video, "import_module", lambda _: None)
+    with pytest.raises(
+        video.VideoError, match=r"osmesa: libOSMesa isn't installed\); install libosm"
+    ):
+        video.write_video(evaluation, tmp_path / "film.gif", seconds=0.2)
+
+
 def test_video_refuses_other_formats(evaluation, tmp_path):
     from inverse_dynamics.figures.video import write_video
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager
+from ctypes.util import find_library
 from importlib import import_module
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
@@ -166,19 +167,19 @@ def _plot(
 
 def _pictures(evaluation: Evaluation, times: Floats) -> Iterator[NDArray[np.uint8]]:
     """The robot at each time, (height, width, 3)."""
-    import mujoco
-
     robot = evaluation.robot
     links = []
     if robot.urdf is not None:
         links = read_scene(robot.urdf, evaluation.joint_names).links
     if not links:
         raise VideoError(f"{robot.name}: has no description with links and joints to draw")
-    model = _scene(links)
     q = np.stack(
         [np.interp(times, evaluation.time, column) for column in evaluation.log.q.T], axis=1
     )
     with _off_screen(_ROBOT_WIDTH, _HEIGHT):
+        import mujoco
+
+        model = _scene(links)
         data = mujoco.MjData(model)
         camera = _camera(model, data, q)
         context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
@@ -207,8 +208,10 @@ def _off_screen(width: int, height: int) -> Iterator[None]:
         context = import_module(f"mujoco.{backend}").GLContext(width, height)
         context.make_current()
     except Exception as error:  # each backend and each missing library has errors of its own
+        absent = backend == "osmesa" and find_library("OSMesa") is None
+        reason = "libOSMesa isn't installed" if absent else error
         raise VideoError(
-            f"drawing without a screen isn't possible here (MUJOCO_GL={backend}: {error}); {remedy}"
+            f"drawing without a screen isn't possible here (MUJOCO_GL={backend}: {reason}); {remedy}"
         ) from error
     try:
         yield
