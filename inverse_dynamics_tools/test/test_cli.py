@@ -235,7 +235,7 @@ joints: [shoulder_pan_joint, shoulder_lift_joint, elbow_joint, wrist_1_joint, wr
         ("tip: tool0", "tip: forearm_link", ("arm.yaml: joints: expected 3 names", "got 6")),
         (RIGID_BODY, "a/B", ("'a/B': not found",)),
         ("tip: tool0", "drive_gains: [1, 2]", ("arm.yaml: drive_gains: expected 6 numbers",)),
-        (str(URDF), "arm.yaml", ("arm.yaml", "robot description")),
+        (str(URDF), "arm.yaml", ("arm.yaml", "expected a URDF")),
         (
             "tip: tool0",
             "parameters: {batch_threads: no}",

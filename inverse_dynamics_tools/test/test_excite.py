@@ -145,7 +145,7 @@ def test_given_recording_that_never_moves_the_wrist_is_completed(tmp_path: Path)
             "got both: recordings of the arm contain no information about a payload",
         ),
         (["--urdf", "no.urdf"], "no.urdf: no such file"),
-        (["--urdf", __file__], f"{__file__}: isn't a robot description: no XML"),
+        (["--urdf", __file__], f"{__file__}: isn't XML; expected a URDF"),
         (["--tip", "nowhere"], "there is no tip link 'nowhere'"),
     ],
 )
