@@ -374,7 +374,7 @@ TEST_P(SolverConformance, CallsWithABodyNeitherAllocateNorMakeASystemCall) {
   });
   EXPECT_NE(found, SystemCalls::kMade) << "a system call is made: strace names it";
   EXPECT_NE(found, SystemCalls::kFailed) << "a call threw or crashed";
-  if (!kAllocationGuardWorks) return;
+  if (!kAllocationGuardWorks) GTEST_SKIP() << "allocations can't be counted in this build";
   AllocationGuard guard;
   for (const State& x : states) calls(x);
   EXPECT_EQ(guard.count(), 0);
