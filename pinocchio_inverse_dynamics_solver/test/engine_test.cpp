@@ -8,14 +8,17 @@
 #include <chain_dynamics/regressor.hpp>
 #include <chain_dynamics/torque_derivatives.hpp>
 #include <chain_dynamics/torques.hpp>
+#include <memory>
 #include <random>
 
-#include "pinocchio_terms.hpp"
+#include "pinocchio_model.hpp"
+#include "pinocchio_workspace.hpp"
 
 namespace {
 
 using chain_dynamics::Chain;
 using Eigen::Matrix3d, Eigen::MatrixXd, Eigen::Vector3d, Eigen::VectorXd;
+using pinocchio_inverse_dynamics_solver::Models, pinocchio_inverse_dynamics_solver::toPinocchio;
 
 /// Relative to the greatest entry: two programs do the same operations in another order, and
 /// forward dynamics divides by inertia that a random chain makes small.
@@ -47,17 +50,6 @@ void expectEqual(const MatrixXd& ours, const MatrixXd& theirs, double tolerance,
   EXPECT_LE((ours - theirs).cwiseAbs().maxCoeff(), tolerance * scale) << what;
 }
 
-/// Pinocchio orders the six moments of inertia Ixx Ixy Iyy Ixz Iyz Izz, the engine Ixx Ixy Ixz Iyy
-/// Iyz Izz.
-MatrixXd inTheEnginesOrder(const MatrixXd& regressor) {
-  MatrixXd result = regressor;
-  for (Eigen::Index i = 0; i < regressor.cols(); i += 10) {
-    result.col(i + 6) = regressor.col(i + 7);
-    result.col(i + 7) = regressor.col(i + 6);
-  }
-  return result;
-}
-
 class Engine : public ::testing::TestWithParam<int> {};
 
 TEST_P(Engine, AgreesWithPinocchio) {
@@ -76,15 +68,26 @@ TEST_P(Engine, AgreesWithPinocchio) {
     chain_dynamics::forwardDynamics(chain, q, qd, tau, forward);
     chain_dynamics::torqueDerivatives(chain, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
 
-    const auto theirs = pinocchio_inverse_dynamics_solver::pinocchioTerms(chain, q, qd, qdd, tau);
-    ASSERT_EQ(theirs.nq, n);
-    expectEqual(tau, theirs.torques, kRounding, "torques");
-    expectEqual(H.triangularView<Eigen::Upper>(), theirs.inertia, kRounding, "inertia matrix");
-    expectEqual(Y, inTheEnginesOrder(theirs.regressor), kRounding, "regressor");
-    expectEqual(forward, theirs.qdd, kForwardRounding, "forward dynamics");
-    expectEqual(dtau_dq, theirs.dtau_dq, kRounding, "derivatives by position");
-    expectEqual(dtau_dqd, theirs.dtau_dqd, kRounding, "derivatives by velocity");
-    expectEqual(dtau_dqdd, H, kRounding, "derivatives by acceleration");
+    const auto models = std::make_shared<const Models>(
+        Models{toPinocchio(chain), toPinocchio(chain.withGravity(Vector3d::Zero()))});
+    ASSERT_EQ(models->with_gravity.nq, n);
+    pinocchio_inverse_dynamics_solver::PinocchioWorkspace pinocchio(models);
+    VectorXd their_tau(n), their_forward(n);
+    MatrixXd their_H(n, n), their_Y(n, 10 * n);
+    MatrixXd their_dtau_dq(n, n), their_dtau_dqd(n, n), their_dtau_dqdd(n, n);
+    pinocchio.torques(q, qd, qdd, their_tau);
+    pinocchio.inertiaMatrix(q, their_H);
+    pinocchio.regressor(q, qd, qdd, their_Y);
+    pinocchio.accelerations(q, qd, tau, their_forward);
+    pinocchio.torqueDerivatives(q, qd, qdd, their_dtau_dq, their_dtau_dqd, their_dtau_dqdd);
+
+    expectEqual(tau, their_tau, kRounding, "torques");
+    expectEqual(H, their_H, kRounding, "inertia matrix");
+    expectEqual(Y, their_Y, kRounding, "regressor");
+    expectEqual(forward, their_forward, kForwardRounding, "forward dynamics");
+    expectEqual(dtau_dq, their_dtau_dq, kRounding, "derivatives by position");
+    expectEqual(dtau_dqd, their_dtau_dqd, kRounding, "derivatives by velocity");
+    expectEqual(dtau_dqdd, their_dtau_dqdd, kRounding, "derivatives by acceleration");
   }
 }
 
