@@ -90,6 +90,21 @@ TEST(Evaluation, IsPrintedAsATable) {
             std::string::npos);
 }
 
+TEST(Evaluation, TheTableHasTheErrorsOfTheValidSamplesToo) {
+  Evaluation evaluation = evaluate(log(), *TwoJointSolver::make(), options());
+  evaluation.accelerations.samples.kept.head(3).setConstant(false);
+  evaluation.errors_of_kept = evaluation.errors;
+  evaluation.errors_of_kept[0].rmse = 0.125;
+  evaluation.errors_of_kept[1].rmse = 0.375;
+  const std::string table = errorTable(evaluation, {"N m", "N m"});
+  for (const char* end : {"RMSE*\n", "   0.125\n", "   0.375\n", "   0.250\n"}) {
+    EXPECT_NE(table.find(end), std::string::npos) << end << table;
+  }
+  const std::string caption = "\n* over the 47 valid samples of 50\n";
+  ASSERT_GT(table.size(), caption.size());
+  EXPECT_EQ(table.substr(table.size() - caption.size()), caption);
+}
+
 TEST(EffortOptions, AskForDriveGainsOfCurrents) {
   const auto error = [](const std::string& effort, const std::vector<double>& gains) {
     try {
