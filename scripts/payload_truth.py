@@ -20,7 +20,9 @@ import numpy as np
 from inverse_dynamics import Solver, _core, evaluate
 from inverse_dynamics.identification.blocks import blocks_outside, together
 from inverse_dynamics.identification.cross_validation import choose
+from inverse_dynamics.identification.knowledge import knowledge
 from inverse_dynamics.identification.payload import Samples, fit_payload, samples_of, with_load
+from inverse_dynamics.identification.uncertainty import factor_of
 from inverse_dynamics.results.model_files import model_file_text, urdf_of
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import RIGID_BODY
@@ -61,6 +63,7 @@ class Arm:
 
     windows: tuple[Samples, ...]
     solvers: tuple[Solver, ...]
+    uncertainties: tuple[_core.ArmUncertainty | None, ...]  # of the solvers' models; None: exact
     residuals: tuple[Floats, ...]  # (N, n) N m, each window's by its solver
 
     @classmethod
@@ -79,14 +82,19 @@ class Arm:
         evaluation = evaluate(found.recordings[0], found.robot)
         samples = samples_of(evaluation)
         windows: list[Samples] = []
-        solvers: list[Solver] = []
+        models: list[tuple[Solver, _core.ArmUncertainty]] = []
         for begin in _begins(evaluation.time, seconds):
             rest = blocks_outside(evaluation, begin, begin + seconds)
             within = (samples.time >= begin) & (samples.time < begin + seconds)
             windows.append(part(samples, within))
-            solvers.append(_solver(found, rest, directory, len(solvers), nested=nested))
+            models.append(_model(found, rest, directory, len(models), nested=nested))
+        solvers, uncertainties = zip(*models, strict=True)
         residuals = [w.measured - torques(s, w) for w, s in zip(windows, solvers, strict=True)]
-        return cls(tuple(windows), tuple(solvers), tuple(residuals))
+        return cls(tuple(windows), solvers, uncertainties, tuple(residuals))
+
+    def taken_for_exact(self) -> Arm:
+        """The same, but estimates don't know what the models may be wrong by."""
+        return replace(self, uncertainties=(None,) * len(self.windows))
 
     def elsewhere(self, k: int, random: np.random.Generator) -> int:
         """Another window that has no sample of window k, if there is one."""
@@ -101,19 +109,23 @@ def _begins(time: Floats, seconds: float) -> Floats:
     return np.linspace(first, last, 1 + round((last - first) / STEP))
 
 
-def _solver(
+def _model(
     found: Identification, rest: Sequence[Block], directory: Path, k: int, *, nested: bool
-) -> Solver:
+) -> tuple[Solver, _core.ArmUncertainty]:
     """Of some blocks."""
     robot = found.robot
     fitter = _core.ArmFitter.from_urdf(
         read_description(urdf_of(found)), root=robot.root, tip=robot.tip, gravity=robot.gravity
     )
+    law, strength, delay = found.law, found.prior_strength, found.delay
     if nested:
-        fit = choose(fitter, rest).fit
-    else:
-        later = together([block.later(found.delay) for block in rest])
-        fit = fitter.fit(later, law=found.law, prior_strength=found.prior_strength)
+        chosen = choose(fitter, rest)
+        law, strength, delay, fit = chosen.law, chosen.prior_strength, chosen.delay, chosen.fit
+    later = [block.later(delay) for block in rest]
+    if not nested:
+        fit = fitter.fit(together(later), law=law, prior_strength=strength)
+    known = knowledge(fitter, fit, later, law=law, prior_strength=strength, worth=1.0)
+    factor = factor_of(fitter, fit, later, known, law=law)
     model = replace(
         found.model,
         parameters=fit.parameters,
@@ -122,7 +134,7 @@ def _solver(
     )
     file = directory / f"{robot.name}_{k}.yaml"
     file.write_text(model_file_text(replace(found, model=model), file.stem))
-    return Solver(RIGID_BODY, model=str(file))
+    return Solver(RIGID_BODY, model=str(file)), _core.ArmUncertainty(fit.friction, factor)
 
 
 def part(samples: Samples, which: slice | Mask) -> Samples:
@@ -145,7 +157,7 @@ def trial(arm: Arm, mass: float, random: np.random.Generator, elsewhere: bool) -
         computed = torques(solver, samples)
         samples = replace(samples, measured=computed + residual[: len(computed)])
     load = random_load(mass, random)
-    found = fit_payload(with_load(samples, solver, load), solver).estimate
+    found = fit_payload(with_load(samples, solver, load), solver, arm=arm.uncertainties[k]).estimate
     return np.array(
         [
             [found.mass - mass, *(found.center_of_mass - load["center_of_mass"])],

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "arm_normal.hpp"
 #include "inverse_dynamics_identification/tip_regressor.hpp"
 #include "payload_solution.hpp"
 #include "payload_sums.hpp"
@@ -95,8 +97,9 @@ const char* text(PayloadStatus status) noexcept {
   return "unknown status";
 }
 
-PayloadEstimate::PayloadEstimate(Index joints) {
+PayloadEstimate::PayloadEstimate(Index joints, Index arm_deviations) {
   offset.setZero(joints);
+  arm.setZero(arm_deviations);
   covariance = Eigen::MatrixXd::Zero(10, 10);
 }
 
@@ -109,8 +112,15 @@ inverse_dynamics_solver::RigidBody PayloadEstimate::body() const {
 
 struct PayloadEstimator::Impl {
   Impl(std::shared_ptr<const InverseDynamicsSolver> arm, const PayloadOptions& given)
-      : regressor(arm), solver(std::move(arm)), sums(solver->jointCount(), given.block) {
-    const Index n = solver->jointCount();
+      : regressor(arm),
+        solver(std::move(arm)),
+        deviations(deviationsOf(solver, given.arm)),
+        sums(solver->jointCount(), deviationCount(), given.block),
+        part(deviationCount()),
+        rest(part),
+        arm_sum(deviationCount()),
+        arm_rest(deviationCount()) {
+    const Index n = solver->jointCount(), K = deviationCount();
     check(given, n);
     const auto joints = static_cast<std::size_t>(n);
     extent = given.extent;
@@ -127,18 +137,30 @@ struct PayloadEstimator::Impl {
       offsets.push_back(prior);
     }
     states.resize(joints);
-    total.resize(joints);
+    arm_states.assign(joints, Eigen::VectorXd::Zero(K));
+    total.assign(joints, JointSums(K));
     reduced.resize(joints);
     priors.resize(joints);
     Y = Eigen::MatrixXd::Zero(n, 10);
     torques.setZero(n);
+    D = Eigen::MatrixXd::Zero(K, n);
+    arm_row.setZero(K);
     restart();
   }
+
+  static std::optional<ArmDeviations> deviationsOf(
+      const std::shared_ptr<const InverseDynamicsSolver>& solver,
+      const ArmUncertainty& uncertainty) {
+    if (uncertainty.factor.size() == 0) return std::nullopt;
+    return ArmDeviations(solver, uncertainty);
+  }
+  Index deviationCount() const { return deviations ? deviations->count() : 0; }
 
   void restart() {
     sums.restart();
     for (auto& filter : filters) filter.restart();
     for (auto& state : states) state.setZero();
+    for (auto& state : arm_states) state.setZero();
     samples = 0;
   }
 
@@ -150,10 +172,14 @@ struct PayloadEstimator::Impl {
   Vector10 solve(Normal& normal, Matrix10& H);
   Matrix10 jackknife(std::size_t blocks, const Vector10& phi, const Matrix10& H);
   void fill(const Vector10& phi, const Matrix10& jackknife, const Matrix10& A, const Matrix10& H,
-            std::size_t blocks, PayloadEstimate& found) const;
+            std::size_t blocks, PayloadEstimate& found);
+  OffsetLine offsetLineOf(std::size_t j) {
+    return arm_sum.without(offsetLine(total[j].body, priors[j]), total[j]);
+  }
 
   TipRegressor regressor;
   std::shared_ptr<const InverseDynamicsSolver> solver;
+  std::optional<ArmDeviations> deviations;  // none: the model of the arm is exact
   PayloadSums sums;
   double extent = 0.0, model_error = 0.0;
   Vector10 carried = Vector10::Zero();
@@ -163,10 +189,16 @@ struct PayloadEstimator::Impl {
   std::vector<OffsetPrior> offsets;  // as given
   std::vector<OffsetPrior> priors;   // as estimated
   std::vector<Row> states;           // of the filters
-  std::vector<Gram> total;           // of all blocks
-  std::vector<Normal> reduced;       // of each joint
-  chain_dynamics::OwnedMatrix Y;     // n x 10
+  std::vector<Eigen::VectorXd> arm_states;
+  std::vector<JointSums> total;   // of all blocks
+  JointSums part, rest;           // of a block, and of the others
+  ArmNormal arm_sum, arm_rest;    // of all joints, and without a block of one
+  Normal arm_loss;                // of arm_sum
+  std::vector<Normal> reduced;    // of each joint
+  chain_dynamics::OwnedMatrix Y;  // n x 10
   chain_dynamics::OwnedVector torques;
+  chain_dynamics::OwnedMatrix D;   // K x n
+  Eigen::VectorXd arm_row;         // K
   double first = 0.0, last = 0.0;  // s
   std::size_t samples = 0;
 };
@@ -184,14 +216,17 @@ PayloadStatus PayloadEstimator::Impl::update(double time, const ConstVectorRef& 
   regressor.compute(q, qd, qdd, Y);
   torques = measured - torques;
   torques.noalias() += Y.lazyProduct(carried);
-  if (!torques.allFinite() || !Y.allFinite()) return PayloadStatus::kNotFinite;
+  if (deviations) deviations->compute(q, qd, qdd, D);
+  if (!torques.allFinite() || !Y.allFinite() || !D.allFinite()) return PayloadStatus::kNotFinite;
   sums.begin(time);
   for (Index j = 0; j < n; ++j) {
     const auto joint = static_cast<std::size_t>(j);
     Row row;
     row << Y.row(j).transpose(), 1.0, torques[j];
     filters[joint].advance(time - last);
-    sums.add(joint, filters[joint].innovations(row, states[joint]));
+    arm_row = D.col(j);
+    filters[joint].whiten(arm_row, arm_states[joint]);
+    sums.add(joint, filters[joint].innovations(row, states[joint]), arm_row);
   }
   if (samples == 0) first = time;
   last = time;
@@ -202,17 +237,25 @@ PayloadStatus PayloadEstimator::Impl::update(double time, const ConstVectorRef& 
 void PayloadEstimator::Impl::addUp(std::size_t blocks) {
   for (std::size_t j = 0; j < total.size(); ++j) {
     total[j].setZero();
-    for (std::size_t block = 0; block < blocks; ++block) total[j] += sums.of(block, j, blocks);
+    for (std::size_t block = 0; block < blocks; ++block) {
+      sums.get(block, j, blocks, part);
+      total[j] += part;
+    }
   }
 }
 
 Normal PayloadEstimator::Impl::sumOfJoints() {
   Normal sum;
+  arm_sum.begin();
   for (std::size_t j = 0; j < total.size(); ++j) {
-    reduced[j] = withoutOffset(total[j], priors[j]);
+    reduced[j] = withoutOffset(total[j].body, priors[j]);
     sum.A += reduced[j].A;
     sum.b += reduced[j].b;
+    arm_sum.add(total[j], priors[j]);
   }
+  arm_loss = arm_sum.loss();
+  sum.A -= arm_loss.A;
+  sum.b -= arm_loss.b;
   return sum;
 }
 
@@ -232,7 +275,7 @@ Vector10 PayloadEstimator::Impl::solve(Normal& normal, Matrix10& H) {
       const Matrix10 V = H.ldlt().solve(Matrix10::Identity());
       double squares = 0.0;
       for (std::size_t j = 0; j < total.size(); ++j) {
-        const OffsetPrior offset = offsetOf(total[j], priors[j], phi, V);
+        const OffsetPrior offset = offsetOf(offsetLineOf(j), phi, V);
         const double change = offset.mean - offsets[j].mean;
         squares += (change * change + offset.variance) / (noise[j] * noise[j]);
       }
@@ -259,8 +302,16 @@ Matrix10 PayloadEstimator::Impl::jackknife(std::size_t blocks, const Vector10& p
   for (std::size_t j = 0; j < total.size(); ++j) {
     const Vector10 with = reduced[j].A * phi - reduced[j].b;
     for (std::size_t block = 0; block < blocks; ++block) {
-      const Gram rest = total[j] - sums.of(block, j, blocks);
-      const Normal without = withoutOffset(rest, priors[j]);
+      sums.get(block, j, blocks, part);
+      rest = total[j];
+      rest -= part;
+      arm_rest.begin(arm_sum);
+      arm_rest.add(total[j], priors[j], -1.0);
+      arm_rest.add(rest, priors[j]);
+      const Normal loss = arm_rest.loss();
+      Normal without = withoutOffset(rest.body, priors[j]);
+      without.A += arm_loss.A - loss.A;
+      without.b += arm_loss.b - loss.b;
       const Matrix10 H_rest = H - reduced[j].A + without.A;
       const Vector10 change = H_rest.ldlt().solve(without.A * phi - without.b - with);
       V.noalias() += change * change.transpose();
@@ -312,8 +363,7 @@ void fillInertia(const Vector10& phi, const Matrix10& V, const Matrix10& A, doub
 }
 
 void PayloadEstimator::Impl::fill(const Vector10& phi, const Matrix10& jackknife, const Matrix10& A,
-                                  const Matrix10& H, std::size_t blocks,
-                                  PayloadEstimate& found) const {
+                                  const Matrix10& H, std::size_t blocks, PayloadEstimate& found) {
   const double m = phi[0], freedom = static_cast<double>(blocks) - 1.0;
   const HalfWidths half_widths{jackknife, covarianceOf(H), model_error, freedom};
   const Matrix10 V = jackknife + model_error * half_widths.textbook;
@@ -329,14 +379,16 @@ void PayloadEstimator::Impl::fill(const Vector10& phi, const Matrix10& jackknife
   fillInertia(phi, V, A, studentT(freedom), found);
   found.covariance = V;
   for (std::size_t j = 0; j < total.size(); ++j) {
-    found.offset[static_cast<Index>(j)] = offsetOf(total[j], priors[j], phi, V).mean;
+    found.offset[static_cast<Index>(j)] = offsetOf(offsetLineOf(j), phi, V).mean;
   }
+  arm_sum.solve(phi, found.arm);
   found.blocks = static_cast<Index>(blocks);
   found.duration = last - first;
 }
 
 PayloadStatus PayloadEstimator::Impl::estimate(PayloadEstimate& found) {
-  if (found.offset.size() != solver->jointCount() || found.covariance.rows() != 10) {
+  if (found.offset.size() != solver->jointCount() || found.covariance.rows() != 10 ||
+      found.arm.size() != deviationCount()) {
     return PayloadStatus::kWrongSize;
   }
   const std::size_t blocks = samples > 0 ? sums.blocks(last) : 0;

@@ -47,12 +47,17 @@ Normal withoutOffset(const Gram& sum, const OffsetPrior& prior) {
   return normal;
 }
 
-OffsetPrior offsetOf(const Gram& sum, const OffsetPrior& prior, const Vector10& phi,
-                     const Matrix10& V) {
+OffsetLine offsetLine(const Gram& sum, const OffsetPrior& prior) {
   const double weight = sum(10, 10) + 1.0 / prior.variance;
-  const Vector10 slope = sum.block<10, 1>(0, 10) / weight;
-  const double right = (sum(10, 11) + prior.mean / prior.variance) / weight;
-  return {right - slope.dot(phi), 1.0 / weight + slope.dot(V * slope)};
+  OffsetLine line;
+  line.right = (sum(10, 11) + prior.mean / prior.variance) / weight;
+  line.variance = 1.0 / weight;
+  line.slope = sum.block<10, 1>(0, 10) / weight;
+  return line;
+}
+
+OffsetPrior offsetOf(const OffsetLine& line, const Vector10& phi, const Matrix10& V) {
+  return {line.right - line.slope.dot(phi), line.variance + line.slope.dot(V * line.slope)};
 }
 
 BodyPrior::BodyPrior(double mass, const Eigen::Vector3d& center, double extent) {

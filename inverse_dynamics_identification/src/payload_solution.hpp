@@ -29,9 +29,15 @@ struct OffsetPrior {
 /// The sum of a joint with its offset at the best value for each body.
 Normal withoutOffset(const Gram& sum, const OffsetPrior& prior);
 
-/// That offset, and its variance where the body has the covariance V.
-OffsetPrior offsetOf(const Gram& sum, const OffsetPrior& prior, const Vector10& phi,
-                     const Matrix10& V);
+/// That offset: right - slope' phi; its variance where the body is known.
+struct OffsetLine {
+  double right = 0.0, variance = 1.0;
+  Vector10 slope = Vector10::Zero();
+};
+OffsetLine offsetLine(const Gram& sum, const OffsetPrior& prior);
+
+/// The offset, and its variance where the body has the covariance V.
+OffsetPrior offsetOf(const OffsetLine& line, const Vector10& phi, const Matrix10& V);
 
 /// The prior of the pseudo-inertia: tr(P0^-1 P) - log det P.
 class BodyPrior {

@@ -46,6 +46,16 @@ class NoiseFilter {
     return innovation / std::sqrt(variance_);
   }
 
+  /// The same of any number of columns, in place.
+  void whiten(Eigen::VectorXd& columns, Eigen::VectorXd& state) const {
+    const double scale = 1.0 / std::sqrt(variance_);
+    for (Eigen::Index c = 0; c < columns.size(); ++c) {
+      const double predicted = memory_ * state[c], innovation = columns[c] - predicted;
+      state[c] = predicted + gain_ * innovation;
+      columns[c] = scale * innovation;
+    }
+  }
+
  private:
   double white_, correlated_, time_;
   double predicted_, memory_ = 0.0, gain_ = 0.0, variance_ = 1.0;

@@ -4,7 +4,7 @@
 Arrays are (n,), one state, or (N, n), one state per row; results have the same shape.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
 from pathlib import Path
 from typing import Any, Literal, NoReturn
@@ -394,6 +394,20 @@ class ArmFitter:
         carried: Sequence[Floats | None] = ...,
     ) -> tuple[Floats, Floats, Floats]:
         """What data and prior say of the m unknowns, (m, m) each, and scores (blocks, m)."""
+
+    def whitened_information(
+        self,
+        fit: ArmFit,
+        blocks: Sequence[Block],
+        times: Sequence[ArrayLike],
+        *,
+        law: str,
+        noise: ResidualNoise,
+    ) -> Floats:
+        """What samples say of the m unknowns where errors are like this noise, (m, m).
+
+        times: (N,) s of each block.
+        """
 
 class SampleRules:
     """Which rules on faults of samples are acted upon."""
@@ -1193,6 +1207,20 @@ def residual_noise(
 ) -> ResidualNoise:
     """Noise of measured minus computed torques (N, n) [N m], at times (N,) [s]."""
 
+class ArmUncertainty:
+    """What the identified model of an arm may be wrong by: inverse_dynamics_identification/arm_uncertainty.hpp."""
+
+    def __init__(self, friction: Sequence[Mapping[str, float]], factor: ArrayLike) -> None:
+        """friction: figures of smooth_coulomb of each of n joints, by the keys of the model file.
+
+        factor: (m, K), the covariance of the m unknowns is factor factor'.
+        """
+
+    def torques(
+        self, solver: Solver, z: ArrayLike, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike
+    ) -> Floats:
+        """Of deviations z (K,) at N states (N, n): (N, n) N m."""
+
 class PayloadStatus(Enum):
     """What happened to a sample, or to an estimate."""
 
@@ -1243,6 +1271,10 @@ class PayloadEstimate:
         """(n,) N m."""
 
     @property
+    def arm(self) -> Floats:
+        """(K,) deviations of the arm from its model, in standard deviations."""
+
+    @property
     def covariance(self) -> Floats:
         """(10, 10) of m, mc, I about the origin of the tip frame."""
 
@@ -1265,13 +1297,15 @@ class PayloadEstimator:
         offset: ArrayLike | None = None,
         offset_deviation: ArrayLike | None = None,
         carried: dict[str, Any] | None = None,
+        arm: ArmUncertainty | None = None,
         extent: float = ...,
         block: float = ...,
         model_error: float = ...,
     ) -> None:
         """offset, offset_deviation: (n,) N m, what is known of the offsets.
 
-        carried: the body among solver.payloads that belongs to the estimate. extent: m; block: s.
+        carried: the body among solver.payloads that belongs to the estimate. arm: what its model may be
+        wrong by. extent: m; block: s.
         model_error: variance of what the arm's model is wrong by, in units of what the noise gives.
         """
 

@@ -16,6 +16,7 @@
 
 #include "arrays.hpp"
 #include "initialized.hpp"
+#include "vectors.hpp"
 
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ArmFitter)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ArmFit)
@@ -32,6 +33,7 @@ using identification::ArmSamples;
 using identification::FrictionTerms;
 using identification::LinkPrior;
 using identification::StepFriction;
+using Vector = Eigen::VectorXd;
 
 // q, qd, qdd, tau of a block, (N, n) each.
 using Block = std::tuple<Array, Array, Array, Array>;
@@ -133,6 +135,20 @@ py::tuple information(const ArmFitter& fitter, const ArmFit& of, const std::vect
                         rowsOf(std::move(found.scores)));
 }
 
+py::array whitenedInformation(const ArmFitter& fitter, const ArmFit& of,
+                              const std::vector<Block>& blocks, const std::vector<Vector>& times,
+                              const std::string& law, const identification::ResidualNoise& noise) {
+  const FrictionTerms terms = termsOf(law);
+  const std::vector<ArmSamples> samples = samplesOf(blocks, {});
+  const std::vector<chain_dynamics::OwnedVector> owned(times.begin(), times.end());
+  chain_dynamics::OwnedMatrix found;
+  {
+    const py::gil_scoped_release release;
+    found = fitter.whitenedInformation(of, terms, samples, owned, noise);
+  }
+  return rowsOf(std::move(found));
+}
+
 /// (n, 10).
 py::array rowsOfLinks(const std::vector<LinkPrior>& priors) {
   chain_dynamics::OwnedMatrix rows(10, static_cast<Eigen::Index>(priors.size()));
@@ -225,6 +241,11 @@ void bindIdentification(py::module_& module) {
           "each block, a known body m, mc, I in the tip frame, about its origin.")
       .def("torques", &torques, py::arg("fit"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
            "Torques of a fit, friction included: (n,) or (N, n).")
+      .def("whitened_information", &whitenedInformation, py::arg("fit"), py::arg("blocks"),
+           py::arg("times"), py::kw_only(), py::arg("law"), py::arg("noise"),
+           "What samples say of the m unknowns where errors are like this noise, (m, m). times: "
+           "(N,) s "
+           "of each block.")
       .def("information", &information, py::arg("fit"), py::arg("blocks"), py::kw_only(),
            py::arg("law"), py::arg("prior_strength"), py::arg("carried") = Carried(),
            "What data and prior say of the m unknowns, (m, m) each, and scores (blocks, m).");

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "arrays.hpp"
 #include "initialized.hpp"
@@ -23,9 +24,10 @@ class SharedEstimator {
  public:
   SharedEstimator(std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
                   const inverse_dynamics_identification::PayloadOptions& options)
-      : estimator_(std::move(solver), options) {}
+      : estimator_(std::move(solver), options), arm_deviations_(options.arm.factor.cols()) {}
 
   Eigen::Index jointCount() const { return estimator_.jointCount(); }
+  Eigen::Index armDeviations() const { return arm_deviations_; }
 
   /// What `call(estimator)` returns, without the GIL.
   template <class Call>
@@ -37,6 +39,7 @@ class SharedEstimator {
 
  private:
   inverse_dynamics_identification::PayloadEstimator estimator_;
+  Eigen::Index arm_deviations_;
   std::mutex busy_;
 };
 
@@ -45,6 +48,7 @@ class SharedEstimator {
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::PayloadEstimate)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::SharedEstimator)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ResidualNoise)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ArmUncertainty)
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -67,13 +71,14 @@ inverse_dynamics_solver::RigidBody carriedBody(const py::object& carried) {
 std::unique_ptr<SharedEstimator> makeEstimator(const py::object& solver, const ResidualNoise& noise,
                                                const std::optional<Vector>& offset,
                                                const std::optional<Vector>& offset_deviation,
-                                               const py::object& carried, double extent,
-                                               double block, double model_error) {
+                                               const py::object& carried, const ArmUncertainty* arm,
+                                               double extent, double block, double model_error) {
   PayloadOptions options;
   options.noise = noise;
   if (offset) options.offset = *offset;
   if (offset_deviation) options.offset_deviation = *offset_deviation;
   options.carried = carriedBody(carried);
+  if (arm != nullptr) options.arm = *arm;
   options.extent = extent;
   options.block = block;
   options.model_error = model_error;
@@ -117,7 +122,7 @@ PayloadStatus update(SharedEstimator& shared, double time, const Vector& q, cons
 }
 
 std::pair<PayloadEstimate, PayloadStatus> estimate(SharedEstimator& shared) {
-  PayloadEstimate found(shared.jointCount());
+  PayloadEstimate found(shared.jointCount(), shared.armDeviations());
   const PayloadStatus status =
       shared.during([&](PayloadEstimator& estimator) { return estimator.estimate(found); });
   return {std::move(found), status};
@@ -158,6 +163,61 @@ void bindNoise(py::module_& module) {
       "Noise of measured minus computed torques (N, n) [N m], at times (N,) [s].");
 }
 
+double figure(const py::dict& law, const char* key, double otherwise) {
+  return law.contains(key) ? law[key].cast<double>() : otherwise;
+}
+
+std::unique_ptr<ArmUncertainty> makeUncertainty(const std::vector<py::dict>& friction,
+                                                const Array& factor) {
+  if (factor.ndim() != 2) throw py::value_error("factor: expected an array (m, K)");
+  auto result = std::make_unique<ArmUncertainty>();
+  for (const py::dict& law : friction) {
+    const StepFriction none;
+    result->friction.push_back({figure(law, "fv", none.fv), figure(law, "fo", none.fo),
+                                figure(law, "fc", none.fc), figure(law, "fl", none.fl),
+                                figure(law, "fs", none.fs), figure(law, "width", none.width),
+                                figure(law, "shift", none.shift), figure(law, "vs", none.vs)});
+  }
+  result->factor = states(factor, "factor").transpose();
+  return result;
+}
+
+/// Of N states, (N, n).
+Array armTorques(const ArmUncertainty& arm, const py::object& solver, const Vector& z,
+                 const Array& q, const Array& qd, const Array& qdd) {
+  ArmDeviations deviations(solverOf(solver), arm);
+  const auto n = static_cast<py::ssize_t>(arm.friction.size());
+  const py::ssize_t count = q.ndim() == 2 ? q.shape(0) : 0;
+  requireSamples("q", q, count, n);
+  requireSamples("qd", qd, count, n);
+  requireSamples("qdd", qdd, count, n);
+  if (z.size() != deviations.count()) {
+    throw py::value_error("z: expected " + std::to_string(deviations.count()) + " numbers, got " +
+                          std::to_string(z.size()));
+  }
+  const ConstMap columns_of[] = {states(q, "q"), states(qd, "qd"), states(qdd, "qdd")};
+  Array result = like(q);
+  Map out = columns(result);
+  Eigen::MatrixXd D(z.size(), n);
+  for (py::ssize_t k = 0; k < count; ++k) {
+    deviations.compute(columns_of[0].col(k), columns_of[1].col(k), columns_of[2].col(k), D);
+    out.col(k).noalias() = D.transpose() * z;
+  }
+  return result;
+}
+
+void bindArm(py::module_& module) {
+  py::class_<ArmUncertainty>(
+      module, "ArmUncertainty",
+      "What the identified model of an arm may be wrong by: arm_uncertainty.hpp.")
+      .def(
+          py::init(&makeUncertainty), py::arg("friction"), py::arg("factor"),
+          "friction: figures of smooth_coulomb of each of n joints, by the keys of the model file; "
+          "factor: (m, K), the covariance of the m unknowns is factor factor'.")
+      .def("torques", &armTorques, py::arg("solver"), py::arg("z"), py::arg("q"), py::arg("qd"),
+           py::arg("qdd"), "Of deviations z (K,) at N states (N, n): (N, n) N m.");
+}
+
 void bindEstimate(py::module_& module) {
   py::enum_<PayloadStatus>(module, "PayloadStatus", "What happened to a sample, or to an estimate.")
       .value("OK", PayloadStatus::kOk)
@@ -182,6 +242,9 @@ void bindEstimate(py::module_& module) {
       .def_property_readonly(
           "offset", [](const E& found) -> Vector { return found.offset; }, "(n,) N m.")
       .def_property_readonly(
+          "arm", [](const E& found) -> Vector { return found.arm; },
+          "(K,) deviations of the arm from its model, in standard deviations.")
+      .def_property_readonly(
           "covariance", [](const E& found) -> Eigen::MatrixXd { return found.covariance; },
           "(10, 10) of m, mc, I about the origin of the tip frame.")
       .def_readonly("blocks", &E::blocks, "Of time, that the intervals rest on.")
@@ -192,6 +255,7 @@ void bindEstimate(py::module_& module) {
 
 void bindPayload(py::module_& module) {
   bindNoise(module);
+  bindArm(module);
   bindEstimate(module);
   const PayloadOptions usual;
   py::class_<SharedEstimator>(module, "PayloadEstimator",
@@ -200,11 +264,13 @@ void bindPayload(py::module_& module) {
                               "and each call waits for those of other threads.")
       .def(py::init(&makeEstimator), py::arg("solver"), py::arg("noise"), py::kw_only(),
            py::arg("offset") = py::none(), py::arg("offset_deviation") = py::none(),
-           py::arg("carried") = py::none(), py::arg("extent") = usual.extent,
-           py::arg("block") = usual.block, py::arg("model_error") = usual.model_error,
+           py::arg("carried") = py::none(), py::arg("arm") = py::none(),
+           py::arg("extent") = usual.extent, py::arg("block") = usual.block,
+           py::arg("model_error") = usual.model_error,
            "offset, offset_deviation: (n,) N m, what is known of the offsets; carried: the body "
            "among "
-           "solver.payloads that belongs to the estimate; extent: m; block: s; model_error: "
+           "solver.payloads that belongs to the estimate; arm: what its model may be wrong by; "
+           "extent: m; block: s; model_error: "
            "variance of what the arm's model is wrong by, in units of what the noise gives.")
       .def("update", &update, py::arg("time"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
            py::arg("measured"), "Adds a sample: s, (n,) each; PayloadStatus.")

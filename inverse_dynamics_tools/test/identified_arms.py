@@ -91,6 +91,7 @@ def identification(recording: Path = Path("recording"), **changes: object) -> Id
         ),
         "intervals": (Interval("elbow_joint fc", "N m", 3.0, 0.1, "elbow_joint"),),
         "prior_decided": (PriorDecided("forearm_link", "m", 17.1, 17.4, 0.02),),
+        "factor": 1e-3 * np.eye(16 * len(JOINTS))[:, :3],
         "findings": (Finding("prior", "masses of single links are the description's"),),
         "notes": ("3 samples repeat the one before",),
         "seconds": {"fit": 0.1},

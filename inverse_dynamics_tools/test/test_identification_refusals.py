@@ -230,7 +230,8 @@ def test_the_panda_is_identified_by_the_command(recordings, tmp_path, ids):
     mean = next(line for line in out.splitlines() if line.strip().startswith("mean")).split()
     urdf, present, refitted, identified = map(float, mean[3:7])
     assert identified < min(0.285, refitted) < present < urdf
-    names = {"arm.yaml", "arm_model.yaml", "arm.json", "arm.html", "arm.urdf", "arm.xml"}
+    names = {"arm.yaml", "arm_model.yaml", "arm_model.json", "arm.json", "arm.html"}
+    names |= {"arm.urdf", "arm.xml"}
     assert {path.name for path in tmp_path.iterdir()} == names
     result = evaluate(bag, tmp_path / "arm.yaml")
     assert sum(error.rmse for error in result.errors_of_kept) / 7 < 0.285

@@ -8,6 +8,7 @@
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/fast_model.hpp>
 #include <inverse_dynamics_identification/arm_fit.hpp>
+#include <inverse_dynamics_identification/arm_uncertainty.hpp>
 #include <inverse_dynamics_identification/payload_estimator.hpp>
 #include <inverse_dynamics_solver/payload.hpp>
 #include <memory>
@@ -36,6 +37,12 @@ namespace consistent_fit_examples {
 extern const GramSamples samples;
 extern const FitOptions options;
 }  // namespace consistent_fit_examples
+namespace arm_uncertainty_examples {
+extern const ArmUncertainty uncertainty;
+extern const Eigen::VectorXd q, qd, qdd, z;
+extern Eigen::VectorXd tau;
+extern Eigen::MatrixXd D;
+}  // namespace arm_uncertainty_examples
 namespace payload_estimator_examples {
 extern const PayloadOptions options;
 extern const bool moving;

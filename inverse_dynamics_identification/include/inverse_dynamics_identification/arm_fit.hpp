@@ -33,6 +33,7 @@
 
 #include "inverse_dynamics_identification/consistent_fit.hpp"
 #include "inverse_dynamics_identification/friction_step.hpp"
+#include "inverse_dynamics_identification/residual_noise.hpp"
 
 namespace inverse_dynamics_identification {
 inline namespace v2 {
@@ -114,6 +115,16 @@ class ArmFitter {
   /// What the samples of each block say at a fit, weighed by its noise.
   ArmInformation information(const ArmFit& fit, const std::vector<ArmSamples>& blocks,
                              const ArmFitOptions& options) const;
+
+  /// What samples say of the unknowns at a fit whose errors are correlated in time: as
+  /// ArmInformation::data, of rows that the filter of this noise has made white.
+  ///
+  /// @param times  of the samples of each block, ascending; s.
+  /// @throws chain_dynamics::ModelError  samples or a fit of others, another number of times.
+  OwnedMatrix whitenedInformation(const ArmFit& fit, FrictionTerms terms,
+                                  const std::vector<ArmSamples>& blocks,
+                                  const std::vector<OwnedVector>& times,
+                                  const ResidualNoise& noise) const;
 
   /// `tau = H qdd + C qd + g + rotor_inertia qdd + f` of N states.
   void torques(const ArmFit& fit, chain_dynamics::ConstStates q, chain_dynamics::ConstStates qd,

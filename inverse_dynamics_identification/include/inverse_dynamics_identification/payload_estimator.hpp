@@ -14,6 +14,10 @@
 ///     measured - computed = Y(q, qd, qdd) [m, mc, I] + offset + noise,
 ///
 /// with an offset per joint and the noise of residual_noise.hpp, which a Kalman filter makes white.
+/// What the arm's model may be wrong by, as far as its identification could tell, may be estimated
+/// with the body: K independent deviations z of one standard deviation each [arm_uncertainty.hpp] add
+/// `D(q, qd, qdd)' z`. They are taken out of the normal equations as offsets are.
+///
 /// Of the filtered rows only sums are kept, of each joint and of blocks of time, so a recording of
 /// any length takes constant memory. The estimate minimises
 ///
@@ -33,7 +37,8 @@
 ///     V = V_jackknife + model_error V_noise,
 ///
 /// since a model that was fitted to a motion like this one, about as long, is as wrong as that in the
-/// directions that a load acts in. Student's t has (blocks - 1) (V / V_jackknife)^2 degrees of freedom
+/// directions that a load acts in. Where `arm` is given, V_noise is that of noise and deviations
+/// together. Student's t has (blocks - 1) (V / V_jackknife)^2 degrees of freedom
 /// [Welch 1947; Satterthwaite 1946]. Intervals are never narrower than those of V_noise, which have no
 /// limit in a direction that no sample tells anything of.
 ///
@@ -48,6 +53,7 @@
 #include <memory>
 
 #include "chain_dynamics/owned.hpp"
+#include "inverse_dynamics_identification/arm_uncertainty.hpp"
 #include "inverse_dynamics_identification/residual_noise.hpp"
 
 namespace inverse_dynamics_identification {
@@ -62,6 +68,9 @@ struct PayloadOptions {
   /// Their standard deviation, n, > 0, N m; empty: one share of the noise for all joints, estimated
   /// with the rest.
   chain_dynamics::OwnedVector offset_deviation;
+
+  /// What the model of the arm may be wrong by; empty: no deviations are estimated with the body.
+  ArmUncertainty arm;
 
   /// The part of the solver's payloads that belongs to the estimate: its torques are among those
   /// that the solver computes.
@@ -89,8 +98,8 @@ const char* text(PayloadStatus status) noexcept;
 
 /// A body in the tip frame with the half widths of its 95 % intervals.
 struct PayloadEstimate {
-  /// For so many joints.
-  explicit PayloadEstimate(Eigen::Index joints);
+  /// For so many joints and columns of the arm's uncertainty.
+  explicit PayloadEstimate(Eigen::Index joints, Eigen::Index arm_deviations = 0);
 
   double mass = 0.0;                                                    ///< > 0; kg
   double mass_half_width = 0.0;                                         ///< kg
@@ -103,6 +112,7 @@ struct PayloadEstimate {
   bool inertia_is_known = false;
 
   chain_dynamics::OwnedVector offset;      ///< n; N m (prismatic N)
+  chain_dynamics::OwnedVector arm;         ///< K, z: of the arm, in standard deviations
   chain_dynamics::OwnedMatrix covariance;  ///< V, 10 x 10, of [m, mc, I] about the tip's origin
   Eigen::Index blocks = 0;                 ///< of time that the intervals rest on
   double duration = 0.0;                   ///< from the first sample to the last; s
@@ -135,10 +145,10 @@ class PayloadEstimator {
                        const inverse_dynamics_solver::ConstVectorRef& qdd,
                        const inverse_dynamics_solver::ConstVectorRef& measured) noexcept;
 
-  /// The body that all samples so far tell of, in 0.1 to 1 ms.
+  /// The body that all samples so far tell of, in 0.1 to 1 ms; with 60 deviations of the arm, about 10 ms.
   ///
   /// @param[out] found  made for as many joints; unchanged unless the result is kOk.
-  /// Real time: no allocation, lock, exception or system call.
+  /// Real time: no allocation, lock, exception or system call, up to 120 deviations of the arm.
   PayloadStatus estimate(PayloadEstimate& found) noexcept;
 
   /// Forgets all samples. Real time: no allocation, lock, exception or system call.

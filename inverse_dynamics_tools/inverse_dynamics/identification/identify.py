@@ -33,6 +33,7 @@ from inverse_dynamics.identification.result import (
     IdentifiedModel,
 )
 from inverse_dynamics.identification.summary import delay_told
+from inverse_dynamics.identification.uncertainty import factor_of
 from inverse_dynamics.robot.descriptions import parse_description, read_description
 from inverse_dynamics.robot.robots import Robot, load_robot
 
@@ -247,6 +248,7 @@ def _result(
         choices=chosen.choices,
         intervals=intervals(known, model, first.units),
         prior_decided=prior_decided(known, fitter.prior, links),
+        factor=factor_of(fitter, fit, later, known, law=chosen.law),
         findings=(
             *_findings(fitter, links, held, first.units),
             *_motion_findings(fitter, chosen, later, independent),

@@ -22,14 +22,16 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import listed
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate
+from inverse_dynamics.identification.uncertainty import read_uncertainty
 from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.robots import RIGID_BODY
 from inverse_dynamics.robot.solvers import open_solver
 
 if TYPE_CHECKING:
     from pathlib import Path
     from typing import Any
 
-    from inverse_dynamics._core import PayloadEstimate, ResidualNoise, Solver
+    from inverse_dynamics._core import ArmUncertainty, PayloadEstimate, ResidualNoise, Solver
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.robot.robots import Robot
@@ -134,17 +136,20 @@ def estimate_payload(
     evaluation = evaluate(bag, robot, progress=progress, **options)
     _require_gravity(evaluation)
     solver = _solver_of(evaluation)
+    arm, told = _arm_of(evaluation.robot)
     alone, phantom = None, []
     if empty is not None:
         without = evaluate(empty, robot, progress=progress, **options)
         _require_gravity(without)
         alone = empty_run(samples_of(without), solver)
         _require_motion(samples_of(without), str(without.bag), "without the load")
-        phantom = _phantom(fit_payload(samples_of(without), solver, where=str(without.bag)))
+        phantom = _phantom(
+            fit_payload(samples_of(without), solver, arm=arm, where=str(without.bag))
+        )
     samples = samples_of(evaluation)
     where = str(evaluation.bag)
     _require_motion(samples, where)
-    found = fit_payload(samples, solver, alone, where)
+    found = fit_payload(samples, solver, alone, arm, where)
     _check(found, samples, evaluation)
     return Payload(
         evaluation=evaluation,
@@ -155,7 +160,7 @@ def estimate_payload(
         time=samples.time,
         before=found.before,
         after=found.after,
-        notes=(*evaluation.notes, *phantom, *_notes(found, evaluation)),
+        notes=(*evaluation.notes, *told, *phantom, *_notes(found, evaluation)),
     )
 
 
@@ -186,24 +191,28 @@ def empty_run(samples: Samples, solver: Solver) -> EmptyRun:
 
 
 def fit_payload(
-    samples: Samples, solver: Solver, empty: EmptyRun | None = None, where: str = "payload"
+    samples: Samples,
+    solver: Solver,
+    empty: EmptyRun | None = None,
+    arm: ArmUncertainty | None = None,
+    where: str = "payload",
 ) -> Fit:
     """Estimate the body at the tip of the solver's robot, which is as before when this returns.
 
-    Torques and estimate are computed in turns: friction may grow with the load. where: of errors.
-    Raises PayloadError.
+    Torques and estimate are computed in turns: friction may grow with the load. arm: what the solver's
+    model may be wrong by. where: of errors. Raises PayloadError.
     """
     before = samples.measured - solver.torques(samples.q, samples.qd, samples.qdd)
     offset = before.mean(axis=0) if empty is None else empty.offset
     noise = residual_noise(samples.time, before - offset) if empty is None else empty.noise
-    found, rounds, settled = _round(samples, solver, noise, empty, None, where), 1, False
+    found, rounds, settled = _round(samples, solver, noise, empty, arm, None, where), 1, False
     try:
         after = _carry(samples, solver, found) - found.offset
         while not settled and rounds < _MOST_ROUNDS:
             if empty is None:
-                noise = residual_noise(samples.time, after)
+                noise = residual_noise(samples.time, after - _of_arm(samples, solver, arm, found))
             last = found
-            found = _round(samples, solver, noise, empty, solver.payloads[NAME], where)
+            found = _round(samples, solver, noise, empty, arm, solver.payloads[NAME], where)
             after = _carry(samples, solver, found) - found.offset
             settled, rounds = _settled(last, found), rounds + 1
     finally:
@@ -216,6 +225,7 @@ def _round(
     solver: Solver,
     noise: ResidualNoise,
     empty: EmptyRun | None,
+    arm: ArmUncertainty | None,
     carried: dict[str, Any] | None,
     where: str,
 ) -> PayloadEstimate:
@@ -225,6 +235,7 @@ def _round(
         offset=None if empty is None else empty.offset,
         offset_deviation=None if empty is None else empty.offset_deviation,
         carried=carried,
+        arm=arm,
     )
     estimator.run(samples.time, samples.q, samples.qd, samples.qdd, samples.measured)
     found, status = estimator.estimate()
@@ -246,6 +257,15 @@ def _carry(samples: Samples, solver: Solver, found: PayloadEstimate) -> Floats:
     return samples.measured - solver.torques(samples.q, samples.qd, samples.qdd)
 
 
+def _of_arm(
+    samples: Samples, solver: Solver, arm: ArmUncertainty | None, found: PayloadEstimate
+) -> Floats:
+    """(N, n) N m by which the arm differs from its model, as far as the estimate tells."""
+    if arm is None:
+        return np.zeros_like(samples.measured)
+    return arm.torques(solver, found.arm, samples.q, samples.qd, samples.qdd)
+
+
 def _settled(last: PayloadEstimate, found: PayloadEstimate) -> bool:
     change = np.append(found.center_of_mass - last.center_of_mass, found.mass - last.mass)
     width = np.append(found.center_of_mass_half_width, found.mass_half_width)
@@ -255,6 +275,19 @@ def _settled(last: PayloadEstimate, found: PayloadEstimate) -> bool:
 def _solver_of(evaluation: Evaluation) -> Solver:
     urdf = evaluation.robot.urdf
     return open_solver(evaluation.robot, "" if urdf is None else read_description(urdf))
+
+
+def _arm_of(robot: Robot) -> tuple[ArmUncertainty | None, list[str]]:
+    """What the model may be wrong by, and a note where that isn't known."""
+    if robot.model is None or robot.plugin != RIGID_BODY or not robot.friction:
+        return None, []
+    arm, why = read_uncertainty(robot.model)
+    if arm is not None:
+        return arm, []
+    return None, [
+        f"what the model of the arm is wrong by isn't estimated with the load ({why}); `ids identify` "
+        "writes it beside its models"
+    ]
 
 
 def _rms(values: Floats) -> Floats:

@@ -181,6 +181,7 @@ class Identification:
     choices: tuple[Choice, ...]
     intervals: tuple[Interval, ...]
     prior_decided: tuple[PriorDecided, ...]
+    factor: Floats  # (m, K) of the m unknowns of the fit: their covariance is factor factor'
     findings: tuple[Finding, ...]
     notes: tuple[str, ...]  # of reading and differentiating, as evaluate() has them
     seconds: Mapping[str, float]  # what took how long

@@ -3,6 +3,7 @@
 
 arm.yaml         run configuration: `ids evaluate RECORDING --robot arm.yaml`
 arm_model.yaml   the model: rigid bodies, friction, 95 % band and range of the data (docs/model_file.md)
+arm_model.json   what the model may be wrong by, for `ids payload`
 arm.json         all figures
 arm.html         the report's page
 """
@@ -21,6 +22,7 @@ from inverse_dynamics.base.files import check_output_file, files_written_whole, 
 from inverse_dynamics.base.plain import json_text, plain
 from inverse_dynamics.errors import OutputError, PackageNotFoundError
 from inverse_dynamics.identification.summary import error_rows
+from inverse_dynamics.identification.uncertainty import uncertainty_file, uncertainty_text
 from inverse_dynamics.report.identifications import error_table, render_identification
 from inverse_dynamics.results.model_files import model_file_text
 from inverse_dynamics.results.yaml_text import yaml_list, yaml_text
@@ -41,6 +43,7 @@ class IdentificationFiles(NamedTuple):
 
     robot: Path
     model: Path
+    uncertainty: Path
     figures: Path
     page: Path
 
@@ -52,9 +55,11 @@ def identification_files(out: Path | str) -> IdentificationFiles:
         raise OutputError(
             f"{out}: expected a name ending in .yaml, as --robot takes it; name another file with --out"
         )
+    model = out.with_name(f"{out.stem}_model{out.suffix}")
     return IdentificationFiles(
         out,
-        out.with_name(f"{out.stem}_model{out.suffix}"),
+        model,
+        uncertainty_file(model),
         out.with_suffix(".json"),
         out.with_suffix(".html"),
     )
@@ -96,8 +101,10 @@ def write_identification(
     options = {f"{file}": file for file in more}
     files = check_identification_files(out, overwrite=overwrite, more=options, inputs=inputs)
     name = files.robot.stem
+    model = model_file_text(found, f"{name}_model")
     texts = {
-        files.model: model_file_text(found, f"{name}_model"),
+        files.model: model,
+        files.uncertainty: uncertainty_text(found, model),
         files.figures: json_text(summary(found, tests)),
         files.page: render_identification(found, [_table_of(found, test) for test in tests]),
         **more,
@@ -194,7 +201,7 @@ def summary(found: Identification, tests: Sequence[HoldOut] = ()) -> dict[str, A
         **{
             name: plain(getattr(found, name))
             for name in found.__dataclass_fields__
-            if name not in ("robot", "blocks")
+            if name not in ("robot", "blocks", "factor")
         },
         "hold_out": [plain(test) for test in tests],
         "blocks": [

@@ -49,6 +49,7 @@ Compare them with `present, friction refitted`. docs/identification.md explains 
 results, all of them or none:
   arm.yaml                run configuration, for --robot of every verb
   arm_model.yaml          the model: links, friction, rotor inertia, 95 % band of the torques, range of the data
+  arm_model.json          what the model may be wrong by, for `ids payload`
   arm.html                page: the robot in motion, measured and predicted torques, influence of data and prior
   arm.json                all figures
 """
@@ -90,7 +91,8 @@ def add_parser(
         metavar="FILE",
         type=Path,
         required=True,
-        help="run configuration to write, NAME.yaml; NAME_model.yaml, NAME.json and NAME.html are written with it",
+        help="run configuration to write, NAME.yaml; NAME_model.yaml, NAME_model.json, NAME.json and NAME.html "
+        "are written with it",
     )
     parser.add_argument(
         "--hold-out",

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// What samples with correlated errors say of an arm's unknowns.
+
+#include <chain_dynamics/error.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "inverse_dynamics_identification/arm_fit.hpp"
+#include "whitening.hpp"
+
+namespace inverse_dynamics_identification {
+inline namespace v2 {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Rows of one joint: 10 n columns of links and its own, filtered and added up.
+struct WhitenedRows {
+  WhitenedRows(double white, double correlated, double correlation_time, Index columns)
+      : filter(white * white, correlated * correlated, correlation_time),
+        row(VectorXd::Zero(columns)),
+        state(row),
+        sum(MatrixXd::Zero(columns, columns)) {}
+
+  void restart() {
+    filter.restart();
+    state.setZero();
+  }
+
+  void add(double period) {
+    filter.advance(period);
+    filter.whiten(row, state);
+    sum.selfadjointView<Eigen::Lower>().rankUpdate(row);
+  }
+
+  NoiseFilter filter;
+  VectorXd row, state;
+  MatrixXd sum;  // lower triangle
+};
+
+}  // namespace
+
+OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms terms,
+                                           const std::vector<ArmSamples>& blocks,
+                                           const std::vector<OwnedVector>& times,
+                                           const ResidualNoise& noise) const {
+  check(fit);
+  const Index n = chain_.jointCount(), own = ownColumns(terms), links = 10 * n;
+  if (times.size() != blocks.size() || noise.white.size() != n || noise.correlated.size() != n) {
+    throw chain_dynamics::ModelError("ArmFitter.whitenedInformation", "times, noise",
+                                     "times of each block, noise of each joint", "others",
+                                     "take those of the samples");
+  }
+  std::vector<WhitenedRows> joints;
+  for (Index j = 0; j < n; ++j) {
+    joints.emplace_back(noise.white[j], noise.correlated[j], noise.correlation_time, links + own);
+  }
+  const chain_dynamics::FastModel alone(chain_dynamics::Model(withLinks(fit.parameters, nullptr)),
+                                        fast_);
+  MatrixXd Y(n, links);
+  VectorXd gravity(n), q(n), qd(n), qdd(n);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const ArmSamples& block = blocks[b];
+    if (times[b].size() != block.q.count) {
+      throw chain_dynamics::ModelError(
+          "ArmFitter.whitenedInformation", "times",
+          std::to_string(block.q.count) + " of block " + std::to_string(b),
+          std::to_string(times[b].size()), "pair each sample with its time");
+    }
+    for (WhitenedRows& joint : joints) joint.restart();
+    for (Index k = 0; k < block.q.count; ++k) {
+      for (Index j = 0; j < n; ++j) {
+        q[j] = block.q(j, k);
+        qd[j] = block.qd(j, k);
+        qdd[j] = block.qdd(j, k);
+      }
+      fast_.regressor(q.data(), qd.data(), qdd.data(), Y.data(), n);
+      alone.gravityVector(q.data(), gravity.data());
+      for (Index j = 0; j < n; ++j) {
+        WhitenedRows& joint = joints[static_cast<std::size_t>(j)];
+        joint.row.head(links) = Y.row(j);
+        ownColumnsAt(fit.friction[static_cast<std::size_t>(j)], qd[j], qdd[j], std::abs(gravity[j]),
+                     joint.row.tail(own));
+        joint.add(k > 0 ? times[b][k] - times[b][k - 1] : 0.0);
+      }
+    }
+  }
+  OwnedMatrix information;
+  information.resize(links + own * n, links + own * n);
+  information.setZero();
+  for (Index j = 0; j < n; ++j) {
+    const MatrixXd sum = joints[static_cast<std::size_t>(j)].sum.selfadjointView<Eigen::Lower>();
+    const Index at = links + own * j;
+    information.topLeftCorner(links, links) += sum.topLeftCorner(links, links);
+    information.block(0, at, links, own) = sum.topRightCorner(links, own);
+    information.block(at, 0, own, links) = sum.bottomLeftCorner(own, links);
+    information.block(at, at, own, own) = sum.bottomRightCorner(own, own);
+  }
+  return information;
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_identification

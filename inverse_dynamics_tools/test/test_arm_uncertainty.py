@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a model may be wrong by: its file, and that it is that of the fit."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from identified_arms import engine, identification
+from test_evaluation import JOINTS, motion
+
+from inverse_dynamics import Solver, write_joint_logs
+from inverse_dynamics._core import ArmUncertainty
+from inverse_dynamics.data.joint_log import JointLog
+from inverse_dynamics.errors import InvalidParameterError, RobotError
+from inverse_dynamics.identification.payload import estimate_payload
+from inverse_dynamics.identification.uncertainty import read_uncertainty, uncertainty_file
+from inverse_dynamics.results.identifications import write_identification
+from inverse_dynamics.robot.robots import RIGID_BODY
+
+SIZE = 16 * len(JOINTS)  # unknowns of the law `step`
+
+
+@pytest.fixture
+def found():
+    factor = np.random.default_rng(4).normal(size=(SIZE, 5)) * 10.0 ** np.arange(-6, -1)
+    return identification(factor=factor)
+
+
+@pytest.fixture
+def model(found, tmp_path):
+    return write_identification(found, tmp_path / "arm.yaml").model
+
+
+def states(count=30):
+    q, qd, qdd, _ = motion()
+    return q[:count], qd[:count], qdd[:count]
+
+
+def test_the_file_has_the_deviations_of_the_fit(found, model):
+    read, why = read_uncertainty(model)
+    assert why == ""
+    solver = Solver(RIGID_BODY, model=str(model))
+    direct = ArmUncertainty(found.model.friction, found.factor)
+    for k in range(5):
+        z = np.eye(5)[k]
+        expected = direct.torques(solver, z, *states())
+        np.testing.assert_allclose(
+            read.torques(solver, z, *states()), expected, rtol=1e-5, atol=1e-6 * abs(expected).max()
+        )
+
+
+def test_deviations_of_links_are_in_the_frames_of_the_engine(found, model):
+    """The regressor of the description times a deviation is what the solver of the model file makes of it."""
+    solver = Solver(RIGID_BODY, model=str(model))
+    factor = np.zeros((SIZE, 1))
+    factor[: 10 * len(JOINTS), 0] = np.random.default_rng(5).normal(size=10 * len(JOINTS))
+    q, qd, qdd = states()
+    expected = engine().regressor(q, qd, qdd) @ factor[: 10 * len(JOINTS), 0]
+    torques = ArmUncertainty(found.model.friction, factor).torques(solver, [1.0], q, qd, qdd)
+    np.testing.assert_allclose(torques, expected, atol=1e-10)
+
+
+def test_a_file_of_another_model_is_left_aside(model):
+    model.write_text(model.read_text() + "# by hand\n")
+    arm, why = read_uncertainty(model)
+    assert arm is None
+    assert "arm_model.json: it is another model's, or arm_model.yaml has changed since" in why
+
+
+def test_no_file_is_no_error(model):
+    uncertainty_file(model).unlink()
+    arm, why = read_uncertainty(model)
+    assert arm is None
+    assert "arm_model.json: there is none" in why
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (lambda content: content.pop("friction"), "expected schema 1 with the keys"),
+        (lambda content: content.update(schema=2), "expected schema 1 with the keys"),
+        (lambda content: content.update(more=1), "expected schema 1 with the keys"),
+        (lambda content: content["deviations"][0].pop(), "expected deviations: rows"),
+        (lambda content: content["deviations"].clear(), "expected deviations: rows"),
+        (lambda content: content["deviations"][0].__setitem__(0, "x"), "expected deviations: rows"),
+        (lambda content: content["friction"][0].update(fc="x"), "expected friction: figures"),
+    ],
+)
+def test_a_damaged_file_is_refused(model, change, text):
+    file = uncertainty_file(model)
+    content = json.loads(file.read_text())
+    change(content)
+    file.write_text(json.dumps(content))
+    with pytest.raises(RobotError, match=rf"arm_model\.json: {text}.*identify the arm again"):
+        read_uncertainty(model)
+
+
+def test_what_is_not_json_is_refused(model):
+    uncertainty_file(model).write_text("no")
+    with pytest.raises(RobotError, match=r"arm_model\.json: expected JSON of `ids identify`"):
+        read_uncertainty(model)
+
+
+def test_an_uncertainty_of_another_arm_is_refused(found, model):
+    solver = Solver(RIGID_BODY, model=str(model))
+    other = ArmUncertainty(found.model.friction[1:], found.factor)
+    with pytest.raises(InvalidParameterError, match="laws of friction"):
+        other.torques(solver, np.zeros(5), *(values[:, 1:] for values in states()))
+
+
+def test_payloads_are_estimated_with_the_deviations_that_a_model_has(model, tmp_path):
+    solver = Solver(RIGID_BODY, model=str(model))
+    solver.set_payload("load", 4.0, center_of_mass=[0.0, 0.02, 0.1])
+    q, qd, qdd, stamps = motion()
+    noise = 0.1 * np.random.default_rng(6).standard_normal(q.shape)
+    log = JointLog(JOINTS, stamps, stamps, q, qd, solver.torques(q, qd, qdd) + noise)
+    write_joint_logs(tmp_path / "loaded", {log.topic: log})
+    payload = estimate_payload(tmp_path / "loaded", tmp_path / "arm.yaml")
+    assert len(payload.estimate.arm) == 5
+    assert payload.estimate.mass == pytest.approx(4.0, rel=0.05)
+    assert not [note for note in payload.notes if "arm_model.json" in note]
+
+    uncertainty_file(model).unlink()
+    without = estimate_payload(tmp_path / "loaded", tmp_path / "arm.yaml")
+    assert len(without.estimate.arm) == 0
+    assert [note for note in without.notes if "arm_model.json: there is none" in note]
