@@ -391,7 +391,7 @@ void TimedSamples::hold() {
   const Index more = read_.size();
   read_.instant.resize(more);
   for (Flags* flags : {&read_.start_transient, &read_.isolated, &read_.used, &read_.kept}) {
-    flags->resize(more);
+    flags->setZero(more);
   }
   const Index from = held_.size();
   if (from == 0) {
