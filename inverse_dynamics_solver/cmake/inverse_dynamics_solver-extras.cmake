@@ -81,7 +81,7 @@ function(inverse_dynamics_solver_add_plugin_test test)
     set(ARG_DESCRIPTION ${PROJECT_NAME}.xml)
   endif()
   if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 300)
+    set(ARG_TIMEOUT 600)
   endif()
 
   # Once per package, however many tests load its plugin.
