@@ -85,7 +85,15 @@ def test_no_file_is_no_error(model):
         (lambda content: content["deviations"][0].pop(), "expected deviations: rows"),
         (lambda content: content["deviations"].clear(), "expected deviations: rows"),
         (lambda content: content["deviations"][0].__setitem__(0, "x"), "expected deviations: rows"),
+        (lambda content: content.update(deviations=[5.0]), "expected deviations: rows"),
+        (lambda content: content.update(deviations=[[]]), "expected deviations: rows"),
+        (
+            lambda content: content["deviations"][0].__setitem__(0, 10**400),
+            "expected deviations: rows",
+        ),
         (lambda content: content["friction"][0].update(fc="x"), "expected friction: figures"),
+        (lambda content: content["friction"][0].update(fx=1.0), "expected friction: figures"),
+        (lambda content: content["friction"][0].pop("fc"), "expected friction: figures"),
     ],
 )
 def test_a_damaged_file_is_refused(model, change, text):
@@ -98,9 +106,10 @@ def test_a_damaged_file_is_refused(model, change, text):
 
 
 def test_what_is_not_json_is_refused(model):
-    uncertainty_file(model).write_text("no")
-    with pytest.raises(RobotError, match=r"arm_model\.json: expected JSON of `ids identify`"):
-        read_uncertainty(model)
+    for text in ("no", "[" * 100_000):
+        uncertainty_file(model).write_text(text)
+        with pytest.raises(RobotError, match=r"arm_model\.json: expected JSON of `ids identify`"):
+            read_uncertainty(model)
 
 
 def test_an_uncertainty_of_another_arm_is_refused(found, model):

@@ -23,7 +23,7 @@ from inverse_dynamics.errors import RobotError
 from inverse_dynamics.identification.cross_validation import errors_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Mapping, Sequence
     from pathlib import Path
 
     from inverse_dynamics._core import ArmFit, ArmFitter, ArmUncertainty
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 _SCHEMA = 1
 _KEYS = ("schema", "model_sha256", "friction", "deviations")
+_FIGURES = {"fv", "fc", "width"}  # of smooth_coulomb
+_OPTIONAL_FIGURES = {"shift", "fo", "fl", "fs", "vs"}
 _DIGITS = 7
 _LEAST = 1e-6  # variance of the torques by the noise's, of deviations that are written
 _RIDGE = 1e-12  # by the information: rounding, of directions that change no torque
@@ -106,29 +108,32 @@ def read_uncertainty(model: Path) -> tuple[ArmUncertainty | None, str]:
 
 def _content(file: Path) -> dict[str, Any]:
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        # integers as floats, of which the largest are infinite
+        content = json.loads(file.read_text(encoding="utf-8"), parse_int=float)
+    except (OSError, ValueError, RecursionError) as error:
         raise _error(file, "JSON of `ids identify`", str(error)) from error
     if not isinstance(content, dict) or set(content) != set(_KEYS) or content["schema"] != _SCHEMA:
         raise _error(file, f"schema {_SCHEMA} with the keys {', '.join(_KEYS)}", "others")
     rows, laws = content["deviations"], content["friction"]
-    fine = isinstance(rows, list) and all(_is_row(row, len(rows[0])) for row in rows)
-    if not fine or not rows:
-        raise _error(file, "deviations: rows of as many finite numbers each", "others")
     if not (
-        isinstance(laws, list)
-        and all(isinstance(law, dict) and _is_row([*law.values()], len(law)) for law in laws)
+        _is_list_of(list, rows) and len({len(row) for row in rows}) == 1 and all(map(_is_row, rows))
     ):
+        raise _error(file, "deviations: rows of as many finite numbers each", "others")
+    if not (_is_list_of(dict, laws) and all(map(_is_law, laws))):
         raise _error(file, "friction: figures of each joint", "others")
     return content
 
 
-def _is_row(row: object, size: int) -> bool:
-    return (
-        isinstance(row, list)
-        and len(row) == size
-        and all(type(x) in (int, float) and math.isfinite(x) for x in row)
-    )
+def _is_list_of(kind: type, values: object) -> bool:
+    return isinstance(values, list) and all(isinstance(value, kind) for value in values)
+
+
+def _is_row(row: Collection[object]) -> bool:
+    return len(row) > 0 and all(isinstance(x, float) and math.isfinite(x) for x in row)
+
+
+def _is_law(law: Mapping[str, object]) -> bool:
+    return _FIGURES <= law.keys() <= _FIGURES | _OPTIONAL_FIGURES and _is_row(law.values())
 
 
 def _error(file: Path, expected: str, got: str) -> RobotError:
