@@ -3,8 +3,12 @@
 /// A Panda in motion, with a body at its tip and noise that remembers.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <fstream>
+#include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
+#include <inverse_dynamics_solver/conformance/real_time_section.hpp>
 #include <iterator>
 #include <memory>
 #include <random>
@@ -83,6 +87,42 @@ inline ResidualNoise noiseOf(double white, double correlated) {
   noise.white = Eigen::VectorXd::Constant(kJoints, white);
   noise.correlated = Eigen::VectorXd::Constant(kJoints, correlated);
   return noise;
+}
+
+/// What is said of a parameter when something is made, or "none".
+template <class Make>
+std::string refusalOf(const Make& make) {
+  try {
+    make();
+  } catch (const inverse_dynamics_solver::InvalidParameterValueException& e) {
+    return e.what();
+  }
+  return "none";
+}
+
+/// In 40 s of motion, in which blocks are joined.
+inline void expectNoAllocations(const PayloadOptions& options) {
+  using namespace inverse_dynamics_solver::conformance;
+  if (!kAllocationGuardWorks && !kRealtimeSanitizerWatches) {
+    GTEST_SKIP() << "allocations can't be counted in this build";
+  }
+  PayloadEstimator estimator(panda(), options);
+  PayloadEstimate found(kJoints, options.arm.factor.cols());
+  Motion motion;
+  const Eigen::VectorXd measured = Eigen::VectorXd::Ones(kJoints);
+  int allocations = 0;
+  for (int k = 0; k < 800; ++k) {
+    const double time = 0.05 * k;
+    motion.at(time);
+    AllocationGuard guard;
+    inRealTime([&] {
+      estimator.update(time, motion.q, motion.qd, motion.qdd, measured);
+      if (k % 400 == 399) estimator.estimate(found);
+    });
+    allocations += static_cast<int>(guard.count());
+  }
+  EXPECT_EQ(allocations, 0);
+  EXPECT_GT(found.blocks, 16);
 }
 
 }  // namespace inverse_dynamics_identification

@@ -6,8 +6,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <fstream>
-#include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
-#include <inverse_dynamics_solver/conformance/real_time_section.hpp>
 #include <limits>
 #include <vector>
 
@@ -367,13 +365,8 @@ TEST(PayloadEstimator, SaysWhatItLeavesOut) {
 }
 
 TEST(PayloadEstimator, RefusesOptionsThatCantBe) {
-  const auto error = [](const PayloadOptions& options) -> std::string {
-    try {
-      PayloadEstimator estimator(panda(), options);
-    } catch (const inverse_dynamics_solver::InvalidParameterValueException& e) {
-      return e.what();
-    }
-    return "none";
+  const auto error = [](const PayloadOptions& options) {
+    return refusalOf([&] { PayloadEstimator(panda(), options); });
   };
   EXPECT_THAT(error(PayloadOptions()), HasSubstr("payload: noise.white: expected 7 numbers"));
   EXPECT_THAT(error(optionsWith(noiseOf(0.0, 0.0))), HasSubstr("above zero for each joint"));
@@ -394,28 +387,7 @@ TEST(PayloadEstimator, RefusesOptionsThatCantBe) {
 }
 
 TEST(PayloadEstimator, NeitherUpdatesNorEstimatesAllocate) {
-  using inverse_dynamics_solver::conformance::AllocationGuard;
-  using inverse_dynamics_solver::conformance::inRealTime;
-  if (!inverse_dynamics_solver::conformance::kAllocationGuardWorks &&
-      !inverse_dynamics_solver::conformance::kRealtimeSanitizerWatches) {
-    GTEST_SKIP() << "allocations can't be counted in this build";
-  }
-  PayloadEstimator estimator(panda(), optionsWith(noiseOf(0.1, 0.3)));
-  Motion motion;
-  Eigen::VectorXd measured = Eigen::VectorXd::Ones(kJoints);
-  PayloadEstimate found(kJoints);
-  int allocations = 0;
-  for (Index k = 0; k < 4000; ++k) {  // 40 s: blocks are joined
-    motion.at(kPeriod * static_cast<double>(k));
-    AllocationGuard guard;
-    inRealTime([&] {
-      estimator.update(kPeriod * static_cast<double>(k), motion.q, motion.qd, motion.qdd, measured);
-      if (k % 1000 == 999) estimator.estimate(found);
-    });
-    allocations += static_cast<int>(guard.count());
-  }
-  EXPECT_EQ(allocations, 0);
-  EXPECT_GT(found.blocks, 16);
+  expectNoAllocations(optionsWith(noiseOf(0.1, 0.3)));
 }
 
 }  // namespace
