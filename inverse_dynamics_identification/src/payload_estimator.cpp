@@ -92,7 +92,8 @@ const char* text(PayloadStatus status) noexcept {
     case PayloadStatus::kSolverFailed:
       return "the solver failed: sample left out";
     case PayloadStatus::kWrongSize:
-      return "an argument hasn't one number per joint";
+      return "an argument hasn't one number per joint, or the estimate one per deviation of the "
+             "arm";
   }
   return "unknown status";
 }

@@ -7,6 +7,7 @@
 #include <chain_dynamics/urdf.hpp>
 #include <vector>
 
+#include "arm_normal.hpp"
 #include "inverse_dynamics_identification/arm_fit.hpp"
 #include "inverse_dynamics_identification/tip_regressor.hpp"
 #include "moving_arm.hpp"
@@ -185,11 +186,15 @@ struct Recording {
 
   PayloadEstimate estimate(const PayloadOptions& options) const {
     PayloadEstimator estimator(panda(), options);
+    return estimate(estimator, options.arm.factor.cols());
+  }
+
+  PayloadEstimate estimate(PayloadEstimator& estimator, Index deviations) const {
     for (std::size_t k = 0; k < time.size(); ++k) {
       const Motion& m = motions[k];
       EXPECT_EQ(estimator.update(time[k], m.q, m.qd, m.qdd, measured[k]), PayloadStatus::kOk);
     }
-    PayloadEstimate found(kJoints, options.arm.factor.cols());
+    PayloadEstimate found(kJoints, deviations);
     EXPECT_EQ(estimator.estimate(found), PayloadStatus::kOk);
     return found;
   }
@@ -255,6 +260,43 @@ TEST(PayloadEstimator, DeviationsOfTheArmArePartOfTheCovarianceOfTorques) {
   EXPECT_LT((found.arm - z).norm(), 1e-3);
 }
 
+TEST(ArmNormal, OffsetAndDeviationsAreThoseOfTheNormalEquationsOfAll) {
+  constexpr Index kDeviations = 3, kAll = 11 + kDeviations;
+  std::srand(6);
+  const OffsetPrior prior{0.3, 0.5};
+  JointSums joint(kDeviations);
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(kAll, kAll);  // of body, offset, deviations
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(kAll);
+  for (int sample = 0; sample < 20; ++sample) {
+    const Row row = Row::Random();
+    const Eigen::VectorXd deviations = Eigen::VectorXd::Random(kDeviations);
+    joint.add(row, deviations);
+    Eigen::VectorXd all(kAll);
+    all << row.head<11>(), deviations;
+    A += all * all.transpose();
+    b += row[11] * all;
+  }
+  A(10, 10) += 1 / prior.variance;
+  b[10] += prior.mean / prior.variance;
+  A.diagonal().tail<kDeviations>().array() += 1;
+  const Eigen::MatrixXd V = A.bottomRightCorner<4, 4>().inverse();  // where the body is known
+  const Eigen::VectorXd right = V * b.tail<4>();
+  const Eigen::MatrixXd slope = V * A.bottomLeftCorner<4, 10>();
+
+  ArmNormal normal(kDeviations);
+  normal.begin();
+  normal.add(joint, prior);
+  normal.loss();
+  const OffsetLine line = normal.without(offsetLine(joint.body, prior), joint);
+  EXPECT_NEAR(line.right, right[0], 1e-12);
+  EXPECT_LT((line.slope - slope.row(0).transpose()).norm(), 1e-12);
+  EXPECT_NEAR(line.variance, V(0, 0), 1e-12);
+  const Vector10 phi = Vector10::Random();
+  Eigen::VectorXd z(kDeviations);
+  normal.solve(phi, z);
+  EXPECT_LT((z - (right - slope * phi).tail<kDeviations>()).norm(), 1e-12);
+}
+
 TEST(PayloadEstimator, ArmThatDiffersFromItsModelSpoilsLessWhereThatIsEstimated) {
   const RigidBody body = box(1.0);
   const ArmUncertainty arm = someUncertainty(20, 4, 0.005);
@@ -278,6 +320,18 @@ TEST(PayloadEstimator, ArmThatDiffersFromItsModelSpoilsLessWhereThatIsEstimated)
   const double coverage = held / (4.0 * kTrials);
   EXPECT_GE(coverage, 0.90);
   EXPECT_LE(coverage, 0.998);
+}
+
+TEST(PayloadEstimator, RestartsWithNothingOfTheArm) {
+  const PayloadOptions options = uncertainOptions(noiseOf(0.1, 0.3), someUncertainty(6, 2, 0.01));
+  std::mt19937 random(3);
+  const Recording recording(box(1.5), options.arm, options.noise, 3.0, random);
+  PayloadEstimator estimator(panda(), options);
+  const PayloadEstimate first = recording.estimate(estimator, 6);
+  estimator.restart();
+  const PayloadEstimate second = recording.estimate(estimator, 6);
+  EXPECT_EQ(first.mass, second.mass);
+  EXPECT_EQ(first.arm, second.arm);
 }
 
 TEST(PayloadEstimator, NeitherUpdatesNorEstimatesAllocateWithAnUncertainArm) {

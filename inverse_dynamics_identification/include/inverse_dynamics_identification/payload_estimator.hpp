@@ -89,7 +89,7 @@ enum class PayloadStatus {
   kNotFinite,     ///< a NaN or infinity: the sample is left out; no estimate
   kTooShort,      ///< fewer than three blocks of time: no estimate yet
   kSolverFailed,  ///< the solver threw: the sample is left out
-  kWrongSize,     ///< an argument hasn't one number per joint
+  kWrongSize,     ///< of an argument by joints, or of an estimate by deviations of the arm
 };
 
 /// What happened, as a sentence without a full stop. Real time: no allocation, lock, exception or
@@ -147,7 +147,7 @@ class PayloadEstimator {
 
   /// The body that all samples so far tell of, in 0.1 to 1 ms; with 60 deviations of the arm, about 10 ms.
   ///
-  /// @param[out] found  made for as many joints; unchanged unless the result is kOk.
+  /// @param[out] found  made for as many joints and deviations; unchanged unless the result is kOk.
   /// Real time: no allocation, lock, exception or system call, up to 120 deviations of the arm.
   PayloadStatus estimate(PayloadEstimate& found) noexcept;
 

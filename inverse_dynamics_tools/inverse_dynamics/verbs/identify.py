@@ -243,5 +243,6 @@ def _print(found: Identification, files: IdentificationFiles, tests: Sequence[Ho
         console.print(f"finding        {finding.text}")
     console.print(f"robot          {files.robot}: `ids evaluate RECORDING --robot {files.robot}`")
     console.print(f"model          {files.model}")
+    console.print(f"uncertainty    {files.uncertainty}: for `ids payload`")
     console.print(f"page           {files.page}")
     console.print(f"figures        {files.figures}")
