@@ -27,11 +27,6 @@ struct WhitenedRows {
         state(row),
         sum(MatrixXd::Zero(columns, columns)) {}
 
-  void restart() {
-    filter.restart();
-    state.setZero();
-  }
-
   void add(double period) {
     filter.advance(period);
     filter.whiten(row, state);
@@ -72,7 +67,7 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
           std::to_string(block.q.count) + " of block " + std::to_string(b),
           std::to_string(times[b].size()), "pair each sample with its time");
     }
-    for (WhitenedRows& joint : joints) joint.restart();
+    for (WhitenedRows& joint : joints) joint.filter.restart();
     for (Index k = 0; k < block.q.count; ++k) {
       for (Index j = 0; j < n; ++j) {
         q[j] = block.q(j, k);

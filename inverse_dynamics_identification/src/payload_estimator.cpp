@@ -137,7 +137,7 @@ struct PayloadEstimator::Impl {
       prior.variance *= prior.variance;
       offsets.push_back(prior);
     }
-    states.resize(joints);
+    states.assign(joints, Row::Zero());
     arm_states.assign(joints, Eigen::VectorXd::Zero(K));
     total.assign(joints, JointSums(K));
     reduced.resize(joints);
@@ -160,8 +160,6 @@ struct PayloadEstimator::Impl {
   void restart() {
     sums.restart();
     for (auto& filter : filters) filter.restart();
-    for (auto& state : states) state.setZero();
-    for (auto& state : arm_states) state.setZero();
     samples = 0;
   }
 

@@ -36,8 +36,8 @@ class NoiseFilter {
 
   double variance() const { return variance_; }
 
-  /// Innovations of the columns, of unit variance for noise alone. state: of each column, zero at
-  /// first; it is updated.
+  /// Innovations of the columns, of unit variance for noise alone. state: of each column, finite;
+  /// the first sample takes nothing from it. It is updated.
   template <typename Columns>
   Columns innovations(const Columns& columns, Columns& state) const {
     const Columns predicted = memory_ * state;
