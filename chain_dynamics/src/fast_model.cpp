@@ -236,9 +236,8 @@ void FastModel::forwardDynamics(const double* q, const double* qd, const double*
     kernels_->forward_dynamics(data_->robot, structure_, q, qd, tau, qdd);
     return;
   }
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
   using Given = Eigen::Map<const Eigen::VectorXd>;
-  Vector without_friction(n);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1> without_friction(n);
   kernels_->friction(data_->robot, structure_, q, qd, without_friction.data());
   without_friction = Given(tau, n) - without_friction;
   chain_dynamics::forwardDynamics(chain, Given(q, n), Given(qd, n), without_friction,
