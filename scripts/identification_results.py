@@ -168,7 +168,7 @@ whole recording; *nested*: chosen outside of the window, too. *Uncertain arm*: e
 wrong by, as `ids payload` does where `ids identify` has left that beside the model; other rows take the model for
 exact. Medians. The last two columns are what no unbiased estimator can be better than (Cramér and Rao) whose model of
 the arm is exact, if noise is Gaussian, stationary, as correlated in time and between joints as the residuals are, and
-the inertia about the centre is known.
+the inertia about the center is known.
 """
 
 
@@ -228,11 +228,11 @@ def _payloads(bags: Path, directory: Path) -> str:
             if nested in uncertain:
                 told = _told(trials(arms[key], mass, TRIALS))
                 rows.append(_row(f"{label}, uncertain arm", *told, "", ""))
-    names = ("load", "mass", "centre", "intervals that hold", "half width by error: mass", "centre")
+    names = ("load", "mass", "center", "intervals that hold", "half width by error: mass", "center")
     return "\n".join(
         [
             _PAYLOADS,
-            _row(*names, "least: mass", "centre"),
+            _row(*names, "least: mass", "center"),
             _row(*["---"] * 8),
             *rows,
             "",

@@ -51,7 +51,7 @@ class Figures:
 
     mass: float  # median of the error, relative
     center: float  # m, median of the distance
-    coverage: float  # of the 95 % intervals of mass and centre
+    coverage: float  # of the 95 % intervals of mass and center
     ratio_of_mass: float  # median half width by median error
     ratio_of_center: float
     trials: int
@@ -148,7 +148,7 @@ def torques(solver: Solver, samples: Samples) -> Floats:
 
 
 def trial(arm: Arm, mass: float, random: np.random.Generator, elsewhere: bool) -> Floats:
-    """(2, 4): errors of mass [kg] and centre of mass [m], and the half widths of their intervals."""
+    """(2, 4): errors of mass [kg] and center of mass [m], and the half widths of their intervals."""
     k = int(random.integers(len(arm.windows)))
     samples, solver = arm.windows[k], arm.solvers[k]
     if elsewhere:
@@ -197,9 +197,9 @@ def trials(arm: Arm, mass: float, count: int, seed: int = 1) -> Figures:
 
 
 def least_errors(arm: Arm, mass: float, windows: int = 40) -> tuple[str, str]:
-    """Least median errors of mass and centre of mass that an unbiased estimator has, in words.
+    """Least median errors of mass and center of mass that an unbiased estimator has, in words.
 
-    The bound of Cramer and Rao for mass, centre of mass and an offset per joint, with the inertia about the centre
+    The bound of Cramer and Rao for mass, center of mass and an offset per joint, with the inertia about the center
     known, in stationary Gaussian noise of the covariances that the residuals have.
     """
     random = np.random.default_rng(2)
@@ -226,10 +226,10 @@ def least_errors(arm: Arm, mass: float, windows: int = 40) -> tuple[str, str]:
 def _covariance(windows: Sequence[Floats], count: int, memory: float) -> Floats:
     """Of so many samples of all joints, one after the other; lags beyond a memory (samples) fade out."""
     mean = np.concatenate(windows).mean(axis=0)
-    centred, n = [residuals[:count] - mean for residuals in windows], len(mean)
+    centered, n = [residuals[:count] - mean for residuals in windows], len(mean)
     covariance = np.zeros((count, n, count, n))
     for lag in range(count):
-        at_lag = sum(c[: count - lag].T @ c[lag:] for c in centred) / (count * len(centred))
+        at_lag = sum(c[: count - lag].T @ c[lag:] for c in centered) / (count * len(centered))
         at_lag *= np.exp(-0.5 * (lag / memory) ** 2)
         for i in range(count - lag):
             covariance[i, :, i + lag], covariance[i + lag, :, i] = at_lag, at_lag.T
@@ -238,7 +238,7 @@ def _covariance(windows: Sequence[Floats], count: int, memory: float) -> Floats:
 
 
 def _sensitivities(samples: Samples, solver: Solver, load: dict[str, Any]) -> Floats:
-    """(N, n, 4 + n): of the torques to mass and centre of mass, and to an offset of each joint."""
+    """(N, n, 4 + n): of the torques to mass and center of mass, and to an offset of each joint."""
 
     def change(mass: float, center: Floats) -> Floats:
         changed = {

@@ -24,10 +24,10 @@
 /// p - r / 2 all second derivatives are within 2 r. If G is singular somewhere, p = 0 is a minimum
 /// for some x, so that its first derivatives vanish there, too, and at a distance of d_j in angle j
 /// the least eigenvalue of G is at most `r (d_1 + ... + d_m)^2`. So a box of angles, of half widths
-/// d_j, at whose centre it is greater, contains no singular position; any other box is halved.
+/// d_j, at whose center it is greater, contains no singular position; any other box is halved.
 ///
 /// **Slides behind a turn** may be of any length, and p isn't bounded. Energy isn't less than that
-/// of the links' turning about their centres of mass, which depends on angles only. If this has a
+/// of the links' turning about their centers of mass, which depends on angles only. If this has a
 /// definite matrix, no energy means that no joint turns. What is left is the energy of the slides,
 /// whose matrix depends on angles only, too.
 ///

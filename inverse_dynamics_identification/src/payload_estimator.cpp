@@ -28,7 +28,7 @@ using Index = Eigen::Index;
 
 constexpr std::size_t kLeastBlocks = 3;
 constexpr int kMostRounds = 30;
-constexpr double kSettled = 1e-7;    // relative change of the mass, and by the extent of the centre
+constexpr double kSettled = 1e-7;    // relative change of the mass, and by the extent of the center
 constexpr double kLeastMass = 1e-9;  // kg
 constexpr double kLeastOffset = 0.05, kMostOffset = 3.0;  // shares of the noise
 constexpr double kKnownInertia = 0.5;                     // half width by mean moment
@@ -258,7 +258,7 @@ Normal PayloadEstimator::Impl::sumOfJoints() {
   return sum;
 }
 
-/// The body, with mass and centre of the prior, and the size of offsets, at those of the body. H:
+/// The body, with mass and center of the prior, and the size of offsets, at those of the body. H:
 /// what data and the prior of the inertia say.
 Vector10 PayloadEstimator::Impl::solve(Normal& normal, Matrix10& H) {
   double mass = kFirstMass;

@@ -42,7 +42,7 @@ OffsetPrior offsetOf(const OffsetLine& line, const Vector10& phi, const Matrix10
 /// The prior of the pseudo-inertia: tr(P0^-1 P) - log det P.
 class BodyPrior {
  public:
-  /// P0: mass and centre of mass, and the standard deviation of mass about it, m.
+  /// P0: mass and center of mass, and the standard deviation of mass about it, m.
   BodyPrior(double mass, const Eigen::Vector3d& center, double extent);
 
   /// The body P0.
@@ -70,7 +70,7 @@ Matrix10 covarianceOf(const Matrix10& information);
 /// The upper 97.5 % point of Student's t; degrees_of_freedom >= 1, infinity included.
 double studentT(double degrees_of_freedom);
 
-/// Inertia about the centre of mass, and its derivative by phi along a direction.
+/// Inertia about the center of mass, and its derivative by phi along a direction.
 Eigen::Matrix3d centralInertia(const Vector10& phi);
 Eigen::Matrix3d centralInertiaChange(const Vector10& phi, const Vector10& direction);
 

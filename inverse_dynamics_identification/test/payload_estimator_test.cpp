@@ -316,7 +316,7 @@ TEST(PayloadEstimator, WithoutALoadTheIntervalReachesZero) {
   EXPECT_LT(found.mass, found.mass_half_width);
 }
 
-TEST(PayloadEstimator, MotionAboutTheVerticalDoesntTellHowHighTheCentreIs) {
+TEST(PayloadEstimator, MotionAboutTheVerticalDoesntTellHowHighTheCenterIs) {
   // Gravity is the same in each pose: no block of data differs, so the jackknife alone sees nothing.
   const auto arm = panda(), loaded = pandaWith(box(3.0));
   PayloadEstimator estimator(arm, optionsWith(noiseOf(0.02, 0.02)));

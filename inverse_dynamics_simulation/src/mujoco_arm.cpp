@@ -56,7 +56,7 @@ Eigen::Quaterniond rotationOf(const urdf::Pose& pose) {
   return {pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z};
 }
 
-// Mass, centre of mass, moments about the principal axes, and these axes.
+// Mass, center of mass, moments about the principal axes, and these axes.
 void writeInertia(const urdf::Inertial& inertial, std::ptrdiff_t body, mjModel& model) {
   Eigen::Matrix3d tensor;
   tensor << inertial.ixx, inertial.ixy, inertial.ixz, inertial.ixy, inertial.iyy, inertial.iyz,

@@ -183,7 +183,7 @@ def write_model(name: str, file: Path) -> Path:
 
 
 def bodies_of(name: str) -> list[list[float]]:
-    """Of each joint and the tip: R (row after row), p, axis, mass, centre, inertia about it (xx xy xz yy yz zz)."""
+    """Of each joint and the tip: R (row after row), p, axis, mass, center, inertia about it (xx xy xz yy yz zz)."""
     rows = []
     links = [*inertial_parameters(simulated(name)).reshape(-1, 10), np.zeros(10)]
     for (R, p, axis), (m, *rest) in zip(_placements(name), links, strict=True):

@@ -30,7 +30,7 @@ def simulated(name: str, **options: object) -> SimulatedRobot:
 
 
 def link(name: str, mass: float = 0.0, center: str = "0 0 0", shapes: str = "") -> str:
-    """A link; with a mass: one of a rod-like inertia about its centre."""
+    """A link; with a mass: one of a rod-like inertia about its center."""
     inertial = (
         f'<inertial><origin xyz="{center}"/><mass value="{mass}"/>'
         '<inertia ixx="0.02" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.01"/></inertial>'

@@ -20,7 +20,7 @@ TOLERANCE = 1e-10
 
 DATA = package_share("inverse_dynamics_robots")
 
-# A pendulum of 2 kg whose centre of mass is 0.5 m from the horizontal axis, and a slider on it.
+# A pendulum of 2 kg whose center of mass is 0.5 m from the horizontal axis, and a slider on it.
 PENDULUM = """
 <robot name="pendulum">
   <link name="base"/>

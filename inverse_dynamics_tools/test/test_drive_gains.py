@@ -162,7 +162,7 @@ def test_a_load_on_the_axis_of_the_last_joint_doesnt_determine_its_gain(currents
     assert "doesn't determine the drive gain of" in text
     assert "wrist_3_joint (+- " in text
     assert not any(name in text for name in ("elbow_joint", "shoulder_lift_joint"))
-    assert "its centre beside the axis" in text
+    assert "its center beside the axis" in text
     assert "drive_gains" in text
 
 

@@ -75,7 +75,7 @@ def test_the_robot_evaluates_with_the_error_of_the_noise(found, files, tmp_path)
 
 
 def test_parameters_are_in_the_frames_of_the_description():
-    """Centres of mass are where the URDF's text says, wherever the axes of the joints point."""
+    """Centers of mass are where the URDF's text says, wherever the axes of the joints point."""
     geometry = chain_geometry(URDF.read_text(), "base_link", JOINTS)
     links = {link.get("name"): link for link in ElementTree.parse(URDF).iter("link")}
     for row, joint in zip(arm().parameters, geometry, strict=True):

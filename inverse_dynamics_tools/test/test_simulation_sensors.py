@@ -144,8 +144,8 @@ def coloured(samples: int = 5000, seed: int = 0) -> np.ndarray:
 
 def correlation(values: np.ndarray, lag: int) -> np.ndarray:
     """(2, 2) normalised covariance at a lag."""
-    centred = (values - values.mean(0)) / values.std(0)
-    return centred[: len(centred) - lag].T @ centred[lag:] / (len(centred) - lag)
+    centered = (values - values.mean(0)) / values.std(0)
+    return centered[: len(centered) - lag].T @ centered[lag:] / (len(centered) - lag)
 
 
 def test_effort_noise_has_the_colour_of_the_residuals() -> None:
@@ -164,12 +164,12 @@ def test_effort_noise_has_the_colour_of_the_residuals() -> None:
 def test_effort_noise_of_equal_period_is_residuals_as_they_are() -> None:
     residuals = coloured()
     noise = EffortNoise(residuals, 1e-3, stretch=0.5).at(TIME[:1000], np.random.default_rng(3))
-    centred = residuals - residuals.mean(0)
-    nearest = np.abs(noise[:, None] - centred[None]).max(2).min(1)
+    centered = residuals - residuals.mean(0)
+    nearest = np.abs(noise[:, None] - centered[None]).max(2).min(1)
     assert nearest.max() < 1e-9
     # the stretches: of 500 samples each
-    follows = [np.abs(centred - one).max(1).argmin() for one in noise]
-    assert (np.diff(follows) % len(centred) == 1).mean() >= 998 / 999
+    follows = [np.abs(centered - one).max(1).argmin() for one in noise]
+    assert (np.diff(follows) % len(centered) == 1).mean() >= 998 / 999
 
 
 def test_effort_noise_between_residuals_is_interpolated() -> None:

@@ -108,7 +108,7 @@ def test_mujoco_moves_as_asked_while_the_surroundings_push_back(
         data.qpos[simulator.dofs], data.qvel[simulator.dofs] = states.q[k], states.qd[k]
         data.qfrc_applied[simulator.dofs] = tau[k]
         mujoco.mj_kinematics(simulator.model, data)
-        # MuJoCo's reference point is the centre of mass
+        # MuJoCo's reference point is the center of mass
         arm_to_tip = p[k] - data.xipos[last]
         data.xfrc_applied[last] = -np.concatenate([force, torque + np.cross(arm_to_tip, force)])
         mujoco.mj_forward(simulator.model, data)

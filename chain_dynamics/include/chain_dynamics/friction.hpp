@@ -80,7 +80,7 @@ inline double friction(const FrictionForm& law, double qd, double g) {
   const double sign = qd > 0 ? 1.0 : (qd < 0 ? -1.0 : 0.0);
   const double f = law.fv * qd + law.fc * sign + law.fo;  // NaN stays: 0 * NaN is NaN
   if (!internal::hasStep(law)) return f;
-  const double step = sigmoid(law.alpha * (qd + law.shift)) - law.centre;
+  const double step = sigmoid(law.alpha * (qd + law.shift)) - law.center;
   return f + internal::stepHeight(law, qd, g).height * step;
 }
 
@@ -99,7 +99,7 @@ inline double frictionSlope(const FrictionForm& law, double qd, double g) {
   if (!internal::hasStep(law)) return law.fv;
   const double x = law.alpha * (qd + law.shift);
   const internal::StepHeight B = internal::stepHeight(law, qd, g);
-  return law.fv + B.by_velocity * (sigmoid(x) - law.centre) +
+  return law.fv + B.by_velocity * (sigmoid(x) - law.center) +
          B.height * law.alpha * sigmoid(x) * sigmoid(-x);
 }
 
@@ -114,7 +114,7 @@ inline double frictionSlope(const FrictionLaw& law, double qd, double g) {
 /// Real time: no allocation, lock, exception or system call. Threads: safe.
 inline double frictionLoadSlope(const FrictionForm& law, double qd, double g) {
   if (law.fl == 0 || g == 0) return 0;
-  const double step = sigmoid(law.alpha * (qd + law.shift)) - law.centre;
+  const double step = sigmoid(law.alpha * (qd + law.shift)) - law.center;
   return std::copysign(law.fl, g) * step;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What the tip carries: mass, centre of mass and inertia from a few seconds of motion.
+/// What the tip carries: mass, center of mass and inertia from a few seconds of motion.
 ///
 ///     PayloadEstimator estimator(solver, options);                  // options.noise is required
 ///     while (moving) estimator.update(time, q, qd, qdd, effort);    // each cycle
@@ -26,7 +26,7 @@
 /// P the 4 x 4 pseudo-inertia of the body, which stays positive definite: mass, second moments and
 /// triangle inequality are those of a real body [Wensing, Kim, Slotine 2018,
 /// doi 10.1109/LRA.2017.2729659; Lee, Park 2018, doi 10.1109/LRA.2018.2799426]. P0 has mass and
-/// centre of mass of the estimate itself and the standard deviation `extent` of mass about it, so it
+/// center of mass of the estimate itself and the standard deviation `extent` of mass about it, so it
 /// decides the inertia where the data don't tell, and nothing else.
 ///
 /// Intervals rest on how much the estimate changes as each block of each joint is left out (the
@@ -76,7 +76,7 @@ struct PayloadOptions {
   /// that the solver computes.
   inverse_dynamics_solver::RigidBody carried;
 
-  double extent = 0.04;  ///< standard deviation of mass about its centre that is expected, > 0; m
+  double extent = 0.04;  ///< standard deviation of mass about its center that is expected, > 0; m
   double block = 0.8;    ///< of time, several correlation times long, > 0; s
   /// Variance of what the arm's model is wrong by, in units of what the noise gives, >= 0; 0: exact.
   double model_error = 1.0;
@@ -105,7 +105,7 @@ struct PayloadEstimate {
   double mass_half_width = 0.0;                                         ///< kg
   Eigen::Vector3d center_of_mass = Eigen::Vector3d::Zero();             ///< m
   Eigen::Vector3d center_of_mass_half_width = Eigen::Vector3d::Zero();  ///< m
-  /// About the centre of mass, axes of the tip frame; kg m^2.
+  /// About the center of mass, axes of the tip frame; kg m^2.
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d inertia_half_width = Eigen::Matrix3d::Zero();  ///< kg m^2, of the data alone
   /// Whether the data tell the inertia: half widths of the three moments below half of their mean.

@@ -403,7 +403,7 @@ def _loads(
     measured: Floats,
     computed: Floats,
 ) -> Iterator[_Hypothesis]:
-    """A body at the tip: its mass and centre are fitted, to all joints together."""
+    """A body at the tip: its mass and center are fitted, to all joints together."""
     if model.loaded is None or model.compared_without_gravity:
         return
     reach = 0.1  # m: torques are linear in mass and first moment, but for a small moment of inertia

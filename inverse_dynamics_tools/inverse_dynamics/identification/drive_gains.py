@@ -283,7 +283,7 @@ def _check(
     where = ", ".join(str(recording.evaluation.bag) for recording in read)
     raise IdentificationError(
         f"{where}: the known load doesn't determine the drive gain of {listed(unknown)}: its torque at the joint is "
-        "too small compared with noise and friction; fix the load with its centre beside the axis and "
+        "too small compared with noise and friction; fix the load with its center beside the axis and "
         "turn the wrist so that gravity loads the joint, or state these gains: `drive_gains` of the run "
         "configuration is used for joints whose gain isn't determined",
         "Efforts are motor currents",

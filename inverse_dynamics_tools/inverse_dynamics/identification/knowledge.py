@@ -76,9 +76,9 @@ class Knowledge:
         its strength, the links tell that the data have moved.
         """
         bread = _inverse(self.data + self.prior)
-        centred = self.scores - self.scores.mean(0)
-        clusters = len(centred)
-        meat = centred.T @ centred * (clusters / (clusters - 1))
+        centered = self.scores - self.scores.mean(0)
+        clusters = len(centered)
+        meat = centered.T @ centered * (clusters / (clusters - 1))
         covariance: Floats = bread @ (meat + self._prior_error() * self.prior) @ bread
         return covariance
 
@@ -153,9 +153,9 @@ def independent_samples(errors: Sequence[Floats]) -> Floats:
     """
     total = np.zeros(errors[0].shape[1])
     for block in errors:
-        centred = block - block.mean(0)
-        size = len(centred)
-        spectrum = np.abs(np.fft.rfft(centred, 2 * size, axis=0)) ** 2
+        centered = block - block.mean(0)
+        size = len(centered)
+        spectrum = np.abs(np.fft.rfft(centered, 2 * size, axis=0)) ** 2
         correlation = np.fft.irfft(spectrum, axis=0)[:size]
         correlation = correlation / np.maximum(correlation[0], 1e-300)
         positive = np.logical_and.accumulate(correlation > 0, axis=0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a robot carries: mass, centre of mass and inertia from a few seconds of motion.
+"""What a robot carries: mass, center of mass and inertia from a few seconds of motion.
 
     found = estimate_payload("recording", "ur10_real", empty="recording_without_load")
     print(found.estimate.mass, found.estimate.mass_half_width)
@@ -43,7 +43,7 @@ _LEAST_MOTION = 2.0  # s
 _MOVING = 0.02  # rad/s (m/s)
 _MOST_ROUNDS = 8
 _SETTLED = 1e-3  # of the half widths
-_WORST_CENTER = 0.1  # m: half width of a centre of mass that isn't known
+_WORST_CENTER = 0.1  # m: half width of a center of mass that isn't known
 _LEAST_SHARE = 0.02  # of a joint's noise: offsets aren't known better
 _MOST_UNEXPLAINED = 0.5  # of what the torques of a joint vary by
 _LEAST_VARIATION = 0.1  # of the largest torques: of joints that this is asked of
@@ -382,7 +382,7 @@ def _notes(found: Fit, evaluation: Evaluation) -> list[str]:
         )
     if not evaluation.robot.friction:
         notes.append(
-            "friction is left out: where the robot has friction, mass and centre are wrong by more than "
+            "friction is left out: where the robot has friction, mass and center are wrong by more than "
             "their intervals"
         )
     return notes

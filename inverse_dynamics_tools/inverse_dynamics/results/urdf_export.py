@@ -140,7 +140,7 @@ def _lumped_links(
 
 
 def _set_inertial(link: ElementTree.Element, parameters: Floats) -> None:
-    """Mass, centre of mass, and inertia about it, in the axes of the link."""
+    """Mass, center of mass, and inertia about it, in the axes of the link."""
     mass, center = float(parameters[0]), parameters[1:4] / parameters[0]
     about_center = inertia_matrix(parameters[4:]) - mass * (
         center @ center * np.eye(3) - np.outer(center, center)

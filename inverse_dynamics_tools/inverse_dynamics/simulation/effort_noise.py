@@ -84,8 +84,8 @@ class EffortNoise:
         place = starts[stretch] + (time - time[0] - stretch * self.stretch) / self.period
         before = np.floor(place + 1e-6).astype(int)
         share = np.maximum(place - before, 0.0)[:, None]
-        centred = self.residuals - self.residuals.mean(axis=0)
-        noise: Floats = (1 - share) * centred[before % count] + share * centred[
+        centered = self.residuals - self.residuals.mean(axis=0)
+        noise: Floats = (1 - share) * centered[before % count] + share * centered[
             (before + 1) % count
         ]
         return noise

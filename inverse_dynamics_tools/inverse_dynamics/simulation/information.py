@@ -248,14 +248,14 @@ def sample_weight(period: float) -> float:
 
 
 def _pseudo_inertia(link: Floats, total_mass: float) -> Floats:
-    """P (4, 4) of ten parameters; where the description's isn't usable, made so at the centre of mass."""
+    """P (4, 4) of ten parameters; where the description's isn't usable, made so at the center of mass."""
     m, mc = link[0], link[1:4]
     xx, xy, xz, yy, yz, zz = link[4:]
     inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     second = 0.5 * np.trace(inertia) * np.eye(3) - inertia
     mass = max(m, _LEAST_MASS * total_mass)
     center = mc / m if m > 0.0 else np.zeros(3)
-    # about the centre of mass, in principal axes: the same in whatever frame
+    # about the center of mass, in principal axes: the same in whatever frame
     moments, axes = np.linalg.eigh(second - m * np.outer(center, center))
     central = (axes * np.maximum(moments, mass * _LEAST_EXTENT**2)) @ axes.T
     P = np.empty((4, 4))

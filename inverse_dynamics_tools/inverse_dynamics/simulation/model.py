@@ -40,7 +40,7 @@ MOUNTS = {"floor": (0.0, 0.0, -9.81), "wall": (-9.81, 0.0, 0.0), "ceiling": (0.0
 
 @dataclass(frozen=True)
 class Payload:
-    """A point mass fixed to the tip: kg; centre of mass in the tip's frame, m."""
+    """A point mass fixed to the tip: kg; center of mass in the tip's frame, m."""
 
     mass: float
     center: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -206,7 +206,7 @@ def _line(error: Exception) -> str:
 def _attach(spec: mujoco.MjSpec, tip: str, payload: Payload) -> None:
     if not (np.isfinite(payload.mass) and payload.mass > 0 and np.isfinite(payload.center).all()):
         raise SimulationError(
-            "payload: expected a mass above zero [kg] and a finite centre of mass [m], got "
+            "payload: expected a mass above zero [kg] and a finite center of mass [m], got "
             f"{payload.mass:g} kg at {', '.join(f'{x:g}' for x in payload.center)}"
         )
     spec.body(tip).add_body(

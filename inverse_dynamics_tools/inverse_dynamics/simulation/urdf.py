@@ -29,7 +29,7 @@ _IMPOSSIBLE = {"planar", "floating"}
 
 @dataclass(frozen=True)
 class Inertia:
-    """Inertia of one link as the URDF states it: mass [kg], tensor [kg m^2] about the centre of mass."""
+    """Inertia of one link as the URDF states it: mass [kg], tensor [kg m^2] about the center of mass."""
 
     mass: float
     center: Floats  # (3,) m, in the link's frame

@@ -17,7 +17,7 @@ from payload_truth import Arm, trials
 
 TRIALS = 100
 
-# Medians: relative error of the mass, distance of the centre of mass [m]; half width of the mass by its error.
+# Medians: relative error of the mass, distance of the center of mass [m]; half width of the mass by its error.
 # The model of the arm is taken for exact, or what it may be wrong by is estimated with the load.
 MOST = {
     ("panda", 1.0, 4.0, "exact"): (0.015, 0.010, 4.0),  # 30 Hz

@@ -36,7 +36,7 @@ struct CenteredSigmoid {
     form.A = A;
     form.alpha = alpha;
     form.shift = delta;
-    form.centre = sigmoid(alpha * delta);
+    form.center = sigmoid(alpha * delta);
     return form;
   }
 };

@@ -38,7 +38,7 @@ struct Figure {
 
 /// Every law in one form, that of the fast kernels:
 ///
-///     f = fv qd + fc sign(qd) + fo + B (sigmoid(alpha (qd + shift)) - centre),
+///     f = fv qd + fc sign(qd) + fo + B (sigmoid(alpha (qd + shift)) - center),
 ///     B = A + fl |g| + fs exp(-(qd / vs)^2),    sigmoid(x) = 1 / (1 + exp(-x)).
 struct FrictionForm {
   double fv = 0;      ///< viscous coefficient [N m s/rad]
@@ -47,7 +47,7 @@ struct FrictionForm {
   double A = 0;       ///< height of the smooth step [N m]
   double alpha = 0;   ///< its steepness [s/rad]
   double shift = 0;   ///< the step is at qd = -shift [rad/s]
-  double centre = 0;  ///< part of the step that is taken off: 1/2 makes it symmetric
+  double center = 0;  ///< part of the step that is taken off: 1/2 makes it symmetric
   double fl = 0;      ///< what a gravity torque of 1 N m adds to the height of the step; >= 0
   double fs = 0;      ///< what the Stribeck effect adds at rest [N m]
   double per_vs = 0;  ///< 1 / vs [s/rad]

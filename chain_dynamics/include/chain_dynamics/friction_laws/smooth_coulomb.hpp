@@ -53,7 +53,7 @@ struct SmoothCoulomb {
     form.A = 2 * fc;
     form.alpha = 2 / width;
     form.shift = shift;
-    form.centre = 0.5;
+    form.center = 0.5;
     form.fl = 2 * fl;
     form.fs = 2 * fs;
     if (fs != 0) form.per_vs = 1 / vs;
