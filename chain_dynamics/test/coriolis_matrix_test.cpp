@@ -30,44 +30,36 @@ MatrixX<Scalar> coriolisMatrixOf(const Chain& chain, const VectorX<Scalar>& q,
   return C;
 }
 
-template <typename Scalar>
-MatrixX<Scalar> rates(const MatrixX<Dual<Scalar, 1>>& matrix) {
-  return matrix.unaryExpr([](const Dual<Scalar, 1>& x) { return x.derivative[0]; });
+MatrixX<double> rates(const MatrixX<Dual<double, 1>>& matrix) {
+  return matrix.unaryExpr([](const Dual<double, 1>& x) { return x.derivative[0]; });
 }
 
 // dH/dt along the motion.
-template <typename Scalar>
-MatrixX<Scalar> rateOfInertia(const Chain& chain, const VectorX<Scalar>& q,
-                              const VectorX<Scalar>& qd) {
-  MatrixX<Dual<Scalar, 1>> H(chain.jointCount(), chain.jointCount());
-  inertiaMatrix(chain, moving<Scalar>(q, qd), H);
-  return rates<Scalar>(H);
+MatrixX<double> rateOfInertia(const Chain& chain, const VectorX<double>& q,
+                              const VectorX<double>& qd) {
+  MatrixX<Dual<double, 1>> H(chain.jointCount(), chain.jointCount());
+  inertiaMatrix(chain, moving<double>(q, qd), H);
+  return rates(H);
 }
 
 // Half the derivative of C qd, which is what Christoffel's symbols are.
-template <typename Scalar, typename Vector>
-MatrixX<Scalar> halfDerivative(const State<Scalar>& state, const Vector& coriolis_vector) {
+template <typename Vector>
+MatrixX<double> halfDerivative(const State<double>& state, const Vector& coriolis_vector) {
   const Eigen::Index n = state.q.size();
-  const VectorX<Dual<Scalar, 1>> q = state.q.template cast<Dual<Scalar, 1>>();
-  MatrixX<Scalar> C(n, n);
+  const VectorX<Dual<double, 1>> q = state.q.cast<Dual<double, 1>>();
+  MatrixX<double> C(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
-    MatrixX<Dual<Scalar, 1>> c(n, 1);
+    MatrixX<Dual<double, 1>> c(n, 1);
     coriolis_vector(q, variable(state.qd, j), c.col(0));
-    C.col(j) = Scalar(0.5) * rates<Scalar>(c);
+    C.col(j) = 0.5 * rates(c);
   }
   return C;
 }
 
 // The size of the terms that C is the sum of, cancelling or not.
-template <typename Scalar>
-double termsOf(const Chain& chain, const State<Scalar>& state, const MatrixX<Scalar>& C) {
+double termsOf(const Chain& chain, const State<double>& state, const MatrixX<double>& C) {
   return largest(C) + largest(rateOfInertia(chain, state.q, state.qd));
 }
-
-template <typename Scalar>
-class CoriolisMatrixOf : public ::testing::Test {};
-using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(CoriolisMatrixOf, Scalars, );
 
 // Of H in inertia_matrix_test.cpp: with k = m2 l1 l2,
 //   C = k sin q2 [-qd2, -(qd1 + qd2); qd1, 0]
@@ -91,60 +83,52 @@ TEST(CoriolisMatrix, OfATurntableWithASlideByHand) {
       expected, 1, kByHand));
 }
 
-TYPED_TEST(CoriolisMatrixOf, AnyRobotIsThatOfChristoffelsSymbols) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const MatrixX<Scalar> C = coriolisMatrixOf(chain, state.q, state.qd);
-    const MatrixX<Scalar> expected = halfDerivative(
+TEST(CoriolisMatrix, IsThatOfChristoffelsSymbols) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const MatrixX<double> C = coriolisMatrixOf(chain, state.q, state.qd);
+    const MatrixX<double> expected = halfDerivative(
         state, [&](const auto& q, const auto& qd, auto c) { coriolisVector(chain, q, qd, c); });
-    EXPECT_TRUE(agree(C, expected, termsOf(chain, state, C), rounding<Scalar>(chain)));
+    EXPECT_TRUE(agree(C, expected, termsOf(chain, state, C), rounding(chain)));
   });
 }
 
-TYPED_TEST(CoriolisMatrixOf, AnyRobotTimesVelocityIsTheCoriolisVector) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const MatrixX<Scalar> C = coriolisMatrixOf(chain, state.q, state.qd);
-    VectorX<Scalar> c(chain.jointCount());
+TEST(CoriolisMatrix, TimesVelocityIsTheCoriolisVector) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const MatrixX<double> C = coriolisMatrixOf(chain, state.q, state.qd);
+    VectorX<double> c(chain.jointCount());
     coriolisVector(chain, state.q, state.qd, c);
     const double scale = termsOf(chain, state, C) * static_cast<double>(state.qd.cwiseAbs().sum());
-    EXPECT_TRUE(agree((C * state.qd).eval(), c, scale, rounding<Scalar>(chain)));
+    EXPECT_TRUE(agree((C * state.qd).eval(), c, scale, rounding(chain)));
   });
 }
 
 // dH/dt = C + C', so dH/dt - 2 C = C' - C is skew.
-TYPED_TEST(CoriolisMatrixOf, AnyRobotAndItsTransposeAreTheRateOfInertia) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const MatrixX<Scalar> C = coriolisMatrixOf(chain, state.q, state.qd);
+TEST(CoriolisMatrix, AndItsTransposeAreTheRateOfInertia) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const MatrixX<double> C = coriolisMatrixOf(chain, state.q, state.qd);
     EXPECT_TRUE(agree((C + C.transpose()).eval(), rateOfInertia(chain, state.q, state.qd),
-                      termsOf(chain, state, C), rounding<Scalar>(chain)));
+                      termsOf(chain, state, C), rounding(chain)));
   });
 }
 
-TYPED_TEST(CoriolisMatrixOf, ParameterSetsAreThatOfTheirCoriolisVector) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+TEST(CoriolisMatrix, OfParameterSetsAreThatOfTheirCoriolisVector) {
+  forEachState([](const Chain& chain, const State<double>& state) {
     if (chain.jointCount() > 9) return;
-    Random random(7);
-    std::vector<std::vector<LinkParameters>> rows(chain.links().size(), chain.links());
-    for (std::vector<LinkParameters>& row : rows) {
-      for (LinkParameters& link : row) link = randomIdentifiedLink(random);
-    }
+    const auto rows = randomIdentifiedRows(chain);
     const std::vector<LinkParameters> gravity = chain.links();
     const ParameterSets sets{rows, gravity};
-    MatrixX<Scalar> C(chain.jointCount(), chain.jointCount());
+    MatrixX<double> C(chain.jointCount(), chain.jointCount());
     coriolisMatrix(chain, sets, state.q, state.qd, C);
-    const MatrixX<Scalar> expected = halfDerivative(
+    const MatrixX<double> expected = halfDerivative(
         state,
         [&](const auto& q, const auto& qd, auto c) { coriolisVector(chain, sets, q, qd, c); });
-    EXPECT_TRUE(agree(C, expected, largest(C) + 1, rounding<Scalar>(chain)));
+    EXPECT_TRUE(agree(C, expected, largest(C) + 1, rounding(chain)));
   });
 }
 
 TEST(CoriolisMatrix, IsZeroAtRestAndIgnoresGravityAndTheFirstJoint) {
   const Chain chain = randomChain(6);
-  const State<double> state = randomState<double>(chain, 1);
+  const State<double> state = randomState(chain, 1);
   const MatrixX<double> C = coriolisMatrixOf(chain, state.q, state.qd);
   EXPECT_EQ(coriolisMatrixOf<double>(chain, state.q, VectorX<double>::Zero(6)).norm(), 0);
   EXPECT_EQ(coriolisMatrixOf(chain.withGravity({0, 0, 0}), state.q, state.qd), C);
@@ -155,7 +139,7 @@ TEST(CoriolisMatrix, IsZeroAtRestAndIgnoresGravityAndTheFirstJoint) {
 
 // Powers of two are exact, so is the result.
 TEST(CoriolisMatrix, GrowsWithTheVelocity) {
-  forEachState<double>([](const Chain& chain, const State<double>& state) {
+  forEachState([](const Chain& chain, const State<double>& state) {
     EXPECT_EQ(coriolisMatrixOf<double>(chain, state.q, -4 * state.qd),
               -4 * coriolisMatrixOf(chain, state.q, state.qd));
   });
@@ -163,7 +147,7 @@ TEST(CoriolisMatrix, GrowsWithTheVelocity) {
 
 TEST(CoriolisMatrix, IsNanWhereItDependsOnANan) {
   const Chain chain = randomChain(6);
-  const State<double> state = randomState<double>(chain, 0);
+  const State<double> state = randomState(chain, 0);
   const State<Dual<double, 1>> constants = state.cast<Dual<double, 1>>();
   for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
     VectorX<double> nan = VectorX<double>::Zero(6);

@@ -27,25 +27,18 @@ VectorX<Scalar> coriolisOf(const Chain& chain, const VectorX<Scalar>& q,
 }
 
 // dH/dt along the motion.
-template <typename Scalar>
-MatrixX<Scalar> rateOfInertia(const Chain& chain, const State<Scalar>& state) {
-  MatrixX<Dual<Scalar, 1>> H(chain.jointCount(), chain.jointCount());
-  inertiaMatrix(chain, moving<Scalar>(state.q, state.qd), H);
-  return H.unaryExpr([](const Dual<Scalar, 1>& x) { return x.derivative[0]; });
+MatrixX<double> rateOfInertia(const Chain& chain, const State<double>& state) {
+  MatrixX<Dual<double, 1>> H(chain.jointCount(), chain.jointCount());
+  inertiaMatrix(chain, moving<double>(state.q, state.qd), H);
+  return H.unaryExpr([](const Dual<double, 1>& x) { return x.derivative[0]; });
 }
 
 // The size of the terms that the Coriolis torques are the sum of, cancelling or not.
-template <typename Scalar>
-double coriolisTermsOf(const Chain& chain, const State<Scalar>& state) {
-  const MatrixX<Scalar> rate = rateOfInertia(chain, state);
+double coriolisTermsOf(const Chain& chain, const State<double>& state) {
+  const MatrixX<double> rate = rateOfInertia(chain, state);
   return largest(rate.cwiseAbs() * state.qd.cwiseAbs()) +
          largest(coriolisOf(chain, state.q, state.qd));
 }
-
-template <typename Scalar>
-class CoriolisVectorOf : public ::testing::Test {};
-using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(CoriolisVectorOf, Scalars, );
 
 // Derived in torques_test.cpp: with k = m2 l1 l2,
 //   c1 = -k sin q2 (2 qd1 qd2 + qd2^2), c2 = k sin q2 qd1^2
@@ -66,32 +59,30 @@ TEST(CoriolisVector, OfATurntableWithASlideByHand) {
             expected, 1, kByHand));
 }
 
-TYPED_TEST(CoriolisVectorOf, AnyRobotIsThatOfLagrangesEquation) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    State<Scalar> unaccelerated = state;
+TEST(CoriolisVector, IsThatOfLagrangesEquation) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    State<double> unaccelerated = state;
     unaccelerated.qdd.setZero();
     EXPECT_TRUE(agree(coriolisOf(chain, state.q, state.qd),
                       lagrangeOfKineticEnergy(chain, unaccelerated), coriolisTermsOf(chain, state),
-                      rounding<Scalar>(chain)));
+                      rounding(chain)));
   });
 }
 
 // qd' (dH/dt - 2 C) qd = 0: Coriolis torques only pass energy on from joint to joint.
-TYPED_TEST(CoriolisVectorOf, AnyRobotChangesNoEnergy) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const Scalar power = state.qd.dot(coriolisOf(chain, state.q, state.qd));
-    const Scalar rate = state.qd.dot(rateOfInertia(chain, state) * state.qd);
+TEST(CoriolisVector, ChangesNoEnergy) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const double power = state.qd.dot(coriolisOf(chain, state.q, state.qd));
+    const double rate = state.qd.dot(rateOfInertia(chain, state) * state.qd);
     const double scale =
         coriolisTermsOf(chain, state) * static_cast<double>(state.qd.cwiseAbs().sum());
-    EXPECT_NEAR(2 * power, rate, rounding<Scalar>(chain) * scale);
+    EXPECT_NEAR(2 * power, rate, rounding(chain) * scale);
   });
 }
 
 // Powers of two are exact, so is the result.
 TEST(CoriolisVector, GrowsWithTheSquareOfTheVelocity) {
-  forEachState<double>([](const Chain& chain, const State<double>& state) {
+  forEachState([](const Chain& chain, const State<double>& state) {
     EXPECT_EQ(coriolisOf<double>(chain, state.q, 4 * state.qd),
               16 * coriolisOf(chain, state.q, state.qd));
   });
@@ -99,7 +90,7 @@ TEST(CoriolisVector, GrowsWithTheSquareOfTheVelocity) {
 
 TEST(CoriolisVector, IsZeroAtRestAndIgnoresGravity) {
   const Chain chain = randomChain(6);
-  const State<double> state = randomState<double>(chain, 1);
+  const State<double> state = randomState(chain, 1);
   EXPECT_EQ(coriolisOf<double>(chain, state.q, VectorX<double>::Zero(6)).norm(), 0);
   EXPECT_EQ(coriolisOf(chain.withGravity({0, 0, 0}), state.q, state.qd),
             coriolisOf(chain, state.q, state.qd));
@@ -107,7 +98,7 @@ TEST(CoriolisVector, IsZeroAtRestAndIgnoresGravity) {
 
 TEST(CoriolisVector, IsNanWhereItDependsOnANan) {
   const Chain chain = randomChain(6);
-  const State<double> state = randomState<double>(chain, 0);
+  const State<double> state = randomState(chain, 0);
   const State<Dual<double, 1>> constants = state.cast<Dual<double, 1>>();
   for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
     VectorX<double> nan = VectorX<double>::Zero(6);

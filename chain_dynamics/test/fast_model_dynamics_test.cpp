@@ -59,7 +59,7 @@ void expectDerivatives(const Results& fast, const Model& model, const State<doub
   MatrixXd by_q(n, n), by_qd(n, n), by_qdd(n, n);
   torqueDerivatives(model, x.q, x.qd, x.qdd, by_q, by_qd, by_qdd);
   addFrictionDerivatives(model, x.q, x.qd, by_q, by_qd);
-  const double tolerance = 4 * rounding<double>(model.chain);
+  const double tolerance = 4 * rounding(model.chain);
   const double speed = std::max(1.0, largest(x.qd));
   const double rate = largest(by_qdd) * speed + largest(by_qd);
   EXPECT_TRUE(agree(fast.by_q.topRows(n), by_q, largest(by_q) + rate * speed, tolerance)) << "by q";
@@ -71,7 +71,7 @@ void expectRegressor(const Results& fast, const Chain& chain, const State<double
   const Index n = chain.jointCount();
   MatrixXd Y(n, 10 * n);
   regressor(chain, x.q, x.qd, x.qdd, Y);
-  EXPECT_TRUE(agree(fast.Y.topRows(n), Y, largest(Y), 4 * rounding<double>(chain))) << "regressor";
+  EXPECT_TRUE(agree(fast.Y.topRows(n), Y, largest(Y), 4 * rounding(chain))) << "regressor";
 }
 
 /// The torques of the accelerations found are those asked for.
@@ -83,7 +83,7 @@ void expectSolves(const Results& fast, const Model& model, const State<double>& 
   dynamicComponents(model, x.q, x.qd, H, c, g);
   frictionVector(model, x.q, x.qd, f);
   const double terms = largest(H.cwiseAbs() * fast.qdd.cwiseAbs() + c.cwiseAbs() + g.cwiseAbs());
-  const double tolerance = 4 * rounding<double>(model.chain);
+  const double tolerance = 4 * rounding(model.chain);
   EXPECT_TRUE(agree(H * fast.qdd + c + g + f, tau, terms + largest(tau), tolerance)) << "solution";
 }
 
@@ -93,7 +93,7 @@ TEST_P(FastModelOn, GivesDerivativesRegressorAndAccelerationsOfThePlainFunctions
   for (const auto& [name, model] : models()) {
     const FastModel fast(model, GetParam());
     for (std::uint32_t seed = 0; seed < 3; ++seed) {
-      const State<double> x = randomState<double>(model.chain, seed);
+      const State<double> x = randomState(model.chain, seed);
       SCOPED_TRACE(name + "\n" + paste(model.chain, x));
       const VectorXd tau = 10 * x.qdd;
       const Results results = resultsOf(fast, x, tau);
@@ -109,7 +109,7 @@ TEST_P(FastModelOn, LargeAnglesInOneJointLeaveTheOthersRight) {
   const Model model(revolute(randomChain(7)));
   const FastModel fast(model, GetParam());
   for (const double angle : {1e4, 1e7, -3e12}) {
-    State<double> x = randomState<double>(model.chain, 2);
+    State<double> x = randomState(model.chain, 2);
     x.q[3] = angle;
     const Results results = resultsOf(fast, x, x.qdd);
     expectDerivatives(results, model, x);
@@ -124,7 +124,7 @@ TEST_P(FastModelOn, NanGoesToEveryEntryThatDependsOnIt) {
   const Model model(revolute(randomChain(6)));
   const FastModel fast(model, GetParam());
   for (Index j = 1; j < 6; ++j) {
-    State<double> x = randomState<double>(model.chain, 1);
+    State<double> x = randomState(model.chain, 1);
     x.q[j] = kNan;
     const Results results = resultsOf(fast, x, x.qdd);
     EXPECT_TRUE(results.by_q.topRows(6).array().isNaN().all()) << j << "\n" << results.by_q;
@@ -132,7 +132,7 @@ TEST_P(FastModelOn, NanGoesToEveryEntryThatDependsOnIt) {
     EXPECT_TRUE(results.qdd.array().isNaN().all()) << results.qdd.transpose();
     EXPECT_TRUE(results.Y.row(0).middleCols(51, 3).array().isNaN().all()) << results.Y;
   }
-  State<double> x = randomState<double>(model.chain, 1);
+  State<double> x = randomState(model.chain, 1);
   x.qd[0] = kNan;
   const Results results = resultsOf(fast, x, x.qdd);
   EXPECT_TRUE(results.by_q.topRightCorner(6, 5).array().isNaN().all()) << results.by_q;
@@ -143,7 +143,7 @@ TEST_P(FastModelOn, NanGoesToEveryEntryThatDependsOnIt) {
 TEST_P(FastModelOn, SlopesOfFrictionAreFiniteForAnyVelocityAndNanForNan) {
   const Model model = identified(randomChain(3), false, false, 5);
   const FastModel fast(model, GetParam());
-  State<double> x = randomState<double>(model.chain, 1);
+  State<double> x = randomState(model.chain, 1);
   for (const double qd : {1e3, -1e5, 0.0}) {
     x.qd.setConstant(qd);
     EXPECT_TRUE(resultsOf(fast, x, x.qdd).by_qd.allFinite()) << qd;
@@ -155,7 +155,7 @@ TEST_P(FastModelOn, SlopesOfFrictionAreFiniteForAnyVelocityAndNanForNan) {
 TEST_P(FastModelOn, AJointThatMovesNothingHasNoFiniteAcceleration) {
   const Chain chain("nothing", {randomChain(1).joints()[0]}, {LinkParameters::zero()}, {0, 0, -9});
   const FastModel fast(Model(chain), GetParam());
-  const State<double> x = randomState<double>(chain, 1);
+  const State<double> x = randomState(chain, 1);
   EXPECT_FALSE(std::isfinite(resultsOf(fast, x, VectorXd::Ones(1)).qdd[0]));
 }
 
@@ -165,7 +165,7 @@ TEST_P(FastModelOn, NoCallAllocates) {
   }
   for (const auto& [name, model] : models()) {
     const FastModel fast(model, GetParam());
-    const State<double> x = randomState<double>(model.chain, 1);
+    const State<double> x = randomState(model.chain, 1);
     Results results(x.q.size());
     const AllocationGuard guard;
     compute(fast, x, x.qdd, results);

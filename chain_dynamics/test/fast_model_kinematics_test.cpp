@@ -102,10 +102,9 @@ TEST_P(FastModelOn, GivesKinematicsAndCoriolisMatrixOfThePlainFunctions) {
     const Model model = withEnds(like);
     const FastModel fast(model, GetParam());
     for (std::uint32_t seed = 0; seed < 3; ++seed) {
-      const State<double> x = randomState<double>(model.chain, seed);
+      const State<double> x = randomState(model.chain, seed);
       SCOPED_TRACE(name + "\n" + paste(model.chain, x));
-      expectEqual(single(fast, x.q, x.qd), plain(model, x), model, x,
-                  4 * rounding<double>(model.chain));
+      expectEqual(single(fast, x.q, x.qd), plain(model, x), model, x, 4 * rounding(model.chain));
       if (HasFailure()) return;
     }
   }
@@ -227,7 +226,7 @@ TEST_P(FastModelOn, JacobiansDoNotDependOnTheFirstJointsPlace) {
     Model here = model;
     joints[0].placement.p.setZero();
     here.chain = Chain("here", joints, model.chain.links(), model.chain.gravity());
-    const State<double> x = randomState<double>(model.chain, 3);
+    const State<double> x = randomState(model.chain, 3);
     const Results far = single(FastModel(away, GetParam()), x.q, x.qd);
     const Results near = single(FastModel(here, GetParam()), x.q, x.qd);
     EXPECT_EQ(far.J, near.J) << name;

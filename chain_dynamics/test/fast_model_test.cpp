@@ -157,10 +157,10 @@ TEST_P(FastModelOn, EqualsThePlainFunctions) {
   for (const auto& [name, model] : models()) {
     const FastModel fast(model, GetParam());
     for (std::uint32_t seed = 0; seed < 5; ++seed) {
-      const State<double> x = randomState<double>(model.chain, seed);
+      const State<double> x = randomState(model.chain, seed);
       SCOPED_TRACE(name + "\n" + paste(model.chain, x));
       const Terms plain = termsOf(model, x);
-      const double tolerance = 4 * rounding<double>(model.chain);
+      const double tolerance = 4 * rounding(model.chain);
       expectEqual(termsOf(fast, x), plain, x, tolerance);
       expectEqual(componentsOf(fast, x), plain, x, tolerance);
       if (HasFailure()) return;
@@ -219,7 +219,7 @@ TEST_P(FastModelOn, NanGoesToEveryEntry) {
   for (VectorXd State<double>::*argument :
        {&State<double>::q, &State<double>::qd, &State<double>::qdd}) {
     for (Index j = argument == &State<double>::q ? 1 : 0; j < 6; ++j) {
-      State<double> x = randomState<double>(model.chain, 1);
+      State<double> x = randomState(model.chain, 1);
       (x.*argument)[j] = std::numeric_limits<double>::quiet_NaN();
       const VectorXd tau = termsOf(fast, x).tau;
       EXPECT_TRUE(tau.array().isNaN().all()) << "joint " << j << ": " << tau.transpose();
@@ -249,7 +249,7 @@ TEST_P(FastModelOn, VectorsMayBeWrittenWhereAnInputStands) {
   for (const auto& [name, model] : models()) {
     const Index n = model.chain.jointCount();
     const FastModel fast(model, GetParam());
-    const State<double> x = randomState<double>(model.chain, 1);
+    const State<double> x = randomState(model.chain, 1);
     const Terms alone = termsOf(fast, x);
     SCOPED_TRACE(name);
     for (VectorXd State<double>::*argument :
@@ -296,7 +296,7 @@ TEST_P(FastModelOn, VectorsOfABatchMayBeWrittenWhereAnInputStands) {
 TEST_P(FastModelOn, PlaceOfTheFirstJointMakesNoDifference) {
   for (const Index n : {1, 6, 7, 9}) {
     const Chain chain = rightAngled(n, 2, true);
-    const State<double> x = randomState<double>(chain, 1);
+    const State<double> x = randomState(chain, 1);
     const Terms here = termsOf(FastModel(Model(chain), GetParam()), x);
     for (const double away : {1e3, 1e14, 1e50}) {
       std::vector<Joint> joints = chain.joints();
@@ -339,9 +339,9 @@ TEST_P(FastModelOn, LargeAnglesInOneJointLeaveTheOthersRight) {
   const Model model(revolute(randomChain(7)));
   const FastModel fast(model, GetParam());
   for (const double angle : {1e4, 1e7, -3e12}) {
-    State<double> x = randomState<double>(model.chain, 2);
+    State<double> x = randomState(model.chain, 2);
     x.q[3] = angle;
-    expectEqual(termsOf(fast, x), termsOf(model, x), x, rounding<double>(model.chain));
+    expectEqual(termsOf(fast, x), termsOf(model, x), x, rounding(model.chain));
   }
 }
 
@@ -351,7 +351,7 @@ TEST_P(FastModelOn, NoCallAllocates) {
   }
   for (const auto& [name, model] : models()) {
     const FastModel fast(model, GetParam());
-    const State<double> x = randomState<double>(model.chain, 1);
+    const State<double> x = randomState(model.chain, 1);
     Terms terms(x.q.size());
     const Index n = x.q.size();
     const AllocationGuard guard;
@@ -455,7 +455,7 @@ TEST(FastModel, OfAChangedModelGivesTheBitsOfOneMadeForIt) {
       changed.chain = changed.chain.withGravity({1.0, -2.0, 3.0});
       const FastModel fast(changed, original);
       EXPECT_EQ(fast.instructionSet(), set);
-      const auto x = randomState<double>(model.chain, 1);
+      const auto x = randomState(model.chain, 1);
       const Terms found = componentsOf(fast, x);
       const Terms expected = componentsOf(FastModel(changed, set), x);
       EXPECT_EQ(found.H, expected.H);

@@ -22,41 +22,33 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-template <typename Scalar>
-VectorX<Scalar> accelerationsOf(const Chain& chain, const VectorX<Scalar>& q,
-                                const VectorX<Scalar>& qd, const VectorX<Scalar>& tau) {
-  VectorX<Scalar> qdd(chain.jointCount());
+VectorX<double> accelerationsOf(const Chain& chain, const VectorX<double>& q,
+                                const VectorX<double>& qd, const VectorX<double>& tau) {
+  VectorX<double> qdd(chain.jointCount());
   forwardDynamics(chain, q, qd, tau, qdd);
   return qdd;
 }
 
-template <typename Scalar>
-VectorX<Scalar> torquesThatCause(const Chain& chain, const State<Scalar>& state) {
-  VectorX<Scalar> tau(chain.jointCount());
+VectorX<double> torquesThatCause(const Chain& chain, const State<double>& state) {
+  VectorX<double> tau(chain.jointCount());
   torques(chain, state.q, state.qd, state.qdd, tau);
   return tau;
 }
 
 // Greatest by smallest eigenvalue of H: what rounding grows by when H is inverted.
-template <typename Scalar>
-double conditionOf(const Chain& chain, const VectorX<Scalar>& q) {
+double conditionOf(const Chain& chain, const VectorX<double>& q) {
   MatrixX<double> H(chain.jointCount(), chain.jointCount());
-  inertiaMatrix(chain, q.template cast<double>().eval(), H);
+  inertiaMatrix(chain, q.cast<double>().eval(), H);
   const Eigen::SelfAdjointEigenSolver<MatrixX<double>> solver(H, Eigen::EigenvaluesOnly);
   return solver.eigenvalues().tail(1)[0] / solver.eigenvalues()[0];
 }
-
-template <typename Scalar>
-class ForwardDynamicsOf : public ::testing::Test {};
-using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(ForwardDynamicsOf, Scalars, );
 
 // (m l^2 + J) qdd = tau - m g l cos q
 TEST(ForwardDynamics, OfAPendulumByHand) {
   const Chain chain = pendulum(2, 0.5, 9.81, 0.25);
   const VectorX<double> qdd =
-      accelerationsOf<double>(chain, VectorX<double>::Constant(1, 0.7),
-                              VectorX<double>::Constant(1, 3), VectorX<double>::Constant(1, 4));
+      accelerationsOf(chain, VectorX<double>::Constant(1, 0.7), VectorX<double>::Constant(1, 3),
+                      VectorX<double>::Constant(1, 4));
   EXPECT_NEAR(qdd[0], (4 - 2 * 9.81 * 0.5 * std::cos(0.7)) / 0.75, 10 * kByHand);
 }
 
@@ -65,8 +57,7 @@ TEST(ForwardDynamics, OfAPendulumByHand) {
 TEST(ForwardDynamics, OfATurntableWithoutTorquesIsAStraightLine) {
   const Eigen::Vector2d q(0.3, 0.4);
   const Eigen::Vector2d qd(2, -0.7);
-  const VectorX<double> qdd =
-      accelerationsOf<double>(turntable(3), q, qd, VectorX<double>::Zero(2));
+  const VectorX<double> qdd = accelerationsOf(turntable(3), q, qd, VectorX<double>::Zero(2));
   EXPECT_TRUE(agree(qdd, Eigen::Vector2d(-2 * -0.7 * 2 / 0.4, 0.4 * 2 * 2), 10, kByHand));
 }
 
@@ -77,38 +68,36 @@ TEST(ForwardDynamics, OfALiftIsFreeFall) {
   lift.type = JointType::kPrismatic;
   const Chain chain("lift", {lift}, {pointMass(2, {1, 2, 3})}, {0, 0, -9.81});
   const VectorX<double> zero = VectorX<double>::Zero(1);
-  EXPECT_NEAR(accelerationsOf<double>(chain, zero, zero, zero)[0], -9.810, kByHand);
+  EXPECT_NEAR(accelerationsOf(chain, zero, zero, zero)[0], -9.810, kByHand);
 }
 
 // The accelerations carry the rounding of the torques, times the condition of H.
-TYPED_TEST(ForwardDynamicsOf, AnyRobotInvertsInverseDynamics) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const VectorX<Scalar> qdd =
+TEST(ForwardDynamics, InvertsInverseDynamics) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const VectorX<double> qdd =
         accelerationsOf(chain, state.q, state.qd, torquesThatCause(chain, state));
-    EXPECT_TRUE(agree(qdd, state.qdd, largest(state.qdd) * conditionOf(chain, state.q),
-                      rounding<Scalar>(chain)));
+    EXPECT_TRUE(
+        agree(qdd, state.qdd, largest(state.qdd) * conditionOf(chain, state.q), rounding(chain)));
   });
 }
 
 // The torques of the accelerations found are those asked for: no condition of H in this way round.
 TEST(ForwardDynamics, IsInvertedByInverseDynamics) {
-  forEachState<double>([](const Chain& chain, const State<double>& state) {
+  forEachState([](const Chain& chain, const State<double>& state) {
     const VectorX<double> tau = 10 * state.qdd;
-    const State<double> moved{state.q, state.qd,
-                              accelerationsOf<double>(chain, state.q, state.qd, tau)};
+    const State<double> moved{state.q, state.qd, accelerationsOf(chain, state.q, state.qd, tau)};
     const Eigen::Index n = chain.jointCount();
     MatrixX<double> H(n, n);
     VectorX<double> c(n);
     VectorX<double> g(n);
     dynamicComponents(chain, state.q, state.qd, H, c, g);
     const double terms = largest(H.cwiseAbs() * moved.qdd.cwiseAbs() + c.cwiseAbs() + g.cwiseAbs());
-    EXPECT_TRUE(agree(torquesThatCause(chain, moved), tau, terms, rounding<double>(chain)));
+    EXPECT_TRUE(agree(torquesThatCause(chain, moved), tau, terms, rounding(chain)));
   });
 }
 
 TEST(ForwardDynamics, SolvesTheEquationOfMotion) {
-  forEachState<double>([](const Chain& chain, const State<double>& state) {
+  forEachState([](const Chain& chain, const State<double>& state) {
     const Eigen::Index n = chain.jointCount();
     MatrixX<double> H(n, n);
     VectorX<double> c(n);
@@ -116,16 +105,16 @@ TEST(ForwardDynamics, SolvesTheEquationOfMotion) {
     dynamicComponents(chain, state.q, state.qd, H, c, g);
     const VectorX<double> tau = 10 * state.qdd;
     const VectorX<double> expected = H.llt().solve(tau - c - g);
-    EXPECT_TRUE(agree(accelerationsOf<double>(chain, state.q, state.qd, tau), expected,
-                      largest(expected) * conditionOf(chain, state.q), rounding<double>(chain)));
+    EXPECT_TRUE(agree(accelerationsOf(chain, state.q, state.qd, tau), expected,
+                      largest(expected) * conditionOf(chain, state.q), rounding(chain)));
   });
 }
 
 // Without torques nothing adds energy: its rate along the motion found is zero.
 TEST(ForwardDynamics, WithoutTorquesKeepsTheEnergy) {
-  forEachState<double>([](const Chain& chain, const State<double>& state) {
-    const VectorX<double> qdd = accelerationsOf<double>(chain, state.q, state.qd,
-                                                        VectorX<double>::Zero(chain.jointCount()));
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const VectorX<double> qdd =
+        accelerationsOf(chain, state.q, state.qd, VectorX<double>::Zero(chain.jointCount()));
     const auto q = moving<double>(state.q, state.qd);
     const auto qd = moving<double>(state.qd, qdd);
     const Dual<double, 1> kinetic = kineticEnergy(chain, q, qd);
@@ -133,8 +122,7 @@ TEST(ForwardDynamics, WithoutTorquesKeepsTheEnergy) {
     MatrixX<double> H(chain.jointCount(), chain.jointCount());
     inertiaMatrix(chain, state.q, H);
     const double terms = state.qd.cwiseAbs().dot(H.cwiseAbs() * qdd.cwiseAbs());
-    EXPECT_NEAR(kinetic.derivative[0] + potential.derivative[0], 0,
-                rounding<double>(chain) * terms);
+    EXPECT_NEAR(kinetic.derivative[0] + potential.derivative[0], 0, rounding(chain) * terms);
   });
 }
 
@@ -145,30 +133,29 @@ TEST(ForwardDynamics, OfAJointWithoutInertiaIsNotFinite) {
   const Chain chain("nothing", {joint}, {LinkParameters::zero()}, {0, 0, -9.81});
   const VectorX<double> zero = VectorX<double>::Zero(1);
   const VectorX<double> one = VectorX<double>::Ones(1);
-  EXPECT_FALSE(std::isfinite(accelerationsOf<double>(chain, zero, zero, zero)[0]));
-  EXPECT_FALSE(std::isfinite(accelerationsOf<double>(chain, zero, zero, one)[0]));
+  EXPECT_FALSE(std::isfinite(accelerationsOf(chain, zero, zero, zero)[0]));
+  EXPECT_FALSE(std::isfinite(accelerationsOf(chain, zero, zero, one)[0]));
 }
 
 TEST(ForwardDynamics, IsNanWhereItDependsOnANan) {
   const Chain chain = randomChain(5);
-  const State<double> state = randomState<double>(chain, 0);
+  const State<double> state = randomState(chain, 0);
   for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
     VectorX<double> nan = VectorX<double>::Zero(5);
     nan[i] = std::numeric_limits<double>::quiet_NaN();
     // H^-1 has no zeros here: each acceleration depends on everything
     const VectorX<double> tau = state.qdd;
-    EXPECT_TRUE(accelerationsOf<double>(chain, state.q, state.qd, tau + nan).array().isNaN().all());
-    EXPECT_TRUE(accelerationsOf<double>(chain, state.q, state.qd + nan, tau).array().isNaN().all());
+    EXPECT_TRUE(accelerationsOf(chain, state.q, state.qd, tau + nan).array().isNaN().all());
+    EXPECT_TRUE(accelerationsOf(chain, state.q, state.qd + nan, tau).array().isNaN().all());
     if (i > 0) {
-      EXPECT_TRUE(
-          accelerationsOf<double>(chain, state.q + nan, state.qd, tau).array().isNaN().all());
+      EXPECT_TRUE(accelerationsOf(chain, state.q + nan, state.qd, tau).array().isNaN().all());
     }
   }
 }
 
 TEST(ForwardDynamics, MayOverwriteAnInput) {
   const Chain chain = randomChain(5);
-  const State<double> state = randomState<double>(chain, 3);
+  const State<double> state = randomState(chain, 3);
   VectorX<double> tau = state.qdd;
   const VectorX<double> expected = accelerationsOf(chain, state.q, state.qd, tau);
   forwardDynamics(chain, state.q, state.qd, tau, tau);

@@ -35,11 +35,6 @@ double weightOf(const Chain& chain) {
   return mass * chain.gravity().norm();
 }
 
-template <typename Scalar>
-class GravityVectorOf : public ::testing::Test {};
-using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(GravityVectorOf, Scalars, );
-
 TEST(GravityVector, OfAPendulumIsItsWeightTimesItsHorizontalReach) {
   const Chain chain = pendulum(2, 0.5, 9.81);
   for (const double q : {0.0, 0.7, -2.5}) {
@@ -70,50 +65,47 @@ TEST(GravityVector, OfALiftIsTheWeight) {
   EXPECT_TRUE(agree(g, Eigen::Vector2d(50, 0), 10, kByHand));
 }
 
-TYPED_TEST(GravityVectorOf, AnyRobotIsTheGradientOfPotentialEnergy) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+TEST(GravityVector, IsTheGradientOfPotentialEnergy) {
+  forEachState([](const Chain& chain, const State<double>& state) {
     EXPECT_TRUE(agree(gravityOf(chain, state.q), gradientOfPotentialEnergy(chain, state.q),
-                      weightOf(chain), rounding<Scalar>(chain)));
+                      weightOf(chain), rounding(chain)));
   });
 }
 
-TYPED_TEST(GravityVectorOf, AnyRobotIsTheTorqueAtRest) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const VectorX<Scalar> rest = VectorX<Scalar>::Zero(chain.jointCount());
-    VectorX<Scalar> tau(chain.jointCount());
+TEST(GravityVector, IsTheTorqueAtRest) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const VectorX<double> rest = VectorX<double>::Zero(chain.jointCount());
+    VectorX<double> tau(chain.jointCount());
     torques(chain, state.q, rest, rest, tau);
-    EXPECT_TRUE(agree(gravityOf(chain, state.q), tau, weightOf(chain), rounding<Scalar>(chain)));
+    EXPECT_TRUE(agree(gravityOf(chain, state.q), tau, weightOf(chain), rounding(chain)));
   });
 }
 
 // dg_i/dq_j = d^2 U / (dq_i dq_j)
-TYPED_TEST(GravityVectorOf, AnyRobotHasASymmetricJacobian) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+TEST(GravityVector, HasASymmetricJacobian) {
+  forEachState([](const Chain& chain, const State<double>& state) {
     const Eigen::Index n = chain.jointCount();
-    MatrixX<Scalar> jacobian(n, n);
+    MatrixX<double> jacobian(n, n);
     for (Eigen::Index j = 0; j < n; ++j) {
       const auto g = gravityOf(chain, variable(state.q, j));
       for (Eigen::Index i = 0; i < n; ++i) {
         jacobian(i, j) = g[i].derivative[0];
       }
     }
-    EXPECT_TRUE(agree(jacobian, jacobian.transpose(), weightOf(chain), rounding<Scalar>(chain)));
+    EXPECT_TRUE(agree(jacobian, jacobian.transpose(), weightOf(chain), rounding(chain)));
   });
 }
 
 TEST(GravityVector, IsZeroInFreeFallAndTurnsAroundWithGravity) {
   const Chain chain = randomChain(6);
-  const VectorX<double> q = randomState<double>(chain, 1).q;
+  const VectorX<double> q = randomState(chain, 1).q;
   EXPECT_EQ(gravityOf(chain.withGravity({0, 0, 0}), q).norm(), 0);
   EXPECT_EQ(gravityOf(chain.withGravity(-chain.gravity()), q), -gravityOf(chain, q));
 }
 
 TEST(GravityVector, IsNanWhereItDependsOnANan) {
   const Chain chain = randomChain(6);
-  const State<double> state = randomState<double>(chain, 0);
+  const State<double> state = randomState(chain, 0);
   for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
     VectorX<double> q = state.q;
     q[i] = std::numeric_limits<double>::quiet_NaN();

@@ -27,11 +27,6 @@ MatrixX<Scalar> inertiaMatrixOf(const Chain& chain, const VectorX<Scalar>& q) {
   return H;
 }
 
-template <typename Scalar>
-class InertiaMatrixOf : public ::testing::Test {};
-using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(InertiaMatrixOf, Scalars, );
-
 TEST(InertiaMatrix, OfAPendulumIsMassTimesLengthSquaredAndRotor) {
   const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 0.3);
   EXPECT_NEAR(inertiaMatrixOf(pendulum(2, 0.5, 9.81, 0.25), q)(0, 0), 0.75, kByHand);
@@ -60,50 +55,47 @@ TEST(InertiaMatrix, OfATurntableWithASlideByHand) {
 }
 
 // u' H v = d^2 T / (du dv): derivative along u of the derivative along v, for random u and v.
-TYPED_TEST(InertiaMatrixOf, AnyRobotIsTheSecondDerivativeOfKineticEnergy) {
-  using Scalar = TypeParam;
-  using Once = Dual<Scalar, 1>;
+TEST(InertiaMatrix, IsTheSecondDerivativeOfKineticEnergy) {
+  using Once = Dual<double, 1>;
   using Twice = Dual<Once, 1>;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const VectorX<Scalar> u = state.qd;
-    const VectorX<Scalar> v = state.qdd;
-    const MatrixX<Scalar> H = inertiaMatrixOf(chain, state.q);
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const VectorX<double> u = state.qd;
+    const VectorX<double> v = state.qdd;
+    const MatrixX<double> H = inertiaMatrixOf(chain, state.q);
     const VectorX<Once> zero = VectorX<Once>::Zero(chain.jointCount());
-    const VectorX<Twice> qd = moving<Once>(moving<Scalar>(VectorX<Scalar>::Zero(u.size()), u),
-                                           zero + v.template cast<Once>());
-    const VectorX<Twice> q = state.q.template cast<Twice>();
-    const Scalar expected = kineticEnergy(chain, q, qd).derivative[0].derivative[0];
-    const Scalar scale = u.cwiseAbs().dot(H.cwiseAbs() * v.cwiseAbs());
-    EXPECT_NEAR(u.dot(H * v), expected, rounding<Scalar>(chain) * scale);
+    const VectorX<Twice> qd =
+        moving<Once>(moving<double>(VectorX<double>::Zero(u.size()), u), zero + v.cast<Once>());
+    const VectorX<Twice> q = state.q.cast<Twice>();
+    const double expected = kineticEnergy(chain, q, qd).derivative[0].derivative[0];
+    const double scale = u.cwiseAbs().dot(H.cwiseAbs() * v.cwiseAbs());
+    EXPECT_NEAR(u.dot(H * v), expected, rounding(chain) * scale);
   });
 }
 
-TYPED_TEST(InertiaMatrixOf, AnyRobotIsTheDerivativeOfTorqueByAcceleration) {
-  using Scalar = TypeParam;
-  using Varied = Dual<Scalar, 1>;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const MatrixX<Scalar> H = inertiaMatrixOf(chain, state.q);
-    const State<Varied> varied = state.template cast<Varied>();
+TEST(InertiaMatrix, IsTheDerivativeOfTorqueByAcceleration) {
+  using Varied = Dual<double, 1>;
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const MatrixX<double> H = inertiaMatrixOf(chain, state.q);
+    const State<Varied> varied = state.cast<Varied>();
     for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
       VectorX<Varied> tau(chain.jointCount());
       torques(chain, varied.q, varied.qd, variable(state.qdd, j), tau);
-      const VectorX<Scalar> column = tau.unaryExpr([](const Varied& x) { return x.derivative[0]; });
-      EXPECT_TRUE(agree(H.col(j), column, largest(H), rounding<Scalar>(chain)));
+      const VectorX<double> column = tau.unaryExpr([](const Varied& x) { return x.derivative[0]; });
+      EXPECT_TRUE(agree(H.col(j), column, largest(H), rounding(chain)));
     }
   });
 }
 
-TYPED_TEST(InertiaMatrixOf, AnyRobotIsExactlySymmetric) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const MatrixX<Scalar> H = inertiaMatrixOf(chain, state.q);
+TEST(InertiaMatrix, IsExactlySymmetric) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const MatrixX<double> H = inertiaMatrixOf(chain, state.q);
     EXPECT_EQ(H, H.transpose());
   });
 }
 
 // The smallest eigenvalue of a long chain is far below the largest; rounding must not reach it.
 TEST(InertiaMatrix, IsPositiveDefinite) {
-  forEachState<double>([](const Chain& chain, const State<double>& state) {
+  forEachState([](const Chain& chain, const State<double>& state) {
     MatrixX<double> H = inertiaMatrixOf(chain, state.q);
     H.diagonal().array() -= 1e-12 * H.trace();  // the sum of all eigenvalues
     EXPECT_EQ(H.llt().info(), Eigen::Success);
@@ -112,7 +104,7 @@ TEST(InertiaMatrix, IsPositiveDefinite) {
 
 TEST(InertiaMatrix, DependsNeitherOnGravityNorOnTheFirstJoint) {
   const Chain chain = randomChain(5);
-  const State<double> state = randomState<double>(chain, 1);
+  const State<double> state = randomState(chain, 1);
   const MatrixX<double> H = inertiaMatrixOf(chain, state.q);
   VectorX<double> turned = state.q;
   turned[0] += 1;
@@ -122,7 +114,7 @@ TEST(InertiaMatrix, DependsNeitherOnGravityNorOnTheFirstJoint) {
 
 TEST(InertiaMatrix, IsNanWhereItDependsOnANan) {
   const Chain chain = randomChain(6);
-  const State<double> state = randomState<double>(chain, 0);
+  const State<double> state = randomState(chain, 0);
   for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
     VectorX<double> q = state.q;
     q[i] = std::numeric_limits<double>::quiet_NaN();
@@ -136,7 +128,7 @@ TEST(InertiaMatrix, IsNanWhereItDependsOnANan) {
 
 TEST(InertiaMatrix, GoesIntoABlockOfAMatrix) {
   const Chain chain = randomChain(4);
-  const State<double> state = randomState<double>(chain, 2);
+  const State<double> state = randomState(chain, 2);
   MatrixX<double> batch = MatrixX<double>::Zero(4, 12);
   inertiaMatrix(chain, state.q, batch.middleCols(4, 4));
   EXPECT_EQ(batch.middleCols(4, 4), inertiaMatrixOf(chain, state.q));

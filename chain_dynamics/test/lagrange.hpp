@@ -35,9 +35,8 @@ VectorX<Dual<Scalar, 1>> variable(const VectorX<Scalar>& value, Eigen::Index i) 
 }
 
 /// `dU/dq`: gravity torques.
-template <typename Scalar>
-VectorX<Scalar> gradientOfPotentialEnergy(const Chain& chain, const VectorX<Scalar>& q) {
-  VectorX<Scalar> gradient(q.size());
+inline VectorX<double> gradientOfPotentialEnergy(const Chain& chain, const VectorX<double>& q) {
+  VectorX<double> gradient(q.size());
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     gradient[i] = potentialEnergy(chain, variable(q, i)).derivative[0];
   }
@@ -45,17 +44,16 @@ VectorX<Scalar> gradientOfPotentialEnergy(const Chain& chain, const VectorX<Scal
 }
 
 /// `d/dt (dT/dqd) - dT/dq`: torques without gravity.
-template <typename Scalar>
-VectorX<Scalar> lagrangeOfKineticEnergy(const Chain& chain, const State<Scalar>& state) {
-  using Rate = Dual<Scalar, 1>;  // inner direction: time
+inline VectorX<double> lagrangeOfKineticEnergy(const Chain& chain, const State<double>& state) {
+  using Rate = Dual<double, 1>;  // inner direction: time
   using Both = Dual<Rate, 1>;    // outer direction: qd_i
-  const VectorX<Rate> q = moving<Scalar>(state.q, state.qd);
-  const VectorX<Rate> qd = moving<Scalar>(state.qd, state.qdd);
-  const VectorX<Rate> constant_qd = state.qd.template cast<Rate>();
+  const VectorX<Rate> q = moving<double>(state.q, state.qd);
+  const VectorX<Rate> qd = moving<double>(state.qd, state.qdd);
+  const VectorX<Rate> constant_qd = state.qd.cast<Rate>();
 
-  VectorX<Scalar> tau(state.q.size());
+  VectorX<double> tau(state.q.size());
   for (Eigen::Index i = 0; i < tau.size(); ++i) {
-    const Both T = kineticEnergy(chain, q.template cast<Both>().eval(), variable(qd, i));
+    const Both T = kineticEnergy(chain, q.cast<Both>().eval(), variable(qd, i));
     const Rate dT_dq = kineticEnergy(chain, variable(state.q, i), constant_qd);
     tau[i] = T.derivative[0].derivative[0] - dT_dq.derivative[0];
   }

@@ -57,7 +57,7 @@ TEST(LoadFriction, CountsABodyAtTheTipAndGravity) {
   const LinkParameters body = LinkParameters::fromCenterOfMass(
       3.1, {0.02, -0.05, 0.11}, Eigen::Vector3d(0.1, 0.2, 0.25).asDiagonal());
   for (const auto& [name, model] : loadedModels()) {
-    const State<double> x = randomState<double>(model.chain, 1);
+    const State<double> x = randomState(model.chain, 1);
     Model loaded = withBodyAtTip(model, body);
     Model turned = model;
     turned.chain = turned.chain.withGravity({1, -2, 3});
@@ -78,7 +78,7 @@ TEST(LoadFriction, NeedsNoPositionsWhereNoLawDependsOnLoad) {
     const FastModel fast(model);
     EXPECT_EQ(fast.frictionDependsOnLoad(), frictionDependsOnLoad(model)) << name;
     if (frictionDependsOnLoad(model)) continue;
-    const State<double> x = randomState<double>(model.chain, 1);
+    const State<double> x = randomState(model.chain, 1);
     EXPECT_EQ(frictionOf(model, x.q, x.qd), frictionOf(model, x.q + x.qd, x.qd)) << name;
     VectorXd without(x.qd.size()), f(without), slope(without), slope_without(without);
     frictionVector(model, VectorXd(), x.qd, without);
@@ -100,7 +100,7 @@ TEST(LoadFriction, DerivativesAreThoseOfTheTorques) {
   for (const auto& [name, loaded] : loadedModels()) {
     const auto& model = loaded;  // as C++17's lambdas don't capture structured bindings
     const Index n = model.chain.jointCount();
-    const State<double> x = randomState<double>(model.chain, 3);
+    const State<double> x = randomState(model.chain, 3);
     MatrixXd by_q = MatrixXd::Zero(n, n), by_qd = MatrixXd::Zero(n, n);
     addFrictionDerivatives(model, x.q, x.qd, by_q, by_qd);
     VectorXd slope(n);
@@ -142,7 +142,7 @@ TEST(LoadFriction, AllocatesNothing) {
     GTEST_SKIP() << "allocations are counted with the GNU C library, without sanitizers";
   }
   for (const auto& [name, model] : loadedModels()) {
-    const State<double> x = randomState<double>(model.chain, 1);
+    const State<double> x = randomState(model.chain, 1);
     const Index n = x.q.size();
     VectorXd f(n), slope(n);
     MatrixXd by_q = MatrixXd::Zero(n, n), by_qd = by_q, F(n, 20);

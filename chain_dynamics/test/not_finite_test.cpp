@@ -250,7 +250,7 @@ TEST_P(NotFinite, InputsGoToEveryEntryThatDependsOnThem) {
     const Index n = model.chain.jointCount();
     if (n > 9) continue;
     const FastModel fast(model, GetParam());
-    const State<double> x = randomState<double>(model.chain, 4);
+    const State<double> x = randomState(model.chain, 4);
     SCOPED_TRACE(name + "\n" + paste(model.chain, x));
     for (Index j = 0; j < n; ++j) {
       checkInput(model, fast, x, {"q", &State<double>::q, j});
@@ -267,7 +267,7 @@ TEST_P(NotFinite, FirstJointCountsWhereGravityIsAlongItsAxisAndFrictionIsUnknown
   for (const char* robot : {"ur10", "panda"}) {
     const Model arm(chainFromUrdf(textOf(robotFile("urdf/") + robot + ".urdf")));
     const FastModel fast(arm, GetParam());
-    const State<double> x = randomState<double>(arm.chain, 4);
+    const State<double> x = randomState(arm.chain, 4);
     State<double> spoilt = x;
     spoilt.q[0] = kNan;
     spoilt.qd[1] = kNan;

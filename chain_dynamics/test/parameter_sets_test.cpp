@@ -23,46 +23,32 @@ using Links = std::vector<LinkParameters>;
 using Rows = std::vector<Links>;
 
 // All quantities of one robot in one state.
-template <typename Scalar>
 struct Quantities {
   explicit Quantities(Eigen::Index n) : H(n, n), c(n), g(n), tau(n) {}
-  MatrixX<Scalar> H;
-  VectorX<Scalar> c, g, tau;
+  MatrixX<double> H;
+  VectorX<double> c, g, tau;
 };
 
-template <typename Scalar>
-Quantities<Scalar> quantitiesOf(const Chain& chain, const State<Scalar>& state) {
-  Quantities<Scalar> out(chain.jointCount());
+Quantities quantitiesOf(const Chain& chain, const State<double>& state) {
+  Quantities out(chain.jointCount());
   dynamicComponents(chain, state.q, state.qd, out.H, out.c, out.g);
   torques(chain, state.q, state.qd, state.qdd, out.tau);
   return out;
 }
 
-template <typename Scalar>
-Quantities<Scalar> quantitiesOf(const Chain& chain, const ParameterSets& sets,
-                                const State<Scalar>& state) {
-  Quantities<Scalar> out(chain.jointCount());
+Quantities quantitiesOf(const Chain& chain, const ParameterSets& sets, const State<double>& state) {
+  Quantities out(chain.jointCount());
   dynamicComponents(chain, sets, state.q, state.qd, out.H, out.c, out.g);
   torques(chain, sets, state.q, state.qd, state.qdd, out.tau);
   return out;
 }
 
-Rows identifiedRows(const Chain& chain) {
-  Random random(7);
-  Rows rows;
-  for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
-    rows.push_back(randomIdentifiedLinks(random, chain));
-  }
-  return rows;
-}
-
 // The quantities that a chain with set j has in its row j: one whole chain per row.
-template <typename Scalar>
-Quantities<Scalar> rowByRow(const Chain& chain, const Rows& rows, const State<Scalar>& state) {
-  Quantities<Scalar> out(chain.jointCount());
+Quantities rowByRow(const Chain& chain, const Rows& rows, const State<double>& state) {
+  Quantities out(chain.jointCount());
   for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
     const Chain own("own", chain.joints(), rows[static_cast<std::size_t>(j)], chain.gravity());
-    const Quantities<Scalar> all = quantitiesOf(own, state);
+    const Quantities all = quantitiesOf(own, state);
     out.H.row(j) = all.H.row(j);
     out.c[j] = all.c[j];
     out.g[j] = all.g[j];
@@ -71,26 +57,19 @@ Quantities<Scalar> rowByRow(const Chain& chain, const Rows& rows, const State<Sc
   return out;
 }
 
-template <typename Scalar>
-void expectSame(const Chain& chain, const Quantities<Scalar>& a, const Quantities<Scalar>& b,
-                const State<Scalar>& state) {
+void expectSame(const Chain& chain, const Quantities& a, const Quantities& b,
+                const State<double>& state) {
   const double terms =
       largest(b.H.cwiseAbs() * state.qdd.cwiseAbs()) + largest(b.c) + largest(b.g) + largest(b.tau);
-  EXPECT_TRUE(agree(a.H, b.H, largest(b.H), rounding<Scalar>(chain))) << "H";
-  EXPECT_TRUE(agree(a.c, b.c, terms, rounding<Scalar>(chain))) << "c";
-  EXPECT_TRUE(agree(a.g, b.g, terms, rounding<Scalar>(chain))) << "g";
-  EXPECT_TRUE(agree(a.tau, b.tau, terms, rounding<Scalar>(chain))) << "tau";
+  EXPECT_TRUE(agree(a.H, b.H, largest(b.H), rounding(chain))) << "H";
+  EXPECT_TRUE(agree(a.c, b.c, terms, rounding(chain))) << "c";
+  EXPECT_TRUE(agree(a.g, b.g, terms, rounding(chain))) << "g";
+  EXPECT_TRUE(agree(a.tau, b.tau, terms, rounding(chain))) << "tau";
 }
 
-template <typename Scalar>
-class ParameterSetsOf : public ::testing::Test {};
-using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(ParameterSetsOf, Scalars, );
-
-TYPED_TEST(ParameterSetsOf, TheChainItselfChangeNothing) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const Quantities<Scalar> expected = quantitiesOf(chain, state);
+TEST(ParameterSets, OfTheChainItselfChangeNothing) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const Quantities expected = quantitiesOf(chain, state);
     const Rows none;
     const Rows same(static_cast<std::size_t>(chain.jointCount()), chain.links());
     const Links no_links;
@@ -103,24 +82,22 @@ TYPED_TEST(ParameterSetsOf, TheChainItselfChangeNothing) {
   });
 }
 
-TYPED_TEST(ParameterSetsOf, TheRowsAreThoseOfAChainPerRow) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const Rows rows = identifiedRows(chain);
+TEST(ParameterSets, RowsAreThoseOfAChainPerRow) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const Rows rows = randomIdentifiedRows(chain);
     const Links none;
     expectSame(chain, quantitiesOf(chain, ParameterSets{rows, none}, state),
                rowByRow(chain, rows, state), state);
   });
 }
 
-TYPED_TEST(ParameterSetsOf, GravityReplaceThatOfEveryRow) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+TEST(ParameterSets, OfGravityReplaceThatOfEveryRow) {
+  forEachState([](const Chain& chain, const State<double>& state) {
     Random random(11);
     const Links gravity = randomIdentifiedLinks(random, chain);
     const Chain heavy("heavy", chain.joints(), gravity, chain.gravity());
-    for (const Rows& rows : {Rows(), identifiedRows(chain)}) {
-      Quantities<Scalar> expected =
+    for (const Rows& rows : {Rows(), randomIdentifiedRows(chain)}) {
+      Quantities expected =
           rows.empty() ? quantitiesOf(chain, state) : rowByRow(chain, rows, state);
       expected.g = quantitiesOf(heavy, state).g;
       expected.tau = expected.H * state.qdd + expected.c + expected.g;
@@ -129,15 +106,14 @@ TYPED_TEST(ParameterSetsOf, GravityReplaceThatOfEveryRow) {
   });
 }
 
-TYPED_TEST(ParameterSetsOf, SingleFunctionsGiveWhatDynamicComponentsGive) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const Rows rows = identifiedRows(chain);
+TEST(ParameterSets, InSingleFunctionsGiveWhatDynamicComponentsGive) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const Rows rows = randomIdentifiedRows(chain);
     const Links gravity = rows.back();
     for (const Links& own : {Links(), gravity}) {
       const ParameterSets sets{rows, own};
-      const Quantities<Scalar> expected = quantitiesOf(chain, sets, state);
-      Quantities<Scalar> single = expected;
+      const Quantities expected = quantitiesOf(chain, sets, state);
+      Quantities single = expected;
       inertiaMatrix(chain, sets, state.q, single.H);
       coriolisVector(chain, sets, state.q, state.qd, single.c);
       gravityVector(chain, sets, state.q, single.g);
@@ -148,17 +124,16 @@ TYPED_TEST(ParameterSetsOf, SingleFunctionsGiveWhatDynamicComponentsGive) {
 
 TEST(ParameterSets, OfDifferentRowsGiveAnInertiaMatrixThatIsNotSymmetric) {
   const Chain chain = randomChain(4);
-  const Rows rows = identifiedRows(chain);
+  const Rows rows = randomIdentifiedRows(chain);
   const Links none;
-  const Quantities<double> all =
-      quantitiesOf(chain, ParameterSets{rows, none}, randomState<double>(chain, 0));
+  const Quantities all = quantitiesOf(chain, ParameterSets{rows, none}, randomState(chain, 0));
   EXPECT_GT((all.H - all.H.transpose()).norm(), 0.1);
 }
 
 TEST(ParameterSets, TorquesMayOverwriteAnInput) {
   const Chain chain = randomChain(4);
-  State<double> state = randomState<double>(chain, 0);
-  const Rows rows = identifiedRows(chain);
+  State<double> state = randomState(chain, 0);
+  const Rows rows = randomIdentifiedRows(chain);
   const ParameterSets sets{rows, rows[0]};
   const VectorX<double> expected = quantitiesOf(chain, sets, state).tau;
   torques(chain, sets, state.q, state.qd, state.qdd, state.qdd);

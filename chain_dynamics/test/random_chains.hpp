@@ -3,7 +3,7 @@
 /// @file
 /// Robots and states to test laws of physics on, the same in every run.
 ///
-///     forEachState<double>([](const Chain& chain, const State<double>& state) { ... });
+///     forEachState([](const Chain& chain, const State<double>& state) { ... });
 
 #pragma once
 
@@ -74,6 +74,16 @@ inline std::vector<LinkParameters> randomIdentifiedLinks(Random& random, const C
   return links;
 }
 
+/// A set for each row, as in ParameterSets.
+inline std::vector<std::vector<LinkParameters>> randomIdentifiedRows(const Chain& chain) {
+  Random random(7);
+  std::vector<std::vector<LinkParameters>> rows;
+  for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
+    rows.push_back(randomIdentifiedLinks(random, chain));
+  }
+  return rows;
+}
+
 /// Revolute, prismatic and continuous joints at any angle to one another, some with a rotor.
 inline Chain randomChain(Eigen::Index n) {
   Random random(1000 + static_cast<std::uint32_t>(n));
@@ -106,17 +116,14 @@ struct State {
   }
 };
 
-template <typename Scalar>
-State<Scalar> randomState(const Chain& chain, std::uint32_t seed) {
+inline State<double> randomState(const Chain& chain, std::uint32_t seed) {
   Random random(seed);
   const Eigen::Index n = chain.jointCount();
-  return {(3.0 * random.vector(n)).cast<Scalar>(), (2.0 * random.vector(n)).cast<Scalar>(),
-          (5.0 * random.vector(n)).cast<Scalar>()};
+  return {3.0 * random.vector(n), 2.0 * random.vector(n), 5.0 * random.vector(n)};
 }
 
 /// The state as it can be pasted into a test.
-template <typename Scalar>
-std::string paste(const Chain& chain, const State<Scalar>& state) {
+inline std::string paste(const Chain& chain, const State<double>& state) {
   const Eigen::IOFormat list(Eigen::FullPrecision, 0, ", ", ", ", "", "", "", ";");
   std::ostringstream text;
   text << "const Chain chain = randomChain(" << chain.jointCount() << ");\n"
@@ -127,12 +134,12 @@ std::string paste(const Chain& chain, const State<Scalar>& state) {
 }
 
 /// Calls check(chain, state) for chains of 1 to 9 joints and one of 70 (beyond the stack).
-template <typename Scalar, typename Check>
+template <typename Check>
 void forEachState(const Check& check) {
   for (const Eigen::Index n : {1, 2, 3, 4, 5, 6, 7, 8, 9, 70}) {
     const Chain chain = randomChain(n);
     for (std::uint32_t seed = 0; seed < 5; ++seed) {
-      const State<Scalar> state = randomState<Scalar>(chain, seed);
+      const State<double> state = randomState(chain, seed);
       SCOPED_TRACE(paste(chain, state));
       check(chain, state);
       if (::testing::Test::HasFailure()) {
@@ -146,7 +153,7 @@ void forEachState(const Check& check) {
 ///
 /// Each of n joints adds some tens of operations, each off by at most half a unit in the last
 /// place and most of them in either direction: 10 n units. (Measured: up to 3 n.)
-template <typename Scalar>
+template <typename Scalar = double>
 Scalar rounding(const Chain& chain) {
   return Scalar(10) * static_cast<Scalar>(chain.jointCount()) *
          std::numeric_limits<Scalar>::epsilon();

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The promises at the end of every docstring: no allocation, and any number of threads.
+// The promises of every docstring: any scalar, no allocation, any number of threads.
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <new>
 #include <thread>
 #include <vector>
@@ -29,21 +30,21 @@ using namespace test;  // NOLINT(google-build-using-namespace)
 // Every algorithm once, into memory that is there.
 template <typename Scalar>
 struct Everything {
-  explicit Everything(const Chain& chain)
-      : state(randomState<double>(chain, 1).cast<Scalar>()),
-        tau(chain.jointCount()),
-        c(chain.jointCount()),
-        g(chain.jointCount()),
-        qdd(chain.jointCount()),
-        H(chain.jointCount(), chain.jointCount()),
+  explicit Everything(const State<Scalar>& x)
+      : state(x),
+        tau(x.q.size()),
+        c(tau),
+        g(tau),
+        qdd(tau),
+        H(tau.size(), tau.size()),
         dtau_dq(H),
         dtau_dqd(H),
         C(H),
-        J(6, chain.jointCount()),
+        J(6, tau.size()),
         dJ(J),
-        Y(chain.jointCount(), 10 * chain.jointCount()) {}
+        Y(tau.size(), 10 * tau.size()) {}
 
-  void compute(const Chain& chain, const ParameterSets& sets) {
+  void compute(const Chain& chain) {
     const auto& [q, qd, a] = state;
     torques(chain, q, qd, a, tau);
     inertiaMatrix(chain, q, H);
@@ -57,7 +58,13 @@ struct Everything {
     tip = tipPose(chain, q);
     regressor(chain, q, qd, a, Y);
     torqueDerivatives(chain, q, qd, a, dtau_dq, dtau_dqd, H);
-    energy = kineticEnergy(chain, q, qd) + potentialEnergy(chain, q);
+    kinetic = kineticEnergy(chain, q, qd);
+    potential = potentialEnergy(chain, q);
+  }
+
+  // What takes parameter sets, with them.
+  void compute(const Chain& chain, const ParameterSets& sets) {
+    const auto& [q, qd, a] = state;
     torques(chain, sets, q, qd, a, tau);
     inertiaMatrix(chain, sets, q, H);
     coriolisVector(chain, sets, q, qd, c);
@@ -71,18 +78,57 @@ struct Everything {
   VectorX<Scalar> tau, c, g, qdd;
   MatrixX<Scalar> H, dtau_dq, dtau_dqd, C, J, dJ, Y;
   Transform<Scalar> tip;
-  Scalar energy;
+  Scalar kinetic, potential;
 };
 
-// A chain's own parameters, a set for each row.
-std::vector<std::vector<LinkParameters>> rowsOf(const Chain& chain) {
-  return {static_cast<std::size_t>(chain.jointCount()), chain.links()};
+// Whether numbers in float are those of the same state in double.
+void expectSame(const Chain& chain, const Everything<float>& a, const Everything<double>& b) {
+  const double tolerance = rounding<float>(chain);
+  const auto close = [&](const auto& x, const auto& y, double scale) {
+    return agree(x.template cast<double>(), y, scale, tolerance);
+  };
+  const double terms = largest(b.H.cwiseAbs() * b.state.qdd.cwiseAbs() +
+                               b.C.cwiseAbs() * b.state.qd.cwiseAbs() + b.g.cwiseAbs());
+  EXPECT_TRUE(close(a.tau, b.tau, terms)) << "tau";
+  EXPECT_TRUE(close(a.c, b.c, terms)) << "c";
+  EXPECT_TRUE(close(a.g, b.g, terms)) << "g";
+  EXPECT_TRUE(close(a.H, b.H, largest(b.H))) << "H";
+  EXPECT_TRUE(close(a.C, b.C, 3 * largest(b.C))) << "C";
+  EXPECT_TRUE(close(a.dtau_dq, b.dtau_dq, largest(b.dtau_dq))) << "dtau/dq";
+  EXPECT_TRUE(close(a.dtau_dqd, b.dtau_dqd, largest(b.dtau_dqd))) << "dtau/dqd";
+}
+
+TEST(Scalars, FloatGivesWhatDoubleGives) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const double tolerance = rounding<float>(chain);
+    Everything<float> a(state.cast<float>());
+    Everything<double> b(a.state.cast<double>());
+    a.compute(chain);
+    b.compute(chain);
+    expectSame(chain, a, b);
+    const Eigen::SelfAdjointEigenSolver<MatrixX<double>> inertia(b.H, Eigen::EigenvaluesOnly);
+    const double condition = inertia.eigenvalues().tail(1)[0] / inertia.eigenvalues()[0];
+    EXPECT_TRUE(agree(a.qdd.cast<double>(), b.qdd, condition * largest(b.qdd), tolerance));
+    EXPECT_TRUE(agree(a.Y.cast<double>(), b.Y, largest(b.Y), tolerance));
+    EXPECT_TRUE(agree(a.J.cast<double>(), b.J, largest(b.J), tolerance));
+    EXPECT_TRUE(agree(a.dJ.cast<double>(), b.dJ, largest(b.dJ) + 1, tolerance));
+    EXPECT_TRUE(agree(a.tip.p.cast<double>(), b.tip.p, largest(b.J) + 1, tolerance));
+    EXPECT_TRUE(agree(a.tip.R.cast<double>(), b.tip.R, 1, tolerance));
+    EXPECT_NEAR(a.kinetic, b.kinetic, tolerance * b.kinetic);
+    EXPECT_NEAR(a.potential, b.potential,
+                tolerance * (b.g.cwiseAbs().sum() + std::abs(b.potential)));
+
+    const auto rows = randomIdentifiedRows(chain);
+    a.compute(chain, ParameterSets{rows, rows[0]});
+    b.compute(chain, ParameterSets{rows, rows[0]});
+    expectSame(chain, a, b);
+  });
 }
 
 template <typename Scalar>
 class RealTime : public ::testing::Test {};
-using Scalars = ::testing::Types<double, float, Dual<double, 3>>;
-TYPED_TEST_SUITE(RealTime, Scalars, );
+using AllScalars = ::testing::Types<double, float, Dual<double, 3>>;
+TYPED_TEST_SUITE(RealTime, AllScalars, );
 
 TYPED_TEST(RealTime, NoAlgorithmAllocatesUpToSixtyFourJoints) {
   if (!CHAIN_DYNAMICS_COUNTS_ALLOCATIONS) {
@@ -90,9 +136,10 @@ TYPED_TEST(RealTime, NoAlgorithmAllocatesUpToSixtyFourJoints) {
   }
   for (const Eigen::Index n : {1, 6, 7, 64}) {
     const Chain chain = randomChain(n);
-    const auto rows = rowsOf(chain);
-    Everything<TypeParam> everything(chain);
+    const auto rows = randomIdentifiedRows(chain);
+    Everything<TypeParam> everything(randomState(chain, 1).cast<TypeParam>());
     const AllocationGuard guard;
+    everything.compute(chain);
     everything.compute(chain, ParameterSets{rows, rows[0]});
     EXPECT_EQ(guard.count(), 0) << n << " joints";
   }
@@ -103,10 +150,10 @@ TEST(AllocationGuard, SeesTheAllocationsOfALongerChain) {
     GTEST_SKIP() << "allocations are counted with the GNU C library, without sanitizers";
   }
   const Chain chain = randomChain(65);
-  const auto rows = rowsOf(chain);
-  Everything<double> everything(chain);
+  const auto rows = randomIdentifiedRows(chain);
+  Everything<double> everything(randomState(chain, 1));
   const AllocationGuard guard;
-  everything.compute(chain, ParameterSets{rows, rows[0]});
+  everything.compute(chain);
   EXPECT_GT(guard.count(), 0);
 }
 
@@ -124,16 +171,18 @@ TEST(AllocationGuard, SeesEigenAndNew) {
 
 TEST(Threads, GiveTheSameNumbersAsOneAlone) {
   const Chain chain = randomChain(7);
-  const auto rows = rowsOf(chain);
+  const auto rows = randomIdentifiedRows(chain);
   const ParameterSets sets{rows, rows[0]};
-  Everything<double> alone(chain);
+  Everything<double> alone(randomState(chain, 1));
+  alone.compute(chain);
   alone.compute(chain, sets);
 
-  std::vector<Everything<double>> results(8, Everything<double>(chain));
+  std::vector<Everything<double>> results(8, Everything<double>(alone.state));
   std::vector<std::thread> threads;
   for (Everything<double>& result : results) {
     threads.emplace_back([&chain, &sets, &result] {
       for (int k = 0; k < 200; ++k) {
+        result.compute(chain);
         result.compute(chain, sets);
       }
     });
@@ -154,7 +203,8 @@ TEST(Threads, GiveTheSameNumbersAsOneAlone) {
     EXPECT_EQ(result.g, alone.g);
     EXPECT_EQ(result.qdd, alone.qdd);
     EXPECT_EQ(result.Y, alone.Y);
-    EXPECT_EQ(result.energy, alone.energy);
+    EXPECT_EQ(result.kinetic, alone.kinetic);
+    EXPECT_EQ(result.potential, alone.potential);
   }
 }
 

@@ -17,9 +17,8 @@ namespace {
 
 using namespace test;  // NOLINT(google-build-using-namespace)
 
-template <typename Scalar>
-MatrixX<Scalar> regressorOf(const Chain& chain, const State<Scalar>& state) {
-  MatrixX<Scalar> Y(chain.jointCount(), 10 * chain.jointCount());
+MatrixX<double> regressorOf(const Chain& chain, const State<double>& state) {
+  MatrixX<double> Y(chain.jointCount(), 10 * chain.jointCount());
   regressor(chain, state.q, state.qd, state.qdd, Y);
   return Y;
 }
@@ -31,11 +30,6 @@ VectorX<double> rotorInertia(const Chain& chain) {
   }
   return rotor;
 }
-
-template <typename Scalar>
-class RegressorOf : public ::testing::Test {};
-using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(RegressorOf, Scalars, );
 
 // A body turning about the horizontal z axis, y up. Torque about z:
 //   Izz qdd + mcx (g cos q) - mcy (g sin q)
@@ -59,23 +53,22 @@ TEST(Parameters, StandTenPerLinkInTheOrderOfTheChain) {
   EXPECT_TRUE(agree(parameters(chain), expected, 10, kByHand));
 }
 
-TYPED_TEST(RegressorOf, AnyRobotTimesItsParametersIsTheTorque) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const MatrixX<Scalar> Y = regressorOf(chain, state);
-    const VectorX<Scalar> p = parameters(chain).cast<Scalar>();
-    const VectorX<Scalar> rotor = rotorInertia(chain).cast<Scalar>();
-    VectorX<Scalar> tau(chain.jointCount());
+TEST(Regressor, TimesTheParametersIsTheTorque) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const MatrixX<double> Y = regressorOf(chain, state);
+    const VectorX<double> p = parameters(chain).cast<double>();
+    const VectorX<double> rotor = rotorInertia(chain).cast<double>();
+    VectorX<double> tau(chain.jointCount());
     torques(chain, state.q, state.qd, state.qdd, tau);
     EXPECT_TRUE(agree(Y * p + rotor.cwiseProduct(state.qdd), tau,
-                      largest(Y.cwiseAbs() * p.cwiseAbs()), rounding<Scalar>(chain)));
+                      largest(Y.cwiseAbs() * p.cwiseAbs()), rounding(chain)));
   });
 }
 
 // The regressor knows the motion only: other parameters, the same matrix. These have all ten
 // numbers of any sign, so that no column can hide behind a sum that bodies always fulfil.
 TEST(Regressor, HoldsForParametersNoBodyHas) {
-  forEachState<double>([](const Chain& chain, const State<double>& state) {
+  forEachState([](const Chain& chain, const State<double>& state) {
     Random random(5);
     std::vector<LinkParameters> links;
     for (std::size_t i = 0; i < chain.links().size(); ++i) {
@@ -90,13 +83,13 @@ TEST(Regressor, HoldsForParametersNoBodyHas) {
     VectorX<double> tau(chain.jointCount());
     torques(other, state.q, state.qd, state.qdd, tau);
     tau -= rotorInertia(chain).cwiseProduct(state.qdd);
-    EXPECT_TRUE(agree(Y * p, tau, largest(Y.cwiseAbs() * p.cwiseAbs()), rounding<double>(chain)));
+    EXPECT_TRUE(agree(Y * p, tau, largest(Y.cwiseAbs() * p.cwiseAbs()), rounding(chain)));
   });
 }
 
 TEST(Regressor, HasZerosForLinksBeforeTheJoint) {
   const Chain chain = randomChain(6);
-  const MatrixX<double> Y = regressorOf(chain, randomState<double>(chain, 0));
+  const MatrixX<double> Y = regressorOf(chain, randomState(chain, 0));
   for (Eigen::Index j = 1; j < chain.jointCount(); ++j) {
     EXPECT_EQ(Y.row(j).head(10 * j).norm(), 0) << "row " << j;
   }
@@ -104,7 +97,7 @@ TEST(Regressor, HasZerosForLinksBeforeTheJoint) {
 
 TEST(Regressor, IsNanWhereItDependsOnANan) {
   const Chain chain = randomChain(4);
-  State<double> state = randomState<double>(chain, 0);
+  State<double> state = randomState(chain, 0);
   state.qd[3] = std::numeric_limits<double>::quiet_NaN();
   // the last link's first moments load every joint through qd of the last
   const MatrixX<double> Y = regressorOf(chain, state);

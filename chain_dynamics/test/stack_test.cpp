@@ -102,7 +102,7 @@ TEST_P(Stack, OfOneStateIsBounded) {
   if (!kMeasurable) GTEST_SKIP() << kWhyNot;
   for (const Model& model : largest()) {
     const FastModel fast(model, GetParam());
-    const State<double> x = randomState<double>(model.chain, 1);
+    const State<double> x = randomState(model.chain, 1);
     const Index n = x.q.size();
     const double* const q = x.q.data();
     const double* const qd = x.qd.data();
@@ -189,7 +189,7 @@ TEST(StackOfPlainFunctions, IsBounded) {
   const ParameterSets sets{rows, rows[0]};
   Model model(chain);
   model.friction.resize(kStackJoints, SmoothCoulomb{1, 2, 0.1, 0.01, 0.3, 0.1, 0.5, 0.2});
-  const State<double> x = randomState<double>(chain, 1);
+  const State<double> x = randomState(chain, 1);
   const VectorXd &q = x.q, &qd = x.qd, &qdd = x.qdd;
   const Index n = q.size();
   MatrixXd H(n, n), by_q(n, n), by_qd(n, n), J(6, n), Y(n, 10 * n);

@@ -53,23 +53,17 @@ double lengthOf(const Chain& chain, const State<double>& state) {
 }
 
 // Velocity of the tip when the joints move with qd, as the derivative of its pose.
-template <typename Scalar>
-Eigen::Matrix<Scalar, 6, 1> velocityOfTip(const Chain& chain, const VectorX<Scalar>& q,
-                                          const VectorX<Scalar>& qd) {
-  const Transform<Dual<Scalar, 1>> X = tipPose(chain, moving<Scalar>(q, qd));
-  const Matrix3<Scalar> R = X.R.unaryExpr([](const auto& x) { return x.value; });
-  const Matrix3<Scalar> dR = X.R.unaryExpr([](const auto& x) { return x.derivative[0]; });
-  const Matrix3<Scalar> w = dR * R.transpose();  // [w]x
-  Eigen::Matrix<Scalar, 6, 1> velocity;
+Eigen::Matrix<double, 6, 1> velocityOfTip(const Chain& chain, const VectorX<double>& q,
+                                          const VectorX<double>& qd) {
+  const Transform<Dual<double, 1>> X = tipPose(chain, moving<double>(q, qd));
+  const Matrix3<double> R = X.R.unaryExpr([](const auto& x) { return x.value; });
+  const Matrix3<double> dR = X.R.unaryExpr([](const auto& x) { return x.derivative[0]; });
+  const Matrix3<double> w = dR * R.transpose();  // [w]x
+  Eigen::Matrix<double, 6, 1> velocity;
   velocity << X.p.unaryExpr([](const auto& x) { return x.derivative[0]; }), w(2, 1), w(0, 2),
       w(1, 0);
   return velocity;
 }
-
-template <typename Scalar>
-class TipKinematicsOf : public ::testing::Test {};
-using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(TipKinematicsOf, Scalars, );
 
 // Two rods in a plane: the tip at the end of the second, turned by q1 + q2 and by its own turn.
 TEST(TipKinematics, OfADoublePendulumByHand) {
@@ -111,40 +105,36 @@ TEST(TipKinematics, OfATurntableWithASlideByHand) {
   EXPECT_TRUE(agree(jacobianDerivativeOf<double>(chain, q, qd), dJ, 1, kByHand));
 }
 
-TYPED_TEST(TipKinematicsOf, AnyRobotHasTheJacobianOfItsTipPose) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& without, const State<Scalar>& state) {
+TEST(TipKinematics, JacobianIsTheDerivativeOfThePose) {
+  forEachState([](const Chain& without, const State<double>& state) {
     const Chain chain = withTip(without);
-    const Jacobian<Scalar> J = jacobianOf(chain, state.q);
-    const double scale = lengthOf(chain, state.template cast<double>());
+    const Jacobian<double> J = jacobianOf(chain, state.q);
+    const double scale = lengthOf(chain, state.cast<double>());
     for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
-      const VectorX<Scalar> alone = VectorX<Scalar>::Unit(chain.jointCount(), i);
-      EXPECT_TRUE(
-          agree(J.col(i), velocityOfTip(chain, state.q, alone), scale, rounding<Scalar>(chain)));
+      const VectorX<double> alone = VectorX<double>::Unit(chain.jointCount(), i);
+      EXPECT_TRUE(agree(J.col(i), velocityOfTip(chain, state.q, alone), scale, rounding(chain)));
     }
   });
 }
 
-TYPED_TEST(TipKinematicsOf, AnyRobotHasTheDerivativeOfItsJacobian) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& without, const State<Scalar>& state) {
+TEST(TipKinematics, JacobianDerivativeIsThatOfTheJacobian) {
+  forEachState([](const Chain& without, const State<double>& state) {
     const Chain chain = withTip(without);
-    const Jacobian<Dual<Scalar, 1>> moved = jacobianOf(chain, moving<Scalar>(state.q, state.qd));
-    const Jacobian<Scalar> expected =
-        moved.unaryExpr([](const Dual<Scalar, 1>& x) { return x.derivative[0]; });
-    const State<double> size = state.template cast<double>();
+    const Jacobian<Dual<double, 1>> moved = jacobianOf(chain, moving<double>(state.q, state.qd));
+    const Jacobian<double> expected =
+        moved.unaryExpr([](const Dual<double, 1>& x) { return x.derivative[0]; });
+    const State<double> size = state.cast<double>();
     const double scale = lengthOf(chain, size) * (1 + size.qd.cwiseAbs().sum());
-    EXPECT_TRUE(agree(jacobianDerivativeOf(chain, state.q, state.qd), expected, scale,
-                      rounding<Scalar>(chain)));
+    EXPECT_TRUE(
+        agree(jacobianDerivativeOf(chain, state.q, state.qd), expected, scale, rounding(chain)));
   });
 }
 
 TEST(TipKinematics, TheRotationIsOne) {
-  forEachState<double>([](const Chain& without, const State<double>& state) {
+  forEachState([](const Chain& without, const State<double>& state) {
     const Chain chain = withTip(without);
     const Matrix3<double> R = tipPose(chain, state.q).R;
-    EXPECT_TRUE(
-        agree((R * R.transpose()).eval(), Matrix3<double>::Identity(), 1, rounding<double>(chain)));
+    EXPECT_TRUE(agree((R * R.transpose()).eval(), Matrix3<double>::Identity(), 1, rounding(chain)));
     EXPECT_GT(R.determinant(), 0);
   });
 }
@@ -155,7 +145,7 @@ TEST(TipKinematics, TheJacobianDoesNotDependOnTheFirstJointsPlace) {
   std::vector<Joint> joints = chain.joints();
   joints[0].placement.p = {1e14, -3e13, 7e12};
   const Chain away("away", joints, chain.links(), chain.gravity(), chain.tip());
-  const State<double> state = randomState<double>(chain, 3);
+  const State<double> state = randomState(chain, 3);
   EXPECT_EQ(jacobianOf(away, state.q), jacobianOf(chain, state.q));
   EXPECT_EQ(jacobianDerivativeOf(away, state.q, state.qd),
             jacobianDerivativeOf(chain, state.q, state.qd));
@@ -163,7 +153,7 @@ TEST(TipKinematics, TheJacobianDoesNotDependOnTheFirstJointsPlace) {
 
 TEST(TipKinematics, TheJacobianGoesIntoABlockOfAMatrix) {
   const Chain chain = withTip(randomChain(4));
-  const State<double> state = randomState<double>(chain, 2);
+  const State<double> state = randomState(chain, 2);
   MatrixX<double> batch = MatrixX<double>::Zero(8, 12);
   tipJacobian(chain, state.q, batch.block(1, 4, 6, 4));
   EXPECT_EQ(batch.block(1, 4, 6, 4), jacobianOf(chain, state.q));
@@ -172,7 +162,7 @@ TEST(TipKinematics, TheJacobianGoesIntoABlockOfAMatrix) {
 
 TEST(TipKinematics, AreNanWhereTheyDependOnANan) {
   const Chain chain = withTip(randomChain(6));
-  const State<double> state = randomState<double>(chain, 0);
+  const State<double> state = randomState(chain, 0);
   const State<Dual<double, 1>> constants = state.cast<Dual<double, 1>>();
   for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
     VectorX<double> nan = VectorX<double>::Zero(6);

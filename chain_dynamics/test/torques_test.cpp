@@ -27,20 +27,14 @@ VectorX<Scalar> torquesOf(const Chain& chain, const State<Scalar>& state) {
 }
 
 // The size of the terms that make up the torques, cancelling or not.
-template <typename Scalar>
-double termsOf(const Chain& chain, const State<Scalar>& state) {
+double termsOf(const Chain& chain, const State<double>& state) {
   const Eigen::Index n = chain.jointCount();
-  MatrixX<Scalar> H(n, n);
-  VectorX<Scalar> c(n);
-  VectorX<Scalar> g(n);
+  MatrixX<double> H(n, n);
+  VectorX<double> c(n);
+  VectorX<double> g(n);
   dynamicComponents(chain, state.q, state.qd, H, c, g);
   return largest(H.cwiseAbs() * state.qdd.cwiseAbs() + c.cwiseAbs() + g.cwiseAbs());
 }
-
-template <typename Scalar>
-class TorquesOf : public ::testing::Test {};
-using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(TorquesOf, Scalars, );
 
 // Point mass m on a rod l, rod at angle q above the horizontal. About the pivot:
 //   inertia  m l^2, with a rotor J on the same axis m l^2 + J
@@ -113,55 +107,50 @@ TEST(Torques, OfATurntableWithASlideByHand) {
 }
 
 // The oracle differentiates energies twice; its sums are longer than those of the recursion.
-TYPED_TEST(TorquesOf, AnyRobotAreThoseOfLagrangesEquation) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
-    const VectorX<Scalar> expected =
+TEST(Torques, AreThoseOfLagrangesEquation) {
+  forEachState([](const Chain& chain, const State<double>& state) {
+    const VectorX<double> expected =
         lagrangeOfKineticEnergy(chain, state) + gradientOfPotentialEnergy(chain, state.q);
-    EXPECT_TRUE(
-        agree(torquesOf(chain, state), expected, termsOf(chain, state), rounding<Scalar>(chain)));
+    EXPECT_TRUE(agree(torquesOf(chain, state), expected, termsOf(chain, state), rounding(chain)));
   });
 }
 
-TYPED_TEST(TorquesOf, AnyRobotAreTheSumOfTheTermsOfTheEquationOfMotion) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+TEST(Torques, AreTheSumOfTheTermsOfTheEquationOfMotion) {
+  forEachState([](const Chain& chain, const State<double>& state) {
     const Eigen::Index n = chain.jointCount();
-    MatrixX<Scalar> H(n, n);
-    VectorX<Scalar> c(n);
-    VectorX<Scalar> g(n);
+    MatrixX<double> H(n, n);
+    VectorX<double> c(n);
+    VectorX<double> g(n);
     dynamicComponents(chain, state.q, state.qd, H, c, g);
     EXPECT_TRUE(agree(torquesOf(chain, state), H * state.qdd + c + g, termsOf(chain, state),
-                      rounding<Scalar>(chain)));
+                      rounding(chain)));
   });
 }
 
-TYPED_TEST(TorquesOf, AnyRobotAreLinearInTheAccelerations) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+TEST(Torques, AreLinearInTheAccelerations) {
+  forEachState([](const Chain& chain, const State<double>& state) {
     // with a + b = 1: tau(a x + b y) = a tau(x) + b tau(y)
-    const Scalar a(0.75);
-    const Scalar b(0.25);
-    State<Scalar> x = state;
-    State<Scalar> y = state;
-    y.qdd = randomState<Scalar>(chain, 99).qdd;
-    State<Scalar> mixed = state;
+    const double a(0.75);
+    const double b(0.25);
+    State<double> x = state;
+    State<double> y = state;
+    y.qdd = randomState(chain, 99).qdd;
+    State<double> mixed = state;
     mixed.qdd = a * x.qdd + b * y.qdd;
     EXPECT_TRUE(agree(torquesOf(chain, mixed), a * torquesOf(chain, x) + b * torquesOf(chain, y),
-                      termsOf(chain, x) + termsOf(chain, y), rounding<Scalar>(chain)));
+                      termsOf(chain, x) + termsOf(chain, y), rounding(chain)));
   });
 }
 
-TYPED_TEST(TorquesOf, AnyRobotHaveThePowerThatChangesItsEnergy) {
-  using Scalar = TypeParam;
-  forEachState<Scalar>([](const Chain& chain, const State<Scalar>& state) {
+TEST(Torques, HaveThePowerThatChangesItsEnergy) {
+  forEachState([](const Chain& chain, const State<double>& state) {
     // all quantities as they change in time
-    const auto q = moving<Scalar>(state.q, state.qd);
-    const auto qd = moving<Scalar>(state.qd, state.qdd);
-    const Scalar rate = (kineticEnergy(chain, q, qd) + potentialEnergy(chain, q)).derivative[0];
-    const Scalar power = torquesOf(chain, state).dot(state.qd);
+    const auto q = moving<double>(state.q, state.qd);
+    const auto qd = moving<double>(state.qd, state.qdd);
+    const double rate = (kineticEnergy(chain, q, qd) + potentialEnergy(chain, q)).derivative[0];
+    const double power = torquesOf(chain, state).dot(state.qd);
     const double scale = termsOf(chain, state) * static_cast<double>(state.qd.cwiseAbs().sum());
-    EXPECT_NEAR(power, rate, rounding<Scalar>(chain) * scale);
+    EXPECT_NEAR(power, rate, rounding(chain) * scale);
   });
 }
 
@@ -183,7 +172,7 @@ double sensitivityToAngles(const Chain& chain, const State<double>& state) {
 TEST(Torques, AreTheSameAfterManyTurns) {
   constexpr double kAngleRounding = 2e-12;
   const double turn = 2 * std::acos(-1.0);
-  forEachState<double>([turn](const Chain& chain, const State<double>& state) {
+  forEachState([turn](const Chain& chain, const State<double>& state) {
     State<double> turned = state;
     for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
       const double turns = i % 2 == 0 ? 1600 : -1590;
@@ -197,7 +186,7 @@ TEST(Torques, AreTheSameAfterManyTurns) {
 // An entry depends on an input where its derivative isn't zero.
 TEST(Torques, AreNanWhereTheyDependOnANan) {
   const Chain chain = randomChain(6);
-  const State<double> state = randomState<double>(chain, 0);
+  const State<double> state = randomState(chain, 0);
   for (VectorX<double> State<double>::*input :
        {&State<double>::q, &State<double>::qd, &State<double>::qdd}) {
     for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
@@ -221,7 +210,7 @@ TEST(Torques, AreNanWhereTheyDependOnANan) {
 
 TEST(Torques, MayOverwriteAnInput) {
   const Chain chain = randomChain(5);
-  State<double> state = randomState<double>(chain, 3);
+  State<double> state = randomState(chain, 3);
   const VectorX<double> expected = torquesOf(chain, state);
   torques(chain, state.q, state.qd, state.qdd, state.qdd);
   EXPECT_EQ(state.qdd, expected);
@@ -229,7 +218,7 @@ TEST(Torques, MayOverwriteAnInput) {
 
 TEST(Torques, GoIntoAColumnOfAMatrix) {
   const Chain chain = randomChain(5);
-  const State<double> state = randomState<double>(chain, 3);
+  const State<double> state = randomState(chain, 3);
   MatrixX<double> tau = MatrixX<double>::Zero(5, 3);
   torques(chain, state.q, state.qd, state.qdd, tau.col(1));
   EXPECT_EQ(tau.col(1), torquesOf(chain, state));
