@@ -219,7 +219,7 @@ TEST(DefiniteInertia, NoPositionOfARandomChainIsSingularWhereItIsProved) {
   int proved_with_massless = 0;
   int refuted = 0;
   int undecided = 0;
-  for (std::uint32_t seed = 0; seed < 600; ++seed) {
+  for (std::uint32_t seed = 0; seed < 150; ++seed) {
     const Chain chain = randomSparseChain(1 + seed % 5, seed);
     const double least = leastFound(chain, 12);
     if (isPhysical(chain)) {
@@ -234,10 +234,10 @@ TEST(DefiniteInertia, NoPositionOfARandomChainIsSingularWhereItIsProved) {
     }
   }
   // The test sees something, and a proof is found nearly everywhere where there is one.
-  EXPECT_GT(proved, 100);
-  EXPECT_GT(proved_with_massless, 20);
-  EXPECT_GT(refuted, 100);
-  EXPECT_LT(undecided, 30);
+  EXPECT_GT(proved, 25);
+  EXPECT_GT(proved_with_massless, 5);
+  EXPECT_GT(refuted, 25);
+  EXPECT_LT(undecided, 8);
 }
 
 }  // namespace

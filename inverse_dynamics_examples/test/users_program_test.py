@@ -52,7 +52,7 @@ def configured(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 @pytest.mark.parametrize(
     ("compiler", "program"),
     [
-        ("c++", "avx2"),
+        pytest.param("c++", "avx2", marks=pytest.mark.nightly),
         pytest.param("c++", "avx512", marks=pytest.mark.nightly),
         ("c++", "address_sanitizer"),
         pytest.param("clang++", "plain", marks=pytest.mark.nightly),

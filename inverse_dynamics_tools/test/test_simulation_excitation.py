@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from simulation_arms import CHAINS, pendulum, robots_package, simulated, two_links
+from simulation_arms import pendulum, robots_package, simulated, two_links
 
 from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.descent import minimise
@@ -27,6 +27,9 @@ from inverse_dynamics.simulation.trajectory import FourierTrajectory
 from inverse_dynamics.simulation.trajectory_file import read_trajectory
 
 QUICK = ExcitationOptions(iterations=9)
+SEARCHED = pytest.mark.parametrize(
+    "name", ["panda", pytest.param("ur10", marks=pytest.mark.nightly)]
+)
 
 
 @cache
@@ -62,7 +65,7 @@ def test_growing_penalty_is_told_how_far_the_search_is() -> None:
     assert seen == [0.0, 0.25, 0.5, 0.75]
 
 
-@pytest.mark.parametrize("name", CHAINS)
+@SEARCHED
 def test_motion_is_within_all_limits_at_1_khz_and_clear_of_itself(name: str) -> None:
     robot = simulated(name)
     found = searched(name)
@@ -87,7 +90,7 @@ def test_longer_search_predicts_better() -> None:
     assert deviation(searched("panda")).mean() < 0.7 * deviation(short).mean()
 
 
-@pytest.mark.parametrize("name", CHAINS)
+@SEARCHED
 def test_motion_predicts_better_than_the_stored_one_at_equal_duration_and_limits(name: str) -> None:
     robot = simulated(name)
     file = robots_package() / f"trajectories/{name}.yaml"
@@ -128,7 +131,7 @@ def slow_reversals(found: Excitation) -> list[tuple[int, float]]:
     ]
 
 
-@pytest.mark.parametrize("name", CHAINS)
+@SEARCHED
 def test_every_joint_reverses_slowly_and_under_gravity_in_both_directions(name: str) -> None:
     found = searched(name)
     reversals = slow_reversals(found)
