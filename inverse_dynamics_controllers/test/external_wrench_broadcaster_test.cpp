@@ -76,10 +76,9 @@ class ExternalWrenchBroadcasterTest : public ControllerFixture<ExternalWrenchBro
 
   // What another controller reads, as admittance_controller does.
   Vector6 sensed() {
-    std::vector<LoanedStateInterface> loans;
-    for (const auto& state : states_) loans.emplace_back(state);
+    std::vector<LoanedStateInterface> states = loans<LoanedStateInterface>(states_);
     semantic_components::ForceTorqueSensor sensor("under_test");
-    EXPECT_TRUE(sensor.assign_loaned_state_interfaces(loans));
+    EXPECT_TRUE(sensor.assign_loaned_state_interfaces(states));
     geometry_msgs::msg::Wrench wrench;
     sensor.get_values_as_message(wrench);
     Vector6 values;

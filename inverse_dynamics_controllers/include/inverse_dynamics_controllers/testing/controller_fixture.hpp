@@ -60,6 +60,21 @@ inline const std::vector<std::string>& ur10Joints() {
   return names;
 }
 
+/// What a controller is given of interfaces.
+template <class Loan, class Interfaces>
+std::vector<Loan> loans(const Interfaces& interfaces) {
+  using Pointer = typename Interfaces::value_type;
+  std::vector<Loan> loaned;
+  for (const Pointer& interface : interfaces) {
+    if constexpr (std::is_constructible_v<Loan, const Pointer&>) {
+      loaned.emplace_back(interface);
+    } else {  // humble
+      loaned.emplace_back(*interface);
+    }
+  }
+  return loaned;
+}
+
 /// Joints with a position, a velocity, a measured and a commanded effort each.
 class FakeHardware {
  public:
@@ -106,20 +121,6 @@ class FakeHardware {
     states_.push_back(
         std::make_shared<hardware_interface::StateInterface>(joint, interface, value));
 #pragma GCC diagnostic pop
-  }
-
-  template <class Loan, class Interfaces>
-  static std::vector<Loan> loans(const Interfaces& interfaces) {
-    using Pointer = typename Interfaces::value_type;
-    std::vector<Loan> loaned;
-    for (const Pointer& interface : interfaces) {
-      if constexpr (std::is_constructible_v<Loan, const Pointer&>) {
-        loaned.emplace_back(interface);
-      } else {
-        loaned.emplace_back(*interface);
-      }
-    }
-    return loaned;
   }
 
   std::vector<std::shared_ptr<hardware_interface::StateInterface>> states_;
