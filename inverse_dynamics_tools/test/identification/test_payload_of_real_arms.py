@@ -30,9 +30,7 @@ MOST = {
 
 @pytest.mark.parametrize(
     ("name", "mass", "seconds", "model"),
-    [
-        pytest.param(*case, marks=pytest.mark.nightly if case[0] == "ur10" else ()) for case in MOST
-    ],
+    [pytest.param(*case, marks=pytest.mark.nightly if case[0] == "ur10" else ()) for case in MOST],
 )
 def test_simulated_loads_on_real_residuals(identified, tmp_path, name, mass, seconds, model):
     arm = Arm.of(identified(name), tmp_path, seconds=seconds)
