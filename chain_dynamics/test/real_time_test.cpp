@@ -180,6 +180,7 @@ TEST(Threads, GiveTheSameNumbersAsOneAlone) {
 
   std::vector<Everything<double>> results(8, Everything<double>(alone.state));
   std::vector<std::thread> threads;
+  threads.reserve(results.size());
   for (Everything<double>& result : results) {
     threads.emplace_back([&chain, &sets, &result] {
       for (int k = 0; k < 200; ++k) {
