@@ -17,7 +17,8 @@ class RobotDescriptionTopic {
   explicit RobotDescriptionTopic(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node);
 
   /// URDF text: the parameter's, the controller manager's, or the newest that has come on the
-  /// topic. Empty: none of them; a warning says so. Waits for nothing.
+  /// topic. Empty: none of them; a warning says so. Where the topic has a publisher, it waits 2 s
+  /// for the first message; for nothing else.
   ///
   /// @param parameter  value of the parameter `robot_description`.
   /// @param managers   what the controller manager has given.
@@ -25,6 +26,8 @@ class RobotDescriptionTopic {
 
  private:
   struct Inbox;
+
+  std::string takeNewest() const;
 
   std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node_;
   std::shared_ptr<Inbox> inbox_;  // a message that is being received keeps it

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <std_msgs/msg/string.hpp>
+#include <thread>
 
 #include "inverse_dynamics_controllers/inverse_dynamics_controller.hpp"
 #include "inverse_dynamics_controllers/testing/controller_fixture.hpp"
@@ -135,6 +136,23 @@ TEST_F(Refusals, ARobotDescriptionThatComesLateIsTakenWhenConfiguredAgain) {
   EXPECT_TRUE(spinUntil([this] {
     return controller.configure().id() == lifecycle_msgs::msg::State::PRIMARY_STATE_INACTIVE;
   })) << log.text();
+}
+
+TEST_F(Refusals, ARobotDescriptionThatIsUnderWayIsWaitedFor) {
+  const auto sender = std::make_shared<rclcpp::Node>("sender");
+  const auto publisher = sender->create_publisher<std_msgs::msg::String>(
+      "robot_description", rclcpp::QoS(1).transient_local());
+  ASSERT_TRUE(init(but("robot_description", rclcpp::ParameterValue("")))) << log.text();
+  ASSERT_TRUE(spinUntil([&] { return publisher->get_subscription_count() > 0; }));
+  std::thread late([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std_msgs::msg::String description;
+    description.data = ur10Description();
+    publisher->publish(description);
+  });
+  EXPECT_EQ(controller.configure().id(), lifecycle_msgs::msg::State::PRIMARY_STATE_INACTIVE)
+      << log.text();
+  late.join();
 }
 
 TEST_F(Refusals, ActivationWithoutASolver) {
