@@ -109,7 +109,7 @@ TEST(TipKinematics, JacobianIsTheDerivativeOfThePose) {
   forEachState([](const Chain& without, const State<double>& state) {
     const Chain chain = withTip(without);
     const Jacobian<double> J = jacobianOf(chain, state.q);
-    const double scale = lengthOf(chain, state.cast<double>());
+    const double scale = lengthOf(chain, state);
     for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
       const VectorX<double> alone = VectorX<double>::Unit(chain.jointCount(), i);
       EXPECT_TRUE(agree(J.col(i), velocityOfTip(chain, state.q, alone), scale, rounding(chain)));
@@ -123,8 +123,7 @@ TEST(TipKinematics, JacobianDerivativeIsThatOfTheJacobian) {
     const Jacobian<Dual<double, 1>> moved = jacobianOf(chain, moving<double>(state.q, state.qd));
     const Jacobian<double> expected =
         moved.unaryExpr([](const Dual<double, 1>& x) { return x.derivative[0]; });
-    const State<double> size = state.cast<double>();
-    const double scale = lengthOf(chain, size) * (1 + size.qd.cwiseAbs().sum());
+    const double scale = lengthOf(chain, state) * (1 + state.qd.cwiseAbs().sum());
     EXPECT_TRUE(
         agree(jacobianDerivativeOf(chain, state.q, state.qd), expected, scale, rounding(chain)));
   });

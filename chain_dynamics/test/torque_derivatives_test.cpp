@@ -62,8 +62,7 @@ Derivatives byDualNumbers(const State<double>& x, const Torques& torques_of) {
 
 void expectSame(const Chain& chain, const Derivatives& a, const Derivatives& b) {
   const double tolerance = rounding(chain);
-  const double weight = chain.gravity().norm();  // of 1 kg at 1 m: gravity's terms may cancel
-  EXPECT_TRUE(agree(a.q, b.q, largest(b.q) + weight, tolerance)) << "by q";
+  EXPECT_TRUE(agree(a.q, b.q, largest(b.q), tolerance)) << "by q";
   EXPECT_TRUE(agree(a.qd, b.qd, largest(b.qd), tolerance)) << "by qd";
   EXPECT_TRUE(agree(a.qdd, b.qdd, largest(b.qdd), tolerance)) << "by qdd";
 }
@@ -120,8 +119,11 @@ TEST(TorqueDerivatives, HoldAtLargeAngles) {
 TEST(TorqueDerivatives, OfParameterSetsAreThoseOfDualNumbers) {
   forEachState([](const Chain& chain, const State<double>& x) {
     if (chain.jointCount() > 9) return;
-    Random random(11);
-    std::vector<std::vector<LinkParameters>> rows = randomIdentifiedRows(chain);
+    Random random(7);
+    std::vector<std::vector<LinkParameters>> rows;
+    for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
+      rows.push_back(randomIdentifiedLinks(random, chain));
+    }
     const std::vector<LinkParameters> gravity = randomIdentifiedLinks(random, chain);
     for (const auto& own_rows : {decltype(rows)(), rows}) {
       for (const auto& own_gravity : {std::vector<LinkParameters>(), gravity}) {
