@@ -37,9 +37,13 @@ struct Everything {
         c(tau),
         g(tau),
         qdd(tau),
+        c_of_all(tau),
+        g_of_all(tau),
         H(tau.size(), tau.size()),
         dtau_dq(H),
         dtau_dqd(H),
+        dtau_dqdd(H),
+        H_of_all(H),
         C(H),
         J(6, tau.size()),
         dJ(J),
@@ -51,14 +55,14 @@ struct Everything {
     inertiaMatrix(chain, q, H);
     coriolisVector(chain, q, qd, c);
     gravityVector(chain, q, g);
-    dynamicComponents(chain, q, qd, H, c, g);
+    dynamicComponents(chain, q, qd, H_of_all, c_of_all, g_of_all);
     forwardDynamics(chain, q, qd, tau, qdd);
     coriolisMatrix(chain, q, qd, C);
     tipJacobian(chain, q, J);
     tipJacobianDerivative(chain, q, qd, dJ);
     tip = tipPose(chain, q);
     regressor(chain, q, qd, a, Y);
-    torqueDerivatives(chain, q, qd, a, dtau_dq, dtau_dqd, H);
+    torqueDerivatives(chain, q, qd, a, dtau_dq, dtau_dqd, dtau_dqdd);
     kinetic = kineticEnergy(chain, q, qd);
     potential = potentialEnergy(chain, q);
   }
@@ -71,13 +75,13 @@ struct Everything {
     coriolisVector(chain, sets, q, qd, c);
     coriolisMatrix(chain, sets, q, qd, C);
     gravityVector(chain, sets, q, g);
-    dynamicComponents(chain, sets, q, qd, H, c, g);
-    torqueDerivatives(chain, sets, q, qd, a, dtau_dq, dtau_dqd, H);
+    dynamicComponents(chain, sets, q, qd, H_of_all, c_of_all, g_of_all);
+    torqueDerivatives(chain, sets, q, qd, a, dtau_dq, dtau_dqd, dtau_dqdd);
   }
 
   State<Scalar> state;
-  VectorX<Scalar> tau, c, g, qdd;
-  MatrixX<Scalar> H, dtau_dq, dtau_dqd, C, J, dJ, Y;
+  VectorX<Scalar> tau, c, g, qdd, c_of_all, g_of_all;
+  MatrixX<Scalar> H, dtau_dq, dtau_dqd, dtau_dqdd, H_of_all, C, J, dJ, Y;
   Transform<Scalar> tip;
   Scalar kinetic, potential;
 };
@@ -94,6 +98,10 @@ void expectSame(const Chain& chain, const Everything<float>& a, const Everything
   EXPECT_TRUE(close(a.c, b.c, terms)) << "c";
   EXPECT_TRUE(close(a.g, b.g, terms)) << "g";
   EXPECT_TRUE(close(a.H, b.H, largest(b.H))) << "H";
+  EXPECT_TRUE(close(a.c_of_all, b.c, terms)) << "c of all components";
+  EXPECT_TRUE(close(a.g_of_all, b.g, terms)) << "g of all components";
+  EXPECT_TRUE(close(a.H_of_all, b.H, largest(b.H))) << "H of all components";
+  EXPECT_TRUE(close(a.dtau_dqdd, b.H, largest(b.H))) << "dtau/dqdd";
   EXPECT_TRUE(close(a.C, b.C, 3 * largest(b.C))) << "C";
   EXPECT_TRUE(close(a.dtau_dq, b.dtau_dq, largest(b.dtau_dq))) << "dtau/dq";
   EXPECT_TRUE(close(a.dtau_dqd, b.dtau_dqd, largest(b.dtau_dqd))) << "dtau/dqd";
