@@ -85,37 +85,41 @@ def set_screen(driver, width, height, scheme="light", **features):
     driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": listed})
 
 
-def take(driver, uri: str, before: str = "", only: str = "") -> dict[str, np.ndarray]:
-    """The pictures by name, (rows, columns, 3) of 0 to 255, an eighth as large as on the screen.
+def two_frames_later(driver) -> None:
+    """Waits until the page has drawn itself again in its present size and colours."""
+    driver.execute_async_script("requestAnimationFrame(() => requestAnimationFrame(arguments[0]));")
 
-    before: a script that changes the page. only: the name of the one that is wanted.
+
+def open_page(driver, uri: str) -> None:
+    """The page with elements of fixed sizes, and no text."""
+    driver.get(uri)
+    driver.execute_script(
+        "CanvasRenderingContext2D.prototype.fillText = () => {};"
+        "const style = document.createElement('style'); style.textContent = arguments[0];"
+        "document.head.append(style);",
+        FIXED,
+    )
+
+
+def take(driver, scheme: str, only: str = "") -> dict[str, np.ndarray]:
+    """The pictures of an open page by name, (rows, columns, 3) of 0 to 255, an eighth as large as on the screen.
+
+    only: the name of the one that is wanted.
     """
+    set_screen(driver, 1400, 900, scheme)
+    two_frames_later(driver)
+    driver.execute_script(
+        "document.querySelector('#run-1 .show-all').click();"
+        "document.querySelectorAll('.reset-view').forEach((b) => b.click());"
+    )
+    paper = driver.execute_script("return getComputedStyle(document.body).backgroundColor")
     found = {}
-    for scheme in ("light", "dark"):
-        if only and not only.endswith(scheme):
-            continue
-        set_screen(driver, 1400, 900, scheme)
-        driver.get(uri)
-        driver.execute_script(
-            "CanvasRenderingContext2D.prototype.fillText = () => {};"
-            "const style = document.createElement('style'); style.textContent = arguments[0];"
-            "document.head.append(style);" + before,
-            FIXED,
-        )
-        # One frame later the page has drawn itself again in the sizes that are given.
-        driver.execute_async_script(
-            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => {"
-            "document.querySelector('#run-1 .show-all').click();"
-            "document.querySelector('#run-2 .show-all').click();"
-            "document.querySelectorAll('.reset-view').forEach((b) => b.click()); done(); }));"
-        )
-        paper = driver.execute_script("return getComputedStyle(document.body).backgroundColor")
-        for run, elements in (("run-1", ELEMENTS), ("run-2", {"robot": ELEMENTS["robot"]})):
-            for name, selector in elements.items():
-                title = f"{'skeleton' if run == 'run-2' else name}_{scheme}"
-                if only in ("", title):
-                    data = driver.execute_script(_DRAWN, f"#{run} {selector}", paper)
-                    found[title] = _small(data)
+    for run, elements in (("run-1", ELEMENTS), ("run-2", {"robot": ELEMENTS["robot"]})):
+        for name, selector in elements.items():
+            title = f"{'skeleton' if run == 'run-2' else name}_{scheme}"
+            if only in ("", title):
+                data = driver.execute_script(_DRAWN, f"#{run} {selector}", paper)
+                found[title] = _small(data)
     return found
 
 
@@ -156,7 +160,8 @@ def main() -> None:
         file = Path(directory) / "page.html"
         file.write_text(page(), encoding="utf-8")
         with browser(Path(directory) / "profile") as driver:
-            pictures = take(driver, file.as_uri())
+            open_page(driver, file.as_uri())
+            pictures = take(driver, "light") | take(driver, "dark")
     PICTURES.mkdir(exist_ok=True)
     for name, picture in pictures.items():
         Image.fromarray(picture).save(PICTURES / f"{name}.png", optimize=True)

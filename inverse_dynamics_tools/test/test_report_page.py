@@ -26,7 +26,7 @@ from inverse_dynamics.report.recordings import render_recordings_page
 WIDE = (
     '<svg viewBox="0 0 1100 300" width="1100" height="300"><text x="9" y="20">a figure</text></svg>'
 )
-SCREENS = [(390, "light"), (390, "dark"), (1300, "light"), (1920, "dark")]
+SCREENS = [(390, "light"), (390, "dark"), (1920, "dark"), (1300, "light")]
 
 
 @pytest.fixture(scope="module")
@@ -91,14 +91,17 @@ def driver(tmp_path_factory):
 
 @pytest.fixture
 def show(driver, pages):
-    """Opens a page by name on a screen of some size."""
+    """Shows a page by name on a screen of some size; opens it unless it is open."""
 
-    def opened(name, width=1400, height=900, scheme="light", **features):
-        pictures.set_screen(driver, width, height, scheme, **features)
-        driver.get((pages / f"{name}.html").as_uri())
+    def shown(name, width=1400, height=900, scheme="light"):
+        pictures.set_screen(driver, width, height, scheme)
+        uri = (pages / f"{name}.html").as_uri()
+        if driver.current_url != uri:
+            driver.get(uri)
+        pictures.two_frames_later(driver)
         return driver
 
-    return opened
+    return shown
 
 
 @pytest.fixture(scope="module", params=["evaluation", "comparison", "identification", "recordings"])
@@ -107,9 +110,7 @@ def turn(request, driver, pages):
 
     def turned(width, scheme):
         pictures.set_screen(driver, width, 844, scheme)
-        driver.execute_async_script(
-            "requestAnimationFrame(() => requestAnimationFrame(arguments[0]));"
-        )
+        pictures.two_frames_later(driver)
         return driver
 
     pictures.set_screen(driver, 390, 844)
@@ -180,6 +181,14 @@ def test_measured_and_computed_are_both_visible_at_1_khz(show):
     assert drawn("computed") > columns
 
 
+def test_a_plot_is_described_in_words(show):
+    label = child(show("evaluation"), "[data-joint='1'] .plot-overlay").get_attribute("aria-label")
+    assert re.fullmatch(
+        r"shoulder_lift_joint over time: measured from -?[\d.]+ to [\d.]+ N m, computed from -?[\d.]+ to [\d.]+ N m",
+        label,
+    )
+
+
 def test_numbers_of_a_column_are_written_alike():
     assert aligned([1.234, 0.01234, 250.0, float("nan"), 0.0, "text"]) == [
         "1.23\u2007\u2007",
@@ -203,18 +212,6 @@ def test_no_escapes_stand_in_the_tables(pages):
 # ---- screens ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("width", "scheme"), SCREENS)
-def test_nothing_is_wider_than_the_screen(turn, width, scheme):
-    driver = turn(width, scheme)
-    assert driver.execute_script("return innerWidth") == width
-    assert driver.execute_script("return document.documentElement.scrollWidth") <= width
-    too_far = driver.execute_script(
-        "return [...document.querySelectorAll('body *')].filter((e) => !e.closest('.scroll, .hidden, .skip') &&"
-        "e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.outerHTML.slice(0, 80))"
-    )
-    assert too_far == []
-
-
 @pytest.mark.parametrize("width", [390, 1300, 1920])
 def test_lines_break_between_words_and_parts_of_names(show, width):
     broken = show("evaluation", width).execute_script(
@@ -232,6 +229,21 @@ def test_lines_break_between_words_and_parts_of_names(show, width):
     assert broken == []
 
 
+def test_a_change_of_the_scheme_draws_plots_and_robot_again(show):
+    driver = show("evaluation")
+    corner = """
+        const gl = document.querySelector(".robot canvas").getContext("webgl"), robot = new Uint8Array(4);
+        gl.readPixels(2, gl.drawingBufferHeight - 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, robot);
+        return [...robot].slice(0, 3);
+    """
+    light = driver.execute_script(corner)
+    show("evaluation", scheme="dark")
+    dark = driver.execute_script(corner)
+    assert min(light) > 200
+    assert max(dark) < 80
+    assert driver.execute_script("return document.documentElement.dataset.drawn") == "dark"
+
+
 @pytest.mark.parametrize("name", ["evaluation", "comparison", "identification"])
 def test_the_first_screen_shows_the_robot_and_a_plot(show, name):
     driver = show(name)
@@ -241,6 +253,18 @@ def test_the_first_screen_shows_the_robot_and_a_plot(show, name):
         )
         assert box["bottom"] <= 900, selector
         assert box["width"] > 300
+
+
+@pytest.mark.parametrize(("width", "scheme"), SCREENS)
+def test_nothing_is_wider_than_the_screen(turn, width, scheme):
+    driver = turn(width, scheme)
+    assert driver.execute_script("return innerWidth") == width
+    assert driver.execute_script("return document.documentElement.scrollWidth") <= width
+    too_far = driver.execute_script(
+        "return [...document.querySelectorAll('body *')].filter((e) => !e.closest('.scroll, .hidden, .skip') &&"
+        "e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.outerHTML.slice(0, 80))"
+    )
+    assert too_far == []
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
@@ -277,53 +301,11 @@ def test_texts_stand_out_from_what_is_behind_them(turn, scheme):
     assert ground == (palette.LIGHT if scheme == "light" else palette.DARK)["paper"]
 
 
-def test_a_change_of_the_scheme_draws_plots_and_robot_again(show):
-    driver = show("evaluation")
-    corner = """
-        const gl = document.querySelector(".robot canvas").getContext("webgl"), robot = new Uint8Array(4);
-        gl.readPixels(2, gl.drawingBufferHeight - 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, robot);
-        return [...robot].slice(0, 3);
-    """
-    light = driver.execute_script(corner)
-    pictures.set_screen(driver, 1400, 900, "dark")
-    driver.execute_async_script("const done = arguments[0]; setTimeout(done, 300);")
-    dark = driver.execute_script(corner)
-    assert min(light) > 200
-    assert max(dark) < 80
-    assert driver.execute_script("return document.documentElement.dataset.drawn") == "dark"
-
-
 def test_smooth_scrolling_is_for_readers_who_like_motion(tmp_path, pages):
     """The browser of the other tests asks for reduced motion in its flags."""
     style = (pages / "evaluation.html").read_text(encoding="utf-8")
     reduced = style[style.index("@media (prefers-reduced-motion: reduce)") :]
     assert "scroll-behavior: auto" in reduced[:200]
-
-
-def test_the_robot_fills_its_panel(show):
-    """In the directions that limit it, the motion takes 94 % of the panel, and never more."""
-    found = show("pictures").execute_script(
-        """
-        const run = JSON.parse(document.getElementById("runs").textContent)[0];
-        const time = decode(run.time), q = rows(run.q, run.joints.length);
-        const motion = Array.from({length: 30}, (_, k) => positionsAt(time, q, 8 * k / 29));
-        const points = pointsOf(run.links, motion);
-        const [azimuth, elevation, aspect] = [-0.9, 0.38, 1.1];
-        const {target, distance} = fitted(points, azimuth, elevation, aspect);
-        const flat = distance * Math.cos(elevation);
-        const eye = [target[0] + flat * Math.cos(azimuth), target[1] + flat * Math.sin(azimuth),
-                     target[2] + distance * Math.sin(elevation)];
-        const all = multiply(perspective(kFieldOfView, aspect, 0.1, 50), lookAt(eye, target));
-        return points.map(([x, y, z]) => {
-          const w = all[3] * x + all[7] * y + all[11] * z + all[15];
-          return [0, 1].map((row) => (all[row] * x + all[4 + row] * y + all[8 + row] * z + all[12 + row]) / w);
-        });
-        """
-    )
-    low, high = np.min(found, axis=0), np.max(found, axis=0)
-    assert (low >= -0.95).all()
-    assert (high <= 0.95).all()
-    assert max(high - low) > 1.7
 
 
 # ---- keyboard and screen reader --------------------------------------------------------------------------------------
@@ -391,14 +373,6 @@ def test_a_screen_reader_finds_names_for_everything(turn):
     assert nameless == []
 
 
-def test_a_plot_is_described_in_words(show):
-    label = child(show("evaluation"), "[data-joint='1'] .plot-overlay").get_attribute("aria-label")
-    assert re.fullmatch(
-        r"shoulder_lift_joint over time: measured from -?[\d.]+ to [\d.]+ N m, computed from -?[\d.]+ to [\d.]+ N m",
-        label,
-    )
-
-
 def test_names_of_solvers_are_short_and_the_cause_of_an_error_stands_above_the_plots(pages):
     text = (pages / "comparison.html").read_text(encoding="utf-8")
     assert (
@@ -416,9 +390,19 @@ def test_names_of_solvers_are_short_and_the_cause_of_an_error_stands_above_the_p
 TOLERANCE = 3.0  # of 255, mean over what is drawn
 
 
+CURVES = {"measured": "torques_light", "computed": "torques_light", "error": "error_light"}
+
+
 @pytest.fixture(scope="module")
 def taken(driver, pages):
-    return pictures.take(driver, (pages / "pictures.html").as_uri())
+    """The pictures by name, and those of plots without each of the curves."""
+    pictures.open_page(driver, (pages / "pictures.html").as_uri())
+    found = pictures.take(driver, "light")
+    for curve, name in CURVES.items():
+        driver.execute_script("kWidths[arguments[0]] /= 1000;", curve)
+        found[f"without {curve}"] = pictures.take(driver, "light", only=name)[name]
+        driver.execute_script("kWidths[arguments[0]] *= 1000;", curve)
+    return found | pictures.take(driver, "dark")
 
 
 @pytest.mark.parametrize(
@@ -435,12 +419,9 @@ def test_the_picture_is_the_one_that_is_kept(taken, name):
     assert pictures.difference(taken[name], expected) < TOLERANCE
 
 
-@pytest.mark.parametrize("kind", ["measured", "computed", "error"])
-def test_a_missing_curve_would_be_noticed(driver, pages, taken, kind):
-    uri = (pages / "pictures.html").as_uri()
-    name = "error_light" if kind == "error" else "torques_light"
-    without = pictures.take(driver, uri, f"kWidths.{kind} = 0.001;", only=name)
-    assert pictures.difference(without[name], taken[name]) > 2 * TOLERANCE
+@pytest.mark.parametrize(("curve", "name"), CURVES.items())
+def test_a_missing_curve_would_be_noticed(taken, curve, name):
+    assert pictures.difference(taken[f"without {curve}"], taken[name]) > 2 * TOLERANCE
 
 
 def test_a_missing_robot_would_be_noticed(taken):
@@ -448,3 +429,29 @@ def test_a_missing_robot_would_be_noticed(taken):
     empty = np.broadcast_to(np.median(robot, axis=(0, 1)), robot.shape)
     for other in (empty, taken["skeleton_light"], taken["robot_dark"]):
         assert pictures.difference(robot, other) > 5 * TOLERANCE
+
+
+def test_the_robot_fills_its_panel(show):
+    """In the directions that limit it, the motion takes 94 % of the panel, and never more."""
+    found = show("pictures").execute_script(
+        """
+        const run = JSON.parse(document.getElementById("runs").textContent)[0];
+        const time = decode(run.time), q = rows(run.q, run.joints.length);
+        const motion = Array.from({length: 30}, (_, k) => positionsAt(time, q, 8 * k / 29));
+        const points = pointsOf(run.links, motion);
+        const [azimuth, elevation, aspect] = [-0.9, 0.38, 1.1];
+        const {target, distance} = fitted(points, azimuth, elevation, aspect);
+        const flat = distance * Math.cos(elevation);
+        const eye = [target[0] + flat * Math.cos(azimuth), target[1] + flat * Math.sin(azimuth),
+                     target[2] + distance * Math.sin(elevation)];
+        const all = multiply(perspective(kFieldOfView, aspect, 0.1, 50), lookAt(eye, target));
+        return points.map(([x, y, z]) => {
+          const w = all[3] * x + all[7] * y + all[11] * z + all[15];
+          return [0, 1].map((row) => (all[row] * x + all[4 + row] * y + all[8 + row] * z + all[12 + row]) / w);
+        });
+        """
+    )
+    low, high = np.min(found, axis=0), np.max(found, axis=0)
+    assert (low >= -0.95).all()
+    assert (high <= 0.95).all()
+    assert max(high - low) > 1.7
