@@ -42,8 +42,7 @@ RegressorGram::RegressorGram(Index joints, Index own_columns)
   std::size_t numbers = 0;
   std::size_t squares = 0;
   for (Index j = 0; j < joints; ++j) {
-    const auto row = static_cast<std::size_t>(fast::gramRow(
-        static_cast<int>(joints), static_cast<int>(j), static_cast<int>(own_columns)));
+    const auto row = static_cast<std::size_t>(storedRow(j));
     numbers += row;
     squares += row * row;
   }
@@ -57,14 +56,15 @@ void RegressorGram::add(const RegressorGram& other) {
   samples_ += other.samples_;
 }
 
-double RegressorGram::entry(Index joint, Index a, Index b) const {
-  std::ptrdiff_t first = 0;
-  const auto size = [&](Index j) {
-    return fast::gramRow(static_cast<int>(joints_), static_cast<int>(j),
-                         static_cast<int>(own_columns_));
-  };
-  for (Index j = 0; j < joint; ++j) first += size(j) * size(j);
-  return sums_[static_cast<std::size_t>(first + a * size(joint) + b)];
+const double* RegressorGram::sumsOf(Index joint) const {
+  const double* first = sums_.data();
+  for (Index j = 0; j < joint; ++j) first += storedRow(j) * storedRow(j);
+  return first;
+}
+
+std::ptrdiff_t RegressorGram::storedRow(Index joint) const {
+  return fast::gramRow(static_cast<int>(joints_), static_cast<int>(joint),
+                       static_cast<int>(own_columns_));
 }
 
 void RegressorGram::rowGram(Index joint, Eigen::Ref<Eigen::MatrixXd> G) const {
@@ -75,11 +75,9 @@ void RegressorGram::rowGram(Index joint, Eigen::Ref<Eigen::MatrixXd> G) const {
   requireSize("matrix", rowSize(), rowSize(), G.rows(), G.cols());
   const Index before = kParameters * joint;
   G.setZero();
-  for (Index a = before; a < rowSize(); ++a) {
-    for (Index b = a; b < rowSize(); ++b) {
-      G(a, b) = entry(joint, a - before, b - before);
-      G(b, a) = G(a, b);
-    }
+  const double* row = sumsOf(joint) - before;
+  for (Index a = before; a < rowSize(); ++a, row += storedRow(joint)) {
+    for (Index b = a; b < rowSize(); ++b) G(a, b) = G(b, a) = row[b];
   }
 }
 

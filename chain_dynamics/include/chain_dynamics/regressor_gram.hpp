@@ -20,6 +20,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -85,8 +86,10 @@ class RegressorGram {
  private:
   friend class FastModel;
 
-  /// Entry (a, b), a <= b, of the row of a joint as it is stored: from its own link on.
-  double entry(Eigen::Index joint, Eigen::Index a, Eigen::Index b) const;
+  /// Of a joint: the upper triangle of G_j from its own link on, row by row.
+  const double* sumsOf(Eigen::Index joint) const;
+  /// Numbers of a row there.
+  std::ptrdiff_t storedRow(Eigen::Index joint) const;
 
   Eigen::Index joints_, own_columns_, samples_ = 0;
   std::vector<double> sums_;  // one matrix after the other: src/fast/gram.hpp
