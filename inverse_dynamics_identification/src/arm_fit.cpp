@@ -142,6 +142,25 @@ void checkOptions(Index joints, const ArmFitOptions& options) {
   }
 }
 
+/// The unknowns of a fit, the steps of shift, width and vs zero.
+Fit linearPart(const ArmFit& arm, FrictionTerms terms) {
+  Fit fit;
+  fit.parameters = arm.parameters;
+  fit.noise = fit.weighed_by = arm.noise;
+  const Index columns = ownColumns(terms);
+  fit.own = MatrixXd::Zero(columns + (arm.drive_gains.size() > 0 ? 1 : 0), arm.parameters.cols());
+  fit.own.row(own_column::kAcceleration) = arm.rotor_inertia.transpose();
+  for (Index j = 0; j < fit.own.cols(); ++j) {
+    const StepFriction& law = arm.friction[static_cast<std::size_t>(j)];
+    fit.own(own_column::kVelocity, j) = law.fv;
+    fit.own(own_column::kOne, j) = law.fo;
+    fit.own(own_column::kStep, j) = law.fc;
+    if (columns > own_column::kLoad) fit.own(own_column::kLoad, j) = law.fl;
+    if (columns > own_column::kStribeck) fit.own(own_column::kStribeck, j) = law.fs;
+  }
+  return fit;
+}
+
 /// The fits that take turns with passes over the samples.
 class Rounds {
  public:
@@ -171,6 +190,7 @@ class Rounds {
     ArmFit tried = start != nullptr ? *start : beginning();
     if (!gains_ || tried.drive_gains.size() != joints()) tried.drive_gains = options_.drive_gains;
     if (options_.terms != FrictionTerms::kStribeck) withoutStribeck(tried);
+    if (start != nullptr) last_ = linearPart(tried, options_.terms);
     ArmFit best, current;
     best.cost = current.cost = std::numeric_limits<double>::infinity();
     std::vector<Eigen::Vector4d> by;
@@ -178,7 +198,7 @@ class Rounds {
     for (; pass <= options_.most_passes; ++pass) {
       RegressorGram gram(joints(), ownColumns(options_.terms) + (gains_ ? 1 : 0));
       for (const ArmSamples& block : blocks_) fitter_.addToGram(tried, block, gram);
-      const Fit held = consistentFit(gram, prior(tried, false), fitOptions(), linear(tried));
+      const Fit held = consistentFit(gram, prior(tried, false), fitOptions(), last());
       ArmFit next = with(tried, held);
       next.cost = cost(held, next, gram.samples());
       const bool known = pass > 1 || start != nullptr;  // the columns' heights and loads
@@ -229,7 +249,8 @@ class Rounds {
     return options;
   }
 
-  const Fit* linear(const ArmFit&) const { return last_.own.size() > 0 ? &last_ : nullptr; }
+  /// The fit of the last pass, or what to start from.
+  const Fit* last() const { return last_.own.size() > 0 ? &last_ : nullptr; }
 
   ArmFit with(const ArmFit& tried, const Fit& fit) const {
     ArmFit next = tried;
@@ -318,25 +339,6 @@ class Rounds {
   Fit last_;
   int shrunk_ = 0;
 };
-
-/// The unknowns of a fit, the steps of shift, width and vs zero.
-Fit linearPart(const ArmFit& arm, FrictionTerms terms) {
-  Fit fit;
-  fit.parameters = arm.parameters;
-  fit.weighed_by = arm.noise;
-  const Index columns = ownColumns(terms);
-  fit.own = MatrixXd::Zero(columns + (arm.drive_gains.size() > 0 ? 1 : 0), arm.parameters.cols());
-  fit.own.row(own_column::kAcceleration) = arm.rotor_inertia.transpose();
-  for (Index j = 0; j < fit.own.cols(); ++j) {
-    const StepFriction& law = arm.friction[static_cast<std::size_t>(j)];
-    fit.own(own_column::kVelocity, j) = law.fv;
-    fit.own(own_column::kOne, j) = law.fo;
-    fit.own(own_column::kStep, j) = law.fc;
-    if (columns > own_column::kLoad) fit.own(own_column::kLoad, j) = law.fl;
-    if (columns > own_column::kStribeck) fit.own(own_column::kStribeck, j) = law.fs;
-  }
-  return fit;
-}
 
 /// Links without motor or friction: the regressor's, and its gravity.
 Chain withoutMotors(const Chain& chain, std::vector<LinkParameters> links) {

@@ -146,7 +146,8 @@ class Cost {
  private:
   /// -H^-1 g, with unknowns of unit curvature: kilograms stand beside kg m^2. Where a link is about to
   /// lose a dimension, its curvatures differ by more than doubles can tell: a little more of each then.
-  static VectorXd newtonStep(const VectorXd& gradient, const MatrixXd& hessian) {
+  /// The matrix is scaled in place.
+  static VectorXd newtonStep(const VectorXd& gradient, MatrixXd& hessian) {
     if (!(hessian.diagonal().minCoeff() > 0)) {
       throw ModelError(
           "consistentFit: own columns: expected samples that determine them, got a column of "
@@ -154,11 +155,12 @@ class Cost {
           "give it a deviation");
     }
     const VectorXd scale = hessian.diagonal().cwiseSqrt().cwiseInverse();
-    MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-    Eigen::LLT<MatrixXd> factor(scaled);
+    hessian.array().colwise() *= scale.array();
+    hessian.array().rowwise() *= scale.transpose().array();
+    Eigen::LLT<MatrixXd> factor(hessian);
     for (double more = 1e-14; factor.info() != Eigen::Success && more < 1; more *= 10) {
-      scaled.diagonal().array() += more;
-      factor.compute(scaled);
+      hessian.diagonal().array() += more;
+      factor.compute(hessian);
     }
     return -scale.cwiseProduct(factor.solve(scale.cwiseProduct(gradient)));
   }
@@ -217,7 +219,8 @@ Fit consistentFit(const RegressorGram& gram, const Prior& prior, const FitOption
   VectorXd x = penalties.start();
   bool started = false;
   if (start != nullptr) {
-    const VectorXd given = unknownsOf(*start, data);
+    VectorXd given = unknownsOf(*start, data);
+    penalties.limit(given);
     started = std::isfinite(penalties.value(strength, given));
     if (started) x = given;
   }

@@ -87,6 +87,14 @@ Eigen::VectorXd Penalties::start() const {
   return x;
 }
 
+void Penalties::limit(Eigen::VectorXd& x) const {
+  Index at = kParameters * links();
+  for (const OwnColumn& column : own_) {
+    if (!std::isfinite(penalty(column, x[at]))) x[at] = startOf(column);
+    ++at;
+  }
+}
+
 double Penalties::value(double strength, const Eigen::VectorXd& x) const {
   double sum = 0;
   for (Index i = 0; i < links(); ++i) {

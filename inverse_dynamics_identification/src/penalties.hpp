@@ -26,6 +26,8 @@ class Penalties {
   Eigen::Index unknowns() const;
   /// The solution where gamma is large: the prior's links, and coefficients within their limits.
   Eigen::VectorXd start() const;
+  /// Moves coefficients that are beyond their limits to where they are at the start.
+  void limit(Eigen::VectorXd& x) const;
   /// Infinite where a link is no body or a coefficient is beyond its limits.
   double value(double strength, const Eigen::VectorXd& x) const;
   /// Adds the derivatives, at an x with a finite value.

@@ -174,6 +174,19 @@ TEST(ConsistentFit, BeginsWithAnotherFit) {
   EXPECT_NEAR(again.cost, first.cost, 1e-8 * first.cost);
 }
 
+TEST(ConsistentFit, BeginsWithAnotherFitWhoseCoefficientsAreBeyondTheirLimits) {
+  const Chain description = threeJointArm(0.6);
+  const RegressorGram gram = gramOf(description, measured(threeJointArm(), 300, 5));
+  const Fit first = consistentFit(gram, priorOf(description));
+  Fit beyond = first;
+  beyond.own.row(1).setZero();  // viscous friction, which is positive
+  FitOptions options;
+  options.noise = first.noise;
+  const Fit again = consistentFit(gram, priorOf(description), options, &beyond);
+  EXPECT_LT(again.newton_steps, first.newton_steps / 2);
+  EXPECT_NEAR(again.cost, first.cost, 1e-6 * first.cost);
+}
+
 TEST(ConsistentFit, OfSumsOfBlocksIsThatOfAllSamples) {
   const Chain description = threeJointArm(0.6);
   const Motion one = measured(threeJointArm(), 50, 1), other = measured(threeJointArm(), 70, 2);

@@ -77,7 +77,8 @@ struct Fit {
 
 /// The fit to samples whose Gram matrices these are.
 ///
-/// @param start  a fit of the same columns to begin with, e.g. one to nearly the same samples.
+/// @param start  a fit of the same columns to begin with, e.g. one to nearly the same samples;
+///     coefficients of its own columns that are beyond their limits begin within.
 /// @throws chain_dynamics::ModelError  sizes that differ, a link of the prior that is no body, numbers
 ///     that aren't finite, or samples that leave a column open.
 Fit consistentFit(const chain_dynamics::RegressorGram& gram, const Prior& prior,
