@@ -22,123 +22,25 @@ namespace chain_dynamics::test {
 
 using Eigen::Index;
 
-inline std::string robotFile(const std::string& name) {
-  return std::string(CHAIN_DYNAMICS_ROBOTS_DIR "/") + name;
-}
+std::string robotFile(const std::string& name);
 
 /// The same joints and links, all turning.
-inline Chain revolute(const Chain& chain) {
-  std::vector<Joint> joints = chain.joints();
-  for (Joint& joint : joints) joint.type = JointType::kRevolute;
-  return Chain(chain.name(), joints, chain.links(), chain.gravity());
-}
+Chain revolute(const Chain& chain);
 
 /// Placements with right angles, parallel and intersecting axes: robots as they are built.
-inline Chain rightAngled(Index n, std::uint32_t seed, bool sliding) {
-  Random random(seed);
-  std::vector<Joint> joints = randomChain(n).joints();
-  const auto pick = [&](int count) { return static_cast<int>((random() + 1) * 0.4999 * count); };
-  for (Joint& joint : joints) {
-    joint.type = sliding && pick(4) == 0 ? JointType::kPrismatic : JointType::kRevolute;
-    Matrix3<double> R = Matrix3<double>::Identity();
-    for (int turn = pick(4); turn > 0; --turn) {
-      Matrix3<double> quarter;
-      quarter << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-      Matrix3<double> about_z;
-      about_z << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-      R = (R * (pick(2) == 0 ? quarter : about_z)).eval();
-    }
-    joint.placement.R = R;
-    for (int k = 0; k < 3; ++k) joint.placement.p[k] = pick(2) == 0 ? 0.0 : 0.4 * random();
-  }
-  const Chain like = randomChain(n);
-  return Chain("right_angled", joints, like.links(), {0.3, 0.2, -9.8});
-}
+Chain rightAngled(Index n, std::uint32_t seed, bool sliding);
 
 /// Identified models with parameters of any sign: for each row, for gravity.
-inline Model identified(const Chain& chain, bool rows, bool gravity, std::uint32_t seed) {
-  Random random(seed);
-  Model model(chain);
-  const auto links = [&] {
-    std::vector<LinkParameters> set;
-    for (Index i = 0; i < chain.jointCount(); ++i) set.push_back(randomIdentifiedLink(random));
-    return set;
-  };
-  for (Index j = 0; rows && j < chain.jointCount(); ++j) model.row_parameters.push_back(links());
-  if (gravity) model.gravity_parameters = links();
-  for (Index j = 0; j < chain.jointCount(); ++j) {
-    const double big = 1 + random();
-    const FrictionLaw laws[] = {ViscousCoulombOffset{big, random(), random()},
-                                ViscousOffsetSigmoid{big, random(), random(), 300 * random(), 0.1},
-                                CenteredSigmoid{random(), 20 * big, 0.02 * random()}};
-    model.friction.push_back(laws[j % 3]);
-  }
-  return model;
-}
+Model identified(const Chain& chain, bool rows, bool gravity, std::uint32_t seed);
 
 /// The same with friction that depends on load, on velocity (Stribeck), on both, and on neither.
-inline Model withChangingSteps(Model model, std::uint32_t seed) {
-  Random random(seed);
-  const auto positive = [&random] { return 1.0001 + random(); };
-  model.friction.clear();
-  for (Index j = 0; j < model.chain.jointCount(); ++j) {
-    const double fv = positive(), fc = positive(), fo = random(), shift = 0.1 * random();
-    const FrictionLaw laws[] = {
-        SmoothCoulomb{fv, fc, 0.05, shift, fo, 0.2 * positive()},
-        SmoothCoulomb{fv, fc, 0.3, shift, fo, 0.1 * positive(), positive(), 0.4},
-        SmoothCoulomb{fv, fc, 0.02, shift, fo, 0, positive(), 0.2},
-        ViscousOffsetSigmoid{fv, fo, fc, 300 * random(), shift}};
-    model.friction.push_back(laws[j % 4]);
-  }
-  return model;
-}
+Model withChangingSteps(Model model, std::uint32_t seed);
 
 struct NamedModel {
   std::string name;
   Model model;
 };
 
-inline std::vector<NamedModel> models() {
-  std::vector<NamedModel> all;
-  for (const Index n : {1, 2, 3, 4, 5, 6, 7, 8, 9, 13, 30, 64}) {
-    const std::string joints = std::to_string(n) + " joints";
-    all.push_back({"any axes, " + joints, Model(randomChain(n))});
-    all.push_back({"any axes, turning, " + joints, Model(revolute(randomChain(n)))});
-    for (std::uint32_t seed = 0; seed < 4; ++seed) {
-      all.push_back({"right angles, " + joints, Model(rightAngled(n, seed, seed % 2 == 0))});
-    }
-  }
-  for (const Index n : {1, 3, 6, 7, 11}) {
-    const std::string joints = std::to_string(n) + " joints";
-    all.push_back({"rows, " + joints, identified(randomChain(n), true, false, 1)});
-    all.push_back({"gravity, " + joints, identified(randomChain(n), false, true, 2)});
-    all.push_back({"rows and gravity, " + joints, identified(randomChain(n), true, true, 3)});
-  }
-  for (const Index n : {1, 3, 6, 7, 11}) {
-    const std::string joints = std::to_string(n) + " joints, changing steps";
-    for (const bool gravity : {false, true}) {
-      const Model rows = identified(randomChain(n), true, gravity, 1);
-      all.push_back(
-          {(gravity ? "rows and gravity, " : "rows, ") + joints, withChangingSteps(rows, 5)});
-    }
-    const Model gravity = identified(randomChain(n), false, true, 2);
-    all.push_back({"gravity, " + joints, withChangingSteps(gravity, 6)});
-  }
-  for (const Index n : {2, 5, 8, 13, 64}) {
-    all.push_back({"any axes, " + std::to_string(n) + " joints, changing steps",
-                   withChangingSteps(Model(randomChain(n)), 7)});
-  }
-  for (const std::string robot : {"ur10", "panda"}) {
-    const std::string urdf = textOf(robotFile("urdf/" + robot + ".urdf"));
-    const Model model(chainFromUrdf(urdf));
-    all.push_back({robot, model});
-    all.push_back({robot + ", changing steps", withChangingSteps(model, 8)});
-  }
-  for (const std::string name :
-       {"ur10_identified", "franka_inria_identified", "franka_gaz2019_feasible"}) {
-    all.push_back({name, modelFromFile(robotFile("models/" + name + ".yaml"))});
-  }
-  return all;
-}
+std::vector<NamedModel> models();
 
 }  // namespace chain_dynamics::test

@@ -10,12 +10,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <random>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,73 +33,27 @@ class Random {
 
   double operator()() { return 2.0 * engine_() / 4294967295.0 - 1.0; }
   Eigen::Vector3d vector3() { return {(*this)(), (*this)(), (*this)()}; }
-  Eigen::VectorXd vector(Eigen::Index n) {
-    return Eigen::VectorXd::NullaryExpr(n, [this] { return (*this)(); });
-  }
-  Eigen::Matrix3d rotation() {
-    return Eigen::Quaterniond(Eigen::Vector4d(vector(4))).normalized().toRotationMatrix();
-  }
+  Eigen::VectorXd vector(Eigen::Index n);
+  Eigen::Matrix3d rotation();
 
  private:
   std::mt19937 engine_;
 };
 
 /// A body that can exist: six points with mass, about 2 kg and 0.2 m.
-inline LinkParameters randomLink(Random& random) {
-  LinkParameters link = LinkParameters::zero();
-  const Eigen::Vector3d middle = 0.2 * random.vector3();
-  for (int k = 0; k < 6; ++k) {
-    const double mass = 0.35 + 0.2 * random();
-    link += LinkParameters::fromCenterOfMass(mass, middle + 0.2 * random.vector3(),
-                                             Eigen::Matrix3d::Zero());
-  }
-  return link;
-}
+LinkParameters randomLink(Random& random);
 
 /// Parameters as of an identified model: ten numbers of either sign, no body has them.
-inline LinkParameters randomIdentifiedLink(Random& random) {
-  return LinkParameters::fromVector(random.vector(10));
-}
+LinkParameters randomIdentifiedLink(Random& random);
 
 /// One for each joint of a chain; a Chain wants no negative mass.
-inline std::vector<LinkParameters> randomIdentifiedLinks(Random& random, const Chain& chain) {
-  std::vector<LinkParameters> links;
-  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
-    links.push_back(randomIdentifiedLink(random));
-    links.back().mass = std::abs(links.back().mass);
-  }
-  return links;
-}
+std::vector<LinkParameters> randomIdentifiedLinks(Random& random, const Chain& chain);
 
 /// A set for each row, as in ParameterSets.
-inline std::vector<std::vector<LinkParameters>> randomIdentifiedRows(const Chain& chain) {
-  Random random(7);
-  std::vector<std::vector<LinkParameters>> rows;
-  for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
-    rows.push_back(randomIdentifiedLinks(random, chain));
-  }
-  return rows;
-}
+std::vector<std::vector<LinkParameters>> randomIdentifiedRows(const Chain& chain);
 
 /// Revolute, prismatic and continuous joints at any angle to one another, some with a rotor.
-inline Chain randomChain(Eigen::Index n) {
-  Random random(1000 + static_cast<std::uint32_t>(n));
-  std::vector<Joint> joints;
-  std::vector<LinkParameters> links;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    Joint joint;
-    joint.name = "joint" + std::to_string(i + 1);
-    const double which = random();
-    joint.type = which > 0.4    ? JointType::kPrismatic
-                 : which > -0.6 ? JointType::kRevolute
-                                : JointType::kContinuous;
-    joint.placement = {random.rotation(), 0.4 * random.vector3()};
-    joint.rotor_inertia = i % 2 == 0 ? 0.0 : 0.3 + 0.2 * random();
-    joints.push_back(joint);
-    links.push_back(randomLink(random));
-  }
-  return Chain("random" + std::to_string(n), joints, links, {1.0, -2.0, -9.0});
-}
+Chain randomChain(Eigen::Index n);
 
 /// Positions of any angle, velocities and accelerations of usual size.
 template <typename Scalar>
@@ -116,22 +67,10 @@ struct State {
   }
 };
 
-inline State<double> randomState(const Chain& chain, std::uint32_t seed) {
-  Random random(seed);
-  const Eigen::Index n = chain.jointCount();
-  return {3.0 * random.vector(n), 2.0 * random.vector(n), 5.0 * random.vector(n)};
-}
+State<double> randomState(const Chain& chain, std::uint32_t seed);
 
 /// The state as it can be pasted into a test.
-inline std::string paste(const Chain& chain, const State<double>& state) {
-  const Eigen::IOFormat list(Eigen::FullPrecision, 0, ", ", ", ", "", "", "", ";");
-  std::ostringstream text;
-  text << "const Chain chain = randomChain(" << chain.jointCount() << ");\n"
-       << "q << " << state.q.transpose().format(list) << "\n"
-       << "qd << " << state.qd.transpose().format(list) << "\n"
-       << "qdd << " << state.qdd.transpose().format(list);
-  return text.str();
-}
+std::string paste(const Chain& chain, const State<double>& state);
 
 /// Calls check(chain, state) for chains of 1 to 9 joints and one of 70 (beyond the stack).
 template <typename Check>
