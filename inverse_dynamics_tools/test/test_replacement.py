@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A signal before and after each step by which a result is written: the old or the new one is there.
 
-A program of its own forks a run for each step, so that SIGKILL is as real as Ctrl-C.
+A program of its own forks a run for each signal and step, so that SIGKILL is as real as Ctrl-C.
 """
 
 import json
@@ -15,8 +15,8 @@ import pytest
 from inverse_dynamics.base import replacement
 from inverse_dynamics.errors import OutputError
 
-# Writes a result again and again, with a signal before (even) or after (odd) the k-th system call that
-# changes the file system, until no step is left; a line of JSON for each.
+# For each signal and way to write: writes a result again and again, with the signal before (even) or after
+# (odd) the k-th system call that changes the file system, until no step is left; a line of JSON for each.
 PROGRAM = """
 import json, os, shutil, signal, sys
 from pathlib import Path
@@ -25,7 +25,6 @@ from inverse_dynamics.base import files
 from inverse_dynamics.base import replacement
 from inverse_dynamics.verbs import robots
 
-number, exchange, kind = int(sys.argv[1]), sys.argv[2] == "exchange", sys.argv[3]
 RESULT = files.Contents("mark", ("mark", "data"))
 target = Path("result")
 step, signalled = 0, False
@@ -57,8 +56,7 @@ def run(at):
         setattr(os, name, injected(getattr(os, name), at))
     if hasattr(replacement, "_exchange"):
         real = replacement._exchange
-        replacement._exchange = injected(real if exchange else (lambda *_: False), at)
-    robots.run = lambda _: write("new")
+        replacement._exchange = injected(real if exchange == "exchange" else (lambda *_: False), at)
     code = cli.main(["robots"])
     os._exit(code if signalled else 99)
 
@@ -69,50 +67,63 @@ def found():
         return [target.read_text()]
     return sorted(file.read_text() for file in target.iterdir())
 
-cli.make_parser()  # imports its modules once
-for at in range(1000):
-    write("old")
-    read, written = os.pipe()
-    child = os.fork()
-    if child == 0:
-        os.dup2(written, 2)
-        run(at)
-    os.close(written)
-    text = os.fdopen(read).read()
-    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-    if code == 99:
-        break
-    state = {"at": at, "code": code, "text": text, "found": found(), "left": sorted(os.listdir("."))}
-    replacement.restore_interrupted(target.absolute())
-    state["next"], state["left_next"] = found(), sorted(os.listdir("."))
-    print(json.dumps(state), flush=True)
+def interrupted_runs():
+    for at in range(1000):
+        write("old")
+        read, written = os.pipe()
+        child = os.fork()
+        if child == 0:
+            os.dup2(written, 2)
+            run(at)
+        os.close(written)
+        text = os.fdopen(read).read()
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        if code == 99:
+            break
+        state = {"at": at, "code": code, "text": text, "found": found(), "left": sorted(os.listdir("."))}
+        replacement.restore_interrupted(target.absolute())
+        state["next"], state["left_next"] = found(), sorted(os.listdir("."))
+        yield state
+
+robots.run = lambda _: write("new")
+parser = cli.make_parser()  # imports its modules once
+cli.make_parser = lambda: parser
+above = os.getcwd()
+for k, (number, exchange, kind) in enumerate(json.loads(sys.argv[1])):
+    os.mkdir(f"{above}/{k}")
+    os.chdir(f"{above}/{k}")
+    print(json.dumps(list(interrupted_runs())))
 """
 
+WAYS = [("exchange", "directory"), ("two renames", "directory"), ("exchange", "file")]
 
-def interrupted_runs(directory, number, exchange, kind):
+
+@pytest.fixture(scope="module")
+def interrupted_runs(tmp_path_factory):
+    """Lists of runs by signal and way."""
+    given = [(number, *way) for number in (*replacement.STOPPING, signal.SIGKILL) for way in WAYS]
     result = subprocess.run(
-        [sys.executable, "-c", PROGRAM, str(int(number)), exchange, kind],
-        cwd=directory,
+        [sys.executable, "-c", PROGRAM, json.dumps(given)],
+        cwd=tmp_path_factory.mktemp("interrupted"),
         capture_output=True,
         text=True,
         check=False,
-        timeout=300,
+        timeout=1200,
     )
     assert result.returncode == 0, result.stderr
-    return [json.loads(line) for line in result.stdout.splitlines()]
+    return dict(zip(given, map(json.loads, result.stdout.splitlines()), strict=True))
 
 
 def is_whole(content, kind):
     return content in ([["old"], ["new"]] if kind == "file" else [["old"] * 2, ["new"] * 2])
 
 
-WAYS = [("exchange", "directory"), ("two renames", "directory"), ("exchange", "file")]
-
-
 @pytest.mark.parametrize(("exchange", "kind"), WAYS)
 @pytest.mark.parametrize("number", replacement.STOPPING)
-def test_a_signal_at_any_step_leaves_the_old_or_the_new_result(tmp_path, number, exchange, kind):
-    runs = interrupted_runs(tmp_path, number, exchange, kind)
+def test_a_signal_at_any_step_leaves_the_old_or_the_new_result(
+    interrupted_runs, number, exchange, kind
+):
+    runs = interrupted_runs[number, exchange, kind]
     assert len(runs) >= 20
     for run in runs:
         assert is_whole(run["found"], kind), run
@@ -126,8 +137,8 @@ def test_a_signal_at_any_step_leaves_the_old_or_the_new_result(tmp_path, number,
 
 
 @pytest.mark.parametrize(("exchange", "kind"), WAYS)
-def test_a_run_killed_at_any_step_is_tidied_up_by_the_next(tmp_path, exchange, kind):
-    runs = interrupted_runs(tmp_path, signal.SIGKILL, exchange, kind)
+def test_a_run_killed_at_any_step_is_tidied_up_by_the_next(interrupted_runs, exchange, kind):
+    runs = interrupted_runs[signal.SIGKILL, exchange, kind]
     assert len(runs) >= 20
     missing = [run for run in runs if not is_whole(run["found"], kind)]
     # Between two renames only, where directories can't be exchanged.
