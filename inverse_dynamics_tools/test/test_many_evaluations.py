@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -41,6 +42,14 @@ def bags(tmp_path_factory):
         shifted = replace(log, effort=log.effort + offset)
         write_joint_logs(directory / name, {log.topic: shifted}, storage="mcap")
     return directory
+
+
+@pytest.fixture(scope="module")
+def week(bags, tmp_path_factory):
+    """What evaluate_many() gives of all of them, with every table."""
+    out = tmp_path_factory.mktemp("results") / "week"
+    parquet = find_spec("pyarrow") is not None
+    return evaluate_many(bags, "ur10_simulated", out, jobs=2, parquet=parquet, **QUICK)
 
 
 def files(directory):
@@ -87,18 +96,17 @@ def test_one_table_and_one_page_show_all_of_them(ids, bags, tmp_path):
     }
 
 
-def test_the_summary_has_a_row_per_recording_and_joint(bags, tmp_path):
-    result = evaluate_many(bags, "ur10_simulated", tmp_path / "week", jobs=2, **QUICK)
-    with (tmp_path / "week/summary.csv").open(newline="") as file:
+def test_the_summary_has_a_row_per_recording_and_joint(bags, week):
+    with (week.directories["monday"].parent / "summary.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0]) == list(COLUMNS)
-    assert len(rows) == len(result.rows) == 18
-    for row, expected in zip(rows, result.rows, strict=True):
+    assert len(rows) == len(week.rows) == 18
+    for row, expected in zip(rows, week.rows, strict=True):
         for name, kind in COLUMNS.items():
             value = expected[name]
             assert (kind(row[name]) if row[name] else None) == value
     one = evaluate(bags / "tuesday", "ur10_simulated", accelerations="backward-difference")
-    tuesday = [row for row in result.rows if row["recording"] == "tuesday"]
+    tuesday = [row for row in week.rows if row["recording"] == "tuesday"]
     for row, error, kept in zip(tuesday, one.errors, one.errors_of_kept, strict=True):
         assert {name: row[name] for name in vars(error)} == vars(error)
         assert row["kept_rmse"] == kept.rmse
@@ -109,10 +117,9 @@ def test_the_summary_has_a_row_per_recording_and_joint(bags, tmp_path):
     assert tuesday[0]["start"] == pytest.approx(0.004)
 
 
-def test_parquet_files_are_one_table(bags, tmp_path):
+def test_parquet_files_are_one_table(week):
     dataset = pytest.importorskip("pyarrow.dataset")
-    out = tmp_path / "week"
-    evaluate_many(bags, "ur10_simulated", out, jobs=2, parquet=True, **QUICK)
+    out = week.directories["monday"].parent
     series = dataset.dataset(sorted(map(str, out.glob("*/series.parquet")))).to_table()
     assert series.num_rows == 4500
     counts = series.group_by("recording").aggregate([("time", "count")]).to_pylist()
@@ -164,7 +171,7 @@ def test_a_robot_may_be_given_as_an_object_or_by_a_file(bags, tmp_path, monkeypa
 
 
 def test_an_older_result_is_replaced_unless_it_holds_other_files(ids, bags, tmp_path):
-    command = ("evaluate", bags, *ROBOT, *RAW, *NO_FIGURE, "--out", "week")
+    command = ("evaluate", bags / "monday", *ROBOT, *RAW, *NO_FIGURE, "--out", "week", "--jobs=1")
     assert ids(*command)[0] == 0
     fails(ids(*command), "week: exists already")
     assert ids(*command, "--overwrite")[0] == 0
@@ -367,7 +374,7 @@ def test_a_wrong_value_is_told_before_any_process_starts(
 
 
 def test_a_recording_in_an_older_result_is_not_replaced(bags, tmp_path):
-    evaluate_many(bags, "ur10_simulated", tmp_path / "week", **QUICK)
+    evaluate_many(bags / "monday", "ur10_simulated", tmp_path / "week", **QUICK)
     before = files(tmp_path)
     with pytest.raises(
         OutputError, match="holds .*monday/bag, which is read and would be replaced"
