@@ -60,7 +60,7 @@ def test_other_meanings_of_the_same_efforts_are_refused_with_the_reason(
 
 
 def test_the_verb_says_what_it_needs(tmp_path, evaluation, capsys):
-    write_evaluation(evaluation, tmp_path / "run")
+    write_evaluation(evaluation, tmp_path / "run", figures=())
     run = str(tmp_path / "run")
     for arguments, said in (
         ([run], "compare: expected two evaluations or more, got 1"),

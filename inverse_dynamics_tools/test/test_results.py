@@ -100,7 +100,7 @@ def test_currents_are_kept_beside_the_torques_that_they_mean(tmp_path):
     effort = Effort("current", DATA, (2.0, 3.0, 4.0), verdict)
     evaluation = make_evaluation(effort=effort)
     evaluation = replace(evaluation, log=replace(evaluation.log, effort_is="current"))
-    write_evaluation(evaluation, tmp_path / "result")
+    write_evaluation(evaluation, tmp_path / "result", figures=())
     read = read_evaluation(tmp_path / "result")
     assert read.effort == effort
     assert read.log.effort_is == "current"
@@ -133,7 +133,7 @@ def test_metrics_say_what_they_are_of(result, evaluation):
 
 def test_undefined_figures_are_null(tmp_path, evaluation):
     undefined = tuple(replace(e, nrmse=float("nan"), r2=float("nan")) for e in evaluation.errors)
-    write_evaluation(replace(evaluation, errors=undefined), tmp_path / "result")
+    write_evaluation(replace(evaluation, errors=undefined), tmp_path / "result", figures=())
     metrics = json.loads((tmp_path / "result/metrics.json").read_text())
     assert metrics["joints"][0]["nrmse"] is None
     assert np.isnan(read_evaluation(tmp_path / "result").errors[0].r2)
@@ -154,18 +154,18 @@ def test_the_output_recording_has_the_storage_of_the_input_or_the_one_given(
     tmp_path, evaluation, storage
 ):
     other = replace(evaluation, log=replace(evaluation.log, storage="mcap"))
-    write_evaluation(other, tmp_path / "same")
+    write_evaluation(other, tmp_path / "same", figures=())
     assert read_joint_log(tmp_path / "same/bag", topic="/torques").storage == "mcap"
-    write_evaluation(other, tmp_path / "given", storage=storage)
+    write_evaluation(other, tmp_path / "given", storage=storage, figures=())
     assert read_joint_log(tmp_path / "given/bag", topic="/torques").storage == storage
 
 
 def test_an_older_result_is_replaced_only_on_demand(tmp_path, evaluation):
-    write_evaluation(evaluation, tmp_path / "result")
+    write_evaluation(evaluation, tmp_path / "result", figures=())
     with pytest.raises(OutputError, match="exists already"):
-        write_evaluation(evaluation, tmp_path / "result")
+        write_evaluation(evaluation, tmp_path / "result", figures=())
     short = make_evaluation(50)
-    write_evaluation(short, tmp_path / "result", overwrite=True)
+    write_evaluation(short, tmp_path / "result", figures=(), overwrite=True)
     assert len(read_evaluation(tmp_path / "result").log) == 50
 
 
@@ -208,14 +208,14 @@ def test_a_directory_of_something_else_is_no_result(tmp_path):
 
 @pytest.mark.parametrize("file", ["metrics.json", "series.npz"])
 def test_an_incomplete_result_is_an_error(tmp_path, evaluation, file):
-    write_evaluation(evaluation, tmp_path / "result")
+    write_evaluation(evaluation, tmp_path / "result", figures=())
     os.truncate(tmp_path / "result" / file, 20)
     with pytest.raises(OutputError, match="isn't a complete evaluation"):
         read_evaluation(tmp_path / "result")
 
 
 def test_a_result_of_another_version_is_an_error(tmp_path, evaluation):
-    write_evaluation(evaluation, tmp_path / "result")
+    write_evaluation(evaluation, tmp_path / "result", figures=())
     file = tmp_path / "result/evaluation.json"
     file.write_text(file.read_text().replace('"schema": 2', '"schema": 7'))
     with pytest.raises(OutputError, match="expected schema 2, got 7; evaluate again"):
@@ -262,11 +262,11 @@ def use(directory, *, page=True):
 def plain_result(tmp_path_factory):
     """A result without a description, and with a verdict: it can be shown, and has every kind of entry."""
     candidates = (Candidate("current", 0.01, 1.0, 0), Candidate("torque", 0.9, 30.0, 20))
-    effort = Effort("current", DATA, (2.0, 3.0, 4.0), Verdict(candidates, sure=True, stretches=20))
-    plain = make_evaluation(samples=60, effort=effort)
+    effort = Effort("current", DATA, (2.0,), Verdict(candidates, sure=True, stretches=20))
+    plain = make_evaluation(samples=60, joints=1, effort=effort)
     plain = replace(plain, robot=replace(plain.robot, urdf=None))
     target = tmp_path_factory.mktemp("plain") / "result"
-    write_evaluation(plain, target)
+    write_evaluation(plain, target, figures=())
     use(target)
     return target
 
@@ -322,7 +322,7 @@ def test_series_that_were_edited_are_an_error(plain_result, name):
 
 
 def test_a_result_that_a_killed_run_had_moved_is_found_again(tmp_path, evaluation):
-    write_evaluation(evaluation, tmp_path / "result")
+    write_evaluation(evaluation, tmp_path / "result", figures=())
     (tmp_path / ".result.part").mkdir()
     (tmp_path / "result").rename(tmp_path / ".result.part" / "old")
     assert read_evaluation(tmp_path / "result").robot == evaluation.robot
