@@ -23,6 +23,8 @@ from inverse_dynamics.data.bags import write_joint_logs
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from outcome import Outcome
+
 JOINTS = (
     "shoulder_pan_joint",
     "shoulder_lift_joint",
@@ -230,18 +232,24 @@ def _messages(directory: Path) -> Iterator[Case]:
     for name, (names, q, qd, effort) in kinds.items():
         for which in ("all", "one"):
             bag = directory / f"bag_{name}_{which}".replace(" ", "_")
-            write_messages(bag, [_message(k, which, names, q, qd, effort) for k in range(50)])
+            states = [_message(k, which, names, q, qd, effort) for k in range(50)]
             expected = Expected(place="bag", warned=True, mention=".")
-            yield Case(f"{which} of the messages: {name}", partial(evaluated, bag), expected)
+            yield Case(
+                f"{which} of the messages: {name}", partial(_recorded, bag, states), expected
+            )
     stamps = {"the same": lambda k: 5, "all zero": lambda k: 0, "backwards": lambda k: 10**9 - k}
     for name, stamp in stamps.items():
         bag = directory / f"stamps_{name}".replace(" ", "_")
         states = [
             joint_state(list(JOINTS), [0.1 * k] * _N, zero, zero, stamp(k)) for k in range(50)
         ]
-        write_messages(bag, states)
         expected = Expected(place=bag.name, warned=True, mention=".")
-        yield Case(f"stamps are {name}", partial(evaluated, bag), expected)
+        yield Case(f"stamps are {name}", partial(_recorded, bag, states), expected)
+
+
+def _recorded(bag: Path, states: list[object]) -> Outcome:
+    """Of messages that are recorded when the case runs: few of them may."""
+    return evaluated(write_messages(bag, states))
 
 
 def _message(k: int, which: str, *odd: list) -> object:

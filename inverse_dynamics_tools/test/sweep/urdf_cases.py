@@ -98,7 +98,6 @@ def cases(directory: Path) -> Iterator[Case]:
     solvers = installed(RIGID_BODY, KDL, PINOCCHIO)
     for number, change in enumerate(_changes()):
         file = directory / f"{number}.urdf"
-        file.write_text(change.text)
         expected = change.expected
         if expected.right:
             expected = replace(expected, torques=_torques(change.meaning or ARM))
@@ -116,6 +115,7 @@ def _case(
     """Entry points and solvers take turns: they share one reader."""
     turn = number % (len(solvers) + 1)
     if turn == len(solvers):
+        file.write_text(change.text)
         act = partial(cpp, RIGID_BODY, str(file), f"{{tip: {TIP}}}")
         return Case(f"{change.name} [C++]", act, expected)
     plugin = solvers[turn]
