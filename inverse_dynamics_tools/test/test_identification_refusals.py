@@ -11,7 +11,7 @@ from conftest import fails
 from identified_arms import identification, simulated_torques
 from test_evaluation import JOINTS, motion
 
-from inverse_dynamics import Solver, evaluate, load_robot, read_joint_log, write_joint_logs
+from inverse_dynamics import Solver, evaluate, load_robot, write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.evaluation.diagnosis import PAGE
 from inverse_dynamics.identification.refusals import check_recordings, check_result
@@ -215,34 +215,6 @@ def test_the_command_refuses_before_the_work(tmp_path, ids):
     fails(ids("identify", "none", "--robot", ROBOT, "--out", "arm"), "ending in .yaml")
     more = ("--out", "a.yaml", "--urdf-out", "a.json")
     fails(ids("identify", "none", "--robot", ROBOT, *more), "a.json", "--urdf-out")
-
-
-# ---- real recordings ---------------------------------------------------------------------------------------------
-
-
-def test_the_panda_is_identified_by_the_command(recordings, tmp_path, ids):
-    """The whole way on a real recording: table, files, page, and the robot that evaluates."""
-    bag = recordings / "panda_exciting_trajectory"
-    outputs = ("--out", "arm.yaml", "--urdf-out", "arm.urdf", "--mjcf-out", "arm.xml")
-    code, out, err = ids("identify", bag, "--robot", "panda_real", *outputs)
-    assert (code, err) == (0, "")
-    assert "present" in out
-    mean = next(line for line in out.splitlines() if line.strip().startswith("mean")).split()
-    urdf, present, refitted, identified = map(float, mean[3:7])
-    assert identified < min(0.285, refitted) < present < urdf
-    names = {"arm.yaml", "arm_model.yaml", "arm_model.json", "arm.json", "arm.html"}
-    names |= {"arm.urdf", "arm.xml"}
-    assert {path.name for path in tmp_path.iterdir()} == names
-    result = evaluate(bag, tmp_path / "arm.yaml")
-    assert sum(error.rmse for error in result.errors_of_kept) / 7 < 0.285
-    assert not [
-        note for note in result.notes if "likely cause" in note or "leaves the range" in note
-    ]
-    log = read_joint_log(bag)
-    fast = replace(log, qd=2 * log.qd, q=2 * log.q)
-    write_joint_logs(tmp_path / "fast", {log.topic: fast})
-    notes = evaluate(tmp_path / "fast", tmp_path / "arm.yaml").notes
-    assert any("leaves the range" in note for note in notes)
 
 
 def test_means_over_joints_have_the_unit_of_the_joints(found):
