@@ -307,16 +307,19 @@ class ContactArm:
         return self._sensed(q, effort, seed, forces, contact)
 
     def carry_out(self, motion: Reference, duration: float, seed: int) -> Recorded:
-        """The same of a motion that is carried out exactly: torques are those of MuJoCo's inverse dynamics."""
-        data, dofs, count = mujoco.MjData(self.model), self.dofs, round(duration / PERIOD)
+        """The same of a motion that is carried out exactly: torques are those of the bodies and of friction."""
+        count = round(duration / PERIOD)
         q, qd, qdd = motion.at((np.arange(count) + 0.5) * PERIOD)  # mean torques of the periods
-        effort = self._friction(qd)
-        for k in range(count):
-            data.qpos[dofs], data.qvel[dofs], data.qacc[dofs] = q[k], qd[k], qdd[k]
-            mujoco.mj_inverse(self.model, data)
-            effort[k] += data.qfrc_inverse[dofs]
+        effort = self.solver.torques(q, qd, qdd) + self._friction(qd)
         q, _, _ = motion.at((np.arange(count) + 1.0) * PERIOD)
         return self._sensed(q, effort, seed, np.zeros((count, 3)), np.zeros(count, bool))
+
+    def torques(self, q: Floats, qd: Floats, qdd: Floats) -> Floats:
+        """Of one state, without friction, by MuJoCo: (n,) N m."""
+        data = mujoco.MjData(self.model)
+        data.qpos[self.dofs], data.qvel[self.dofs], data.qacc[self.dofs] = q, qd, qdd
+        mujoco.mj_inverse(self.model, data)
+        return np.array(data.qfrc_inverse[self.dofs])
 
     def _sensed(
         self, q: Floats, effort: Floats, seed: int, force: Floats, contact: NDArray[np.bool_]

@@ -249,3 +249,10 @@ def test_the_jacobian_is_that_of_mujoco(bench: Bench) -> None:
     noise = np.full(len(q), 1e-6)
     wrenches, _ = TipWrench(bench.kinematics, noise).run(q[None], torques[None])
     assert np.allclose(wrenches[0], [*force, 0, 0, 0], atol=1e-6)
+
+
+def test_torques_of_motions_that_are_carried_out_are_those_of_mujoco(bench: Bench) -> None:
+    states = RandomMotion(bench.arm, 1000, QUIET).at(np.linspace(0.0, QUIET, 1000))
+    expected = [bench.arm.torques(*state) for state in zip(*states, strict=True)]
+    torques = bench.arm.solver.torques(*states)
+    assert np.allclose(torques, expected, rtol=0, atol=1e-9)
