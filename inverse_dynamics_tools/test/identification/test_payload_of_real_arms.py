@@ -8,6 +8,7 @@ law, prior strength and delay that `ids identify` chooses, and its residuals sta
 from __future__ import annotations
 
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -28,12 +29,22 @@ MOST = {
 }
 
 
+@pytest.fixture(scope="module")
+def arm_of(identified, tmp_path_factory):
+    """Arms by name and length of the windows [s], each made once."""
+    return cache(
+        lambda name, seconds: Arm.of(
+            identified(name), tmp_path_factory.mktemp(name), seconds=seconds
+        )
+    )
+
+
 @pytest.mark.parametrize(
     ("name", "mass", "seconds", "model"),
     [pytest.param(*case, marks=pytest.mark.nightly if case[0] == "ur10" else ()) for case in MOST],
 )
-def test_simulated_loads_on_real_residuals(identified, tmp_path, name, mass, seconds, model):
-    arm = Arm.of(identified(name), tmp_path, seconds=seconds)
+def test_simulated_loads_on_real_residuals(arm_of, name, mass, seconds, model):
+    arm = arm_of(name, seconds)
     if model == "exact":
         arm = arm.taken_for_exact()
     figures = trials(arm, mass, TRIALS)
