@@ -165,17 +165,17 @@ class SimulatedRobot:
 
         All (N, n), order of `chain.joint_names`; payload and gravity as in this model.
         """
-        data = self.new_data()
-        out = np.empty_like(q)
-        acceleration, torque = np.empty(self.model.nv), np.empty(self.model.nv)
-        for k in range(len(q)):
-            data.qpos[self.dofs], data.qvel[self.dofs] = q[k], qd[k]
+        data, torque = self.new_data(), np.empty(self.model.nv)
+        states = np.zeros((3, len(q), self.model.nv))  # in MuJoCo's order
+        states[:, :, self.dofs] = q, qd, qdd
+        out = np.empty(states.shape[1:])
+        for k, (position, velocity, acceleration) in enumerate(states.transpose(1, 0, 2)):
+            data.qpos[:], data.qvel[:] = position, velocity
             mujoco.mj_fwdPosition(self.model, data)
             mujoco.mj_fwdVelocity(self.model, data)
-            acceleration[self.dofs] = qdd[k]
             mujoco.mj_mulM(self.model, data, torque, acceleration)
-            out[k] = (torque + data.qfrc_bias)[self.dofs]
-        return out
+            out[k] = torque + data.qfrc_bias
+        return out[:, self.dofs]
 
     def inertia_matrix(self, q: Floats) -> Floats:
         """H(q), (n, n)."""
