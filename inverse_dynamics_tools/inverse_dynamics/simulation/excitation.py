@@ -323,7 +323,7 @@ class _Judge:
         # d value = -1/n sum_kj (w_j B z_kj)' dz_kj
         B = V @ np.einsum("jml,j->ml", self._tested, 1.0 / variances) @ V
         weight = sample_weight(self._period) / unknowns.noise**2 / joints
-        U = -(Z @ B) * weight[:, None]
+        U = -((Z * weight[:, None]).reshape(-1, len(B)) @ B).reshape(Z.shape)  # in one product
         excess = np.maximum(np.abs(tau) / self._limits.effort - _AIM, 0.0)
         U_tau = 2.0 * self.weight * excess * np.sign(tau) / self._limits.effort
         slopes = self._slopes(states, U, U_tau)
