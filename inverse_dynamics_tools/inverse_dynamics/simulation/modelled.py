@@ -63,7 +63,7 @@ class ModelFriction:
         apart = qd - self._center
         apart = np.where(np.abs(apart) < _NEAR, _NEAR, apart)
         here, there, center = self.torques(
-            np.stack([qd, self._center + apart, self._center]), np.stack([q, q, q])
+            np.array([qd, self._center + apart, self._center]), np.array([q, q, q])
         )
         slope = np.maximum((there - center) / apart, 0.0)
         return slope, here - slope * qd
