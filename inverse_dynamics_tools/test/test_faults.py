@@ -20,7 +20,7 @@ from inverse_dynamics import Solver, read_topics, write_evaluation
 from inverse_dynamics.results.evaluations import CONTENTS
 from inverse_dynamics.verbs import robots
 
-RAW = ("--accelerations", "backward-difference", "--no-figures")
+RAW = ("--accelerations", "backward-difference")
 IDS = [sys.executable, "-c", "import sys; from inverse_dynamics.cli import main; sys.exit(main())"]
 
 
@@ -40,7 +40,7 @@ def evaluation_of_no_file():
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
     target = tmp_path_factory.mktemp("results") / "result"
-    write_evaluation(evaluation_of_no_file(), target, figures=())
+    write_evaluation(evaluation_of_no_file(), target)
     return target
 
 
@@ -239,7 +239,7 @@ def test_a_read_only_place_is_told_before_the_work(ids, bag, result, small_disk)
 
 
 def test_a_comparison_is_replaced_as_a_whole(ids, result, tmp_path):
-    command = ("compare", result, result, "--labels", "a,b", "--out", "out", "--no-figures")
+    command = ("compare", result, result, "--labels", "a,b", "--out", "out")
     assert ids(*command)[0] == 0
     first = (tmp_path / "out").stat().st_ino
     assert ids(*command, "--overwrite")[::2] == (0, "")
