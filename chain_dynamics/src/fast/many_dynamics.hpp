@@ -46,7 +46,6 @@ void forwardDynamicsBatch(const Robot& robot, int structure, std::ptrdiff_t stat
 }
 
 /// Packs of the entries of matrices, (i, j) at i + j rows, to the matrices of each state.
-template <int N>
 FAST_INLINE void scatterMatrix(Pack* entries, int n, const Lanes& lanes, const Matrices& to) {
   const bool columns = to.column_step != 1;
   if (!columns) {
@@ -71,15 +70,14 @@ FAST_INLINE void scatterMatrix(Pack* entries, int n, const Lanes& lanes, const M
   }
 }
 
-template <int N>
 void torqueDerivativesBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
                             Samples qd, Samples qdd, Matrices by_q, Matrices by_qd,
                             Matrices by_qdd) {
-  const int n = jointsOf<N>(robot);
+  const int n = robot.joints;
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates<kPackedMatrixJoints> x;
     Pack entries[3][kPackedEntries];
-    x.read<N>(robot, q, qd, qdd, lanes);
+    x.read<0>(robot, q, qd, qdd, lanes);
     const DerivativeEntries<Pack> to{entries[0], entries[1], entries[2], n};
     derivativesOf(robot, structure, x.state(), to);
     if (robot.changing_steps) {
@@ -87,23 +85,22 @@ void torqueDerivativesBatch(const Robot& robot, int structure, std::ptrdiff_t st
     } else if (robot.friction != nullptr) {
       for (int i = 0; i < n; ++i) entries[1][i + i * n] += frictionSlopeOfPack(robot, i, x.qd[i]);
     }
-    scatterMatrix<N>(entries[0], n, lanes, by_q);
-    scatterMatrix<N>(entries[1], n, lanes, by_qd);
-    scatterMatrix<N>(entries[2], n, lanes, by_qdd);
+    scatterMatrix(entries[0], n, lanes, by_q);
+    scatterMatrix(entries[1], n, lanes, by_qd);
+    scatterMatrix(entries[2], n, lanes, by_qdd);
   });
 }
 
-template <int N>
 void coriolisMatrixBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
                          Samples qd, Matrices C) {
-  const int n = jointsOf<N>(robot);
+  const int n = robot.joints;
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates<kPackedMatrixJoints> x;
     Pack entries[kPackedEntries];
-    gather<N>(robot, qd, lanes, x.qd);
-    x.readPositions<N>(robot, q, lanes, FirstJoint::kUnused);
+    gather<0>(robot, qd, lanes, x.qd);
+    x.readPositions<0>(robot, q, lanes, FirstJoint::kUnused);
     coriolisMatrixOf<Pack>(robot, structure)(robot, x.state(), entries, n);
-    scatterMatrix<N>(entries, n, lanes, C);
+    scatterMatrix(entries, n, lanes, C);
   });
 }
 

@@ -3,8 +3,6 @@
 /// @file
 /// The tip's pose and Jacobian of many states, a pack at a time.
 ///
-/// N is the number of joints where the compiler is to know it, or zero.
-///
 /// Included by many_kernels.cpp only [pack.hpp].
 
 #pragma once
@@ -16,14 +14,13 @@ inline namespace v2 {
 namespace fast {
 namespace {
 
-template <int N>
 void tipPoseBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q, Matrices R,
                   Samples p) {
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates<> x;
     Pack rotation[9];
     Pack position[3];
-    x.readPositions<N>(robot, q, lanes, FirstJoint::kNeeded);
+    x.readPositions<0>(robot, q, lanes, FirstJoint::kNeeded);
     tipKinematicsOf<Pack>(structure).pose(robot, x.state(), rotation, position);
     if (R.row_step == 1 && R.column_step == 3) {
       scatter<9>(rotation, 9, lanes, R.data, 1, R.state_step);
@@ -38,16 +35,15 @@ void tipPoseBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
 }
 
 /// Packs of the entries of 6 x n matrices, (i, j) at i + 6 j, to the matrices of each state.
-template <int N>
 FAST_INLINE void scatterJacobian(const Pack* entries, int n, const Lanes& lanes,
                                  const Matrices& to) {
   if (to.row_step == 1 && to.column_step == 6) {
-    scatter<6 * N>(entries, 6 * n, lanes, to.data, 1, to.state_step);
+    scatter<0>(entries, 6 * n, lanes, to.data, 1, to.state_step);
   } else if (to.column_step == 1) {
     for (int i = 0; i < 6; ++i) {
       Pack row[kMaxJoints];
       for (int j = 0; j < n; ++j) row[j] = entries[i + 6 * j];
-      scatter<N>(row, n, lanes, to.data + i * to.row_step, 1, to.state_step);
+      scatter<0>(row, n, lanes, to.data + i * to.row_step, 1, to.state_step);
     }
   } else {
     for (int j = 0; j < n; ++j) {
@@ -57,31 +53,29 @@ FAST_INLINE void scatterJacobian(const Pack* entries, int n, const Lanes& lanes,
   }
 }
 
-template <int N>
 void tipJacobianBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
                       Matrices J) {
-  const int n = jointsOf<N>(robot);
+  const int n = robot.joints;
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates<> x;
     Pack entries[6 * kMaxJoints];
-    x.readPositions<N>(robot, q, lanes, FirstJoint::kNeeded);
+    x.readPositions<0>(robot, q, lanes, FirstJoint::kNeeded);
     tipKinematicsOf<Pack>(structure).jacobian(robot, x.state(), JacobianEntries<Pack>{entries, 6});
-    scatterJacobian<N>(entries, n, lanes, J);
+    scatterJacobian(entries, n, lanes, J);
   });
 }
 
-template <int N>
 void tipJacobianDerivativeBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samples q,
                                 Samples qd, Matrices dJ) {
-  const int n = jointsOf<N>(robot);
+  const int n = robot.joints;
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates<> x;
     Pack entries[6 * kMaxJoints];
-    gather<N>(robot, qd, lanes, x.qd);
-    x.readPositions<N>(robot, q, lanes, FirstJoint::kNeeded);
+    gather<0>(robot, qd, lanes, x.qd);
+    x.readPositions<0>(robot, q, lanes, FirstJoint::kNeeded);
     tipKinematicsOf<Pack>(structure).jacobian_derivative(robot, x.state(),
                                                          JacobianEntries<Pack>{entries, 6});
-    scatterJacobian<N>(entries, n, lanes, dJ);
+    scatterJacobian(entries, n, lanes, dJ);
   });
 }
 
