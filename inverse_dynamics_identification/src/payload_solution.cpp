@@ -2,8 +2,8 @@
 #include "payload_solution.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -16,7 +16,8 @@ namespace {
 constexpr int kMostNewtonSteps = 100;
 constexpr double kSmallDecrement = 1e-18;  // of Newton's decrement, squared
 constexpr double kLeastStep = 1e-12;
-constexpr double kNothing = 1e-13;  // eigenvalue by the greatest: rounding
+constexpr double kNothing = 1e-13;  // information by the trace: rounding
+constexpr double kLeastInformation = 1e-100;
 constexpr double kDecrease = 1e-4;  // share of the promised decrease that a step must reach
 
 Eigen::Matrix4d pseudoInertiaOf(const Vector10& phi) {
@@ -142,12 +143,10 @@ Matrix10 covarianceOf(const Matrix10& information) {
   // in units in which the numbers of a body are alike: kg, 0.1 kg m, 0.01 kg m^2
   Vector10 units;
   units << 1.0, 0.1, 0.1, 0.1, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01;
-  const Matrix10 scaled = units.asDiagonal() * information * units.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix10> eigen(scaled);
-  const double least = kNothing * eigen.eigenvalues().cwiseAbs().maxCoeff();
-  const Vector10 inverse = eigen.eigenvalues().cwiseMax(least).cwiseInverse();
-  const Matrix10 vectors = units.asDiagonal() * eigen.eigenvectors();
-  return vectors * inverse.asDiagonal() * vectors.transpose();
+  Matrix10 scaled = units.asDiagonal() * information * units.asDiagonal();
+  scaled.diagonal().array() += std::max(kNothing * scaled.trace(), kLeastInformation);
+  const Matrix10 covariance = scaled.ldlt().solve(Matrix10::Identity());
+  return units.asDiagonal() * covariance * units.asDiagonal();
 }
 
 double studentT(double degrees_of_freedom) {
