@@ -145,8 +145,9 @@ Matrix10 covarianceOf(const Matrix10& information) {
   units << 1.0, 0.1, 0.1, 0.1, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01;
   Matrix10 scaled = units.asDiagonal() * information * units.asDiagonal();
   scaled.diagonal().array() += std::max(kNothing * scaled.trace(), kLeastInformation);
-  const Matrix10 covariance = scaled.ldlt().solve(Matrix10::Identity());
-  return units.asDiagonal() * covariance * units.asDiagonal();
+  // scaled = L L^T
+  const Matrix10 root = scaled.llt().matrixL().solve(Matrix10(units.asDiagonal()));
+  return root.transpose() * root;
 }
 
 double studentT(double degrees_of_freedom) {

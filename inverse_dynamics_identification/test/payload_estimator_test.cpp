@@ -386,6 +386,27 @@ TEST(PayloadEstimator, RefusesOptionsThatCantBe) {
                inverse_dynamics_solver::InvalidParameterValueException);
 }
 
+TEST(CovarianceOf, IsTheInverseWhereThereIsInformationAndVeryLargeElsewhere) {
+  constexpr double kFloor = 1e-7;  // what is added for directions without information
+  Matrix10 seen = Matrix10::Zero();
+  Vector10 row;
+  for (int k = 0; k < 40; ++k) {
+    for (Index i = 0; i < 10; ++i) row[i] = std::sin(1.0 + k * static_cast<double>(i + 1));
+    seen += row * row.transpose();
+  }
+  const Matrix10 V = covarianceOf(seen);
+  EXPECT_LT((seen * V - Matrix10::Identity()).cwiseAbs().maxCoeff(), kFloor);
+
+  Matrix10 of_four = Matrix10::Zero();
+  of_four.topLeftCorner<4, 4>() = seen.topLeftCorner<4, 4>();
+  const Matrix10 U = covarianceOf(of_four);
+  const Eigen::Matrix4d known = of_four.topLeftCorner<4, 4>() * U.topLeftCorner<4, 4>();
+  EXPECT_LT((known - Eigen::Matrix4d::Identity()).cwiseAbs().maxCoeff(), kFloor);
+  EXPECT_TRUE(U.allFinite());
+  EXPECT_GT(U.diagonal().tail<6>().minCoeff(), 1e6);
+  EXPECT_TRUE(covarianceOf(Matrix10::Zero()).allFinite());
+}
+
 TEST(PayloadEstimator, NeitherUpdatesNorEstimatesAllocate) {
   expectNoAllocations(optionsWith(noiseOf(0.1, 0.3)));
 }
