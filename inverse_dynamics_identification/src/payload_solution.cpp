@@ -145,9 +145,9 @@ Matrix10 covarianceOf(const Matrix10& information) {
   units << 1.0, 0.1, 0.1, 0.1, 0.01, 0.01, 0.01, 0.01, 0.01, 0.01;
   Matrix10 scaled = units.asDiagonal() * information * units.asDiagonal();
   scaled.diagonal().array() += std::max(kNothing * scaled.trace(), kLeastInformation);
-  // scaled = L L^T
-  const Matrix10 root = scaled.llt().matrixL().solve(Matrix10(units.asDiagonal()));
-  return root.transpose() * root;
+  const Matrix10 inverse = scaled.ldlt().solve(Matrix10::Identity());
+  const Matrix10 covariance = 0.5 * (inverse + inverse.transpose());
+  return units.asDiagonal() * covariance * units.asDiagonal();
 }
 
 double studentT(double degrees_of_freedom) {
