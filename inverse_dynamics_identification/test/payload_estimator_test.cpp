@@ -184,7 +184,7 @@ TEST(PayloadEstimator, WhatTheSolverCarriesAlreadyIsPartOfTheEstimate) {
 
 /// An arm whose friction grows with load, as a file.
 std::string armWithLoadFriction() {
-  const std::string path = testing::TempDir() + "/arm_with_load_friction.yaml";
+  std::string path = testing::TempDir() + "/arm_with_load_friction.yaml";
   std::ofstream file(path);
   file << "schema: 2\nname: arm\nsource: a test\nvalidity: a test\nunits: SI\n"
           "geometry: placements\ngravity: [0, 0, -9.81]\nparameters: about_origin\njoints:\n";
