@@ -146,8 +146,8 @@ Matrix10 covarianceOf(const Matrix10& information) {
   Matrix10 scaled = units.asDiagonal() * information * units.asDiagonal();
   scaled.diagonal().array() += std::max(kNothing * scaled.trace(), kLeastInformation);
   const Matrix10 inverse = scaled.ldlt().solve(Matrix10::Identity());
-  const Matrix10 covariance = 0.5 * (inverse + inverse.transpose());
-  return units.asDiagonal() * covariance * units.asDiagonal();
+  const Matrix10 covariance = units.asDiagonal() * inverse * units.asDiagonal();
+  return 0.5 * (covariance + covariance.transpose());
 }
 
 double studentT(double degrees_of_freedom) {

@@ -396,6 +396,7 @@ TEST(CovarianceOf, IsTheInverseWhereThereIsInformationAndVeryLargeElsewhere) {
   }
   const Matrix10 V = covarianceOf(seen);
   EXPECT_LT((seen * V - Matrix10::Identity()).cwiseAbs().maxCoeff(), kFloor);
+  EXPECT_EQ((V - V.transpose()).cwiseAbs().maxCoeff(), 0.0);
 
   Matrix10 of_four = Matrix10::Zero();
   of_four.topLeftCorner<4, 4>() = seen.topLeftCorner<4, 4>();
@@ -404,7 +405,10 @@ TEST(CovarianceOf, IsTheInverseWhereThereIsInformationAndVeryLargeElsewhere) {
   EXPECT_LT((known - Eigen::Matrix4d::Identity()).cwiseAbs().maxCoeff(), kFloor);
   EXPECT_TRUE(U.allFinite());
   EXPECT_GT(U.diagonal().tail<6>().minCoeff(), 1e6);
-  EXPECT_TRUE(covarianceOf(Matrix10::Zero()).allFinite());
+
+  const Matrix10 of_nothing = covarianceOf(Matrix10::Zero());
+  EXPECT_TRUE(of_nothing.allFinite());
+  EXPECT_GT(of_nothing.diagonal().minCoeff(), 1e6);
 }
 
 TEST(PayloadEstimator, NeitherUpdatesNorEstimatesAllocate) {
