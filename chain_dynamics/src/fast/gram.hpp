@@ -37,7 +37,7 @@ inline void writeRows(const Robot& robot, const GramInputs& inputs, const Lanes&
   PackOfStates<> x;
   Pack scale[kMaxJoints];
   double* rows[kMaxJoints];  // of each joint
-  x.read<0>(robot, inputs.q, inputs.qd, inputs.qdd, lanes);
+  x.read(robot, inputs.q, inputs.qd, inputs.qdd, lanes);
   for (int j = 0; j < n; ++j) {
     scale[j] = all<Pack>(1.0);
     if (inputs.weights != nullptr) scale[j] = rootOf(gatherOne(*inputs.weights, j, lanes));
@@ -59,7 +59,7 @@ inline void writeRows(const Robot& robot, const GramInputs& inputs, const Lanes&
     for (int k = 0; k <= inputs.column_count; ++k) {
       const Samples& from = k < inputs.column_count ? inputs.columns[k] : inputs.tau;
       const Pack numbers = scale[j] * gatherOne(from, j, lanes);
-      scatter<0>(&numbers, 1, target, own + k, 1, size);
+      scatter(&numbers, 1, target, own + k, 1, size);
     }
   }
 }

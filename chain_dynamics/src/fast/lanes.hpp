@@ -60,7 +60,7 @@ FAST_INLINE void inBlocks(int count, const Whole& whole, const One& one) {
 
 // The common cases have no branch per number: a full pack of states that stand apart, each with its
 // numbers side by side, or of states that stand side by side themselves.
-template <int N>
+template <int N = 0>
 FAST_INLINE void gather(const Robot& robot, const Samples& from, const Lanes& lanes, Pack* to) {
   const std::ptrdiff_t step = from.state_step;
   const double* const first = from.data + lanes.first * step;
@@ -84,7 +84,7 @@ FAST_INLINE void gather(const Robot& robot, const Samples& from, const Lanes& la
 
 // packs[i], `count` of them (N, if that isn't zero), to the numbers of each state at
 // to[i pack_step + state state_step].
-template <int N>
+template <int N = 0>
 FAST_INLINE void scatter(const Pack* packs, int count, const Lanes& lanes, double* to,
                          std::ptrdiff_t pack_step, std::ptrdiff_t state_step) {
   to += lanes.first * state_step;

@@ -61,12 +61,12 @@ FAST_INLINE void scatterMatrix(Pack* entries, int n, const Lanes& lanes, const M
   const std::ptrdiff_t major_step = columns ? to.column_step : to.row_step;
   const std::ptrdiff_t minor_step = columns ? to.row_step : 1;
   if (minor_step == 1 && major_step == n) {
-    scatter<0>(entries, n * n, lanes, to.data, 1, to.state_step);
+    scatter(entries, n * n, lanes, to.data, 1, to.state_step);
     return;
   }
   for (int j = 0; j < n; ++j) {
-    scatter<0>(entries + std::ptrdiff_t{j} * n, n, lanes, to.data + j * major_step, minor_step,
-               to.state_step);
+    scatter(entries + std::ptrdiff_t{j} * n, n, lanes, to.data + j * major_step, minor_step,
+            to.state_step);
   }
 }
 
@@ -77,7 +77,7 @@ void torqueDerivativesBatch(const Robot& robot, int structure, std::ptrdiff_t st
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates<kPackedMatrixJoints> x;
     Pack entries[3][kPackedEntries];
-    x.read<0>(robot, q, qd, qdd, lanes);
+    x.read(robot, q, qd, qdd, lanes);
     const DerivativeEntries<Pack> to{entries[0], entries[1], entries[2], n};
     derivativesOf(robot, structure, x.state(), to);
     if (robot.changing_steps) {
@@ -97,8 +97,8 @@ void coriolisMatrixBatch(const Robot& robot, int structure, std::ptrdiff_t state
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates<kPackedMatrixJoints> x;
     Pack entries[kPackedEntries];
-    gather<0>(robot, qd, lanes, x.qd);
-    x.readPositions<0>(robot, q, lanes, FirstJoint::kUnused);
+    gather(robot, qd, lanes, x.qd);
+    x.readPositions(robot, q, lanes, FirstJoint::kUnused);
     coriolisMatrixOf<Pack>(robot, structure)(robot, x.state(), entries, n);
     scatterMatrix(entries, n, lanes, C);
   });

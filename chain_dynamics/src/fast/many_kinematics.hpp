@@ -20,7 +20,7 @@ void tipPoseBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
     PackOfStates<> x;
     Pack rotation[9];
     Pack position[3];
-    x.readPositions<0>(robot, q, lanes, FirstJoint::kNeeded);
+    x.readPositions(robot, q, lanes, FirstJoint::kNeeded);
     tipKinematicsOf<Pack>(structure).pose(robot, x.state(), rotation, position);
     if (R.row_step == 1 && R.column_step == 3) {
       scatter<9>(rotation, 9, lanes, R.data, 1, R.state_step);
@@ -38,12 +38,12 @@ void tipPoseBatch(const Robot& robot, int structure, std::ptrdiff_t states, Samp
 FAST_INLINE void scatterJacobian(const Pack* entries, int n, const Lanes& lanes,
                                  const Matrices& to) {
   if (to.row_step == 1 && to.column_step == 6) {
-    scatter<0>(entries, 6 * n, lanes, to.data, 1, to.state_step);
+    scatter(entries, 6 * n, lanes, to.data, 1, to.state_step);
   } else if (to.column_step == 1) {
     for (int i = 0; i < 6; ++i) {
       Pack row[kMaxJoints];
       for (int j = 0; j < n; ++j) row[j] = entries[i + 6 * j];
-      scatter<0>(row, n, lanes, to.data + i * to.row_step, 1, to.state_step);
+      scatter(row, n, lanes, to.data + i * to.row_step, 1, to.state_step);
     }
   } else {
     for (int j = 0; j < n; ++j) {
@@ -59,7 +59,7 @@ void tipJacobianBatch(const Robot& robot, int structure, std::ptrdiff_t states, 
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates<> x;
     Pack entries[6 * kMaxJoints];
-    x.readPositions<0>(robot, q, lanes, FirstJoint::kNeeded);
+    x.readPositions(robot, q, lanes, FirstJoint::kNeeded);
     tipKinematicsOf<Pack>(structure).jacobian(robot, x.state(), JacobianEntries<Pack>{entries, 6});
     scatterJacobian(entries, n, lanes, J);
   });
@@ -71,8 +71,8 @@ void tipJacobianDerivativeBatch(const Robot& robot, int structure, std::ptrdiff_
   forEachPack(states, [&](const Lanes& lanes) {
     PackOfStates<> x;
     Pack entries[6 * kMaxJoints];
-    gather<0>(robot, qd, lanes, x.qd);
-    x.readPositions<0>(robot, q, lanes, FirstJoint::kNeeded);
+    gather(robot, qd, lanes, x.qd);
+    x.readPositions(robot, q, lanes, FirstJoint::kNeeded);
     tipKinematicsOf<Pack>(structure).jacobian_derivative(robot, x.state(),
                                                          JacobianEntries<Pack>{entries, 6});
     scatterJacobian(entries, n, lanes, dJ);
