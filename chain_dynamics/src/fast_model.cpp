@@ -44,11 +44,13 @@ struct KernelSet {
 /// Those that run on this processor, for so many joints, the best last.
 std::vector<KernelSet> usableKernels(int joints) {
   std::vector<KernelSet> usable = {{&fast::kernelsPortable(), &fast::manyKernelsPortable(joints)}};
-#ifdef CHAIN_DYNAMICS_X86_KERNELS
+#ifdef CHAIN_DYNAMICS_KERNELS_V3
   __builtin_cpu_init();
   const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
                   __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
   if (v3) usable.push_back({&fast::kernelsV3(), &fast::manyKernelsV3(joints)});
+#endif
+#ifdef CHAIN_DYNAMICS_KERNELS_V4
   const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                   __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
                   __builtin_cpu_supports("avx512cd");

@@ -69,8 +69,10 @@ void expectEqual(const Terms& a, const Terms& b, const State<double>& x, double 
 
 const fast::ManyKernels& manyKernelsNamed(const std::string& name) {
   constexpr int kAnyJoints = 0;
-#ifdef CHAIN_DYNAMICS_X86_KERNELS
+#ifdef CHAIN_DYNAMICS_KERNELS_V3
   if (name == "v3") return fast::manyKernelsV3(kAnyJoints);
+#endif
+#ifdef CHAIN_DYNAMICS_KERNELS_V4
   if (name == "v4") return fast::manyKernelsV4(kAnyJoints);
 #endif
   EXPECT_EQ(name, "portable");

@@ -193,10 +193,10 @@ struct ManyKernels {
 /// joints.
 const Kernels& kernelsPortable();
 const Kernels& kernelsV3();  // x86-64 only
-const Kernels& kernelsV4();  // x86-64 only
+const Kernels& kernelsV4();  // x86-64 only, with the option CHAIN_DYNAMICS_AVX512
 const ManyKernels& manyKernelsPortable(int joints);
 const ManyKernels& manyKernelsV3(int joints);  // x86-64 only
-const ManyKernels& manyKernelsV4(int joints);  // x86-64 only
+const ManyKernels& manyKernelsV4(int joints);  // x86-64 only, with that option
 
 }  // namespace fast
 }  // namespace v2
