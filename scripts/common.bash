@@ -46,7 +46,7 @@ apt_packages=(
   python3-colcon-library-path python3-colcon-metadata python3-colcon-output
   python3-colcon-package-information python3-colcon-package-selection
   python3-colcon-parallel-executor python3-colcon-pkg-config python3-colcon-recursive-crawl
-  python3-colcon-ros python3-colcon-test-result
+  python3-colcon-ros
   # ament and plugins.
   ament-cmake ament-cmake-googletest ament-cmake-pytest ament-cmake-python
   libament-index-cpp-dev python3-ament-index libclass-loader-dev pluginlib-dev
@@ -158,7 +158,7 @@ test_in() {
   local out=$1 programs=$2 package build targets status=0
   shift 2
   find_recordings
-  rm -rf "$out"/build/*/test_results "$out"/build/*/Testing
+  rm -rf "$out"/build/*/test_results
   for package in "$@"; do
     build=$out/build/$package
     cmake "$build" -DBUILD_TESTING=ON >/dev/null || return

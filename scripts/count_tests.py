@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Counts the test cases that `colcon test` ran, over all packages, frameworks and programs.
+"""Counts the test cases that were run, over all packages, frameworks and programs.
 
 Usage: python3 count_tests.py BUILD_DIRECTORY
 
-Reads `PACKAGE/test_results/**/*.xml` (GoogleTest and pytest, one entry a case) and
-`PACKAGE/Testing/TAG/Test.xml` (CTest, one entry a program). A program that CTest calls failed
-though none of its cases is (it crashed on leaving, ran too long, or is missing) is one failure.
+Reads `PACKAGE/test_results/**/*.xml` (GoogleTest and pytest, one entry a case) and, where it is,
+`test_programs.xml` (CTest, one entry a program). A program that CTest calls failed though none of
+its cases is (it crashed on leaving, ran too long, or is missing) is one failure.
 
 Prints failed cases, reasons for skipping, and `N passed, N failed, N skipped` as the last line.
 The exit status is 1 if a test failed or none passed.
@@ -37,7 +37,7 @@ def count_tests(build: Path) -> Count:
     for package in sorted(path for path in build.iterdir() if path.is_dir()):
         for file in sorted(package.glob("test_results/**/*.xml")):
             _count_cases(file, count)
-        _count_programs(package, count)
+    _count_programs(build, count)
     return count
 
 
@@ -67,23 +67,20 @@ def _reason(skip: ElementTree.Element) -> str:
     return lines[-1].strip()
 
 
-def _count_programs(package: Path, count: Count) -> None:
-    """Adds what CTest knows about the programs of a package beyond the cases they reported."""
-    tag = package / "Testing" / "TAG"
-    if not tag.is_file():
+def _count_programs(build: Path, count: Count) -> None:
+    """Adds what CTest knows about programs beyond the cases they reported."""
+    report = build / "test_programs.xml"
+    if not report.is_file():
         return
-    report = package / "Testing" / tag.read_text().splitlines()[0] / "Test.xml"
-    for program in ElementTree.parse(report).iterfind("Testing/Test"):
-        name = program.findtext("Name", "")
-        results = list(package.glob(f"test_results/**/{name}.*.xml"))
+    for program in ElementTree.parse(report).iter("testcase"):
+        name = program.get("name")
+        results = list(build.glob(f"*/test_results/**/{name}.*.xml"))
         own = Count()
         for file in results:
             _count_cases(file, own)
-        if program.get("Status") != "passed":
+        if program.get("status") != "run":
             if not own.failed:
-                count.failed.append(
-                    f"{package.name}: {name} (the program itself: crash, time-out or missing)"
-                )
+                count.failed.append(f"{name} (the program itself: crash, time-out or missing)")
         elif not results:  # a plain program without cases
             count.passed += 1
 

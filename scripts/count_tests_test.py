@@ -30,36 +30,36 @@ ALL_PASS = """<testsuites><testsuite>
 </testsuite></testsuites>"""
 
 
-def write_results(
-    build: Path, package: str, cases: dict[str, str], programs: dict[str, str]
-) -> None:
-    """Lays out the results of one package: xunit text per program, CTest's status per program."""
+def write_results(build: Path, package: str, cases: dict[str, str]) -> None:
+    """Lays out the results of one package: xunit text per program."""
     results = build / package / "test_results" / package
     results.mkdir(parents=True)
     for name, text in cases.items():
         (results / f"{name}.gtest.xml").write_text(text)
-    testing = build / package / "Testing"
-    (testing / "20000101-0000").mkdir(parents=True)
-    (testing / "TAG").write_text("20000101-0000\nExperimental\n")
+
+
+def write_programs(build: Path, **programs: str) -> None:
+    """Writes CTest's status of each program."""
     tests = "".join(
-        f'<Test Status="{status}"><Name>{name}</Name></Test>' for name, status in programs.items()
+        f'<testcase name="{name}" status="{status}"/>' for name, status in programs.items()
     )
-    text = f"<Site><Testing><TestList/>{tests}</Testing></Site>"
-    (testing / "20000101-0000" / "Test.xml").write_text(text)
+    (build / "test_programs.xml").write_text(f"<testsuite>{tests}</testsuite>")
 
 
 def test_cases_of_all_packages_are_summed(tmp_path: Path) -> None:
-    write_results(tmp_path, "engine", {"rnea_test": GTEST}, {"rnea_test": "failed"})
-    write_results(tmp_path, "tools", {"bag": PYTEST}, {"bag": "failed"})
+    write_results(tmp_path, "engine", {"rnea_test": GTEST})
+    write_results(tmp_path, "tools", {"bag": PYTEST})
+    write_programs(tmp_path, rnea_test="fail", bag="fail")
     count = count_tests(tmp_path)
     assert count.failed == ["engine.Rnea.Fails", "test_bag.test_fixture"]
     assert count.skipped == {"no recordings": 2, "disabled in the source": 1}
     assert str(count) == "2 passed, 2 failed, 3 skipped"
 
 
-@pytest.mark.parametrize("status", ["failed", "notrun"])
+@pytest.mark.parametrize("status", ["fail", "notrun"])
 def test_program_that_fails_without_a_failed_case_is_a_failure(tmp_path: Path, status: str) -> None:
-    write_results(tmp_path, "engine", {"aba_test": ALL_PASS}, {"aba_test": status})
+    write_results(tmp_path, "engine", {"aba_test": ALL_PASS})
+    write_programs(tmp_path, aba_test=status)
     count = count_tests(tmp_path)
     assert count.passed == 1
     assert len(count.failed) == 1
@@ -67,12 +67,13 @@ def test_program_that_fails_without_a_failed_case_is_a_failure(tmp_path: Path, s
 
 
 def test_program_without_cases_counts_once(tmp_path: Path) -> None:
-    write_results(tmp_path, "engine", {}, {"example": "passed", "broken": "failed"})
+    write_programs(tmp_path, example="run", broken="fail")
     assert str(count_tests(tmp_path)) == "1 passed, 1 failed, 0 skipped"
 
 
 def test_unreadable_result_is_a_failure(tmp_path: Path) -> None:
-    write_results(tmp_path, "engine", {"cut_off": GTEST[:300]}, {"cut_off": "failed"})
+    write_results(tmp_path, "engine", {"cut_off": GTEST[:300]})
+    write_programs(tmp_path, cut_off="fail")
     assert len(count_tests(tmp_path).failed) == 1
 
 
@@ -80,8 +81,8 @@ def test_exit_status_tells_success_failure_and_no_tests(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([str(tmp_path)]) == 1  # none at all
-    write_results(tmp_path, "good", {"aba_test": ALL_PASS}, {"aba_test": "passed"})
+    write_results(tmp_path, "good", {"aba_test": ALL_PASS})
     assert main([str(tmp_path)]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == "1 passed, 0 failed, 0 skipped"
-    write_results(tmp_path, "bad", {"rnea_test": GTEST}, {"rnea_test": "failed"})
+    write_results(tmp_path, "bad", {"rnea_test": GTEST})
     assert main([str(tmp_path)]) == 1
