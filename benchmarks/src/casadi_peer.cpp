@@ -66,8 +66,8 @@ const Expression kExpressions[] = {
 };
 
 /// One function with its states, results and memory.
-struct Peer {
-  Peer(const Generated& generated, bool matrix, Eigen::Index n)
+struct CasadiPeer {
+  CasadiPeer(const Generated& generated, bool matrix, Eigen::Index n)
       : call(generated.call), states(n), first(n, matrix ? n : 1), c(n), g(n) {
     long long arg = 0, res = 0, iw = 0, w = 0;
     generated.work(&arg, &res, &iw, &w);
@@ -106,7 +106,7 @@ void registerCasadi(const PeerRobot& robot) {
       const std::string quantity = kQuantities[i];
       const bool matrix = quantity == "inertia" || quantity == "components";
       const auto peer =
-          std::make_shared<Peer>(expression.functions[i], matrix, robot.chain.jointCount());
+          std::make_shared<CasadiPeer>(expression.functions[i], matrix, robot.chain.jointCount());
       (*peer)(0);
       if (i == 0) requireSameTorques(robot, expression.library, peer->first);
       registerOverStates(robot.name + "/" + quantity + "/" + expression.library,

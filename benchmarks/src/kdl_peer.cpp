@@ -25,8 +25,8 @@ std::vector<KDL::JntArray> columns(const Eigen::MatrixXd& matrix) {
   return arrays;
 }
 
-struct Peer {
-  explicit Peer(const chain_dynamics::Chain& robot)
+struct KdlPeer {
+  explicit KdlPeer(const chain_dynamics::Chain& robot)
       : chain(kdl_inverse_dynamics_solver::toKdl(robot)),
         rne(chain, kdl_inverse_dynamics_solver::toKdl(robot.gravity())),
         components(chain, kdl_inverse_dynamics_solver::toKdl(robot.gravity())),
@@ -57,7 +57,7 @@ struct Peer {
 }  // namespace
 
 void registerKdl(const PeerRobot& robot) {
-  const auto peer = std::make_shared<Peer>(robot.chain);
+  const auto peer = std::make_shared<KdlPeer>(robot.chain);
   peer->rne.CartToJnt(peer->q[0], peer->qd[0], peer->qdd[0], peer->forces, peer->tau);
   requireSameTorques(robot, "KDL", peer->tau.data);
   const auto add = [&](const char* quantity, auto call) {
@@ -66,18 +66,20 @@ void registerKdl(const PeerRobot& robot) {
       benchmark::ClobberMemory();
     });
   };
-  add("torques",
-      [](Peer& p, std::size_t k) { p.rne.CartToJnt(p.q[k], p.qd[k], p.qdd[k], p.forces, p.tau); });
-  add("inertia", [](Peer& p, std::size_t k) { p.components.JntToMass(p.q[k], p.H); });
-  add("coriolis", [](Peer& p, std::size_t k) { p.components.JntToCoriolis(p.q[k], p.qd[k], p.c); });
-  add("gravity", [](Peer& p, std::size_t k) { p.components.JntToGravity(p.q[k], p.g); });
-  add("components", [](Peer& p, std::size_t k) {
+  add("torques", [](KdlPeer& p, std::size_t k) {
+    p.rne.CartToJnt(p.q[k], p.qd[k], p.qdd[k], p.forces, p.tau);
+  });
+  add("inertia", [](KdlPeer& p, std::size_t k) { p.components.JntToMass(p.q[k], p.H); });
+  add("coriolis",
+      [](KdlPeer& p, std::size_t k) { p.components.JntToCoriolis(p.q[k], p.qd[k], p.c); });
+  add("gravity", [](KdlPeer& p, std::size_t k) { p.components.JntToGravity(p.q[k], p.g); });
+  add("components", [](KdlPeer& p, std::size_t k) {
     p.components.JntToMass(p.q[k], p.H);
     p.components.JntToCoriolis(p.q[k], p.qd[k], p.c);
     p.components.JntToGravity(p.q[k], p.g);
   });
   if (!isArm(robot.chain.jointCount())) return;
-  add("tip_jacobian", [](Peer& p, std::size_t k) { p.jacobian.JntToJac(p.q[k], p.J); });
+  add("tip_jacobian", [](KdlPeer& p, std::size_t k) { p.jacobian.JntToJac(p.q[k], p.J); });
 }
 
 std::string kdlVersion() { return KDL_VERSION_STRING; }

@@ -29,8 +29,8 @@ std::unique_ptr<mjModel, Delete> compiled(const std::string& urdf, bool balanced
   return std::unique_ptr<mjModel, Delete>(mj_compile(spec.get(), nullptr));
 }
 
-struct Peer {
-  explicit Peer(const std::string& urdf)
+struct MujocoPeer {
+  explicit MujocoPeer(const std::string& urdf)
       : model(compiled(urdf, false)), as_described(model != nullptr) {
     if (!as_described) model = compiled(urdf, true);  // other numbers, the same work
     if (model == nullptr) throw std::runtime_error("MuJoCo refuses the robot description");
@@ -68,7 +68,7 @@ struct Peer {
 }  // namespace
 
 void registerMujoco(const PeerRobot& robot) {
-  const auto peer = std::make_shared<Peer>(robot.urdf);
+  const auto peer = std::make_shared<MujocoPeer>(robot.urdf);
   peer->torques(0, true);
   if (peer->as_described) requireSameTorques(robot, "MuJoCo", peer->tau);
   const auto add = [&](const char* quantity, auto call) {
@@ -77,9 +77,9 @@ void registerMujoco(const PeerRobot& robot) {
       benchmark::ClobberMemory();
     });
   };
-  add("torques", [](Peer& p, Eigen::Index k) { p.torques(k, true); });
-  add("coriolis", [](Peer& p, Eigen::Index k) { p.torques(k, false); });
-  add("inertia", [](Peer& p, Eigen::Index k) { p.inertia(k); });
+  add("torques", [](MujocoPeer& p, Eigen::Index k) { p.torques(k, true); });
+  add("coriolis", [](MujocoPeer& p, Eigen::Index k) { p.torques(k, false); });
+  add("inertia", [](MujocoPeer& p, Eigen::Index k) { p.inertia(k); });
 }
 
 std::string mujocoVersion() { return mj_versionString(); }

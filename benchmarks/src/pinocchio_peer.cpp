@@ -16,8 +16,8 @@
 namespace inverse_dynamics_benchmarks {
 namespace {
 
-struct Peer {
-  explicit Peer(const chain_dynamics::Chain& chain)
+struct PinocchioPeer {
+  explicit PinocchioPeer(const chain_dynamics::Chain& chain)
       : model(pinocchio_inverse_dynamics_solver::toPinocchio(chain)),
         data(model),
         states(chain.jointCount()) {}
@@ -65,7 +65,7 @@ struct Peer {
 }  // namespace
 
 void registerPinocchio(const PeerRobot& robot) {
-  const auto peer = std::make_shared<Peer>(robot.chain);
+  const auto peer = std::make_shared<PinocchioPeer>(robot.chain);
   peer->torques(0);
   requireSameTorques(robot, "Pinocchio", peer->data.tau);
   const auto add = [&](const char* quantity, auto call) {
@@ -73,16 +73,18 @@ void registerPinocchio(const PeerRobot& robot) {
                        [peer, call](Eigen::Index k) { call(*peer, k); });
   };
   using benchmark::DoNotOptimize;
-  add("torques", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.torques(k)); });
-  add("inertia", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.inertia(k)); });
-  add("coriolis", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.coriolis(k)); });
-  add("gravity", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.gravity(k)); });
+  add("torques", [](PinocchioPeer& p, Eigen::Index k) { DoNotOptimize(p.torques(k)); });
+  add("inertia", [](PinocchioPeer& p, Eigen::Index k) { DoNotOptimize(p.inertia(k)); });
+  add("coriolis", [](PinocchioPeer& p, Eigen::Index k) { DoNotOptimize(p.coriolis(k)); });
+  add("gravity", [](PinocchioPeer& p, Eigen::Index k) { DoNotOptimize(p.gravity(k)); });
   if (!isArm(robot.chain.jointCount())) return;
-  add("forward_dynamics", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.forwardDynamics(k)); });
-  add("regressor", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.regressor(k)); });
-  add("derivatives", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.derivatives(k)); });
-  add("coriolis_matrix", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.coriolisMatrix(k)); });
-  add("tip_jacobian", [](Peer& p, Eigen::Index k) { DoNotOptimize(p.jacobian(k)); });
+  add("forward_dynamics",
+      [](PinocchioPeer& p, Eigen::Index k) { DoNotOptimize(p.forwardDynamics(k)); });
+  add("regressor", [](PinocchioPeer& p, Eigen::Index k) { DoNotOptimize(p.regressor(k)); });
+  add("derivatives", [](PinocchioPeer& p, Eigen::Index k) { DoNotOptimize(p.derivatives(k)); });
+  add("coriolis_matrix",
+      [](PinocchioPeer& p, Eigen::Index k) { DoNotOptimize(p.coriolisMatrix(k)); });
+  add("tip_jacobian", [](PinocchioPeer& p, Eigen::Index k) { DoNotOptimize(p.jacobian(k)); });
 }
 
 std::string pinocchioVersion() { return PINOCCHIO_VERSION; }
