@@ -125,6 +125,17 @@ void batchInRows(const FastModel& fast, const Inputs& in, Results& out) {
   }
 }
 
+/// Regressors as the upper rows of higher matrices.
+void batchInUpperRows(const FastModel& fast, const Inputs& in, Results& out) {
+  const Index n = in.q.rows();
+  batchInColumns(fast, in, out);
+  MatrixXd Y = MatrixXd::Constant(n + 1, out.Y.cols(), kNan);
+  fast.regressorBatch(in.q, in.qd, in.qdd,
+                      {Y.data(), n, 10 * n, in.q.cols(), 1, n + 1, 10 * n * (n + 1)});
+  EXPECT_TRUE(Y.row(n).array().isNaN().all()) << "written below the numbers";
+  out.Y = Y.topRows(n);
+}
+
 /// Every second number, and from the last state to the first.
 void batchWithGaps(const FastModel& fast, const Inputs& in, Results& out) {
   const Index n = in.q.rows();
@@ -177,7 +188,7 @@ TEST_P(FastModelOn, BatchesOfDynamicsEqualSingleCallsInAnyLayout) {
       if (n > 30 && count > 8) continue;
       const Inputs in(n, count);
       const Results single = singleCalls(fast, in);
-      for (const auto layout : {batchInColumns, batchInRows, batchWithGaps}) {
+      for (const auto layout : {batchInColumns, batchInRows, batchInUpperRows, batchWithGaps}) {
         Results batch(n, count);
         for (MatrixXd* matrix : {&batch.qdd, &batch.by_q, &batch.by_qd, &batch.by_qdd, &batch.Y}) {
           matrix->setConstant(kNan);

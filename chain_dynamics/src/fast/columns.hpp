@@ -63,10 +63,15 @@ FAST_INLINE void loadColumns(const double* rows, std::ptrdiff_t step, Pack& firs
 }
 
 // kShortWidth lanes of a pack after another, to each `step` after the one before.
-FAST_INLINE void storeShorts(const Pack& pack, double* to, std::ptrdiff_t step) {
+FAST_INLINE void storeShorts(const Pack& pack, double* to, [[maybe_unused]] std::ptrdiff_t step) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && __has_builtin(__builtin_shufflevector)
+  store(FAST_SHUFFLE(pack, pack, 0, 1, 2, 3), to);
+  store(FAST_SHUFFLE(pack, pack, 4, 5, 6, 7), to + step);
+#else
   for (int lane = 0; lane < kWidth; lane += kShortWidth, to += step) {
     store(load<Short>(numbersOf(&pack) + lane), to);
   }
+#endif
 }
 
 /// Of kShortWidth packs the numbers of each lane side by side: those of lane k at to + k step.
