@@ -61,7 +61,7 @@ HOW_TO_GET_RECORDINGS = (
 )
 
 _QUICK_SECONDS = 4.0  # of simulated motion
-_FILM_SECONDS = 5.0  # drawing the robots is the larger part of the work
+_FILM_SECONDS = 4.0  # drawing the robots is the larger part of the work
 
 
 @dataclass(frozen=True)
