@@ -62,7 +62,11 @@ class JointLog:
     @property
     def time(self) -> Floats:
         """(N,) s since the first sample."""
-        return (self.stamps - self.stamps[:1]).astype("float64") * 1e-9
+        return self.time_at(slice(None))
+
+    def time_at(self, rows: slice | Integers) -> Floats:
+        """`time` of some samples; a recording of any length stays in its file."""
+        return (self.stamps[rows] - self.stamps[:1]).astype("float64") * 1e-9
 
     @property
     def duration(self) -> float:

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from inverse_dynamics._core import Evaluated
-    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.base.arrays import Mask
+    from inverse_dynamics.data.joint_log import JointLog
     from inverse_dynamics.evaluation.series import Arrays
 
 # What each rule does, as --help says it.
@@ -63,20 +64,18 @@ class Samples:
         """How many samples the second metrics leave out."""
         return int((~self.kept).sum())
 
-    def left_out_spans(self, time: Floats, most: int = 500) -> list[tuple[float, float]]:
+    def left_out_spans(self, log: JointLog, most: int = 500) -> list[tuple[float, float]]:
         """When those were: from the first to the last [s] of samples in succession.
 
-        time: (N,) s, of all samples. most: of more spans, the ones of the most samples.
+        log: all samples. most: of more spans, the ones of the most samples.
         """
         import numpy as np  # late: --help needs the rules alone
 
         edges = np.flatnonzero(np.diff(np.concatenate([[True], self.kept, [True]])))
         first, end = edges[::2], edges[1::2]
         longest = np.sort(np.argsort(first - end, kind="stable")[:most])
-        return [
-            (float(time[i]), float(time[k - 1]))
-            for i, k in zip(first[longest], end[longest], strict=True)
-        ]
+        begins, ends = log.time_at(first[longest]), log.time_at(end[longest] - 1)
+        return list(zip(begins.tolist(), ends.tolist(), strict=True))
 
 
 def accelerations_of(found: Evaluated) -> Accelerations:

@@ -11,7 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.errors import SolverError
-from inverse_dynamics.evaluation.diagnosis import ArmModel, Diagnosis, diagnose, pieces_of
+from inverse_dynamics.evaluation.diagnosis import (
+    ArmModel,
+    Diagnosis,
+    Samples,
+    diagnose,
+    rows_of_pieces,
+)
 from inverse_dynamics.robot.solvers import open_solver
 
 if TYPE_CHECKING:
@@ -35,10 +41,17 @@ def diagnosis_of(
 
     robot, solver, description: what the torques were computed with. qdd: (N, n).
     """
-    samples = pieces_of(solver.joint_names, log.time, log.q, log.qd, qdd, log.effort)
-    if samples is None:
+    rows = rows_of_pieces(len(log))
+    if rows is None:
         return None
-    samples = replace(samples, measured=effort.torques(samples.measured))
+    samples = Samples(
+        tuple(solver.joint_names),
+        log.time_at(rows),
+        log.q[rows],
+        log.qd[rows],
+        qdd[rows],
+        effort.torques(log.effort[rows]),
+    )
     return diagnose(samples, _arm_model(robot, effort, solver, description))
 
 

@@ -24,7 +24,7 @@ import numpy as np
 from inverse_dynamics.base.wording import listed
 
 if TYPE_CHECKING:
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.arrays import Floats, Integers
 
 PAGE = "docs/why_dont_my_torques_match.md"
 
@@ -119,6 +119,16 @@ class _Hypothesis:
     scaled: bool = False  # each joint's torque has a scale of its own
 
 
+def rows_of_pieces(samples: int) -> Integers | None:
+    """(K, M) rows of pieces that pieces_of() takes of so many samples."""
+    length = min(_PIECE, samples // 4)
+    count = min(_PIECES, samples // length) if length > 1 else 0
+    if count < 4:
+        return None
+    starts = np.linspace(0, samples - length, count).astype(np.int64)
+    return starts[:, None] + np.arange(length)
+
+
 def pieces_of(
     joints: Sequence[str],
     time: Floats,
@@ -128,12 +138,9 @@ def pieces_of(
     measured: Floats,
 ) -> Samples | None:
     """Pieces of a recording of N samples, spread over all of it; None: it is too short for that."""
-    length = min(_PIECE, len(time) // 4)
-    count = min(_PIECES, len(time) // length) if length > 1 else 0
-    if count < 4:
+    rows = rows_of_pieces(len(time))
+    if rows is None:
         return None
-    starts = np.linspace(0, len(time) - length, count).astype(int)
-    rows = (starts[:, None] + np.arange(length)).astype(int)
     return Samples(tuple(joints), time[rows], q[rows], qd[rows], qdd[rows], measured[rows])
 
 

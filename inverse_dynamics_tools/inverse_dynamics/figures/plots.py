@@ -115,7 +115,7 @@ def torque_figure(evaluation: Evaluation, lines: TorqueLines | None = None) -> F
     figure = Figure(figsize=(11.0, height))
     axes = _panels(figure, n, top=1.32, bottom=0.5)
     lines = lines or TorqueLines.of(evaluation)
-    left_out = evaluation.samples.left_out_spans(evaluation.time)
+    left_out = evaluation.samples.left_out_spans(evaluation.log)
     for j, (left, right) in enumerate(axes):
         _draw_torques(left, evaluation, lines, j)
         _draw_error(right, evaluation, lines, j)

@@ -42,7 +42,7 @@ def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
         notes=[note for note in evaluation.notes if note not in causes[-1:]],
         links=scene.links,
         scene_notes=scene.notes,
-        left_out=evaluation.samples.left_out_spans(evaluation.time),
+        left_out=evaluation.samples.left_out_spans(evaluation.log),
         figures=[Figure(_inline(error_figure(evaluation)), _caption(evaluation))],
     )
 
