@@ -65,7 +65,7 @@ class JointLog:
         return self.time_at(slice(None))
 
     def time_at(self, rows: slice | Integers) -> Floats:
-        """`time` of some samples; a recording of any length stays in its file."""
+        """`time` [s] of some rows, in their shape, without those of all samples in memory."""
         return (self.stamps[rows] - self.stamps[:1]).astype("float64") * 1e-9
 
     @property

@@ -120,12 +120,11 @@ class _Hypothesis:
 
 
 def rows_of_pieces(samples: int) -> Integers | None:
-    """(K, M) rows of pieces that pieces_of() takes of so many samples."""
+    """(K, M) rows of four or more pieces, spread over all samples; None: there are too few."""
     length = min(_PIECE, samples // 4)
-    count = min(_PIECES, samples // length) if length > 1 else 0
-    if count < 4:
+    if length < 2:
         return None
-    starts = np.linspace(0, samples - length, count).astype(np.int64)
+    starts = np.linspace(0, samples - length, min(_PIECES, samples // length)).astype(np.int64)
     return starts[:, None] + np.arange(length)
 
 
@@ -137,9 +136,8 @@ def pieces_of(
     qdd: Floats,
     measured: Floats,
 ) -> Samples | None:
-    """Pieces of a recording of N samples, spread over all of it; None: it is too short for that."""
-    rows = rows_of_pieces(len(time))
-    if rows is None:
+    """Pieces of a recording of N samples, as rows_of_pieces() chooses them."""
+    if (rows := rows_of_pieces(len(time))) is None:
         return None
     return Samples(tuple(joints), time[rows], q[rows], qd[rows], qdd[rows], measured[rows])
 
