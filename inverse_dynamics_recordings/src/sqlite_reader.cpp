@@ -44,6 +44,7 @@ class SqliteReader : public StorageReader {
     sqlite3_limit(
         database_.get(), SQLITE_LIMIT_LENGTH,
         static_cast<int>(std::min<std::uint64_t>(size_, std::numeric_limits<int>::max())));
+    requireAllPages();
     requireTables();
     readTopics();
   }
@@ -53,6 +54,7 @@ class SqliteReader : public StorageReader {
   bool next(Message& message) override;
 
  private:
+  void requireAllPages();
   void requireTables();
   bool hasColumn(const std::string& table, const std::string& column);
   void readTopics();
@@ -78,6 +80,19 @@ class SqliteReader : public StorageReader {
   std::size_t connection_ = kNone;  // of id_
   bool done_ = true;
 };
+
+// SQLite reads what a file lacks of its last page as zeros. It counts pages by the header, or by the
+// size of the file where a writer before 3.7 has left the header's number out of date.
+void SqliteReader::requireAllPages() {
+  Statement pages(database_,
+                  "SELECT page_count * page_size FROM pragma_page_count, pragma_page_size");
+  pages.step();
+  const auto expected = static_cast<std::uint64_t>(pages.integer(0));
+  if (size_ < expected) {
+    throw DamageError("the file is cut off: expected " + std::to_string(expected) +
+                      " bytes, as many as its pages have, got " + std::to_string(size_));
+  }
+}
 
 // A view may compute without end, and a virtual table be anything.
 void SqliteReader::requireTables() {

@@ -504,6 +504,33 @@ TEST_P(SqliteTest, IsWholeByTheLibrarysOwnCheck) {
   EXPECT_EQ(result, "ok");
 }
 
+TEST_P(SqliteTest, IsRefusedWithoutTheLastByteOfItsLastPage) {
+  const std::string bag = write("bag", evenly(500));
+  std::string whole = contentOf(file("bag"));
+  for (const bool counts_pages : {true, false}) {
+    if (!counts_pages) {                   // as a writer before SQLite 3.7 leaves the header
+      whole.replace(28, 4, {0, 0, 0, 1});  // pages, when a newer one wrote ...
+      whole[95] = static_cast<char>(whole[27] - 1);  // ... before this change
+    }
+    put(file("bag"), whole);
+    EXPECT_EQ(rest(*Recording(bag).jointStates()).size(), 500U);
+    for (const std::size_t missing : {1U, 1000U, 32767U}) {
+      put(file("bag"), whole.substr(0, whole.size() - missing));
+      const std::string got = std::to_string(whole.size() - missing);
+      EXPECT_THAT(errorOfReading(bag),
+                  HasSubstr("the file is cut off: expected " + std::to_string(whole.size()) +
+                            " bytes, as many as its pages have, got " + got));
+      EXPECT_THAT(errorOfReading(file("bag")), HasSubstr("the file is cut off"));
+    }
+  }
+}
+
+TEST_P(SqliteTest, IsReadWithBytesBehindItsLastPage) {
+  const std::string bag = write("bag", evenly(500));
+  put(file("bag"), contentOf(file("bag")) + std::string(100'000, '\0'));
+  EXPECT_EQ(rest(*Recording(bag).jointStates()).size(), 500U);
+}
+
 TEST_P(SqliteTest, IsReadWithoutItsIndexAndOutOfOrder) {
   const std::string bag = write("bag", {3'000, 1'000, 2'000});
   run("DROP INDEX timestamp_idx");

@@ -334,7 +334,7 @@ def test_file_of_noise_is_an_error(tmp_path, name):
 
 
 @STORAGES
-@pytest.mark.parametrize("share", [0.02, 0.3, 0.6, 0.95])
+@pytest.mark.parametrize("share", [0.02, 0.3, 0.6, 0.95, 0.999])
 @pytest.mark.parametrize("whole_directory", [True, False])
 def test_file_that_is_cut_off_is_an_error(tmp_path, storage, share, whole_directory):
     write_joint_logs(tmp_path / "bag", {TOPIC: joint_log(5000)}, storage=storage)
