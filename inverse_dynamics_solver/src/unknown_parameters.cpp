@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "chain_dynamics/text.hpp"
 #include "inverse_dynamics_solver/configuration.hpp"
-#include "inverse_dynamics_solver/exceptions.hpp"
+#include "inverse_dynamics_solver/strict_initialization.hpp"
 
 namespace inverse_dynamics_solver {
 inline namespace v2 {
@@ -38,6 +40,11 @@ std::string nearest(const std::string& name, const Names& known) {
   return locks(name) && !found.empty() ? kLocked + found : found;
 }
 
+/// @param meant  a known name, or "".
+std::string remedy(const std::string& meant) {
+  return meant.empty() ? "correct or remove it" : "did you mean '" + meant + "'?";
+}
+
 struct Unknown {
   Names known, unknown;  // full names
   Names remedies;        // one per unknown name
@@ -59,9 +66,7 @@ Unknown unknownNames(const Configuration& configuration) {
     const std::string meant = nearest(name, known);
     if (configuration.asked->count(full_name) > 0 || (own_only && meant.empty())) continue;
     result.unknown.push_back(full_name);
-    result.remedies.push_back(meant.empty()
-                                  ? "correct or remove it"
-                                  : "did you mean '" + configuration.fullName(meant) + "'?");
+    result.remedies.push_back(remedy(meant.empty() ? "" : configuration.fullName(meant)));
   }
   return result;
 }
@@ -85,6 +90,16 @@ void Configuration::rejectOthers() const {
   throw InvalidParameterValueException(
       errorText("parameter '" + names.unknown.front() + "'", "the solver doesn't know it",
                 "one of " + joined(names.known), "", names.remedies.front()));
+}
+
+void rejectUndeclared(const Names& given, const Names& declared) {
+  for (const std::string& name : given) {
+    if (name.rfind("qos_overrides.", 0) == 0) continue;
+    if (std::find(declared.begin(), declared.end(), name) != declared.end()) continue;
+    throw InvalidParameterValueException(errorText("parameter '" + name + "'",
+                                                   "the node doesn't declare it", "", "",
+                                                   remedy(nearestName(name, declared))));
+  }
 }
 
 }  // namespace v2

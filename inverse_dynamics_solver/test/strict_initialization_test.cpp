@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <stdexcept>
+
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "inverse_dynamics_solver/solver_loader.hpp"
 #include "node_parameters_stand_in.hpp"
@@ -83,6 +86,100 @@ TEST_F(StrictInitialization, OtherwiseAnUnknownParameterIsAWarning) {
                 "parameter 'dampng' isn't used, the solver doesn't know it; did you mean "
                 "'damping'?",
                 "parameter 'x' isn't used, the solver doesn't know it; correct or remove it"}));
+}
+
+struct NotDeclared : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct NamedParameter {
+  std::string name;
+  const std::string& get_name() const { return name; }
+};
+
+/// A node as rclcpp's from jazzy on.
+class NodeThatAsksBeforeSetting : public stand_in::NodeParameters {
+ public:
+  using Callback = std::function<void(std::vector<NamedParameter>&)>;
+
+  std::shared_ptr<Callback> add_pre_set_parameters_callback(Callback callback) {
+    auto handle = std::make_shared<Callback>(std::move(callback));
+    before_setting_ = handle;
+    return handle;
+  }
+
+  /// As its service does: why it was refused, or "".
+  std::string set(const std::string& name) {
+    std::vector<NamedParameter> parameters = {{name}};
+    try {
+      if (const auto callback = before_setting_.lock()) (*callback)(parameters);
+      if (!has_parameter(name)) throw NotDeclared("rclcpp's own words");
+    } catch (const NotDeclared& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+ private:
+  std::weak_ptr<Callback> before_setting_;
+};
+
+class UndeclaredParameters : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* name :
+         {"cutoff", "gains.damping_ratio", "gains.natural_frequency", "ids.tip", "limits.effort",
+          "limits.effort_rate", "limits.velocity", "use_sim_time"}) {
+      node.values[name] = 1.0;
+    }
+  }
+
+  /// Why a parameter file with this name is refused, or "".
+  std::string refusal(const std::string& name) {
+    node.overrides = {{"cutoff", {}}, {"ids.tip", {}}, {"use_sim_time", {}}, {name, {}}};
+    try {
+      rejectUndeclared(node);
+    } catch (const InvalidParameterValueException& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  NodeThatAsksBeforeSetting node;
+};
+
+TEST_F(UndeclaredParameters, AreRefusedWithTheNameThatWasMeant) {
+  const std::map<std::string, std::string> meant = {
+      {"cutof", "cutoff"},
+      {"gains.natural_freq", "gains.natural_frequency"},
+      {"limit.velocity", "limits.velocity"},
+      {"limits.effrot", "limits.effort"},
+  };
+  for (const auto& [name, right] : meant) {
+    EXPECT_EQ(refusal(name), "parameter '" + name +
+                                 "': the node doesn't declare it; did you mean '" + right + "'?");
+  }
+  EXPECT_EQ(refusal("speed"),
+            "parameter 'speed': the node doesn't declare it; correct or remove it");
+}
+
+TEST_F(UndeclaredParameters, AreNoneWhereAllIsDeclaredOrRclcppDeclaresItLater) {
+  EXPECT_EQ(refusal("limits.effort"), "");
+  EXPECT_EQ(refusal("qos_overrides./clock.subscription.depth"), "");
+}
+
+TEST_F(UndeclaredParameters, AreRefusedWhenSetWithTheNameThatWasMeant) {
+  EXPECT_EQ(node.set("gains.natural_freq"), "rclcpp's own words");
+  const auto kept = suggestDeclared<NotDeclared>(node);
+  EXPECT_EQ(node.set("gains.natural_freq"),
+            "parameter 'gains.natural_freq': the node doesn't declare it; did you mean "
+            "'gains.natural_frequency'?");
+  EXPECT_EQ(node.set("gains.natural_frequency"), "");
+}
+
+TEST_F(UndeclaredParameters, AreLeftToRclcppWhereItCantAskBefore) {
+  stand_in::NodeParameters humble;
+  EXPECT_EQ(suggestDeclared<NotDeclared>(humble), nullptr);
 }
 
 }  // namespace inverse_dynamics_solver::strict_initialization_test
