@@ -30,6 +30,20 @@ std::vector<std::string> hardwareNames(const std::vector<std::string>& given,
                 std::to_string(given.size()) + " (" + joined(given) + ")", "correct them"));
 }
 
+// Declares parameters that are read by others than this package: by the solver, which alone knows
+// what it has; by the thread of a controller that isn't run in the manager's; by the manager's
+// spawner, in the same file.
+void declareParametersOfOthers(rclcpp::node_interfaces::NodeParametersInterface& node) {
+  rcl_interfaces::msg::ParameterDescriptor descriptor;
+  descriptor.dynamic_typing = true;
+  for (const auto& [name, value] : node.get_parameter_overrides()) {
+    const std::string group = name.substr(0, name.find('.') + 1);
+    const bool of_others = group == "ids." || group == "async_parameters." || name == "type" ||
+                           name == "fallback_controllers";
+    if (of_others && !node.has_parameter(name)) node.declare_parameter(name, value, descriptor);
+  }
+}
+
 FrictionSource frictionSource(const std::string& name) {
   if (name == "reference_velocity") return FrictionSource::kReferenceVelocity;
   if (name == "measured_velocity") return FrictionSource::kMeasuredVelocity;
@@ -52,9 +66,16 @@ ArmSource::ArmSource(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node, Use 
     : node_(std::move(node)),
       parameters_(std::make_shared<arm_parameters::ParamListener>(node_)),
       law_(use == Use::kCommand ? std::make_shared<law_parameters::ParamListener>(node_) : nullptr),
-      description_(node_) {}
+      description_(node_) {
+  auto& parameters = *node_->get_node_parameters_interface();
+  declareParametersOfOthers(parameters);
+  suggesting_ =
+      inverse_dynamics_solver::suggestDeclared<rclcpp::exceptions::ParameterNotDeclaredException>(
+          parameters);
+}
 
 Setup ArmSource::setup(const std::string& managers_description, unsigned update_rate) const {
+  inverse_dynamics_solver::rejectUndeclared(*node_->get_node_parameters_interface());
   const ArmParameters parameters = parameters_->get_params();
   const inverse_dynamics_solver::SolverLoader loader;
   if (parameters.plugin_name.empty()) {

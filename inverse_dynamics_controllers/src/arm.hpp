@@ -53,18 +53,20 @@ class ArmSource {
  public:
   enum class Use { kCommand, kMeasure };
 
-  /// Declares the parameters, those of laws only for kCommand, and listens for the robot description.
-  /// Throws what is wrong with a parameter.
+  /// Declares the parameters, those of laws only for kCommand, and what is given below `ids.`;
+  /// listens for the robot description. Throws what is wrong with a parameter.
   ArmSource(std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node, Use use);
 
   /// Loads and initializes the solver, with the node's parameters below `ids`. Waits for nothing.
   ///
   /// @param managers_description  robot description that the controller manager has given, or "".
-  /// Throws inverse_dynamics_solver::Exception: no such plugin, what the solver says, other joints.
+  /// Throws inverse_dynamics_solver::Exception: a parameter that the controller doesn't declare, no
+  /// such plugin, what the solver says, other joints.
   Setup setup(const std::string& managers_description, unsigned update_rate) const;
 
  private:
   std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node_;
+  std::shared_ptr<void> suggesting_;  // what a misspelt parameter meant
   std::shared_ptr<arm_parameters::ParamListener> parameters_;
   std::shared_ptr<law_parameters::ParamListener> law_;  // null: nothing is commanded
   RobotDescriptionTopic description_;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <rclcpp/version.h>
+
 #include <chrono>
 #include <std_msgs/msg/string.hpp>
 #include <thread>
@@ -68,6 +70,33 @@ TEST_F(Refusals, AMisspeltParameterOfTheSolver) {
   expectRefused(but("ids.gravty", rclcpp::ParameterValue(Numbers{0.0, 0.0, -9.81})),
                 "parameter 'ids.gravty': the solver doesn't know it: expected one of "
                 "ids.allow_massless, ids.attached, ");
+}
+
+TEST_F(Refusals, AMisspeltParameter) {
+  expectRefused(but("limits.effrot", rclcpp::ParameterValue(Numbers{1.0})),
+                "parameter 'limits.effrot': the node doesn't declare it; did you mean "
+                "'limits.effort'?");
+}
+
+TEST_F(Refusals, AMisspeltParameterThatIsSet) {
+  ASSERT_TRUE(configure(good())) << log.text();
+  try {
+    set("gains.natural_freq", rclcpp::ParameterValue(Numbers{6.0}));
+    ADD_FAILURE() << "no exception";
+  } catch (const rclcpp::exceptions::ParameterNotDeclaredException& error) {
+    EXPECT_NE(std::string(error.what()).find("'gains.natural_freq'"), std::string::npos);
+#if RCLCPP_VERSION_MAJOR >= 21  // humble's words are rclcpp's
+    EXPECT_NE(std::string(error.what()).find("did you mean 'gains.natural_frequency'?"),
+              std::string::npos);
+#endif
+  }
+}
+
+TEST_F(Refusals, NothingOfWhatTheSpawnerReadsInTheSameFile) {
+  Parameters parameters = but("type", rclcpp::ParameterValue("package/Class"));
+  parameters["fallback_controllers"] = rclcpp::ParameterValue(std::vector<std::string>{"other"});
+  parameters["async_parameters.thread_priority"] = rclcpp::ParameterValue(40);
+  EXPECT_TRUE(configure(parameters)) << log.text();
 }
 
 TEST_F(Refusals, NoGains) {

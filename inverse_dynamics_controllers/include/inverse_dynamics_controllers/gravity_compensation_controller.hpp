@@ -23,15 +23,10 @@ class ArmSource;
 /// The law GravityCompensation of inverse_dynamics_control behind ros2_control's interfaces.
 ///
 /// Real time: update(): no allocation, lock, exception or system call of its own.
-class GravityCompensationController : public controller_interface::ControllerInterface {
+class GravityCompensationController : public Strict<controller_interface::ControllerInterface> {
  public:
   GravityCompensationController();
   ~GravityCompensationController() override;
-
-  /// Takes the solver's parameters from the parameter file, in all releases; overrides where there
-  /// is something to override.
-  // NOLINTNEXTLINE(readability-identifier-naming)
-  rclcpp::NodeOptions define_custom_node_options() const { return declaringNodeOptions(); }
 
   controller_interface::return_type update(const rclcpp::Time& time,
                                            const rclcpp::Duration& period) override;

@@ -104,12 +104,27 @@ std::string robotDescriptionOf(const Controller& controller) {
   }
 }
 
-/// Declares what is in the parameter file, as humble does it: only the solver knows its parameters.
-inline rclcpp::NodeOptions declaringNodeOptions() {
-  return rclcpp::NodeOptions()
-      .allow_undeclared_parameters(true)
-      .automatically_declare_parameters_from_overrides(true);
-}
+/// A controller whose node has declared parameters alone, in all releases: no misspelt one is taken.
+template <class Base>
+class Strict : public Base {
+ public:
+  using Base::init;
+
+  // NOLINTBEGIN(readability-identifier-naming, modernize-use-override): one overrides, one doesn't
+  /// From jazzy on.
+  rclcpp::NodeOptions define_custom_node_options() const { return rclcpp::NodeOptions(); }
+
+  /// In humble, whose manager's options allow undeclared parameters; elsewhere never called.
+  controller_interface::return_type init(const std::string& controller,
+                                         const std::string& name_space,
+                                         const rclcpp::NodeOptions& options) {
+    return Base::init(controller, name_space,
+                      rclcpp::NodeOptions(options)
+                          .allow_undeclared_parameters(false)
+                          .automatically_declare_parameters_from_overrides(false));
+  }
+  // NOLINTEND(readability-identifier-naming, modernize-use-override)
+};
 
 /// An interface of a controller to the one before it, on a number that the controller keeps.
 inline hardware_interface::CommandInterface referenceInterface(const std::string& controller,
@@ -125,11 +140,7 @@ inline hardware_interface::CommandInterface referenceInterface(const std::string
 ///
 /// Of each pair of functions that take or give something else in another release one overrides;
 /// none says so, for the other one doesn't.
-class ChainableController : public controller_interface::ChainableControllerInterface {
- public:
-  // NOLINTNEXTLINE(readability-identifier-naming): the base class's name, from jazzy on
-  rclcpp::NodeOptions define_custom_node_options() const { return declaringNodeOptions(); }
-
+class ChainableController : public Strict<controller_interface::ChainableControllerInterface> {
  protected:
   /// Names of the references below the controller's; called when it is configured.
   virtual std::vector<std::string> referenceNames() const = 0;
@@ -247,11 +258,8 @@ class ExportingBroadcaster : public ChainableController {
 };
 
 /// The same without state interfaces.
-class PlainBroadcaster : public controller_interface::ControllerInterface {
+class PlainBroadcaster : public Strict<controller_interface::ControllerInterface> {
  public:
-  // NOLINTNEXTLINE(readability-identifier-naming): the base class's name, from jazzy on
-  rclcpp::NodeOptions define_custom_node_options() const { return declaringNodeOptions(); }
-
   controller_interface::return_type update(const rclcpp::Time& time,
                                            const rclcpp::Duration& period) override {
     return measure(time, period);

@@ -150,7 +150,7 @@ class ControllerFixture : public ::testing::Test {
     for (const auto& [name, value] : parameters) {
       if (value.get_type() != rclcpp::PARAMETER_NOT_SET) overrides.emplace_back(name, value);
     }
-    const rclcpp::NodeOptions options = declaringNodeOptions().parameter_overrides(overrides);
+    const rclcpp::NodeOptions options = rclcpp::NodeOptions().parameter_overrides(overrides);
 #ifdef INVERSE_DYNAMICS_CONTROLLERS_HAS_INTERFACE_PARAMS
     controller_interface::ControllerInterfaceParams params;
     params.controller_name = "under_test";
