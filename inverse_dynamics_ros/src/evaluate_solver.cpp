@@ -10,6 +10,7 @@
 
 #include <cstdio>
 #include <inverse_dynamics_ros/evaluate_solver_parameters.hpp>
+#include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <rclcpp/rclcpp.hpp>
 
 #include "interrupted.hpp"
@@ -76,6 +77,7 @@ void run(rclcpp::Node& node) {
   declareSolverParameters(node);
   const evaluate_solver::ParamListener listener(node.get_node_parameters_interface(),
                                                 node.get_logger());
+  inverse_dynamics_solver::rejectUndeclared(*node.get_node_parameters_interface());
   const evaluate_solver::Params params = listener.get_params();
   check(params);
   const rclcpp::Logger logger = node.get_logger();

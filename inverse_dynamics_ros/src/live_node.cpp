@@ -3,6 +3,7 @@
 #include "inverse_dynamics_ros/live_node.hpp"
 
 #include <inverse_dynamics_ros/live_node_parameters.hpp>
+#include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_components/register_node_macro.hpp>
 #include <sensor_msgs/msg/joint_state.hpp>
@@ -48,6 +49,11 @@ class LiveNode::Implementation {
                      {params_.max_age, params_.min_rate}),
         load_(node, listener_),
         payload_(node, params_, [this] { return load_.body(); }) {
+    auto& parameters = *node.get_node_parameters_interface();
+    inverse_dynamics_solver::rejectUndeclared(parameters);
+    suggesting_ =
+        inverse_dynamics_solver::suggestDeclared<rclcpp::exceptions::ParameterNotDeclaredException>(
+            parameters);
     diagnostics_.add("load", [this](Status& status) { load_.report(status); });
     if (params_.external_torques.enabled) {
       contact_ = std::make_unique<LiveContactTopics>(node, params_.external_torques,
@@ -261,6 +267,7 @@ class LiveNode::Implementation {
   }
 
   LiveNode& node_;
+  std::shared_ptr<void> suggesting_;  // what a misspelt parameter meant
   std::shared_ptr<live_node::ParamListener> listener_;
   live_node::Params params_;
   NodeRobot robot_;

@@ -175,6 +175,11 @@ CASES = {
         2,
         ["parameter 'ids.gravty': the solver doesn't know it: expected one of", "ids.gravity"],
     ),
+    "misspelt_cutoff": Case(
+        {"cutof": 4.0},
+        2,
+        ["parameter 'cutof': the node doesn't declare it; did you mean 'cutoff'?"],
+    ),
     "currents": Case({"effort": "current"}, 2, ["parameter 'drive_gains'", "effort means current"]),
     # refused before the recording is read
     "currents_of_nothing": Case(

@@ -112,6 +112,7 @@ def generate_test_description():
         "bad_payload": live(
             "bad_payload", plugin_name=UR10, **{"payload.inertia": [1.0, 0.0, 0.0, 1.0, 0.0, 3.0]}
         ),
+        "misspelt_cutoff": live("misspelt_cutoff", plugin_name=UR10, cutof=9.0),
         "misspelt": live(
             "misspelt", plugin_name=SOLVER, robot_description=PENDULUM, **{"ids.gravty": [0.0]}
         ),
@@ -315,6 +316,8 @@ class TestLiveNode(unittest.TestCase):
             "unknown_contacts": "none.json",
             "nameless_tip": "parameter 'ids.tip': expected the name of the link",
             "bad_payload": "parameter payload.inertia: no possible body",
+            "misspelt_cutoff": "parameter 'cutof': the node doesn't declare it; "
+            "did you mean 'cutoff'?",
             "misspelt": "parameter 'ids.gravty': the solver doesn't know it: expected one of",
         }
         for name, text in expected.items():
