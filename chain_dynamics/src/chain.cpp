@@ -183,6 +183,13 @@ std::vector<std::string> Chain::jointNames() const {
   return names;
 }
 
+std::vector<JointType> Chain::jointTypes() const {
+  std::vector<JointType> types;
+  types.reserve(joints_.size());
+  for (const Joint& joint : joints_) types.push_back(joint.type);
+  return types;
+}
+
 Matrix3<double> inertiaAboutCenter(const LinkParameters& link) {
   if (link.mass == 0) return link.inertia;
   const Matrix3<double> mc_x = skew<double>(link.first_moment);

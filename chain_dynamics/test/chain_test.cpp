@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -179,6 +180,37 @@ TEST(Chain, WarnsOfABrokenTriangleInequality) {
   EXPECT_EQ(chain.warnings()[0],
             "chain arm: link moved by joint joint2: principal moments of inertia [1, 1, 3] about "
             "the center of mass break the triangle inequality");
+}
+
+TEST(Unwrapped, IsTheShortWayOfAContinuousJointAlone) {
+  constexpr double kPi = 3.141592653589793;
+  constexpr double kTolerance = 1e-12;  // rounding of a few hundred turns
+  const auto difference = [](JointType type, double from, double to) {
+    return unwrapped(type, to, from) - from;
+  };
+  EXPECT_NEAR(difference(JointType::kContinuous, 3.141, -3.141), 2 * kPi - 6.282, kTolerance);
+  EXPECT_NEAR(difference(JointType::kContinuous, -3.141, 3.141), 6.282 - 2 * kPi, kTolerance);
+  EXPECT_NEAR(difference(JointType::kContinuous, 0.1, 0.2 + 600 * kPi), 0.1, kTolerance);
+  EXPECT_EQ(difference(JointType::kRevolute, -3.141, 3.141), 6.282);
+  EXPECT_EQ(difference(JointType::kPrismatic, -7.0, 7.0), 14.0);
+  EXPECT_EQ(unwrapped(JointType::kContinuous, 0.1, 3.2), 0.1);  // bit for bit within half a turn
+  for (const double bad : {kNan, kInfinity}) {
+    EXPECT_FALSE(std::isfinite(unwrapped(JointType::kContinuous, bad, 0.0)));
+    EXPECT_FALSE(std::isfinite(unwrapped(JointType::kContinuous, 0.0, bad)));
+  }
+}
+
+TEST(Unwrapped, OfAChainFollowsTheTypesOfItsJoints) {
+  Parts parts = soundParts();
+  parts.joints[0].type = JointType::kContinuous;
+  parts.joints[1].type = JointType::kRevolute;
+  parts.joints[2].type = JointType::kPrismatic;
+  const Chain chain("arm", parts.joints, parts.links, kGravity);
+  Eigen::Vector3d q(-3.0, -3.0, -3.0);
+  unwrap(chain.jointTypes(), Eigen::Vector3d(9.0, 9.0, 9.0), q);
+  EXPECT_NEAR(q[0], 9.566370614359172, 1e-12);  // -3 + 4 pi
+  EXPECT_EQ(q[1], -3.0);
+  EXPECT_EQ(q[2], -3.0);
 }
 
 TEST(InertiaDefect, IsNoneForAnyBody) {

@@ -34,6 +34,8 @@ void InverseDynamicsSolver::initialize(const Parameters& parameters,
     info.warnings.push_back(std::move(warning));
   }
 
+  info.joint_types.resize(info.joint_names.size(), chain_dynamics::JointType::kRevolute);
+
   // Nothing below can fail.
   info_ = std::move(info);
   batch_threads_ = configuration.batch_threads;
@@ -48,6 +50,11 @@ Index InverseDynamicsSolver::jointCount() const {
 const std::vector<std::string>& InverseDynamicsSolver::jointNames() const {
   requireInitialized("jointNames");
   return info_.joint_names;
+}
+
+const std::vector<chain_dynamics::JointType>& InverseDynamicsSolver::jointTypes() const {
+  requireInitialized("jointTypes");
+  return info_.joint_types;
 }
 
 const std::vector<std::string>& InverseDynamicsSolver::warnings() const {

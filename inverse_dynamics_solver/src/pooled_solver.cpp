@@ -22,7 +22,7 @@ auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
   auto conditions = readConditions(configuration, chain.gravity());
   auto robot = robotOf(conditions->appliedTo(*bare).chain, max_threads);
   const bool inertia_is_physical = bare->inertiaIsPhysical();
-  JointInfo info{chain.jointNames(), chain.warnings()};
+  JointInfo info{chain.jointNames(), chain.warnings(), chain.jointTypes()};
   DescriptionFriction friction = descriptionFriction(configuration, chain);
   info.warnings.insert(info.warnings.end(), friction.warnings.begin(), friction.warnings.end());
   std::vector<chain_dynamics::FrictionForm> laws;

@@ -67,6 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Fault{"", ""},  //
         Fault{"two joints of one name", "JointNamesAreDistinctAndCounted"},
+        Fault{"torques change with a turn", "ContinuousJointsAreTheSameAfterATurn"},
         Fault{"a result is not finite", "ResultsHaveTheSizesOfTheRobotAndAreFinite"},
         Fault{"an entry is not written", "ResultsByValueEqualResultsInMemoryOfTheCaller"},
         Fault{"last state of a batch is missed", "BatchEqualsSingleCalls"},

@@ -201,7 +201,8 @@ auto InverseDynamicsSolverRigidBody::keep(chain_dynamics::Model model,
                                           const Configuration& configuration, Sentences warnings)
     -> JointInfo {
   const bool inertia_is_physical = model.inertiaIsPhysical();
-  JointInfo info{model.chain.jointNames(), warningsOf(model, inertia_is_physical)};
+  JointInfo info{model.chain.jointNames(), warningsOf(model, inertia_is_physical),
+                 model.chain.jointTypes()};
   for (std::string& warning : warnings) info.warnings.push_back(std::move(warning));
   auto conditions = readConditions(configuration, model.chain.gravity());
   auto robot = std::make_unique<ReadyModel>(conditions->appliedTo(model));

@@ -18,6 +18,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -28,8 +30,31 @@
 namespace chain_dynamics {
 inline namespace v2 {
 
-/// How a joint moves. A continuous joint is a revolute one without position limits.
+/// How a joint moves. A continuous joint is a revolute one without position limits: positions that
+/// differ by whole turns are the same one, and drivers report any of them.
 enum class JointType { kRevolute, kContinuous, kPrismatic };
+
+/// The position nearest to `reference` that equals q: of a continuous joint q and whole turns, of
+/// any other q itself.
+///
+/// Every difference of positions is `unwrapped(type, q, reference) - reference`: of a continuous
+/// joint the short way, within [-pi, pi]. Where |q - reference| < pi, q is returned bit for bit.
+///
+/// @param q,reference  rad (prismatic m); what isn't finite gives a result that isn't.
+/// Real time: no allocation, lock, exception or system call. Threads: safe.
+inline double unwrapped(JointType type, double q, double reference) noexcept {
+  constexpr double kTurn = 6.283185307179586;  // rad
+  return type == JointType::kContinuous ? q - kTurn * std::round((q - reference) / kTurn) : q;
+}
+
+/// unwrapped() of n joints, in place; sizes are the caller's responsibility.
+inline void unwrap(const std::vector<JointType>& types,
+                   const Eigen::Ref<const Eigen::VectorXd>& reference,
+                   Eigen::Ref<Eigen::VectorXd> q) noexcept {
+  for (Eigen::Index j = 0; j < q.size(); ++j) {
+    q[j] = unwrapped(types[static_cast<std::size_t>(j)], q[j], reference[j]);
+  }
+}
 
 /// Limits as the robot's maker states them; what isn't stated is infinite. No algorithm reads them.
 struct JointLimits {
@@ -94,6 +119,9 @@ class Chain {
 
   /// Names from root to tip: the order of every vector and matrix of this package.
   std::vector<std::string> jointNames() const;
+
+  /// How each of them moves.
+  std::vector<JointType> jointTypes() const;
 
   /// One line for each link whose parameters no rigid body can have, and what a reader adds; empty
   /// for a sound chain.

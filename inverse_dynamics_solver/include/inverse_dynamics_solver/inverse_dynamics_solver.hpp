@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "chain_dynamics/chain.hpp"
 #include "inverse_dynamics_solver/configuration.hpp"
 #include "inverse_dynamics_solver/exceptions.hpp"
 #include "inverse_dynamics_solver/parameters.hpp"
@@ -79,6 +80,10 @@ class InverseDynamicsSolver {
 
   /// Their names, in order along the chain from root to tip: the order of all vectors.
   const std::vector<std::string>& jointNames() const;
+
+  /// How each of them moves. A driver may report a continuous joint within one turn: differences of
+  /// positions go through `chain_dynamics::unwrap(solver.jointTypes(), reference, q)`.
+  const std::vector<chain_dynamics::JointType>& jointTypes() const;
 
   /// What is odd about the robot but doesn't prevent computing, a sentence each.
   const std::vector<std::string>& warnings() const;
@@ -236,6 +241,8 @@ class InverseDynamicsSolver {
   struct JointInfo {
     std::vector<std::string> joint_names;  ///< in order along the chain
     std::vector<std::string> warnings;     ///< a sentence each
+    /// n; empty: no joint is continuous, all count as revolute
+    std::vector<chain_dynamics::JointType> joint_types = {};
   };
 
   /// Makes the solver ready for the robot that the configuration names.

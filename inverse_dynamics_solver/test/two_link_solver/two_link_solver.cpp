@@ -38,6 +38,7 @@ auto TwoLinkSolver::configure(const Configuration& configuration) -> JointInfo {
   }
   JointInfo info;
   info.joint_names = {"shoulder", fault == "two joints of one name" ? "shoulder" : "elbow"};
+  info.joint_types.assign(2, chain_dynamics::JointType::kContinuous);
 
   if (fault != "unknown parameters are refused too late") configuration.rejectOthers();
   friction_ = configuration.friction || fault == "friction can't be switched off";
@@ -89,6 +90,7 @@ void TwoLinkSolver::computeGravityVector(const ConstVectorRef& q, VectorRef g) c
   g[1] = m2 * l2 * s(q[0] + q[1]);
   g[0] = (m1 + m2) * l1 * s(q[0]) + g[1];
   if (has("gravity torques have an offset")) g[1] += 1.0;
+  if (has("torques change with a turn")) g[0] += 1e-6 * q[0];
   if (has("gravity torques have no potential")) g[1] *= 1.1;
   if (has("a result is not finite")) g[0] = std::numeric_limits<double>::infinity();
 }

@@ -26,6 +26,17 @@ TEST_P(SolverConformance, JointNamesAreDistinctAndCounted) {
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).count(""), 0U);
 }
 
+TEST_P(SolverConformance, ContinuousJointsAreTheSameAfterATurn) {
+  const std::vector<chain_dynamics::JointType>& types = solver_->jointTypes();
+  ASSERT_EQ(static_cast<Eigen::Index>(types.size()), solver_->jointCount());
+  const State x = randomState();
+  State turned = x;
+  chain_dynamics::unwrap(types, Eigen::VectorXd::Constant(x.q.size(), 10.0), turned.q);
+  const Eigen::VectorXd tau = solver_->getTorques(x.q, x.qd, x.qdd);
+  const Eigen::VectorXd again = solver_->getTorques(turned.q, turned.qd, turned.qdd);
+  EXPECT_TRUE(near(again, tau, kRounding, sizeOf(tau))) << toString(x);
+}
+
 TEST_P(SolverConformance, ResultsHaveTheSizesOfTheRobotAndAreFinite) {
   const Eigen::Index n = solver_->jointCount();
   const State x = randomState();
@@ -50,6 +61,7 @@ TEST_P(SolverConformance, UninitializedSolverRefusesEveryMethod) {
   }
   errorOf<UninitializedException>([&] { solver->jointCount(); });
   errorOf<UninitializedException>([&] { solver->jointNames(); });
+  errorOf<UninitializedException>([&] { solver->jointTypes(); });
   errorOf<UninitializedException>([&] { solver->inertiaIsPhysical(); });
   errorOf<UninitializedException>([&] { solver->getTorquesBatch(x.q, x.qd, x.qdd); });
 }
