@@ -56,7 +56,7 @@ Status ComputedTorque::update(const JointState& state, const Reference& referenc
   }
   return output(state, period, tau, [&](VectorRef desired) {
     // a = qdd_ref + Kp e + Kd ed,  tau = H a + C qd + g + f
-    acceleration_ = reference.qdd + gains_.Kp.cwiseProduct(reference.q - state.q) +
+    acceleration_ = reference.qdd + gains_.Kp.cwiseProduct(positionError(reference.q, state.q)) +
                     gains_.Kd.cwiseProduct(reference.qd - state.qd);
     model().torques(state.q, state.qd, acceleration_, desired);
     addFriction(state.q, state.qd, reference.qd, desired);

@@ -16,7 +16,7 @@ ControlLaw::ControlLaw(std::shared_ptr<const InverseDynamicsSolver> solver,
       damping_(options.damping) {
   requireJointNumbers(law + ": damping", damping_, Range::kNotNegative, "N m s/rad",
                       model_.jointNames());
-  for (OwnedVector* vector : {&desired_, &f_, &gravity_, &gravity_candidate_}) {
+  for (OwnedVector* vector : {&desired_, &f_, &error_, &gravity_, &gravity_candidate_}) {
     *vector = Eigen::VectorXd::Zero(model_.jointCount());
   }
 }
@@ -25,6 +25,14 @@ Status ControlLaw::hold(const JointState& state, double period, VectorRef tau) n
   const Status status = check(state, tau);
   const Status limited = refuse(status, state, period, tau);
   return status == Status::kOk ? limited : status;
+}
+
+const OwnedVector& ControlLaw::positionError(const ConstVectorRef& q_ref,
+                                             const ConstVectorRef& q) noexcept {
+  error_ = q_ref;
+  model_.unwrap(q, error_);
+  error_ -= q;
+  return error_;
 }
 
 bool ControlLaw::setDamping(const ConstVectorRef& damping) noexcept {

@@ -40,7 +40,7 @@ ExternalTorqueEstimator::ExternalTorqueEstimator(
       band_(options.friction_band),
       velocity_(options.velocity),
       longest_period_(options.longest_period),
-      tracker_(model_.jointCount(), options.tracking) {
+      tracker_(model_.jointCount(), options.tracking, model_.jointTypes()) {
   requireJointNumbers(name + ": gain", gain_, Range::kRate, "1/s", model_.jointNames());
   requireNumber(name + ": longest_period", longest_period_, Range::kPositive, "s");
   if (velocity_ == VelocitySource::kPositions) {
@@ -135,6 +135,7 @@ EstimateStatus ExternalTorqueEstimator::advance(const JointState& state,
 void ExternalTorqueEstimator::track(const JointState& state, double period) noexcept {
   if (velocity_ == VelocitySource::kMeasured) {
     q_ = state.q;
+    model_.unwrap(q0_, q_);
     qd_ = state.qd;
     return;
   }

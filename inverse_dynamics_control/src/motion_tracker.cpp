@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 namespace inverse_dynamics_control {
 inline namespace v2 {
@@ -20,7 +22,10 @@ double stepResponse(double time, double k) noexcept {
 
 }  // namespace
 
-MotionTracker::MotionTracker(Eigen::Index joints, double bandwidth) : bandwidth_(bandwidth) {
+MotionTracker::MotionTracker(Eigen::Index joints, double bandwidth,
+                             std::vector<chain_dynamics::JointType> types)
+    : bandwidth_(bandwidth), types_(std::move(types)) {
+  types_.resize(static_cast<std::size_t>(joints), chain_dynamics::JointType::kRevolute);
   for (OwnedVector* vector : {&q_, &qd_, &qdd_, &dx_, &dv_, &push_, &filtered_}) {
     vector->setZero(joints);
   }
@@ -45,20 +50,22 @@ void MotionTracker::start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept {
 void MotionTracker::update(const Eigen::Ref<const Eigen::VectorXd>& q, double period) noexcept {
   if (period != period_) chooseGains(period);
   const double T = period;
-  if (!moving_) {
-    qd_ = (q - q_) / T;
-    q_ = q;
-    moving_ = true;
-    return;
-  }
   for (Eigen::Index j = 0; j < q_.size(); ++j) {
     // predict, then correct by the position error
     const double q_predicted = q_[j] + T * (qd_[j] + 0.5 * T * qdd_[j]);
-    const double error = q[j] - q_predicted;
+    const auto type = types_[static_cast<std::size_t>(j)];
+    const double next = chain_dynamics::unwrapped(type, q[j], q_predicted);
+    const double error = next - q_predicted;
+    if (!moving_) {
+      q_[j] = next;
+      qd_[j] = error / T;
+      continue;
+    }
     q_[j] = q_predicted + g_ * error;
     qd_[j] += T * qdd_[j] + h_ / T * error;
     qdd_[j] += k_ / (T * T) * error;
   }
+  moving_ = true;
 }
 
 const OwnedVector& MotionTracker::filter(const Eigen::Ref<const Eigen::VectorXd>& torques,

@@ -34,7 +34,7 @@ Status PdGravityCompensation::update(const JointState& state, const Reference& r
   }
   return output(state, period, tau, [&](VectorRef desired) {
     model().gravity(state.q, desired);
-    desired += gains_.Kp.cwiseProduct(reference.q - state.q) +
+    desired += gains_.Kp.cwiseProduct(positionError(reference.q, state.q)) +
                gains_.Kd.cwiseProduct(reference.qd - state.qd);
     addFriction(state.q, state.qd, reference.qd, desired);
   });

@@ -2,6 +2,7 @@
 #include "inverse_dynamics_control/reference_guard.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <limits>
 #include <utility>
@@ -20,15 +21,20 @@ struct Fault {
   Eigen::Index joint = -1;
 };
 
-Fault faultOf(const Reference& desired, const ReferenceLimits& limits) noexcept {
+Fault faultOf(const Reference& desired, const ReferenceLimits& limits,
+              const std::vector<chain_dynamics::JointType>& types) noexcept {
   const Eigen::Index n = limits.velocity.size();
   if (desired.q.size() != n || desired.qd.size() != n || desired.qdd.size() != n) {
     return {StopReason::kWrongSize, -1};
   }
   for (Eigen::Index j = 0; j < n; ++j) {
-    const double q = desired.q[j], qd = desired.qd[j];
+    double q = desired.q[j];
+    const double qd = desired.qd[j], middle = 0.5 * (limits.lower[j] + limits.upper[j]);
     if (!std::isfinite(q) || !std::isfinite(qd) || !std::isfinite(desired.qdd[j])) {
       return {StopReason::kNotFinite, j};
+    }
+    if (std::isfinite(middle)) {
+      q = chain_dynamics::unwrapped(types[static_cast<std::size_t>(j)], q, middle);
     }
     if (q < limits.lower[j] - kRounding || q > limits.upper[j] + kRounding) {
       return {StopReason::kPosition, j};
@@ -67,8 +73,10 @@ const char* text(StopReason reason) noexcept {
 
 ReferenceGuard::ReferenceGuard(ReferenceLimits limits,
                                const Eigen::Ref<const Eigen::VectorXd>& deceleration,
-                               const std::vector<std::string>& joint_names)
+                               const std::vector<std::string>& joint_names,
+                               std::vector<chain_dynamics::JointType> joint_types)
     : limits_(std::move(limits)),
+      types_(std::move(joint_types)),
       safe_stop_(deceleration, joint_names),
       followed_(deceleration.size()) {
   const std::string where = "reference guard: ";
@@ -81,6 +89,7 @@ ReferenceGuard::ReferenceGuard(ReferenceLimits limits,
   const Eigen::VectorXd width = limits_.upper - limits_.lower;
   requireJointNumbers(where + "upper minus lower position limit", width, Range::kPositiveOrAbsent,
                       "rad", joint_names);
+  types_.resize(joint_names.size(), chain_dynamics::JointType::kRevolute);
 }
 
 void ReferenceGuard::start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept {
@@ -94,7 +103,7 @@ void ReferenceGuard::start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept 
 
 const Reference& ReferenceGuard::next(const Reference& desired, double period) noexcept {
   if (!stopped()) {
-    const Fault fault = faultOf(desired, limits_);
+    const Fault fault = faultOf(desired, limits_, types_);
     if (fault.reason == StopReason::kNone) {
       followed_.q = desired.q;
       followed_.qd = desired.qd;

@@ -74,11 +74,11 @@ class Pendulum : public InverseDynamicsSolver {
 
 /// Two bars in a vertical plane, the second one beyond the first, with rotor inertia: every term
 /// couples the joints.
-inline chain_dynamics::Chain twoBars() {
+inline chain_dynamics::Chain twoBars(
+    chain_dynamics::JointType type = chain_dynamics::JointType::kRevolute) {
   using chain_dynamics::Joint;
-  using chain_dynamics::JointType;
   using chain_dynamics::LinkParameters;
-  Joint shoulder{"shoulder", JointType::kRevolute}, elbow{"elbow", JointType::kRevolute};
+  Joint shoulder{"shoulder", type}, elbow{"elbow", type};
   elbow.placement.p = {0.7, 0.0, 0.0};
   elbow.rotor_inertia = 0.05;
   const auto bar = [](double mass, double center, double inertia) {
@@ -101,7 +101,7 @@ class ChainSolver : public InverseDynamicsSolver {
 
  protected:
   JointInfo configure(const inverse_dynamics_solver::Configuration&) override {
-    return {chain_.jointNames(), {}};
+    return {chain_.jointNames(), {}, chain_.jointTypes()};
   }
   void computeInertiaMatrix(const ConstVectorRef& q,
                             inverse_dynamics_solver::MatrixRef H) const override {

@@ -5,7 +5,7 @@
 ///     ComputedTorque law(solver, Gains::uniform(6, 20.0, 1.0), options);   // 20 rad/s, critical
 ///     const Status status = law.update(state, reference, period, tau);
 ///
-/// With e = q_ref - q the law
+/// With e = q_ref - q (the short way of continuous joints) the law
 ///
 ///     tau = H(q) (qdd_ref + Kp e + Kd ed) + C(q, qd) qd + g(q) + f
 ///

@@ -78,6 +78,12 @@ class ControlLaw {
   /// @return false, and the damping is as it was, where the constructor would throw.
   bool setDamping(const ConstVectorRef& damping) noexcept;
 
+  /// `q_ref - q`, n, until the next call; the short way of continuous joints, whose positions may be
+  /// within one turn or unbounded. All laws feed back this error.
+  ///
+  /// @param q_ref,q  n each; rad (prismatic m).
+  const OwnedVector& positionError(const ConstVectorRef& q_ref, const ConstVectorRef& q) noexcept;
+
   /// Whether the last output of each joint was cut to its effort limit; after refusals too.
   const OutputStage::Joints& saturated() const noexcept { return output_.saturated(); }
 
@@ -129,7 +135,7 @@ class ControlLaw {
   FrictionCompensation friction_;
   OutputStage output_;
   OwnedVector damping_;
-  OwnedVector desired_, f_;                  // scratch
+  OwnedVector desired_, f_, error_;          // scratch
   OwnedVector gravity_, gravity_candidate_;  // last known; scratch
 };
 

@@ -14,6 +14,9 @@
 /// with w the wrench that the tip exerts **on its surroundings** [external_wrench.hpp of
 /// inverse_dynamics_solver]. A hand that pushes the robot gives the opposite sign.
 ///
+/// A continuous joint may turn on and on, reported within one turn or unbounded: as long as it turns
+/// by less than half a turn from sample to sample, the estimates are the same.
+///
 /// An estimate follows the external torque of its joint with the time constant 1 / gain, in which it
 /// rises to 1 - 1/e of a step: exactly with measured velocities, as a first-order filter; within 2 %
 /// with velocities from positions, for gains up to 0.3 tracking and periods up to 2 / tracking. An

@@ -36,7 +36,13 @@ class ModelTerms {
 
   Eigen::Index jointCount() const noexcept { return H_.rows(); }
   const std::vector<std::string>& jointNames() const { return solver_->jointNames(); }
+  const std::vector<chain_dynamics::JointType>& jointTypes() const { return solver_->jointTypes(); }
   bool inertiaIsPhysical() const { return solver_->inertiaIsPhysical(); }
+
+  /// Adds whole turns to q where a joint is continuous, so that it is nearest to the reference.
+  void unwrap(const ConstVectorRef& reference, VectorRef q) const noexcept {
+    chain_dynamics::unwrap(jointTypes(), reference, q);
+  }
 
   /// `H(q) a + C(q, qd) qd + g(q)`, without the terms that are compensated.
   ///

@@ -2,7 +2,7 @@
 /// @file
 /// Velocities from the positions of encoders, and torques that are delayed like them.
 ///
-///     MotionTracker tracker(n, 200.0);              // rad/s
+///     MotionTracker tracker(n, 200.0, solver->jointTypes());   // rad/s
 ///     tracker.start(q);
 ///     tracker.update(q, period);                    // in each cycle
 ///     tracker.qd(), tracker.filter(torques, period);
@@ -22,6 +22,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chain_dynamics/chain.hpp>
+#include <vector>
 
 #include "inverse_dynamics_control/signals.hpp"
 
@@ -34,7 +36,10 @@ inline namespace v2 {
 class MotionTracker {
  public:
   /// @param bandwidth  p, > 0; rad/s.
-  MotionTracker(Eigen::Index joints, double bandwidth);
+  /// @param types      n: a continuous joint may be reported within one turn, its tracked position
+  ///                   goes on beyond the seam; empty: no joint is continuous.
+  MotionTracker(Eigen::Index joints, double bandwidth,
+                std::vector<chain_dynamics::JointType> types = {});
 
   /// How long after start() the velocity of a joint that was moving is off by more than 0.3 % [s].
   double settlingTime() const noexcept { return 10.0 / bandwidth_; }
@@ -75,6 +80,7 @@ class MotionTracker {
   void chooseGains(double period) noexcept;
 
   double bandwidth_;
+  std::vector<chain_dynamics::JointType> types_;
   double period_ = 0.0, g_ = 0.0, h_ = 0.0, k_ = 0.0;  // the gains belong to this period
   bool moving_ = false, pushed_ = false;               // whether there was an update(), a filter()
   OwnedVector q_, qd_, qdd_;                           // tracked

@@ -5,7 +5,7 @@
 ///     PdGravityCompensation law(solver, {stiffness, damping}, options);
 ///     const Status status = law.update(state, reference, period, tau);
 ///
-/// With e = q_ref - q the law
+/// With e = q_ref - q (the short way of continuous joints) the law
 ///
 ///     tau = g(q) + Kp e + Kd ed + f
 ///

@@ -2,7 +2,7 @@
 /// @file
 /// Which reference a law follows: the desired one while it is sound, else a stop that lasts.
 ///
-///     ReferenceGuard guard(limits, deceleration, solver->jointNames());
+///     ReferenceGuard guard(limits, deceleration, solver->jointNames(), solver->jointTypes());
 ///     guard.start(state.q);                                       // when the loop begins
 ///     const Reference& reference = guard.next(desired, period);    // in each cycle
 ///     if (guard.stopped()) report(text(guard.reason()));
@@ -14,6 +14,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chain_dynamics/chain.hpp>
 #include <string>
 #include <vector>
 
@@ -54,9 +55,12 @@ class ReferenceGuard {
  public:
   /// @param deceleration  of the stop, n, finite, > 0; rad/s^2 (prismatic m/s^2).
   /// @param joint_names   n of them, for the text of errors.
+  /// @param joint_types   n: position limits of continuous joints hold for any whole turns of the
+  ///                      reference; empty: no joint is continuous.
   /// Throws inverse_dynamics_solver::InvalidParameterValueException: wrong size or value.
   ReferenceGuard(ReferenceLimits limits, const Eigen::Ref<const Eigen::VectorXd>& deceleration,
-                 const std::vector<std::string>& joint_names);
+                 const std::vector<std::string>& joint_names,
+                 std::vector<chain_dynamics::JointType> joint_types = {});
 
   /// Rest at q, n finite numbers, until the first call of next(); forgets an earlier stop.
   void start(const Eigen::Ref<const Eigen::VectorXd>& q) noexcept;
@@ -84,6 +88,7 @@ class ReferenceGuard {
 
  private:
   ReferenceLimits limits_;
+  std::vector<chain_dynamics::JointType> types_;
   SafeStop safe_stop_;
   Reference followed_;
   StopReason reason_ = StopReason::kNone;
