@@ -38,7 +38,8 @@ class ControlLoop {
         timer_(logEverySecond(setup.node, report_)),
         carried_(setup),
         damping_(changingDamping(setup)),
-        publisher_(setup.node, setup.arm.joints, setup.parameters.state_publish_rate) {}
+        publisher_(setup.node, setup.arm.joints, setup.arm.solver->jointTypes(),
+                   setup.parameters.state_publish_rate) {}
 
   const ArmInterfaces& interfaces() const noexcept { return interfaces_; }
   UpdateReport& report() noexcept { return *report_; }

@@ -65,7 +65,8 @@ class FeedForwardFollower : public Follower {
       return law_.update(state, at_state_, effort_, dt, tau);
     }
     const Reference& reference = *input().motion();
-    effort_ += P.cwiseProduct(reference.q - state.q) + D.cwiseProduct(reference.qd - state.qd);
+    effort_ += P.cwiseProduct(law_.positionError(reference.q, state.q)) +
+               D.cwiseProduct(reference.qd - state.qd);
     return law_.update(state, reference, effort_, dt, tau);
   }
 

@@ -17,8 +17,9 @@ ReferenceInput referenceInput(const Setup& setup, const ReferenceLayout& layout,
       jointNumbers("limits.position_lower", own.position_lower, joints, urdf.lower),
       jointNumbers("limits.position_upper", own.position_upper, joints, urdf.upper),
       jointNumbers("limits.velocity", own.velocity, joints, urdf.velocity)};
-  const ReferenceGuard guard(
-      limits, jointNumbers("stop_deceleration", params.stop_deceleration, joints), joints);
+  const ReferenceGuard guard(limits,
+                             jointNumbers("stop_deceleration", params.stop_deceleration, joints),
+                             joints, setup.arm.solver->jointTypes());
   return {setup.node, layout, joints, guard, params.reference_timeout};
 }
 

@@ -30,7 +30,8 @@ struct Cycle {
   Eigen::VectorXd tau;
 };
 
-void write(const Cycle& cycle, JointTrajectoryControllerState& message) {
+void write(const Cycle& cycle, const std::vector<chain_dynamics::JointType>& types,
+           JointTrajectoryControllerState& message) {
   message.header.stamp = rclcpp::Time(cycle.nanoseconds);
   message.feedback.positions = numbers(cycle.state.q);
   message.feedback.velocities = numbers(cycle.state.qd);
@@ -39,7 +40,9 @@ void write(const Cycle& cycle, JointTrajectoryControllerState& message) {
   message.reference.positions = numbers(cycle.reference.q);
   message.reference.velocities = numbers(cycle.reference.qd);
   message.reference.accelerations = numbers(cycle.reference.qdd);
-  message.error.positions = numbers(cycle.reference.q - cycle.state.q);
+  Eigen::VectorXd nearest = cycle.reference.q;
+  chain_dynamics::unwrap(types, cycle.state.q, nearest);
+  message.error.positions = numbers(nearest - cycle.state.q);
   message.error.velocities = numbers(cycle.reference.qd - cycle.state.qd);
 }
 
@@ -47,24 +50,26 @@ void write(const Cycle& cycle, JointTrajectoryControllerState& message) {
 
 struct StatePublisher::Outbox {
   LatestValue<Cycle> newest;
+  std::vector<chain_dynamics::JointType> types;
   JointTrajectoryControllerState message;
   rclcpp::Publisher<JointTrajectoryControllerState>::SharedPtr publisher;
 
   void publish() {
     const Cycle* const cycle = newest.take();
     if (cycle == nullptr || publisher->get_subscription_count() == 0) return;
-    write(*cycle, message);
+    write(*cycle, types, message);
     publisher->publish(message);
   }
 };
 
 StatePublisher::StatePublisher(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
-                               const std::vector<std::string>& joints, double rate) {
+                               const std::vector<std::string>& joints,
+                               const std::vector<chain_dynamics::JointType>& types, double rate) {
   if (!(rate > 0)) return;
   JointTrajectoryControllerState message;
   message.joint_names = joints;
   outbox_.reset(new Outbox{LatestValue<Cycle>(Cycle(static_cast<Eigen::Index>(joints.size()))),
-                           std::move(message),
+                           types, std::move(message),
                            node->create_publisher<JointTrajectoryControllerState>(
                                "~/controller_state", rclcpp::SystemDefaultsQoS())});
   timer_ = node->create_wall_timer(std::chrono::duration<double>(1.0 / rate),

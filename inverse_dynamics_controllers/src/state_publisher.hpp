@@ -2,13 +2,14 @@
 /// @file
 /// What a controller does, on its topic ~/controller_state.
 ///
-///     StatePublisher publisher(node, joints, 50.0);
+///     StatePublisher publisher(node, joints, solver->jointTypes(), 50.0);
 ///     publisher.note(time, state, &reference, tau);      // in each cycle
 ///
 /// The message is a joint_trajectory_controller's, so that the same tools show it: reference,
 /// feedback, error, and efforts as output.
 #pragma once
 
+#include <chain_dynamics/chain.hpp>
 #include <inverse_dynamics_control/signals.hpp>
 #include <memory>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
@@ -20,9 +21,11 @@ namespace inverse_dynamics_controllers {
 /// Hands the newest cycle to another thread without a lock, which publishes it.
 class StatePublisher {
  public:
-  /// @param rate  messages per second; 0: none, and no topic.
+  /// @param types  n; errors of continuous joints take the short way.
+  /// @param rate   messages per second; 0: none, and no topic.
   StatePublisher(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
-                 const std::vector<std::string>& joints, double rate);
+                 const std::vector<std::string>& joints,
+                 const std::vector<chain_dynamics::JointType>& types, double rate);
 
   /// A cycle's numbers; n each. Real time: no allocation, lock, exception or system call.
   ///

@@ -25,16 +25,22 @@ LivePayload::LivePayload(
     const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver,
     const LivePayloadOptions& options)
     : n_(solver->jointCount()),
+      types_(solver->jointTypes()),
       estimator_(solver, optionsOf(options)),
       filter_(3 * n_, options.cutoff, options.longest_gap),
-      samples_(3 * n_) {}
+      samples_(Eigen::VectorXd::Zero(3 * n_)) {}
 
 void LivePayload::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
                          const Eigen::VectorXd& effort) {
-  samples_ << q, qd, effort;
-  if (!samples_.allFinite()) {
+  if (!q.allFinite() || !qd.allFinite() || !effort.allFinite()) {
     return;
   }
+  // A continuous joint goes on where it is reported within one turn.
+  for (Eigen::Index j = 0; j < n_; ++j) {
+    samples_[j] = chain_dynamics::unwrapped(types_[static_cast<std::size_t>(j)], q[j], samples_[j]);
+  }
+  samples_.segment(n_, n_) = qd;
+  samples_.tail(n_) = effort;
   const OnlineDerivative::Step step = filter_.update(stamp, samples_);
   if (step == OnlineDerivative::Step::kWentBack) {
     estimator_.restart();

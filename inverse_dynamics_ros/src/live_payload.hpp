@@ -10,11 +10,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chain_dynamics/chain.hpp>
 #include <cstdint>
 #include <inverse_dynamics_evaluation/online_derivative.hpp>
 #include <inverse_dynamics_identification/payload_estimator.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
+#include <vector>
 
 namespace inverse_dynamics_ros {
 
@@ -51,6 +53,7 @@ class LivePayload {
 
  private:
   Eigen::Index n_;
+  std::vector<chain_dynamics::JointType> types_;
   inverse_dynamics_identification::PayloadEstimator estimator_;
   inverse_dynamics_evaluation::OnlineDerivative filter_;  // of q, qd, effort
   Eigen::VectorXd samples_;                               // 3 n
