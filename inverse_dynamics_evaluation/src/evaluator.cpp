@@ -13,6 +13,7 @@
 #include "figures.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "spooled_samples.hpp"
+#include "unwrapper.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -110,17 +111,21 @@ class ObservedSource : public JointStateSource {
   double read_ = 0;
 };
 
-// Another stream, whose progress is told and whose time is taken.
+// Another stream with unwrapped positions, whose progress is told and whose time is taken.
 class ObservedSamples : public SampleStream {
  public:
-  ObservedSamples(SampleStream& samples, double expected, Progress& progress)
-      : samples_(samples), progress_(progress), expected_(std::max(expected, 1.0)) {}
+  ObservedSamples(SampleStream& samples, Unwrapper unwrapper, double expected, Progress& progress)
+      : samples_(samples),
+        unwrapper_(std::move(unwrapper)),
+        progress_(progress),
+        expected_(std::max(expected, 1.0)) {}
 
   bool next(SampleBlock& block) override {
     Stopwatch watch;
     const bool found = samples_.next(block);
     seconds_ += watch.lap();
     if (found) {
+      unwrapper_.unwrap(block);
       given_ += static_cast<double>(block.size());
       progress_.reach(given_ / expected_);
     } else {
@@ -133,6 +138,7 @@ class ObservedSamples : public SampleStream {
   }
   void rewind() override {
     samples_.rewind();
+    unwrapper_.rewind();
     given_ = 0;
     ended_ = false;
     progress_.begin();
@@ -142,11 +148,14 @@ class ObservedSamples : public SampleStream {
   std::string where() const override { return samples_.where(); }
   std::string frameId() const override { return samples_.frameId(); }
 
+  const Unwrapper& unwrapper() const { return unwrapper_; }
+
   /// How long reading took.
   double seconds() const { return seconds_; }
 
  private:
   SampleStream& samples_;
+  Unwrapper unwrapper_;
   Progress& progress_;
   double expected_;   // samples
   double given_ = 0;  // in this pass
@@ -192,7 +201,7 @@ class Evaluator {
         options_(options),
         stated_(statedEffort(options.effort)),
         progress_(progress),
-        samples_(samples, expected, progress) {}
+        samples_(samples, Unwrapper(solver.jointTypes()), expected, progress) {}
 
   /// @param gather  whether the result gets what there is of each sample.
   Evaluation evaluate(const TakeSamples& take, bool gather) {
@@ -302,6 +311,7 @@ class Evaluator {
     const bool all_zero = plan_.census.efforts && plan_.census.all_zero;
     add(effortNotes(result.effort, options_.effort, all_zero, driveGainsOf(solver_)));
     add(result.accelerations.findings);
+    add(samples_.unwrapper().findings(result.joint_names));
   }
 
   const InverseDynamicsSolver& solver_;
