@@ -54,6 +54,13 @@ class Solver:
         """Names of the joints, from root to tip: the order of all arrays."""
 
     @property
+    def joint_types(self) -> tuple[str, ...]:
+        """revolute, continuous or prismatic, of each joint.
+
+        Positions of a continuous joint that differ by whole turns are the same.
+        """
+
+    @property
     def warnings(self) -> tuple[str, ...]:
         """Warnings about the robot that don't prevent computing, one sentence each."""
 

@@ -172,6 +172,17 @@ class Solver {
   }
 
   /// (3, n, 2): q, qd, qdd; joint; least and greatest. None where it is unknown.
+  py::tuple jointTypes() const {
+    const auto name = [](chain_dynamics::JointType type) {
+      return type == chain_dynamics::JointType::kPrismatic    ? "prismatic"
+             : type == chain_dynamics::JointType::kContinuous ? "continuous"
+                                                              : "revolute";
+    };
+    py::list names;
+    for (const auto type : get().jointTypes()) names.append(name(type));
+    return names;
+  }
+
   py::object seenRanges() const {
     const auto* band = dynamic_cast<const ids::TorqueDeviation*>(solver_.get());
     if (band == nullptr || band->seenRanges().empty()) return py::none();
@@ -343,6 +354,9 @@ void bindSolver(py::module_& module) {
       .def_property_readonly(
           "joint_names", [](const Solver& s) { return py::tuple(py::cast(s.get().jointNames())); },
           "Names of the joints, from root to tip: the order of all arrays.")
+      .def_property_readonly("joint_types", &Solver::jointTypes,
+                             "revolute, continuous or prismatic, of each joint. Positions of a\n"
+                             "continuous joint that differ by whole turns are the same.")
       .def_property_readonly(
           "warnings", [](const Solver& s) { return py::tuple(py::cast(s.get().warnings())); },
           "Warnings about the robot that don't prevent computing, one sentence each.")

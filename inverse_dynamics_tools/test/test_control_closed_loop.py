@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from simulation_arms import CHAINS, simulated, urdf_of
+from simulation_arms import CHAINS, pendulum, simulated, urdf_of
 
 from inverse_dynamics import Solver
 from inverse_dynamics.control import (
@@ -17,6 +17,8 @@ from inverse_dynamics.control import (
     Gains,
     GravityCompensation,
     LawOptions,
+    PdGains,
+    PdGravityCompensation,
     SafeStop,
     Status,
     damping_for,
@@ -27,6 +29,8 @@ from inverse_dynamics.simulation.physics import Command, Response, drive
 from inverse_dynamics.simulation.trajectory import WaypointTrajectory
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from inverse_dynamics.base.arrays import Floats
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
@@ -210,3 +214,44 @@ def test_feed_forward_makes_a_weak_pd_follow(name: str) -> None:
     _, pd_error = follow_fast_motion(robot, name, pd)
     assert np.abs(error).max() < 0.02
     assert 10 * np.abs(error).max() < np.abs(pd_error).max()
+
+
+@pytest.mark.parametrize("law", ["computed torque", "PD"])
+def test_a_joint_turns_ten_times_whatever_its_driver_reports(law: str) -> None:
+    """Position and reference within a turn, at up to 20 rad/s: the motion is that of unbounded ones."""
+    text = pendulum(kind="continuous", limit='<limit velocity="30" effort="1000"/>')
+    robot, solver = SimulatedRobot.from_urdf(text), Solver(RIGID_BODY, text)
+    options = LawOptions(effort_limit=robot.chain.effort, damping=np.array([5.0]))
+    times = np.array([0.0, 5.0, 6.0])
+    motion = WaypointTrajectory.through(
+        robot.chain.joint_names, times, np.array([[0.0], [20 * np.pi], [20 * np.pi]])
+    )
+    ticks = 6 * RATE
+    references = list(zip(*motion.at(np.arange(ticks) * PERIOD), strict=True))
+
+    def turn(
+        report: Callable[[Floats], Floats], report_reference: Callable[[Floats], Floats]
+    ) -> Response:
+        computed = ComputedTorque(solver, Gains.of(np.full(1, 20.0), np.ones(1)), options)
+        pd = PdGravityCompensation(solver, PdGains(np.full(1, 400.0), np.full(1, 40.0)), options)
+
+        def command(k: int, q: Floats, qd: Floats) -> Floats:
+            q_ref, qd_ref, qdd_ref = references[k]
+            q, q_ref = report(q), report_reference(q_ref)
+            if law == "PD":
+                tau, status = pd.update(q, qd, q_ref, qd_ref, PERIOD)
+            else:
+                tau, status = computed.update(q, qd, q_ref, qd_ref, qdd_ref, PERIOD)
+            assert status == Status.OK
+            return tau
+
+        return drive(robot, command, np.zeros(1), np.zeros(1), rate=RATE, ticks=ticks)
+
+    reports = (lambda q: q, lambda q: (q + np.pi) % (2 * np.pi) - np.pi, lambda q: q % (2 * np.pi))
+    expected = turn(reports[0], reports[0])
+    assert expected.q[-1] == pytest.approx(20 * np.pi, abs=0.01)
+    assert expected.qd.max() > 20.0
+    for report, report_reference in zip(reports, (*reports[1:], reports[0]), strict=True):
+        found = turn(report, report_reference)
+        np.testing.assert_allclose(found.q, expected.q, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(found.effort, expected.effort, rtol=0, atol=1e-6)

@@ -192,7 +192,9 @@ def evaluate(
     result = replace(result, notes=(*notes, *result.notes), seconds={**result.seconds, **seconds})
     states = (result.log.q, result.log.qd, result.qdd)
     kept = result.samples.kept
-    outside = outside_of_seen(arm.solver.seen, states, kept, arm.joint_names, arm.units)
+    outside = outside_of_seen(
+        arm.solver.seen, states, kept, arm.joint_names, arm.units, arm.solver.joint_types
+    )
     result = replace(result, notes=(*result.notes, *filter(None, [outside])))
     cause = diagnosis_of(robot, arm.solver, arm.description, result.log, result.qdd, result.effort)
     if cause is None:
@@ -291,7 +293,10 @@ def _compare(
         progress=lambda share: progress("evaluating", round(share * expected), expected),
     )
     arrays = series.arrays()
-    log = motion if isinstance(motion, JointLog) else motion.log(found.recording, arrays)
+    if isinstance(motion, JointLog):
+        log = replace(motion, q=arrays["q"])  # continuous joints go on beyond a driver's seam
+    else:
+        log = motion.log(found.recording, arrays)
     return Evaluation(
         robot=replace(robot, joints=arm.recorded_names, topic=log.topic, effort=found.meaning),
         bag=bag,

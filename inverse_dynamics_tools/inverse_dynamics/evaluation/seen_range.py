@@ -25,20 +25,27 @@ def outside_of_seen(
     kept: Mask,
     joints: Sequence[str],
     units: Sequence[str],
+    types: Sequence[str] = (),
 ) -> str:
     """A sentence on joints that leave the range of identification; "": none does, or it isn't known.
 
     seen: (3, n, 2), as Solver.seen. motion: q, qd, qdd, (N, n) each; kept: (N,) marks the valid samples.
-    units: of the joints' torques.
+    units: of the joints' torques. types: as Solver.joint_types; none: no joint is continuous.
     """
     if seen is None or not kept.any():
         return ""
+    continuous = np.array([kind == "continuous" for kind in types or [""] * len(joints)])
     outside = []
     where = kept[:, None]
     for name, values, ranges, beyond in zip(_NAMES, motion, seen, _BEYOND, strict=True):
         least = values.min(axis=0, where=where, initial=np.inf)
         greatest = values.max(axis=0, where=where, initial=-np.inf)
         low, high = ranges.T
+        if name == "q":  # a continuous joint was seen on another turn, or all around
+            turn = 2 * np.pi * np.round((low + high - least - greatest) / (4 * np.pi)) * continuous
+            around = continuous & (high - low >= 2 * np.pi)
+            least = np.where(around, low, least + turn)
+            greatest = np.where(around, high, greatest + turn)
         margin = beyond * (high - low)
         for j in map(int, np.flatnonzero((least < low - margin) | (greatest > high + margin))):
             unit = ("m" if units[j] == "N" else "rad") + ("", "/s", "/s²")[_NAMES.index(name)]

@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Joints that turn on and on: whether positions are within one turn or unbounded, results are the same."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from simulation_arms import joint, link, robot
+
+from inverse_dynamics import Solver, evaluate, identify
+from inverse_dynamics.data.bags import write_joint_logs
+from inverse_dynamics.data.joint_log import JointLog
+from inverse_dynamics.evaluation.contacts import find_contacts
+from inverse_dynamics.evaluation.seen_range import outside_of_seen
+from inverse_dynamics.identification.payload import estimate_payload
+from inverse_dynamics.robot.robots import robot_of_description
+
+RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
+KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
+JOINTS = ("yaw", "pitch", "roll")
+TURN = 2 * np.pi
+SAME = 1e-9  # rounding of a few dozen turns, in what is compared
+LOAD = {"mass": 1.5, "center_of_mass": [0.1, 0.02, -0.03]}
+
+
+def description(kind: str = "continuous") -> str:
+    limits = 'lower="-7" upper="7" ' if kind == "revolute" else ""
+    options = {"kind": kind, "limit": f'<limit {limits}velocity="30" effort="200"/>'}
+    return robot(
+        link("base"),
+        link("s1", 1.5, "0.05 0 0.1"),
+        link("s2", 1.1, "0.1 0.02 -0.05"),
+        link("s3", 0.7, "0.2 0 -0.1"),
+        joint("yaw", "base", "s1", axis="0 0 1", **options),
+        joint("pitch", "s1", "s2", axis="0 1 0", xyz="0.1 0 0.1", **options),
+        joint("roll", "s2", "s3", axis="1 0 0.3", xyz="0.3 0 -0.1", **options),
+    )
+
+
+@pytest.fixture(scope="module")
+def urdf(tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("arm") / "turning.urdf"
+    path.write_text(description())
+    return path
+
+
+REPORTS = {
+    "unbounded": lambda q: q,
+    "within_pi": lambda q: (q + np.pi) % TURN - np.pi,
+    "within_turn": lambda q: q % TURN,
+}
+
+
+def motion(seconds: float, speed: float = 5.0) -> tuple[np.ndarray, ...]:
+    """Time, q, qd, qdd at 250 Hz: yaw turns on with a mean speed [rad/s], all swing about seams."""
+    time = np.arange(0, seconds, 1 / 250)
+    turning = np.array([speed, 0.0, 0.0])
+    q = time[:, None] * turning + np.pi * np.array([1, 1, -1])
+    qd, qdd = np.tile(turning, (len(q), 1)), np.zeros_like(q)
+    for k, (a, b) in enumerate([(0.5, 0.3), (0.3, -0.4), (-0.2, 0.2)], 1):
+        w = TURN * 0.13 * k * np.array([1.0, 1.07, 1.15])
+        s, c = np.sin(w * time[:, None]), np.cos(w * time[:, None])
+        q, qd, qdd = q + a * s + b * c, qd + w * (a * c - b * s), qdd - w**2 * (a * s + b * c)
+    return time, q, qd, qdd
+
+
+def log_of(report: str, effort: np.ndarray, *how: float) -> JointLog:
+    time, q, qd, _ = motion(*how)
+    stamps = 1_000_000_000 + np.round(1e9 * time).astype(np.int64)
+    return JointLog(JOINTS, stamps, stamps, REPORTS[report](q), qd, effort)
+
+
+def write_csv(path: Path, log: JointLog) -> Path:
+    fields = ("position", "velocity", "effort")
+    head = ",".join(["time", *(f"{field}.{name}" for field in fields for name in JOINTS)])
+    numbers = np.column_stack([log.time, log.q, log.qd, log.effort])
+    np.savetxt(path, numbers, "%.17g", ",", header=head, comments="")
+    return path
+
+
+def recordings(directory: Path, effort: np.ndarray, *how: float) -> dict[str, Path]:
+    """The same motion under each report."""
+    return {
+        report: write_csv(directory / f"{report}.csv", log_of(report, effort, *how))
+        for report in REPORTS
+    }
+
+
+def torques(urdf: Path, *how: float) -> np.ndarray:
+    return Solver(RIGID_BODY, urdf=urdf.read_text()).torques(*motion(*how)[1:])
+
+
+def noise(count: int) -> np.ndarray:
+    return 0.02 * np.random.default_rng(1).normal(size=(count, 3))
+
+
+def test_python_tells_how_joints_move(urdf):
+    assert Solver(RIGID_BODY, urdf=urdf.read_text()).joint_types == ("continuous",) * 3
+    assert Solver(KDL, urdf=urdf.read_text()).joint_types == ("continuous",) * 3
+    types = Solver(KDL, urdf=description("revolute").replace('"revolute"', '"prismatic"', 1))
+    assert types.joint_types == ("prismatic", "revolute", "revolute")
+
+
+@pytest.mark.parametrize("storage", ["csv", "bag"])
+def test_evaluations_are_the_same(urdf, tmp_path, storage):
+    effort = torques(urdf, 12.0) + noise(3000)
+    found = {}
+    for report in REPORTS:
+        log = log_of(report, effort, 12.0)
+        path = tmp_path / report
+        if storage == "csv":
+            path = write_csv(tmp_path / f"{report}.csv", log)
+        else:
+            write_joint_logs(path, {log.topic: log})
+        found[report] = evaluate(path, robot_of_description(urdf))
+    expected = found["unbounded"]
+    assert expected.mean_rmse < 0.03
+    assert not any("turn" in note for note in expected.notes)
+    for other in found.values():
+        assert other.accelerations.cutoff == pytest.approx(expected.accelerations.cutoff, rel=SAME)
+        assert other.accelerations.time_base == expected.accelerations.time_base
+        assert other.notes == expected.notes
+        np.testing.assert_allclose(other.qdd, expected.qdd, rtol=0, atol=SAME)
+        np.testing.assert_allclose(other.computed, expected.computed, rtol=0, atol=SAME)
+        turns = (other.log.q - expected.log.q) / TURN
+        np.testing.assert_allclose(turns, np.round(turns[0]) + 0 * turns, rtol=0, atol=SAME)
+
+
+def test_identified_models_are_the_same(urdf, tmp_path):
+    how = (24.0, 0.0)  # friction of a joint shows where it reverses
+    _, _, qd, _ = motion(*how)
+    friction = qd * [0.5, 0.4, 0.1] + np.tanh(qd / 0.02) * [0.6, 0.8, 0.2]
+    effort = torques(urdf, *how) + friction + noise(6000)
+    paths = recordings(tmp_path, effort, *how)
+    found = {r: identify([path], robot_of_description(urdf)) for r, path in paths.items()}
+    expected = found["unbounded"].held_out["identified"]
+    assert np.max(expected) < 0.05
+    for other in found.values():
+        np.testing.assert_allclose(other.held_out["identified"], expected, rtol=1e-6)
+        assert other.law == found["unbounded"].law
+
+
+def test_payloads_are_the_same(urdf, tmp_path):
+    solver = Solver(RIGID_BODY, urdf=urdf.read_text())
+    solver.set_payload("load", **LOAD)
+    effort = solver.torques(*motion(12.0)[1:]) + noise(3000)
+    paths = recordings(tmp_path, effort, 12.0)
+    found = [estimate_payload(p, robot_of_description(urdf)).estimate for p in paths.values()]
+    assert found[0].mass == pytest.approx(LOAD["mass"], abs=0.02)
+    for other in found[1:]:
+        assert other.mass == pytest.approx(found[0].mass, abs=SAME)
+        np.testing.assert_allclose(other.center_of_mass, found[0].center_of_mass, atol=SAME)
+
+
+def test_contacts_are_the_same(urdf, tmp_path):
+    effort = torques(urdf, 24.0) + noise(6000)
+    effort[4500:4600, 1] += 5.0  # a push
+    paths = recordings(tmp_path, effort, 24.0)
+    found = [
+        find_contacts(path, robot_of_description(urdf), quiet=(0.0, 17.0))
+        for path in paths.values()
+    ]
+    assert [contact.joint for contact in found[0].contacts] == ["pitch"]
+    for other in found[1:]:
+        np.testing.assert_allclose(other.torques, found[0].torques, rtol=0, atol=SAME)
+        assert len(other.contacts) == 1
+
+
+def test_a_revolute_joint_that_jumps_by_a_turn_is_reported(urdf, tmp_path):
+    fixed = tmp_path / "revolute.urdf"
+    fixed.write_text(description("revolute"))
+    paths = recordings(tmp_path, torques(urdf, 12.0), 12.0)
+    arm = robot_of_description(fixed)
+    unbounded = evaluate(paths["unbounded"], arm)
+    assert not any("whole turn" in note for note in unbounded.notes)
+    result = evaluate(paths["within_pi"], arm)
+    notes = [note for note in result.notes if "jump by a whole turn" in note]
+    _, q, _, _ = motion(12.0)
+    jumps = np.abs(np.diff(REPORTS["within_pi"](q), axis=0)) > np.pi
+    assert len(notes) == np.count_nonzero(jumps.any(axis=0))
+    first, count = np.flatnonzero(jumps[:, 0])[0] + 2, np.count_nonzero(jumps[:, 0])
+    assert (
+        f"positions of yaw jump by a whole turn {count} times, first in sample {first}" in notes[0]
+    )
+    np.testing.assert_array_equal(result.log.q, REPORTS["within_pi"](q))
+
+
+def test_positions_in_degrees_stay_as_they_are(urdf, tmp_path):
+    degrees = np.degrees(motion(12.0)[1]) % 360
+    log = log_of("unbounded", torques(urdf, 12.0), 12.0)
+    log.q[:] = degrees
+    result = evaluate(write_csv(tmp_path / "degrees.csv", log), robot_of_description(urdf))
+    np.testing.assert_array_equal(result.log.q, degrees)
+
+
+def test_the_range_of_identification_holds_for_any_turn():
+    seen = np.array([[[-1.0, 3.0]], [[-1.0, 1.0]], [[-1.0, 1.0]]])
+    zero, kept = np.zeros((2, 1)), np.ones(2, dtype=bool)
+
+    def outside(low: float, high: float, kind: str) -> str:
+        q = np.array([[low], [high]])
+        return outside_of_seen(seen, (q, zero, zero), kept, ["j"], ["N m"], [kind])
+
+    assert outside(TURN - 0.9, TURN + 2.9, "continuous") == ""
+    assert "j q" in outside(TURN - 0.9, TURN + 2.9, "revolute")
+    assert "j q -2.78" in outside(3.5, 6.2, "continuous")
+    seen[0] = [0.0, 7.0]  # all around
+    assert outside(20.0, 40.0, "continuous") == ""
