@@ -8,6 +8,7 @@
 #include <inverse_dynamics_solver/conformance/allocation_guard.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <limits>
+#include <regex>
 
 #include "robot_parameters.hpp"
 
@@ -28,6 +29,14 @@ std::shared_ptr<InverseDynamicsSolver> ur10() {
   const NodeRobot robot(
       inverse_dynamics_solver::Parameters{{"robot", std::string("ur10_simulated")}});
   return robot.makeSolver(robot.description());
+}
+
+// The same arm without limits of position.
+std::shared_ptr<InverseDynamicsSolver> turningUr10() {
+  const NodeRobot robot(
+      inverse_dynamics_solver::Parameters{{"robot", std::string("ur10_simulated")}});
+  return robot.makeSolver(
+      std::regex_replace(robot.description(), std::regex("\"revolute\""), "\"continuous\""));
 }
 
 RigidBody load(double mass) {
@@ -86,6 +95,27 @@ TEST_F(LivePayloadTest, IsTheLoadInSpiteOfTheFilter) {
   run(payload, 8.0);
   ASSERT_EQ(payload.estimate(found), PayloadStatus::kOk);
   expectTheLoad(found);
+}
+
+TEST_F(LivePayloadTest, PositionsWithinOneTurnGiveTheSame) {
+  constexpr double kTurn = 6.283185307179586;
+  LivePayload unbounded(turningUr10(), options()), within(turningUr10(), options());
+  for (std::int64_t stamp = 0; stamp < 8'000'000'000; stamp += kPeriod) {
+    moveTo(stamp);
+    VectorXd reported = q;
+    for (Eigen::Index j = 0; j < 6; ++j) {  // seams in the middle of the motion
+      const double seam = 0.4 * static_cast<double>(j) - 1.0;
+      reported[j] -= kTurn * std::floor((q[j] - seam) / kTurn);
+    }
+    unbounded.update(stamp, q, qd, effort);
+    within.update(stamp, reported, qd, effort);
+  }
+  PayloadEstimate other(6);
+  ASSERT_EQ(unbounded.estimate(found), PayloadStatus::kOk);
+  ASSERT_EQ(within.estimate(other), PayloadStatus::kOk);
+  expectTheLoad(found);
+  EXPECT_NEAR(other.mass, found.mass, 1e-9);
+  EXPECT_LT((other.center_of_mass - found.center_of_mass).norm(), 1e-9);
 }
 
 TEST_F(LivePayloadTest, HoldsWhatIsCarriedAlready) {

@@ -49,7 +49,8 @@ class OnlineDerivative {
   /// @throws EvaluationError: out of range.
   OnlineDerivative(Eigen::Index size, double cutoff, double longest_gap = 0.5);
 
-  /// Filters a sample. @param stamp  ns. @param u  n, finite.
+  /// Filters a sample. @param stamp  ns. @param u  n, finite; positions of continuous joints go on
+  /// beyond a seam: chain_dynamics::unwrap().
   Step update(std::int64_t stamp, const Eigen::Ref<const Eigen::VectorXd>& u);
 
   /// The next sample is the first one.
