@@ -16,11 +16,15 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kSegmentSeconds = 20.0;
-constexpr double kEndSeconds = 0.05;  // over which the value at an end is averaged
+// a motion of a tenth of a hertz and the noise above it need lines this narrow
+constexpr double kSegmentSeconds = 60.0;
+constexpr double kBandsPerOctave = 24.0;  // narrow against the slope of the low-pass
 // a central difference hardly sees frequencies near half the sampling frequency: no more than this
 // is divided out
 constexpr double kLeastDifferenceGain = 0.05;
+// of the root mean square by which rates leave the range of the velocities around them: what noise
+// doesn't reach
+constexpr double kJump = 10.0;
 
 using Complex = std::complex<double>;
 
@@ -32,61 +36,38 @@ Eigen::ArrayXd hann(Index length) {
   return 0.5 - 0.5 * angle.cos();
 }
 
-// x times the window, less the straight line of least squares under it.
-void applyWindow(const Eigen::ArrayXd& window, Eigen::ArrayXd& x) {
-  const auto count = static_cast<double>(x.size());
-  const double sum = window.sum();
-  if (!(sum > 0)) {
-    x.setZero();
-    return;
-  }
-  Eigen::ArrayXd k = Eigen::ArrayXd::LinSpaced(x.size(), 0.0, count - 1.0);
-  k -= (window * k).sum() / sum;
-  const double mean = (window * x).sum() / sum;
-  const double squares = (window * k.square()).sum();
-  const double slope = squares > 0 ? (window * k * x).sum() / squares : 0.0;
-  x = window * (x - mean - slope * k);
-}
-
-// Value at the first of some samples: that of the straight line of least squares through them.
-double valueAtFirst(const Eigen::ArrayXd& x) {
-  const auto count = static_cast<double>(x.size());
-  const Eigen::ArrayXd k =
-      Eigen::ArrayXd::LinSpaced(x.size(), -(count - 1.0) / 2.0, (count - 1.0) / 2.0);
-  return x.mean() + (k * x).sum() / k.square().sum() * k[0];
-}
-
-// One joint of a stretch: qd and the derivative of q, both ends continued by their reflection.
-struct Signal {
-  Eigen::ArrayXd velocity;
-  Eigen::ArrayXd position_rate;
-};
-
-// `x` with `count` samples more at each end: 2 x(end) - x(mirrored).
-Eigen::ArrayXd reflected(const Eigen::ArrayXd& x, Index count, Index end) {
-  const double first = 2.0 * valueAtFirst(x.head(end));
-  const double last = 2.0 * valueAtFirst(x.tail(end).reverse());
-  Eigen::ArrayXd result(x.size() + 2 * count);
-  result << first - x.segment(1, count).reverse(), x,
-      last - x.segment(x.size() - 1 - count, count).reverse();
-  return result;
-}
-
 // Derivative of q: central differences, one-sided at the ends.
-Eigen::ArrayXd positionRate(const Eigen::ArrayXd& q, double sampling_frequency) {
+//
+// Where q jumps and qd doesn't (a seam of 2 pi, a driver that starts anew), the rate before lasts:
+// between two samples it can't leave the range of the velocities around them by more than its width
+// and noise.
+Eigen::ArrayXd positionRate(const Eigen::ArrayXd& q, const Eigen::ArrayXd& qd,
+                            double sampling_frequency) {
   const Index last = q.size() - 1;
-  Eigen::ArrayXd rate(q.size());
-  rate.segment(1, last - 1) = 0.5 * (q.tail(last - 1) - q.head(last - 1));
-  rate[0] = q[1] - q[0];
-  rate[last] = q[last] - q[last - 1];
-  return sampling_frequency * rate;
+  Eigen::ArrayXd rate = sampling_frequency * (q.tail(last) - q.head(last));
+  Eigen::ArrayXd beyond(last);
+  for (Index k = 0; k < last; ++k) {
+    const Index first = std::max<Index>(k - 1, 0);
+    const auto around = qd.segment(first, std::min(k + 2, last) - first + 1);
+    const double least = around.minCoeff(), greatest = around.maxCoeff();
+    beyond[k] = std::max({2.0 * least - greatest - rate[k], rate[k] - 2.0 * greatest + least, 0.0});
+  }
+  const double limit = kJump * std::sqrt(beyond.square().mean());
+  for (Index k = 2; k + 1 < last; ++k) {
+    if (beyond[k] > limit) {  // samples between two stamps share a jump
+      rate.segment(k - 1, 3).setConstant(rate[k - 2]);
+    }
+  }
+  Eigen::ArrayXd central(q.size());
+  central << rate[0], 0.5 * (rate.tail(last - 1) + rate.head(last - 1)), rate[last - 1];
+  return central;
 }
 
 // Where the segments of a signal begin; the last one ends where the signal ends.
 std::vector<Index> segmentBegins(Index samples, Index length) {
   const Index spare = samples - length;
   const Index half = std::max<Index>(length / 2, 1);
-  const Index steps = std::max<Index>((spare + half - 1) / half, 1);
+  const Index steps = (spare + half - 1) / half;
   std::vector<Index> begins = {0};
   for (Index s = 1; s <= steps; ++s) {
     begins.push_back(s * spare / steps);
@@ -99,39 +80,64 @@ std::vector<Index> segmentBegins(Index samples, Index length) {
 // Adds the periodograms of segments, one at a time.
 class SpectrumSums::Sums {
  public:
-  Sums(VelocitySpectra& spectra, Index padded)
-      : spectra_(spectra), signal_(static_cast<std::size_t>(padded), Complex(0.0, 0.0)) {}
+  Sums(VelocitySpectra& spectra, Index padded, double sampling_frequency, Index joints)
+      : spectra_(spectra), signal_(static_cast<std::size_t>(padded), Complex(0.0, 0.0)) {
+    divideIntoBands(padded / 2, sampling_frequency / static_cast<double>(padded));
+    spectra_.total = Eigen::ArrayXXd::Zero(spectra_.count.size(), joints);
+    spectra_.rate = spectra_.common = spectra_.total;
+  }
 
   // Both signals are real, so one transform of `qd + i dq` holds both: qd is its
   // conjugate-symmetric part, i dq the rest.
-  void add(const Signal& signal, Index j, Index begin, const Eigen::ArrayXd& window) {
-    const Index length = window.size();
-    Eigen::ArrayXd velocity = signal.velocity.segment(begin, length);
-    Eigen::ArrayXd position_rate = signal.position_rate.segment(begin, length);
-    applyWindow(window, velocity);
-    applyWindow(window, position_rate);
+  void add(const Eigen::ArrayXd& velocity, const Eigen::ArrayXd& rate, Index j) {
     std::fill(signal_.begin(), signal_.end(), Complex(0.0, 0.0));
-    for (Index k = 0; k < length; ++k) {
-      signal_[static_cast<std::size_t>(k)] = Complex(velocity[k], position_rate[k]);
+    for (Index k = 0; k < velocity.size(); ++k) {
+      signal_[static_cast<std::size_t>(k)] = Complex(velocity[k], rate[k]);
     }
     fft_.fwd(transform_, signal_);
 
     const std::size_t size = transform_.size();
-    for (Index i = 0; i < spectra_.frequency.size(); ++i) {
-      const auto k = static_cast<std::size_t>(i);
+    for (std::size_t k = 1; k < size / 2; ++k) {
       const Complex here = transform_[k];
-      const Complex mirrored = std::conj(transform_[(size - k) % size]);
+      const Complex mirrored = std::conj(transform_[size - k]);
+      // a central difference passes frequency w with the gain sin(w) / w
+      const double w = 2.0 * kPi * static_cast<double>(k) / static_cast<double>(size);
+      const double gain = std::max(std::sin(w) / w, kLeastDifferenceGain);
       const Complex velocity_part = 0.5 * (here + mirrored);
-      const Complex position_part = Complex(0.0, -0.5) * (here - mirrored);
-      spectra_.total(i, j) += std::norm(velocity_part);
-      spectra_.rate(i, j) += std::norm(position_part);
-      spectra_.common(i, j) += (velocity_part * std::conj(position_part)).real();
+      const Complex position_part = Complex(0.0, -0.5 / gain) * (here - mirrored);
+      const Index band = bands_[k];
+      spectra_.total(band, j) += std::norm(velocity_part);
+      spectra_.rate(band, j) += std::norm(position_part);
+      spectra_.common(band, j) += (velocity_part * std::conj(position_part)).real();
     }
   }
 
  private:
+  // Frequencies 1 to `half` - 1 of a transform, `step` Hz apart.
+  void divideIntoBands(Index half, double step) {
+    std::vector<double> counts, squares;
+    bands_.assign(static_cast<std::size_t>(half), 0);
+    double end = 1.0;
+    for (Index k = 1; k < half; ++k) {
+      if (static_cast<double>(k) >= end) {
+        end = std::max(static_cast<double>(k) * std::exp2(1.0 / kBandsPerOctave),
+                       static_cast<double>(k + 1));
+        counts.push_back(0.0);
+        squares.push_back(0.0);
+      }
+      counts.back() += 1.0;
+      squares.back() += std::pow(step * static_cast<double>(k), 2);
+      bands_[static_cast<std::size_t>(k)] = static_cast<Index>(counts.size()) - 1;
+    }
+    const auto size = static_cast<Index>(counts.size());
+    spectra_.count = Eigen::Map<const Eigen::ArrayXd>(counts.data(), size);
+    spectra_.frequency =
+        (Eigen::Map<const Eigen::ArrayXd>(squares.data(), size) / spectra_.count).sqrt();
+  }
+
   VelocitySpectra& spectra_;
   Eigen::FFT<double> fft_;
+  std::vector<Index> bands_;  // of each frequency
   std::vector<Complex> signal_;
   std::vector<Complex> transform_;
 };
@@ -142,12 +148,7 @@ SpectrumSums::SpectrumSums(Index joints, Index longest, double sampling_frequenc
          length_ < longest) {
     length_ *= 2;
   }
-  const Index frequencies = length_ / 2 + 1;
-  spectra_.frequency = Eigen::ArrayXd::LinSpaced(frequencies, 0.0, sampling_frequency / 2.0);
-  spectra_.total = Eigen::ArrayXXd::Zero(frequencies, joints);
-  spectra_.rate = Eigen::ArrayXXd::Zero(frequencies, joints);
-  spectra_.common = Eigen::ArrayXXd::Zero(frequencies, joints);
-  sums_ = std::make_unique<Sums>(spectra_, length_);
+  sums_ = std::make_unique<Sums>(spectra_, length_, sampling_frequency, joints);
 }
 
 SpectrumSums::~SpectrumSums() = default;
@@ -161,21 +162,15 @@ void SpectrumSums::add(const Stretch& stretch) {
   moving_ += weight.sum();
   samples_ += static_cast<double>(samples);
   const Index length = std::min(length_, samples);
-  const Index more = length / 2 - 1;
-  const Index end = std::clamp<Index>(std::llround(kEndSeconds * sampling_frequency_), 3,
-                                      std::max<Index>(samples / 4, 3));
   const Eigen::ArrayXd shape = hann(length);
-  Eigen::ArrayXd mirrored(samples + 2 * more);
-  mirrored << weight.segment(1, more).reverse(), weight,
-      weight.segment(samples - 1 - more, more).reverse();
-  const std::vector<Index> begins = segmentBegins(mirrored.size(), length);
+  const std::vector<Index> begins = segmentBegins(samples, length);
   for (Index j = 0; j < stretch.qd.rows(); ++j) {
-    const Signal signal = {
-        reflected(stretch.qd.row(j).transpose().array(), more, end),
-        reflected(positionRate(stretch.q.row(j).transpose().array(), sampling_frequency_), more,
-                  end)};
+    const Eigen::ArrayXd velocity = stretch.qd.row(j).transpose();
+    const Eigen::ArrayXd rate =
+        positionRate(stretch.q.row(j).transpose(), velocity, sampling_frequency_);
     for (const Index begin : begins) {
-      sums_->add(signal, j, begin, shape * mirrored.segment(begin, length));
+      const Eigen::ArrayXd window = shape * weight.segment(begin, length);
+      sums_->add(window * velocity.segment(begin, length), window * rate.segment(begin, length), j);
     }
   }
 }
@@ -183,14 +178,6 @@ void SpectrumSums::add(const Stretch& stretch) {
 VelocitySpectra SpectrumSums::spectra() const {
   VelocitySpectra spectra = spectra_;
   spectra.moving = samples_ > 0 ? moving_ / samples_ : 0.0;
-  // a central difference passes frequency w with the gain sin(w) / w
-  const Index last = spectra.frequency.size() - 1;
-  for (Index i = 1; i <= last; ++i) {
-    const double w = kPi * static_cast<double>(i) / static_cast<double>(last);
-    const double gain = std::max(std::sin(w) / w, kLeastDifferenceGain);
-    spectra.rate.row(i) /= gain * gain;
-    spectra.common.row(i) /= gain;
-  }
   return spectra;
 }
 

@@ -20,24 +20,23 @@ inline namespace v2 {
 /// Samples without which a stretch says nothing about its spectrum.
 constexpr Eigen::Index kLeastStretch = 16;
 
-/// Summed periodograms of all joints; F frequencies from 0 to half the sampling frequency.
+/// Summed periodograms of all joints in B bands, each a twenty-fourth of an octave wide or one
+/// frequency.
 ///
 /// The common scale is arbitrary. [Welch 1967, doi 10.1109/TAU.1967.1161901]
 struct VelocitySpectra {
-  Eigen::ArrayXd frequency;  ///< F; Hz
-  Eigen::ArrayXXd total;     ///< F x n; power of qd
-  Eigen::ArrayXXd rate;      ///< F x n; power of the derivative of q
-  Eigen::ArrayXXd common;  ///< F x n; real part of the cross-spectrum of qd and the derivative of q
+  Eigen::ArrayXd frequency;  ///< B; Hz, root mean square of the frequencies in a band
+  Eigen::ArrayXd count;      ///< B; frequencies in a band
+  Eigen::ArrayXXd total;     ///< B x n; power of qd
+  Eigen::ArrayXXd rate;      ///< B x n; power of the derivative of q
+  Eigen::ArrayXXd common;  ///< B x n; real part of the cross-spectrum of qd and the derivative of q
   double moving = 0;       ///< share of the samples in motion
 };
 
 /// Sums over segments of samples, gathered stretch by stretch.
 ///
-/// Hann window times activity(), linear trend removed, half overlap. A segment has a power of two
-/// of samples, 10 to 20 s; a shorter stretch is one segment, padded with zeros.
-///
-/// Every sample of every stretch counts: each end is continued by its point reflection over half a
-/// segment, since a window that falls to zero there would hide how the motion begins and ends.
+/// Hann window times activity(), half overlap. A segment has a power of two of samples, 30 to 60 s;
+/// a shorter stretch is one segment, padded with zeros.
 class SpectrumSums {
  public:
   /// @param joints   n.
@@ -57,7 +56,7 @@ class SpectrumSums {
   double sampling_frequency_;
   Eigen::Index length_;  // of a segment
   double samples_ = 0, moving_ = 0;
-  VelocitySpectra spectra_;  // before its gains are made good
+  VelocitySpectra spectra_;
   std::unique_ptr<Sums> sums_;
 };
 

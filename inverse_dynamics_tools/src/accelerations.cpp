@@ -137,8 +137,6 @@ void bindAccelerations(py::module_& module) {
 
   py::class_<CutoffChoice>(module, "CutoffChoice", "How a cut-off was chosen [Hz].")
       .def_readonly("cutoff", &CutoffChoice::cutoff)
-      .def_readonly("agreement", &CutoffChoice::agreement)
-      .def_readonly("plateau", &CutoffChoice::plateau)
       .def_readonly("lowest", &CutoffChoice::lowest)
       .def_readonly("highest", &CutoffChoice::highest)
       .def_readonly("moving", &CutoffChoice::moving);

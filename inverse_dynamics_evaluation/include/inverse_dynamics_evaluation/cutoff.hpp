@@ -14,30 +14,35 @@
 /// motion lost plus noise let through. The best cut-off is where E is least (Wiener's criterion).
 /// Noise is weighed by f^2, so a cut-off ten times too high costs thirty times the error.
 ///
-/// How S and N are told apart. Two looks are taken at the data, and the lower cut-off wins:
+/// The method is ordinary cross-validation of one measurement by another: the derivative of q is a
+/// second measurement of the same velocity. Three spectra are measured: T of qd, R of the derivative
+/// of q, and the real part C of their cross-spectrum. With s for the true velocity,
 ///
-/// 1. **Agreement.** The derivative of q is a second measurement of the same velocity. What both
-///    have in common, the real part of their cross-spectrum, is motion: S. What the spectrum of qd
-///    has beyond that is its noise: N. Nothing is assumed of the colour of that noise. Where a
-///    driver made qd from q, they share the noise of q: they are coherent at frequencies where the
-///    derivative of q is mostly noise. That noise, often the counts of an encoder, is white in q.
-///    Its level is seen at high frequencies, and its share of the derivative's power at f, which is
-///    proportional to f^2, is taken to be N's share of the power of qd, up to the frequency from
-///    which it is most of it. Then E above gives the cut-off.
-/// 2. **Plateau.** With rising frequency motion fades fast and noise slowly. For each f_c above
-///    most of the motion, N is taken to be as strong below f_c as right above it, from 1.25 to
-///    2.5 f_c, where the spectrum of qd must not fall faster than behind a filter of first order; S
-///    is the rest. The cut-off is the lowest one at which E has more of noise than of motion. This
-///    look needs no q; noise that rises with frequency misleads it, downwards.
+///     E(f_c) = sum (2 pi f)^2 [ h^2 T - 2 h C_s ] + constant,
+///
+/// where C_s is the cross-spectrum of qd and s. C estimates C_s without bias, whatever the colour of
+/// the noise of qd, as long as q has other noise. Since T and C hold all of the recording, so does
+/// E: a stop, an impact or a joint that slips has the weight that it has in the error.
+///
+/// Drivers often make qd from q; then both share the noise of q. That noise, often the counts of an
+/// encoder, is white in q: its power in R is its level times f^2, and the level is what R has in the
+/// upper half of the frequencies. Up to the last frequency f_q at which noise is less than a quarter
+/// of R, q says what is motion. If qd is coherent with q in the octave above f_q, it has the noise of
+/// q: its share in R is taken away from C, and nothing is motion above f_q. Otherwise C is motion up
+/// to an octave above f_q, and nothing beyond, where it is mostly the product of two noises.
+///
+/// Where q jumps and qd doesn't (a seam of 2 pi, a driver that starts anew), the jump is left out.
 ///
 /// Rests are left out. In 20 minutes with one motion of half a second, noise of all 20 minutes
-/// would outweigh what the filter takes from the motion. So each look sees the samples in motion
+/// would outweigh what the filter takes from the motion. So the spectra see the samples in motion
 /// and half a second around them: those where q changes steadily, by more than steps of an encoder,
 /// and qd agrees.
 ///
-/// One cut-off serves all joints: each joint's spectra are divided by its own level of qd above
-/// f_s / 4 and added. All of this is sums over segments of at most 20 s, gathered in one pass.
-/// docs/accuracy.md has the comparison with other methods.
+/// One cut-off serves all joints: E is added over them. All of this is sums over segments of at most
+/// 60 s, gathered in one pass. docs/accuracy.md has the comparison with the best fixed cut-off.
+///
+/// [Wiener 1949, Extrapolation, interpolation, and smoothing of stationary time series; Stone 1974,
+/// doi 10.1111/j.2517-6161.1974.tb00994.x; Bendat and Piersol, Random data, on cross-spectra]
 
 #pragma once
 
@@ -49,14 +54,12 @@
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
-/// What was chosen, and what each look said; Hz.
+/// What was chosen, and between which bounds; Hz.
 struct CutoffChoice {
-  double cutoff = 0;     ///< the lower of the two
-  double agreement = 0;  ///< where E is least, noise being what q doesn't confirm or shares
-  double plateau = 0;    ///< where noise as strong as right above it outweighs the motion
-  double lowest = 0;     ///< least that could be chosen: two periods in the recording, or 0.25 Hz
-  double highest = 0;    ///< greatest that could be chosen: 0.4 of the sampling frequency
-  double moving = 0;  ///< share of the samples in motion, 0 to 1; the cut-off is chosen from them
+  double cutoff = 0;   ///< where E is least
+  double lowest = 0;   ///< least that could be chosen: two periods in the recording, or 0.25 Hz
+  double highest = 0;  ///< greatest that could be chosen: 0.4 of the sampling frequency
+  double moving = 0;   ///< share of the samples in motion, 0 to 1; the cut-off is chosen from them
 };
 
 /// A stretch of equidistant samples.
