@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,9 +22,25 @@ namespace {
 
 using Link = RobotDescription::Link;
 using Type = RobotDescription::JointType;
-using Path = std::vector<std::size_t>;  // joints
+using Joints = std::vector<std::size_t>;
 
 constexpr std::size_t kNone = RobotDescription::kNone;
+
+/// A joint on the way from root to tip, passed from its parent link to its child, or up.
+struct Step {
+  std::size_t joint = kNone;
+  bool up = false;
+};
+using Path = std::vector<Step>;
+
+/// Gravity where none is given, in the frame of the chain's root [m/s^2].
+const Eigen::Vector3d kDown(0, 0, -9.81);
+
+/// [rad] Angles written as 3.14 and 1.57 are off by less; it changes gravity torques by 1 %.
+constexpr double kUpright = 0.01;
+
+/// To four decimals, without a negative zero.
+double rounded(double value) { return std::round(value * 1e4) / 1e4 + 0.0; }
 
 /// Parameters of a link in its frame, without attached bodies.
 LinkParameters parameters(const Link& link) {
@@ -65,28 +82,31 @@ std::size_t linkNamed(const RobotDescription& robot, const std::string& name,
                    (known.size() > kShown ? "nearest names: " : "links: ") + joined(nearest));
 }
 
-/// The joints from root to tip; nothing if tip isn't below root.
-std::optional<Path> findPath(const RobotDescription& robot, std::size_t root, std::size_t tip) {
-  Path path;
-  for (std::size_t link = tip; link != root; link = robot.joints[path.back()].parent) {
-    if (robot.links[link].parent_joint == kNone) {
-      return std::nullopt;
-    }
-    path.push_back(robot.links[link].parent_joint);
+/// The joints between the root of the robot and a link, the link's own first.
+Joints jointsAbove(const RobotDescription& robot, std::size_t link) {
+  Joints above;
+  for (; robot.links[link].parent_joint != kNone; link = robot.joints[above.back()].parent) {
+    above.push_back(robot.links[link].parent_joint);
   }
-  std::reverse(path.begin(), path.end());
-  return path;
+  return above;
 }
 
+/// Up from root to the first link that is above both, then down to tip.
 Path pathBetween(const RobotDescription& robot, std::size_t root, std::size_t tip) {
-  if (const auto path = findPath(robot, root, tip)) {
-    return *path;
+  Joints up = jointsAbove(robot, root);
+  Joints down = jointsAbove(robot, tip);
+  while (!up.empty() && !down.empty() && up.back() == down.back()) {
+    up.pop_back();
+    down.pop_back();
   }
-  throw ModelError(where(robot), "tip", "a link below root '" + robot.links[root].name + "'",
-                   "'" + robot.links[tip].name + "'",
-                   findPath(robot, tip, root)
-                       ? "swap root and tip"
-                       : "choose a root nearer to '" + robot.links[robot.root].name + "'");
+  Path path;
+  for (const std::size_t j : up) {
+    path.push_back({j, true});
+  }
+  for (auto j = down.rbegin(); j != down.rend(); ++j) {
+    path.push_back({*j, false});
+  }
+  return path;
 }
 
 /// A link with what is between it and the root.
@@ -116,18 +136,17 @@ std::vector<Reach> leavesBelow(const RobotDescription& robot, std::size_t root) 
   return leaves;
 }
 
-/// The joints from root to the one leaf that all movable joints lead to.
-Path pathToLeaf(const RobotDescription& robot, std::size_t root) {
+/// The one leaf below root that all movable joints lead to.
+std::size_t leafBelow(const RobotDescription& robot, std::size_t root) {
   const std::vector<Reach> leaves = leavesBelow(robot, root);
   const auto farther = [](const Reach& a, const Reach& b) {
     return std::make_pair(a.movable, a.joints) < std::make_pair(b.movable, b.joints);
   };
   const Reach& tip = *std::max_element(leaves.begin(), leaves.end(), farther);
-  Path path = pathBetween(robot, root, tip.link);
 
   // leaves moved by joints that don't lead to this tip
   std::vector<bool> on_path(robot.joints.size(), false);
-  for (const std::size_t j : path) {
+  for (const std::size_t j : jointsAbove(robot, tip.link)) {
     on_path[j] = true;
   }
   const auto described = [&robot](const Reach& leaf) {
@@ -143,7 +162,7 @@ Path pathToLeaf(const RobotDescription& robot, std::size_t root) {
     throw ModelError(where(robot), "tip", "one leaf below '" + robot.links[root].name + "'",
                      described(tip) + others, "name one of them as tip");
   }
-  return path;
+  return tip.link;
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -154,8 +173,8 @@ class LockedJoints {
  public:
   LockedJoints(const RobotDescription& robot, const UrdfOptions& options, const Path& path)
       : robot_(robot), on_path_(robot.joints.size(), false), used_(on_path_) {
-    for (const std::size_t j : path) {
-      on_path_[j] = true;
+    for (const Step& step : path) {
+      on_path_[step.joint] = true;
     }
     given_.resize(robot.joints.size());
     for (std::size_t j = 0; j < given_.size() && options.locked_position; ++j) {
@@ -209,7 +228,7 @@ class LockedJoints {
  private:
   /// The position of a joint, or the one that it has by following others.
   double position(std::size_t j) {
-    Path followers;
+    Joints followers;
     std::size_t source = j;
     while (!position_[source] && robot_.joints[source].mimic) {
       followers.push_back(source);
@@ -261,17 +280,29 @@ class LockedJoints {
 /// Makes joints and links of a chain from the URDF joints on its path.
 class Builder {
  public:
-  Builder(const RobotDescription& robot, const UrdfOptions& options, Path path)
-      : robot_(robot), options_(options), path_(std::move(path)), locked_(robot, options, path_) {}
+  Builder(const RobotDescription& robot, const UrdfOptions& options, std::size_t root,
+          std::size_t tip)
+      : robot_(robot),
+        options_(options),
+        root_(root),
+        tip_(tip),
+        path_(pathBetween(robot, root, tip)),
+        locked_(robot, options, path_) {}
 
   Chain chain() {
-    for (const std::size_t j : path_) {
-      X_EU_ = X_EU_ * robot_.joints[j].placement;
-      if (isMovable(robot_.joints[j])) {
-        addJoint(robot_.joints[j]);
+    for (const Step& step : path_) {
+      const RobotDescription::Joint& joint = robot_.joints[step.joint];
+      if (!step.up) {
+        X_EU_ = X_EU_ * joint.placement;
+      }
+      if (isMovable(joint)) {
+        addJoint(joint, step.up);
+      }
+      if (step.up) {
+        X_EU_ = X_EU_ * joint.placement.inverse();
       }
       if (!links_.empty()) {
-        const std::size_t link = robot_.joints[j].child;
+        const std::size_t link = step.up ? joint.parent : joint.child;
         links_.back() += X_EU_ * parameters(robot_.links[link]);
         parts_.back().push_back(link);
         lumpBranches(robot_.links[link]);
@@ -281,14 +312,15 @@ class Builder {
     for (LinkParameters& parameters : links_) {
       parameters = symmetric(parameters);
     }
-    const Chain chain(robot_.name, joints_, links_, options_.gravity, X_EU_);
+    const Chain chain(robot_.name, joints_, links_, options_.gravity.value_or(kDown), X_EU_);
     if (!options_.allow_massless) checkMassless(chain);
     return chain.withWarnings(warnings(chain));
   }
 
  private:
-  /// Starts a new link of the chain, whose frame E is the URDF's U turned to the joint's axis.
-  void addJoint(const RobotDescription::Joint& joint) {
+  /// Starts a new link of the chain, whose frame E is the URDF's U turned to the joint's axis: U is
+  /// that of the joint's child. Passed up, the parent moves about the opposite axis instead.
+  void addJoint(const RobotDescription::Joint& joint, bool up) {
     if (joint.type == Type::kPlanar || joint.type == Type::kFloating) {
       throw ModelError(where(joint), "type", "revolute, continuous, prismatic or fixed",
                        joint.type == Type::kPlanar ? "planar" : "floating",
@@ -299,7 +331,8 @@ class Builder {
                        "one that follows joint " + robot_.joints[joint.mimic->joint].name,
                        "choose root and tip so that it isn't between them");
     }
-    const Matrix3<double> R_UE = rotationFromZ(joint.axis.stableNormalized());
+    const Eigen::Vector3d axis = joint.axis.stableNormalized();
+    const Matrix3<double> R_UE = rotationFromZ(up ? -axis : axis);
     Joint result;
     result.name = joint.name;
     result.type = joint.type == Type::kPrismatic    ? JointType::kPrismatic
@@ -325,6 +358,9 @@ class Builder {
         links_.back() += X_EU_ * branch(j);
       }
     }
+    if (link.parent_joint != kNone && !locked_.onPath(link.parent_joint)) {
+      links_.back() += X_EU_ * trunk(link);
+    }
   }
 
   /// A branch as one rigid body, in the frame of the link that carries it.
@@ -343,13 +379,30 @@ class Builder {
     return body_[joint];
   }
 
+  /// All that isn't below a link, with its branches, as one rigid body in that link's frame.
+  LinkParameters trunk(const Link& link) {
+    LinkParameters body = LinkParameters::zero();
+    const Joints above = jointsAbove(robot_, robot_.joints[link.parent_joint].child);
+    for (auto j = above.rbegin(); j != above.rend(); ++j) {  // parents before children
+      const RobotDescription::Joint& joint = robot_.joints[*j];
+      body += parameters(robot_.links[joint.parent]);
+      parts_.back().push_back(joint.parent);
+      for (const std::size_t child : robot_.links[joint.parent].child_joints) {
+        if (child != *j) {
+          body += branch(child);
+        }
+      }
+      body = (joint.placement * locked_.motion(*j)).inverse() * body;
+    }
+    return body;
+  }
+
   void checkMovable() const {
     if (joints_.empty()) {
-      const std::string from_to =
-          path_.empty()
-              ? "root and tip are the same link"
-              : "only fixed joints from " + robot_.links[robot_.joints[path_.front()].parent].name +
-                    " to " + robot_.links[robot_.joints[path_.back()].child].name;
+      const std::string from_to = root_ == tip_
+                                      ? "root and tip are the same link"
+                                      : "only fixed joints from " + robot_.links[root_].name +
+                                            " to " + robot_.links[tip_].name;
       throw ModelError(where(robot_), "chain", "at least one movable joint", from_to,
                        "choose other root and tip");
     }
@@ -372,6 +425,7 @@ class Builder {
   /// What is odd: about the description, the held joints, and the parts of each link.
   std::vector<std::string> warnings(const Chain& chain) const {
     std::vector<std::string> texts = robot_.warnings;
+    warnOfGravity(texts);
     const std::vector<std::string> locked = locked_.warnings(options_.lump_attached);
     texts.insert(texts.end(), locked.begin(), locked.end());
     bool named = true;
@@ -382,6 +436,28 @@ class Builder {
       texts.insert(texts.end(), chain.warnings().begin(), chain.warnings().end());
     }
     return texts;
+  }
+
+  /// Names a default gravity that isn't down the z axis of the description's root.
+  void warnOfGravity(std::vector<std::string>& texts) const {
+    Matrix3<double> R_DR = Matrix3<double>::Identity();  // of the chain's root in the description's
+    for (const std::size_t j : jointsAbove(robot_, root_)) {
+      R_DR = robot_.joints[j].placement.R * R_DR;
+    }
+    const Eigen::Vector3d down = R_DR.transpose() * kDown;
+    if (options_.gravity || (down - kDown).norm() < kUpright * kDown.norm()) {
+      return;
+    }
+    const Link& root = robot_.links[root_];
+    std::ostringstream text;
+    text << "URDF:" << root.line << ": link " << root.name
+         << ": gravity isn't given, so it is [0, 0, -9.81] in the frame of this root link; down "
+            "the z"
+            " axis of link "
+         << robot_.links[robot_.root].name << " (joints between them at zero) it would be ["
+         << rounded(down.x()) << ", " << rounded(down.y()) << ", " << rounded(down.z())
+         << "]: give the one that is right";
+    texts.push_back(printable(text.str()));
   }
 
   /// Names the parts of link i that no rigid body can be; false if there are none.
@@ -401,6 +477,7 @@ class Builder {
 
   const RobotDescription& robot_;
   const UrdfOptions& options_;
+  const std::size_t root_, tip_;  // links
   const Path path_;
   LockedJoints locked_;
   std::vector<Joint> joints_;
@@ -416,9 +493,9 @@ class Builder {
 Chain chainFromRobot(const RobotDescription& robot, const UrdfOptions& options) {
   const std::size_t root =
       options.root.empty() ? robot.root : linkNamed(robot, options.root, "root");
-  Path path = options.tip.empty() ? pathToLeaf(robot, root)
-                                  : pathBetween(robot, root, linkNamed(robot, options.tip, "tip"));
-  return Builder(robot, options, std::move(path)).chain();
+  const std::size_t tip =
+      options.tip.empty() ? leafBelow(robot, root) : linkNamed(robot, options.tip, "tip");
+  return Builder(robot, options, root, tip).chain();
 }
 
 Chain chainFromUrdf(const std::string& urdf_xml, const UrdfOptions& options) {

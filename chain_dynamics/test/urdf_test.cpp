@@ -13,6 +13,7 @@
 #include <string>
 
 #include "chain_dynamics/dynamic_components.hpp"
+#include "chain_dynamics/tip_kinematics.hpp"
 #include "chain_dynamics/torques.hpp"
 #include "reference.hpp"
 #include "urdf_texts.hpp"
@@ -212,9 +213,26 @@ TEST(Urdf, GravityIsInTheRootLinksFrame) {
   EXPECT_LT(
       difference(someTorques(chainFromUrdf(urdf)), someTorques(chainFromUrdf(urdf, from_base))),
       kRounding);
-  EXPECT_GT(difference(someTorques(chainFromUrdf(urdf)),
-                       someTorques(chainFromUrdf(urdf, between("base", "a")))),
-            0.1);
+  const auto by_default = chainFromUrdf(urdf, between("base", "a"));
+  EXPECT_GT(difference(someTorques(chainFromUrdf(urdf)), someTorques(by_default)), 0.1);
+  EXPECT_THAT(by_default.warnings(),
+              ElementsAre("URDF:4: link base: gravity isn't given, so it is [0, 0, -9.81] in the "
+                          "frame of this root link; down the z axis of link world (joints between "
+                          "them at zero) it would be [0, -9.81, 0]: give the one that is right"));
+  EXPECT_THAT(chainFromUrdf(urdf, from_base).warnings(), IsEmpty());
+  EXPECT_THAT(chainFromUrdf(urdf).warnings(), IsEmpty());
+}
+
+TEST(Urdf, ARootThatStandsUprightNeedsNoGravity) {
+  // turned about the vertical, and by what 3.14 leaves of half a turn
+  for (const char* const rpy : {"0 0 2", "-3.14 3.1416 1"}) {
+    const std::string origin = "<origin rpy='" + std::string(rpy) + "'/>";
+    const auto chain = chainFromUrdf(robot(link("world", "") + link("base", "") + link("a") +
+                                           joint("mount", "fixed", "world", "base", origin) +
+                                           joint("j", "continuous", "base", "a", "")),
+                                     between("base", "a"));
+    EXPECT_THAT(chain.warnings(), IsEmpty()) << rpy;
+  }
 }
 
 TEST(Urdf, TipFrameIsKept) {
@@ -377,6 +395,7 @@ TEST(Urdf, LockedPositionsThatHaveNoInfluenceAreAWarning) {
   EXPECT_THAT(warnings(urdf, options, "grip"),
               ElementsAre(HasSubstr("the joint follows joint focus")));
   options.root = "upper";
+  options.gravity = Eigen::Vector3d(0, 0, -9.81);
   EXPECT_THAT(warnings(urdf, options, "shoulder"),
               ElementsAre(HasSubstr("no moving link carries the joint")));
   options.lump_attached = false;
@@ -425,13 +444,84 @@ TEST(Urdf, UnknownRootOrTipIsAnsweredByTheNearestNames) {
       AllOf(HasSubstr("tip: expected a link of the robot, got 'tol'"), HasSubstr("links: tool, ")));
 }
 
-TEST(Urdf, TipMustBeBelowRoot) {
-  EXPECT_THAT(urdfError(arm(), between("tool", "base")),
-              AllOf(HasSubstr("tip: expected a link below root 'tool', got 'base'"),
-                    HasSubstr("swap root and tip")));
-  EXPECT_THAT(urdfError(armWithAttachments(), between("camera", "tool")),
-              AllOf(HasSubstr("tip: expected a link below root 'camera', got 'tool'"),
-                    HasSubstr("choose a root nearer to 'base'")));
+/// A lift on the floor, an arm on the lift, a camera on the arm's slider.
+std::string lift() {
+  return robot(
+      link("floor", inertial("9")) + link("base", inertial("7")) + link("upper") +
+      link("lower", inertial("3")) + link("camera", inertial("1")) +
+      joint("up", "prismatic", "floor", "base",
+            "<origin xyz='0 0 0.2'/><axis xyz='0 0 1'/>" + std::string(kLimit)) +
+      joint("turn", "revolute", "base", "upper",
+            "<origin xyz='0 0.1 0.4'/><axis xyz='0 0.6 0.8'/>" + std::string(kLimit)) +
+      joint("slide", "prismatic", "upper", "lower",
+            "<origin xyz='0 0.2 0.5' rpy='0 0 1.5707963267948966'/><axis xyz='0.6 0 0.8'/>" +
+                std::string(kLimit)) +
+      joint("pan", "fixed", "upper", "camera", "<origin xyz='0.1 0 0'/>"));
+}
+
+/// The same, held at `lower`, with the lift 0.3 m high: every origin inverted by hand.
+std::string liftWrittenFromItsTip() {
+  return robot(link("lower", inertial("3")) + link("at_slide", "") + link("upper") +
+               link("at_turn", "") + link("base", inertial("7")) + link("floor", inertial("9")) +
+               link("camera", inertial("1")) +
+               joint("slide", "prismatic", "lower", "at_slide",
+                     "<axis xyz='-0.6 0 -0.8'/>" + std::string(kLimit)) +
+               joint("from_slide", "fixed", "at_slide", "upper",
+                     "<origin xyz='-0.2 0 -0.5' rpy='0 0 -1.5707963267948966'/>") +
+               joint("pan", "fixed", "upper", "camera", "<origin xyz='0.1 0 0'/>") +
+               joint("turn", "revolute", "upper", "at_turn",
+                     "<axis xyz='0 -0.6 -0.8'/>" + std::string(kLimit)) +
+               joint("from_turn", "fixed", "at_turn", "base", "<origin xyz='0 -0.1 -0.4'/>") +
+               joint("up", "fixed", "base", "floor", "<origin xyz='0 0 -0.5'/>"));
+}
+
+TEST(Urdf, ChainsUpTheTreeAreThoseOfTheRobotHeldAtTheirRoot) {
+  UrdfOptions options = between("lower", "base");
+  options.locked_position = [](const std::string& name) {
+    return name == "up" ? std::optional(0.3) : std::nullopt;
+  };
+  const auto chain = chainFromUrdf(lift(), options);
+  const auto expected = chainFromUrdf(liftWrittenFromItsTip(), between("lower", "base"));
+  EXPECT_THAT(chain.jointNames(), ElementsAre("slide", "turn"));
+  EXPECT_THAT(chain.warnings(), IsEmpty());
+  EXPECT_LT(difference(someTorques(chain), someTorques(expected)), kRounding);
+  EXPECT_NEAR(chain.links()[0].mass, 2 + 1, kRounding);  // upper and camera
+  EXPECT_NEAR(chain.links()[1].mass, 7 + 9, kRounding);  // base and, held by the lift, floor
+
+  const Eigen::Vector2d q(0.4, -0.7);
+  EXPECT_LT(difference(tipPose(chain, q).p, tipPose(expected, q).p), kRounding);
+  EXPECT_LT(difference(tipPose(chain, q).R, tipPose(expected, q).R), kRounding);
+
+  options.lump_attached = false;
+  EXPECT_NEAR(chainFromUrdf(lift(), options).links()[1].mass, 7, kRounding);
+}
+
+TEST(Urdf, RootAndTipMayBeOnTwoBranches) {
+  const std::string urdf = armWithAttachments();
+  const auto chain = chainFromUrdf(urdf, between("lens", "finger"));
+  EXPECT_THAT(chain.jointNames(), ElementsAre("focus", "elbow", "grip"));
+
+  // X_RT = X_BR^-1 X_BT
+  const Eigen::Vector3d q(0.15, 0.9, -0.4);
+  const double shoulder = 0.6;
+  const auto to_root =
+      tipPose(chainFromUrdf(urdf, between("base", "lens")), Eigen::Vector2d(shoulder, q[0]));
+  const auto to_tip = tipPose(chainFromUrdf(urdf, between("base", "finger")),
+                              Eigen::Vector3d(shoulder, q[1], q[2]));
+  const auto expected = to_root.inverse() * to_tip;
+  EXPECT_LT(difference(tipPose(chain, q).p, expected.p), kRounding);
+  EXPECT_LT(difference(tipPose(chain, q).R, expected.R), kRounding);
+
+  // the shoulder, and the base beyond it, are held where the path turns
+  EXPECT_NEAR(chain.links()[0].mass, 2 + 2, kRounding);
+}
+
+TEST(Urdf, ASecondBaseIsARootLikeTheFirst) {
+  const std::string urdf =
+      arm("", link("plate") + joint("print", "fixed", "base", "plate", "<origin xyz='0 0 0.7'/>"));
+  EXPECT_LT(difference(someTorques(chainFromUrdf(urdf, between("plate", "tool"))),
+                       someTorques(chainFromUrdf(urdf, between("base", "tool")))),
+            kRounding);
 }
 
 TEST(Urdf, ChainWithoutMovableJointIsAnError) {
@@ -493,7 +583,7 @@ TEST(UrdfError, UnsupportedJointsAreNamed) {
 
 TEST(UrdfError, GravityMustBeFinite) {
   UrdfOptions options;
-  options.gravity.z() = std::numeric_limits<double>::infinity();
+  options.gravity = Eigen::Vector3d(0, 0, std::numeric_limits<double>::infinity());
   EXPECT_THAT(urdfError(arm(), options), HasSubstr("gravity: expected three finite numbers"));
 }
 

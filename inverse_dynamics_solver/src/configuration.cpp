@@ -116,7 +116,7 @@ chain_dynamics::Chain chainFromDescription(const Configuration& configuration) {
   chain_dynamics::UrdfOptions options;
   options.root = configuration.root;
   options.tip = configuration.tip;
-  options.gravity = configuration.gravity;
+  if (configuration.gravity_given) options.gravity = configuration.gravity;
   options.lump_attached = configuration.lump_attached;
   options.allow_massless = configuration.allow_massless;
   options.locked_position = configuration.locked_position;

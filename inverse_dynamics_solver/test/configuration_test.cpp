@@ -143,6 +143,23 @@ TEST(ChainFromDescription, WarnsOfALockedJointThatIsOnThePath) {
       std::string::npos);
 }
 
+TEST(ChainFromDescription, WarnsOfADefaultGravityThatTheMountingContradicts) {
+  const std::string wall = R"(<robot name="wall"><link name="world"/><link name="base"/>
+    <link name="arm"><inertial><mass value="1"/>
+      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+    <joint name="mount" type="fixed"><parent link="world"/><child link="base"/>
+      <origin rpy="0 1.5707963267948966 0"/></joint>
+    <joint name="shoulder" type="continuous"><parent link="base"/><child link="arm"/></joint></robot>)";
+  const auto warnings = [&](const Parameters& parameters) {
+    return chainFromDescription(readConfiguration(parameters, "", wall)).warnings();
+  };
+  ASSERT_EQ(warnings({{"root", "base"}}).size(), 1U);
+  EXPECT_NE(warnings({{"root", "base"}})[0].find("it would be [9.81, 0, 0]"), std::string::npos);
+  EXPECT_TRUE(warnings({}).empty());
+  EXPECT_TRUE(
+      warnings({{"root", "base"}, {"gravity", std::vector<double>{0.0, 0.0, -9.81}}}).empty());
+}
+
 TEST(ChainFromDescription, TakesMasslessBodiesOnlyWhereAllowed) {
   const std::string massless = R"(<robot name="arm"><link name="base"/><link name="arm"/>
     <joint name="shoulder" type="continuous"><parent link="base"/><child link="arm"/></joint></robot>)";

@@ -5,23 +5,29 @@
 ///
 ///     Chain robot = chainFromUrdf(urdf_xml);                           // root to leaf
 ///     Chain arm = chainFromUrdf(urdf_xml, {"base_link", "tool0"});     // a part of the robot
+///     Chain back = chainFromUrdf(urdf_xml, {"tool0", "base_link"});    // held by its tool
 ///     UrdfOptions options; options.gravity = {0, -9.81, 0};            // mounted on a wall
 ///
 /// What becomes of a URDF, read as in robot_description.hpp:
 ///
-/// - The chain's joints are the movable ones on the path from root to tip. Links joined by fixed
-///   joints become one link: their parameters are moved into one frame and added.
+/// - Root and tip are any two links. The path goes up the tree to the first link above both and down
+///   again, as that of KDL's Tree::getChain; the chain's joints are the movable ones on it.
+/// - A joint that is passed from child to parent keeps the sign of its position, velocity and torque:
+///   the chain moves its parent link, with that link's own inertia, about the opposite axis.
+/// - Links joined by fixed joints become one link: their parameters are moved into one frame and
+///   added.
 /// - URDF joint axes are arbitrary, a chain's are z: where it isn't z already, the link's frame is
 ///   turned so that it is. Joint torques don't depend on how.
-/// - Inertia before the first movable joint doesn't move, and so has no influence.
-/// - Bodies attached to the chain beside the path or beyond the tip move with it and are lumped into
-///   the link that carries them, unless `lump_attached` is false. Movable joints among them are held
-///   at `locked_position`; one that mimics another follows it.
+/// - The root link is held: inertia before the first movable joint has no influence.
+/// - Bodies attached to the chain beside the path, beyond the tip or, where the path turns, above it
+///   move with it and are lumped into the link that carries them, unless `lump_attached` is false.
+///   Movable joints among them are held at `locked_position`; one that mimics another follows it.
 /// - `<dynamics damping friction>` becomes Joint::damping and Joint::friction, which no algorithm
 ///   reads (simulators disagree on its meaning).
 ///
-/// Chain::warnings() holds RobotDescription::warnings, the locked positions that had no influence,
-/// and the links whose inertia no rigid body can have.
+/// Chain::warnings() holds RobotDescription::warnings, a default gravity that the description's
+/// mounting contradicts, the locked positions that had no influence, and the links whose inertia no
+/// rigid body can have.
 
 #pragma once
 
@@ -40,13 +46,15 @@ inline namespace v2 {
 struct UrdfOptions {
   /// Link the chain starts at; its frame is the root frame. Empty: the root of the URDF.
   std::string root = {};
-  /// Link the chain ends at. Empty: the leaf below root; of several leaves that are moved by the
-  /// same joints, the one with most joints (fixed ones too) above it. Leaves that differ in movable
-  /// joints are ambiguous: an error. (A leaf moved by fewer of the same joints isn't one of them.)
+  /// Link the chain ends at; its frame is the tip frame. Empty: the leaf below root; of several
+  /// leaves that are moved by the same joints, the one with most joints (fixed ones too) above it.
+  /// Leaves that differ in movable joints are ambiguous: an error. (A leaf moved by fewer of the
+  /// same joints isn't one of them.)
   std::string tip = {};
-  /// Gravitational acceleration, in the frame of root; m/s^2.
-  Eigen::Vector3d gravity = {0, 0, -9.81};
-  /// Whether bodies attached beside the path or beyond the tip are included.
+  /// Gravitational acceleration, in the frame of root; m/s^2. Nothing: (0, 0, -9.81), and a warning
+  /// where that isn't down the z axis of the description's root (joints between them at zero).
+  std::optional<Eigen::Vector3d> gravity = {};
+  /// Whether bodies attached beside the path, beyond the tip or above the path are included.
   bool lump_attached = true;
   /// Whether a movable body may be without mass and inertia even where H isn't proved to be
   /// positive definite at every position. (Where it is, as within a joint of two crossing axes, it
@@ -62,8 +70,7 @@ struct UrdfOptions {
 ///
 /// @param urdf_xml  text of the URDF (not a file name); xacro must have been expanded.
 /// @throws ModelError  where robotFromUrdf() does, and naming joint or link: unknown root or tip,
-///     tip not below root, several leaves, planar, floating or mimicking joint, movable body
-///     without mass.
+///     several leaves, planar, floating or mimicking joint, movable body without mass.
 /// Threads: safe.
 Chain chainFromUrdf(const std::string& urdf_xml, const UrdfOptions& options = {});
 

@@ -49,7 +49,8 @@ struct Configuration {
   /// First and last link of the chain; empty: the URDF's root link and its leaf.
   std::string root, tip;
 
-  /// Where things fall, in the frame of the root link [m/s^2].
+  /// Where things fall, in the frame of the root link [m/s^2]. Where it isn't given and the
+  /// description mounts that link turned, chainFromDescription() warns.
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};
 
   /// Whether `gravity` was given: a model file may state a default of its own.
@@ -123,7 +124,7 @@ struct Configuration {
 Configuration readConfiguration(const Parameters& parameters, const std::string& param_namespace,
                                 const std::string& robot_description);
 
-/// The chain of the robot description between root and tip.
+/// The chain of the robot description between root and tip, any two of its links [urdf.hpp].
 ///
 /// Throws ParameterUninitializedException: no robot description. InvalidRobotDescriptionException:
 /// not a URDF, no such link, no chain, a joint or link that can't be computed with.

@@ -72,7 +72,7 @@ def chain_geometry(
         joint = by_name.get(name)
         if joint is None:
             raise RobotError(f"robot description: expected a joint {shown(name)}, got none")
-        xyz, rpy = _placement(_path(above, parent, joint))
+        xyz, rpy = _placement(*_path(above, parent, joint))
         parent = _link_of(joint, "child")
         kind = joint.get("type", "")
         chain.append(JointGeometry(name, kind, parent, xyz, rpy, _axis(joint), _limits(joint)))
@@ -90,25 +90,42 @@ def roll_pitch_yaw(rotation: Floats) -> Floats:
     return np.array([roll, pitch, yaw])
 
 
-def _path(above: Mapping[str, Element], parent: str, joint: Element) -> list[Element]:
-    """Fixed joints from a link to a joint, and that joint."""
+def _path(
+    above: Mapping[str, Element], parent: str, joint: Element
+) -> tuple[list[Element], list[Element]]:
+    """Fixed joints up from a link, the topmost first, and from there down to a joint, with that joint."""
+    up: dict[str, list[Element]] = {parent: []}  # by the link that they lead to
+    link = parent
+    while (step := above.get(link)) is not None and step.get("type") == "fixed":
+        link, so_far = _link_of(step, "parent"), up[link]
+        if link in up:
+            break  # a loop
+        up[link] = [step, *so_far]
     path = [joint]
-    while (link := _link_of(path[0], "parent")) != parent:
+    while (link := _link_of(path[0], "parent")) not in up:
         step = above.get(link)
         if step is None or len(path) > len(above):
             raise RobotError(
-                f"robot description: joint {joint.get('name')}: expected it below link {parent}"
+                f"robot description: joint {joint.get('name')}: expected it below link {parent}, or below one "
+                "that is fixed to it; choose a root nearer to that of the description"
             )
         path.insert(0, step)
-    return path
+    return up[link], path
 
 
-def _placement(path: Sequence[Element]) -> tuple[Floats, Floats]:
-    origins = [_origin(joint) for joint in path]
-    if len(origins) == 1:
-        return origins[0]
-    pose = np.linalg.multi_dot([np.eye(4), *(_pose(*origin) for origin in origins)])
+def _placement(up: Sequence[Element], down: Sequence[Element]) -> tuple[Floats, Floats]:
+    if len(down) == 1 and not up:
+        return _origin(down[0])
+    to_start, to_joint = (_product(joints) for joints in (up, down))
+    pose: Floats = np.array(np.linalg.solve(to_start, to_joint), dtype=np.float64)
     return pose[:3, 3], roll_pitch_yaw(pose[:3, :3])
+
+
+def _product(joints: Sequence[Element]) -> Floats:
+    pose = np.eye(4)
+    for joint in joints:
+        pose = pose @ _pose(*_origin(joint))
+    return pose
 
 
 def _origin(joint: Element) -> tuple[Floats, Floats]:

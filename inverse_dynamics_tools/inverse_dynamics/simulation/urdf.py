@@ -169,9 +169,9 @@ def _movable_joints(
 ) -> list[ElementTree.Element]:
     """Movable joints from root (None: the URDF's root) to tip, in that order."""
     found = []
-    link = tip
+    link, ends = tip, _fixed_to(root, joint_above)
     for _ in range(len(joint_above) + 1):
-        if link == root or link not in joint_above:
+        if link in ends or link not in joint_above:
             break
         joint = joint_above[link]
         kind = joint.get("type", "")
@@ -184,9 +184,26 @@ def _movable_joints(
         if kind in _MOVING:
             found.append(joint)
         link = _link_of(joint, "parent")
-    if root is not None and link != root:
-        raise SimulationError(f"robot description: tip '{tip}' is not below root '{root}'")
+    if root is not None and link not in ends:
+        raise SimulationError(
+            f"robot description: tip '{tip}' is not below root '{root}' or a link that it is fixed to; a "
+            "simulated robot stands on the root of its description: choose a root nearer to that"
+        )
     return found[::-1]
+
+
+def _fixed_to(root: str | None, joint_above: dict[str, ElementTree.Element]) -> set[str]:
+    """A link, and the links above it that only fixed joints are between."""
+    found: set[str] = set()
+    while root is not None and root not in found:
+        found.add(root)
+        joint = joint_above.get(root)
+        root = (
+            _link_of(joint, "parent")
+            if joint is not None and joint.get("type") == "fixed"
+            else None
+        )
+    return found
 
 
 def _numbers(elements: list[ElementTree.Element | None], attribute: str, absent: float) -> Floats:
