@@ -16,6 +16,7 @@
 #include "joint_frame.hpp"
 #include "number.hpp"
 #include "urdf_element.hpp"
+#include "urdf_transmissions.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -202,6 +203,7 @@ class Reader {
     connect();
     checkOneRoot(robot);
     checkNoLoop();
+    readRotorInertia(root, robot_, findings_);
     robot_.warnings = findings_.texts();
     return std::move(robot_);
   }

@@ -342,6 +342,9 @@ class Builder {
     result.limits = joint.limits;
     result.damping = joint.damping;
     result.friction = joint.friction;
+    if (options_.rotor_inertia) {
+      result.rotor_inertia = options_.rotor_inertia(joint);
+    }
     joints_.push_back(result);
     links_.push_back(LinkParameters::zero());
     parts_.emplace_back();

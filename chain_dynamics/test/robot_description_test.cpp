@@ -210,6 +210,68 @@ TEST(RobotDescription, FiguresBeyondARobotsSizeAreAWarningOrAnError) {
   EXPECT_TRUE(someTorques(hinge(inertial("1e50"), "<origin xyz='1e50 1e50 1e50'/>")).allFinite());
 }
 
+// --- transmissions ---
+
+std::string transmission(const std::string& actuator,
+                         const std::string& joints = "<joint name='j'/>") {
+  return "<transmission name='t'><type>transmission_interface/SimpleTransmission</type>" + joints +
+         "<actuator name='m'>" + actuator + "</actuator></transmission>\n";
+}
+
+RobotDescription driven(const std::string& transmissions) {
+  return robotFromUrdf(robot(link("base") + link("a") + link("b") +
+                             joint("j", "continuous", "base", "a", "") +
+                             joint("k", "continuous", "a", "b", "") + transmissions));
+}
+
+TEST(RobotDescription, TransmissionsStateRotorInertia) {
+  const auto rotor = [](const std::string& transmissions) {
+    const RobotDescription tree = driven(transmissions);
+    EXPECT_THAT(tree.warnings, IsEmpty());
+    EXPECT_EQ(tree.joints[1].rotor_inertia, 0);
+    return tree.joints[0].rotor_inertia;
+  };
+  const std::string ros =
+      "<mechanicalReduction> 100 </mechanicalReduction><motorInertia>3e-5</motorInertia>";
+  const std::string drake = "<drake:gear_ratio value='-50'/><drake:rotor_inertia value='2e-5'/>";
+  EXPECT_DOUBLE_EQ(rotor(transmission(ros)), 0.3);
+  EXPECT_DOUBLE_EQ(rotor(transmission(drake)), 0.05);
+  EXPECT_DOUBLE_EQ(rotor(transmission("<motorInertia>3e-5</motorInertia>")), 3e-5);
+  // the ratio on the joint, or on the transmission itself
+  EXPECT_DOUBLE_EQ(rotor(transmission("<motorInertia>1</motorInertia>",
+                                      "<joint name='j'><mechanicalReduction>3</mechanicalReduction>"
+                                      "</joint>")),
+                   9);
+  EXPECT_DOUBLE_EQ(
+      rotor(transmission("<motorInertia>1</motorInertia>",
+                         "<joint name='j'/><mechanicalReduction>3</mechanicalReduction>")),
+      9);
+  EXPECT_DOUBLE_EQ(rotor(transmission(ros) + transmission(drake)), 0.35);  // two motors
+  EXPECT_EQ(rotor(transmission("<mechanicalReduction>100</mechanicalReduction>")), 0);
+}
+
+TEST(RobotDescription, RotorInertiaThatCannotBeReadIsAWarning) {
+  const auto warning = [](const std::string& transmissions) {
+    const RobotDescription tree = driven(transmissions);
+    EXPECT_EQ(tree.joints[0].rotor_inertia, 0);
+    return tree.warnings.size() == 1 ? tree.warnings[0] : std::to_string(tree.warnings.size());
+  };
+  const std::string motor = "<motorInertia>3e-5</motorInertia>";
+  EXPECT_EQ(warning(transmission(motor + "<mechanicalReduction>1:50</mechanicalReduction>")),
+            "URDF:8: transmission t: <mechanicalReduction>: expected a finite number, got '1:50'; "
+            "its rotor inertia isn't read");
+  EXPECT_THAT(warning(transmission("<motorInertia/>")), HasSubstr("got ''"));
+  EXPECT_THAT(warning(transmission("<motorInertia>-1</motorInertia>")), HasSubstr("got -1.0"));
+  EXPECT_THAT(warning(transmission(motor + "<mechanicalReduction>1e40</mechanicalReduction>")),
+              HasSubstr("expected a number >= 0"));
+  EXPECT_THAT(warning(transmission(motor + "<drake:rotor_inertia value='4e-5'/>")),
+              HasSubstr("expected the number stated before, got '4e-5'"));
+  EXPECT_THAT(warning(transmission(motor, "<joint name='j'/><joint name='k'/>")),
+              HasSubstr("<joint>: expected one, got 2"));
+  EXPECT_THAT(warning(transmission(motor, "<joint name='x'/>")), HasSubstr("got 'x'"));
+  EXPECT_THAT(warning(transmission(motor, "<joint/>")), HasSubstr("attribute 'name'"));
+}
+
 TEST(RobotDescription, NegativeDampingIsAWarning) {
   EXPECT_THAT(warnings(hinge(inertial(), "<dynamics damping='-0.1'/>")),
               ElementsAre(HasSubstr("URDF:5: joint j: <dynamics>: negative damping")));

@@ -14,6 +14,8 @@ namespace inverse_dynamics_solver {
 inline namespace v2 {
 namespace {
 
+const std::string kRotorInertia = "rotor_inertia";
+
 std::string describe(const std::vector<double>& numbers) {
   std::ostringstream text;
   text << numbers.size() << " (";
@@ -79,6 +81,48 @@ std::function<std::optional<double>(const std::string&)> lockedPositions(
   };
 }
 
+/// Rotor inertia of the joints of a chain: `rotor_inertia.<joint>`, else what the robot description
+/// states where `rotor_inertia` is true, else none.
+class RotorInertia {
+ public:
+  explicit RotorInertia(const Configuration& configuration)
+      : configuration_(configuration),
+        use_stated_(configuration.get<bool>(kRotorInertia).value_or(false)) {}
+
+  double of(const chain_dynamics::RobotDescription::Joint& joint) {
+    const std::string name = kRotorInertia + "." + joint.name;
+    if (const auto given = configuration_.get<double>(name)) {
+      if (*given >= 0.0 && std::isfinite(*given)) return *given;
+      throw InvalidParameterValueException(
+          errorText("parameter '" + configuration_.fullName(name) + "'", "wrong value",
+                    "a finite number >= 0 [kg m^2; prismatic kg]", std::to_string(*given),
+                    "give the inertia of the rotor times the square of the gear ratio"));
+    }
+    if (joint.rotor_inertia > 0.0) stated_.push_back(joint.name);
+    return use_stated_ ? joint.rotor_inertia : 0.0;
+  }
+
+  /// The chain, with a warning if what the description states isn't used, or if it states nothing.
+  chain_dynamics::Chain warnedOf(const chain_dynamics::Chain& chain) const {
+    if (use_stated_ == !stated_.empty()) return chain;
+    const std::string parameter = "'" + configuration_.fullName(kRotorInertia) + "'";
+    std::vector<std::string> warnings = chain.warnings();
+    warnings.push_back(
+        use_stated_
+            ? "parameter " + parameter + " has no effect: no <transmission> of the robot " +
+                  "description states rotor inertia of a joint that has none by parameter"
+            : "the rotor inertia that the robot description states in <transmission> (joints " +
+                  chain_dynamics::joined(stated_) + ") isn't used; set parameter " + parameter +
+                  " to true to add it to the inertia matrix");
+    return chain.withWarnings(std::move(warnings));
+  }
+
+ private:
+  const Configuration& configuration_;
+  const bool use_stated_;
+  std::vector<std::string> stated_;  // joints
+};
+
 }  // namespace
 
 Configuration readConfiguration(const Parameters& parameters, const std::string& param_namespace,
@@ -120,8 +164,10 @@ chain_dynamics::Chain chainFromDescription(const Configuration& configuration) {
   options.lump_attached = configuration.lump_attached;
   options.allow_massless = configuration.allow_massless;
   options.locked_position = configuration.locked_position;
+  RotorInertia rotors(configuration);
+  options.rotor_inertia = [&rotors](const auto& joint) { return rotors.of(joint); };
   try {
-    return chain_dynamics::chainFromUrdf(configuration.robot_description, options);
+    return rotors.warnedOf(chain_dynamics::chainFromUrdf(configuration.robot_description, options));
   } catch (const chain_dynamics::ModelError& e) {
     throw InvalidRobotDescriptionException(std::string("robot description: ") + e.what());
   }

@@ -13,7 +13,13 @@ using chain_dynamics::joined;
 using chain_dynamics::nearestName;
 using Names = std::vector<std::string>;
 
-const std::string kLocked = "locked_joints.";
+/// Of a parameter `<prefix><joint>`, the prefix; of any other, nothing.
+std::string prefixOf(const std::string& name) {
+  for (const char* const prefix : {"locked_joints.", "rotor_inertia."}) {
+    if (name.rfind(prefix, 0) == 0) return prefix;
+  }
+  return "";
+}
 
 /// Names below the namespace, without it.
 template <class Container>
@@ -28,16 +34,13 @@ Names below(const Configuration& configuration, const Container& full_names) {
 
 /// The known name that is most like another; of joints, their names alone are compared.
 std::string nearest(const std::string& name, const Names& known) {
-  const auto locks = [](const std::string& other) { return other.rfind(kLocked, 0) == 0; };
-  const auto compared = [&](const std::string& other) {
-    return locks(name) ? other.substr(kLocked.size()) : other;
-  };
+  const std::string prefix = prefixOf(name);
   Names others;
   for (const std::string& other : known) {
-    if (locks(other) == locks(name)) others.push_back(compared(other));
+    if (prefixOf(other) == prefix) others.push_back(other.substr(prefix.size()));
   }
-  const std::string found = nearestName(compared(name), others);
-  return locks(name) && !found.empty() ? kLocked + found : found;
+  const std::string found = nearestName(name.substr(prefix.size()), others);
+  return found.empty() ? "" : prefix + found;
 }
 
 /// @param meant  a known name, or "".
@@ -56,9 +59,9 @@ Unknown unknownNames(const Configuration& configuration) {
       configuration.param_namespace.empty() && configuration.parameters.isShared();
   Unknown result;
   for (const std::string& name : known) {
-    // One entry for all joints that may be locked, which are next to each other in a sorted list.
-    const bool locks = name.rfind(kLocked, 0) == 0;
-    const std::string full_name = configuration.fullName(locks ? kLocked + "JOINT" : name);
+    // One entry for all joints, which are next to each other in a sorted list.
+    const std::string prefix = prefixOf(name);
+    const std::string full_name = configuration.fullName(prefix.empty() ? name : prefix + "JOINT");
     if (result.known.empty() || result.known.back() != full_name) result.known.push_back(full_name);
   }
   for (const std::string& name : below(configuration, configuration.parameters.names())) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "inverse_dynamics_solver/exceptions.hpp"
 
@@ -19,6 +21,8 @@ std::string errorOf(Call call) {
   ADD_FAILURE() << "no exception";
   return "";
 }
+
+using Values = std::map<std::string, ParameterValue>;
 
 /// A shoulder and, beside the arm, a gripper finger that slides out by its joint position.
 const char* const kArm = R"(<robot name="arm">
@@ -141,6 +145,47 @@ TEST(ChainFromDescription, WarnsOfALockedJointThatIsOnThePath) {
       warnings("shoulder")[0].find("joint shoulder: its locked position isn't used: the joint "
                                    "is on the path from root to tip"),
       std::string::npos);
+}
+
+TEST(ChainFromDescription, RotorInertiaIsThatOfParametersElseOfTheDescriptionWhereAskedFor) {
+  std::string urdf = kArm;
+  const std::string end = "</robot>";
+  urdf.replace(urdf.find(end), end.size(),
+               "<transmission name='t'><joint name='shoulder'/><actuator name='m'><motorInertia>"
+               "3e-5</motorInertia><mechanicalReduction>100</mechanicalReduction></actuator>"
+               "</transmission></robot>");
+  const auto chain = [&](Values parameters, const std::string& text) {
+    parameters["tip"] = "tool";
+    return chainFromDescription(readConfiguration(parameters, "", text));
+  };
+  const auto rotor = [&](const Values& parameters) {
+    return chain(parameters, urdf).joints()[0].rotor_inertia;
+  };
+  const auto warnings = [&](const Values& parameters, const std::string& text) {
+    const auto texts = chain(parameters, text).warnings();
+    return texts.empty() ? std::string() : texts.size() == 1 ? texts[0] : "several";
+  };
+  EXPECT_EQ(rotor({}), 0.0);
+  EXPECT_DOUBLE_EQ(rotor({{"rotor_inertia", true}}), 0.3);
+  EXPECT_EQ(rotor({{"rotor_inertia.shoulder", 0.25}}), 0.25);
+  EXPECT_EQ(rotor({{"rotor_inertia", true}, {"rotor_inertia.shoulder", 0.0}}), 0.0);
+
+  EXPECT_EQ(warnings({}, urdf),
+            "the rotor inertia that the robot description states in <transmission> (joints "
+            "shoulder) isn't used; set parameter 'rotor_inertia' to true to add it to the inertia "
+            "matrix");
+  EXPECT_EQ(warnings({{"rotor_inertia", true}}, urdf), "");
+  EXPECT_EQ(warnings({{"rotor_inertia.shoulder", 0.25}}, urdf), "");
+  EXPECT_EQ(warnings({}, kArm), "");
+  EXPECT_EQ(warnings({{"rotor_inertia", true}}, kArm),
+            "parameter 'rotor_inertia' has no effect: no <transmission> of the robot description "
+            "states rotor inertia of a joint that has none by parameter");
+  EXPECT_EQ(errorOf<InvalidParameterValueException>([&] {
+              rotor({{"rotor_inertia.shoulder", -0.1}});
+            }),
+            "parameter 'rotor_inertia.shoulder': wrong value: expected a finite number >= 0 [kg "
+            "m^2; prismatic kg], got -0.100000; give the inertia of the rotor times the square of "
+            "the gear ratio");
 }
 
 TEST(ChainFromDescription, WarnsOfADefaultGravityThatTheMountingContradicts) {

@@ -220,6 +220,44 @@ def test_a_second_base_is_the_first_one_turned(plugin):
 
 
 @pytest.mark.parametrize("plugin", SOLVERS)
+def test_rotor_inertia_of_transmissions_is_added_where_it_is_asked_for(plugin):
+    motor = """<transmission name="t"><joint name="left/slide"/><actuator name="m">
+      <mechanicalReduction>100</mechanicalReduction><motorInertia>3e-5</motorInertia></actuator></transmission>"""
+    urdf = TWO_ARMS.replace("</robot>", motor + "</robot>")
+
+    def solver(**parameters):
+        return Solver(
+            plugin,
+            urdf,
+            root="left/hand",
+            tip="torso",
+            gravity=(0, 0, -9.81),
+            parameters=parameters,
+        )
+
+    q, qdd = np.array([0.3, -0.2, 0.5]), np.array([1.0, 2.0, 3.0])
+    bare = solver()
+    assert sum("'rotor_inertia'" in text for text in bare.warnings) == 1
+    for parameters, expected in (
+        ({"rotor_inertia": True}, [0, 0.3, 0]),
+        ({"rotor_inertia.left/j1": 0.2}, [0, 0, 0.2]),
+        ({"rotor_inertia": True, "rotor_inertia.left/slide": 0.1}, [0, 0.1, 0]),
+    ):
+        driven = solver(**parameters)
+        added = driven.inertia_matrix(q) - bare.inertia_matrix(q)
+        np.testing.assert_allclose(added, np.diag(expected), atol=ROUNDING)
+        added = driven.torques(q, 0 * q, qdd) - bare.torques(q, 0 * q, qdd)
+        np.testing.assert_allclose(added, expected * qdd, atol=ROUNDING)
+        driven.set_payload("p", 1.0)
+        assert np.diag(driven.inertia_matrix(q) - solver().inertia_matrix(q)).min() > -ROUNDING
+    assert not solver(rotor_inertia=True).warnings
+    with pytest.raises(
+        errors.InvalidParameterError, match=r"did you mean 'rotor_inertia\.left/j1'"
+    ):
+        solver(**{"rotor_inertia.left/j7": 0.2})
+
+
+@pytest.mark.parametrize("plugin", SOLVERS)
 def test_a_root_that_is_mounted_turned_is_named_unless_gravity_is_given(plugin):
     wall = TWO_ARMS.replace('rpy="0 0 0.4"', 'rpy="1.5707963267948966 0 0.4"')
     (warning,) = Solver(plugin, wall, root="floor", tip="right/hand").warnings

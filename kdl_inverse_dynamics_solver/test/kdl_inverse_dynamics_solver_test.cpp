@@ -89,8 +89,8 @@ TEST(InverseDynamicsSolverKDL, AgreesWithTheEngineWhateverIsTakenOfTheRobot) {
       {{"ids.tip", "finger"}, {"ids.gravity", std::vector<double>{1.0, 2.0, 3.0}}},
       {{"ids.root", "upper"}, {"ids.tip", "wrist"}},
       {{"ids.root", "pedestal"}, {"ids.tip", "slide"}},
-      {{"ids.root", "finger"}, {"ids.tip", "floor"}},
-      {{"ids.root", "cover"}, {"ids.tip", "tool"}}};
+      {{"ids.root", "finger"}, {"ids.tip", "floor"}, {"ids.rotor_inertia.push", 0.7}},
+      {{"ids.root", "cover"}, {"ids.tip", "tool"}, {"ids.rotor_inertia.spin", 0.05}}};
   std::mt19937 random(11);
   std::uniform_real_distribution<double> uniform(-3.0, 3.0);
   Eigen::VectorXd last;

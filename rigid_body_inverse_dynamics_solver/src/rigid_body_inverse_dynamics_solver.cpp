@@ -51,13 +51,15 @@ Chain chainOfDescription(const Configuration& configuration) {
 
 /// A sentence for each parameter that only a robot description gives a meaning.
 Sentences unusedParameters(const Configuration& configuration) {
-  std::vector<std::string> names = {"allow_massless", "urdf_friction"};
+  std::vector<std::string> names = {"allow_massless", "urdf_friction", "rotor_inertia"};
   if (configuration.robot_description.empty()) {
     names.insert(names.end(), {"root", "tip", "attached"});  // else: differences()
   }
-  const std::string locked = configuration.fullName("locked_joints.");
   for (const std::string& name : configuration.parameters.names()) {
-    if (name.rfind(locked, 0) == 0) names.push_back(name.substr(configuration.fullName("").size()));
+    for (const char* const of_joints : {"locked_joints.", "rotor_inertia."}) {
+      if (name.rfind(configuration.fullName(of_joints), 0) != 0) continue;
+      names.push_back(name.substr(configuration.fullName("").size()));
+    }
   }
 
   Sentences sentences;

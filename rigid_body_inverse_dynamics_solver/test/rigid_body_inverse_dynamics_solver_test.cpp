@@ -117,11 +117,14 @@ TEST(RigidBody, ModelFileGoesBeforeTheRobotDescription) {
 TEST(RigidBody, ParametersWithoutMeaningBesideAModelFileAreMentioned) {
   InverseDynamicsSolverRigidBody solver;
   const inverse_dynamics_solver::Parameters parameters = {
-      {"ids.model", kFeasible},     {"ids.tip", "fer_link8"}, {"ids.locked_joints.finger", 0.0},
-      {"ids.allow_massless", true}, {"ids.attached", "lump"}, {"ids.urdf_friction", true}};
+      {"ids.model", kFeasible},          {"ids.tip", "fer_link8"},
+      {"ids.locked_joints.finger", 0.0}, {"ids.allow_massless", true},
+      {"ids.attached", "lump"},          {"ids.urdf_friction", true},
+      {"ids.rotor_inertia", true},       {"ids.rotor_inertia.fer_joint1", 0.1}};
   solver.initialize(parameters.strict(), "ids");
-  const std::vector<std::string> names = {"allow_massless", "urdf_friction", "tip", "attached",
-                                          "locked_joints.finger"};
+  const std::vector<std::string> names = {
+      "allow_massless", "urdf_friction",        "rotor_inertia",           "tip",
+      "attached",       "locked_joints.finger", "rotor_inertia.fer_joint1"};
   ASSERT_EQ(solver.warnings().size(), names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     EXPECT_EQ(solver.warnings()[i],

@@ -12,9 +12,9 @@
 /// `<origin>` is the identity, no `<axis>` is x, no `<inertial>` is no mass.
 ///
 /// Read are the links and joints of URDF 1.0 to 1.2 [https://wiki.ros.org/urdf/XML], with
-/// `quat_xyzw` of 1.2. Known, and left to others: visual and collision shapes, materials,
-/// transmissions, sensors, calibration, safety controllers, extensions of simulators, and elements
-/// of another XML namespace. Any other element or attribute gives a warning, with the name that
+/// `quat_xyzw` of 1.2, and the rotor inertia of `<transmission>`. Known, and left to others: visual
+/// and collision shapes, materials, sensors, calibration, safety controllers, extensions of
+/// simulators, all else of transmissions, and elements of another XML namespace. Any other element or attribute gives a warning, with the name that
 /// was probably meant. A Chain is made from this tree by chainFromRobot() [urdf.hpp].
 
 #pragma once
@@ -80,6 +80,10 @@ struct RobotDescription {
     JointLimits limits = {};  ///< a continuous joint has no lower and upper
     double damping = 0;       ///< N m s/rad; prismatic N s/m. 0: not stated.
     double friction = 0;      ///< N m; prismatic N. 0: not stated.
+    /// Reflected to the joint: `<motorInertia>` times the square of `<mechanicalReduction>`, or
+    /// `<drake:rotor_inertia>` and `<drake:gear_ratio>`, of transmissions to this joint alone (the
+    /// sum of several). A ratio that isn't stated is 1. kg m^2; prismatic kg. 0: not stated.
+    double rotor_inertia = 0;
     std::optional<Mimic> mimic;
   };
 

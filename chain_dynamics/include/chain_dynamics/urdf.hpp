@@ -64,6 +64,9 @@ struct UrdfOptions {
   /// It is asked for every joint of the robot; nothing: held at zero. A position for a joint that
   /// isn't held gives a warning.
   std::function<std::optional<double>(const std::string& joint)> locked_position = {};
+  /// Rotor inertia of a joint of the chain, reflected to the joint; kg m^2, prismatic kg. It is asked
+  /// for every joint of the chain, and may answer with what the description states. Empty: none.
+  std::function<double(const RobotDescription::Joint& joint)> rotor_inertia = {};
 };
 
 /// The chain from root to tip of a robot description.

@@ -37,6 +37,8 @@ inline namespace v2 {
 /// | gravity                       | 3 doubles | [0, 0, -9.81]                               |
 /// | attached                      | string    | "lump"                                      |
 /// | locked_joints.<joint>         | double    | 0                                           |
+/// | rotor_inertia                 | bool      | false: `<transmission>` isn't used          |
+/// | rotor_inertia.<joint>         | double    | none; >= 0, reflected to the joint [kg m^2] |
 /// | allow_massless                | bool      | false                                       |
 /// | friction                      | bool      | true                                        |
 /// | urdf_friction                 | bool      | false: `<dynamics>` of the URDF isn't used  |
@@ -124,7 +126,8 @@ struct Configuration {
 Configuration readConfiguration(const Parameters& parameters, const std::string& param_namespace,
                                 const std::string& robot_description);
 
-/// The chain of the robot description between root and tip, any two of its links [urdf.hpp].
+/// The chain of the robot description between root and tip, any two of its links [urdf.hpp]: with
+/// the rotor inertia of its joints that `rotor_inertia` asks for.
 ///
 /// Throws ParameterUninitializedException: no robot description. InvalidRobotDescriptionException:
 /// not a URDF, no such link, no chain, a joint or link that can't be computed with.
