@@ -429,6 +429,7 @@ class Builder {
   std::vector<std::string> warnings(const Chain& chain) const {
     std::vector<std::string> texts = robot_.warnings;
     warnOfGravity(texts);
+    warnOfSwappedEnds(texts);
     const std::vector<std::string> locked = locked_.warnings(options_.lump_attached);
     texts.insert(texts.end(), locked.begin(), locked.end());
     bool named = true;
@@ -461,6 +462,22 @@ class Builder {
          << rounded(down.x()) << ", " << rounded(down.y()) << ", " << rounded(down.z())
          << "]: give the one that is right";
     texts.push_back(printable(text.str()));
+  }
+
+  /// Says which end is held where root and tip may have been taken for each other.
+  void warnOfSwappedEnds(std::vector<std::string>& texts) const {
+    const auto down = [this](const Step& step) {
+      return !step.up && isMovable(robot_.joints[step.joint]);
+    };
+    if (std::any_of(path_.begin(), path_.end(), down)) {
+      return;
+    }
+    const Link& root = robot_.links[root_];
+    texts.push_back(printable("URDF:" + std::to_string(root.line) + ": link " + root.name +
+                              ": as the root of the chain it is held, and tip " +
+                              robot_.links[tip_].name +
+                              " moves, which is above it; swap root and tip if the robot stands on "
+                              "its base"));
   }
 
   /// Names the parts of link i that no rigid body can be; false if there are none.

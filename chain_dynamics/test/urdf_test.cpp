@@ -483,7 +483,10 @@ TEST(Urdf, ChainsUpTheTreeAreThoseOfTheRobotHeldAtTheirRoot) {
   const auto chain = chainFromUrdf(lift(), options);
   const auto expected = chainFromUrdf(liftWrittenFromItsTip(), between("lower", "base"));
   EXPECT_THAT(chain.jointNames(), ElementsAre("slide", "turn"));
-  EXPECT_THAT(chain.warnings(), IsEmpty());
+  EXPECT_THAT(chain.warnings(),
+              ElementsAre("URDF:6: link lower: as the root of the chain it is held, and tip base "
+                          "moves, which is above it; swap root and tip if the robot stands on its "
+                          "base"));
   EXPECT_LT(difference(someTorques(chain), someTorques(expected)), kRounding);
   EXPECT_NEAR(chain.links()[0].mass, 2 + 1, kRounding);  // upper and camera
   EXPECT_NEAR(chain.links()[1].mass, 7 + 9, kRounding);  // base and, held by the lift, floor

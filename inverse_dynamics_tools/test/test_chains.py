@@ -193,7 +193,8 @@ def test_bodies_above_a_chain_move_with_it_unless_they_are_ignored(plugin):
         )
     )
     assert held.joint_names == ("left/j2", "left/slide", "left/j1")
-    assert not held.warnings
+    (warning,) = held.warnings
+    assert "swap root and tip if the robot stands on its base" in warning
     # the other arm hangs on the torso, and so does the floor
     weights = [solver.gravity_vector(q)[1] for solver in (held, turned, ignored)]
     assert weights[0] == pytest.approx(weights[1])  # a slider bears the weight, wherever it is
@@ -250,7 +251,7 @@ def test_rotor_inertia_of_transmissions_is_added_where_it_is_asked_for(plugin):
         np.testing.assert_allclose(added, expected * qdd, atol=ROUNDING)
         driven.set_payload("p", 1.0)
         assert np.diag(driven.inertia_matrix(q) - solver().inertia_matrix(q)).min() > -ROUNDING
-    assert not solver(rotor_inertia=True).warnings
+    assert not any("rotor_inertia" in text for text in solver(rotor_inertia=True).warnings)
     with pytest.raises(
         errors.InvalidParameterError, match=r"did you mean 'rotor_inertia\.left/j1'"
     ):

@@ -26,8 +26,8 @@
 ///   reads (simulators disagree on its meaning).
 ///
 /// Chain::warnings() holds RobotDescription::warnings, a default gravity that the description's
-/// mounting contradicts, the locked positions that had no influence, and the links whose inertia no
-/// rigid body can have.
+/// mounting contradicts, a tip above the root, the locked positions that had no influence, and the
+/// links whose inertia no rigid body can have.
 
 #pragma once
 

@@ -39,6 +39,8 @@ _WRONG_WITH_URDF: dict[str, tuple[str, Any]] = {
     "allow_massless as a text": ("allow_massless", "yes"),
     "a locked joint as a text": ("locked_joints.grip", "open"),
     "urdf_friction as a text": ("urdf_friction", "yes"),
+    "rotor_inertia as a text": ("rotor_inertia", "yes"),
+    "a rotor's inertia below zero": ("rotor_inertia.elbow", -0.1),
 }
 # What would have no effect, so it is refused or there is a warning.
 _WITHOUT_EFFECT_WITH_MODEL: dict[str, tuple[str, Any]] = {
@@ -48,6 +50,8 @@ _WITHOUT_EFFECT_WITH_MODEL: dict[str, tuple[str, Any]] = {
     "a locked joint": ("locked_joints.finger", 0.5),
     "allow_massless": ("allow_massless", True),
     "urdf_friction": ("urdf_friction", True),
+    "rotor_inertia": ("rotor_inertia", True),
+    "a rotor's inertia": ("rotor_inertia.elbow", 0.1),
 }
 _WITHOUT_EFFECT: dict[str, tuple[str, Any]] = {
     "an unknown name": ("dampng", 1.0),

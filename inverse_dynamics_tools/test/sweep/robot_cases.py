@@ -35,7 +35,6 @@ _FAULTS = {
     "plugin without a class": ("/InverseDynamicsSolverRigidBody", ""),
     "unknown tip": ("tip: tool0", "tip: tol0"),
     "unknown root": ("root: base_link", "root: bas_link"),
-    "root and tip swapped": ("root: base_link\ntip: tool0", "root: tool0\ntip: base_link"),
     "missing URDF": ("ur10.urdf", "ur11.urdf"),
     "missing package": ("inverse_dynamics_robots", "inverse_dynamics_robot"),
     "a URDF that is a directory": ("/urdf/ur10.urdf", "/urdf"),
@@ -67,6 +66,9 @@ def cases(directory: Path) -> Iterator[Case]:
         assert before in ROBOT
         changed = ROBOT.replace(before, after).encode()
         yield _case(name, directory, changed, Expected(place=r"\.yaml|robot arm|arm"))
+    swapped = ROBOT.replace("root: base_link\ntip: tool0", "root: tool0\ntip: base_link")
+    held = Expected(refused=False, warned=True, mention="swap root and tip")
+    yield _case("root and tip swapped", directory, swapped.encode(), held)
     for name, content in NOT_A_MAPPING.items():
         yield _case(name, directory, content, Expected(place=r"\.yaml"))
 
