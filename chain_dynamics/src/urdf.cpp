@@ -15,6 +15,7 @@
 #include "chain_dynamics/text.hpp"
 #include "definite_inertia.hpp"
 #include "joint_frame.hpp"
+#include "plausibility.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -206,7 +207,7 @@ class LockedJoints {
     return X;
   }
 
-  /// A sentence for each given position that had no influence.
+  /// A sentence for each given position that had no influence or is beyond the joint's limits.
   std::vector<std::string> warnings(bool lump_attached) const {
     std::vector<std::string> texts;
     for (std::size_t j = 0; j < given_.size(); ++j) {
@@ -220,6 +221,9 @@ class LockedJoints {
                               : "no moving link carries the joint";
         texts.push_back(printable("URDF:" + std::to_string(joint.line) + ": joint " + joint.name +
                                   ": its locked position isn't used: " + reason));
+      } else if (used_[j]) {
+        const std::string doubt = positionDoubt(joint, *given_[j]);
+        if (!doubt.empty()) texts.push_back(doubt);
       }
     }
     return texts;
@@ -432,6 +436,8 @@ class Builder {
     warnOfSwappedEnds(texts);
     const std::vector<std::string> locked = locked_.warnings(options_.lump_attached);
     texts.insert(texts.end(), locked.begin(), locked.end());
+    const std::vector<std::string> doubts = inertiaDoubts(robot_, chain, parts_);
+    texts.insert(texts.end(), doubts.begin(), doubts.end());
     bool named = true;
     for (std::size_t i = 0; i < links_.size(); ++i) {
       named = (inertiaDefect(chain.links()[i]).empty() || addDefects(i, texts)) && named;

@@ -7,10 +7,12 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <limits>
 #include <locale>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "chain_dynamics/dynamic_components.hpp"
 #include "chain_dynamics/tip_kinematics.hpp"
@@ -382,7 +384,12 @@ TEST(Urdf, LockedPositionsThatHaveNoInfluenceAreAWarning) {
     options.locked_position = [joint](const std::string& name) {
       return name == joint ? std::optional<double>(0.3) : std::nullopt;
     };
-    return chainFromUrdf(urdf, options).warnings();
+    std::vector<std::string> found = chainFromUrdf(urdf, options).warnings();
+    const auto others = [](const std::string& text) {
+      return text.find("locked position") == std::string::npos;
+    };
+    found.erase(std::remove_if(found.begin(), found.end(), others), found.end());
+    return found;
   };
   const std::string urdf = armWithAttachments("<mimic joint='focus'/>");
   UrdfOptions options = between("base", "tool");
@@ -620,6 +627,89 @@ TEST(Urdf, TriangleInequalityBrokenIsAWarning) {
   ASSERT_EQ(chain.warnings().size(), 1U);
   EXPECT_THAT(chain.warnings()[0], AllOf(HasSubstr("joint j"), HasSubstr("triangle inequality")));
   EXPECT_TRUE(chainFromUrdf(arm()).warnings().empty());
+}
+
+// --- what can be, but is hardly meant ---
+
+/// Warnings of a chain of two links, the second of 7.3 kg, its inertia in kg m^2.
+std::vector<std::string> warningsOfForearm(const std::string& ixx, const std::string& iyy,
+                                           const std::string& izz) {
+  const std::string forearm =
+      "<inertial><origin xyz='0.02 0 -0.13'/><mass value='7.3'/>"
+      "<inertia ixy='0' ixz='0' iyz='0' ixx='" +
+      ixx + "' iyy='" + iyy + "' izz='" + izz + "'/></inertial>";
+  return chainFromUrdf(robot(link("base", "") + link("upper") + link("forearm", forearm) +
+                             joint("yaw", "revolute", "base", "upper",
+                                   "<origin xyz='0 0 0.15'/>" + std::string(kLimit)) +
+                             joint("pitch", "revolute", "upper", "forearm",
+                                   "<origin xyz='0 0.3 0'/>" + std::string(kLimit))))
+      .warnings();
+}
+
+TEST(UrdfDoubts, InertiaOfABodyLargerThanTheArmIsAWarning) {
+  EXPECT_THAT(warningsOfForearm("0.3", "0.3", "0.1"), IsEmpty());
+  // as long as the arm is
+  EXPECT_THAT(warningsOfForearm("0.014", "2.95", "2.955"),
+              ElementsAre(AllOf(HasSubstr("URDF:5: link forearm, moved by joint pitch: "),
+                                HasSubstr("radius of gyration of 0.636 m in a chain of"))));
+  // g mm^2
+  EXPECT_THAT(warningsOfForearm("313692", "320080", "465064"),
+              ElementsAre(HasSubstr("4.65e+05 kg m^2 for 7.3 kg is implausible")));
+}
+
+TEST(UrdfDoubts, InertiaThatHardlyCountsMayBeARoundNumber) {
+  const std::string camera =
+      "<inertial><mass value='0.001'/><inertia ixy='0' ixz='0' iyz='0' "
+      "ixx='0.001' iyy='0.001' izz='0.001'/></inertial>";
+  const std::string urdf =
+      arm("<axis xyz='0 1 0'/>", link("camera", camera) + joint("eye", "fixed", "tool", "camera"));
+  EXPECT_THAT(chainFromUrdf(urdf).warnings(), IsEmpty());
+}
+
+TEST(UrdfDoubts, AWheelMayHaveAnyRadius) {
+  const auto chain = chainFromUrdf(robot(link("base") + link("wheel", inertial("1", "0.3", "")) +
+                                         joint("axle", "continuous", "base", "wheel", "")));
+  EXPECT_THAT(chain.warnings(), IsEmpty());
+}
+
+TEST(UrdfDoubts, MovingLinkWithoutInertialBeforeLinksWithMassIsAWarning) {
+  UrdfOptions options;
+  options.allow_massless = true;
+  const auto warnings = [&](const std::string& middle, const std::string& last) {
+    return chainFromUrdf(robot(link("base", "") + link("a", middle) + link("b", last) +
+                               joint("first", "continuous", "base", "a", "<axis xyz='0 0 1'/>") +
+                               joint("second", "continuous", "a", "b",
+                           "<origin xyz='1 0 0'/><axis xyz='0 1 0'/>")),
+                         options)
+        .warnings();
+  };
+  EXPECT_THAT(warnings("", inertial()),
+              ElementsAre("URDF:4: link a, moved by joint first: has no <inertial>, but links "
+                          "beyond it have mass: it counts as massless"));
+  EXPECT_THAT(warnings("<inertial><mass value='0'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' "
+                       "iyz='0' izz='0'/></inertial>",
+                       inertial()),
+              IsEmpty());
+  EXPECT_THAT(warnings(inertial(), ""), IsEmpty());
+}
+
+TEST(UrdfDoubts, PositionFarBeyondTheLimitsOfALockedJointIsAWarning) {
+  const auto warnings = [](double position) {
+    UrdfOptions options = between("base", "tool");
+    options.locked_position = [position](const std::string& name) {
+      return name == "grip" ? std::optional<double>(position) : std::nullopt;
+    };
+    return chainFromUrdf(arm("<axis xyz='0 1 0'/>",
+                             link("finger") + joint("grip", "prismatic", "tool", "finger",
+                                                    "<limit lower='0' upper='0.04' effort='1' "
+                                                    "velocity='1'/>")),
+                         options)
+        .warnings();
+  };
+  EXPECT_THAT(warnings(-0.002), IsEmpty());  // a gripper that closes a little too far
+  EXPECT_THAT(warnings(30.0),
+              ElementsAre(AllOf(HasSubstr("joint grip: held at 30 m"),
+                                HasSubstr("beyond its limits of 0 to 0.04; check the unit"))));
 }
 
 // --- other people's values on real robots ---

@@ -26,8 +26,9 @@
 ///   reads (simulators disagree on its meaning).
 ///
 /// Chain::warnings() holds RobotDescription::warnings, a default gravity that the description's
-/// mounting contradicts, a tip above the root, the locked positions that had no influence, and the
-/// links whose inertia no rigid body can have.
+/// mounting contradicts, a tip above the root, the locked positions that had no influence or are
+/// beyond a joint's limits, and the links whose inertia no rigid body can have, is implausible (wrong
+/// units), or is missing before links with mass.
 
 #pragma once
 
