@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
+#include "inverse_dynamics_solver/plausibility.hpp"
 #include "method_call.hpp"
 #include "one_state.hpp"
 
@@ -15,6 +18,17 @@ using Eigen::Index;
 using StackVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxStackJoints, 1>;
 using StackMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStackJoints, kMaxStackJoints>;
+
+/// What the parameters state, but hardly mean.
+std::vector<std::string> doubts(const InverseDynamicsSolver& solver,
+                                const Configuration& configuration) {
+  std::vector<std::string> texts = {doubtOf(configuration.gravity)};
+  if (dynamic_cast<const Payload*>(&solver) != nullptr) {
+    for (const auto& [name, body] : readPayloads(configuration)) texts.push_back(doubtOf(body));
+  }
+  texts.erase(std::remove(texts.begin(), texts.end(), ""), texts.end());
+  return texts;
+}
 
 }  // namespace
 
@@ -30,8 +44,8 @@ void InverseDynamicsSolver::initialize(const Parameters& parameters,
   // The solver has changed; one that hasn't refused unknown parameters itself can't go back.
   initialized_ = false;
   configuration.rejectOthers();
-  for (std::string& warning : configuration.unknownParameters()) {
-    info.warnings.push_back(std::move(warning));
+  for (const auto& more : {doubts(*this, configuration), configuration.unknownParameters()}) {
+    info.warnings.insert(info.warnings.end(), more.begin(), more.end());
   }
 
   info.joint_types.resize(info.joint_names.size(), chain_dynamics::JointType::kRevolute);

@@ -321,6 +321,33 @@ TEST(RigidBody, FrictionOfADescriptionCanBeAskedFor) {
   EXPECT_EQ(mentions(ur10), 1);
 }
 
+TEST(RigidBody, ImplausiblePayloadAndGravityAreMentioned) {
+  const std::string urdf = textOf(robotsFile("urdf/ur10.urdf"));
+  const auto warnings = [&](const inverse_dynamics_solver::Parameters& parameters) {
+    InverseDynamicsSolverRigidBody solver;
+    solver.initialize(parameters, "", urdf);
+    return solver.warnings();
+  };
+  using Numbers = std::vector<double>;
+  const Numbers near = {0.0, 0.0, -0.05}, far = {0.0, 0.0, -50.0};  // m, and mm taken for m
+  EXPECT_TRUE(warnings({{"payload.mass", 0.5}, {"payload.center_of_mass", near}}).empty());
+  EXPECT_EQ(warnings({{"payload.mass", 0.5}, {"payload.center_of_mass", far}}),
+            std::vector<std::string>{"a payload of 0.5 kg is implausible: its center of mass is 50 "
+                                     "m from the tip; check the units (kg, m, kg m^2)"});
+  const Numbers gram_mm2 = {1e3, 0.0, 0.0, 1e3, 0.0, 1e3};
+  const auto of_tool = warnings({{"payload.tool.mass", 2.0}, {"payload.tool.inertia", gram_mm2}});
+  ASSERT_EQ(of_tool.size(), 1U);
+  expectContains(of_tool.front(), {"a payload of 2 kg", "radius of gyration is 27.39 m"});
+
+  EXPECT_TRUE(warnings({{"gravity", Numbers{0.0, 0.0, 0.0}}}).empty());
+  EXPECT_TRUE(warnings({{"gravity", Numbers{0.0, -1.62, 0.0}}}).empty());
+  for (const double number : {981.0, 9806.65, 1.0}) {
+    const auto found = warnings({{"gravity", Numbers{0.0, 0.0, -number}}});
+    ASSERT_EQ(found.size(), 1U) << number;
+    expectContains(found.front(), {"m/s^2 is implausible; check its unit"});
+  }
+}
+
 TEST(RigidBody, SaysWhoseInertiaIsPhysical) {
   InverseDynamicsSolverRigidBody solver;
   solver.initialize({{"model", kFeasible}});
