@@ -356,8 +356,12 @@ class ArmFitter:
         root: str = "",
         tip: str = "",
         gravity: Sequence[float] | None = None,
+        locked_joints: Mapping[str, float] = ...,
     ) -> ArmFitter:
-        """Of a URDF's text, whose links are the prior."""
+        """Of a URDF's text, whose links are the prior.
+
+        locked_joints: positions of joints beside the chain, else 0.
+        """
 
     @property
     def joint_names(self) -> tuple[str, ...]:

@@ -4,12 +4,14 @@
 #include <pybind11/pybind11.h>
 
 #include <chain_dynamics/error.hpp>
+#include <cstring>
 #include <exception>
 #include <inverse_dynamics_evaluation/error.hpp>
 #include <inverse_dynamics_evaluation/joint_log.hpp>
 #include <inverse_dynamics_evaluation/package_share.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <string>
+#include <utility>
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -17,10 +19,32 @@ namespace {
 namespace py = pybind11;
 namespace ids = inverse_dynamics_solver;
 
+/// What the libraries say to users of C++, and what Python has for it.
+constexpr std::pair<const char*, const char*> kWords[] = {
+    {"pass a URDF to initialize() as third argument, or set the parameter 'robot_description' "
+     "(without namespace) or 'model'",
+     "give a URDF (urdf) or a model file (model)"},
+    {"pass it to initialize() as third argument, or set the parameter 'robot_description' "
+     "(without namespace)",
+     "give a URDF (urdf)"},
+    {"setPayload: ", "set_payload: "},
+    {"removePayload()", "remove_payload()"},
+    {"setGravity: ", "set_gravity: "},
+    {"setBaseAcceleration: ", "set_base_acceleration: "},
+};
+
+std::string inPython(std::string text) {
+  for (const auto& [cpp, python] : kWords) {
+    const std::size_t at = text.find(cpp);
+    if (at != std::string::npos) text.replace(at, std::strlen(cpp), python);
+  }
+  return text;
+}
+
 void raise(const char* class_name, const std::exception& error) {
   const py::object type = py::module_::import("inverse_dynamics.errors").attr(class_name);
   // Paths and names may hold bytes that aren't UTF-8.
-  const std::string text = error.what();
+  const std::string text = inPython(error.what());
   const auto decoded = py::reinterpret_steal<py::object>(
       PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
   if (decoded) PyErr_SetObject(type.ptr(), decoded.ptr());

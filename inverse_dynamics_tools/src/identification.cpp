@@ -7,6 +7,7 @@
 #include <chain_dynamics/error.hpp>
 #include <chain_dynamics/urdf.hpp>
 #include <inverse_dynamics_identification/arm_fit.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,8 +41,13 @@ using Block = std::tuple<Array, Array, Array, Array>;
 
 std::unique_ptr<ArmFitter> fitterFromUrdf(const std::string& urdf, const std::string& root,
                                           const std::string& tip,
-                                          const std::optional<std::array<double, 3>>& gravity) {
+                                          const std::optional<std::array<double, 3>>& gravity,
+                                          const std::map<std::string, double>& locked_joints) {
   chain_dynamics::UrdfOptions options;
+  options.locked_position = [&](const std::string& joint) {
+    const auto found = locked_joints.find(joint);
+    return found == locked_joints.end() ? std::nullopt : std::optional<double>(found->second);
+  };
   options.root = root;
   options.tip = tip;
   if (gravity) options.gravity = Eigen::Vector3d(gravity->data());
@@ -214,9 +220,12 @@ void bindIdentification(py::module_& module) {
       module, "ArmFitter",
       "Fits models of one arm: arm_fit.hpp. Threads: safe; the GIL is released.\n\n"
       "blocks: tuples q, qd, qdd, tau, (N, n) each. law: step, load, stribeck.")
-      .def_static("from_urdf", &fitterFromUrdf, py::arg("urdf"), py::kw_only(),
-                  py::arg("root") = "", py::arg("tip") = "", py::arg("gravity") = py::none(),
-                  "Of a URDF's text, whose links are the prior.")
+      .def_static(
+          "from_urdf", &fitterFromUrdf, py::arg("urdf"), py::kw_only(), py::arg("root") = "",
+          py::arg("tip") = "", py::arg("gravity") = py::none(),
+          py::arg("locked_joints") = std::map<std::string, double>(),
+          "Of a URDF's text, whose links are the prior. locked_joints: positions of joints\n"
+          "beside the chain, else 0.")
       .def_property_readonly(
           "joint_names",
           [](const ArmFitter& f) { return py::tuple(py::cast(f.description().jointNames())); },

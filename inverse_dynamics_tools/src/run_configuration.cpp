@@ -65,8 +65,7 @@ py::dict fieldsOf(const RunConfiguration& robot) {
 evaluation::SolverParameters parametersOf(const py::handle& parameters) {
   evaluation::SolverParameters found;
   for (const auto& [name, value] : py::reinterpret_borrow<py::dict>(parameters)) {
-    const auto text = name.cast<std::string>();
-    found[text] = parameterOf(text, value);
+    addParameter(name.cast<std::string>(), value, found);
   }
   return found;
 }

@@ -7,6 +7,7 @@
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <inverse_dynamics_solver/load_friction.hpp>
 #include <inverse_dynamics_solver/motor_currents.hpp>
+#include <inverse_dynamics_solver/plausibility.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <inverse_dynamics_solver/torque_deviation.hpp>
 #include <memory>
@@ -33,6 +34,13 @@ template <class Read>
 auto withoutInterpreter(const Read& read) {
   const py::gil_scoped_release release;
   return read();
+}
+
+/// A UserWarning, if there is a text.
+void warn(const std::string& text) {
+  if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) {
+    throw py::error_already_set();
+  }
 }
 
 class Solver {
@@ -108,6 +116,7 @@ class Solver {
                   const py::object& inertia, const py::object& frame) {
     auto& payload = capability<ids::Payload>("set_payload");
     const ids::RigidBody body = bodyOf(mass, center_of_mass, inertia, frame);
+    warn(ids::doubtOf(body));
     const py::gil_scoped_release release;
     payload.setPayload(name, body);
   }
@@ -134,6 +143,7 @@ class Solver {
   void setGravity(const py::object& gravity) {
     auto& mount = capability<ids::VariableGravity>("set_gravity");
     const Eigen::Vector3d numbers = vectorOf("set_gravity: argument gravity", gravity);
+    warn(ids::doubtOf(numbers));
     const py::gil_scoped_release release;
     mount.setGravity(numbers);
   }
@@ -248,8 +258,7 @@ std::unique_ptr<Solver> makeSolver(const std::string& plugin, const Description&
                                    const py::dict& parameters) {
   Origin origin{plugin, urdf.text, root, tip, gravity, friction, attached, model, {}};
   for (const auto& [key, value] : parameters) {
-    const auto name = key.cast<std::string>();
-    origin.parameters[name] = parameterOf(name, value);
+    addParameter(key.cast<std::string>(), value, origin.parameters);
   }
   return std::make_unique<Solver>(std::move(origin));
 }
@@ -401,14 +410,16 @@ void bindSolver(py::module_& module) {
            "threads compute. mass: kg. center_of_mass: (3,) m, in the body's frame. inertia: (3, "
            "3)\n"
            "or ixx ixy ixz iyy iyz izz, kg m^2, about the center of mass, in the axes of the\n"
-           "body's frame; none: a point mass. frame: (4, 4) pose of that frame in the tip frame.")
+           "body's frame; none: a point mass. frame: (4, 4) pose of that frame in the tip frame.\n"
+           "A UserWarning for a body that is implausible: 5 m away, for one.")
       .def("remove_payload", &Solver::removePayload, py::arg("name"),
            "Takes a body away; False if there is none of that name.")
       .def("clear_payloads", &Solver::clearPayloads, "Takes all bodies away.")
       .def_property_readonly("payloads", &Solver::payloads,
                              "The bodies: name to the arguments of set_payload().")
       .def("set_gravity", &Solver::setGravity, py::arg("gravity"),
-           "Sets the gravitational acceleration: (3,) m/s^2, in the axes of the root link.")
+           "Sets the gravitational acceleration: (3,) m/s^2, in the axes of the root link.\n"
+           "A UserWarning where it is implausible: 981, for one.")
       .def("set_base_acceleration", &Solver::setBaseAcceleration, py::arg("acceleration"),
            "How the root link accelerates, (3,) m/s^2 in its axes. Not for a base that rotates.")
       .def_property_readonly("gravity", &Solver::gravity, "(3,) m/s^2.")

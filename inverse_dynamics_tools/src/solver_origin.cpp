@@ -13,25 +13,9 @@ namespace inverse_dynamics_tools {
 namespace py = pybind11;
 namespace ids = inverse_dynamics_solver;
 
-std::map<std::string, ids::ParameterValue> parametersOf(const Origin& origin) {
-  auto all = origin.parameters;
-  const auto give = [&all](const std::string& name, const ids::ParameterValue& value) {
-    if (all.emplace(name, value).second) return;
-    throw ids::InvalidParameterValueException(
-        ids::errorText("Solver", "", "each parameter once",
-                       "argument " + name + " and parameters['" + name + "']", "leave out one"));
-  };
-  if (!origin.friction || all.count("friction") == 0) give("friction", origin.friction);
-  if (!origin.root.empty()) give("root", origin.root);
-  if (!origin.tip.empty()) give("tip", origin.tip);
-  if (!origin.attached.empty()) give("attached", origin.attached);
-  if (origin.model) give("model", *origin.model);
-  if (origin.gravity) {
-    give("gravity", std::vector<double>(origin.gravity->begin(), origin.gravity->end()));
-  }
-  return all;
-}
+namespace {
 
+/// A Python value as a parameter.
 ids::ParameterValue parameterOf(const std::string& name, const py::handle& value) {
   // pybind11 would take the first alternative that it can convert to.
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
@@ -59,9 +43,45 @@ ids::ParameterValue parameterOf(const std::string& name, const py::handle& value
       return value.cast<std::vector<double>>();
     }
   }
-  throw py::type_error("parameter '" + name +
-                       "': expected bool, int, float, str or a list of one of them, got " +
-                       std::string(py::str(py::type::of(value).attr("__name__"))));
+  const auto text = ids::errorText(
+      "parameter '" + name + "'", "",
+      "bool, int, float, str, a list of one of them, or a dict of parameters below this name",
+      py::str(py::type::of(value).attr("__name__")));
+  const py::object error = py::module_::import("inverse_dynamics.errors").attr("ArgumentError");
+  PyErr_SetString(error.ptr(), text.c_str());
+  throw py::error_already_set();
+}
+
+}  // namespace
+
+ParameterValues parametersOf(const Origin& origin) {
+  auto all = origin.parameters;
+  const auto give = [&all](const std::string& name, const ids::ParameterValue& value) {
+    if (all.emplace(name, value).second) return;
+    throw ids::InvalidParameterValueException(
+        ids::errorText("Solver", "", "each parameter once",
+                       "argument " + name + " and parameters['" + name + "']", "leave out one"));
+  };
+  if (!origin.friction || all.count("friction") == 0) give("friction", origin.friction);
+  if (!origin.root.empty()) give("root", origin.root);
+  if (!origin.tip.empty()) give("tip", origin.tip);
+  if (!origin.attached.empty()) give("attached", origin.attached);
+  if (origin.model) give("model", *origin.model);
+  if (origin.gravity) {
+    give("gravity", std::vector<double>(origin.gravity->begin(), origin.gravity->end()));
+  }
+  return all;
+}
+
+void addParameter(const std::string& name, const py::handle& value, ParameterValues& all) {
+  if (py::isinstance<py::dict>(value)) {
+    for (const auto& [key, entry] : py::reinterpret_borrow<py::dict>(value)) {
+      addParameter(name + "." + std::string(py::str(key)), entry, all);
+    }
+  } else if (!all.emplace(name, parameterOf(name, value)).second) {
+    throw ids::InvalidParameterValueException(
+        ids::errorText("parameter '" + name + "'", "", "each parameter once", "it twice"));
+  }
 }
 
 py::tuple argumentsOf(const Origin& origin) {

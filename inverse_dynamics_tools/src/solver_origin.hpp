@@ -13,6 +13,8 @@
 
 namespace inverse_dynamics_tools {
 
+using ParameterValues = std::map<std::string, inverse_dynamics_solver::ParameterValue>;
+
 /// What a solver was made from: enough to make it again elsewhere (pickle).
 struct Origin {
   std::string plugin, urdf, root, tip;
@@ -20,17 +22,17 @@ struct Origin {
   bool friction = true;
   std::string attached;
   std::optional<std::string> model;
-  std::map<std::string, inverse_dynamics_solver::ParameterValue> parameters;
+  ParameterValues parameters;
 };
 
 /// All of it as parameters of `initialize`; what isn't given is left to the solver.
-std::map<std::string, inverse_dynamics_solver::ParameterValue> parametersOf(const Origin& origin);
+ParameterValues parametersOf(const Origin& origin);
 
-/// A Python value as a parameter.
+/// Adds a Python value as a parameter; the entries of a dict as those of `name.KEY`.
 ///
-/// @throws pybind11::type_error  a type that no parameter has.
-inverse_dynamics_solver::ParameterValue parameterOf(const std::string& name,
-                                                    const pybind11::handle& value);
+/// @throws pybind11::error_already_set  ArgumentError: a type that no parameter has.
+/// @throws InvalidParameterValueException  a parameter that is there already.
+void addParameter(const std::string& name, const pybind11::handle& value, ParameterValues& all);
 
 /// The arguments that make the solver again, in the order of its constructor.
 pybind11::tuple argumentsOf(const Origin& origin);

@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import textwrap
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from simulation_arms import joint, link, pendulum, robot, two_links
 from test_evaluation import RIGID_BODY
 
 from inverse_dynamics import Solver, load_robot, read_evaluation
+from inverse_dynamics.errors import ArgumentError, InvalidParameterError, ParameterMissingError
 from inverse_dynamics.simulation import simulate
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -211,3 +213,74 @@ def test_the_solver_of_the_documentation_works_with_ids(tmp_path, example):
     done = ids(commands[0])
     assert done.returncode == 2
     assert done.stderr.startswith("ids: error: robot pendulum: parameter 'mass'")
+
+
+def test_parameters_may_be_nested_as_in_yaml():
+    q = np.zeros(2)
+
+    def gravity(**parameters):
+        return Solver(
+            RIGID_BODY, urdf=WITH_FINGER, tip="tip", parameters=parameters
+        ).gravity_vector(q)
+
+    nested, dotted = {"locked_joints": {"bend": 1.0}}, {"locked_joints.bend": 1.0}
+    np.testing.assert_array_equal(gravity(**nested), gravity(**dotted))
+    assert abs(gravity(**nested) - gravity()).max() > 0.1
+    body = {"mass": 2.0, "center_of_mass": [0.1, 0.0, 0.0]}
+    dotted = {"payload.mass": 2.0, "payload.center_of_mass": [0.1, 0.0, 0.0]}
+    np.testing.assert_array_equal(gravity(payload=body), gravity(**dotted))
+    with pytest.raises(
+        InvalidParameterError, match="parameter 'locked_joints.bend': expected each parameter once"
+    ):
+        gravity(**nested, **{"locked_joints.bend": 2.0})
+    with pytest.raises(
+        ArgumentError, match="parameter 'payload.mass': expected bool, int, .* got complex"
+    ):
+        gravity(payload={"mass": 2j})
+
+
+def test_errors_are_in_the_words_of_python():
+    with pytest.raises(
+        ParameterMissingError, match=r"got neither; give a URDF \(urdf\) or a model file \(model\)$"
+    ):
+        Solver(RIGID_BODY)
+    kdl = RIGID_BODY.replace("rigid_body", "kdl").replace("RigidBody", "KDL")
+    with pytest.raises(ParameterMissingError, match=r"got nothing; give a URDF \(urdf\)$"):
+        Solver(kdl)
+    solver = Solver(RIGID_BODY, urdf=pendulum())
+    with pytest.raises(
+        InvalidParameterError, match="^set_payload: body 'tool': mass: expected a finite number"
+    ):
+        solver.set_payload("tool", -1.0)
+    with pytest.raises(
+        InvalidParameterError, match=r"^set_payload: argument name: .* for remove_payload\(\)$"
+    ):
+        solver.set_payload("", 1.0)
+    with pytest.raises(InvalidParameterError, match="^set_gravity: argument gravity: wrong value"):
+        solver.set_gravity([0.0, 0.0, 1e7])
+    with pytest.raises(
+        ArgumentError, match="argument gravity: expected three numbers or None, got a list of 4$"
+    ):
+        Solver(RIGID_BODY, urdf=pendulum(), gravity=[0.0, 0.0, -9.81, 0.0])
+
+
+def test_implausible_numbers_are_warned_of():
+    arm = {
+        "urdf": two_links(),
+        "parameters": {"payload": {"mass": 0.5, "center_of_mass": [0, 0, -50]}},
+    }
+    assert Solver(RIGID_BODY, **arm).warnings == (
+        "a payload of 0.5 kg is implausible: its center of mass is 50 m from the tip; check the units "
+        "(kg, m, kg m^2)",
+    )
+    (warning,) = Solver(RIGID_BODY, urdf=two_links(), gravity=(0, 0, -981)).warnings
+    assert warning.startswith("gravity of 981 m/s^2 is implausible")
+    solver = Solver(RIGID_BODY, urdf=two_links())
+    with pytest.warns(UserWarning, match="center of mass is 50 m from the tip"):
+        solver.set_payload("part", 0.5, [0, 0, -50])
+    with pytest.warns(UserWarning, match="gravity of 981 m/s"):
+        solver.set_gravity([0, 0, -981])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        solver.set_payload("part", 0.5, [0, 0, -0.05])
+        solver.set_gravity([0, 0, 9.81])

@@ -119,7 +119,7 @@ def _mistake(
             if not parameter.optional:
                 return f"{where}, got none"
         elif not fits(given[parameter.name]):
-            return f"{where}, got {_kind(given[parameter.name])}"
+            return f"{where}, got {_kind(given[parameter.name], of='three' in expected)}"
     return None
 
 
@@ -249,8 +249,10 @@ def _kind_of(alternative: str) -> tuple[str, Callable[[Any], bool]]:
     return f"a {name}", lambda value: name in {base.__name__ for base in type(value).__mro__}
 
 
-def _kind(value: object) -> str:
-    """What a value is, in a few words."""
+def _kind(value: object, *, of: bool = False) -> str:
+    """What a value is, in a few words; of: with how many entries."""
+    if of and isinstance(value, (list, tuple)):
+        return f"a {type(value).__name__} of {len(value)}"
     if value is None or isinstance(value, (bool, int, float, str)):
         return shown(value) if isinstance(value, str) else harmless(value)
     if isinstance(value, np.ndarray):
