@@ -12,6 +12,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data import bags, joint_trajectories
 from inverse_dynamics.data.csv_recordings import open_table, read_csv_log
@@ -19,10 +21,13 @@ from inverse_dynamics.data.csv_table import is_csv
 from inverse_dynamics.data.joint_log import JointLog, check_clock
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
+    from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Clock
+
+_PUBLISHED_BY = 1000  # messages: a joint that none of them has isn't published
 
 
 def read_recording(
@@ -78,6 +83,50 @@ def open_motion(
         return bags.open_joint_states(path, topic)
     trajectories = joint_trajectories.read_joint_trajectories(path, topic, progress)
     return joint_trajectories.joint_log_of(trajectories, joints, clock, topic, recording.storage)
+
+
+def position_ranges(
+    path: Path | str, joints: Sequence[str], *, topic: str = "", usual_topic: str = ""
+) -> dict[str, tuple[float, float, float]]:
+    """Least, mean and greatest position of those of the joints that the recording has, by name.
+
+    topic, usual_topic: as for read_recording(). Of joint states only. Raises BagError.
+    """
+    path = Path(path)
+    found: dict[str, tuple[float, float, float]] = {}
+    counts: dict[str, int] = {}
+    for names, positions in _positions(path, joints, topic, usual_topic):
+        for name in filter(names.__contains__, joints):
+            q = positions[:, names.index(name)]
+            least, mean, greatest = found.get(name, (np.inf, 0.0, -np.inf))
+            count = counts[name] = counts.get(name, 0) + len(q)
+            mean += float((q - mean).sum()) / count
+            found[name] = (min(least, float(q.min())), mean, max(greatest, float(q.max())))
+    return found
+
+
+def _positions(
+    path: Path, joints: Sequence[str], topic: str, usual_topic: str
+) -> Iterator[tuple[tuple[str, ...], Floats]]:
+    """Names, and positions of them in some messages, until it shows that none is of the joints."""
+    if is_csv(path):
+        table = open_table(path)
+        there = tuple(joint for joint in joints if table.names.count(f"position.{joint}") == 1)
+        if there:
+            yield there, table.read([f"position.{joint}" for joint in there])
+        return
+    motion = open_motion(
+        path, (), topic=topic, usual_topic=usual_topic, clock="auto", progress=no_progress
+    )
+    messages, published = 0, False
+    for block in () if isinstance(motion, JointLog) else motion.states:
+        names, positions = block[0], block[4]
+        if positions.shape[1:] == (len(names),):
+            yield names, positions
+        messages += len(positions)
+        published = published or not set(joints).isdisjoint(names)
+        if messages > _PUBLISHED_BY and not published:
+            return
 
 
 def _topic(types: dict[str, str], usual: str) -> str:

@@ -29,6 +29,7 @@ from inverse_dynamics.evaluation.accelerations import (
 from inverse_dynamics.evaluation.diagnosed import diagnosis_of
 from inverse_dynamics.evaluation.diagnosis import Diagnosis
 from inverse_dynamics.evaluation.effort import Effort, effort_of
+from inverse_dynamics.evaluation.posture import posture_of
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.series import Recorded, SeriesInMemory
 from inverse_dynamics.robot.descriptions import joint_units, read_description
@@ -162,6 +163,10 @@ def evaluate(
 
     begin = time.perf_counter()
     arm = Arm(robot)
+    posture = posture_of(bag, robot, arm.description, arm.joint_names, topic=topic)
+    if posture.parameters:
+        robot = replace(robot, parameters={**robot.parameters, **posture.parameters})
+        arm = Arm(robot)
     ready = time.perf_counter()
     motion = open_motion(
         bag,
@@ -188,7 +193,12 @@ def evaluate(
     )
     seconds["reading"] += result.seconds["reading"]
     notes = description_notes(robot, "drawing") if urdf is not None else ()
-    notes = (*window.notes, *_topic_notes(bag, motion, topic or robot.topic), *notes)
+    notes = (
+        *window.notes,
+        *_topic_notes(bag, motion, topic or robot.topic),
+        *posture.notes,
+        *notes,
+    )
     result = replace(result, notes=(*notes, *result.notes), seconds={**result.seconds, **seconds})
     states = (result.log.q, result.log.qd, result.qdd)
     kept = result.samples.kept
@@ -196,6 +206,8 @@ def evaluate(
         arm.solver.seen, states, kept, arm.joint_names, arm.units, arm.solver.joint_types
     )
     result = replace(result, notes=(*result.notes, *filter(None, [outside])))
+    if posture.moves:
+        return result
     cause = diagnosis_of(robot, arm.solver, arm.description, result.log, result.qdd, result.effort)
     if cause is None:
         return result

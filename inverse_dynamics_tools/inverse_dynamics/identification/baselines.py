@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.evaluation.posture import LOCKED
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import RIGID_BODY, with_changes
 from inverse_dynamics.robot.solvers import open_solver
@@ -27,7 +28,8 @@ class Baselines:
     """Torques of models that aren't new."""
 
     def __init__(self, robot: Robot, description: str) -> None:
-        urdf = replace(robot, model=None, plugin=RIGID_BODY, friction=False, parameters={})
+        posture = {name: at for name, at in robot.parameters.items() if name.startswith(LOCKED)}
+        urdf = replace(robot, model=None, plugin=RIGID_BODY, friction=False, parameters=posture)
         self._urdf = open_solver(with_changes(urdf), description)
         self._present: Solver | None = None
         if robot.plugin != RIGID_BODY or robot.model is not None:

@@ -14,6 +14,7 @@ from inverse_dynamics import _core
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.evaluation.evaluation import CAUSE, evaluate
+from inverse_dynamics.evaluation.posture import Posture, locked_joints, posture_of
 from inverse_dynamics.identification.baselines import Baselines, root_mean_squares
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import Chosen, choose, errors_of
@@ -83,9 +84,21 @@ def identify(
         robot = load_robot(robot)
     description = _description(robot)
     _check_distinct([*recordings, *(path for path, _ in known_payloads)])
-    fitter = _core.ArmFitter.from_urdf(
-        description, root=robot.root, tip=robot.tip, gravity=robot.gravity
-    )
+    fitter = _fitter(robot, description)
+    posture = Posture()
+    if recordings:
+        posture = posture_of(
+            Path(recordings[0]),
+            replace(
+                robot, model=None
+            ),  # the links are the description's, whatever is compared with
+            description,
+            fitter.joint_names,
+            topic=options.get("topic"),
+        )
+    if posture.parameters:
+        robot = replace(robot, parameters={**robot.parameters, **posture.parameters})
+        fitter = _fitter(robot, description)
     gains: tuple[DriveGain, ...] = ()
     if known_payloads and recordings:
         gains = identify_drive_gains(
@@ -107,9 +120,20 @@ def identify(
     chosen = choose(fitter, cut)
     seconds["fitting"] = time.perf_counter() - begin
     found = _result(robot, description, evaluations, fitter, cut, held_out, chosen, seconds)
-    found = replace(found, drive_gains=gains)
+    notes = tuple(dict.fromkeys((*posture.notes, *found.notes)))
+    found = replace(found, drive_gains=gains, notes=notes)
     check_result(found)
     return found
+
+
+def _fitter(robot: Robot, description: str) -> ArmFitter:
+    return _core.ArmFitter.from_urdf(
+        description,
+        root=robot.root,
+        tip=robot.tip,
+        gravity=robot.gravity,
+        locked_joints=locked_joints(robot),
+    )
 
 
 def _check_distinct(recordings: Sequence[Path | str]) -> None:

@@ -133,6 +133,57 @@ def effort_limits(file: Path | None, description: str, joint_names: Sequence[str
     return limits
 
 
+def carried_joints(description: str, chain: Sequence[str], root: str = "") -> dict[str, str]:
+    """Units (rad, m) of the joints that move by themselves beside a chain, on a link that it moves.
+
+    chain: names of its joints; root: the link it starts at; none: the description's. Raises RobotError
+    if it isn't XML.
+    """
+    movable, next_to = {}, {}
+    for joint in _joints(None, description):
+        ends = [joint.find(role) for role in ("parent", "child")]
+        parent, child = (None if end is None else end.get("link") for end in ends)
+        name, kind = joint.get("name", ""), joint.get("type")
+        if parent is None or child is None or name in chain:
+            continue
+        next_to.setdefault(parent, []).append(child)
+        next_to.setdefault(child, []).append(parent)
+        if kind in ("revolute", "continuous", "prismatic") and joint.find("mimic") is None:
+            movable[name] = (parent, "m" if kind == "prismatic" else "rad")
+    still = [root or _root_link(description)]
+    for link in still:  # grows by what is connected to the root without a joint of the chain
+        still += [other for other in next_to.get(link, ()) if other not in still]
+    return {name: unit for name, (link, unit) in movable.items() if link not in still}
+
+
+def tip_link(file: Path | None, chain: Sequence[str]) -> str:
+    """The link that a chain without a stated tip ends at: farthest behind its last joint, by fixed joints.
+
+    Raises RobotError.
+    """
+    fixed: dict[str, list[str]] = {}
+    last = ""
+    for joint in _joints(file, "" if file is None else read_description(file)):
+        parent, child = joint.find("parent"), joint.find("child")
+        if parent is None or child is None:
+            continue
+        if joint.get("name") == chain[-1]:
+            last = child.get("link", "")
+        elif joint.get("type") == "fixed":
+            fixed.setdefault(parent.get("link", ""), []).append(child.get("link", ""))
+    links = [last]
+    while behind := [child for link in links for child in fixed.get(link, ())]:
+        links = behind
+    return links[0]
+
+
+def _root_link(description: str) -> str:
+    robot = parse_description(description)
+    children = {child.get("link") for child in robot.iterfind("joint/child")}
+    roots = [link.get("name", "") for link in robot.iterfind("link")]
+    return next((name for name in roots if name not in children), "")
+
+
 def _joints(file: Path | None, description: str) -> list[Element]:
     return list(parse_description(description, file).iter("joint")) if description else []
 

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where a recording has the joints that the chain carries but doesn't consist of.
+
+    posture = posture_of("recording", robot, description, solver.joint_names)
+    robot = replace(robot, parameters={**robot.parameters, **posture.parameters})
+
+A waist carries both arms, though the chain is one of them: the posture of the other one decides what the
+waist has to bear. A solver holds such joints at one position each, `locked_joints.JOINT`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.base.wording import listed
+from inverse_dynamics.data.recordings import position_ranges
+from inverse_dynamics.robot.descriptions import carried_joints
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from inverse_dynamics._core import Parameter
+    from inverse_dynamics.robot.robots import Robot
+
+LOCKED = "locked_joints."
+
+# A joint that moves less is held: 10 kg at 1 m load a joint by 2 N m more or less then, and the finger
+# of a gripper, which travels as far, weighs some grams.
+_STILL = {"rad": 0.02, "m": 0.05}
+
+
+@dataclass(frozen=True)
+class Posture:
+    """Parameters of the solver that hold the joints, and notes that say so."""
+
+    parameters: dict[str, Parameter] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    moves: bool = False  # then no held position is right
+
+
+def locked_joints(robot: Robot) -> dict[str, float]:
+    """Positions of `locked_joints.JOINT` among the parameters of a run configuration, by joint."""
+    return {
+        name.removeprefix(LOCKED): float(value)  # type: ignore[arg-type]
+        for name, value in robot.parameters.items()
+        if name.startswith(LOCKED)
+    }
+
+
+def posture_of(
+    bag: Path,
+    robot: Robot,
+    description: str,
+    joint_names: Sequence[str],
+    *,
+    topic: str | None = None,
+) -> Posture:
+    """Positions of the joints that the chain of joint_names carries.
+
+    Positions that the run configuration gives stay, and a note says where the recording has others.
+    Nothing where torques aren't computed from the description. Raises BagError.
+    """
+    if not description or robot.model is not None or robot.parameters.get("attached") == "ignore":
+        return Posture()
+    units = carried_joints(description, joint_names, robot.root)
+    if not units:
+        return Posture()
+    ranges = position_ranges(bag, list(units), topic=topic or "", usual_topic=robot.topic)
+    held: dict[str, Parameter] = {}
+    stated = locked_joints(robot)
+    told, moving, others = [], [], []
+    for joint, (least, mean, greatest) in ranges.items():
+        unit, position = units[joint], stated.get(joint, mean)
+        if joint not in stated and mean != 0.0:
+            held[f"{LOCKED}{joint}"] = mean
+            told.append(f"{joint} {mean:.4g} {unit}")
+        if greatest - least > _STILL[unit]:
+            moving.append(f"{joint} ({least:.3g} to {greatest:.3g} {unit})")
+        elif abs(position - mean) > _STILL[unit]:
+            others.append(f"{joint} at {mean:.4g} {unit}, locked_joints at {position:.4g} {unit}")
+    return Posture(held, tuple(_notes(told, moving, others)), bool(moving))
+
+
+def _notes(told: list[str], moving: list[str], others: list[str]) -> list[str]:
+    notes = []
+    if told:
+        notes.append(
+            f"joints beside the chain are held where the recording has them (mean): {listed(told)}; "
+            "another position: --parameter locked_joints.JOINT=..."
+        )
+    if others:
+        notes.append(
+            "joints beside the chain are held where the run configuration has them, not where the "
+            f"recording does: {listed(others)}"
+        )
+    if moving:
+        notes.append(
+            f"joints beside the chain move: {listed(moving)}; the torques don't include it, so joints that "
+            "carry them are wrong by that motion; no cause of the errors is looked for: record with "
+            "these joints at rest, or choose a root behind them"
+        )
+    return notes
