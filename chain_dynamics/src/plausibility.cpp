@@ -17,6 +17,11 @@ namespace {
 /// makers give sensors and fingers round placeholders.
 constexpr double kVisible = 0.01;
 
+/// m: torsos, heads and turntables are as wide, however short the chain that moves them.
+constexpr double kBody = 0.3;
+
+constexpr double kSamePlace = 1e-3;  // m between axes of one joint
+
 /// Of a joint's range: a measured position may lie beyond a limit by as much.
 constexpr double kBeyondLimit = 0.1;
 
@@ -48,6 +53,14 @@ double lengthOf(const Chain& chain) {
 
 bool hasMass(const LinkParameters& link) { return link.mass > 0; }
 
+/// Whether link i has no inertia, holds the next joint at a distance, and moves mass beyond it. (The
+/// links between the axes of one joint of several axes may be massless.)
+bool isForgotten(const Chain& chain, std::size_t i) {
+  const auto next = chain.links().begin() + static_cast<std::ptrdiff_t>(i) + 1;
+  return chain.links()[i].toVector().isZero(0) && std::any_of(next, chain.links().end(), hasMass) &&
+         chain.joints()[i + 1].placement.p.norm() > kSamePlace;
+}
+
 double massOf(const Chain& chain) {
   double mass = 0;
   for (const LinkParameters& link : chain.links()) mass += link.mass;
@@ -68,7 +81,7 @@ std::string radiusDoubt(const RobotDescription::Link& link, const std::string& j
   const double moment = largestMoment(*link.inertial);
   const double radius = std::sqrt(std::max(moment, 0.0) / link.inertial->mass);
   const double half = 0.5 * length;
-  if (radius <= half || moment <= kVisible * mass * half * half) return "";
+  if (radius <= std::max(half, kBody) || moment <= kVisible * mass * half * half) return "";
   return linkText(link.inertial->line, link.name, joint) + "a moment of inertia of " +
          rounded(moment) + " kg m^2 for " + rounded(link.inertial->mass) +
          " kg is implausible: a radius of gyration of " + rounded(radius) + " m in a chain of " +
@@ -87,11 +100,9 @@ std::vector<std::string> inertiaDoubts(const RobotDescription& robot, const Chai
     for (const std::size_t part : has_length ? parts[i] : std::vector<std::size_t>()) {
       texts.push_back(radiusDoubt(robot.links[part], joint, length, mass));
     }
-    const RobotDescription::Link& first = robot.links[parts[i].front()];
-    const bool is_massless = chain.links()[i].toVector().isZero(0) && !first.inertial;
-    if (is_massless && std::any_of(chain.links().begin() + static_cast<std::ptrdiff_t>(i),
-                                   chain.links().end(), hasMass)) {
-      texts.push_back(linkText(first.line, first.name, joint) +
+    if (isForgotten(chain, i) && !robot.links[parts[i].front()].inertial) {
+      const RobotDescription::Link& link = robot.links[parts[i].front()];
+      texts.push_back(linkText(link.line, link.name, joint) +
                       "has no <inertial>, but links beyond it have mass: it counts as massless");
     }
   }

@@ -22,7 +22,7 @@ inline namespace v2 {
 ///
 /// A radius of gyration is implausible if it exceeds half the length of the stretched chain: that of
 /// a rod as long as the chain with all its mass at the two ends. Inertia is missing where a moving
-/// link has no `<inertial>` and a link beyond it has mass.
+/// link has no `<inertial>`, although it is a body between two joints, and a link beyond it has mass.
 ///
 /// @param parts  links of the description that each joint of the chain moves, the joint's own child
 ///               first.

@@ -675,22 +675,32 @@ TEST(UrdfDoubts, AWheelMayHaveAnyRadius) {
 TEST(UrdfDoubts, MovingLinkWithoutInertialBeforeLinksWithMassIsAWarning) {
   UrdfOptions options;
   options.allow_massless = true;
-  const auto warnings = [&](const std::string& middle, const std::string& last) {
+  const auto warnings = [&](const std::string& middle, const std::string& last,
+                            const std::string& x = "1") {
     return chainFromUrdf(robot(link("base", "") + link("a", middle) + link("b", last) +
                                joint("first", "continuous", "base", "a", "<axis xyz='0 0 1'/>") +
                                joint("second", "continuous", "a", "b",
-                           "<origin xyz='1 0 0'/><axis xyz='0 1 0'/>")),
+                                     "<origin xyz='" + x + " 0 0'/><axis xyz='0 1 0'/>")),
                          options)
         .warnings();
   };
-  EXPECT_THAT(warnings("", inertial()),
+  EXPECT_THAT(warnings("", inertial("4")),
               ElementsAre("URDF:4: link a, moved by joint first: has no <inertial>, but links "
                           "beyond it have mass: it counts as massless"));
   EXPECT_THAT(warnings("<inertial><mass value='0'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' "
                        "iyz='0' izz='0'/></inertial>",
-                       inertial()),
+                       inertial("4")),
               IsEmpty());
-  EXPECT_THAT(warnings(inertial(), ""), IsEmpty());
+  EXPECT_THAT(warnings(inertial("4"), ""), IsEmpty());
+  EXPECT_THAT(warnings("", inertial("4"), "0"), IsEmpty());  // two axes of one joint
+}
+
+TEST(UrdfDoubts, AWideBodyOnAShortChainIsNone) {
+  const auto torso = chainFromUrdf(robot(
+      link("base", "") + link("hip", inertial("4", "0.1", "")) +
+      link("chest", inertial("5", "0.3", "")) + joint("yaw", "continuous", "base", "hip", "") +
+      joint("pitch", "continuous", "hip", "chest", "<origin xyz='0 0 0.1'/>")));
+  EXPECT_THAT(torso.warnings(), IsEmpty());
 }
 
 TEST(UrdfDoubts, PositionFarBeyondTheLimitsOfALockedJointIsAWarning) {
