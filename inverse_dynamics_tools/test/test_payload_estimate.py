@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import json
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import fails
+from simulation_arms import joint, link, robot
 
 from inverse_dynamics import load_robot
 from inverse_dynamics._core import PayloadEstimator, PayloadStatus, ResidualNoise, residual_noise
@@ -17,6 +19,7 @@ from inverse_dynamics.errors import InvalidParameterError, OutputError
 from inverse_dynamics.identification.payload import (
     PayloadError,
     Samples,
+    _require_own_tip,
     empty_run,
     estimate_payload,
     fit_payload,
@@ -24,6 +27,7 @@ from inverse_dynamics.identification.payload import (
 )
 from inverse_dynamics.results.payload import check_payload_output, payload_files, write_payload
 from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.robots import robot_of_description
 from inverse_dynamics.robot.solvers import open_solver
 from inverse_dynamics.verbs.payload_option import payload as option
 
@@ -69,14 +73,14 @@ def loaded(load=LOAD, **how):
     return with_load(moved(solver, **how), solver, load)
 
 
-def table(file: Path, samples: Samples) -> Path:
+def table(file: Path, samples: Samples, joints=JOINTS) -> Path:
     columns = {
         "position": samples.q,
         "velocity": samples.qd,
         "acceleration": samples.qdd,
         "effort": samples.measured,
     }
-    names = [f"{kind}.{joint}" for kind in columns for joint in JOINTS]
+    names = [f"{kind}.{joint}" for kind in columns for joint in joints]
     rows = np.column_stack([samples.time, *columns.values()])
     np.savetxt(
         file, rows, delimiter=",", header=",".join(["time", *names]), comments="", fmt="%.17g"
@@ -354,3 +358,54 @@ def test_threads_that_share_an_estimator_wait_for_each_other():
         added, mass = estimate_of(light, heavy)
         assert added == [0, len(time)]  # the samples of the second aren't later
         assert mass in alone
+
+
+SCARA = robot(
+    link("base"),
+    link("upper", 6.0, "0.2 0 0"),
+    link("lower", 4.0, "0.15 0 0"),
+    link("quill", 1.0),
+    joint("a", "base", "upper"),
+    joint("b", "upper", "lower", xyz="0.4 0 0"),
+    joint("z", "lower", "quill", kind="prismatic", xyz="0.3 0 0"),
+).replace('<axis xyz="0 1 0"/>', '<axis xyz="0 0 1"/>')
+
+
+def scara(tmp_path):
+    file = tmp_path / "scara.urdf"
+    file.write_text(SCARA)
+    return replace(robot_of_description(file), effort="torque")
+
+
+def carrying(tmp_path, arm):
+    solver = open_solver(arm, SCARA)
+    time = np.arange(0.0, 8.0, 1 / RATE)
+    w, size = np.array([1.3, 2.1, 3.0]), np.array([1.0, 1.2, 0.05])
+    phase = w * time[:, None]
+    states = size * np.sin(phase), size * w * np.cos(phase), -size * w**2 * np.sin(phase)
+    noise = [0.05, 0.05, 0.3] * np.random.default_rng(1).standard_normal(phase.shape)
+    samples = Samples(time, *states, solver.torques(*states) + noise)
+    load = {"mass": 1.0, "center_of_mass": [0.03, 0.0, -0.05]}
+    return table(tmp_path / "loaded.csv", with_load(samples, solver, load), solver.joint_names)
+
+
+def test_a_direction_that_no_joint_bears_is_no_reason_to_refuse(tmp_path):
+    arm = scara(tmp_path)
+    found = estimate_payload(carrying(tmp_path, arm), arm)
+    assert found.estimate.mass == pytest.approx(1.0, abs=0.02)
+    assert found.center_of_mass == pytest.approx([0.03, 0.0, 0.0], abs=0.003)
+    assert np.isnan(found.center_of_mass_half_width).tolist() == [False, False, True]
+    assert any("no joint of this arm bears" in note and "(0, 0, 1)" in note for note in found.notes)
+    write_payload(found, tmp_path / "p.yaml", figures=())
+    text = (tmp_path / "p.yaml").read_text()
+    assert "# Tip frame: link quill." in text
+    assert ", any\n" in text
+    assert json.loads((tmp_path / "p.json").read_text())["center_of_mass_half_width"][2] is None
+    assert option(str(tmp_path / "p.yaml"))["payload.center_of_mass"][2] == 0.0
+
+
+def test_the_tip_of_a_model_cant_be_chosen(tmp_path):
+    with pytest.raises(PayloadError, match="^--tip other: the model of ur10_real states its tip"):
+        _require_own_tip(load_robot("ur10_real"), "other")
+    _require_own_tip(load_robot("ur10_simulated"), "other")
+    _require_own_tip(load_robot("ur10_real"), None)

@@ -12,7 +12,8 @@ carry already.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+import warnings
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,9 +24,9 @@ from inverse_dynamics.base.wording import listed
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate
 from inverse_dynamics.identification.uncertainty import read_uncertainty
-from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.descriptions import read_description, tip_link
 from inverse_dynamics.robot.robots import RIGID_BODY
-from inverse_dynamics.robot.solvers import open_solver
+from inverse_dynamics.robot.solvers import brings_own_model, open_solver
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -44,6 +45,8 @@ _MOVING = 0.02  # rad/s (m/s)
 _MOST_ROUNDS = 8
 _SETTLED = 1e-3  # of the half widths
 _WORST_CENTER = 0.1  # m: half width of a center of mass that isn't known
+_ROUNDING = 1e-9  # of a variance that a projection has removed
+_NO_LOAD = 1e-3  # of the weight at 1 m: the direction is known to a mm in some m
 _LEAST_SHARE = 0.02  # of a joint's noise: offsets aren't known better
 _MOST_UNEXPLAINED = 0.5  # of what the torques of a joint vary by
 _LEAST_VARIATION = 0.1  # of the largest torques: of joints that this is asked of
@@ -79,6 +82,28 @@ class Payload:
     before: Floats
     after: Floats
     notes: tuple[str, ...]
+    # (k, 3) orthonormal: directions of the tip frame in which a load may lie anywhere, as no joint bears it
+    idle: Floats = field(default_factory=lambda: np.empty((0, 3)))
+
+    @property
+    def frame(self) -> str:
+        """Which one the tip frame is, in words."""
+        robot = self.evaluation.robot
+        if brings_own_model(robot) or robot.model is not None:
+            return f"`tip` of the model {robot.plugin if robot.model is None else robot.model.name}"
+        return f"link {robot.tip or tip_link(robot.urdf, self.joint_names)}"
+
+    @property
+    def center_of_mass(self) -> Floats:
+        """(3,) m in the tip frame; zero along `idle`."""
+        center = self.estimate.center_of_mass
+        seen: Floats = center - self.idle.T @ (self.idle @ center)
+        return seen
+
+    @property
+    def center_of_mass_half_width(self) -> Floats:
+        """(3,) m, without what is unknown along `idle`; NaN where nothing is known."""
+        return _center_half_width(self.estimate, self.idle)
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -134,6 +159,7 @@ def estimate_payload(
     Raises UserError: those of evaluate(), PayloadError.
     """
     evaluation = evaluate(bag, robot, progress=progress, **options)
+    _require_own_tip(evaluation.robot, options.get("tip"))
     _require_gravity(evaluation)
     solver = _solver_of(evaluation)
     arm, told = _arm_of(evaluation.robot)
@@ -150,7 +176,8 @@ def estimate_payload(
     where = str(evaluation.bag)
     _require_motion(samples, where)
     found = fit_payload(samples, solver, alone, arm, where)
-    _check(found, samples, evaluation)
+    idle = _idle_directions(found.estimate, solver)
+    _check(found, samples, evaluation, idle)
     return Payload(
         evaluation=evaluation,
         empty=None if empty is None else without.bag,
@@ -160,7 +187,8 @@ def estimate_payload(
         time=samples.time,
         before=found.before,
         after=found.after,
-        notes=(*evaluation.notes, *told, *phantom, *_notes(found, evaluation)),
+        notes=(*evaluation.notes, *told, *phantom, *_notes(found, evaluation, idle)),
+        idle=idle,
     )
 
 
@@ -253,7 +281,9 @@ def _round(
 def _carry(samples: Samples, solver: Solver, found: PayloadEstimate) -> Floats:
     """Measured minus computed torques of an arm with the body."""
     inertia = found.inertia if found.inertia_is_known else np.zeros((3, 3))
-    solver.set_payload(NAME, found.mass, center_of_mass=found.center_of_mass, inertia=inertia)
+    with warnings.catch_warnings():  # what is carried is checked at the end
+        warnings.simplefilter("ignore", UserWarning)
+        solver.set_payload(NAME, found.mass, center_of_mass=found.center_of_mass, inertia=inertia)
     return samples.measured - solver.torques(samples.q, samples.qd, samples.qdd)
 
 
@@ -264,6 +294,43 @@ def _of_arm(
     if arm is None:
         return np.zeros_like(samples.measured)
     return arm.torques(solver, found.arm, samples.q, samples.qd, samples.qdd)
+
+
+def _idle_directions(found: PayloadEstimate, solver: Solver) -> Floats:
+    """(k, 3) uncertain directions along which a load could be moved without a change of any torque.
+
+    Of a SCARA, whose joint axes are parallel to gravity: along them.
+    """
+    variances, directions = np.linalg.eigh(_center_covariance(found))
+    wide = directions.T[1.96 * np.sqrt(np.maximum(variances, 0.0)) > _WORST_CENTER]
+    return np.array([v for v in wide if not _bears(solver, v)]).reshape(-1, 3)
+
+
+def _bears(solver: Solver, direction: Floats) -> bool:
+    """Whether torques show it where 1 kg at the tip is moved by 1 m."""
+    states = np.random.default_rng(0).standard_normal((3, 50, len(solver.joint_names)))
+    torques = []
+    try:
+        for center in (np.zeros(3), direction):
+            solver.set_payload(NAME, 1.0, center_of_mass=center)
+            torques.append(solver.torques(*states))
+    finally:
+        solver.remove_payload(NAME)
+    return bool(np.abs(torques[1] - torques[0]).max() > _NO_LOAD * 9.81)
+
+
+def _center_covariance(found: PayloadEstimate) -> Floats:
+    covariance: Floats = found.covariance[1:4, 1:4] / found.mass**2
+    return covariance
+
+
+def _center_half_width(found: PayloadEstimate, idle: Floats) -> Floats:
+    covariance = _center_covariance(found)
+    seen = np.eye(3) - idle.T @ idle
+    share = np.diag(seen @ covariance @ seen) / np.maximum(np.diag(covariance), 1e-300)
+    width: Floats = found.center_of_mass_half_width * np.sqrt(np.maximum(share, 0.0))
+    width[share < _ROUNDING] = np.nan
+    return width
 
 
 def _settled(last: PayloadEstimate, found: PayloadEstimate) -> bool:
@@ -295,6 +362,15 @@ def _rms(values: Floats) -> Floats:
     return rms
 
 
+def _require_own_tip(robot: Robot, tip: str | None) -> None:
+    if tip is None or (robot.model is None and not brings_own_model(robot)):
+        return
+    raise PayloadError(
+        f"--tip {tip}: the model of {robot.name} states its tip itself, and the load is found in that frame; "
+        "leave --tip out, or compute from a description: --urdf"
+    )
+
+
 def _require_gravity(evaluation: Evaluation) -> None:
     if evaluation.effort.meaning != "torque_without_gravity":
         return
@@ -319,7 +395,7 @@ def _require_motion(samples: Samples, where: str, load: str = "with the load") -
         )
 
 
-def _check(found: Fit, samples: Samples, evaluation: Evaluation) -> None:
+def _check(found: Fit, samples: Samples, evaluation: Evaluation, idle: Floats) -> None:
     """Refuse what isn't an estimate of a load."""
     where, estimate = evaluation.bag, found.estimate
     varies, left = samples.measured.std(axis=0), found.after.std(axis=0)
@@ -346,7 +422,7 @@ def _check(found: Fit, samples: Samples, evaluation: Evaluation) -> None:
         )
     axes = [
         f"{axis} (+- {1e3 * width:.0f} mm)"
-        for axis, width in zip("xyz", estimate.center_of_mass_half_width, strict=True)
+        for axis, width in zip("xyz", _center_half_width(estimate, idle), strict=True)
         if width > _WORST_CENTER
     ]
     if axes:
@@ -368,8 +444,12 @@ def _phantom(found: Fit) -> list[str]:
     ]
 
 
-def _notes(found: Fit, evaluation: Evaluation) -> list[str]:
-    notes = []
+def _notes(found: Fit, evaluation: Evaluation, idle: Floats) -> list[str]:
+    notes = [
+        f"no joint of this arm bears how far the load reaches along {_vector(direction)} of the tip frame: "
+        "any position there gives the same torques, and the center of mass is written with 0"
+        for direction in idle
+    ]
     if "payload.mass" in evaluation.robot.parameters:
         notes.append(
             "the load comes on top of the `payload` of the run configuration, which `--payload` would "
@@ -386,6 +466,10 @@ def _notes(found: Fit, evaluation: Evaluation) -> list[str]:
             "their intervals"
         )
     return notes
+
+
+def _vector(direction: Floats) -> str:
+    return f"({', '.join(f'{x:.3g}' for x in np.round(direction, 3) + 0.0)})"
 
 
 def with_load(samples: Samples, solver: Solver, load: dict[str, Any]) -> Samples:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -69,12 +70,13 @@ def write_payload(
 def yaml_text(payload: Payload) -> str:
     """What --payload takes, with the intervals as comments."""
     found, evaluation = payload.estimate, payload.evaluation
-    center = found.center_of_mass_half_width
+    center = payload.center_of_mass_half_width
     lines = [
         f"# What {evaluation.robot.name} carries at its tip, by `ids payload`; 95 % intervals.",
+        f"# Tip frame: {payload.frame}.",
         f"mass: {_number(found.mass)}  # kg, +- {found.mass_half_width:.2g}",
-        f"center_of_mass: {_list(found.center_of_mass)}  # m, tip frame, +- "
-        + ", ".join(f"{width:.2g}" for width in center),
+        f"center_of_mass: {_list(payload.center_of_mass)}  # m, tip frame, +- "
+        + ", ".join(f"{width:.2g}" if math.isfinite(width) else "any" for width in center),
     ]
     if found.inertia_is_known:
         widths = _upper(found.inertia_half_width)
@@ -101,8 +103,9 @@ def summary(payload: Payload) -> dict[str, Any]:
         "plugin": evaluation.robot.plugin,
         "mass": found.mass,
         "mass_half_width": found.mass_half_width,
-        "center_of_mass": found.center_of_mass.tolist(),
-        "center_of_mass_half_width": found.center_of_mass_half_width.tolist(),
+        "frame": payload.frame,
+        "center_of_mass": payload.center_of_mass.tolist(),
+        "center_of_mass_half_width": payload.center_of_mass_half_width.tolist(),
         "inertia": _upper(found.inertia) if known else None,
         "inertia_half_width": _upper(found.inertia_half_width) if known else None,
         "covariance": found.covariance.tolist(),

@@ -148,17 +148,18 @@ def payload_table(payload: Payload) -> Table:
     """The load with its intervals, one number per row."""
     found = payload.estimate
     table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
-    table.add_column("load, in the tip frame")
+    table.add_column(f"load, in the frame of {payload.frame}", overflow="fold")
     table.add_column("unit")
     table.add_column("estimate", justify="right")
     table.add_column("95 % interval", justify="right")
 
     def add(name: str, unit: str, value: float, half: float) -> None:
-        table.add_row(name, unit, f"{value:.4g}", f"+- {half:.2g}")
+        interval = f"+- {half:.2g}" if math.isfinite(half) else "any"
+        table.add_row(name, unit, f"{value:.4g}", interval)
 
     add("mass", "kg", found.mass, found.mass_half_width)
     for i, axis in enumerate("xyz"):
-        center, half = found.center_of_mass[i], found.center_of_mass_half_width[i]
+        center, half = payload.center_of_mass[i], payload.center_of_mass_half_width[i]
         add(f"center of mass, {axis}", "mm", 1e3 * center, 1e3 * half)
     if found.inertia_is_known:
         for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)):
