@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import sqlite3
 from dataclasses import replace
 from functools import partial
@@ -299,3 +300,51 @@ def test_stored_configuration_names_its_trajectory(name: str) -> None:
     file = config["trajectory"].removeprefix("package://inverse_dynamics_robots/")
     run = simulate(stored(name), trajectory=package / file, rate=config["rate"], duration=0.1)
     assert f"base regressor {run.condition_number:.4g}." in run.trajectory_source
+
+
+def test_another_seed_begins_the_motion_elsewhere():
+    runs = {seed: simulate(stored("ur10"), rate=125, duration=1.0, seed=seed) for seed in (0, 1, 2)}
+    again = simulate(stored("ur10"), rate=125, duration=1.0, seed=1)
+    np.testing.assert_array_equal(again.log.q, runs[1].log.q)
+    for one, other in ((0, 1), (0, 2), (1, 2)):
+        assert np.abs(runs[one].log.q - runs[other].log.q).max() > 0.1
+    # the same motion, some time later
+    begin = float(runs[1].trajectory_source.split("Begun ")[1].split()[0])
+    q, qd, _ = runs[0].trajectory.at(begin + np.linspace(0.0, 30.0, 7))
+    later = runs[1].trajectory.at(np.linspace(0.0, 30.0, 7))
+    np.testing.assert_allclose(later[0], q, atol=1e-12)
+    np.testing.assert_allclose(later[1], qd, atol=1e-12)
+
+
+def test_a_seed_without_effect_is_said(tmp_path):
+    arm = robot(tmp_path)
+    unused = "the seed has no effect: the trajectory is given, and nothing is random"
+    assert unused in simulate(arm, trajectory=SWING, rate=500, seed=1).notes
+    assert unused not in simulate(arm, trajectory=SWING, rate=500).notes
+    noisy = Sensors(noise=Resolution(1e-5, 1e-3, 0.1))
+    assert unused not in simulate(arm, trajectory=SWING, rate=500, seed=1, sensors=noisy).notes
+
+
+def test_a_load_above_the_axis_of_a_light_joint_is_held():
+    """Gravity topples it: its stiffness was half of what that takes, and it turned by 3.7 rad."""
+    load = Payload(5.0, (0.02, -0.03, 0.1))
+    run = simulate(stored("ur10"), rate=125, duration=10.0, payload=load)
+    assert np.abs(run.motion.q - run.motion.q_desired).max() < 0.01
+
+
+def test_a_motion_that_is_not_followed_is_refused(tmp_path):
+    weak = "simulation:\n  gains:\n    swing: {p: 0.1, i: 0, d: 0.01, ff_velocity_scale: -5}\n"
+    arm = robot(tmp_path, weak)
+    with pytest.raises(SimulationError) as error:
+        simulate(arm, trajectory=SWING, rate=500)
+    assert "joint swing doesn't follow the trajectory: expected at most 0.2 rad" in str(error.value)
+    assert "give a higher --rate" in str(error.value)
+
+
+def test_a_massless_link_is_named(tmp_path):
+    urdf = two_links().replace('<mass value="0.1"/>', '<mass value="0"/>', 1)
+    urdf = re.sub(r'(<link name="elbow">)<inertial>.*?</inertial>', r"\1", urdf)
+    with pytest.raises(
+        SimulationError, match="can't move a body without mass, as elbow; give each"
+    ):
+        simulate(robot(tmp_path, urdf=urdf), trajectory=None, rate=500)

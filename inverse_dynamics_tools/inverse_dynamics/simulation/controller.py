@@ -32,6 +32,21 @@ _DAMPING_RATIO = 0.75
 _SAMPLED_DAMPING = 1.2
 
 
+# Stiffness over what topples the load of a joint; at 1 it stands as a pencil does.
+_UPRIGHT = 2.0
+
+
+def _toppling(robot: SimulatedRobot, q: Floats) -> Floats:
+    """(n,) N m/rad by which gravity at most drives each joint away from states q (N, n)."""
+    step, still = 1e-4, np.zeros_like(q)  # rad, m
+    slopes = []
+    for j, move in enumerate(step * np.eye(q.shape[1])):
+        there = robot.torques(q + move, still, still)[:, j]
+        back = robot.torques(q - move, still, still)[:, j]
+        slopes.append((back - there).max() / (2 * step))
+    return np.maximum(slopes, 0.0)
+
+
 @dataclass(frozen=True)
 class Gains:
     """Gains per joint, n each; names as in the parameters of joint_trajectory_controller."""
@@ -49,7 +64,7 @@ class Gains:
         Well damped for the least inertia h_j each joint shows along the way while the others yield, 1 / (H^-1)_jj.
         All joints get one natural frequency w: as fast as the sampled damping allows where the arm is lightest, which
         the greatest eigenvalue of H^-1 diag(h) tells. Where it is heaviest (the least eigenvalue) the integral must be
-        slow enough.
+        slow enough. A joint that carries its load above its axis gets as much stiffness as keeps the load there.
         """
         inverses = np.linalg.inv([robot.inertia_matrix(x) for x in q])
         h = 1.0 / np.diagonal(inverses, axis1=1, axis2=2).max(axis=0)
@@ -58,7 +73,7 @@ class Gains:
         w = min(FASTEST, 0.5 * _SAMPLED_DAMPING / _DAMPING_RATIO / (eigenvalues.max() * period))
         no_friction = np.zeros_like(h)
         return cls(
-            p=h * w**2,
+            p=np.maximum(h * w**2, _UPRIGHT * _toppling(robot, q)),
             i=h * w**3 * eigenvalues.min() / 5,
             d=2 * _DAMPING_RATIO * h * w,
             i_clamp=np.where(np.isfinite(robot.chain.effort), 0.2 * robot.chain.effort, np.inf),

@@ -21,8 +21,9 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from inverse_dynamics.base.extras import lazily_imported
+from inverse_dynamics.base.wording import listed
 from inverse_dynamics.simulation.errors import SimulationError
-from inverse_dynamics.simulation.urdf import Inertia, UrdfChain, chain_from_urdf
+from inverse_dynamics.simulation.urdf import NO_INERTIA, Inertia, UrdfChain, chain_from_urdf
 
 if TYPE_CHECKING:
     import mujoco
@@ -135,7 +136,7 @@ class SimulatedRobot:
             model = spec.compile()
         except ValueError as error:
             raise SimulationError(
-                f"robot description: MuJoCo refuses it: {_line(error)}"
+                f"robot description: MuJoCo refuses it: {_massless(error, chain) or _line(error)}"
             ) from error
         _write_true_inertia(model, chain)
         dofs = np.array([model.joint(name).dofadr[0] for name in chain.joint_names])
@@ -203,6 +204,19 @@ def _line(error: Exception) -> str:
     return " ".join(str(error).split())
 
 
+def _massless(error: Exception, chain: UrdfChain) -> str:
+    """Which links MuJoCo finds too light, and what to do; empty where it minds something else."""
+    links = [
+        link for link in chain.moving_links if not chain.inertia.get(link, NO_INERTIA).mass > 0
+    ]
+    if "mjMINVAL" not in str(error) or not links:
+        return ""
+    return (
+        f"it can't move a body without mass, as {listed(links)}; give each an <inertial> (1e-6 kg and "
+        "1e-9 kg m^2 change no torque visibly), or simulate a chain without them: `root` of the run configuration"
+    )
+
+
 def _attach(spec: mujoco.MjSpec, tip: str, payload: Payload) -> None:
     if not (np.isfinite(payload.mass) and payload.mass > 0 and np.isfinite(payload.center).all()):
         raise SimulationError(
@@ -220,8 +234,7 @@ def _attach(spec: mujoco.MjSpec, tip: str, payload: Payload) -> None:
 
 
 def _in_place_of(described: dict[str, Inertia], given: dict[str, Inertia]) -> dict[str, Inertia]:
-    nothing = Inertia(0.0, np.zeros(3), np.zeros((3, 3)))
-    return {**dict.fromkeys(described, nothing), **given}
+    return {**dict.fromkeys(described, NO_INERTIA), **given}
 
 
 def _write_true_inertia(model: mujoco.MjModel, chain: UrdfChain) -> None:

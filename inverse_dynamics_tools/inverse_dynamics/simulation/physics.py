@@ -43,6 +43,9 @@ RATES = (125, 500, 1000)
 LONGEST_STEP = 5e-4
 """Of the integrator (Runge-Kutta of fourth order) [s]."""
 
+# rad (prismatic m) from the trajectory: where controllers of real arms usually stop.
+_LOST = 0.2
+
 _STATES_FOR_GAINS = 50
 _PROGRESS_EVERY = 500  # ticks
 
@@ -86,7 +89,10 @@ def follow(
     gains: Gains | None = None,
     progress: Progress = no_progress,
 ) -> Motion:
-    """Motion of a robot that starts on a trajectory and follows it for `duration` seconds."""
+    """Motion of a robot that starts on a trajectory and follows it for `duration` seconds.
+
+    Raises SimulationError, also where it doesn't follow.
+    """
     check_rate(rate)
     if not duration * rate <= MOST_SAMPLES:
         raise SimulationError(
@@ -111,7 +117,23 @@ def follow(
         ticks=ticks,
         progress=progress,
     )
-    return Motion(**vars(response), q_desired=trajectory.at(middle)[0], gains=gains)
+    motion = Motion(**vars(response), q_desired=trajectory.at(middle)[0], gains=gains)
+    _check_followed(motion, robot)
+    return motion
+
+
+def _check_followed(motion: Motion, robot: SimulatedRobot) -> None:
+    error = np.abs(motion.q - motion.q_desired)
+    if not (error > _LOST).any():
+        return
+    k = int((error > _LOST).any(axis=1).argmax())
+    j = int(error[k].argmax())
+    raise SimulationError(
+        f"joint {robot.chain.joint_names[j]} doesn't follow the trajectory: expected at most {_LOST:g} rad "
+        f"(prismatic m) from it, got more from {motion.time[k]:.2f} s on, and {error[:, j].max():.3g} at worst; "
+        "give a higher --rate, a slower motion, less --payload or friction, or `gains` under "
+        "`simulation:` of the run configuration"
+    )
 
 
 def drive(

@@ -40,6 +40,7 @@ from inverse_dynamics.simulation.modelled import (
 )
 from inverse_dynamics.simulation.physics import Motion, check_rate, default_gains, follow
 from inverse_dynamics.simulation.sensors import Recorded, Sensors
+from inverse_dynamics.simulation.trajectory import FourierTrajectory
 from inverse_dynamics.simulation.trajectory_file import read_trajectory
 from inverse_dynamics.simulation.urdf import chain_from_urdf
 
@@ -90,7 +91,8 @@ def simulate(
         trajectory is searched for, which takes about a minute.
     rate: of controller and recording, 125, 500 or 1000 Hz.
     duration: s; None: once through the trajectory. A periodic one goes on as long as is asked.
-    seed: of the search and of the sensors' random numbers.
+    seed: of the search, of the sensors' random numbers, and of where in its period the run configuration's
+        trajectory begins if it is a periodic one; 0: at its beginning.
     joint_friction: the friction itself; a number: Coulomb friction that part of each joint's effort limit, and as much
         viscous friction at its velocity limit; "urdf": what <dynamics> says; "model": that of the run configuration's
         solver; None: none, or the model's with `from_model`.
@@ -138,6 +140,8 @@ def simulate(
             f"efforts are recorded as torques, though the run configuration says {robot.effort}: "
             "evaluate them with --effort-is torque"
         )
+    if seed and trajectory is not None and not sensors.are_random:
+        notes.append("the seed has no effect: the trajectory is given, and nothing is random")
     duration = duration or chosen.duration
     gains = stated.gains.apply(default_gains(simulated, chosen, rate))
     motion = follow(simulated, chosen, rate=rate, duration=duration, gains=gains, progress=progress)
@@ -206,7 +210,8 @@ def _choose_trajectory(
         raise SimulationError(
             "expected either a trajectory or a search for one (optimise), got both"
         )
-    if given is None and not optimise:
+    of_robot = given is None and not optimise
+    if of_robot:
         given = default
     if given is None:
         why = "" if optimise else "the run configuration names no trajectory: "
@@ -221,7 +226,11 @@ def _choose_trajectory(
             f"the base regressor {found.condition_number:.4g}."
         )
     if isinstance(given, Path):
-        return read_trajectory(given, robot.chain.joint_names)
+        found, source = read_trajectory(given, robot.chain.joint_names)
+        if of_robot and seed and isinstance(found, FourierTrajectory):
+            begin = round(np.random.default_rng(seed).uniform(0.0, found.period), 3)
+            return found.later(begin), f"{source} Begun {begin:g} s later, by seed {seed}."
+        return found, source
     return given, "Given by the caller."
 
 

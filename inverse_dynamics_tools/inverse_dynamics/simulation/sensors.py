@@ -110,6 +110,11 @@ class Sensors:
                     continue
                 raise SimulationError(f"{name}: {field}: expected {expected}, got {value:g}")
 
+    @property
+    def are_random(self) -> bool:
+        """Whether another seed gives another recording of the same motion."""
+        return bool(self.noise or self.effort_noise or self.drop or self.repeat or self.jitter)
+
     def check(self, joints: int, rate: float) -> None:
         """Raises SimulationError unless so many joints at this rate [Hz] can be recorded."""
         if self.effort_noise is not None:

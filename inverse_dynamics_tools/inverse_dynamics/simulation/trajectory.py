@@ -15,7 +15,7 @@ averaged. It starts and ends at rest, with zero acceleration, where sum_l sine_l
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Protocol
 
@@ -56,6 +56,15 @@ class FourierTrajectory:
     def duration(self) -> float:
         """One period [s]."""
         return self.period
+
+    def later(self, seconds: float) -> FourierTrajectory:
+        """The same motion, begun so much later in its period."""
+        angle = 2.0 * np.pi * seconds / self.period * np.arange(1, self.sine.shape[1] + 1)
+        return replace(
+            self,
+            sine=self.sine * np.cos(angle) + self.cosine * np.sin(angle),
+            cosine=self.cosine * np.cos(angle) - self.sine * np.sin(angle),
+        )
 
     def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
         """q, qd, qdd (N, n) at times (N,) s; any time, since it repeats."""

@@ -36,6 +36,9 @@ class Inertia:
     tensor: Floats  # (3, 3), along the axes of the link's frame
 
 
+NO_INERTIA = Inertia(0.0, np.zeros(3), np.zeros((3, 3)))
+
+
 @dataclass(frozen=True)
 class UrdfChain:
     """A chain of movable joints from root to tip, and the URDF made ready for MuJoCo.
@@ -47,6 +50,7 @@ class UrdfChain:
     root: str
     tip: str
     joint_names: tuple[str, ...]
+    moving_links: tuple[str, ...]  # n, the link right behind each joint
     lower: Floats  # (n,) rad (prismatic m)
     upper: Floats  # (n,)
     velocity: Floats  # (n,) rad/s (prismatic m/s)
@@ -98,6 +102,7 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
         root=root,
         tip=tip,
         joint_names=names,
+        moving_links=tuple(_link_of(joint, "child") for joint in chain),
         lower=np.where(bounded, _numbers(limits, "lower", -np.inf), -np.inf),
         upper=np.where(bounded, _numbers(limits, "upper", np.inf), np.inf),
         velocity=_numbers(limits, "velocity", np.inf),

@@ -88,7 +88,8 @@ def add_parser(
         "--seed",
         type=whole_number,
         default=0,
-        help="seed of all random numbers: the same seed gives the same recording (default: 0)",
+        help="seed of all random numbers, and of where in its period the run configuration's motion begins: "
+        "the same seed gives the same recording, another one another (default: 0, from the beginning)",
     )
 
     motion = parser.add_argument_group("motion")
