@@ -8,9 +8,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.common import file_name, number, progress_bar
+from inverse_dynamics.errors import UserError
+from inverse_dynamics.verbs.common import file_name, number, positive_number, progress_bar
 from inverse_dynamics.verbs.json_output import print_json
-from inverse_dynamics.verbs.options import add_verb, chosen_robot
+from inverse_dynamics.verbs.options import add_chain, add_verb, chosen_robot, robot_changes
 from inverse_dynamics.verbs.payload_option import payload
 
 if TYPE_CHECKING:
@@ -81,12 +82,6 @@ def add_parser(
         help="run configuration: its URDF is the prior, its model is compared with the identified one",
     )
     parser.add_argument(
-        "--urdf",
-        metavar="FILE",
-        type=Path,
-        help="robot description, with or without --robot",
-    )
-    parser.add_argument(
         "--out",
         metavar="FILE",
         type=Path,
@@ -133,6 +128,13 @@ def add_parser(
         + "; ".join(f"{name}: {text}" for name, text in EFFORT_CHOICES.items()),
     )
     parser.add_argument("--topic", metavar="NAME", help="topic of the joint states")
+    parser.add_argument(
+        "--cutoff",
+        metavar="HZ",
+        type=positive_number,
+        help="cut-off frequency of the low-pass filter (default: chosen from the data)",
+    )
+    add_chain(parser.add_argument_group("overrides of the run configuration"), "recordings")
     parser.add_argument(
         "--from",
         dest="start",
@@ -213,11 +215,20 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _robot(arguments: argparse.Namespace) -> Robot:
     """The run configuration to start from; of a description alone, one with its name."""
+    from inverse_dynamics.evaluation.posture import LOCKED
     from inverse_dynamics.robot.robots import with_changes
 
-    if arguments.robot is not None:
-        return with_changes(chosen_robot(arguments), urdf=arguments.urdf)
-    return replace(chosen_robot(arguments), effort="torque", friction=False)
+    changes = robot_changes(arguments)
+    for name in changes["parameters"] or ():
+        if not name.startswith(LOCKED):
+            raise UserError(
+                f"--parameter {name}: expected {LOCKED}JOINT, the only parameters that a fit uses; leave "
+                "it out"
+            )
+    robot = chosen_robot(arguments)
+    if arguments.robot is None:
+        robot = replace(robot, effort="torque", friction=False)
+    return with_changes(robot, cutoff=arguments.cutoff, **changes)
 
 
 def _print(found: Identification, files: IdentificationFiles, tests: Sequence[HoldOut]) -> None:

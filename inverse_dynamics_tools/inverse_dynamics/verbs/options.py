@@ -137,6 +137,21 @@ def add_robot_changes(parser: argparse.ArgumentParser, what: str) -> argparse._A
         default=None,
         help="leave out the solver's friction: for a robot whose controller compensates it",
     )
+    add_chain(group, what)
+    group.add_argument(
+        "--payload",
+        metavar="BODY",
+        type=payload,
+        help="a rigid body at the tip: MASS[,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz]]: mass [kg], "
+        "center of mass in the tip frame [m], moments of inertia "
+        "about it [kg m^2]; or a YAML file with mass, center_of_mass, inertia and frame "
+        "(docs/add_a_robot.md)",
+    )
+    return group
+
+
+def add_chain(group: argparse._ActionsContainer, what: str) -> None:
+    """--urdf and the options that say what of it moves. what: what names the joints."""
     group.add_argument(
         "--urdf",
         metavar="FILE",
@@ -153,15 +168,6 @@ def add_robot_changes(parser: argparse.ArgumentParser, what: str) -> argparse._A
         help=f"names of the joints in the {what}, in the order of the chain",
     )
     group.add_argument(
-        "--payload",
-        metavar="BODY",
-        type=payload,
-        help="a rigid body at the tip: MASS[,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz]]: mass [kg], "
-        "center of mass in the tip frame [m], moments of inertia "
-        "about it [kg m^2]; or a YAML file with mass, center_of_mass, inertia and frame "
-        "(docs/add_a_robot.md)",
-    )
-    group.add_argument(
         "--parameter",
         dest="parameters",
         metavar="NAME=VALUE",
@@ -170,14 +176,13 @@ def add_robot_changes(parser: argparse.ArgumentParser, what: str) -> argparse._A
         help="a parameter of the solver, as under `parameters:` (docs/add_a_robot.md): "
         "locked_joints.finger=0.02; may be given several times",
     )
-    return group
 
 
 def robot_changes(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Values of the options of add_robot_changes(); None: not given."""
-    changes = {name: getattr(arguments, name) for name in _CHANGES}
+    """Values of the options of add_robot_changes(), or of add_chain(); None: not given."""
+    changes = {name: getattr(arguments, name, None) for name in _CHANGES}
     parameters = dict(changes["parameters"] or {})
-    for name, value in (arguments.payload or {}).items():
+    for name, value in (getattr(arguments, "payload", None) or {}).items():
         if name in parameters:
             raise UserError(
                 f"--payload and --parameter {name}: expected one of them; leave out one"
