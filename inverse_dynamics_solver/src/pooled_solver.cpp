@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_solver/pooled_solver.hpp"
 
+#include <new>
+#include <string>
 #include <utility>
 
 #include "chain_dynamics/model.hpp"
@@ -40,8 +42,16 @@ auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
 
 auto PooledSolver::robotOf(const chain_dynamics::Chain& chain, std::size_t max_threads) const
     -> std::unique_ptr<const PooledRobot> {
-  return std::make_unique<const PooledRobot>(
-      PooledRobot{std::make_unique<WorkspacePool<Workspace>>(max_threads, workspaceMaker(chain))});
+  try {
+    return std::make_unique<const PooledRobot>(PooledRobot{
+        std::make_unique<WorkspacePool<Workspace>>(max_threads, workspaceMaker(chain))});
+  } catch (const std::bad_alloc&) {
+    throw Exception(errorText(
+        "chain " + chain.name(), "no memory left", "room for a workspace for each of max_threads",
+        std::to_string(chain.jointCount()) + " joints, max_threads " + std::to_string(max_threads),
+        "set max_threads to what is used at the same time, or take the solver "
+        "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody, which has none"));
+  }
 }
 
 auto PooledSolver::robotUnder(const Conditions& conditions) const
