@@ -41,6 +41,10 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::ifstream file(argv[1]);
+  if (!file) {
+    std::cerr << argv[1] << ": can't be read; expected the file of a URDF\n";
+    return 1;
+  }
   const std::string urdf{std::istreambuf_iterator<char>(file), {}};
 
   // Before the loop: everything that can fail or allocates.
