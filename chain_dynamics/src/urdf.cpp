@@ -386,12 +386,17 @@ class Builder {
     return body_[joint];
   }
 
-  /// All that isn't below a link, with its branches, as one rigid body in that link's frame.
+  /// All that isn't below a link, with its branches, as one rigid body in that link's frame; a
+  /// floating joint attaches nothing.
   LinkParameters trunk(const Link& link) {
     LinkParameters body = LinkParameters::zero();
     const Joints above = jointsAbove(robot_, robot_.joints[link.parent_joint].child);
     for (auto j = above.rbegin(); j != above.rend(); ++j) {  // parents before children
       const RobotDescription::Joint& joint = robot_.joints[*j];
+      if (joint.type == Type::kFloating) {
+        body = LinkParameters::zero();
+        continue;
+      }
       body += parameters(robot_.links[joint.parent]);
       parts_.back().push_back(joint.parent);
       for (const std::size_t child : robot_.links[joint.parent].child_joints) {
@@ -462,8 +467,7 @@ class Builder {
     std::ostringstream text;
     text << "URDF:" << root.line << ": link " << root.name
          << ": gravity isn't given, so it is [0, 0, -9.81] in the frame of this root link; down "
-            "the z"
-            " axis of link "
+            "the z axis of link "
          << robot_.links[robot_.root].name << " (joints between them at zero) it would be ["
          << rounded(down.x()) << ", " << rounded(down.y()) << ", " << rounded(down.z())
          << "]: give the one that is right";

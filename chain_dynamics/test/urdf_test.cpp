@@ -526,6 +526,16 @@ TEST(Urdf, RootAndTipMayBeOnTwoBranches) {
   EXPECT_NEAR(chain.links()[0].mass, 2 + 2, kRounding);
 }
 
+TEST(Urdf, TheWorldIsNotAttachedToARobotThatFloatsInIt) {
+  const std::string urdf = robot(link("world", inertial("9")) + link("torso") + link("left") +
+                                 link("right") + joint("float", "floating", "world", "torso", "") +
+                                 joint("l", "continuous", "torso", "left", "") +
+                                 joint("r", "continuous", "torso", "right", ""));
+  const auto chain = chainFromUrdf(urdf, between("left", "right"));
+  EXPECT_THAT(chain.jointNames(), ElementsAre("l", "r"));
+  EXPECT_NEAR(chain.links()[0].mass, 2, kRounding);  // torso
+}
+
 TEST(Urdf, ASecondBaseIsARootLikeTheFirst) {
   const std::string urdf =
       arm("", link("plate") + joint("print", "fixed", "base", "plate", "<origin xyz='0 0 0.7'/>"));

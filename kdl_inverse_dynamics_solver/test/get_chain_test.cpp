@@ -35,7 +35,7 @@ KDL::RigidBodyInertia inertiaOf(const RobotDescription::Link& link) {
   return toKdl(X) * KDL::RigidBodyInertia(mass, KDL::Vector::Zero(), moments);
 }
 
-/// The tree that kdl_parser makes: a segment for each link but the root, which KDL gives no inertia.
+/// The tree that kdl_parser makes: a segment for each link but the root, which KDL makes massless.
 KDL::Tree treeOf(const RobotDescription& robot) {
   KDL::Tree tree(robot.links[robot.root].name);
   for (const std::size_t i : robot.linksBelow(robot.root)) {

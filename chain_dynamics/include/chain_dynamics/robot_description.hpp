@@ -14,8 +14,9 @@
 /// Read are the links and joints of URDF 1.0 to 1.2 [https://wiki.ros.org/urdf/XML], with
 /// `quat_xyzw` of 1.2, and the rotor inertia of `<transmission>`. Known, and left to others: visual
 /// and collision shapes, materials, sensors, calibration, safety controllers, extensions of
-/// simulators, all else of transmissions, and elements of another XML namespace. Any other element or attribute gives a warning, with the name that
-/// was probably meant. A Chain is made from this tree by chainFromRobot() [urdf.hpp].
+/// simulators, all else of transmissions, and elements of another XML namespace. Any other element
+/// or attribute gives a warning, with the name that was probably meant. A Chain is made from this
+/// tree by chainFromRobot() [urdf.hpp].
 
 #pragma once
 

@@ -10,18 +10,20 @@
 ///
 /// What becomes of a URDF, read as in robot_description.hpp:
 ///
-/// - Root and tip are any two links. The path goes up the tree to the first link above both and down
-///   again, as that of KDL's Tree::getChain; the chain's joints are the movable ones on it.
-/// - A joint that is passed from child to parent keeps the sign of its position, velocity and torque:
-///   the chain moves its parent link, with that link's own inertia, about the opposite axis.
+/// - Root and tip are any two links. The path goes up the tree to the first link above both and
+///   down again, as that of KDL's Tree::getChain; the chain's joints are the movable ones on it.
+/// - A joint that is passed from child to parent keeps the sign of its position, velocity and
+///   torque: the chain moves its parent link, with that link's own inertia, about the opposite
+///   axis.
 /// - Links joined by fixed joints become one link: their parameters are moved into one frame and
 ///   added.
 /// - URDF joint axes are arbitrary, a chain's are z: where it isn't z already, the link's frame is
 ///   turned so that it is. Joint torques don't depend on how.
 /// - The root link is held: inertia before the first movable joint has no influence.
-/// - Bodies attached to the chain beside the path, beyond the tip or, where the path turns, above it
-///   move with it and are lumped into the link that carries them, unless `lump_attached` is false.
-///   Movable joints among them are held at `locked_position`; one that mimics another follows it.
+/// - Bodies attached to the chain beside the path, beyond the tip or, where the path turns, above
+///   it move with it and are lumped into the link that carries them, unless `lump_attached` is
+///   false. Movable joints among them are held at `locked_position`; one that mimics another
+///   follows it. A floating joint above the path attaches nothing: what is above it is the world.
 /// - `<dynamics damping friction>` becomes Joint::damping and Joint::friction, which no algorithm
 ///   reads (simulators disagree on its meaning).
 ///
@@ -65,8 +67,9 @@ struct UrdfOptions {
   /// It is asked for every joint of the robot; nothing: held at zero. A position for a joint that
   /// isn't held gives a warning.
   std::function<std::optional<double>(const std::string& joint)> locked_position = {};
-  /// Rotor inertia of a joint of the chain, reflected to the joint; kg m^2, prismatic kg. It is asked
-  /// for every joint of the chain, and may answer with what the description states. Empty: none.
+  /// Rotor inertia of a joint of the chain, reflected to the joint; kg m^2, prismatic kg. It is
+  /// asked for every joint of the chain, and may answer with what the description states. Empty:
+  /// none.
   std::function<double(const RobotDescription::Joint& joint)> rotor_inertia = {};
 };
 
