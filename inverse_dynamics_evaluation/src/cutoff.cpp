@@ -24,7 +24,7 @@ constexpr double kNear = 1.4142136;  // frequencies within half an octave are av
 constexpr double kOctave = 2.0;
 // of the power of the derivative of q, noise: above, q says little. Where stamps are irregular,
 // interpolation leaves a third of the noise at high frequencies.
-constexpr double kNoisy = 0.25;
+constexpr double kNoisy = 0.2;
 constexpr double kCoherent = 0.25;  // qd has the noise of q, late by up to 60 degrees: cos^2
 
 // Share of white noise of q in the power of a joint's derivative of q; B. Its level is that of the

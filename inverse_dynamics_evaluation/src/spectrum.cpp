@@ -45,16 +45,17 @@ Eigen::ArrayXd positionRate(const Eigen::ArrayXd& q, const Eigen::ArrayXd& qd,
                             double sampling_frequency) {
   const Index last = q.size() - 1;
   Eigen::ArrayXd rate = sampling_frequency * (q.tail(last) - q.head(last));
-  Eigen::ArrayXd beyond(last);
+  Eigen::ArrayXd width(last), beyond(last);
   for (Index k = 0; k < last; ++k) {
     const Index first = std::max<Index>(k - 1, 0);
     const auto around = qd.segment(first, std::min(k + 2, last) - first + 1);
     const double least = around.minCoeff(), greatest = around.maxCoeff();
-    beyond[k] = std::max({2.0 * least - greatest - rate[k], rate[k] - 2.0 * greatest + least, 0.0});
+    width[k] = greatest - least;
+    beyond[k] = std::max({least - rate[k], rate[k] - greatest, 0.0});
   }
   const double limit = kJump * std::sqrt(beyond.square().mean());
   for (Index k = 2; k + 1 < last; ++k) {
-    if (beyond[k] > limit) {  // samples between two stamps share a jump
+    if (beyond[k] > std::max(limit, width[k])) {  // samples between two stamps share a jump
       rate.segment(k - 1, 3).setConstant(rate[k - 2]);
     }
   }

@@ -26,7 +26,7 @@
 ///
 /// Drivers often make qd from q; then both share the noise of q. That noise, often the counts of an
 /// encoder, is white in q: its power in R is its level times f^2, and the level is what R has in the
-/// upper half of the frequencies. Up to the last frequency f_q at which noise is less than a quarter
+/// upper half of the frequencies. Up to the last frequency f_q at which noise is less than a fifth
 /// of R, q says what is motion. If qd is coherent with q in the octave above f_q, it has the noise of
 /// q: its share in R is taken away from C, and nothing is motion above f_q. Otherwise C is motion up
 /// to an octave above f_q, and nothing beyond, where it is mostly the product of two noises.
