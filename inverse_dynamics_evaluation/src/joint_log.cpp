@@ -38,6 +38,13 @@ std::string didYouMean(const std::string& missing, std::vector<std::string> name
   return "; did you mean " + chain_dynamics::printable(nearest, kLongestName) + "?";
 }
 
+// Whether a message has nothing but some of the joints: the others aren't misnamed.
+bool isPart(const std::vector<std::string>& names, const std::vector<std::string>& joints) {
+  return std::all_of(names.begin(), names.end(), [&joints](const std::string& name) {
+    return std::find(joints.begin(), joints.end(), name) != joints.end();
+  });
+}
+
 std::string numberText(double number) {
   std::ostringstream text;
   text << number;
@@ -257,9 +264,13 @@ bool JointLogBuilder::matches(const JointSample& sample) {
       throw RecordingError(
           place(sample) + ": expected the joints " + listed(matching_.joints()) + ", got " +
           listed(sample.names) + "; missing: " + listed(matching_.culprits()) +
-          "; give the recording's names with " + options_.joints_option +
-          ", in the order of the chain" +
-          didYouMean(matching_.culprits().front(), sample.names, matching_.joints()));
+          (isPart(sample.names, matching_.joints())
+               ? "; joints that arrive in several messages aren't merged: record a topic that has "
+                 "all of "
+                 "them in each message, as joint_state_publisher makes with source_list"
+               : "; give the recording's names with " + options_.joints_option +
+                     ", in the order of the chain" +
+                     didYouMean(matching_.culprits().front(), sample.names, matching_.joints())));
     case JointMatching::Found::kRepeated:
       throw RecordingError(place(sample) + ": expected each joint once, got " +
                            listed(sample.names) + "; repeated: " + listed(matching_.culprits()) +

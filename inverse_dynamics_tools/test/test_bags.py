@@ -177,6 +177,21 @@ def test_missing_joint_is_named_and_found_ones_are_listed(bag):
     )
 
 
+def test_joints_that_arrive_in_several_messages_are_not_called_misnamed(tmp_path):
+    apart = [
+        joint_state([name], [0.0], [0.0], [0.0], (k + 1) * 10**7)
+        for k in range(3)
+        for name in ("joint_1", "joint_2")
+    ]
+    write_messages(tmp_path / "bag", apart)
+    text = fails(
+        tmp_path / "bag",
+        "missing: joint_2; joints that arrive in several messages aren't merged: record a topic that has",
+        joints=["joint_1", "joint_2"],
+    )
+    assert "--joints" not in text
+
+
 def test_recording_of_another_robot_lists_its_joints(bag):
     fails(
         bag,
