@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -147,3 +148,14 @@ def test_a_comparison_uses_neither_the_colour_of_measured_torques_nor_that_of_an
     assert colors[0] == palette.COMPUTED
     assert len({*colors, palette.MEASURED, palette.ERROR}) == 7
     assert [line.get_color() for line in right.get_lines()[:5]] == colors
+
+
+def test_characters_that_the_font_lacks_are_written_as_escapes(tmp_path):
+    evaluation = make_evaluation(joints=2)
+    evaluation = replace(evaluation, joint_names=("关节", "Gelenk_ä"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # matplotlib's: Glyph 20851 missing from font(s) DejaVu Sans
+        save_torque_figure(evaluation, tmp_path / "torques.svg")
+    drawn = (tmp_path / "torques.svg").read_text(encoding="utf-8")
+    assert "\\u5173\\u8282" in drawn
+    assert "Gelenk_ä" in drawn

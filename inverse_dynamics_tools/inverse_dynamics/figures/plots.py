@@ -94,11 +94,18 @@ def save_figure(make: Callable[[], Figure], *files: Path) -> None:
 
 
 def make_printable(figure: Figure) -> None:
-    """Names that no font, and no XML, can show become escapes."""
+    """Names that the font, or XML, can't show become escapes."""
+    from matplotlib.font_manager import findfont, get_font
     from matplotlib.text import Text
 
     for text in figure.findobj(Text):
-        text.set_text(printable(text.get_text()))
+        shown = printable(text.get_text())
+        if not shown.isascii():
+            font = get_font(findfont(text.get_fontproperties()))
+            shown = "".join(
+                c if c.isspace() or font.get_char_index(ord(c)) else ascii(c)[1:-1] for c in shown
+            )
+        text.set_text(shown)
 
 
 def torque_figure(evaluation: Evaluation, lines: TorqueLines | None = None) -> Figure:
