@@ -49,7 +49,7 @@ def refusal(call) -> str:
         (
             (UR10,),
             {"gravity": (0, -9.81)},
-            "Solver: argument gravity: expected three numbers or None, got an object of type tuple",
+            "Solver: argument gravity: expected three numbers or None, got a tuple of 2",
         ),
         (
             (UR10,),

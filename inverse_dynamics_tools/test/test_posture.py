@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from inverse_dynamics._core import ArmFitter
+from inverse_dynamics.cli import make_parser
 from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.data.recordings import position_ranges
@@ -16,6 +17,7 @@ from inverse_dynamics.evaluation.posture import posture_of
 from inverse_dynamics.identification.payload import _solver_of
 from inverse_dynamics.robot.descriptions import carried_joints
 from inverse_dynamics.robot.robots import robot_of_description, with_changes
+from inverse_dynamics.verbs import identify as identify_verb
 
 JOINTS = ("waist", "right", "left", "grip")
 CHAIN = ("waist", "right")
@@ -184,3 +186,20 @@ def test_identification_starts_from_the_posture(tmp_path, urdf):
         fitter = ArmFitter.from_urdf(URDF, tip="right_arm", locked_joints=locked)
         trunk = fitter.prior[0, 1:4] - ArmFitter.from_urdf(URDF, tip="right_arm").prior[0, 1:4]
         assert (np.abs(trunk).max() > 0.5) == right
+
+
+def test_identify_takes_the_chain_as_options_and_no_other_parameter(ids, tmp_path, urdf):
+    recording = table(tmp_path / "still.csv")
+    out = ("--out", str(tmp_path / "arm.yaml"))
+    code, _, err = ids(
+        "identify", str(recording), "--urdf", str(urdf), *out, "--parameter", "attached=ignore"
+    )
+    assert code == 2
+    assert "--parameter attached: expected locked_joints.JOINT" in err
+    options = "--tip right_arm --gravity 0,0,9.81 --joints a,b --cutoff 7 --parameter locked_joints.left=0.5"
+    given = ("identify", str(recording), "--urdf", str(urdf), *out, *options.split())
+    arguments = make_parser().parse_args(given)
+    robot = identify_verb._robot(arguments)
+    assert (robot.tip, robot.gravity, robot.joints) == ("right_arm", (0.0, 0.0, 9.81), ("a", "b"))
+    assert (robot.cutoff, robot.friction) == (7.0, False)
+    assert robot.parameters == {"locked_joints.left": 0.5}

@@ -139,7 +139,8 @@ def carried_joints(description: str, chain: Sequence[str], root: str = "") -> di
     chain: names of its joints; root: the link it starts at; none: the description's. Raises RobotError
     if it isn't XML.
     """
-    movable, next_to = {}, {}
+    movable: dict[str, tuple[str, str]] = {}
+    next_to: dict[str, list[str]] = {}
     for joint in _joints(None, description):
         ends = [joint.find(role) for role in ("parent", "child")]
         parent, child = (None if end is None else end.get("link") for end in ends)

@@ -226,11 +226,11 @@ def _choose_trajectory(
             f"the base regressor {found.condition_number:.4g}."
         )
     if isinstance(given, Path):
-        found, source = read_trajectory(given, robot.chain.joint_names)
-        if of_robot and seed and isinstance(found, FourierTrajectory):
-            begin = round(np.random.default_rng(seed).uniform(0.0, found.period), 3)
-            return found.later(begin), f"{source} Begun {begin:g} s later, by seed {seed}."
-        return found, source
+        read, source = read_trajectory(given, robot.chain.joint_names)
+        if of_robot and seed and isinstance(read, FourierTrajectory):
+            begin = round(np.random.default_rng(seed).uniform(0.0, read.period), 3)
+            return read.later(begin), f"{source} Begun {begin:g} s later, by seed {seed}."
+        return read, source
     return given, "Given by the caller."
 
 
