@@ -15,10 +15,17 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
+double ContactDetector::stillHeld(double held, double part) const noexcept {
+  const double sign = std::copysign(1.0, held);
+  const double left = std::min(std::abs(held), sign * part + release_.share);
+  return left > release_.share ? sign * left : 0.0;
+}
+
 ContactDetector::ContactDetector(const Eigen::Ref<const Eigen::VectorXd>& thresholds,
                                  const ReleaseOptions& release,
                                  const std::vector<std::string>& joint_names)
     : thresholds_(thresholds), release_(release) {
+  for (OwnedVector* vector : {&held_, &greatest_}) vector->setZero(thresholds_.size());
   const std::string name = "contact detector";
   requireJointNumbers(name + ": thresholds", thresholds_, Range::kPositiveOrAbsent, "N m",
                       joint_names);
@@ -34,28 +41,32 @@ ContactDetector::ContactDetector(const Eigen::Ref<const Eigen::VectorXd>& thresh
 
 bool ContactDetector::update(const Eigen::Ref<const Eigen::VectorXd>& torques,
                              double period) noexcept {
-  Eigen::Index greatest = -1;
-  excess_ = kInfinity;
-  if (torques.size() == thresholds_.size()) {
-    excess_ = 0.0;
-    for (Eigen::Index j = 0; j < torques.size(); ++j) {
-      const double part =
-          std::isfinite(torques[j]) ? std::abs(torques[j]) / thresholds_[j] : kInfinity;
-      if (part > excess_ || greatest < 0) {
-        greatest = j;
-        excess_ = part;
-      }
+  const bool fits = torques.size() == thresholds_.size();
+  if (!contact_) greatest_.setZero();
+  excess_ = fits ? 0.0 : kInfinity;
+  double most = 0.0;  // change of a torque that is beyond its threshold
+  bool lasts = !fits;
+  for (Eigen::Index j = 0; fits && j < torques.size(); ++j) {
+    const double part = std::isfinite(torques[j]) ? torques[j] / thresholds_[j] : kInfinity;
+    if (!contact_) held_[j] = stillHeld(held_[j], part);
+    const double change =
+        std::abs(part - std::clamp(part, std::min(0.0, held_[j]), std::max(0.0, held_[j])));
+    excess_ = std::max(excess_, std::abs(part));
+    if (change > 1.0) {
+      if (!contact_ && change > most) joint_ = j;
+      most = std::max(most, change);
+      greatest_[j] = std::max(greatest_[j], change);
     }
+    lasts = lasts || (greatest_[j] > 0.0 && change >= release_.share * greatest_[j]);
   }
-  if (excess_ > 1.0) {
-    if (!contact_) joint_ = greatest;
+  if (!fits && !contact_) joint_ = -1;
+  if (lasts) {
     contact_ = true;
-    below_ = 0.0;
-  } else if (excess_ >= release_.share) {
     below_ = 0.0;
   } else if (contact_) {
     if (period > 0) below_ += period;
     contact_ = below_ < release_.time;
+    if (!contact_) held_ = torques.cwiseQuotient(thresholds_);
   }
   return contact_;
 }
@@ -64,6 +75,7 @@ void ContactDetector::reset() noexcept {
   contact_ = false;
   joint_ = -1;
   excess_ = below_ = 0.0;
+  held_.setZero();
 }
 
 }  // namespace v2

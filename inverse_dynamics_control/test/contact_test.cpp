@@ -214,15 +214,46 @@ TEST(ContactDetector, AContactBeginsAtOnceAndIsOverAfterAWhile) {
   EXPECT_TRUE(detector.update(vec({1.0, -4.4}), kPeriod));
   EXPECT_EQ(detector.joint(), 1);
   EXPECT_NEAR(detector.excess(), 1.1, kRounding);
-  // below its threshold, but not below the share
-  for (int k = 0; k < 100; ++k) EXPECT_TRUE(detector.update(vec({1.0, 0.0}), kPeriod));
-  // below it, with an interruption
-  for (int k = 0; k < 9; ++k) EXPECT_TRUE(detector.update(vec({0.9, 0.0}), kPeriod));
-  EXPECT_TRUE(detector.update(vec({0.0, 2.0}), kPeriod));
-  for (int k = 0; k < 9; ++k) EXPECT_TRUE(detector.update(vec({0.9, 0.0}), kPeriod));
-  EXPECT_TRUE(detector.update(vec({0.9, 0.0}), -1.0));  // no time passes
-  EXPECT_FALSE(detector.update(vec({0.9, 0.0}), 1.1 * kPeriod));
+  // below its threshold, but not below the share of the greatest torque
+  for (int k = 0; k < 100; ++k) EXPECT_TRUE(detector.update(vec({0.0, -2.3}), kPeriod));
+  // below it, with an interruption; the other joint has never been beyond its threshold
+  for (int k = 0; k < 9; ++k) EXPECT_TRUE(detector.update(vec({1.9, 0.9}), kPeriod));
+  EXPECT_TRUE(detector.update(vec({0.0, 2.3}), kPeriod));
+  for (int k = 0; k < 9; ++k) EXPECT_TRUE(detector.update(vec({1.9, 0.9}), kPeriod));
+  EXPECT_TRUE(detector.update(vec({1.9, 0.9}), -1.0));  // no time passes
+  EXPECT_FALSE(detector.update(vec({1.9, 0.9}), 1.1 * kPeriod));
   EXPECT_FALSE(detector.update(vec({1.9, 0.0}), kPeriod));  // needs the threshold again
+  EXPECT_TRUE(detector.update(vec({-2.1, 0.0}), kPeriod));
+}
+
+TEST(ContactDetector, WhatFrictionHoldsAfterAContactIsNone) {
+  ContactDetector detector(vec({2.0, 4.0}), {}, kJoints);
+  const auto last = [&](double torque, int samples) {
+    bool contact = false;
+    for (int k = 0; k < samples; ++k) contact = detector.update(vec({torque, 0.0}), kPeriod);
+    return contact;
+  };
+  EXPECT_TRUE(last(9.0, 1000));
+  EXPECT_TRUE(last(4.0, 99));  // more than the threshold, and less than half of the greatest
+  EXPECT_FALSE(last(4.0, 2));
+  EXPECT_FALSE(last(4.0, 10000));
+  EXPECT_EQ(detector.excess(), 2.0);
+  // the next one is on top of it, or against it
+  EXPECT_FALSE(last(5.9, 1));
+  EXPECT_TRUE(last(6.1, 1));
+  EXPECT_FALSE(last(4.0, 200));
+  EXPECT_TRUE(last(-2.1, 1));
+  EXPECT_FALSE(last(0.0, 200));
+  EXPECT_TRUE(last(9.0, 1));
+  EXPECT_FALSE(last(4.0, 200));
+  // what has fallen isn't held any longer
+  EXPECT_FALSE(last(1.6, 1));
+  EXPECT_FALSE(last(4.4, 1));  // 2.6 are held
+  EXPECT_TRUE(last(4.7, 1));
+  EXPECT_FALSE(last(1.2, 200));
+  EXPECT_FALSE(last(2.1, 1));  // 1.2 are held
+  EXPECT_FALSE(last(0.0, 1));
+  EXPECT_TRUE(last(2.1, 1));
 }
 
 TEST(ContactDetector, WhatIsNotANumberIsAContact) {

@@ -17,15 +17,19 @@ inline namespace v2 {
 
 /// When a contact is over.
 struct ReleaseOptions {
-  double share = 0.5;  ///< all torques below this share of their thresholds, > 0, <= 1 ...
+  double share = 0.5;  ///< torques below this share of their greatest ones, > 0, <= 1 ...
   double time = 0.1;   ///< ... for so long; finite, >= 0; s
 };
 
 /// Compares external torques with thresholds. Not thread-safe.
 ///
-/// A contact begins at once, and is over when all torques have been well below their thresholds for
-/// a while. Real time: all methods but the constructor: no allocation, lock, exception or system
-/// call.
+/// A contact begins at once, and is over when all torques that were beyond their thresholds have been
+/// well below the greatest that they had in it for a while. What they are then, friction of a joint at
+/// rest or a load, is held: torques between zero and it are no contact, and others count by what lies
+/// beyond. What is held falls with the torque, `share` of a threshold behind, so that noise doesn't
+/// take it down.
+///
+/// Real time: all methods but the constructor: no allocation, lock, exception or system call.
 class ContactDetector {
  public:
   /// @param thresholds   n, > 0, infinity for a joint that isn't looked at; N m (prismatic N);
@@ -56,11 +60,14 @@ class ContactDetector {
   void reset() noexcept;
 
  private:
+  double stillHeld(double held, double part) const noexcept;
+
   OwnedVector thresholds_;
   ReleaseOptions release_;
   bool contact_ = false;
   Eigen::Index joint_ = -1;
   double excess_ = 0.0, below_ = 0.0;  // time below the share [s]
+  OwnedVector held_, greatest_;        // in thresholds; left by contacts; most in the present one
 };
 
 }  // namespace v2
