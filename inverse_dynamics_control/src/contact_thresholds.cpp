@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
-#include <random>
 #include <utility>
 
 #include "option_checks.hpp"
@@ -16,14 +15,11 @@ namespace {
 using Index = Eigen::Index;
 using Series = Eigen::VectorXd;
 
-constexpr double kMostPeaks = 100.0;
-constexpr double kLeastPeaks = 20.0;
-constexpr double kPeakShare = 0.2;  // of the independent samples
-constexpr double kApart = 3.0;      // correlation times between two peaks
-constexpr double kMostShape = 0.5;
+constexpr double kMostPeaks = 100.0;   // more of them tell of lower torques than the tail's
+constexpr double kFewPeaks = 20.0;     // wanted where the level of fewer is the tail's
+constexpr double kPeakShare = 0.2;     // of the independent samples: above it peaks run together
 constexpr double kHour = 3600.0;       // s
 constexpr double kLeastAlarms = 1e-6;  // per hour: one in a century
-constexpr std::size_t kDraws = 400;    // of the bootstrap
 
 [[noreturn]] void refuse(const std::string& joint, const std::string& what,
                          const std::string& expected, const std::string& got,
@@ -47,7 +43,7 @@ Index correlationLength(const Series& values) {
 
 struct Peaks {
   double level = 0.0;
-  std::vector<double> heights;  // above the level, ascending
+  std::vector<double> heights;  // above the level
 };
 
 /// Peaks above the level that so many samples exceed; peaks are more than `apart` samples apart.
@@ -67,7 +63,6 @@ Peaks peaksAbove(const Series& heights, Index exceeding, Index apart) {
     }
     last = k;
   }
-  std::sort(peaks.heights.begin(), peaks.heights.end());
   return peaks;
 }
 
@@ -76,7 +71,7 @@ Peaks highestPeaks(const Series& heights, double wanted, Index apart) {
   // From above: at low levels the peaks run into one another.
   Peaks most;
   const double half = 0.5 * static_cast<double>(heights.size());
-  for (double exceeding = wanted; exceeding < half; exceeding *= 1.2) {
+  for (double exceeding = std::min(wanted, 0.5 * half); exceeding < half; exceeding *= 1.2) {
     Peaks peaks = peaksAbove(heights, static_cast<Index>(exceeding), apart);
     if (peaks.heights.size() > most.heights.size()) most = std::move(peaks);
     if (static_cast<double>(most.heights.size()) >= wanted) break;
@@ -88,44 +83,14 @@ struct Tail {
   double scale, shape;
 };
 
-/// Generalised Pareto distribution by its probability-weighted moments, its shape within bounds.
-Tail tailOf(const std::vector<double>& ascending, double least_shape) {
-  const std::size_t count = ascending.size();
-  const auto most = static_cast<double>(count - 1);
-  // With a_r the mean of (1 - F)^r x: a_0 and a_0 - 2 a_1. The latter in pairs, so that it is never
-  // negative, and zero where all are equal.
-  double mean = 0.0, spread = 0.0;
-  for (const double height : ascending) mean += height / static_cast<double>(count);
-  for (std::size_t i = 0; i < count / 2; ++i) {
-    const double weight = (most - 2.0 * static_cast<double>(i)) / most / static_cast<double>(count);
-    spread += weight * (ascending[count - 1 - i] - ascending[i]);
-  }
-  const double shape =
-      spread > 0 ? std::clamp(2.0 - mean / spread, least_shape, kMostShape) : least_shape;
-  return {mean * (1.0 - shape), shape};  // so that the mean is kept
-}
-
-/// Height that is exceeded `ratio` times less often than the level; ratio >= 1.
-double heightOf(const Tail& tail, double ratio) {
-  const double log_ratio = std::log(ratio);
-  if (std::abs(tail.shape) < 1e-9) return tail.scale * log_ratio;
-  return tail.scale * std::expm1(tail.shape * log_ratio) / tail.shape;
-}
-
-/// Where heightOf() lies, by peaks drawn from those found: with a confidence of 90 %. Below, the tail
-/// may end, as Gaussian noise's seems to; above, it doesn't, as for the threshold itself.
-std::pair<double, double> rangeOf(const std::vector<double>& heights, double ratio) {
-  std::mt19937_64 random(1);  // the same range each time
-  std::vector<double> drawn(heights.size()), low(kDraws), high(kDraws);
-  for (std::size_t k = 0; k < kDraws; ++k) {
-    for (double& peak : drawn) peak = heights[random() % heights.size()];
-    std::sort(drawn.begin(), drawn.end());
-    low[k] = heightOf(tailOf(drawn, -kMostShape), ratio);
-    high[k] = heightOf(tailOf(drawn, 0.0), ratio);
-  }
-  std::sort(low.begin(), low.end());
-  std::sort(high.begin(), high.end());
-  return {low[kDraws / 20], high[kDraws - 1 - kDraws / 20]};
+/// Generalised Pareto distribution that predicts the next peaks; see the head of contact_thresholds.hpp.
+Tail tailOf(const std::vector<double>& heights) {
+  const Eigen::Map<const Series> x(heights.data(), static_cast<Index>(heights.size()));
+  const auto count = static_cast<double>(x.size());
+  const double mean = x.mean(), variance = (x.array() - mean).square().sum() / (count - 1.0);
+  // moments; what the shape has beyond its standard error
+  const double heavy = std::max(0.0, 0.5 * (1.0 - mean * mean / variance) - 1.0 / std::sqrt(count));
+  return {mean * (1.0 - heavy), std::max(heavy, 1.0 / count)};
 }
 
 void requireAlarms(double per_hour) {
@@ -153,22 +118,14 @@ void requireSeries(const Eigen::Ref<const Eigen::MatrixXd>& quiet,
   }
 }
 
-/// Peaks of a joint; enough of them, and more than stated (per second).
+/// Peaks of a joint; more than stated (per second).
 Peaks requirePeaks(const Series& heights, Index correlation, double period, double stated,
                    Index joints, const std::string& joint) {
   const double duration = static_cast<double>(heights.size()) * period;
-  const double time = static_cast<double>(correlation) * period;
-  const double independent = duration / (2.0 * time);
-  Peaks peaks = highestPeaks(heights, std::min(kMostPeaks, kPeakShare * independent),
-                             static_cast<Index>(kApart * static_cast<double>(correlation)));
+  const double independent = 0.5 * static_cast<double>(heights.size() / correlation);
+  const double wanted = std::clamp(kPeakShare * independent, kFewPeaks, kMostPeaks);
+  Peaks peaks = highestPeaks(heights, wanted, correlation);
   const auto found = static_cast<double>(peaks.heights.size());
-  if (found < kLeastPeaks) {
-    refuse(joint, "too few independent samples",
-           number(kLeastPeaks) + " peaks at least, about " +
-               number(std::ceil(kLeastPeaks / kPeakShare * 4.0 * time)) +
-               " s at this correlation time of " + number(time) + " s",
-           number(found) + " in " + number(duration) + " s", "take a longer recording");
-  }
   if (stated > found / duration) {
     const double per_hour = kHour * static_cast<double>(joints);
     refuse(joint, "too many false alarms",
@@ -193,9 +150,8 @@ ContactThresholds contactThresholds(const Eigen::Ref<const Eigen::MatrixXd>& qui
 
   ContactThresholds result;
   result.false_alarms_per_hour = false_alarms_per_hour;
-  for (OwnedVector* vector :
-       {&result.torques, &result.noise, &result.correlation_time, &result.independent,
-        &result.peaks, &result.level, &result.scale, &result.shape, &result.low, &result.high}) {
+  for (OwnedVector* vector : {&result.torques, &result.noise, &result.correlation_time,
+                              &result.peaks, &result.level, &result.scale, &result.shape}) {
     vector->setZero(n);
   }
   const double duration = static_cast<double>(count) * period;
@@ -206,19 +162,16 @@ ContactThresholds contactThresholds(const Eigen::Ref<const Eigen::MatrixXd>& qui
     const Peaks peaks = requirePeaks(values.cwiseAbs(), correlation, period, stated, n,
                                      joint_names[static_cast<std::size_t>(j)]);
     const auto found = static_cast<double>(peaks.heights.size());
-    const double ratio = found / duration / stated;
-    const Tail tail = tailOf(peaks.heights, 0.0);
-    const auto [low, high] = rangeOf(peaks.heights, ratio);
-    result.torques[j] = peaks.level + heightOf(tail, ratio);
+    const Tail tail = tailOf(peaks.heights);
+    // exceeded as often as stated
+    const double excess = std::expm1(tail.shape * std::log(found / duration / stated)) / tail.shape;
+    result.torques[j] = peaks.level + tail.scale * excess;
     result.noise[j] = std::sqrt(values.squaredNorm() / static_cast<double>(count));
     result.correlation_time[j] = static_cast<double>(correlation) * period;
-    result.independent[j] = duration / (2.0 * result.correlation_time[j]);
     result.peaks[j] = found;
     result.level[j] = peaks.level;
     result.scale[j] = tail.scale;
     result.shape[j] = tail.shape;
-    result.low[j] = peaks.level + low;
-    result.high[j] = peaks.level + high;
   }
   return result;
 }

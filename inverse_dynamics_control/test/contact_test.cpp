@@ -36,6 +36,10 @@ class Noise {
 };
 
 double gaussian(std::mt19937& random) { return std::normal_distribution<double>(0, 0.3)(random); }
+/// Exponential tails; after the filter they are between a Gaussian's and these.
+double laplace(std::mt19937& random) {
+  return std::exponential_distribution<double>(3.0)(random) * (random() % 2 == 0 ? 1.0 : -1.0);
+}
 /// With tails that fall with the fourth power, after the filter still heavier than a Gaussian's.
 double heavy(std::mt19937& random) { return std::student_t_distribution<double>(4.0)(random); }
 
@@ -52,18 +56,21 @@ int alarms(const ContactThresholds& thresholds, Noise& noise, double hours) {
   return result;
 }
 
-TEST(ContactThresholds, FalseAlarmsAreAsManyAsStated) {
-  // A minute is recorded, and the rate is asked for that one in two minutes belongs to: over 2 hours
-  // 60 alarms. A tail that is learned from so few peaks is uncertain: a factor of three.
-  const double stated = 30.0;
-  int together = 0;
-  for (unsigned seed = 0; seed < 3; ++seed) {
-    Noise noise(seed, gaussian);
-    const auto thresholds = contactThresholds(noise.next(60000), kPeriod, stated, kJoints);
-    together += alarms(thresholds, noise, 1.0);
+TEST(ContactThresholds, FalseAlarmsAreAtMostAsManyAsStated) {
+  // From seconds as from a minute, for tails from a Gaussian's to an exponential one: no more than the
+  // rate in the mean over recordings. 60 per hour, so that a quarter of an hour each is enough.
+  const double stated = 60.0;
+  for (const Noise::Draw& draw : {Noise::Draw(gaussian), Noise::Draw(laplace)}) {
+    for (const Eigen::Index count : {3000, 60000}) {
+      int together = 0;
+      for (unsigned seed = 0; seed < 3; ++seed) {
+        Noise noise(seed, draw);
+        const auto thresholds = contactThresholds(noise.next(count), kPeriod, stated, kJoints);
+        together += alarms(thresholds, noise, 0.25);
+      }
+      EXPECT_LE(together, 3 * stated * 0.25) << count;
+    }
   }
-  EXPECT_GE(together, 3 * stated / 10.0);
-  EXPECT_LE(together, 3 * stated * 1.5);
 }
 
 TEST(ContactThresholds, OfHeavyTailsAMinuteDoesNotShowAll) {
@@ -97,24 +104,28 @@ TEST(ContactThresholds, CorrelationTimeAndNoiseAreThoseOfTheFilter) {
   const auto thresholds = contactThresholds(noise.next(200000), kPeriod, 1.0, kJoints);
   for (int j = 0; j < 2; ++j) {
     EXPECT_NEAR(thresholds.correlation_time[j], 1.0 / 60.0, 0.003);
-    EXPECT_NEAR(thresholds.independent[j], 200.0 / (2.0 / 60.0), 1000.0);
     const double a = std::exp(-60.0 * kPeriod);
     EXPECT_NEAR(thresholds.noise[j], 0.3 * std::sqrt((1 - a) / (1 + a)), 0.003);
     EXPECT_GE(thresholds.peaks[j], 20.0);
-    EXPECT_LE(thresholds.peaks[j], 120.0);
+    EXPECT_LE(thresholds.peaks[j], 130.0);
   }
   EXPECT_EQ(thresholds.false_alarms_per_hour, 1.0);
 }
 
-TEST(ContactThresholds, TwentySecondsMayBeEnough) {
-  Noise noise(4, gaussian);
-  const auto thresholds = contactThresholds(noise.next(20000), 2e-3, 1.0, kJoints);
-  for (int j = 0; j < 2; ++j) {
-    EXPECT_GE(thresholds.peaks[j], 60.0);
-    EXPECT_LT(thresholds.torques[j], 10.0 * thresholds.noise[j]);
+TEST(ContactThresholds, AFewPeaksMeanAHighThreshold) {
+  double before = 100.0;
+  for (const Eigen::Index count : {300, 3000, 60000}) {
+    double mean = 0.0;
+    for (unsigned seed = 0; seed < 10; ++seed) {
+      Noise noise(seed, gaussian);
+      const auto thresholds = contactThresholds(noise.next(count), kPeriod, 1.0, kJoints);
+      mean += (thresholds.torques.array() / thresholds.noise.array()).mean() / 10.0;
+      EXPECT_GE(thresholds.shape.minCoeff(), 1.0 / thresholds.peaks.maxCoeff());
+    }
+    EXPECT_LT(mean, before) << count;
+    before = mean;
   }
-  Noise shorter(5, gaussian);
-  EXPECT_GE(contactThresholds(shorter.next(6000), kPeriod, 1.0, kJoints).peaks.minCoeff(), 20.0);
+  EXPECT_LT(before, 8.0);  // 5.0 is that of Gaussian noise whose distribution is known
 }
 
 /// Pulses of these heights, one after the other, for ever; in between nothing. 20 ms each.
@@ -127,42 +138,33 @@ Eigen::MatrixXd pulses(const std::vector<double>& heights, int count) {
   return result;
 }
 
-TEST(ContactThresholds, EqualPeaksAreATailWithoutAShape) {
+TEST(ContactThresholds, EqualPeaksPredictByTheirNumber) {
   // Two levels: those above the level are all equal, in units in which that isn't exact.
   for (const double unit : {1.0, 0.1, 1.0 / 3.0, 0.7, 1e-3}) {
     const auto thresholds = contactThresholds(
         pulses({unit, unit, unit, unit, unit, unit, unit, unit, unit, 3.0 * unit}, 1000), kPeriod,
         1.0, kJoints);
     EXPECT_NEAR(thresholds.level[0], unit, 1e-9 * unit);
-    EXPECT_EQ(thresholds.shape[0], 0.0);
+    EXPECT_EQ(thresholds.peaks[0], 100.0);
+    EXPECT_NEAR(thresholds.shape[0], 0.01, 1e-12);
     EXPECT_NEAR(thresholds.scale[0], 2.0 * unit, 1e-9 * unit);
-    EXPECT_LT(thresholds.low[0], thresholds.torques[0]);
-    EXPECT_NEAR(thresholds.high[0], thresholds.torques[0], 1e-9 * unit);
+    // 100 peaks in 20 s, and 1 in 2 h of each joint: k m ((100 / 20 s * 7200 s)^(1/k) - 1)
+    EXPECT_NEAR(thresholds.torques[0], unit * (1.0 + 2.0 * 100.0 * (std::pow(36000.0, 0.01) - 1.0)),
+                1e-9 * unit);
   }
 }
 
-TEST(ContactThresholds, TheRangeHoldsTheThresholdOfALongRecording) {
-  // Half an hour shows what a minute and six seconds are to tell. 90 %: of 40 ranges 31 at least.
-  Noise noise(6, gaussian);
-  const double rate = 30.0;
-  const auto known = contactThresholds(noise.next(1800000), kPeriod, rate, kJoints);
-  double width = 0.0;
-  for (const Eigen::Index count : {60000, 6000}) {
-    int inside = 0;
-    double mean_width = 0.0;
-    for (int k = 0; k < 20; ++k) {
-      const auto thresholds = contactThresholds(noise.next(count), kPeriod, rate, kJoints);
-      for (int j = 0; j < 2; ++j) {
-        EXPECT_LE(thresholds.low[j], thresholds.torques[j]);
-        EXPECT_GE(thresholds.high[j], thresholds.torques[j]);
-        inside += known.torques[j] >= thresholds.low[j] && known.torques[j] <= thresholds.high[j];
-        mean_width += (thresholds.high[j] - thresholds.low[j]) / known.torques[j] / 40.0;
-      }
-    }
-    EXPECT_GE(inside, 31) << count;
-    EXPECT_GT(mean_width, 1.5 * width) << count;  // less data, less certain
-    width = mean_width;
+TEST(ContactThresholds, HeavyTailsHaveAShape) {
+  // A generalised Pareto distribution of shape 0.4, one value in 20 ms, of which 100 are above.
+  std::mt19937 random(1);
+  std::vector<double> heights(1000);
+  for (double& height : heights) {
+    const double share = std::uniform_real_distribution<double>(0.0, 1.0)(random);
+    height = 1.0 + (std::pow(1.0 - share, -0.4) - 1.0) / 0.4;
   }
+  const auto thresholds = contactThresholds(pulses(heights, 1000), kPeriod, 1.0, kJoints);
+  EXPECT_GT(thresholds.shape[0], 0.1);
+  EXPECT_LT(thresholds.shape[0], 0.5);
 }
 
 TEST(ContactThresholds, WhatCannotBeLearnedFromIsRefused) {
@@ -170,10 +172,6 @@ TEST(ContactThresholds, WhatCannotBeLearnedFromIsRefused) {
   const auto text = [](const Eigen::MatrixXd& quiet, double period, double rate) {
     return thrownBy([&] { contactThresholds(quiet, period, rate, kJoints); });
   };
-  EXPECT_NE(text(noise.next(2000), kPeriod, 1.0)
-                .find("contact thresholds: joint shoulder: too few independent samples: expected "
-                      "20 peaks at least, about "),
-            std::string::npos);
   Eigen::MatrixXd quiet = noise.next(60000);
   EXPECT_EQ(text(quiet, kPeriod, 1.0), "");
   EXPECT_EQ(text(quiet, 0.0, 1.0),

@@ -224,14 +224,10 @@ void bindThresholds(py::module_& module) {
       .def_property_readonly("torques", &numbersOf<&T::torques>, "N m.")
       .def_property_readonly("noise", &numbersOf<&T::noise>, "Root mean square, N m.")
       .def_property_readonly("correlation_time", &numbersOf<&T::correlation_time>, "s.")
-      .def_property_readonly("independent", &numbersOf<&T::independent>,
-                             "Number of independent samples.")
       .def_property_readonly("peaks", &numbersOf<&T::peaks>, "Number of peaks above the level.")
       .def_property_readonly("level", &numbersOf<&T::level>, "N m.")
       .def_property_readonly("scale", &numbersOf<&T::scale>, "N m.")
       .def_property_readonly("shape", &numbersOf<&T::shape>)
-      .def_property_readonly("low", &numbersOf<&T::low>, "Of the range, N m.")
-      .def_property_readonly("high", &numbersOf<&T::high>, "Of the range, N m.")
       .def_readonly("false_alarms_per_hour", &T::false_alarms_per_hour);
   module.def(
       "contact_thresholds",
