@@ -2,6 +2,8 @@
 
 #include "live_contact.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <inverse_dynamics_control/estimator_choice.hpp>
 #include <utility>
 
@@ -33,7 +35,7 @@ bool LiveContact::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eig
   if (started_ && stamp == stamp_) {
     return false;
   }
-  const double period = started_ ? 1e-9 * static_cast<double>(stamp - stamp_) : 0.0;
+  const double period = started_ ? periodOf(stamp - stamp_) : 0.0;
   started_ = true;
   stamp_ = stamp;
   state_.q = q;
@@ -54,6 +56,28 @@ bool LiveContact::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eig
     updateWrench(q);
   }
   return true;
+}
+
+// Stamps jitter, samples are taken at equal distances: the mean of the latest ones, without those of
+// lost samples and pauses.
+double LiveContact::periodOf(std::int64_t distance) {
+  if (distance > 0) {
+    distances_[distance_count_++ % distances_.size()] = distance;
+    const std::size_t count = std::min(distance_count_, distances_.size());
+    auto sorted = distances_;
+    std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
+    const std::int64_t median = sorted[(count - 1) / 2];
+    const auto usual = [median](std::int64_t d) { return 2 * std::abs(d - median) < median; };
+    if (usual(distance)) {
+      std::int64_t sum = 0, added = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        sum += usual(sorted[k]) ? sorted[k] : 0;
+        added += usual(sorted[k]) ? 1 : 0;
+      }
+      return 1e-9 * (static_cast<double>(sum) / static_cast<double>(added));
+    }
+  }
+  return 1e-9 * static_cast<double>(distance);
 }
 
 void LiveContact::updateWrench(const Eigen::VectorXd& q) {

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <inverse_dynamics_control/contact_detector.hpp>
 #include <inverse_dynamics_control/external_torque_estimator.hpp>
@@ -78,6 +79,7 @@ class LiveContact {
   }
 
  private:
+  double periodOf(std::int64_t distance);
   void updateWrench(const Eigen::VectorXd& q);
 
   std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver_;
@@ -87,7 +89,9 @@ class LiveContact {
   const inverse_dynamics_solver::Kinematics* kinematics_ = nullptr;  // null: wrench in the root
   inverse_dynamics_control::JointState state_;
   bool started_ = false;
-  std::int64_t stamp_ = 0;  // ns; of the last sample
+  std::int64_t stamp_ = 0;                    // ns; of the last sample
+  std::array<std::int64_t, 16> distances_{};  // ns; the latest ones between stamps
+  std::size_t distance_count_ = 0;            // of all
   Status status_ = Status::kStarting;
   Counts counts_{};
   bool has_wrench_ = false;
