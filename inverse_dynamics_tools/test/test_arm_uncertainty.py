@@ -15,8 +15,9 @@ from inverse_dynamics._core import ArmUncertainty
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import InvalidParameterError, RobotError
 from inverse_dynamics.identification.payload import estimate_payload
-from inverse_dynamics.identification.uncertainty import read_uncertainty, uncertainty_file
+from inverse_dynamics.identification.uncertainty import read_uncertainty
 from inverse_dynamics.results.identifications import write_identification
+from inverse_dynamics.robot.model_errors import model_errors_file
 from inverse_dynamics.robot.robots import RIGID_BODY
 
 SIZE = 16 * len(JOINTS)  # unknowns of the law `step`
@@ -70,7 +71,7 @@ def test_a_file_of_another_model_is_left_aside(model):
 
 
 def test_no_file_is_no_error(model):
-    uncertainty_file(model).unlink()
+    model_errors_file(model).unlink()
     arm, why = read_uncertainty(model)
     assert arm is None
     assert "arm_model.json: there is none" in why
@@ -79,9 +80,9 @@ def test_no_file_is_no_error(model):
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        (lambda content: content.pop("friction"), "expected schema 1 with the keys"),
-        (lambda content: content.update(schema=2), "expected schema 1 with the keys"),
-        (lambda content: content.update(more=1), "expected schema 1 with the keys"),
+        (lambda content: content.pop("friction"), "expected schema 2 with the keys"),
+        (lambda content: content.update(schema=1), "expected schema 2 with the keys"),
+        (lambda content: content.update(more=1), "expected schema 2 with the keys"),
         (lambda content: content["deviations"][0].pop(), "expected deviations: rows"),
         (lambda content: content["deviations"].clear(), "expected deviations: rows"),
         (lambda content: content["deviations"][0].__setitem__(0, "x"), "expected deviations: rows"),
@@ -94,10 +95,18 @@ def test_no_file_is_no_error(model):
         (lambda content: content["friction"][0].update(fc="x"), "expected friction: figures"),
         (lambda content: content["friction"][0].update(fx=1.0), "expected friction: figures"),
         (lambda content: content["friction"][0].pop("fc"), "expected friction: figures"),
+        (lambda content: content["held_out"].pop("gain"), "expected held_out: gain, period"),
+        (lambda content: content["held_out"].update(gain=0), "expected held_out: gain, period"),
+        (lambda content: content["held_out"].update(period="x"), "expected held_out: gain, period"),
+        (lambda content: content["held_out"]["torques"].clear(), "expected held_out: gain, period"),
+        (
+            lambda content: [row.pop() for row in content["held_out"]["torques"]],
+            "expected held_out: gain, period",
+        ),
     ],
 )
 def test_a_damaged_file_is_refused(model, change, text):
-    file = uncertainty_file(model)
+    file = model_errors_file(model)
     content = json.loads(file.read_text())
     change(content)
     file.write_text(json.dumps(content))
@@ -107,7 +116,7 @@ def test_a_damaged_file_is_refused(model, change, text):
 
 def test_what_is_not_json_is_refused(model):
     for text in ("no", "[" * 100_000):
-        uncertainty_file(model).write_text(text)
+        model_errors_file(model).write_text(text)
         with pytest.raises(RobotError, match=r"arm_model\.json: expected JSON of `ids identify`"):
             read_uncertainty(model)
 
@@ -131,7 +140,7 @@ def test_payloads_are_estimated_with_the_deviations_that_a_model_has(model, tmp_
     assert payload.estimate.mass == pytest.approx(4.0, rel=0.05)
     assert not [note for note in payload.notes if "arm_model.json" in note]
 
-    uncertainty_file(model).unlink()
+    model_errors_file(model).unlink()
     without = estimate_payload(tmp_path / "loaded", tmp_path / "arm.yaml")
     assert len(without.estimate.arm) == 0
     assert [note for note in without.notes if "arm_model.json: there is none" in note]

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,6 +25,8 @@ from inverse_dynamics.contact import (
 from inverse_dynamics.errors import EvaluationError, InvalidParameterError
 from inverse_dynamics.evaluation.contacts import find_contacts
 from inverse_dynamics.evaluation.evaluation import Arm
+from inverse_dynamics.identification.identify import identify
+from inverse_dynamics.results.identifications import write_identification
 
 KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
 PERIOD = 1e-3
@@ -169,9 +170,7 @@ def test_contacts_of_a_recording(recording, robot):
     assert found.estimator == "MomentumObserver"
     (contact,) = found.contacts
     assert contact.begin == pytest.approx(PUSH[0], abs=0.01)
-    above = np.abs(found.torques[:, 0]) > found.thresholds.torques[0]
-    assert contact.end == found.time[above][-1]  # not when the detector is sure that it is over
-    assert PUSH[1] < contact.end < PUSH[1] + 0.1
+    assert PUSH[1] < contact.end < PUSH[1] + 0.2
     assert found.time[found.contact][[0, -1]].tolist() == [contact.begin, contact.end]
     assert contact.unknown == 0
     assert found.interruptions == ()
@@ -206,15 +205,18 @@ def test_the_force_of_a_contact_is_its_mean(tmp_path):
     np.savetxt(
         tmp_path / "ur10.csv", rows, "%.9g", delimiter=",", header=",".join(header), comments=""
     )
-    (contact,) = find_contacts(tmp_path / "ur10.csv", robot, quiet=(0.0, 20.0)).contacts
+    found = find_contacts(tmp_path / "ur10.csv", robot, quiet=(0.0, 20.0), gain=60.0)
+    (contact,) = found.contacts
     assert contact.force == pytest.approx(20.0, rel=0.1)
     assert contact.force_direction == pytest.approx((1, 0, 0), abs=0.15)
     assert contact.greatest_force > 21
 
 
-def test_velocities_may_be_the_measured_ones(recording, robot):
-    found = find_contacts(recording, robot, quiet=(0.0, 20.0), measured_velocities=True)
-    assert len(found.contacts) == 1
+def test_velocities_may_be_those_of_positions(recording, robot):
+    found = find_contacts(recording, robot, quiet=(0.0, 20.0), gain=60.0, tracking=200.0)
+    (contact,) = found.contacts
+    assert contact.begin == pytest.approx(PUSH[0], abs=5e-3)
+    assert not found.measured_velocities
 
 
 @pytest.mark.parametrize("band", [0.02, 1.0])
@@ -232,14 +234,15 @@ def test_a_gap_interrupts_the_estimate_and_not_the_contact(ids, tmp_path, motion
     time, q, effort = motion
     kept = ~((time >= 25.4) & (time < 25.6)) & ~((time >= 10.0) & (time < 10.03))
     recording = write_table(tmp_path / "gaps.csv", time[kept], q[kept], effort[kept])
-    found = find_contacts(recording, robot, quiet=(0.0, 20.0))
+    found = find_contacts(recording, robot, quiet=(0.0, 20.0), gain=60.0, tracking=200.0)
     (contact,) = found.contacts
-    assert (contact.begin, contact.end) == pytest.approx((PUSH[0], PUSH[1] + 0.06), abs=0.03)
+    assert (contact.begin, contact.end) == pytest.approx((PUSH[0], PUSH[1] + 0.1), abs=0.1)
     (first, second) = found.interruptions
     assert first == pytest.approx((9.999, 10.08), abs=2e-3)  # until the velocity is known
     assert second == pytest.approx((25.399, 25.65), abs=2e-3)
     assert contact.unknown == pytest.approx(0.251, abs=2e-3)
-    code, out, _ = ids("contact", recording, "--robot", robot, "--quiet", "0,20", "--out", "found")
+    options = ("--robot", robot, "--quiet", "0,20", "--gain", "60", "--tracking", "200")
+    code, out, _ = ids("contact", recording, *options, "--out", "found")
     assert code == 0
     text = " ".join(out.split())
     assert "interrupted 2 times, 0.333 s in all, the longest from 25.399 s to 25.65 s" in text
@@ -268,13 +271,11 @@ def test_what_is_not_an_estimate_leaves_the_detector_as_it_is(solver):
 
 def test_thresholds_that_say_little_are_noted(tmp_path, motion, recording, robot):
     assert find_contacts(recording, robot, quiet=(0.0, 20.0)).notes == ()
-    found = find_contacts(recording, robot, quiet=(0.0, 6.0), false_alarms=1e-6)
-    (note,) = found.notes
-    assert note.startswith("uncertain thresholds: swing (")
-    assert found.thresholds.low[0] <= found.thresholds.torques[0] <= found.thresholds.high[0]
+    (note,) = find_contacts(recording, robot, quiet=(0.0, 0.02)).notes
+    assert note.startswith("thresholds rest on few peaks, and are high for that: swing (")
 
     limit = '<limit lower="-3" upper="3" velocity="2" effort="{}"/>'
-    (tmp_path / "arm.urdf").write_text(pendulum(limit=limit.format(0.5)))
+    (tmp_path / "arm.urdf").write_text(pendulum(limit=limit.format(0.3)))
     (note,) = find_contacts(recording, robot, quiet=(0.0, 20.0)).notes
     assert "high thresholds: swing (" in note
     assert "% of its effort limit): weaker contacts aren't found" in note
@@ -318,70 +319,19 @@ def test_measured_velocities_must_be_given(solver, motion):
 def test_without_a_quiet_part_there_are_no_thresholds(recording, robot):
     with pytest.raises(EvaluationError, match="give --quiet FROM,TO"):
         find_contacts(recording, robot)
-    with pytest.raises(InvalidParameterError, match="recording.csv, from 0 s to 0.2 s: contact"):
-        find_contacts(recording, robot, quiet=(0.0, 0.2))
+    with pytest.raises(
+        InvalidParameterError, match="recording.csv, from 0 s to 0.2 s: 2.* contact"
+    ):
+        find_contacts(recording, robot, quiet=(0.0, 0.2), false_alarms=1e9)
     with pytest.raises(InvalidParameterError, match="momentum observer: friction_band"):
         find_contacts(recording, robot, quiet=(0.0, 20.0), friction_band=[1.0, 2.0])
-
-
-MODEL = """\
-schema: 2
-name: pendulum
-source: a test
-validity: a test
-units: SI
-geometry: placements
-gravity: [0, 0, -9.81]
-parameters: about_origin
-tip: {xyz: [0, 0, 0], rpy: [0, 0, 0]}
-joints:
-  - name: swing
-    type: revolute
-    placement: {xyz: [0, 0, 0], rpy: [0, 0, 0], axis: [0, 1, 0]}
-    link: [2, 1, 0, 0, 0.02, 0, 0, 0.52, 0, 0.51]
-    torque_deviation: 0.196
-    seen: {q: [-1, 1], qd: [-1, 1], qdd: [-1, 1]}
-"""
-
-
-@pytest.fixture
-def identified(tmp_path):
-    """The pendulum with a model that states the band of its noise."""
-    (tmp_path / "arm_model.yaml").write_text(MODEL)
-    file = tmp_path / "identified.yaml"
-    plugin = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
-    file.write_text(
-        f"schema: 1\nname: arm\ndescription: a pendulum\nplugin: {plugin}\nmodel: arm_model.yaml\n"
-    )
-    return file
-
-
-def test_bands_of_the_model_stand_in_for_a_quiet_part(ids, recording, identified):
-    found = find_contacts(recording, identified)
-    (contact,) = found.contacts
-    assert contact.begin == pytest.approx(PUSH[0], abs=0.01)
-    assert contact.torque == pytest.approx(PUSH[2], abs=0.3)
-    # 1 of 18000 samples of a normal distribution is beyond 4.031 standard deviations
-    assert found.thresholds.torques[0] == pytest.approx(4.031 * 0.1, rel=1e-3)
-    assert found.thresholds.high[0] == pytest.approx(4.031 * 0.196 / 1.2816, rel=1e-3)
-    code, out, err = ids("contact", recording, "--robot", identified, "--out", "found")
-    assert (code, err) == (0, "")
-    assert "the model's 95 % torque bands" in out
-    assert "range: up to another day's" in out
-    (joint,) = json.loads(Path("found/contacts.json").read_text())["joints"]
-    assert joint["level"] == 0.196
-    more = find_contacts(recording, identified, false_alarms=100.0).thresholds.torques
-    assert more[0] < found.thresholds.torques[0]
-    for wrong in (1e-7, 901.0):
-        with pytest.raises(InvalidParameterError, match="expected 1e-06 to 900"):
-            find_contacts(recording, identified, false_alarms=wrong)
 
 
 def test_the_command_writes_table_figure_and_series(ids, tmp_path, recording, robot):
     command = ("contact", recording, "--robot", robot, "--quiet", "0,20", "--out", "found")
     code, out, err = ids(*command)
     assert (code, err) == (0, "")
-    for part in ("25.0", "swing", "MomentumObserver, 60 1/s"):
+    for part in ("25.0", "swing", "MomentumObserver, "):
         assert part in out
     assert "thresholds for 1 false alarm per hour" in out
     files = {file.name for file in (tmp_path / "found").iterdir()}
@@ -420,7 +370,6 @@ def test_wrong_options_are_told(ids, tmp_path, recording, robot):
     fails(ids(*command, "--quiet", "20,0"), "expected two times, the later one second, got '20,0'")
     fails(ids(*command, "--quiet", "0,1,2"), "expected two times")
     fails(ids(*command, "--quiet", "0,20", "--friction-band", "a"), "expected numbers, a,b,c")
-    fails(ids(*command, "--quiet", "0,0.2"), "too few independent samples")
     fails(ids(*command, "--quiet", "100,200"), "expected a part of the recording, which ends")
     for span in ("-5,1e300", "1e300,2e300"):
         fails(
@@ -442,9 +391,90 @@ def test_wrong_options_are_told(ids, tmp_path, recording, robot):
     assert not (tmp_path / "found").exists()
 
 
+def alarms_in_hours(found, hours):
+    """Contacts that a detector begins in the torques of a recording, put together in parts of 2 s."""
+    period, torques = np.median(np.diff(found.time)), found.torques[found.valid]
+    length = round(2.0 / period)
+    begins = np.random.default_rng(0).integers(0, len(torques) - length, round(hours * 1800))
+    together = np.concatenate([torques[begin : begin + length] for begin in begins])
+    names = found.evaluation.joint_names
+    detector = ContactDetector(found.thresholds.torques, names)
+    contact = detector.run(period * np.arange(len(together)), together)
+    return int((np.diff(contact, prepend=False) & contact).sum())
+
+
+@pytest.mark.parametrize("half", [0, 1])
 @pytest.mark.parametrize("name", ["ur10_real", "panda_real"])
-def test_half_a_minute_of_slow_motion_is_too_little(recordings, name):
-    """Errors of the models change with the posture, slowly: few of the samples are independent."""
+def test_no_contact_that_is_none(recordings, tmp_path, name, half):
+    """Of each half of a real recording, with the model and the errors of the other half.
+
+    None in 3 h of it: with a confidence of 95 %, there are no more than the stated one per hour.
+    """
     folder = recordings / f"{name.removesuffix('_real')}_exciting_trajectory"
-    with pytest.raises(InvalidParameterError, match="too few independent samples: .* longer"):
-        find_contacts(folder, name, quiet_recording=folder)
+    middle = {"ur10_real": 13.7, "panda_real": 12.1}[name]  # s
+    parts = ({"end": middle}, {"start": middle})
+    identified = identify([folder], name, **parts[half])
+    robot = write_identification(identified, tmp_path / "arm.yaml").robot
+    found = find_contacts(folder, robot, **parts[1 - half])
+    assert found.quiet.startswith("errors of the model on held-out data: ")
+    assert found.contacts == ()
+    assert alarms_in_hours(found, 3.0) == 0
+    ratio = found.thresholds.torques / np.abs(found.torques).max(axis=0)
+    assert ratio.min() < 6  # thresholds aren't so high that nothing could ever be one
+
+
+@pytest.mark.parametrize("quiet", [(0.0, 3.0), (10.0, 13.0), (0.0, 20.0)])
+@pytest.mark.parametrize("name", ["ur10_real", "panda_real"])
+def test_a_short_quiet_part_means_high_thresholds(recordings, name, quiet):
+    folder = recordings / f"{name.removesuffix('_real')}_exciting_trajectory"
+    found = find_contacts(folder, name, quiet=quiet)
+    assert found.contacts == ()
+    assert any("rest on few peaks" in note for note in found.notes)
+
+
+def test_a_quiet_part_at_rest_does_not_stand_for_a_motion(tmp_path, solver, robot):
+    """Friction that the model lacks shows where the joint moves; then thresholds are raised."""
+    rng = np.random.default_rng(0)
+    time = 0.01 * np.arange(6000)
+    q = np.where(time < 3, 1.0, np.cos(time - 3))[:, None]
+    qd = np.where(time < 3, 0.0, -np.sin(time - 3))[:, None]
+    qdd = np.where(time < 3, 0.0, -np.cos(time - 3))[:, None]
+    effort = solver.torques(q, qd, qdd) + 2.0 * qd + 0.01 * rng.standard_normal(q.shape)
+    table = write_table(tmp_path / "moving.csv", time, q, effort)
+    found = find_contacts(table, robot, quiet=(0.0, 2.9))
+    assert found.contacts == ()
+    assert any("thresholds are raised, " in note and ": swing (" in note for note in found.notes)
+
+
+def test_what_friction_holds_ends_a_contact(tmp_path, solver, robot):
+    """A push ends within 0.2 s, although 4 N m of it stay; the next one is another contact."""
+    rng = np.random.default_rng(0)
+    time = 0.01 * np.arange(4000)
+    q = np.full((4000, 1), 1.0)
+    pushes = 10.0 * (((time >= 20) & (time < 21)) | ((time >= 25) & (time < 26)))
+    held = 4.0 * (time >= 21)
+    effort = solver.gravity_vector(q) + np.maximum(pushes, held)[:, None]
+    table = write_table(
+        tmp_path / "held.csv",
+        time,
+        q + 1e-6 * rng.standard_normal(q.shape),
+        effort + 0.1 * rng.standard_normal(q.shape),
+    )
+    found = find_contacts(table, robot, quiet=(0.0, 19.0))
+    assert found.thresholds.torques[0] < 2
+    assert [round(contact.begin, 1) for contact in found.contacts] == [20.0, 25.0]
+    for contact, end in zip(found.contacts, (21, 26), strict=True):
+        assert end <= contact.end < end + 0.2
+
+
+def test_jitter_of_stamps_is_no_torque(ids, tmp_path):
+    """At most 1.5 times the noise; it isn't there in the samples, only in their stamps."""
+    noise = []
+    for jitter in ("0", "5e-4"):
+        options = ("--duration", "40", "--message-rate", "100", "--jitter", jitter)
+        code, _, err = ids("simulate", "--robot", "ur10_simulated", *options, "--out", jitter)
+        assert code == 0, err
+        found = find_contacts(tmp_path / jitter, "ur10_simulated", quiet=(0.0, 35.0))
+        assert found.contacts == ()
+        noise.append(found.thresholds.noise)
+    assert (noise[1] <= 1.5 * noise[0] + 1e-3).all()

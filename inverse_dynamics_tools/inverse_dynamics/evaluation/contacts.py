@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics import _core
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import counted, listed
 from inverse_dynamics.contact import (
@@ -30,9 +31,9 @@ from inverse_dynamics.contact import (
     contact_thresholds,
 )
 from inverse_dynamics.errors import EvaluationError, InvalidParameterError
-from inverse_dynamics.evaluation.band_thresholds import BandThresholds, band_thresholds
 from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate
 from inverse_dynamics.robot.descriptions import effort_limits, read_description
+from inverse_dynamics.robot.model_errors import read_model_errors
 from inverse_dynamics.robot.solvers import open_solver
 
 if TYPE_CHECKING:
@@ -44,20 +45,32 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.robot.robots import Robot
 
-GAIN = 60.0
-"""Default of the estimators, 1/s: a time constant of 17 ms."""
-
-TRACKING = 200.0
-"""Default of the tracked velocities, rad/s."""
-
 FALSE_ALARMS = 1.0
 """Default, per hour."""
 
+_GAIN_BY_TRACKING = 0.3  # the most with which the time constant is 1 / gain: motion_tracker.hpp
+_GAINS = (10.0, 60.0)  # 1/s; slower: contacts end late; faster: contacts are noticed within 17 ms
+_RELEASE = 0.1  # s; torques that are greater again after a shorter time belong to a contact
 _GAP = 2.5  # periods; one lost message isn't a gap
 _LONGEST_PERIOD = 0.02  # s, unless samples are further apart
 _LATEST = 1e9  # s
 _LARGE = 0.2  # of an effort limit: a threshold above it is noted
-_UNCERTAIN = 3.0  # upper by lower end of the range of a threshold: noted above it
+_FEW = 10.0  # peaks: fewer make a threshold more than twice that of many
+_MOVING = 0.05  # rad/s (prismatic m/s): slower, friction may hold a joint
+_LEAST = 10.0  # independent samples: medians of fewer aren't compared
+_RAISED = 1.5  # times: noted above it
+
+
+def gain_for(cutoff: float | None) -> float:
+    """Default gain [1/s] of estimators, for the cut-off [Hz] of the accelerations of a recording.
+
+    The cut-off is what noise, jitter and quantisation of the recording allow. None: there is none.
+    """
+    return (
+        _GAINS[1]
+        if cutoff is None
+        else float(np.clip(_GAIN_BY_TRACKING * 2 * np.pi * cutoff, *_GAINS))
+    )
 
 
 @dataclass(frozen=True)
@@ -65,7 +78,7 @@ class Contact:
     """One contact. Times: s since the first sample."""
 
     begin: float
-    end: float  # of the last sample with a torque above its threshold
+    end: float  # then torques have fallen to half of their greatest
     joint: str  # whose torque is the greatest multiple of its threshold
     unit: str
     torque: float  # its greatest, N m (prismatic N), with its sign
@@ -99,7 +112,7 @@ class Contacts:
     contact: Mask  # (N,) from begin to end of each contact
     wrenches: Floats | None  # (N, 6) N, N m about the tip, in the axes of the root
     unseen: Integers | None  # (N,) how many directions of a wrench can't be observed
-    thresholds: ContactThresholds | BandThresholds
+    thresholds: ContactThresholds
     contacts: tuple[Contact, ...]
     interruptions: tuple[tuple[float, float], ...] = ()  # from, to [s]: no estimate in between
     quiet_part: tuple[float, float] | None = None  # from, to [s], if the thresholds are from there
@@ -113,22 +126,20 @@ def find_contacts(
     quiet: tuple[float, float] | None = None,
     quiet_recording: Path | str | None = None,
     false_alarms: float = FALSE_ALARMS,
-    gain: float = GAIN,
-    tracking: float = TRACKING,
+    gain: float | None = None,
+    tracking: float | None = None,
     friction_band: Sequence[float] = (),
-    measured_velocities: bool = False,
     progress: Progress = no_progress,
     **options: Any,
 ) -> Contacts:
     """Find the contacts of a recording.
 
     quiet: from, to [s] of a part without contact; quiet_recording: a recording without contact; both:
-    that part of that recording; none: thresholds are made of the model's torque bands. false_alarms:
-    per hour. gain: 1/s;
-    tracking: rad/s; friction_band: N m, one number per joint, or one for all: what the friction
-    model may be wrong by beyond what the quiet part shows, whose thresholds are made without it;
-    measured_velocities: recorded velocities instead of tracked positions. options: others of
-    evaluate().
+    that part of that recording; none: the errors that `ids identify` has found on held-out data.
+    false_alarms: per hour. gain: 1/s; none: gain_for() of the recording that thresholds are made of.
+    tracking: rad/s, of velocities from positions; none: recorded velocities. friction_band: N m, one
+    number per joint, or one for all: what the friction model may be wrong by beyond what the quiet part
+    shows, whose thresholds are made without it. options: others of evaluate().
 
     Raises UserError: those of evaluate(), InvalidParameterError.
     """
@@ -136,29 +147,33 @@ def find_contacts(
         _check_quiet(*quiet)  # before anything is read
     evaluation = evaluate(bag, robot, progress=progress, **options)
     solver = _solver_of(evaluation)
-    band = tuple(friction_band)
-    band = band * len(evaluation.joint_names) if len(band) == 1 else band
-    chosen = _Chosen(solver, gain, tracking, band, measured_velocities)
-    estimates = _estimate(evaluation, chosen)
-    without_contact = evaluation
+    quiet_from, held_out = evaluation, None
     if quiet_recording is not None:
-        without_contact = evaluate(quiet_recording, robot, progress=progress, **options)
-    thresholds: ContactThresholds | BandThresholds
-    if quiet is None and quiet_recording is None:
-        where, thresholds = _thresholds_of_bands(evaluation, solver, false_alarms)
-    else:
+        quiet_from = evaluate(quiet_recording, robot, progress=progress, **options)
+    elif quiet is None:
+        held_out = _held_out(evaluation.robot)
+    if gain is None:
+        gain = held_out.gain if held_out else gain_for(quiet_from.accelerations.cutoff)
+    estimates = plain = _estimate(evaluation, solver, gain, tracking)
+    band = tuple(friction_band)
+    if band:
         # What the quiet part shows of the friction's error is in the thresholds: no band there.
-        of_quiet = _estimate(without_contact, replace(chosen, friction_band=()))
-        where, thresholds = _thresholds(of_quiet, quiet, solver, false_alarms)
+        band = band * len(evaluation.joint_names) if len(band) == 1 else band
+        estimates = _estimate(evaluation, solver, gain, tracking, band)
+    of_quiet = plain
+    if quiet_from is not evaluation:
+        of_quiet = _estimate(quiet_from, solver, gain, tracking)
+    quiet_torques = held_out or _quiet_part(of_quiet, quiet, gain)
+    thresholds, raised_notes = _raised(quiet_torques, plain, solver, false_alarms)
     wrenches, unseen, wrench_notes = _wrenches(solver, estimates, thresholds)
     found = Contacts(
         evaluation=evaluation,
-        estimator=chosen.kind.__name__,
+        estimator=estimates.estimator,
         gain=gain,
-        tracking=tracking,
-        friction_band=chosen.friction_band,
-        measured_velocities=measured_velocities,
-        quiet=where,
+        tracking=tracking or _bandwidth(gain),
+        friction_band=band,
+        measured_velocities=tracking is None,
+        quiet=quiet_torques.where,
         time=estimates.time,
         torques=estimates.torques,
         valid=estimates.valid,
@@ -177,6 +192,7 @@ def find_contacts(
     notes = (
         *evaluation.notes,
         *_interruption_notes(found.interruptions, estimates.longest_period),
+        *raised_notes,
         *_threshold_notes(evaluation, thresholds),
         *wrench_notes,
     )
@@ -192,30 +208,17 @@ def _check_quiet(start: float, end: float) -> None:
 
 
 @dataclass(frozen=True)
-class _Chosen:
-    """How external torques are estimated."""
-
-    solver: Solver
-    gain: float
-    tracking: float
-    friction_band: tuple[float, ...]
-    measured_velocities: bool
-
-    @property
-    def kind(self) -> type[MomentumObserver | AccelerationResidual]:
-        return MomentumObserver if self.solver.inertia_is_physical else AccelerationResidual
-
-
-@dataclass(frozen=True)
 class _Estimates:
     """External torques of the samples of an evaluation that can be used."""
 
     evaluation: Evaluation
-    time: Floats  # (M,)
+    time: Floats  # (M,) by the time base of the evaluation
     q: Floats  # (M, n)
+    qd: Floats  # (M, n) as recorded
     torques: Floats  # (M, n)
     valid: Mask  # (M,)
     longest_period: float  # s; samples further apart interrupt the estimate
+    estimator: str  # name of its class
 
 
 def _solver_of(evaluation: Evaluation) -> Solver:
@@ -223,40 +226,67 @@ def _solver_of(evaluation: Evaluation) -> Solver:
     return open_solver(evaluation.robot, "" if urdf is None else read_description(urdf))
 
 
-def _estimate(evaluation: Evaluation, chosen: _Chosen) -> _Estimates:
+@dataclass(frozen=True)
+class _Quiet:
+    """External torques without contact."""
+
+    where: str  # in words
+    gain: float  # 1/s
+    period: float  # s
+    torques: Floats  # (M, n)
+
+
+def _instants(evaluation: Evaluation) -> tuple[Floats, Mask]:
+    """When samples were taken, by the time base of the evaluation, and which ones are used."""
+    log, samples = evaluation.log, evaluation.samples
+    used = ~(samples.repeated | samples.start_transient)
+    if evaluation.accelerations.time_base == "stamps":
+        return log.time, used & ~samples.non_increasing
+    return _core.examine_samples(log.time, log.q, log.qd, log.effort).time, used
+
+
+def _bandwidth(gain: float) -> float:
+    """Of tracked velocities [rad/s], the least that a gain goes with."""
+    return gain / _GAIN_BY_TRACKING
+
+
+def _estimate(
+    evaluation: Evaluation,
+    solver: Solver,
+    gain: float,
+    tracking: float | None,
+    friction_band: Sequence[float] = (),
+) -> _Estimates:
     """Of samples that are later than those before them and don't repeat them."""
-    used = ~(evaluation.samples.repeated | evaluation.samples.non_increasing)
-    time, log = evaluation.time[used], evaluation.log
-    measured = chosen.measured_velocities
+    time, used = _instants(evaluation)
+    time, log = time[used], evaluation.log
     longest_period = max(_LONGEST_PERIOD, _GAP * _period(time))
     options = EstimatorOptions(
-        np.full(len(evaluation.joint_names), chosen.gain),
-        velocity=VelocitySource.MEASURED if measured else VelocitySource.POSITIONS,
-        tracking=chosen.tracking,
+        np.full(len(evaluation.joint_names), gain),
+        velocity=VelocitySource.POSITIONS if tracking else VelocitySource.MEASURED,
+        tracking=tracking or _bandwidth(gain),
         compensated=Compensated(gravity=evaluation.effort.meaning == "torque_without_gravity"),
-        friction_band=chosen.friction_band,
+        friction_band=friction_band,
         longest_period=longest_period,
     )
-    qd = log.qd[used] if measured else None
-    estimator = chosen.kind(chosen.solver, options)
-    torques, valid = estimator.run(time, log.q[used], evaluation.measured[used], qd)
+    q, qd = log.q[used], log.qd[used]
+    kind = MomentumObserver if solver.inertia_is_physical else AccelerationResidual
+    estimator = kind(solver, options)
+    torques, valid = estimator.run(time, q, evaluation.measured[used], None if tracking else qd)
     if not valid.any():
         raise EvaluationError(
-            f"{evaluation.bag}: expected a stretch of {10 / chosen.tracking:.3g} s without a gap of "
-            f"{longest_period:.3g} s, after which velocities are known, got {len(time)} samples in "
-            f"{time[-1] - time[0]:.3g} s; take a longer recording, or more --tracking"
+            f"{evaluation.bag}: expected a stretch of {10 / tracking if tracking else 0:.3g} s without a "
+            f"gap of {longest_period:.3g} s, after which velocities are known, got {len(time)} samples "
+            f"in {time[-1] - time[0]:.3g} s; take a longer recording, or more --tracking"
         )
-    return _Estimates(evaluation, time, log.q[used], torques, valid, longest_period)
+    return _Estimates(evaluation, time, q, qd, torques, valid, longest_period, kind.__name__)
 
 
 def _period(time: Floats) -> float:
     return float(np.median(np.diff(time))) if len(time) > 1 else _LONGEST_PERIOD
 
 
-def _thresholds(
-    estimates: _Estimates, quiet: tuple[float, float] | None, solver: Solver, false_alarms: float
-) -> tuple[str, ContactThresholds]:
-    """What they are made of, in words, and the thresholds."""
+def _quiet_part(estimates: _Estimates, quiet: tuple[float, float] | None, gain: float) -> _Quiet:
     where, chosen, time = f"{estimates.evaluation.bag}", estimates.valid, estimates.time
     if quiet is not None:
         where += f", from {quiet[0]:.9g} s to {quiet[1]:.9g} s"
@@ -266,34 +296,68 @@ def _thresholds(
                 f"{where}: expected a part of the recording, which ends at {time[-1]:.4g} s, got no "
                 "sample; give another --quiet FROM,TO"
             )
-    try:
-        thresholds = contact_thresholds(
-            estimates.torques[chosen], _period(time), false_alarms, solver.joint_names
-        )
-    except InvalidParameterError as error:
-        raise InvalidParameterError(f"{where}: {error}") from None
-    return f"{where}: {chosen.sum()} samples, {chosen.sum() * _period(time):.3g} s", thresholds
+    period = _period(time)
+    where += f": {chosen.sum()} samples, {chosen.sum() * period:.3g} s"
+    return _Quiet(where, gain, period, estimates.torques[chosen])
 
 
-def _thresholds_of_bands(
-    evaluation: Evaluation, solver: Solver, false_alarms: float
-) -> tuple[str, BandThresholds]:
-    """What they are made of, in words, and the thresholds."""
-    bands = solver.torque_deviation
-    if bands is None:
+def _held_out(robot: Robot) -> _Quiet:
+    """What the model of `ids identify` was wrong by on data that it wasn't fitted to."""
+    content, why = read_model_errors(robot.model) if robot.model else (None, "it has none")
+    if content is None:
         raise EvaluationError(
             "contacts: which part of the recording is without contact? give --quiet FROM,TO [s], or "
-            f"--quiet-recording; the model of {evaluation.robot.name} states no torque bands to take instead, as "
-            "those of `ids identify` do"
+            f"--quiet-recording; the held-out errors of the model of {robot.name}, which `ids identify` "
+            f"writes, aren't there to be taken instead ({why})"
         )
-    return (
-        "the model's 95 % torque bands, taken for Gaussian noise (a part without contact, --quiet, is better)",
-        band_thresholds(bands, false_alarms),
+    held_out = content["held_out"]
+    torques = np.array(held_out["torques"], dtype=float)
+    where = f"errors of the model on held-out data: {len(torques) * held_out['period']:.3g} s"
+    return _Quiet(where, held_out["gain"], held_out["period"], torques)
+
+
+def _raised(
+    quiet: _Quiet, estimates: _Estimates, solver: Solver, false_alarms: float
+) -> tuple[ContactThresholds, tuple[str, ...]]:
+    """Thresholds, raised where external torques of the recording at hand are greater than quiet ones.
+
+    Contacts are shorter than half of the time that a joint moves. So the median of its torques is one
+    without contact: where it is greater than that of the quiet part, false alarms would be more than
+    stated. At rest friction holds a joint, and this isn't known.
+    """
+    thresholds = _thresholds(quiet, solver, false_alarms)
+    evaluation, factors, raised = estimates.evaluation, np.ones(quiet.torques.shape[1]), []
+    for j, joint in enumerate(evaluation.joint_names):
+        moving = estimates.valid & (np.abs(estimates.qd[:, j]) > _MOVING)
+        usual = float(np.median(np.abs(quiet.torques[:, j])))
+        independent = moving.sum() * _period(estimates.time) / thresholds.correlation_time[j] / 2
+        if independent < _LEAST or usual == 0:
+            continue
+        here = float(np.median(np.abs(estimates.torques[moving, j])))
+        factors[j] = max(1.0, here / usual)
+        if factors[j] > _RAISED:
+            raised.append(f"{joint} ({factors[j]:.2g} times, to {here:.3g} {evaluation.units[j]})")
+    if factors.max() > 1:
+        thresholds = _thresholds(
+            replace(quiet, torques=quiet.torques * factors), solver, false_alarms
+        )
+    note = (
+        f"thresholds are raised, as external torques usually are greater where joints move than in what "
+        f"thresholds are made of: {listed(raised)}; take a part without contact that has the same motions "
+        "and loads, or a better model"
     )
+    return thresholds, (note,) if raised else ()
+
+
+def _thresholds(quiet: _Quiet, solver: Solver, false_alarms: float) -> ContactThresholds:
+    try:
+        return contact_thresholds(quiet.torques, quiet.period, false_alarms, solver.joint_names)
+    except InvalidParameterError as error:
+        raise InvalidParameterError(f"{quiet.where}: {error}") from None
 
 
 def _wrenches(
-    solver: Solver, estimates: _Estimates, thresholds: ContactThresholds | BandThresholds
+    solver: Solver, estimates: _Estimates, thresholds: ContactThresholds
 ) -> tuple[Floats | None, Integers | None, tuple[str, ...]]:
     try:
         tip = TipWrench(solver, thresholds.noise)
@@ -313,14 +377,16 @@ def _interruptions(estimates: _Estimates) -> tuple[tuple[float, float], ...]:
 
 
 def _spans(found: Contacts) -> list[tuple[int, int]]:
-    """First and last sample of each contact: those with a torque above its threshold."""
-    thresholds = found.thresholds.torques
-    detector = ContactDetector(thresholds, found.evaluation.joint_names)
+    """First and last sample of each contact, without the time after which the detector ends it."""
+    detector = ContactDetector(
+        found.thresholds.torques, found.evaluation.joint_names, release_time=_RELEASE
+    )
     marked = detector.run(found.time, found.torques, found.valid)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], marked.astype(int), [0]])))
-    above = np.flatnonzero((np.abs(found.torques) > thresholds).any(axis=1))
-    last = above[np.searchsorted(above, edges[1::2]) - 1]
-    return list(zip(edges[::2].tolist(), last.tolist(), strict=True))
+    first, after = edges[::2], edges[1::2]
+    ends = found.time[np.minimum(after, len(marked) - 1)] - _RELEASE
+    last = np.where(after < len(marked), np.searchsorted(found.time, ends), len(marked) - 1)
+    return list(zip(first.tolist(), np.maximum(first, last).tolist(), strict=True))
 
 
 def _contact(found: Contacts, first: int, last: int) -> Contact:
@@ -366,9 +432,7 @@ def _interruption_notes(
     )
 
 
-def _threshold_notes(
-    evaluation: Evaluation, thresholds: ContactThresholds | BandThresholds
-) -> tuple[str, ...]:
+def _threshold_notes(evaluation: Evaluation, thresholds: ContactThresholds) -> tuple[str, ...]:
     """Thresholds that a contact hardly reaches, and those that may well be others."""
     names, units = evaluation.joint_names, evaluation.units
     urdf = evaluation.robot.urdf
@@ -376,14 +440,14 @@ def _threshold_notes(
     seen = np.abs(evaluation.measured).max(axis=0)
     large, uncertain = [], []
     for j, joint in enumerate(names):
-        threshold, low, high = thresholds.torques[j], thresholds.low[j], thresholds.high[j]
+        threshold, peaks = thresholds.torques[j], thresholds.peaks[j]
         if threshold > _LARGE * limits[j]:
             share = f"{100 * threshold / limits[j]:.0f} % of its effort limit"
             large.append(f"{joint} ({threshold:.3g} {units[j]}, {share})")
         elif threshold > seen[j]:
             large.append(f"{joint} ({threshold:.3g} {units[j]}, more than any torque recorded)")
-        if high > _UNCERTAIN * low:
-            uncertain.append(f"{joint} ({low:.3g} to {high:.3g} {units[j]})")
+        if peaks < _FEW:
+            uncertain.append(f"{joint} ({peaks:.0f})")
     notes = []
     if large:
         notes.append(
@@ -392,7 +456,7 @@ def _threshold_notes(
         )
     if uncertain:
         notes.append(
-            f"uncertain thresholds: {listed(uncertain)} with a confidence of 90 %; take a longer "
-            "part without contact, and make sure that nothing touches the robot in it"
+            f"thresholds rest on few peaks, and are high for that: {listed(uncertain)}; take a longer "
+            "part without contact"
         )
     return tuple(notes)

@@ -1,29 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an identified model may be wrong by, in a file beside it.
-
-arm_model.yaml   the model
-arm_model.json   SHA-256 of the model's file, its friction, and independent deviations of the fit's
-                 unknowns, of one standard deviation each: the covariance is factor factor'
+"""What an identified model may be wrong by: the content of the file beside it, see model_errors.py.
 
 The covariance is that of the posterior: samples whose errors are correlated in time, and the prior.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from inverse_dynamics import _core
 from inverse_dynamics.base.plain import plain
-from inverse_dynamics.errors import RobotError
+from inverse_dynamics.evaluation.contacts import gain_for
 from inverse_dynamics.identification.cross_validation import errors_of
+from inverse_dynamics.robot.model_errors import SCHEMA, read_model_errors, sha256
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
     from inverse_dynamics._core import ArmFit, ArmFitter, ArmUncertainty
@@ -32,13 +27,10 @@ if TYPE_CHECKING:
     from inverse_dynamics.identification.knowledge import Knowledge
     from inverse_dynamics.identification.result import Identification
 
-_SCHEMA = 1
-_KEYS = ("schema", "model_sha256", "friction", "deviations")
-_FIGURES = {"fv", "fc", "width"}  # of smooth_coulomb
-_OPTIONAL_FIGURES = {"shift", "fo", "fl", "fs", "vs"}
 _DIGITS = 7
 _LEAST = 1e-6  # variance of the torques by the noise's, of deviations that are written
 _RIDGE = 1e-12  # by the information: rounding, of directions that change no torque
+_MOST_ROWS = 10_000  # of held-out errors: half a megabyte; they are thinned
 _APART = 10.0  # s between blocks: many correlation times
 
 
@@ -75,20 +67,41 @@ def _in_a_row(times: Sequence[Floats]) -> Floats:
     return np.concatenate(rows)
 
 
-def uncertainty_file(model: Path) -> Path:
-    """The file beside a model."""
-    return model.with_suffix(".json")
-
-
 def uncertainty_text(found: Identification, model_text: str) -> str:
     """The text of that file, for the text of the model."""
     content = {
-        "schema": _SCHEMA,
-        "model_sha256": _sha256(model_text.encode()),
+        "schema": SCHEMA,
+        "model_sha256": sha256(model_text.encode()),
         "friction": plain(found.model.friction),
-        "deviations": [[float(f"{x:.{_DIGITS}g}") for x in row] for row in found.factor.T],
+        "deviations": _rows(found.factor.T, _DIGITS),
+        "held_out": _held_out(found),
     }
     return json.dumps(content, allow_nan=False) + "\n"
+
+
+def _held_out(found: Identification) -> dict[str, Any]:
+    """Errors of the held-out blocks, low-passed as an estimator of external torques does it.
+
+    A mean over its time constant has the noise of the low-pass, or up to twice that.
+    """
+    gain = gain_for(found.cutoff)
+    period = float(np.median(np.concatenate([np.diff(b.time[b.counts]) for b in found.blocks])))
+    each = max(1, round(1 / (gain * period)))
+    means = [_means(block.errors["identified"], each) for block in found.blocks]
+    rows = np.concatenate(means)
+    step = 1 + len(rows) // _MOST_ROWS
+    return {"gain": gain, "period": step * each * period, "torques": _rows(rows[::step], 4)}
+
+
+def _means(values: Floats, each: int) -> Floats:
+    """Of so many rows each."""
+    count = len(values) // each
+    means: Floats = values[: count * each].reshape(count, each, values.shape[1]).mean(axis=1)
+    return means
+
+
+def _rows(values: Floats, digits: int) -> list[list[float]]:
+    return [[float(f"{x:.{digits}g}") for x in row] for row in values]
 
 
 def read_uncertainty(model: Path) -> tuple[ArmUncertainty | None, str]:
@@ -96,51 +109,8 @@ def read_uncertainty(model: Path) -> tuple[ArmUncertainty | None, str]:
 
     Raises RobotError: a file that isn't one of `ids identify`.
     """
-    file = uncertainty_file(model)
-    if not file.is_file():
-        return None, f"{file}: there is none"
-    content = _content(file)
-    if content["model_sha256"] != _sha256(model.read_bytes()):
-        return None, f"{file}: it is another model's, or {model.name} has changed since"
+    content, why = read_model_errors(model)
+    if content is None:
+        return None, why
     factor = np.array(content["deviations"], dtype=float).T
     return _core.ArmUncertainty(content["friction"], factor), ""
-
-
-def _content(file: Path) -> dict[str, Any]:
-    try:
-        # integers as floats, of which the largest are infinite
-        content = json.loads(file.read_text(encoding="utf-8"), parse_int=float)
-    except (OSError, ValueError, RecursionError) as error:
-        raise _error(file, "JSON of `ids identify`", str(error)) from error
-    if not isinstance(content, dict) or set(content) != set(_KEYS) or content["schema"] != _SCHEMA:
-        raise _error(file, f"schema {_SCHEMA} with the keys {', '.join(_KEYS)}", "others")
-    rows, laws = content["deviations"], content["friction"]
-    if not (
-        _is_list_of(list, rows) and len({len(row) for row in rows}) == 1 and all(map(_is_row, rows))
-    ):
-        raise _error(file, "deviations: rows of as many finite numbers each", "others")
-    if not (_is_list_of(dict, laws) and all(map(_is_law, laws))):
-        raise _error(file, "friction: figures of each joint", "others")
-    return content
-
-
-def _is_list_of(kind: type, values: object) -> bool:
-    return isinstance(values, list) and all(isinstance(value, kind) for value in values)
-
-
-def _is_row(row: Collection[object]) -> bool:
-    return len(row) > 0 and all(isinstance(x, float) and math.isfinite(x) for x in row)
-
-
-def _is_law(law: Mapping[str, object]) -> bool:
-    return _FIGURES <= law.keys() <= _FIGURES | _OPTIONAL_FIGURES and _is_row(law.values())
-
-
-def _error(file: Path, expected: str, got: str) -> RobotError:
-    return RobotError(
-        f"{file}: expected {expected}, got {got}; identify the arm again, or remove it"
-    )
-
-
-def _sha256(content: bytes) -> str:
-    return hashlib.sha256(content).hexdigest()

@@ -61,13 +61,10 @@ def summary(contacts: Contacts) -> dict[str, Any]:
         "torques",
         "noise",
         "correlation_time",
-        "independent",
         "peaks",
         "level",
         "scale",
         "shape",
-        "low",
-        "high",
     )
     return {
         "schema": 1,

@@ -3,7 +3,7 @@
 
 arm.yaml         run configuration: `ids evaluate RECORDING --robot arm.yaml`
 arm_model.yaml   the model: rigid bodies, friction, 95 % band and range of the data (docs/model_file.md)
-arm_model.json   what the model may be wrong by, for `ids payload`
+arm_model.json   what the model may be wrong by, for `ids payload` and `contact`
 arm.json         all figures
 arm.html         the report's page
 """
@@ -22,10 +22,11 @@ from inverse_dynamics.base.files import check_output_file, files_written_whole, 
 from inverse_dynamics.base.plain import json_text, plain
 from inverse_dynamics.errors import OutputError, PackageNotFoundError
 from inverse_dynamics.identification.summary import error_rows
-from inverse_dynamics.identification.uncertainty import uncertainty_file, uncertainty_text
+from inverse_dynamics.identification.uncertainty import uncertainty_text
 from inverse_dynamics.report.identifications import error_table, render_identification
 from inverse_dynamics.results.model_files import model_file_text
 from inverse_dynamics.results.yaml_text import yaml_list, yaml_text
+from inverse_dynamics.robot.model_errors import model_errors_file
 from inverse_dynamics.robot.robots import RIGID_BODY
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def identification_files(out: Path | str) -> IdentificationFiles:
     return IdentificationFiles(
         out,
         model,
-        uncertainty_file(model),
+        model_errors_file(model),
         out.with_suffix(".json"),
         out.with_suffix(".html"),
     )

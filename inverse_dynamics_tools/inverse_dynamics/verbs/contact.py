@@ -40,7 +40,7 @@ examples:
       in which the robot hardly moves
 
   ids contact recording --robot arm.yaml
-      thresholds from the torque bands that `ids identify` has put into the model of arm.yaml
+      thresholds from the errors that `ids identify` has found on held-out data
 
 External torques are those that the robot exerts on its surroundings: measured torques minus the
 torques of the model for the motion, low-passed. They include what the model lacks, such as a load.
@@ -68,7 +68,7 @@ def add_parser(
     )
     add_robot(parser)
     quiet = parser.add_argument_group(
-        "thresholds, from a part without contact, or from the model's torque bands"
+        "thresholds, from a part without contact, or from the held-out errors of `ids identify`"
     )
     quiet.add_argument(
         "--quiet",
@@ -94,20 +94,14 @@ def add_parser(
         "--gain",
         metavar="PER_SECOND",
         type=positive_number,
-        default=60.0,
-        help="1 / time constant (default: 60 1/s, 17 ms)",
+        help="1 / time constant (default: 10 to 60 1/s, 1.9 times the cut-off [Hz] of the accelerations of "
+        "the recording that thresholds are made of)",
     )
     estimator.add_argument(
         "--tracking",
         metavar="RAD_PER_SECOND",
         type=positive_number,
-        default=200.0,
-        help="bandwidth of velocities from positions: lower for coarse encoders (default: 200 rad/s)",
-    )
-    estimator.add_argument(
-        "--measured-velocities",
-        action="store_true",
-        help="use the recorded velocities, where they are accurate and not delayed",
+        help="take velocities from positions, tracked with this bandwidth (default: recorded velocities)",
     )
     estimator.add_argument(
         "--friction-band",
@@ -173,7 +167,6 @@ def run(arguments: argparse.Namespace) -> None:
             gain=arguments.gain,
             tracking=arguments.tracking,
             friction_band=arguments.friction_band,
-            measured_velocities=arguments.measured_velocities,
             progress=progress,
             topic=arguments.topic,
             effort_is=arguments.effort_is,
@@ -194,7 +187,7 @@ def _print(contacts: Contacts, out: Path, figures: tuple[str, ...]) -> None:
     evaluation = contacts.evaluation
     print_heading(console, evaluation)
     console.print(f"effort means   {evaluation.effort.summary}")
-    console.print(f"estimator      {contacts.estimator}, {contacts.gain:g} 1/s")
+    console.print(f"estimator      {contacts.estimator}, {contacts.gain:.3g} 1/s")
     console.print(f"quiet          {contacts.quiet}")
     for note in contacts.notes:
         console.print(f"note           {note}")

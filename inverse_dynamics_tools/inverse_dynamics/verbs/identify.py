@@ -50,7 +50,7 @@ Compare them with `present, friction refitted`. docs/identification.md explains 
 results, all of them or none:
   arm.yaml                run configuration, for --robot of every verb
   arm_model.yaml          the model: links, friction, rotor inertia, 95 % band of the torques, range of the data
-  arm_model.json          what the model may be wrong by, for `ids payload`
+  arm_model.json          what the model may be wrong by, for `ids payload` and `contact`
   arm.html                page: the robot in motion, measured and predicted torques, influence of data and prior
   arm.json                all figures
 """
@@ -254,6 +254,6 @@ def _print(found: Identification, files: IdentificationFiles, tests: Sequence[Ho
         console.print(f"finding        {finding.text}")
     console.print(f"robot          {files.robot}: `ids evaluate RECORDING --robot {files.robot}`")
     console.print(f"model          {files.model}")
-    console.print(f"uncertainty    {files.uncertainty}: for `ids payload`")
+    console.print(f"uncertainty    {files.uncertainty}: for `ids payload` and `contact`")
     console.print(f"page           {files.page}")
     console.print(f"figures        {files.figures}")

@@ -93,7 +93,7 @@ def threshold_table(contacts: Contacts) -> Table:
     table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
     table.add_column("joint", overflow="fold")
     table.add_column("unit")
-    for heading in ("noise", "threshold", "range", "peaks"):
+    for heading in ("noise", "threshold", "peaks"):
         table.add_column(heading, justify="right")
     for j, (joint, unit) in enumerate(zip(evaluation.joint_names, evaluation.units, strict=True)):
         table.add_row(
@@ -101,14 +101,11 @@ def threshold_table(contacts: Contacts) -> Table:
             unit,
             figure(float(thresholds.noise[j])),
             figure(float(thresholds.torques[j])),
-            f"{thresholds.low[j]:.3g} to {thresholds.high[j]:.3g}",
             f"{thresholds.peaks[j]:.0f}",
         )
     rate = thresholds.false_alarms_per_hour
     alarms = f"{rate:g} false alarm{'' if rate == 1 else 's'} per hour"
-    fitted = any(thresholds.peaks)
-    meaning = "with a confidence of 90 %" if fitted else "up to another day's"
-    table.caption = f"thresholds for {alarms}; range: {meaning}"
+    table.caption = f"thresholds for {alarms}"
     return table
 
 

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The file of `ids identify` beside a model: what the model may be wrong by.
+
+arm_model.yaml   the model
+arm_model.json   SHA-256 of the model's file, its friction; independent deviations of the fit's
+                 unknowns, of one standard deviation each: the covariance is factor factor'; torques
+                 that models fitted to the other data left of held-out data, as an estimator of
+                 external torques has them: its gain [1/s], their period [s], one row per sample
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+from inverse_dynamics.errors import RobotError
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+    from pathlib import Path
+
+SCHEMA = 2
+_KEYS = ("schema", "model_sha256", "friction", "deviations", "held_out")
+_FIGURES = {"fv", "fc", "width"}  # of smooth_coulomb
+_OPTIONAL_FIGURES = {"shift", "fo", "fl", "fs", "vs"}
+
+
+def model_errors_file(model: Path) -> Path:
+    """The file beside a model."""
+    return model.with_suffix(".json")
+
+
+def read_model_errors(model: Path) -> tuple[dict[str, Any] | None, str]:
+    """Its content; or None, and why.
+
+    Raises RobotError: a file that isn't one of `ids identify`.
+    """
+    file = model_errors_file(model)
+    if not file.is_file():
+        return None, f"{file}: there is none"
+    content = _content(file)
+    if content["model_sha256"] != sha256(model.read_bytes()):
+        return None, f"{file}: it is another model's, or {model.name} has changed since"
+    return content, ""
+
+
+def _content(file: Path) -> dict[str, Any]:
+    try:
+        # integers as floats, of which the largest are infinite
+        content = json.loads(file.read_text(encoding="utf-8"), parse_int=float)
+    except (OSError, ValueError, RecursionError) as error:
+        raise _error(file, "JSON of `ids identify`", str(error)) from error
+    if not isinstance(content, dict) or set(content) != set(_KEYS) or content["schema"] != SCHEMA:
+        raise _error(file, f"schema {SCHEMA} with the keys {', '.join(_KEYS)}", "others")
+    rows, laws, held_out = content["deviations"], content["friction"], content["held_out"]
+    if not _is_table(rows):
+        raise _error(file, "deviations: rows of as many finite numbers each", "others")
+    if not (_is_list_of(dict, laws) and all(map(_is_law, laws))):
+        raise _error(file, "friction: figures of each joint", "others")
+    if not (
+        isinstance(held_out, dict)
+        and held_out.keys() == {"gain", "period", "torques"}
+        and all(_is_row([held_out[name]]) and held_out[name] > 0 for name in ("gain", "period"))
+        and _is_table(held_out["torques"])
+        and len(held_out["torques"][0]) == len(laws)
+    ):
+        raise _error(file, "held_out: gain, period, and rows of torques of each joint", "others")
+    return content
+
+
+def _is_table(rows: Any) -> bool:
+    return (
+        _is_list_of(list, rows) and len({len(row) for row in rows}) == 1 and all(map(_is_row, rows))
+    )
+
+
+def _is_list_of(kind: type, values: Any) -> bool:
+    return isinstance(values, list) and all(isinstance(value, kind) for value in values)
+
+
+def _is_row(row: Collection[object]) -> bool:
+    return len(row) > 0 and all(isinstance(x, float) and math.isfinite(x) for x in row)
+
+
+def _is_law(law: Mapping[str, object]) -> bool:
+    return _FIGURES <= law.keys() <= _FIGURES | _OPTIONAL_FIGURES and _is_row(law.values())
+
+
+def _error(file: Path, expected: str, got: str) -> RobotError:
+    return RobotError(
+        f"{file}: expected {expected}, got {got}; identify the arm again, or remove it"
+    )
+
+
+def sha256(content: bytes) -> str:
+    """As the file states the model's."""
+    return hashlib.sha256(content).hexdigest()
