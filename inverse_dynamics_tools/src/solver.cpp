@@ -116,9 +116,8 @@ class Solver {
                   const py::object& inertia, const py::object& frame) {
     auto& payload = capability<ids::Payload>("set_payload");
     const ids::RigidBody body = bodyOf(mass, center_of_mass, inertia, frame);
+    withoutInterpreter([&] { payload.setPayload(name, body); });
     warn(ids::doubtOf(body));
-    const py::gil_scoped_release release;
-    payload.setPayload(name, body);
   }
   bool removePayload(const std::string& name) {
     auto& payload = capability<ids::Payload>("remove_payload");
@@ -143,9 +142,8 @@ class Solver {
   void setGravity(const py::object& gravity) {
     auto& mount = capability<ids::VariableGravity>("set_gravity");
     const Eigen::Vector3d numbers = vectorOf("set_gravity: argument gravity", gravity);
+    withoutInterpreter([&] { mount.setGravity(numbers); });
     warn(ids::doubtOf(numbers));
-    const py::gil_scoped_release release;
-    mount.setGravity(numbers);
   }
   void setBaseAcceleration(const py::object& acceleration) {
     auto& mount = capability<ids::VariableGravity>("set_base_acceleration");

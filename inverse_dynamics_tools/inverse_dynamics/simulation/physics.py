@@ -89,10 +89,7 @@ def follow(
     gains: Gains | None = None,
     progress: Progress = no_progress,
 ) -> Motion:
-    """Motion of a robot that starts on a trajectory and follows it for `duration` seconds.
-
-    Raises SimulationError, also where it doesn't follow.
-    """
+    """Motion of a robot that starts on a trajectory and follows it for `duration` seconds."""
     check_rate(rate)
     if not duration * rate <= MOST_SAMPLES:
         raise SimulationError(
@@ -117,12 +114,11 @@ def follow(
         ticks=ticks,
         progress=progress,
     )
-    motion = Motion(**vars(response), q_desired=trajectory.at(middle)[0], gains=gains)
-    _check_followed(motion, robot)
-    return motion
+    return Motion(**vars(response), q_desired=trajectory.at(middle)[0], gains=gains)
 
 
-def _check_followed(motion: Motion, robot: SimulatedRobot) -> None:
+def check_followed(motion: Motion, robot: SimulatedRobot) -> None:
+    """Raise SimulationError where a motion has left its trajectory."""
     error = np.abs(motion.q - motion.q_desired)
     if not (error > _LOST).any():
         return

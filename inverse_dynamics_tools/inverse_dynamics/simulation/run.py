@@ -38,7 +38,13 @@ from inverse_dynamics.simulation.modelled import (
     model_bodies,
     model_solver,
 )
-from inverse_dynamics.simulation.physics import Motion, check_rate, default_gains, follow
+from inverse_dynamics.simulation.physics import (
+    Motion,
+    check_followed,
+    check_rate,
+    default_gains,
+    follow,
+)
 from inverse_dynamics.simulation.sensors import Recorded, Sensors
 from inverse_dynamics.simulation.trajectory import FourierTrajectory
 from inverse_dynamics.simulation.trajectory_file import read_trajectory
@@ -145,6 +151,7 @@ def simulate(
     duration = duration or chosen.duration
     gains = stated.gains.apply(default_gains(simulated, chosen, rate))
     motion = follow(simulated, chosen, rate=rate, duration=duration, gains=gains, progress=progress)
+    check_followed(motion, simulated)
     recorded = sensors.record(motion, seed)
     settings = _settings(robot, simulated, sensors, gains, rate, duration, seed, source, from_model)
     settings["robot_description_sha256"] = hashlib.sha256(description.encode()).hexdigest()
