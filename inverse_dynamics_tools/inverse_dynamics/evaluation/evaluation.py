@@ -26,8 +26,7 @@ from inverse_dynamics.evaluation.accelerations import (
     accelerations_of,
     samples_of,
 )
-from inverse_dynamics.evaluation.diagnosed import diagnosis_of
-from inverse_dynamics.evaluation.diagnosis import Diagnosis
+from inverse_dynamics.evaluation.causes.evaluated import causes_of
 from inverse_dynamics.evaluation.effort import Effort, effort_of
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.series import Recorded, SeriesInMemory
@@ -43,6 +42,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.bags import JointStateTopic
     from inverse_dynamics.data.joint_log import Clock
+    from inverse_dynamics.evaluation.causes.compare import Cause
     from inverse_dynamics.evaluation.series import Arrays, Series
 
 CAUSE = "likely cause of the error: "
@@ -87,7 +87,9 @@ class Evaluation:
     effort: Effort = field(default_factory=Effort)  # what recorded efforts mean
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
     seconds: dict[str, float] = field(default_factory=dict)  # what took how long
-    diagnosis: Diagnosis | None = None  # the last one of the notes; not in files
+    diagnosis: tuple[
+        Cause, ...
+    ] = ()  # likely causes of the errors, the last one of the notes; not in files
 
     @cached_property
     def measured(self) -> Floats:
@@ -194,11 +196,13 @@ def evaluate(
     kept = result.samples.kept
     outside = outside_of_seen(arm.solver.seen, states, kept, arm.joint_names, arm.units)
     result = replace(result, notes=(*result.notes, *filter(None, [outside])))
-    cause = diagnosis_of(robot, arm.solver, arm.description, result.log, result.qdd, result.effort)
-    if cause is None:
+    found = causes_of(
+        robot, arm.solver, arm.description, result.log, result.qdd, result.effort, kept
+    )
+    if not found.text:
         return result
-    note = f"{CAUSE}{cause.text}"
-    return replace(result, notes=(*result.notes, note), diagnosis=cause)
+    note = f"{CAUSE}{found.text}" if found.causes else found.text
+    return replace(result, notes=(*result.notes, note), diagnosis=found.causes)
 
 
 def _topic_notes(bag: Path, motion: JointLog | JointStateTopic, expected: str) -> list[str]:

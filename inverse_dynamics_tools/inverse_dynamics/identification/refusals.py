@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.wording import listed
-from inverse_dynamics.evaluation.diagnosis import Diagnosis, pieces_of, residual_cause
+from inverse_dynamics.evaluation.causes.compare import Cause, residual_causes
+from inverse_dynamics.evaluation.causes.samples import pieces_of
 from inverse_dynamics.identification.result import IdentificationError
 
 if TYPE_CHECKING:
@@ -40,12 +41,12 @@ def check_recordings(evaluations: Sequence[Evaluation]) -> None:
     """
     _check_motion(evaluations)
     for evaluation in evaluations:
-        cause = evaluation.diagnosis
-        if cause is not None and cause.kind not in _IDENTIFIED:
-            raise _refusal(f"{evaluation.bag}", cause)
+        for cause in evaluation.diagnosis:
+            if cause.kind not in _IDENTIFIED:
+                raise _refusal(f"{evaluation.bag}", cause)
 
 
-def _refusal(recording: str, cause: Diagnosis) -> IdentificationError:
+def _refusal(recording: str, cause: Cause) -> IdentificationError:
     return IdentificationError(f"{recording}: {cause.text}", cause.mistake)
 
 
@@ -96,7 +97,7 @@ def check_result(found: Identification) -> None:
         )
     for recording in dict.fromkeys(block.recording for block in found.blocks):
         blocks = [block for block in found.blocks if block.recording == recording]
-        if cause := _cause_of_residuals(found, blocks):
+        for cause in _causes_of_residuals(found, blocks):
             raise _refusal(recording, cause)
     start = "present" if "present" in found.held_out else "urdf"
     if start in found.held_out and found.rmse("identified") >= found.rmse(start):
@@ -117,7 +118,9 @@ def _named(found: Identification) -> str:
     return ", ".join(map(str, found.recordings))
 
 
-def _cause_of_residuals(found: Identification, blocks: Sequence[HeldOutBlock]) -> Diagnosis | None:
+def _causes_of_residuals(
+    found: Identification, blocks: Sequence[HeldOutBlock]
+) -> tuple[Cause, ...]:
     """What the held-out errors of a recording show: limits, couplings, drift."""
     ordered = sorted(blocks, key=lambda block: float(block.time[0]))
     time, q, qd, measured, computed = (
@@ -129,4 +132,4 @@ def _cause_of_residuals(found: Identification, blocks: Sequence[HeldOutBlock]) -
     )
     # pieces of what is computed, in the place of accelerations
     samples = pieces_of(found.joints, time, q, qd, computed, measured)
-    return None if samples is None else residual_cause(samples, samples.flat(samples.qdd))
+    return () if samples is None else residual_causes(samples, samples.flat(samples.qdd))

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Why computed torques don't match the measured ones: mistakes as rivals, judged on data that were held out.
+
+    found = compare(samples, arm)
+    for cause in found.causes:
+        print(cause.text)
+
+1. Positions, velocities and time are compared with each other. What contradicts is put right.
+2. All rivals are fitted to every second piece of the recording and judged on the others (fit.py).
+3. A cause is named if its remedy, with the numbers that it states, leaves a small error, and if in 95 % of the
+   recordings that resampled pieces make it is better than each rival by a margin. Rivals that can't be told apart
+   are named together. Special cases take precedence over what includes them.
+4. Else pairs of mistakes are tried in the same way. Both are named, or none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics.base.wording import listed
+from inverse_dynamics.evaluation.causes import (
+    columns,
+    efforts,
+    frictions,
+    gravity,
+    loads,
+    masses,
+    motions,
+    residuals,
+)
+from inverse_dynamics.evaluation.causes.arm import ArmModel, View
+from inverse_dynamics.evaluation.causes.fit import Fitting
+from inverse_dynamics.evaluation.causes.rival import PAGE
+
+if TYPE_CHECKING:
+    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.evaluation.causes.rival import Rival, Told
+    from inverse_dynamics.evaluation.causes.samples import Samples
+
+_MISMATCH = 0.04  # mean error of the joints, as a share of their ranges, up to which a model fits
+_FITS = 0.1  # the same, that a remedy may leave
+_GAIN = 2.0  # least ratio of the errors before and after
+_MARGIN, _FLAT = 1.15, 0.004  # a rival is worse by this ratio, and by this share of the range
+_SURE = 0.95  # of the resampled recordings
+_RESAMPLED = 400
+_MOST_NAMED = 3
+_AT_REST = ("gravity", "no_gravity", "payload", "tool", "mass")
+_LIKE_COUPLING = (
+    "effort_scale",
+    "mass",
+    "currents",
+)  # of one joint, where the other's torque is like its own
+
+KINDS = (efforts, gravity, loads, masses, columns, motions, frictions, residuals)
+
+
+@dataclass(frozen=True)
+class Cause:
+    """A mistake, and what to do about it. Errors: mean over the joints, as shares of measured ranges.
+
+    kind: currents, effort_scale, effort_sign, effort_direction, effort_order, no_gravity, gravity, payload, tool,
+    mass, friction, guided, order, direction, degrees, velocity, clock, motor_side, saturation, coupling,
+    drift. mistake: the nearest heading of PAGE; "": none is near. value: what was found, of kind's unit.
+    error_after: None where the remedy's numbers aren't known.
+    """
+
+    kind: str
+    joints: tuple[str, ...]
+    value: Any
+    error_before: float
+    error_after: float | None
+    reason: str
+    remedy: str
+    mistake: str = ""
+
+    @property
+    def text(self) -> str:
+        """Reason, remedy and the place in the documentation."""
+        return f"{self.reason}; {self.remedy}" + (f" ({self.reference})" if self.mistake else "")
+
+    @property
+    def reference(self) -> str:
+        """The page and the place on it."""
+        kept = "".join(c for c in self.mistake.lower() if c.isalnum() or c in " -")
+        return f"{PAGE}#{kept.replace(' ', '-')}"
+
+
+def residual_causes(samples: Samples, computed: Floats) -> tuple[Cause, ...]:
+    """What no model of an arm can have: saturation, coupled joints, drift. computed: (K M, n) N m."""
+    view = View(samples, ArmModel(lambda *_: computed, np.zeros_like))
+    contest = _Contest(view)
+    contest.add(frictions.nothing(view))
+    for rival in (*residuals.rivals(view, contest.fit), *residuals.couplings(view)):
+        contest.add(rival)
+    before = float(contest.fit.mean(contest.squares[0]))
+    if named := contest.best(before):
+        return tuple(_cause(told, contest.as_is, after) for told, after in named)
+    drifting = residuals.drift(view, contest.fit, contest.squares[0])
+    return () if drifting is None else (_cause(drifting, before, None),)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Causes: all of them, or one of several that the recording doesn't tell apart."""
+
+    causes: tuple[Cause, ...] = ()
+    rivals: bool = False
+    excluded: tuple[str, ...] = ()  # kinds, where nothing explains an error
+    scores: dict[str, float] = field(default_factory=dict)  # least error of each kind
+
+    @property
+    def text(self) -> str:
+        """What a reader should know of it; "": nothing."""
+        if self.excluded:
+            return (
+                f"no single cause explains the error; these were excluded: {listed(self.excluded)}"
+            )
+        if self.rivals:
+            told = "; or ".join(cause.text for cause in self.causes)
+            return f"{told}. This recording doesn't tell them apart: {self._experiment}"
+        return "; and ".join(cause.text for cause in self.causes)
+
+    @property
+    def _experiment(self) -> str:
+        """The motion that tells rivals apart."""
+        kinds = {cause.kind for cause in self.causes}
+        if kinds & set(_AT_REST) and kinds - set(_AT_REST):
+            return (
+                "record the same motion twice as fast: torques of loads and gravity stay the same"
+            )
+        if kinds <= set(_AT_REST):
+            return "record a motion in which all joints of the wrist turn round"
+        return "record a motion in which the joints move one after the other"
+
+
+def compare(samples: Samples, arm: ArmModel) -> Comparison:
+    """The causes of a mismatch; none where torques match."""
+    if not all(
+        np.isfinite(v).all() for v in (samples.q, samples.qd, samples.qdd, samples.measured)
+    ):
+        return Comparison()
+    told = None
+    if found := motions.contradiction(samples, arm):
+        told, samples = found
+    view = View(samples, arm)
+    rest = _Contest(view).decide()
+    if told is None:
+        return rest
+    before = after = rest.scores.get("friction", 0.0)
+    if rest.causes and not rest.rivals:
+        after = rest.causes[0].error_after or after
+    first = _cause(told, before, after)
+    return replace(rest, causes=(first, *(c for c in rest.causes if c.kind != "friction")))
+
+
+class _Contest:
+    """Rivals of one recording."""
+
+    def __init__(self, view: View) -> None:
+        self.view = view
+        self.fit = Fitting(view.samples, view.friction)
+        pieces = view.samples.q.shape[0]
+        random = np.random.default_rng(0)
+        self.weights = random.multinomial(pieces, np.full(pieces, 1 / pieces), _RESAMPLED) / pieces
+        self.rivals: list[Rival] = []
+        self.squares: list[Floats] = []
+        self.told: list[Told | None] = []
+
+    def decide(self) -> Comparison:
+        """The outcome."""
+        view, fit = self.view, self.fit
+        nothing = frictions.nothing(view)
+        self.add(nothing)
+        before = self._score(0)
+        if before > _MISMATCH:
+            self.add(masses.rough(view))
+            for kind in KINDS:
+                for rival in kind.rivals(view, fit):
+                    self.add(rival)
+            named = self.best(before)
+            if not named or named[0][0].kind in _LIKE_COUPLING:
+                for rival in residuals.couplings(view):
+                    self.add(rival)
+                named = self.best(before)
+            if named:
+                causes = tuple(_cause(told, self.as_is, after) for told, after in named)
+                return Comparison(causes, len(causes) > 1, scores=self._table())
+        return self._unnamed(before)
+
+    def _unnamed(self, before: float) -> Comparison:
+        """What is said where no rival wins."""
+        if told := residuals.drift(self.view, self.fit, self.squares[0]):
+            return Comparison((_cause(told, self.as_is, None),), scores=self._table())
+        if before <= _FITS:
+            lacks = self.fit.friction is None and self.as_is > 2 * _MISMATCH
+            if lacks and self.as_is >= _GAIN * before:
+                cause = _cause(frictions.FRICTION, self.as_is, before)
+                return Comparison((cause,), scores=self._table())
+            return Comparison(scores=self._table())
+        if side := motions.motor_side(self.view):
+            return Comparison((_cause(side, self.as_is, None),), scores=self._table())
+        excluded = tuple(sorted({r.kind for r in self.rivals} - {"rough"}))
+        return Comparison(excluded=excluded, scores=self._table())
+
+    @property
+    def as_is(self) -> float:
+        """Error of the model, nothing fitted."""
+        measured = self.view.samples.flat(self.view.samples.measured)
+        squares = (((measured - self.view.computed) / self.fit.size) ** 2).reshape(self.fit.shape)
+        return float(self.fit.mean(squares.mean(axis=1)))
+
+    def _score(self, i: int) -> float:
+        return float(self.fit.mean(self.squares[i]))
+
+    def _table(self) -> dict[str, float]:
+        table: dict[str, float] = {}
+        for i, rival in enumerate(self.rivals):
+            table[rival.kind] = min(self._score(i), table.get(rival.kind, np.inf))
+        return table
+
+    def add(self, rival: Rival, squares: Floats | None = None) -> None:
+        """One more, unless it can't be."""
+        squares = self.fit.errors(rival) if squares is None else squares
+        if np.isfinite(squares).all():
+            self.rivals.append(rival)
+            self.squares.append(squares)
+
+    def best(self, with_friction: float) -> list[tuple[Told, float]]:
+        """What is named: one, or those that can't be told apart; with the errors that remedies leave."""
+        scores = [self._score(i) for i in range(len(self.rivals))]
+        order = np.argsort(scores, kind="stable")
+        resampled = np.array([self.fit.mean(s, self.weights) for s in self.squares])
+        tied, result = [], []
+        for i in map(int, order):
+            if scores[i] > _FITS or _GAIN * scores[i] > with_friction:
+                break
+            if self.rivals[i].kind == "rough" and self._tied(resampled, i, tied):
+                return []
+            told = self.rivals[i].tell(*self.fit.numbers(self.rivals[i]))
+            if told is None:
+                continue
+            after = float(self.fit.mean(self.fit.errors(self.fit.applied(self.rivals[i], told))))
+            if after > _FITS or _GAIN * after > with_friction:
+                continue
+            if not self._tied(resampled, i, tied):
+                break
+            tied.append(i)
+            result.append((told, after))
+        return self._special(tied, result)
+
+    def _tied(self, resampled: Floats, i: int, tied: list[int]) -> bool:
+        """Whether a rival can't be told from the best one."""
+        best = tied[0] if tied else i
+        worse = resampled[i] > _MARGIN * resampled[best] + _FLAT
+        return bool(worse.mean() < _SURE)
+
+    def _special(
+        self, tied: list[int], result: list[tuple[Told, float]]
+    ) -> list[tuple[Told, float]]:
+        """Without those that include another one; nothing if too many are left."""
+        kinds = {self.rivals[i].kind for i in tied}
+        kept = []
+        for i, found in zip(tied, result, strict=True):
+            same = any(k[0].kind == found[0].kind and k[0].joints == found[0].joints for k in kept)
+            if not same and not kinds & set(self.rivals[i].includes):
+                kept.append(found)
+        return kept if len(kept) <= _MOST_NAMED else []
+
+
+def _cause(told: Told, before: float, after: float | None) -> Cause:
+    return Cause(
+        told.kind,
+        told.joints,
+        told.value,
+        before,
+        after,
+        told.reason,
+        told.remedy,
+        told.mistake,
+    )
