@@ -40,6 +40,7 @@ class ArmModel:
     loaded: Compute | None = None
     links: Compute | None = None
     link_names: tuple[str, ...] = ()
+    mass: float = 0.0  # kg of the links; 0: it isn't known
     compared_without_gravity: bool = False
     prismatic: tuple[bool, ...] = ()
     position_limits: Floats | None = None  # (2, n) rad or m

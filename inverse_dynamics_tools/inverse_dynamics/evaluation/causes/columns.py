@@ -45,9 +45,13 @@ def _exchanged(view: View, i: int, j: int) -> Iterator[Rival]:
     )
     if view.informative[i] or view.informative[j]:
         # recorded columns of the arm's joints: those of the motion in its order, taken back
-        moved = view.arm.compared(*(values[:, order] for values in view.motion))
-        yield Rival("order", moved[:, order], view.qd, lambda *_: columns)
-        yield Rival("effort_order", view.computed[:, order], view.qd[:, order], lambda *_: efforts)
+        q, qd, qdd = (values[:, order] for values in view.motion)
+        moved = view.arm.compared(q, qd, qdd)[:, order]
+        back = {"effort": lambda computed: computed[:, order]}
+        yield Rival("order", moved, view.qd, lambda *_: columns, motion=(q, qd, qdd), **back)
+        yield Rival(
+            "effort_order", view.computed[:, order], view.qd[:, order], lambda *_: efforts, **back
+        )
 
 
 def _reversed(view: View, j: int) -> Rival:
@@ -61,5 +65,12 @@ def _reversed(view: View, j: int) -> Rival:
         (view.names[j],),
         value=-1.0,
     )
-    moved = view.arm.compared(*(sign * values for values in view.motion))
-    return Rival("direction", sign * moved, view.qd, lambda *_: told)
+    q, qd, qdd = (sign * values for values in view.motion)
+    return Rival(
+        "direction",
+        sign * view.arm.compared(q, qd, qdd),
+        view.qd,
+        lambda *_: told,
+        motion=(q, qd, qdd),
+        effort=lambda computed: sign * computed,
+    )

@@ -29,6 +29,7 @@ from inverse_dynamics.evaluation.causes import (
     loads,
     masses,
     motions,
+    pairs,
     residuals,
 )
 from inverse_dynamics.evaluation.causes.arm import ArmModel, View
@@ -42,6 +43,8 @@ if TYPE_CHECKING:
 
 _MISMATCH = 0.04  # mean error of the joints, as a share of their ranges, up to which a model fits
 _FITS = 0.1  # the same, that a remedy may leave
+_PAIR_FITS = 0.06  # the same, of two remedies
+_EXPLAINED = 0.02  # the same, of which no second mistake is looked for
 _GAIN = 2.0  # least ratio of the errors before and after
 _MARGIN, _FLAT = 1.15, 0.004  # a rival is worse by this ratio, and by this share of the range
 _SURE = 0.95  # of the resampled recordings
@@ -185,10 +188,26 @@ class _Contest:
                 for rival in residuals.couplings(view):
                     self.add(rival)
                 named = self.best(before)
+            if both := self._pair(named, before):
+                return Comparison(both, scores=self._table())
             if named:
                 causes = tuple(_cause(told, self.as_is, after) for told, after in named)
                 return Comparison(causes, len(causes) > 1, scores=self._table())
         return self._unnamed(before)
+
+    def _pair(self, named: list[tuple[Told, float]], before: float) -> tuple[Cause, ...]:
+        """Two mistakes, if they leave half of what the best single one leaves, and no other pair does."""
+        least = min(after for _, after in named) if named else before
+        if least < (_EXPLAINED if named else _FITS):
+            return ()
+        contest = _Contest(self.view)
+        for rival in pairs.rivals(self.view, self.fit):
+            contest.add(rival)
+        found = contest.best(min(before, least))
+        if len(found) != 1 or found[0][1] > _PAIR_FITS:
+            return ()
+        first, after = found[0]
+        return tuple(_cause(told, self.as_is, after) for told in (first, first.also) if told)
 
     def _unnamed(self, before: float) -> Comparison:
         """What is said where no rival wins."""

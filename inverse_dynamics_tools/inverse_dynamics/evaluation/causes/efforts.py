@@ -12,7 +12,7 @@ from inverse_dynamics.base.wording import listed
 from inverse_dynamics.evaluation.causes.rival import Rival, Told
 
 if TYPE_CHECKING:
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.arrays import Floats, Mask
     from inverse_dynamics.evaluation.causes.arm import View
     from inverse_dynamics.evaluation.causes.fit import Fitting
 
@@ -35,17 +35,8 @@ _SHARES = {1.0: "shares", 100.0: "per cent", 1000.0: "per mille"}
 def rivals(view: View, fitting: Fitting) -> Iterator[Rival]:
     """Signs, a common scale, a scale of each joint, and gravity taken off."""
     yield from _signs(view, fitting)
-    none = np.zeros_like(view.computed)
-    yield Rival(
-        "effort_scale",
-        none,
-        view.qd,
-        lambda shared, _: _common(shared[0]),
-        columns=(view.computed,),
-        low=(0.0,),
-        high=(np.inf,),
-    )
-    zero = np.zeros(len(view.names))
+    yield common(view)
+    none, zero = np.zeros_like(view.computed), np.zeros(len(view.names))
     yield Rival(
         "scales",
         none,
@@ -82,9 +73,19 @@ def _signs(view: View, fitting: Fitting) -> Iterator[Rival]:
     errors = [np.sqrt(fitting.errors(rival).mean(axis=0)) for rival in (as_is, turned)]
     decided = view.informative & (np.abs(np.log(errors[1] / errors[0])) > np.log(_SAME))
     flipped = decided & (errors[1] < errors[0])
-    if not flipped.any():
-        return
-    everything = bool((flipped == decided).all()) and (flipped.sum() > 1 or len(flipped) == 1)
+    if flipped.any():
+        everything = bool((flipped == decided).all()) and (flipped.sum() > 1 or len(flipped) == 1)
+        yield _turned(view, flipped, everything=everything)
+
+
+def each_reversed(view: View) -> Iterator[Rival]:
+    """The efforts of one joint, and those of all."""
+    for j in map(int, np.flatnonzero(view.informative)):
+        yield _turned(view, np.arange(len(view.names)) == j, everything=False)
+    yield _turned(view, view.informative, everything=True)
+
+
+def _turned(view: View, flipped: Mask, *, everything: bool) -> Rival:
     sign = np.where(flipped | everything, -1.0, 1.0)
     names = tuple(n for n, f in zip(view.names, flipped, strict=True) if f and not everything)
     whose = listed(names) + (" are" if len(names) > 1 else " is")
@@ -100,7 +101,26 @@ def _signs(view: View, fitting: Fitting) -> Iterator[Rival]:
         names,
         value=-1.0,
     )
-    yield Rival(told.kind, sign * view.computed, sign * view.qd, lambda *_: told)
+    return Rival(
+        told.kind,
+        sign * view.computed,
+        sign * view.qd,
+        lambda *_: told,
+        effort=lambda computed: sign * computed,
+    )
+
+
+def common(view: View) -> Rival:
+    """One scale of all efforts."""
+    return Rival(
+        "effort_scale",
+        np.zeros_like(view.computed),
+        view.qd,
+        lambda shared, _: _common(shared[0]),
+        columns=(view.computed,),
+        low=(0.0,),
+        high=(np.inf,),
+    )
 
 
 def _common(scale: float) -> Told | None:

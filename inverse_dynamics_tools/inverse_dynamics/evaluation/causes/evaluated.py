@@ -146,7 +146,8 @@ def _with_description(model: ArmModel, robot: Robot, solver: Solver, description
         of_joints = [np.einsum("njkc,kc->knj", columns, p) for p in own]
         return np.concatenate(of_joints)
 
-    return replace(model, links=links, link_names=tuple(joint.link for joint in chain))
+    names = tuple(joint.link for joint in chain)
+    return replace(model, links=links, link_names=names, mass=float(own[1][:, 0].sum()))
 
 
 def _mass_parts(links: Floats) -> tuple[Floats, Floats]:

@@ -132,11 +132,15 @@ def _noise(measured: Floats) -> Floats:
 def _solve(gram: Floats, shared: int, low: Floats, high: Floats) -> tuple[Floats, Floats]:
     """Shared (p,) and own (m, n) numbers of least squares within bounds. gram: (n, c, c)."""
     joints, own = gram.shape[0], gram.shape[1] - 1 - shared
-    matrix, right = np.zeros((len(low), len(low))), np.zeros(len(low))
-    for j in range(joints):
-        rows = np.r_[0:shared, shared + j * own : shared + (j + 1) * own]
-        matrix[np.ix_(rows, rows)] += gram[j, 1:, 1:]
-        right[rows] += gram[j, 1:, 0]
+    matrix, right = np.zeros((len(low), len(low))), np.empty(len(low))
+    common, each = slice(1, 1 + shared), slice(1 + shared, None)
+    matrix[:shared, :shared] = gram[:, common, common].sum(axis=0)
+    matrix[shared:, :shared] = gram[:, each, common].reshape(joints * own, shared)
+    matrix[:shared, shared:] = matrix[shared:, :shared].T
+    blocks = matrix[shared:, shared:].reshape(joints, own, joints, own)
+    blocks[np.arange(joints), :, np.arange(joints), :] = gram[:, each, each]
+    right[:shared] = gram[:, common, 0].sum(axis=0)
+    right[shared:] = gram[:, each, 0].ravel()
     x = _bounded(matrix, right, low, high)
     return x[:shared], x[shared:].reshape(joints, own).T
 
@@ -150,8 +154,9 @@ def _bounded(matrix: Floats, right: Floats, low: Floats, high: Floats) -> Floats
     can = (low < high) & (scale > 1e-140)
     free = can.copy()
     for _ in range(_ROUNDS):
-        rest = right[free] - matrix[np.ix_(free, ~free)] @ x[~free]
-        found = np.linalg.solve(matrix[np.ix_(free, free)], rest)
+        rows = matrix[free]
+        rest = right[free] - rows[:, ~free] @ x[~free]
+        found = np.linalg.solve(rows[:, free], rest)
         x[free] = np.clip(found, low[free], high[free])
         crossed = (found < low[free]) | (found > high[free])
         if crossed.any():

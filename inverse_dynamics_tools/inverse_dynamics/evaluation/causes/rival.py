@@ -36,6 +36,7 @@ class Told:
     value: Any = None
     shared: Floats = field(default_factory=lambda: np.zeros(0))
     own: Floats | None = None
+    also: Told | None = None  # a second mistake, of a pair
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,8 @@ class Rival:
     base: (N, n). columns: (p, N, n) with low, high (p,). own: (m, N, n) with own_low, own_high (m, n).
     qd: (N, n) velocities that friction is against, as recorded efforts have it.
     tell: shared numbers (p,), own ones (m, n) to words; None where no robot can have them.
-    includes: kinds that are special cases of it.
+    includes: kinds that are special cases of it. motion, effort: q, qd, qdd that it changes, and computed
+    efforts to recorded ones: for pairs.
     """
 
     kind: str
@@ -59,3 +61,5 @@ class Rival:
     own_low: tuple[Floats, ...] = ()
     own_high: tuple[Floats, ...] = ()
     includes: tuple[str, ...] = ()
+    motion: tuple[Floats, Floats, Floats] | None = None
+    effort: Callable[[Floats], Floats] = field(default=lambda efforts: efforts)
