@@ -198,12 +198,14 @@ class _Contest:
     def _pair(self, named: list[tuple[Told, float]], before: float) -> tuple[Cause, ...]:
         """Two mistakes, if they leave half of what the best single one leaves, and no other pair does."""
         least = min(after for _, after in named) if named else before
-        if least < (_EXPLAINED if named else _FITS):
+        each = bool(named) and named[0][0].own is not None
+        if not each and least < (_EXPLAINED if named else _FITS):
             return ()
         contest = _Contest(self.view)
         for rival in pairs.rivals(self.view, self.fit):
             contest.add(rival)
-        found = contest.best(min(before, least))
+        # scales of all joints have more numbers than a pair: it needn't be better than they
+        found = contest.best(_GAIN * (_MARGIN * least + _FLAT) if each else min(before, least))
         if len(found) != 1 or found[0][1] > _PAIR_FITS:
             return ()
         first, after = found[0]

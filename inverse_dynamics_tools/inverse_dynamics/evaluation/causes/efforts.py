@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _SAME = 1.15  # ratio of scales that masses which a maker has rounded may give
 _NAMED = 0.06  # relative distance from a unit's scale that they may give
-_CURRENTS = (0.005, 0.6)  # A per N m behind the gears of arms
+_CURRENTS = (0.002, 1.0)  # A per N m behind the gears of arms
 _UNITS = {  # per N m
     1000.0: "N mm",
     100.0: "N cm",

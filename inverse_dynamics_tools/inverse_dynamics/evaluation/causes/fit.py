@@ -26,6 +26,7 @@ _SMALL_JOINT = 0.1  # of the greatest range
 _OFFSET = 0.04  # greatest offset, as a share of the joint's range
 _STILL = 1e-3  # of the greatest speed: joints that don't move have stiction of any sign
 _LEAST_RANGE = 0.02  # of the greatest one: joints of smaller ranges count less
+_UNSEEN = 1e-8  # relative: of columns that are rounding
 _RIDGE = 1e-9  # relative: of numbers that the motion doesn't tell
 _ROUNDS = 30  # a handful, as a rule
 _MODEL_FRICTION = 1.0  # the model's own friction may be wrong by as much as itself
@@ -151,7 +152,7 @@ def _bounded(matrix: Floats, right: Floats, low: Floats, high: Floats) -> Floats
     matrix = matrix / np.outer(scale, scale) + _RIDGE * np.eye(len(low))
     right, low, high = right / scale, low * scale, high * scale
     x = np.clip(np.zeros_like(low), low, high)
-    can = (low < high) & (scale > 1e-140)
+    can = (low < high) & (scale > _UNSEEN * scale.max())
     free = can.copy()
     for _ in range(_ROUNDS):
         rows = matrix[free]

@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.causes.arm import View
     from inverse_dynamics.evaluation.causes.fit import Fitting
 
-_LENGTH = (8.5, 11.0)  # m/s^2 of gravity, with masses that are wrong by a tenth
+_LENGTH = (8.0, 12.0)  # m/s^2 of gravity, with masses that are wrong by a fifth
 _LEAST_ANGLE = 4.0  # degrees: below it, flexible bases and wrong centers of mass look like a mount
 
 
 def rivals(view: View, _: Fitting) -> Iterator[Rival]:
     """Gravity is linear in its three components."""
     arm = view.arm
-    if arm.pulled is None or arm.gravity_direction is None or arm.compared_without_gravity:
+    if arm.pulled is None or arm.gravity_direction is None:
         return
-    own, free = arm.gravity_direction, (np.inf,) * 3
+    own, free = arm.gravity_direction * (not arm.compared_without_gravity), (np.inf,) * 3
     yield Rival(
         "gravity",
         view.computed,
@@ -50,9 +50,10 @@ def _tell(own: Floats, found: Floats) -> Told | None:
     return Told(
         "gravity",
         "The robot hangs from the ceiling" if angle > 150 else "The robot hangs on a wall",
-        f"torques match if gravity acts along {option} m/s² in the frame of the root link, {angle:.0f}° "
-        "from where the model has it",
-        f"give --gravity {option}, or `gravity:` in the run configuration",
+        f"torques match if gravity acts along {option} m/s² in the frame of the root link"
+        + (f", {angle:.0f}° from where the model has it" if size else ", and is in the efforts"),
+        ("" if size else "give --effort-is torque; ")
+        + f"give --gravity {option}, or `gravity:` in the run configuration",
         value=[float(x) for x in direction],
         shared=direction - own,
     )

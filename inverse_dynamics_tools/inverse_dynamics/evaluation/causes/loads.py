@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.causes.arm import View
     from inverse_dynamics.evaluation.causes.fit import Fitting
 
-_LEAST_MASS = 0.05  # of the arm's: makers' masses of links are seldom better
+_MASS = (0.05, 1.0)  # of the arm's: makers' masses of links are seldom better, arms seldom stronger
 _REACH = 1.0  # m between the tip and a load's center of mass
 _BESIDE = 0.02  # of the greatest torque of the load: in the last joint, if it is beside its axis
 
@@ -29,15 +29,18 @@ def rivals(view: View, _: Fitting) -> Iterator[Rival]:
         "payload",
         view.computed,
         view.qd,
-        lambda body, _: _tell(body, parts, _LEAST_MASS * view.arm.mass),
+        lambda body, _: _tell(body, parts, view.arm.mass),
         columns=tuple(parts),
         low=(0.0,) + (-np.inf,) * 3,
         high=(np.inf,) * 4,
     )
 
 
-def _tell(body: Floats, parts: Floats, least: float) -> Told | None:
-    if body[0] <= least or np.linalg.norm(body[1:]) > _REACH * body[0]:
+def _tell(body: Floats, parts: Floats, arm: float) -> Told | None:
+    least, most = (share * arm for share in _MASS)
+    if body[0] <= least or (arm and body[0] > most):
+        return None
+    if np.linalg.norm(body[1:]) > _REACH * body[0]:
         return None
     mass = float(f"{body[0]:.3g}")
     center = np.round(body[1:] / body[0], 3) + 0.0

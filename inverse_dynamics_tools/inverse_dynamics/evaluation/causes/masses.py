@@ -51,7 +51,7 @@ def rough(view: View) -> Rival:
 
 def _tell(view: View, link: int, change: Floats, _: Floats) -> Told | None:
     factor = float(f"{1 + change[0]:.2g}")
-    if not view.informative[link] or max(factor, 1 / factor) < _LEAST:
+    if max(factor, 1 / factor) < _LEAST:
         return None
     name = view.arm.link_names[link] if view.arm.link_names else f"of joint {view.names[link]}"
     return Told(

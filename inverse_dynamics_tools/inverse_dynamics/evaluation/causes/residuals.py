@@ -37,8 +37,10 @@ def rivals(view: View, fitting: Fitting) -> Iterator[Rival]:
             flat = effort > limit - band
             resting = speed[flat, j].mean() < 0.05 * speed[:, j].max()
             if limit > 0 and not resting and _SHARE[0] <= flat.mean() <= _SHARE[1]:
-                missing[flat, j] = measured[flat, j] - view.computed[flat, j]
-                limits.setdefault(j, (sign * limit, flat.mean()))
+                cut = measured[flat, j] - view.computed[flat, j]
+                if -sign * cut.mean() > _NOTICED * fitting.size[j]:
+                    missing[flat, j] = cut
+                    limits.setdefault(j, (sign * limit, flat.mean()))
     if limits:
         none = np.zeros(measured.shape[1])
         yield Rival(
