@@ -102,6 +102,11 @@ class Evaluation:
         return self.log.time
 
     @property
+    def notes_without_causes(self) -> tuple[str, ...]:
+        """Those that say nothing of the causes of errors."""
+        return tuple(note for note in self.notes if not note.startswith(CAUSE))
+
+    @property
     def mean_rmse(self) -> float:
         """Mean over the joints of the root mean square errors."""
         return sum(e.rmse for e in self.errors) / len(self.errors)
@@ -199,10 +204,11 @@ def evaluate(
     found = causes_of(
         robot, arm.solver, arm.description, result.log, result.qdd, result.effort, kept
     )
+    result = replace(result, effort=found.doubting(result.effort), diagnosis=found.causes)
     if not found.text:
         return result
     note = f"{CAUSE}{found.text}" if found.causes else found.text
-    return replace(result, notes=(*result.notes, note), diagnosis=found.causes)
+    return replace(result, notes=(*result.notes, note))
 
 
 def _topic_notes(bag: Path, motion: JointLog | JointStateTopic, expected: str) -> list[str]:

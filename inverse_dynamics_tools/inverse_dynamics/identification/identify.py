@@ -13,7 +13,7 @@ import numpy as np
 from inverse_dynamics import _core
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.evaluation.evaluation import CAUSE, evaluate
+from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.identification.baselines import Baselines, root_mean_squares
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import Chosen, choose, errors_of
@@ -260,7 +260,7 @@ def _result(
 
 def _notes(evaluations: Sequence[Evaluation]) -> tuple[str, ...]:
     """Those of the evaluations, but for the cause of the present model's errors, which the fit removes."""
-    return tuple(n for e in evaluations for n in e.notes if not n.startswith(CAUSE))
+    return tuple(note for e in evaluations for note in e.notes_without_causes)
 
 
 def _model(

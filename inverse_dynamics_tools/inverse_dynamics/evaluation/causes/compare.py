@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.evaluation.causes.rival import Rival, Told
     from inverse_dynamics.evaluation.causes.samples import Samples
+    from inverse_dynamics.evaluation.effort import Effort
 
 _MISMATCH = 0.04  # mean error of the joints, as a share of their ranges, up to which a model fits
 _FITS = 0.1  # the same, that a remedy may leave
@@ -51,6 +52,7 @@ _SURE = 0.95  # of the resampled recordings
 _RESAMPLED = 400
 _MOST_NAMED = 3
 _AT_REST = ("gravity", "no_gravity", "payload", "tool", "mass")
+_OF_EFFORTS = ("currents", "effort_scale", "effort_sign", "effort_direction", "no_gravity", "gravity")
 _LIKE_COUPLING = (
     "effort_scale",
     "mass",
@@ -125,6 +127,14 @@ class Comparison:
             told = "; or ".join(cause.text for cause in self.causes)
             return f"{told}. This recording doesn't tell them apart: {self._experiment}"
         return "; and ".join(cause.text for cause in self.causes)
+
+    def doubting(self, effort: Effort) -> Effort:
+        """What efforts mean; not sure where a cause, or nothing that was compared, contradicts it."""
+        contradicts = {c.kind for c in self.causes} & set(_OF_EFFORTS) or set(self.excluded)
+        if effort.verdict is None or not effort.verdict.sure or not contradicts:
+            return effort
+        reason = self.text if self.excluded else f"{listed(sorted(contradicts))} may explain them as well"
+        return replace(effort, verdict=replace(effort.verdict, sure=False, reason=reason))
 
     @property
     def _experiment(self) -> str:
