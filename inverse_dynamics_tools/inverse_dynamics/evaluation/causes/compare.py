@@ -34,30 +34,39 @@ from inverse_dynamics.evaluation.causes import (
 )
 from inverse_dynamics.evaluation.causes.arm import ArmModel, View
 from inverse_dynamics.evaluation.causes.fit import Fitting
-from inverse_dynamics.evaluation.causes.rival import PAGE
+from inverse_dynamics.evaluation.causes.rival import PAGE, Rival
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.evaluation.causes.rival import Rival, Told
+    from inverse_dynamics.evaluation.causes.rival import Told
     from inverse_dynamics.evaluation.causes.samples import Samples
     from inverse_dynamics.evaluation.effort import Effort
 
 _MISMATCH = 0.04  # mean error of the joints, as a share of their ranges, up to which a model fits
 _FITS = 0.1  # the same, that a remedy may leave
+_FAR, _MOST_LEFT = (
+    6.0,
+    0.2,
+)  # or this part of the error, where models are far from their arms; up to this share
 _PAIR_FITS = 0.06  # the same, of two remedies
 _EXPLAINED = 0.02  # the same, of which no second mistake is looked for
 _GAIN = 2.0  # least ratio of the errors before and after
 _MARGIN, _FLAT = 1.15, 0.004  # a rival is worse by this ratio, and by this share of the range
+_ROUGH_MARGIN = 1.6  # masses that are inexact: centers of mass and inertias are so, too
 _SURE = 0.95  # of the resampled recordings
 _RESAMPLED = 400
 _MOST_NAMED = 3
 _AT_REST = ("gravity", "no_gravity", "payload", "tool", "mass")
-_OF_EFFORTS = ("currents", "effort_scale", "effort_sign", "effort_direction", "no_gravity", "gravity")
-_LIKE_COUPLING = (
-    "effort_scale",
-    "mass",
+_OF_EFFORTS = (
     "currents",
-)  # of one joint, where the other's torque is like its own
+    "effort_scale",
+    "effort_sign",
+    "effort_direction",
+    "no_gravity",
+    "gravity",
+)
+_SCALES = ("currents", "effort_scale")
+_LIKE_COUPLING = (*_SCALES, "mass")  # of one joint, where the other's torque is like its own
 
 KINDS = (efforts, gravity, loads, masses, columns, motions, frictions, residuals)
 
@@ -103,8 +112,8 @@ def residual_causes(samples: Samples, computed: Floats) -> tuple[Cause, ...]:
     before = float(contest.fit.mean(contest.squares[0]))
     if named := contest.best(before):
         return tuple(_cause(told, contest.as_is, after) for told, after in named)
-    drifting = residuals.drift(view, contest.fit, contest.squares[0])
-    return () if drifting is None else (_cause(drifting, before, None),)
+    told = residuals.of_joints(view, contest.fit, contest.squares[0])
+    return () if told is None else (_cause(told, before, None),)
 
 
 @dataclass(frozen=True)
@@ -133,7 +142,11 @@ class Comparison:
         contradicts = {c.kind for c in self.causes} & set(_OF_EFFORTS) or set(self.excluded)
         if effort.verdict is None or not effort.verdict.sure or not contradicts:
             return effort
-        reason = self.text if self.excluded else f"{listed(sorted(contradicts))} may explain them as well"
+        reason = (
+            self.text
+            if self.excluded
+            else f"{listed(sorted(contradicts))} may explain them as well"
+        )
         return replace(effort, verdict=replace(effort.verdict, sure=False, reason=reason))
 
     @property
@@ -158,8 +171,7 @@ def compare(samples: Samples, arm: ArmModel) -> Comparison:
     told = None
     if found := motions.contradiction(samples, arm):
         told, samples = found
-    view = View(samples, arm)
-    rest = _Contest(view).decide()
+    rest = _Contest(View(samples, arm)).decide()
     if told is None:
         return rest
     before = after = rest.scores.get("friction", 0.0)
@@ -223,16 +235,18 @@ class _Contest:
 
     def _unnamed(self, before: float) -> Comparison:
         """What is said where no rival wins."""
-        if told := residuals.drift(self.view, self.fit, self.squares[0]):
-            return Comparison((_cause(told, self.as_is, None),), scores=self._table())
+        told: tuple[Told, ...] = ()
+        if own := residuals.of_joints(self.view, self.fit, self.squares[0]):
+            told = (own,)
+        elif before > _FITS:
+            told = motions.beyond_reach(self.view) or efforts.too_small(self.view)
+        if told:
+            causes = tuple(_cause(one, self.as_is, None) for one in told)
+            return Comparison(causes, len(causes) > 1, scores=self._table())
+        lacks = self.fit.friction is None and self.as_is >= _GAIN * max(before, _MISMATCH)
         if before <= _FITS:
-            lacks = self.fit.friction is None and self.as_is > 2 * _MISMATCH
-            if lacks and self.as_is >= _GAIN * before:
-                cause = _cause(frictions.FRICTION, self.as_is, before)
-                return Comparison((cause,), scores=self._table())
-            return Comparison(scores=self._table())
-        if side := motions.motor_side(self.view):
-            return Comparison((_cause(side, self.as_is, None),), scores=self._table())
+            causes = (_cause(frictions.FRICTION, self.as_is, before),) if lacks else ()
+            return Comparison(causes, scores=self._table())
         excluded = tuple(sorted({r.kind for r in self.rivals} - {"rough"}))
         return Comparison(excluded=excluded, scores=self._table())
 
@@ -259,33 +273,41 @@ class _Contest:
             self.rivals.append(rival)
             self.squares.append(squares)
 
-    def best(self, with_friction: float) -> list[tuple[Told, float]]:
-        """What is named: one, or those that can't be told apart; with the errors that remedies leave."""
+    def best(self, before: float) -> list[tuple[Told, float]]:
+        """What is named: one, or those that can't be told apart; with the errors that remedies leave.
+
+        before: the error without any.
+        """
+        still = Rival("", 0.0 * self.view.computed, self.view.qd, lambda *_: None)
+        least = {True: min(before, float(self.fit.mean(self.fit.errors(still)))), False: before}
         scores = [self._score(i) for i in range(len(self.rivals))]
-        order = np.argsort(scores, kind="stable")
-        resampled = np.array([self.fit.mean(s, self.weights) for s in self.squares])
-        tied, result = [], []
-        for i in map(int, order):
-            if scores[i] > _FITS or _GAIN * scores[i] > with_friction:
+        self.resampled = np.array([self.fit.mean(s, self.weights) for s in self.squares])
+        tied: list[int] = []
+        result = []
+        for i in map(int, np.argsort(scores, kind="stable")):
+            rival = self.rivals[i]
+            if not self._alike(i, tied[:1], _MARGIN):
                 break
-            if self.rivals[i].kind == "rough" and self._tied(resampled, i, tied):
-                return []
-            told = self.rivals[i].tell(*self.fit.numbers(self.rivals[i]))
+            told = rival.tell(*self.fit.numbers(rival))
             if told is None:
                 continue
-            after = float(self.fit.mean(self.fit.errors(self.fit.applied(self.rivals[i], told))))
-            if after > _FITS or _GAIN * after > with_friction:
-                continue
-            if not self._tied(resampled, i, tied):
-                break
-            tied.append(i)
-            result.append((told, after))
+            of = least[told.kind in _SCALES]  # a scale of zero is no explanation
+            after = float(self.fit.mean(self.fit.errors(self.fit.applied(rival, told))))
+            if _small(after, of, told):
+                tied.append(i)
+                result.append((told, after))
+        rough = [i for i, rival in enumerate(self.rivals) if rival.kind == "rough"]
+        static = bool(tied) and self.rivals[tied[0]].kind in _AT_REST
+        margin = _ROUGH_MARGIN if static else _MARGIN
+        if any(self._alike(i, tied[:1], margin) for i in rough if tied):
+            return []
         return self._special(tied, result)
 
-    def _tied(self, resampled: Floats, i: int, tied: list[int]) -> bool:
+    def _alike(self, i: int, best: list[int], margin: float) -> bool:
         """Whether a rival can't be told from the best one."""
-        best = tied[0] if tied else i
-        worse = resampled[i] > _MARGIN * resampled[best] + _FLAT
+        if not best:
+            return True
+        worse = self.resampled[i] > margin * self.resampled[best[0]] + _FLAT
         return bool(worse.mean() < _SURE)
 
     def _special(
@@ -293,12 +315,18 @@ class _Contest:
     ) -> list[tuple[Told, float]]:
         """Without those that include another one; nothing if too many are left."""
         kinds = {self.rivals[i].kind for i in tied}
-        kept = []
+        kept: list[tuple[Told, float]] = []
         for i, found in zip(tied, result, strict=True):
             same = any(k[0].kind == found[0].kind and k[0].joints == found[0].joints for k in kept)
             if not same and not kinds & set(self.rivals[i].includes):
                 kept.append(found)
         return kept if len(kept) <= _MOST_NAMED else []
+
+
+def _small(after: float, before: float, told: Told) -> bool:
+    """Whether a remedy leaves little enough of an error; of weights, wrong masses leave more."""
+    most = max(_FITS, min(before / _FAR, _MOST_LEFT)) if told.kind in _AT_REST else _FITS
+    return told.gain * after <= before and after <= most
 
 
 def _cause(told: Told, before: float, after: float | None) -> Cause:

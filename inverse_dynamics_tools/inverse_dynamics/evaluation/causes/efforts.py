@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 _SAME = 1.15  # ratio of scales that masses which a maker has rounded may give
 _NAMED = 0.06  # relative distance from a unit's scale that they may give
 _CURRENTS = (0.002, 1.0)  # A per N m behind the gears of arms
+_TOO_SMALL = 0.3  # of the torques: more than what is ever wrong with masses
+_HEAVY = 0.2  # of the greatest torque
 _UNITS = {  # per N m
     1000.0: "N mm",
     100.0: "N cm",
@@ -136,6 +139,28 @@ def _common(scale: float) -> Told | None:
         value=scale,
         shared=np.array([scale]),
     )
+
+
+def too_small(view: View) -> tuple[Told, ...]:
+    """Efforts that are far smaller than torques wherever those are large, whatever their shape."""
+    measured = np.quantile(np.abs(view.samples.flat(view.samples.measured)), 0.95, axis=0)
+    torque = np.quantile(np.abs(view.computed), 0.95, axis=0)
+    heavy = torque > _HEAVY * torque.max()
+    share = measured[heavy] / torque[heavy]
+    if heavy.sum() < 2 or np.max(share) > _TOO_SMALL or view.arm.compared_without_gravity:
+        return ()
+    reason = (
+        f"efforts are {1 / np.max(share):.2g} to {1 / max(np.min(share), 1e-12):.2g} times smaller than torques "
+        "where those are large: "
+    )
+    currents = Told(
+        "currents",
+        "Efforts are motor currents",
+        f"{reason}they may be motor currents",
+        "give --effort-is current, and drive_gains unless the solver knows them",
+    )
+    no_gravity = _no_gravity(-1.0)
+    return currents, replace(no_gravity, reason=f"{reason}the robot's driver may subtract gravity")
 
 
 def _unit(scale: float) -> tuple[str, float]:

@@ -206,18 +206,25 @@ def _clock(square: float) -> Told | None:
     )
 
 
-def motor_side(view: View) -> Told | None:
-    """Positions that are beyond limits in most joints, whatever their unit."""
-    beyond = beyond_limits(view)
-    turning = view.informative & ~view.prismatic
+def beyond_reach(view: View) -> tuple[Told, ...]:
+    """Positions that are beyond limits in most joints, and torques that fit neither as rad nor as degrees."""
+    beyond, turning = beyond_limits(view), view.informative & ~view.prismatic
     if not turning.any() or beyond[turning].mean() < 0.5:
-        return None
+        return ()
     greatest = np.abs(view.motion[0]).max(axis=0)
     names = [n for n, b in zip(view.names, beyond, strict=True) if b]
-    return Told(
+    reach = f"positions of {listed(names)} go to {listed([f'{g:.3g}' for g in greatest[beyond]])}, far beyond "
+    motors = Told(
         "motor_side",
         "Positions of the motors",
-        f"positions of {listed(names)} go to {listed([f'{g:.3g}' for g in greatest[beyond]])} rad, far beyond "
-        "the joints' limits, and torques don't match as degrees: they are those of the motors, before the gears",
+        f"{reach}the joints' limits in rad: they may be those of the motors, before the gears",
         "divide positions and velocities by the gear ratios, and multiply efforts by them",
     )
+    q, qd, qdd = (values / _DEGREE for values in view.motion)
+    if beyond_limits(view.moving(q, qd, qdd)).any():
+        return (motors,)
+    degrees = _degrees(
+        f"{reach}the joints' limits in rad: they may be degrees",
+        "convert positions and velocities to rad",
+    )
+    return motors, degrees

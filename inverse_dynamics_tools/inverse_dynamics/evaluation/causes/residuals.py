@@ -21,7 +21,7 @@ _FLAT = 2e-3  # of a joint's range: efforts within it of the greatest one are at
 _SHARE = (0.02, 0.9)  # of the samples, at a limit
 _CUT = 0.5  # of what the model asks for beyond the limit, that is missing
 _LONG = 15.0  # s: in less, friction that changes is nothing but wrong
-_DRIFTS = 0.6  # most of a joint's error that drift may leave
+_LEAVES = 0.6  # most of a joint's error that its cause may leave
 _NOTICED = 0.03  # least error of a joint that is looked at, as a share of its range
 
 
@@ -94,28 +94,42 @@ def _coupled(pair: tuple[str, str], ratio: Floats, _: Floats) -> Told:
     )
 
 
-def drift(view: View, fitting: Fitting, plain: Floats) -> Told | None:
-    """Friction or offset that changes along the recording. plain: (K, n) squares with friction alone.
+def of_joints(view: View, fitting: Fitting, plain: Floats) -> Told | None:
+    """A limit of efforts, or friction that drifts, in a joint that others outvote.
+
+    plain: (K, n) squares with friction alone.
+    """
+    for rival in rivals(view, fitting):
+        found = _better(fitting, plain, fitting.errors(rival), _NOTICED / 2)
+        numbers = np.where(found, fitting.numbers(rival)[1], 0.0)
+        if found.any() and (told := rival.tell(np.zeros(0), numbers)):
+            return told
+    return _drift(view, fitting, plain)
+
+
+def _better(fitting: Fitting, plain: Floats, squares: Floats, noticed: float) -> Mask:
+    """(n,) joints whose errors are noticed, and are much smaller with a cause."""
+    before, after = (
+        np.sqrt(np.maximum(s.mean(axis=0) - fitting.noise**2, 0.0)) for s in (plain, squares)
+    )
+    return np.asarray((before > noticed) & (after < _LEAVES * before))
+
+
+def _drift(view: View, fitting: Fitting, plain: Floats) -> Told | None:
+    """Friction or offset that changes along the recording.
 
     What wrong masses give of gravity may change with time too, where the motion is slow.
     """
     time = view.samples.time.reshape(-1, 1)
     if np.ptp(time) < _LONG:
         return None
-    share, most = (time - time.mean()) / np.ptp(time), np.full(len(view.names), np.inf)
-    columns = [share * c for c in (view.qd, np.sign(view.qd), np.ones_like(view.qd))]
-    base, kind = view.computed, "drift"
-    drifting = Rival(
-        kind, base, view.qd, lambda *_: None, (), (), (), (*columns,), (-most,) * 3, (most,) * 3
-    )
+    share, base = (time - time.mean()) / np.ptp(time), view.computed
+    parts = [share * c for c in (view.qd, np.sign(view.qd), np.ones_like(view.qd))]
     others = [np.tile(base[:, k : k + 1], (1, base.shape[1])) for k in range(base.shape[1])]
-    bounds = ((-most,) * len(others), (most,) * len(others))
-    masses = Rival(kind, base, view.qd, lambda *_: None, (), (), (), (*others,), *bounds)
-    errors = [
-        np.sqrt(np.maximum(squares.mean(axis=0) - fitting.noise**2, 0.0))
-        for squares in (plain, fitting.errors(drifting), fitting.errors(masses))
-    ]
-    found: Mask = (errors[0] > _NOTICED) & (errors[1] < np.minimum(_DRIFTS * errors[0], errors[2]))
+    drifting, masses = (fitting.errors(_free(view, own)) for own in (parts, others))
+    found = _better(fitting, plain, drifting, _NOTICED) & (
+        drifting.mean(axis=0) < masses.mean(axis=0)
+    )
     names = tuple(n for n, f in zip(view.names, found, strict=True) if f)
     if not names:
         return None
@@ -126,3 +140,9 @@ def drift(view: View, fitting: Fitting, plain: Floats) -> Told | None:
         "move the robot for half an hour before recording, or leave out the beginning with --from",
         names,
     )
+
+
+def _free(view: View, own: list[Floats]) -> Rival:
+    most = (np.full(len(view.names), np.inf),) * len(own)
+    low = tuple(-x for x in most)
+    return Rival("", view.computed, view.qd, lambda *_: None, (), (), (), tuple(own), low, most)

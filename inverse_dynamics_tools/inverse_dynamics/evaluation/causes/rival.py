@@ -36,6 +36,7 @@ class Told:
     value: Any = None
     shared: Floats = field(default_factory=lambda: np.zeros(0))
     own: Floats | None = None
+    gain: float = 2.0  # least ratio of the errors before and after
     also: Told | None = None  # a second mistake, of a pair
 
 
