@@ -109,6 +109,5 @@ class View:
 
     def moving(self, q: Floats, qd: Floats, qdd: Floats) -> View:
         """The same efforts, of another motion."""
-        samples, shape = self.samples, self.samples.q.shape
-        changed = {"q": q, "qd": qd, "qdd": qdd}
-        return View(replace(samples, **{k: x.reshape(shape) for k, x in changed.items()}), self.arm)
+        q, qd, qdd = (values.reshape(self.samples.q.shape) for values in (q, qd, qdd))
+        return View(replace(self.samples, q=q, qd=qd, qdd=qdd), self.arm)

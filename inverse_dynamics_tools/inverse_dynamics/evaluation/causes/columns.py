@@ -12,6 +12,7 @@ import numpy as np
 from inverse_dynamics.evaluation.causes.rival import Rival, Told
 
 if TYPE_CHECKING:
+    from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.evaluation.causes.arm import View
     from inverse_dynamics.evaluation.causes.fit import Fitting
 
@@ -46,11 +47,24 @@ def _exchanged(view: View, i: int, j: int) -> Iterator[Rival]:
     if view.informative[i] or view.informative[j]:
         # recorded columns of the arm's joints: those of the motion in its order, taken back
         q, qd, qdd = (values[:, order] for values in view.motion)
-        moved = view.arm.compared(q, qd, qdd)[:, order]
-        back = {"effort": lambda computed: computed[:, order]}
-        yield Rival("order", moved, view.qd, lambda *_: columns, motion=(q, qd, qdd), **back)
+
+        def recorded(computed: Floats) -> Floats:
+            return computed[:, order]
+
         yield Rival(
-            "effort_order", view.computed[:, order], view.qd[:, order], lambda *_: efforts, **back
+            "order",
+            recorded(view.arm.compared(q, qd, qdd)),
+            view.qd,
+            lambda *_: columns,
+            motion=(q, qd, qdd),
+            effort=recorded,
+        )
+        yield Rival(
+            "effort_order",
+            recorded(view.computed),
+            recorded(view.qd),
+            lambda *_: efforts,
+            effort=recorded,
         )
 
 

@@ -42,7 +42,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.causes.samples import Samples
     from inverse_dynamics.evaluation.effort import Effort
 
-_MISMATCH = 0.04  # mean error of the joints, as a share of their ranges, up to which a model fits
+_MISMATCH = 0.02  # error of the joints, as a share of their ranges, up to which a model fits
+_RUBS = 0.08  # the same, from which a model is told that it lacks friction
 _FITS = 0.1  # the same, that a remedy may leave
 _FAR, _MOST_LEFT = (
     6.0,
@@ -168,16 +169,14 @@ def compare(samples: Samples, arm: ArmModel) -> Comparison:
         np.isfinite(v).all() for v in (samples.q, samples.qd, samples.qdd, samples.measured)
     ):
         return Comparison()
-    told = None
-    if found := motions.contradiction(samples, arm):
-        told, samples = found
-    rest = _Contest(View(samples, arm)).decide()
-    if told is None:
-        return rest
-    before = after = rest.scores.get("friction", 0.0)
-    if rest.causes and not rest.rivals:
-        after = rest.causes[0].error_after or after
-    first = _cause(told, before, after)
+    found = motions.contradiction(samples, arm)
+    if found is None:
+        return _Contest(View(samples, arm)).decide()
+    told, right = found
+    rest = _Contest(View(right, arm)).decide()
+    known = [cause.error_after for cause in rest.causes if cause.error_after is not None]
+    after = min(known, default=rest.scores["friction"])
+    first = _cause(told, _Contest(View(samples, arm)).as_is, after)
     return replace(rest, causes=(first, *(c for c in rest.causes if c.kind != "friction")))
 
 
@@ -243,7 +242,7 @@ class _Contest:
         if told:
             causes = tuple(_cause(one, self.as_is, None) for one in told)
             return Comparison(causes, len(causes) > 1, scores=self._table())
-        lacks = self.fit.friction is None and self.as_is >= _GAIN * max(before, _MISMATCH)
+        lacks = self.fit.friction is None and self.as_is >= max(_GAIN * before, _RUBS)
         if before <= _FITS:
             causes = (_cause(frictions.FRICTION, self.as_is, before),) if lacks else ()
             return Comparison(causes, scores=self._table())

@@ -160,6 +160,9 @@ def too_small(view: View) -> tuple[Told, ...]:
         "give --effort-is current, and drive_gains unless the solver knows them",
     )
     no_gravity = _no_gravity(-1.0)
+    moving = np.quantile(np.abs(view.computed - view.gravity), 0.95, axis=0)
+    if (measured < _TOO_SMALL * moving)[heavy].any():
+        return (currents,)
     return currents, replace(no_gravity, reason=f"{reason}the robot's driver may subtract gravity")
 
 
@@ -200,7 +203,7 @@ def _each(view: View, scales: Floats) -> Told | None:
     return _told_each(view, off, rounded, "effort_scale", "motor currents in mA" if in_ma else "")
 
 
-def _currents(scales: Floats, tell: Floats) -> Told:
+def _currents(scales: Floats, tell: Mask) -> Told:
     return Told(
         "currents",
         "Efforts are motor currents",
@@ -212,7 +215,7 @@ def _currents(scales: Floats, tell: Floats) -> Told:
     )
 
 
-def _told_each(view: View, off: Floats, scales: Floats, kind: str, unit: str) -> Told:
+def _told_each(view: View, off: Mask, scales: Floats, kind: str, unit: str) -> Told:
     names = tuple(n for n, o in zip(view.names, off, strict=True) if o)
     numbers = listed([f"{s:.4g}" for s in scales[off]])
     return Told(

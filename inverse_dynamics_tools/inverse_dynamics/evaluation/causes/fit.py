@@ -62,7 +62,7 @@ class Fitting:
         for train in (self.even, ~self.even):
             shared, own = _solve(gram[train].sum(axis=0), len(rival.columns), low, high)
             squares[~train] = _squares(gram[~train], shared, own)
-        return squares / self.shape[1]
+        return np.asarray(squares / self.shape[1])
 
     def numbers(self, rival: Rival) -> tuple[Floats, Floats]:
         """(p,) shared and (m, n) own numbers, fitted to all pieces; friction's are left out."""
@@ -175,4 +175,4 @@ def _squares(gram: Floats, shared: Floats, own: Floats) -> Floats:
     """(K, n) sums of squares that are left."""
     joints = gram.shape[1]
     x = np.column_stack([-np.ones(joints), np.tile(shared, (joints, 1)), own.T])
-    return np.maximum(np.einsum("kjab,ja,jb->kj", gram, x, x), 0.0)
+    return np.asarray(np.maximum(np.einsum("kjab,ja,jb->kj", gram, x, x), 0.0))

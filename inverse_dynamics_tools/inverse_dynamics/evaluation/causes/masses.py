@@ -41,12 +41,18 @@ def rough(view: View) -> Rival:
     """Masses that a maker has estimated: nobody's mistake, and no other cause if they explain as much."""
     if view.arm.links is not None and not view.arm.compared_without_gravity:
         parts = view.arm.links(*view.motion)[: len(view.names)]
-        most = (_ROUGH,) * len(parts)
-        low = tuple(-x for x in most)
-        return Rival("rough", view.computed, view.qd, lambda *_: None, tuple(parts), low, most)
+        low, high = (-_ROUGH,) * len(parts), (_ROUGH,) * len(parts)
+        return Rival("rough", view.computed, view.qd, lambda *_: None, tuple(parts), low, high)
     most = np.full(len(view.names), _ROUGH)
-    own = {"own": (view.computed,), "own_low": (-most,), "own_high": (most,)}
-    return Rival("rough", view.computed, view.qd, lambda *_: None, **own)
+    return Rival(
+        "rough",
+        view.computed,
+        view.qd,
+        lambda *_: None,
+        own=(view.computed,),
+        own_low=(-most,),
+        own_high=(most,),
+    )
 
 
 def _tell(view: View, link: int, change: Floats, _: Floats) -> Told | None:

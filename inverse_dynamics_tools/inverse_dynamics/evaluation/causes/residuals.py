@@ -28,7 +28,8 @@ _NOTICED = 0.03  # least error of a joint that is looked at, as a share of its r
 def rivals(view: View, fitting: Fitting) -> Iterator[Rival]:
     """Efforts that stay at their greatest value while the model asks for more."""
     measured, speed = view.samples.flat(view.samples.measured), np.abs(view.qd)
-    missing, limits = np.zeros_like(measured), {}
+    missing, at_limit = np.zeros_like(measured), np.zeros_like(measured)
+    limits: dict[int, tuple[float, float]] = {}
     for j in range(measured.shape[1]):
         for sign in (1.0, -1.0):
             effort = sign * measured[:, j]
@@ -39,23 +40,25 @@ def rivals(view: View, fitting: Fitting) -> Iterator[Rival]:
             if limit > 0 and not resting and _SHARE[0] <= flat.mean() <= _SHARE[1]:
                 cut = measured[flat, j] - view.computed[flat, j]
                 if -sign * cut.mean() > _NOTICED * fitting.size[j]:
-                    missing[flat, j] = cut
+                    missing[flat, j], at_limit[flat, j] = cut, 1.0
                     limits.setdefault(j, (sign * limit, flat.mean()))
     if limits:
-        none = np.zeros(measured.shape[1])
+        # a limit has no friction: what the fit adds of it is taken off
+        own = (missing, *(at_limit * c for c in (view.qd, np.sign(view.qd), 1.0)))
+        none, free = np.zeros(measured.shape[1]), np.full(measured.shape[1], np.inf)
         yield Rival(
             "saturation",
             view.computed,
             view.qd,
-            lambda _, own: _saturated(view, limits, own[0]),
-            own=(missing,),
-            own_low=(none,),
-            own_high=(none + 1.0,),
+            lambda _, found: _saturated(view, limits, found),
+            own=own,
+            own_low=(none, -free, -free, -free),
+            own_high=(none + 1.0, free, free, free),
         )
 
 
 def _saturated(view: View, limits: dict[int, tuple[float, float]], own: Floats) -> Told | None:
-    found = [j for j in limits if own[j] > _CUT]
+    found = [j for j in limits if own[0, j] > _CUT]
     if not found:
         return None
     limit, share = limits[found[0]]
@@ -66,7 +69,7 @@ def _saturated(view: View, limits: dict[int, tuple[float, float]], own: Floats) 
         "the model asks for more: the drive or the sensor is at its limit",
         "record a slower motion, or one with less load",
         tuple(view.names[j] for j in found),
-        own=np.where(np.isin(np.arange(len(own)), found), own, 0.0)[None],
+        own=np.where(np.isin(np.arange(own.shape[1]), found), own, 0.0),
     )
 
 
@@ -128,7 +131,7 @@ def _drift(view: View, fitting: Fitting, plain: Floats) -> Told | None:
     others = [np.tile(base[:, k : k + 1], (1, base.shape[1])) for k in range(base.shape[1])]
     drifting, masses = (fitting.errors(_free(view, own)) for own in (parts, others))
     found = _better(fitting, plain, drifting, _NOTICED) & (
-        drifting.mean(axis=0) < masses.mean(axis=0)
+        2 * 2 * drifting.mean(axis=0) < masses.mean(axis=0)
     )
     names = tuple(n for n, f in zip(view.names, found, strict=True) if f)
     if not names:
