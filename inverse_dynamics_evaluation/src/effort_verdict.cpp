@@ -27,8 +27,7 @@ constexpr double kLeastMargin = 1.1;
 constexpr Index kLeastSamples = 5 * kStretches;
 constexpr double kNothing = 1e-3;    // of a joint's efforts: smaller errors are as good as that
 constexpr double kMostMisfit = 0.5;  // 0: prediction is recording; 1: they have nothing in common
-constexpr double kMostWithoutGravity = 0.02;  // gravity of another direction leaves more, unless
-                                              // accelerations take five times its torque
+constexpr double kWrongMount = 4.0;  // least margin of leaving gravity out: a wrong direction has 2
 constexpr double kNoGravity = 0.01;  // of the computed torques
 constexpr double kTiny = std::numeric_limits<double>::min();
 
@@ -230,8 +229,9 @@ std::string EffortSums::doubt(const EffortVerdict& verdict,
   const ArrayXd size = (effort_ + meanings_[best].size).max(kTiny * static_cast<double>(count_));
   const std::vector<double> misfits =
       selected(meanings_[best].squares.rowwise().sum() / size, telling);
-  const double most = verdict.best() == kTorqueWithoutGravity ? kMostWithoutGravity : kMostMisfit;
-  return !misfits.empty() && median(misfits) > most ? "no meaning fits" : "";
+  const auto& second = verdict.candidates[1];  // there are two or more
+  const bool mount = verdict.best() == kTorqueWithoutGravity && second.margin < kWrongMount;
+  return mount || (!misfits.empty() && median(misfits) > kMostMisfit) ? "no meaning fits" : "";
 }
 
 EffortVerdict compareMeanings(const ConstMatrix& computed, const ConstMatrix& gravity,

@@ -152,7 +152,7 @@ def slow_clock(samples: Samples) -> Samples:
 
 def clipped(j: int, samples: Samples) -> Samples:
     measured = samples.measured.copy()
-    limit = np.quantile(np.abs(measured[..., j]), 0.7)
+    limit = np.quantile(np.abs(measured[..., j]), 0.6)
     measured[..., j] = np.clip(measured[..., j], -limit, limit)
     return replace(samples, measured=measured)
 
@@ -197,7 +197,7 @@ MISTAKES = [
     (partial(velocities, -1.0), "velocity", ()),
     (partial(velocities, 30 / np.pi), "velocity", ()),
     (of_motors, "motor_side", ()),
-    (partial(clipped, 1), "saturation", (1,)),
+    (partial(clipped, 2), "saturation", (2,)),
     (partial(coupled, 2, 1), "coupling", (2, 1)),
     (partial(drifting, 2), "drift", (2,)),
 ]

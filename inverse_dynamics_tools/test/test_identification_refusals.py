@@ -13,7 +13,7 @@ from test_evaluation import JOINTS, motion
 
 from inverse_dynamics import Solver, evaluate, load_robot, write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
-from inverse_dynamics.evaluation.diagnosis import PAGE
+from inverse_dynamics.evaluation.causes.rival import PAGE
 from inverse_dynamics.identification.refusals import check_recordings, check_result
 from inverse_dynamics.identification.result import IdentificationError
 

@@ -26,8 +26,8 @@
 /// less than prediction and recording differ by if they have nothing to do with each other.
 ///
 /// A base that is mounted in another way than the model says makes `tau - g` better than `tau`, too,
-/// by what gravity of the wrong direction adds. So gravity is only taken off if next to nothing is
-/// left. Other mistakes of a recording aren't looked at here.
+/// up to twice. So gravity is only taken off if that is four times better. Other mistakes of a
+/// recording aren't looked at here.
 ///
 /// Currents are only looked at where drive gains are known. Gains fitted to the data would give that
 /// meaning a free number per joint, and it would always win.

@@ -26,6 +26,7 @@ from inverse_dynamics.evaluation.accelerations import (
     accelerations_of,
     samples_of,
 )
+from inverse_dynamics.evaluation.causes.compare import Cause
 from inverse_dynamics.evaluation.causes.evaluated import causes_of
 from inverse_dynamics.evaluation.effort import Effort, effort_of
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
@@ -42,7 +43,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.bags import JointStateTopic
     from inverse_dynamics.data.joint_log import Clock
-    from inverse_dynamics.evaluation.causes.compare import Cause
     from inverse_dynamics.evaluation.series import Arrays, Series
 
 CAUSE = "likely cause of the error: "
