@@ -27,7 +27,7 @@ constexpr double kLeastMargin = 1.1;
 constexpr Index kLeastSamples = 5 * kStretches;
 constexpr double kNothing = 1e-3;    // of a joint's efforts: smaller errors are as good as that
 constexpr double kMostMisfit = 0.5;  // 0: prediction is recording; 1: they have nothing in common
-constexpr double kWrongMount = 4.0;  // least margin of leaving gravity out: a wrong direction has 2
+constexpr double kWrongMount = 3.0;  // least margin of leaving gravity out: a wrong direction has 2
 constexpr double kNoGravity = 0.01;  // of the computed torques
 constexpr double kTiny = std::numeric_limits<double>::min();
 
@@ -229,8 +229,11 @@ std::string EffortSums::doubt(const EffortVerdict& verdict,
   const ArrayXd size = (effort_ + meanings_[best].size).max(kTiny * static_cast<double>(count_));
   const std::vector<double> misfits =
       selected(meanings_[best].squares.rowwise().sum() / size, telling);
-  const auto& second = verdict.candidates[1];  // there are two or more
-  const bool mount = verdict.best() == kTorqueWithoutGravity && second.margin < kWrongMount;
+  bool mount = false;
+  for (const EffortCandidate& other : verdict.candidates) {
+    mount = mount || (verdict.best() == kTorqueWithoutGravity && other.meaning == kTorque &&
+                      other.margin < kWrongMount);
+  }
   return mount || (!misfits.empty() && median(misfits) > kMostMisfit) ? "no meaning fits" : "";
 }
 

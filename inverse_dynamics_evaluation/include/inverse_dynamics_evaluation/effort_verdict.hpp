@@ -26,7 +26,7 @@
 /// less than prediction and recording differ by if they have nothing to do with each other.
 ///
 /// A base that is mounted in another way than the model says makes `tau - g` better than `tau`, too,
-/// up to twice. So gravity is only taken off if that is four times better. Other mistakes of a
+/// up to twice. So gravity is only taken off if that is three times better. Other mistakes of a
 /// recording aren't looked at here.
 ///
 /// Currents are only looked at where drive gains are known. Gains fitted to the data would give that

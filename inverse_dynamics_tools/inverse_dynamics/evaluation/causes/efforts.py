@@ -147,10 +147,10 @@ def too_small(view: View) -> tuple[Told, ...]:
     torque = np.quantile(np.abs(view.computed), 0.95, axis=0)
     heavy = torque > _HEAVY * torque.max()
     share = measured[heavy] / torque[heavy]
-    if heavy.sum() < 2 or np.max(share) > _TOO_SMALL or view.arm.compared_without_gravity:
+    if heavy.sum() < 2 or not 0 < np.max(share) <= _TOO_SMALL or view.arm.compared_without_gravity:
         return ()
     reason = (
-        f"efforts are {1 / np.max(share):.2g} to {1 / max(np.min(share), 1e-12):.2g} times smaller than torques "
+        f"efforts are {1 / np.max(share):.2g} to {1 / np.maximum(np.min(share), 1e-6):.2g} times smaller than torques "
         "where those are large: "
     )
     currents = Told(

@@ -60,6 +60,8 @@ def _joined(first: Rival, second: Rival, tell: object) -> Rival:
 def _tell(first: Rival, second: Rival, shared: Floats, none: Floats) -> Told | None:
     scale, numbers = np.zeros(0), shared
     if first.columns:
+        if shared[0] <= 0:
+            return None
         scale, numbers = shared[:1], shared[1:] / shared[0]
     one, other = first.tell(scale, none), second.tell(numbers, none)
     if one is None or other is None:
