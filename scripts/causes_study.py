@@ -39,8 +39,8 @@ if TYPE_CHECKING:
 
 PAGE = Path(__file__).parent.parent / "docs" / "why_dont_my_torques_match.md"
 BEGIN, END = "<!-- scripts/causes_study: begin -->", "<!-- scripts/causes_study: end -->"
-SEED, EACH = 1, 5
-MOST_ANGLE = 15.0  # degrees, of a direction of gravity
+SEED, EACH = 201, 5
+MOST_ANGLE = 20.0  # degrees, of a direction of gravity
 MOST_RATIO = 1.25  # of a scale
 
 
