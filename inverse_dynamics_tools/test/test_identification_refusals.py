@@ -278,6 +278,8 @@ def test_the_command_refuses_before_the_work(tmp_path, ids):
     )
     fails(ids("identify", "none", "--out", "arm.yaml"), "--robot NAME or --urdf FILE")
     fails(ids("identify", "none", "--robot", ROBOT, "--out", "arm"), "ending in .yaml")
+    accepted = ("--robot", ROBOT, "--out", "b.yaml", "--accept", "grvity")
+    fails(ids("identify", "none", *accepted), "accept: expected one of", "got grvity")
     more = ("--out", "a.yaml", "--urdf-out", "a.json")
     fails(ids("identify", "none", "--robot", ROBOT, *more), "a.json", "--urdf-out")
 
