@@ -77,7 +77,8 @@ class Outcome:
 def _means(cause: Cause, mistake: Mistake) -> bool:
     """Whether a cause is the mistake, with its joints and about its number."""
     if cause.kind != mistake.kind:
-        return cause.kind in mistake.alike
+        named = {cause.kind, *(f"{cause.kind} of {joint}" for joint in cause.joints)}
+        return bool(named & set(mistake.alike))
     if mistake.joints and set(cause.joints) != set(mistake.joints):
         return False
     stated, true = (

@@ -42,7 +42,7 @@ class Mistake:
     kind: str
     joints: tuple[str, ...] = ()
     value: Any = None
-    alike: tuple[str, ...] = ()  # other kinds that mean the same
+    alike: tuple[str, ...] = ()  # other kinds that mean the same; of a joint: KIND of JOINT
 
 
 @dataclass
@@ -212,7 +212,8 @@ def _held(d: Draft, r: Random, center: Sequence[float]) -> Mistake:
         r.uniform(0.15, 0.5) * d.arm.strength.max() / 9.81
     )  # of the load that doubles it at 1 m
     d.payload = (mass, center)
-    return Mistake("payload", value=mass, alike=("tool",))
+    links = (f"mass of {joint}" for joint in d.arm.joints[-2:])  # hardly another thing
+    return Mistake("payload", value=mass, alike=("tool", *links))
 
 
 def payload(d: Draft, r: Random) -> Mistake:
@@ -453,8 +454,10 @@ def recordings(
                 draft, mistakes = drafted(
                     built[name], random, bool((number + k) % 2), *(m for m in makers if m in WORLD)
                 )
+                clear = len(makers) < 2 or visible(draft)  # the first of two, too
                 mistakes += [make(draft, random) for make in makers if make not in WORLD]
-                if not makers or any(make in SEEN for make in makers) or visible(draft):
+                clear &= not makers or makers[0] in SEEN or visible(draft)
+                if clear:
                     yield Recording(
                         f"{label}_{name}_{seed}_{number}_{k}", name, draft, tuple(mistakes)
                     )
