@@ -193,9 +193,9 @@ def main() -> int:
             bags = Path(os.environ["IDS_DATA_DIR"]) / "bags"
             make(directory, chain(simulated, real_recordings(bags, arguments.seed)))
         outcomes = outcomes_of(directory)
-    table = table_of(outcomes)
     shares = ", ".join(f"{name} {100 * share:.1f} %" for name, share in shares_of(outcomes).items())
-    print(f"\n{table}\n\n{shares}")
+    table = f"{table_of(outcomes)}\n\nOf all: {shares}."
+    print(f"\n{table}")
     if arguments.write:
         before, rest = PAGE.read_text(encoding="utf-8").split(BEGIN)
         PAGE.write_text(
