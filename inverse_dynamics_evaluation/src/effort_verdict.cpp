@@ -27,8 +27,8 @@ constexpr double kLeastMargin = 1.1;
 constexpr Index kLeastSamples = 5 * kStretches;
 constexpr double kNothing = 1e-3;    // of a joint's efforts: smaller errors are as good as that
 constexpr double kMostMisfit = 0.5;  // 0: prediction is recording; 1: they have nothing in common
+constexpr double kWrongMount = 3.0;  // least margin of leaving gravity out: a wrong direction has 2
 constexpr double kNoGravity = 0.01;  // of the computed torques
-constexpr double kAlike = 0.9;       // cosine of the angle between torques and efforts
 constexpr double kTiny = std::numeric_limits<double>::min();
 
 std::string percent(double share) {
@@ -229,26 +229,12 @@ std::string EffortSums::doubt(const EffortVerdict& verdict,
   const ArrayXd size = (effort_ + meanings_[best].size).max(kTiny * static_cast<double>(count_));
   const std::vector<double> misfits =
       selected(meanings_[best].squares.rowwise().sum() / size, telling);
-  return !misfits.empty() && median(misfits) > kMostMisfit ? "no meaning fits" + gainsThatWouldFit()
-                                                           : "";
-}
-
-// A hint where efforts are proportional to torques, but not equal.
-std::string EffortSums::gainsThatWouldFit() const {
-  for (const Meaning& meaning : meanings_) {
-    const ArrayXd sizes = (meaning.size * effort_).sqrt().max(1e-300);
-    const Eigen::Array<bool, -1, 1> alike = meaning.product / sizes > kAlike;
-    if (meaning.name == kCurrent || 2 * alike.count() < alike.size()) {
-      continue;
-    }
-    const std::vector<double> gains = selected(meaning.size / meaning.product, alike);
-    if (const double middle = median(gains); !(middle > 0.5 && middle < 2)) {
-      return ", but efforts are proportional to " + meaning.name + ", by " +
-             figures("%.3g", gains, ", ") +
-             ": if they are currents, state drive_gains, from the robot's data sheet";
-    }
+  bool mount = false;
+  for (const EffortCandidate& other : verdict.candidates) {
+    mount = mount || (verdict.best() == kTorqueWithoutGravity && other.meaning == kTorque &&
+                      other.margin < kWrongMount);
   }
-  return "; check gravity, payload, joint order and units";
+  return mount || (!misfits.empty() && median(misfits) > kMostMisfit) ? "no meaning fits" : "";
 }
 
 EffortVerdict compareMeanings(const ConstMatrix& computed, const ConstMatrix& gravity,

@@ -81,10 +81,19 @@ TEST(EffortVerdict, RecognisesEachMeaning) {
   const MatrixXd currents = gains.cwiseInverse().asDiagonal() * arm.computed;
   EXPECT_EQ(arm.verdict(currents, known).best(), kCurrent);
   EXPECT_TRUE(arm.verdict(currents, known).sure);
-  // without gains nothing fits, and those that would are named
-  EXPECT_EQ(arm.verdict(currents).reason,
-            "no meaning fits, but efforts are proportional to torque, by 10, 12: if they are "
-            "currents, state drive_gains, from the robot's data sheet");
+  EXPECT_EQ(arm.verdict(currents).reason, "no meaning fits");  // without gains
+}
+
+TEST(EffortVerdict, DoesNotTakeGravityOfAnotherDirectionForNone) {
+  const Arm arm;
+  const MatrixXd moving = 4 * (arm.computed - arm.gravity);
+  const MatrixXd computed = moving + arm.gravity;
+  const Mask all = Mask::Constant(2000, true);
+  const EffortVerdict ceiling =
+      compareMeanings(computed, arm.gravity, moving - arm.gravity, {}, all);
+  EXPECT_EQ(ceiling.best(), kTorqueWithoutGravity);  // half as wrong as with gravity upside down
+  EXPECT_EQ(ceiling.reason, "no meaning fits");
+  EXPECT_TRUE(compareMeanings(computed, arm.gravity, moving, {}, all).sure);
 }
 
 TEST(EffortVerdict, IsNotSureWhereGravityDoesNotLoadTheJoints) {

@@ -179,6 +179,7 @@ def test_currents_alone_determine_no_gains(currents, bags):
     [
         (LOAD, {"effort_is": "torque"}, "expected motor currents, .* got torque"),
         ({**LOAD, "payload.mass": 0.0}, {}, "expected a mass above zero, got 0.0"),
+        ({"payload.mass": 5.0}, {}, "expected MASS,x,y,z, got a mass alone: .* 0,0,0 if"),
     ],
 )
 def test_wrong_use_is_refused(currents, bags, load, changes, expected):
@@ -189,6 +190,12 @@ def test_wrong_use_is_refused(currents, bags, load, changes, expected):
 def test_a_recording_is_either_loaded_or_not(currents, bags):
     with pytest.raises(IdentificationError, match="expected each recording once"):
         identify([bags[0]], currents.robot, known_payloads=[(bags[0], LOAD)])
+
+
+def test_a_center_that_is_not_stated_is_not_taken_for_the_origin(ids, bags, tmp_path):
+    options = ["--robot", "ur10_simulated", "--effort-is", "current", "--out", "arm.yaml"]
+    load = f"{bags[1]}=2.8"
+    fails(ids("identify", str(bags[0]), "--known-payload", load, *options), "got a mass alone")
 
 
 @pytest.mark.parametrize("text", ["loaded", "=5", "loaded=five", "loaded=5,1"])

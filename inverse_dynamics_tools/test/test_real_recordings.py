@@ -104,4 +104,4 @@ def test_currents_whose_drive_gains_arent_known_end_in_no_confident_answer(recor
     write_joint_logs(tmp_path / "bag", {log.topic: replace(log, effort=log.effort / 10)})
     result = evaluate(tmp_path / "bag", robot, effort_is="auto")
     assert (result.effort.meaning, result.effort.verdict.sure) == ("torque", False)
-    assert "efforts are proportional to torque, by" in result.effort.verdict.reason
+    assert [cause.kind for cause in result.diagnosis] == ["effort_scale"]

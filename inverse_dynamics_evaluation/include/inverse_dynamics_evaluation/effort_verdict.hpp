@@ -25,6 +25,10 @@
 /// 1 in 750), its error is smaller by a tenth, and it fits: on the joints that tell, the error is
 /// less than prediction and recording differ by if they have nothing to do with each other.
 ///
+/// A base that is mounted in another way than the model says makes `tau - g` better than `tau`, too,
+/// up to twice. So gravity is only taken off if that is three times better. Other mistakes of a
+/// recording aren't looked at here.
+///
 /// Currents are only looked at where drive gains are known. Gains fitted to the data would give that
 /// meaning a free number per joint, and it would always win.
 
@@ -98,7 +102,6 @@ class EffortSums {
   std::vector<Matrix> errors() const;
   std::vector<EffortCandidate> ranked(const std::vector<Matrix>& errors) const;
   std::string doubt(const EffortVerdict& verdict, const std::vector<Matrix>& errors) const;
-  std::string gainsThatWouldFit() const;
 
   Eigen::Index count_;
   std::vector<double> drive_gains_;

@@ -26,8 +26,8 @@ from inverse_dynamics.evaluation.accelerations import (
     accelerations_of,
     samples_of,
 )
-from inverse_dynamics.evaluation.diagnosed import diagnosis_of
-from inverse_dynamics.evaluation.diagnosis import Diagnosis
+from inverse_dynamics.evaluation.causes.compare import Cause
+from inverse_dynamics.evaluation.causes.evaluated import causes_of
 from inverse_dynamics.evaluation.effort import Effort, effort_of
 from inverse_dynamics.evaluation.posture import posture_of
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
@@ -88,7 +88,9 @@ class Evaluation:
     effort: Effort = field(default_factory=Effort)  # what recorded efforts mean
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
     seconds: dict[str, float] = field(default_factory=dict)  # what took how long
-    diagnosis: Diagnosis | None = None  # the last one of the notes; not in files
+    diagnosis: tuple[
+        Cause, ...
+    ] = ()  # likely causes of the errors, the last one of the notes; not in files
 
     @cached_property
     def measured(self) -> Floats:
@@ -99,6 +101,11 @@ class Evaluation:
     def time(self) -> Floats:
         """(N,) s since the first sample."""
         return self.log.time
+
+    @property
+    def notes_without_causes(self) -> tuple[str, ...]:
+        """Those that say nothing of the causes of errors."""
+        return tuple(note for note in self.notes if not note.startswith(CAUSE))
 
     @property
     def mean_rmse(self) -> float:
@@ -208,11 +215,14 @@ def evaluate(
     result = replace(result, notes=(*result.notes, *filter(None, [outside])))
     if posture.moves:
         return result
-    cause = diagnosis_of(robot, arm.solver, arm.description, result.log, result.qdd, result.effort)
-    if cause is None:
+    found = causes_of(
+        robot, arm.solver, arm.description, result.log, result.qdd, result.effort, kept
+    )
+    result = replace(result, effort=found.doubting(result.effort), diagnosis=found.causes)
+    if not found.text:
         return result
-    note = f"{CAUSE}{cause.text}"
-    return replace(result, notes=(*result.notes, note), diagnosis=cause)
+    note = f"{CAUSE}{found.text}" if found.causes else found.text
+    return replace(result, notes=(*result.notes, note))
 
 
 def _topic_notes(bag: Path, motion: JointLog | JointStateTopic, expected: str) -> list[str]:

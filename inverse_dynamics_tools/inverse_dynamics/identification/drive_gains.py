@@ -160,10 +160,8 @@ def _read(
     options: Mapping[str, Any],
 ) -> _Recording:
     """Currents of a recording, as if each gain were one; computed: by the description with the load."""
-    if load is not None and not float(load["payload.mass"]) > 0:  # type: ignore[arg-type]
-        raise IdentificationError(
-            f"--known-payload {path}: expected a mass above zero, got {load['payload.mass']}"
-        )
+    if load is not None:
+        _check_load(path, load)
     described = replace(
         robot,
         plugin=RIGID_BODY,
@@ -182,6 +180,20 @@ def _read(
         )
     blocks = [block.fitted for block in blocks_of(found, _BLOCKS)]
     return _Recording(found, blocks, None if load is None else body(load))
+
+
+def _check_load(path: Path | str, load: Mapping[str, Parameter]) -> None:
+    """A load has a mass, and a center: gains are proportional to its distance from the axes."""
+    if not float(load["payload.mass"]) > 0:  # type: ignore[arg-type]
+        raise IdentificationError(
+            f"--known-payload {path}: expected a mass above zero, got {load['payload.mass']}"
+        )
+    if "payload.center_of_mass" not in load:
+        raise IdentificationError(
+            f"--known-payload {path}: expected MASS,x,y,z, got a mass alone: drive gains follow from the torque of the "
+            "load, so they would be wrong by as much as its center is; measure the center of mass in the tip frame "
+            "[m], and give 0,0,0 if it is the origin"
+        )
 
 
 def _blocks(read: Sequence[_Recording]) -> tuple[list[_core.Block], list[Floats | None]]:

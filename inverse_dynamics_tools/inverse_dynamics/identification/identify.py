@@ -13,7 +13,7 @@ import numpy as np
 from inverse_dynamics import _core
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.evaluation.evaluation import CAUSE, evaluate
+from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.evaluation.posture import Posture, locked_joints, posture_of
 from inverse_dynamics.identification.baselines import Baselines, root_mean_squares
 from inverse_dynamics.identification.blocks import Block, blocks_of
@@ -25,7 +25,12 @@ from inverse_dynamics.identification.knowledge import (
     knowledge,
     prior_decided,
 )
-from inverse_dynamics.identification.refusals import check_recordings, check_result, mean_unit
+from inverse_dynamics.identification.refusals import (
+    check_accepted,
+    check_recordings,
+    check_result,
+    mean_unit,
+)
 from inverse_dynamics.identification.result import (
     Finding,
     HeldOutBlock,
@@ -66,6 +71,7 @@ def identify(
     *,
     blocks: int | None = None,
     known_payloads: Sequence[KnownPayload] = (),
+    accept: Sequence[str] = (),
     progress: Progress = no_progress,
     **options: Any,
 ) -> Identification:
@@ -74,14 +80,16 @@ def identify(
     robot: as in evaluate(); its description is the prior, its model, if it has one, is compared
     with. blocks: how many the recordings are cut into altogether, at least three; none: BLOCKS, or
     fewer where they would be shorter than 2.5 s. known_payloads: further recordings of motor currents,
-    each with a load as the parameters payload.* of solvers: they determine the drive gains. options: others of
-    evaluate(), as effort_is, start, end.
+    each with a load as the parameters payload.* of solvers: they determine the drive gains. accept: kinds of
+    refusals.REFUSED that are taken as they are, and not refused. options: others of evaluate(), as effort_is,
+    start, end.
 
     Raises UserError: those of evaluate(), IdentificationError.
     """
     begin = time.perf_counter()
     if not isinstance(robot, Robot):
         robot = load_robot(robot)
+    check_accepted(accept)
     description = _description(robot)
     _check_distinct([*recordings, *(path for path, _ in known_payloads)])
     fitter = _fitter(robot, description)
@@ -111,7 +119,7 @@ def identify(
     evaluations = [evaluate(path, robot, progress=progress, **options) for path in recordings]
     robot = evaluations[0].robot if evaluations else robot
     _check(evaluations)
-    check_recordings(evaluations)
+    check_recordings(evaluations, accept)
     blocks = _block_count(evaluations, blocks)
     cut = _cut(evaluations, blocks)
     seconds["reading"] = time.perf_counter() - begin
@@ -122,7 +130,7 @@ def identify(
     found = _result(robot, description, evaluations, fitter, cut, held_out, chosen, seconds)
     notes = tuple(dict.fromkeys((*posture.notes, *found.notes)))
     found = replace(found, drive_gains=gains, notes=notes)
-    check_result(found)
+    check_result(found, accept)
     return found
 
 
@@ -284,7 +292,7 @@ def _result(
 
 def _notes(evaluations: Sequence[Evaluation]) -> tuple[str, ...]:
     """Those of the evaluations, but for the cause of the present model's errors, which the fit removes."""
-    return tuple(n for e in evaluations for n in e.notes if not n.startswith(CAUSE))
+    return tuple(note for e in evaluations for note in e.notes_without_causes)
 
 
 def _model(
@@ -317,6 +325,18 @@ def _findings(
         Finding("floor", f"link {link}: the description is implausible: the prior has {text}", link)
         for link, text in zip(links, fitter.changes, strict=True)
         if text
+    ]
+    found += [
+        Finding(
+            "worse",
+            f"{joint}: {new:.3g} {unit} on blocks held out, where the description without friction has {old:.3g}: "
+            "the motion tells too little of the joint; record one in which it is loaded and turns round more often",
+            joint,
+        )
+        for joint, unit, new, old in zip(
+            fitter.joint_names, units, held["identified"], held["urdf"], strict=True
+        )
+        if new > old
     ]
     identified = held["identified"].mean()
     baseline = min((held[c].mean(), c) for c in held if c != "identified")

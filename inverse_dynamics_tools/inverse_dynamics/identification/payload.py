@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.robot.robots import Robot
 
+_ALLOWED = ("payload", "tool", "mass", "friction", "drift")  # causes of errors beside a load
+
 NAME = "estimated load"  # of the body among the solver's payloads
 
 _BLOCK = 0.8  # s, of the mean torques of an empty run
@@ -160,13 +162,13 @@ def estimate_payload(
     """
     evaluation = evaluate(bag, robot, progress=progress, **options)
     _require_own_tip(evaluation.robot, options.get("tip"))
-    _require_gravity(evaluation)
+    _require_plausible(evaluation)
     solver = _solver_of(evaluation)
     arm, told = _arm_of(evaluation.robot)
     alone, phantom = None, []
     if empty is not None:
         without = evaluate(empty, robot, progress=progress, **options)
-        _require_gravity(without)
+        _require_plausible(without)
         alone = empty_run(samples_of(without), solver)
         _require_motion(samples_of(without), str(without.bag), "without the load")
         phantom = _phantom(
@@ -187,7 +189,7 @@ def estimate_payload(
         time=samples.time,
         before=found.before,
         after=found.after,
-        notes=(*evaluation.notes, *told, *phantom, *_notes(found, evaluation, idle)),
+        notes=(*evaluation.notes_without_causes, *told, *phantom, *_notes(found, evaluation, idle)),
         idle=idle,
     )
 
@@ -371,14 +373,17 @@ def _require_own_tip(robot: Robot, tip: str | None) -> None:
     )
 
 
-def _require_gravity(evaluation: Evaluation) -> None:
-    if evaluation.effort.meaning != "torque_without_gravity":
-        return
-    raise PayloadError(
-        f"{evaluation.bag}: expected efforts with gravity, got torque_without_gravity "
-        f"({evaluation.effort.stated_by}): the robot's controller has subtracted the weight of the load; "
-        "record currents or joint torques with gravity, or state another meaning with --effort-is"
-    )
+def _require_plausible(evaluation: Evaluation) -> None:
+    causes = evaluation.diagnosis
+    if causes and not any(cause.kind in _ALLOWED for cause in causes):
+        why = "; ".join(cause.text for cause in causes)
+        raise PayloadError(f"{evaluation.bag}: no load can be estimated: {why}")
+    if evaluation.effort.meaning == "torque_without_gravity":
+        raise PayloadError(
+            f"{evaluation.bag}: expected efforts with gravity, got torque_without_gravity "
+            f"({evaluation.effort.stated_by}): the weight of the load isn't in them; "
+            "record currents or joint torques with gravity, or state another meaning with --effort-is"
+        )
 
 
 def _require_motion(samples: Samples, where: str, load: str = "with the load") -> None:

@@ -2,7 +2,7 @@
 """Recordings that no model should be identified from, and models that are no gain: why, and what to do.
 
 check_recordings(evaluations)     # raises IdentificationError
-check_result(found)
+check_result(found, accept=("total_mass",))
 """
 
 from __future__ import annotations
@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.wording import listed
-from inverse_dynamics.evaluation.diagnosis import Diagnosis, pieces_of, residual_cause
+from inverse_dynamics.evaluation.causes.compare import Cause, residual_causes
+from inverse_dynamics.evaluation.causes.samples import pieces_of
+from inverse_dynamics.evaluation.evaluation import CAUSE
 from inverse_dynamics.identification.result import IdentificationError
 
 if TYPE_CHECKING:
@@ -27,26 +29,45 @@ LEAST_SECONDS = 5.0
 LEAST_TRAVEL = 0.1
 """rad (prismatic: m) between the lowest and the highest position of a joint."""
 
-_IDENTIFIED = ("friction", "payload", "tool")  # what a new model has, unlike the one before
+REFUSED = (
+    *("effort_sign", "effort_direction", "direction", "effort_order", "order"),
+    *("effort_scale", "currents", "no_gravity", "gravity", "degrees", "velocity", "clock"),
+    *("motor_side", "guided", "saturation", "coupling", "drift", "total_mass", "no_friction"),
+)
+"""Kinds of mistakes that no model is identified from, unless they are accepted. Friction, loads and the mass of a
+link are what identification is for."""
+
+_MOST_MASS = 3.0  # by the description's: units and currents are off by more, descriptions by less
+_NO_FRICTION = 1e-3  # of a measured range: a fit stops about so far from the bound of friction
+_AGAINST = -0.1  # mean correlation of errors with velocities, of friction of the wrong sign
 _MOVING = 0.02  # of a joint's greatest velocity
 _UNEXPLAINED = 0.25  # held-out error as a share of the measured range
 
 
-def check_recordings(evaluations: Sequence[Evaluation]) -> None:
+def check_recordings(evaluations: Sequence[Evaluation], accept: Sequence[str] = ()) -> None:
     """Raise IdentificationError where there is too little motion, or where torques contradict the robot.
 
-    evaluations: by the present model, or by the description. Friction and loads are what
-    identification is for; directions, orders, units, mounts, limits, couplings and drift aren't.
+    evaluations: by the present model, or by the description. accept: kinds of REFUSED that are taken as they are.
     """
-    _check_motion(evaluations)
     for evaluation in evaluations:
-        cause = evaluation.diagnosis
-        if cause is not None and cause.kind not in _IDENTIFIED:
-            raise _refusal(f"{evaluation.bag}", cause)
+        refused = [c for c in evaluation.diagnosis if c.kind in REFUSED and c.kind not in accept]
+        if refused:
+            text = evaluation.notes[-1].removeprefix(CAUSE)  # all causes, or that they are rivals
+            kinds = tuple(dict.fromkeys(cause.kind for cause in refused))
+            raise _refusal(f"{evaluation.bag}: {text}", kinds, refused[0].mistake)
+    _check_motion(evaluations)
 
 
-def _refusal(recording: str, cause: Diagnosis) -> IdentificationError:
-    return IdentificationError(f"{recording}: {cause.text}", cause.mistake)
+def check_accepted(accept: Sequence[str]) -> None:
+    """Raise IdentificationError for kinds that nothing is refused for."""
+    for kind in accept:
+        if kind not in REFUSED:
+            raise IdentificationError(f"accept: expected one of {', '.join(REFUSED)}, got {kind}")
+
+
+def _refusal(text: str, kinds: Sequence[str], mistake: str) -> IdentificationError:
+    options = " ".join(f"--accept {kind}" for kind in kinds)
+    return IdentificationError(f"{text}. To identify a model all the same, give {options}", mistake)
 
 
 def _check_motion(evaluations: Sequence[Evaluation]) -> None:
@@ -83,8 +104,11 @@ def _seconds_in_motion(evaluation: Evaluation) -> float:
     return float(step[moving & (step > 0)].sum())
 
 
-def check_result(found: Identification) -> None:
-    """Raise IdentificationError where the model is no gain, or its errors show what no model can fit."""
+def check_result(found: Identification, accept: Sequence[str] = ()) -> None:
+    """Raise IdentificationError where the model is no gain, or shows what no arm can be.
+
+    accept: as in check_recordings().
+    """
     measured = np.concatenate([block.measured for block in found.blocks])
     share = found.held_out["identified"] / np.maximum(np.ptp(measured, axis=0), 1e-9)
     if share.mean() > _UNEXPLAINED:
@@ -96,8 +120,13 @@ def check_result(found: Identification) -> None:
         )
     for recording in dict.fromkeys(block.recording for block in found.blocks):
         blocks = [block for block in found.blocks if block.recording == recording]
-        if cause := _cause_of_residuals(found, blocks):
-            raise _refusal(recording, cause)
+        for cause in _causes_of_residuals(found, blocks):
+            if cause.kind not in accept:
+                raise _refusal(f"{recording}: {cause.text}", (cause.kind,), cause.mistake)
+    if "no_friction" not in accept:
+        _check_friction(found)
+    if "total_mass" not in accept:
+        _check_mass(found)
     start = "present" if "present" in found.held_out else "urdf"
     if start in found.held_out and found.rmse("identified") >= found.rmse(start):
         name = {"present": "the present model", "urdf": "the description"}[start]
@@ -105,6 +134,52 @@ def check_result(found: Identification) -> None:
             f"{_named(found)}: the identified model is no gain over {name}: {found.rmse('identified'):.3g} "
             f"against {found.rmse(start):.3g} {mean_unit(found.units)} on data that were held out; stay with "
             f"{name}, or record a longer motion (`ids excite` makes one)"
+        )
+
+
+def _check_mass(found: Identification) -> None:
+    """Of all links, and of the efforts by the description's torques: masses near the base stay what it says."""
+    mass, described = (float(links[:, 0].sum()) for links in (found.model.parameters, found.prior))
+    measured, urdf = (
+        np.concatenate([values[b.counts] for b, values in parts])
+        for parts in zip(
+            *(((b, b.measured), (b, b.computed["urdf"])) for b in found.blocks), strict=True
+        )
+    )
+    share = float((measured * urdf).sum() / (urdf**2).sum())
+    if not all(1 / _MOST_MASS <= x <= _MOST_MASS for x in (mass / described, share)):
+        raise _refusal(
+            f"{_named(found)}: the links have {mass:.3g} kg together, {mass / described:.2g} times the "
+            f"{described:.3g} kg of the description, and efforts are {share:.2g} times its torques: "
+            "efforts are motor currents (--effort-is current) or in another unit, or masses of the description are "
+            "wrong; convert the efforts, or correct the description",
+            ("total_mass",),
+            "Efforts are motor currents",
+        )
+
+
+def _check_friction(found: Identification) -> None:
+    """An arm without any, whose errors are against the motion: friction of the wrong sign."""
+    measured, error, qd = (
+        np.concatenate(values)
+        for values in zip(
+            *((b.measured[b.counts], b.errors["identified"], b.qd[b.counts]) for b in found.blocks),
+            strict=True,
+        )
+    )
+    fc, fv = (np.array([law[key] for law in found.model.friction]) for key in ("fc", "fv"))
+    friction = fc + fv * np.abs(qd).max(axis=0)
+    with_motion = (error * qd).mean(axis=0) / np.sqrt(
+        (error**2).mean(axis=0) * (qd**2).mean(axis=0)
+    )
+    none = (friction < _NO_FRICTION * np.ptp(measured, axis=0)).all()
+    if none and (with_motion < 0).all() and with_motion.mean() < _AGAINST:
+        raise _refusal(
+            f"{_named(found)}: friction is zero in all joints, and efforts are lower than computed along the motion: "
+            "all efforts have the opposite sign, or somebody guides the arm; change the sign of all efforts where the "
+            "recording is made, or record the arm as it moves by itself",
+            ("no_friction",),
+            "A joint is reversed",
         )
 
 
@@ -117,7 +192,9 @@ def _named(found: Identification) -> str:
     return ", ".join(map(str, found.recordings))
 
 
-def _cause_of_residuals(found: Identification, blocks: Sequence[HeldOutBlock]) -> Diagnosis | None:
+def _causes_of_residuals(
+    found: Identification, blocks: Sequence[HeldOutBlock]
+) -> tuple[Cause, ...]:
     """What the held-out errors of a recording show: limits, couplings, drift."""
     ordered = sorted(blocks, key=lambda block: float(block.time[0]))
     time, q, qd, measured, computed = (
@@ -129,4 +206,4 @@ def _cause_of_residuals(found: Identification, blocks: Sequence[HeldOutBlock]) -
     )
     # pieces of what is computed, in the place of accelerations
     samples = pieces_of(found.joints, time, q, qd, computed, measured)
-    return None if samples is None else residual_cause(samples, samples.flat(samples.qdd))
+    return () if samples is None else residual_causes(samples, samples.flat(samples.qdd))

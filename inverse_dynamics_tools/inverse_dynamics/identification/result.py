@@ -55,7 +55,8 @@ class Finding:
     """Something to know about the result, in words.
 
     kind: floor (a link's description is unusable), delay, range (offset or shift at its bound),
-    motion (a joint that hardly moves), samples, gain (no better than the starting model).
+    motion (a joint that hardly moves), samples, gain (no better than the starting model), worse (a joint that the
+    description predicts better).
     """
 
     kind: str

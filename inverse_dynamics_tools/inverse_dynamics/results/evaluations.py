@@ -44,7 +44,6 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Storage
-    from inverse_dynamics.evaluation.diagnosis import Diagnosis
     from inverse_dynamics.evaluation.series import Arrays
     from inverse_dynamics.figures.torque_lines import TorqueLines
 
@@ -337,13 +336,8 @@ def metrics(evaluation: Evaluation) -> dict[str, Any]:
             "joints": evaluation.errors_of_kept,
         },
         "notes": evaluation.notes,
-        "diagnosis": _cause(evaluation.diagnosis),
+        "diagnosis": [{**vars(c), "reference": c.reference} for c in evaluation.diagnosis],
     }
-
-
-def _cause(diagnosis: Diagnosis | None) -> dict[str, Any] | None:
-    """The likely cause of the errors, where it is clear."""
-    return None if diagnosis is None else {**vars(diagnosis), "reference": diagnosis.reference}
 
 
 def _summary(evaluation: Evaluation) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from inverse_dynamics.errors import UserError
 from inverse_dynamics.verbs.common import file_name, number, positive_number, progress_bar
 from inverse_dynamics.verbs.json_output import print_json
 from inverse_dynamics.verbs.options import add_chain, add_verb, chosen_robot, robot_changes
-from inverse_dynamics.verbs.payload_option import payload
+from inverse_dynamics.verbs.payload_option import stated_payload
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -104,8 +104,15 @@ def add_parser(
         action="append",
         default=[],
         help="a further recording of motor currents, with a known load, which determines the drive gains. "
-        "LOAD as for --payload of other verbs: MASS,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz] in the tip frame, or a YAML "
-        "file; may be given several times",
+        "LOAD as for --payload of other verbs, with its center of mass: MASS,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz] in the "
+        "tip frame, or a YAML file; may be given several times",
+    )
+    parser.add_argument(
+        "--accept",
+        metavar="KIND",
+        action="append",
+        default=[],
+        help="identify a model although this mistake is found; a refusal names its KIND. May be given several times",
     )
     parser.add_argument(
         "--urdf-out",
@@ -158,7 +165,7 @@ def _known_payload(text: str) -> tuple[Path, dict[str, Parameter]]:
         raise argparse.ArgumentTypeError(
             f"expected RECORDING=MASS,x,y,z, a recording and what the robot carries in it, got '{text}'"
         )
-    return file_name(recording), payload(load)
+    return file_name(recording), stated_payload(load)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -186,6 +193,7 @@ def run(arguments: argparse.Namespace) -> None:
             arguments.recordings,
             robot,
             known_payloads=arguments.known_payload,
+            accept=arguments.accept,
             effort_is=arguments.effort_is,
             topic=arguments.topic,
             start=arguments.start,

@@ -22,6 +22,11 @@ _FORMS = (
 
 def payload(text: str) -> dict[str, Parameter]:
     """A body of the option: its parameters, all of them, so that none of another body is left."""
+    return {"payload.center_of_mass": [0.0, 0.0, 0.0], **stated_payload(text)}
+
+
+def stated_payload(text: str) -> dict[str, Parameter]:
+    """The same, without a center of mass where none is stated."""
     try:
         numbers = [decimal(part) for part in text.split(",")]
     except ValueError:
@@ -41,7 +46,7 @@ def _parameters(
     zeros = [0.0, 0.0, 0.0]
     return {
         "payload.mass": mass,
-        "payload.center_of_mass": center or zeros,
+        **({"payload.center_of_mass": center} if center else {}),
         "payload.inertia": inertia or 2 * zeros,
         "payload.frame.xyz": xyz or zeros,
         "payload.frame.rpy": rpy or zeros,

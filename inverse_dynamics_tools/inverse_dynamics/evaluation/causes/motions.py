@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Positions, velocities and time that contradict each other, the description's limits, or the efforts.
+
+Comparing velocities with the slope of positions needs no torques, so it comes first; what it finds is
+put right before rivals are compared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inverse_dynamics.base.wording import listed
+from inverse_dynamics.evaluation.causes.rival import Rival, Told
+
+if TYPE_CHECKING:
+    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.evaluation.causes.arm import ArmModel, View
+    from inverse_dynamics.evaluation.causes.fit import Fitting
+    from inverse_dynamics.evaluation.causes.samples import Samples
+
+_AGREE = 0.1  # relative, of velocities and slopes of positions: filters of drivers take some
+_SAME = 0.04  # relative, of the factors of joints, and of a factor and that of a unit
+_FOLLOWS = 0.2  # of the square of the slopes: what velocities in another unit may leave
+_DEGREE = 180 / np.pi
+_RATES = {  # velocity over slope of the positions
+    30 / np.pi: "rpm",
+    1 / (2 * np.pi): "turns per second",
+    1000.0: "mrad/s",
+    0.001: "krad/s",
+}
+_CLOCKS = {1000.0: "ms", 1e6: "us", 1e9: "ns", 1e-3: "thousands of seconds", 60.0: "1/60 s"}
+_TURNS = 4 * np.pi  # rad: joints without limits seldom turn on
+_BEYOND = 1.2  # times the limit
+_CLOCK = 1.12  # least factor of time that efforts tell from wrong inertias
+
+
+# ---- velocities against positions --------------------------------------------------------------------------------
+
+
+def contradiction(samples: Samples, arm: ArmModel) -> tuple[Told, Samples] | None:
+    """What is wrong with velocities, positions or time, and the samples without it."""
+    way, integral, moves = _ways(samples)
+    power = np.maximum((integral**2).sum(axis=0), 1e-300)
+    product = (way * integral).sum(axis=0)
+    rate = product / power  # positions change so many times as fast as velocities say
+    total = np.maximum((way**2).sum(axis=0), 1e-300)
+    follows = ((way - rate * integral) ** 2).sum(axis=0) < _FOLLOWS * total
+    silent = moves & (power < 1e-6 * total)
+    wrong = silent | (moves & follows & (np.abs(rate - 1) > _AGREE))
+    if not wrong.any():
+        return None
+    if silent.any():
+        return _velocity(samples, silent, 0.0, "zero"), _with_slopes(samples, silent)
+    turning = moves & follows & ~np.array(arm.prismatic or [False] * len(moves))
+    usable = turning if turning.any() else moves & follows
+    middle = float(np.median(rate[usable]))
+    common = bool((np.abs(rate[usable] / middle - 1) < _SAME).all())
+    if common and (
+        units := _common(samples, usable, middle, bool((wrong == (moves & follows)).all()))
+    ):
+        return units
+    factor = float(np.median(1 / rate[wrong]))
+    text = (
+        "reversed" if (np.abs(rate[wrong] + 1) < _AGREE).all() else f"{factor:.3g} times too fast"
+    )
+    text = next((f"in {u}" for f, u in _RATES.items() if abs(factor / f - 1) < _SAME), text)
+    return _velocity(samples, wrong, factor, text), _with_slopes(samples, wrong)
+
+
+def _ways(samples: Samples) -> tuple[Floats, Floats, Mask]:
+    """(K, n) by how much positions change in each piece, by how much velocities say; joints that move."""
+    step = np.diff(samples.time, axis=1)[..., None]
+    whole = (step[..., 0] > 0).all(axis=1) & (step.max(axis=(1, 2)) < 20 * np.median(step))
+    integral = (0.5 * (samples.qd[:, 1:] + samples.qd[:, :-1]) * step).sum(axis=1)
+    way = samples.q[:, -1] - samples.q[:, 0]
+    # drivers repeat values: the least change that positions show
+    steps = np.abs(np.diff(samples.q, axis=1))
+    resolution = np.where(steps > 0, steps, np.inf).min(axis=(0, 1))
+    travel = np.abs(way[whole])
+    moves = (
+        (
+            np.quantile(travel, 0.9, axis=0)
+            > np.where(np.isfinite(resolution), 5 * resolution, np.inf)
+        )
+        if len(travel)
+        else np.zeros(way.shape[1], bool)
+    )
+    return way[whole], integral[whole], np.asarray(moves)
+
+
+def _common(
+    samples: Samples, usable: Mask, rate: float, everywhere: bool
+) -> tuple[Told, Samples] | None:
+    """A unit or a clock that is the same for all joints."""
+    if abs(rate / _DEGREE - 1) < _SAME or abs(rate * _DEGREE - 1) < _SAME:
+        which = "positions" if rate > 1 else "velocities"
+        other = "velocities" if rate > 1 else "positions"
+        scale = np.where(usable, 1 / _DEGREE, 1.0)
+        right = (
+            replace(samples, q=samples.q * scale)
+            if rate > 1
+            else replace(samples, qd=samples.qd * scale, qdd=samples.qdd * scale)
+        )
+        return _degrees(
+            f"positions change {rate:.3g} times as fast as velocities say: {which} are in degrees, "
+            f"{other} in rad",
+            f"convert {which} to rad" + ("/s" if which == "velocities" else ""),
+        ), right
+    known = any(abs(1 / rate / factor - 1) < _SAME for factor in _RATES if factor < 100)
+    if rate <= 0 or known or not everywhere or usable.sum() < 2:
+        return None
+    unit = next((u for f, u in _CLOCKS.items() if abs(1 / rate / f - 1) < _SAME), "")
+    told = Told(
+        "clock",
+        "A clock at the wrong speed",
+        f"positions change {rate:.3g} times as fast as velocities say, in every joint"
+        + (f": time is in {unit}" if unit else ""),
+        "give --clock receive, or record again with a clock that runs right",
+        value=rate,
+    )
+    return told, replace(samples, time=samples.time * rate, qdd=samples.qdd / rate)
+
+
+def _degrees(reason: str, remedy: str) -> Told:
+    return Told("degrees", "Degrees", reason, remedy, value=_DEGREE)
+
+
+def _velocity(samples: Samples, wrong: Mask, factor: float, text: str) -> Told:
+    names = tuple(n for n, w in zip(samples.joints, wrong, strict=True) if w)
+    whose = "" if wrong.all() else f" of {listed(names)}"
+    return Told(
+        "velocity",
+        "Velocities that contradict positions",
+        f"velocities{whose} contradict the slope of the positions: they are {text}",
+        "record velocities in rad/s (prismatic: m/s), or leave them out",
+        () if wrong.all() else names,
+        value=float(f"{factor:.3g}"),
+    )
+
+
+def _with_slopes(samples: Samples, wrong: Mask) -> Samples:
+    """Velocities and accelerations of some joints from a cubic through the positions of each piece."""
+    qd, qdd = samples.qd.copy(), samples.qdd.copy()
+    for k, time in enumerate(samples.time):
+        t = time - time.mean()
+        span = max(float(np.ptp(t)), 1e-12)
+        powers = np.vander(t / span, 4, increasing=True)
+        _, b, c, d = np.linalg.lstsq(powers, samples.q[k], rcond=None)[0]
+        slope = (b + 2 * c * powers[:, 1:2] + 3 * d * powers[:, 2:3]) / span
+        qd[k] = np.where(wrong, slope, qd[k])
+        qdd[k] = np.where(wrong, (2 * c + 6 * d * powers[:, 1:2]) / span**2, qdd[k])
+    return replace(samples, qd=qd, qdd=qdd)
+
+
+# ---- positions and time against limits and efforts ---------------------------------------------------------------
+
+
+def beyond_limits(view: View) -> Mask:
+    """(n,) joints that turn and are far beyond their limits, or beyond two turns without any."""
+    greatest = np.abs(view.motion[0]).max(axis=0)
+    limit = np.full(len(view.names), _TURNS)
+    if view.arm.position_limits is not None:
+        stated = np.abs(view.arm.position_limits).max(axis=0)
+        limit = np.where(np.isfinite(stated) & (stated > 0), stated, limit)
+    return np.asarray(~view.prismatic & (greatest > _BEYOND * limit))
+
+
+def rivals(view: View, _: Fitting) -> Iterator[Rival]:
+    """Degrees, where positions are beyond limits; time that runs at another speed, by the efforts."""
+    if beyond_limits(view).any():
+        scale = np.where(view.prismatic, 1.0, 1 / _DEGREE)
+        q, qd, qdd = (scale * values for values in view.motion)
+        told = _degrees(
+            "positions are beyond the joints' limits, and torques match if they are degrees",
+            "convert positions and velocities to rad",
+        )
+        yield Rival("degrees", view.arm.compared(q, qd, qdd), qd, lambda *_: told)
+    friction = 0.0 if view.friction is None else view.friction
+    still = 0.0 if view.arm.compared_without_gravity else view.gravity
+    yield Rival(
+        "clock",
+        still + friction + np.zeros_like(view.computed),
+        view.qd,
+        lambda square, _: _clock(float(square[0])),
+        columns=(view.computed - still - friction,),
+        low=(1e-6,),
+        high=(1e6,),
+    )
+
+
+def _clock(square: float) -> Told | None:
+    rate = float(f"{np.sqrt(square):.3g}")
+    if max(rate, 1 / rate) < _CLOCK:
+        return None
+    return Told(
+        "clock",
+        "A clock at the wrong speed",
+        f"torques match if the motion is {rate:g} times as fast as time and velocities say",
+        f"divide time by {rate:g}, and multiply velocities by it",
+        value=rate,
+        shared=np.array([rate**2]),
+    )
+
+
+def beyond_reach(view: View) -> tuple[Told, ...]:
+    """Positions that are beyond limits in most joints, and torques that fit neither as rad nor as degrees."""
+    beyond, turning = beyond_limits(view), view.informative & ~view.prismatic
+    if not turning.any() or beyond[turning].mean() < 0.5:
+        return ()
+    greatest = np.abs(view.motion[0]).max(axis=0)
+    names = [n for n, b in zip(view.names, beyond, strict=True) if b]
+    reach = f"positions of {listed(names)} go to {listed([f'{g:.3g}' for g in greatest[beyond]])}, far beyond "
+    motors = Told(
+        "motor_side",
+        "Positions of the motors",
+        f"{reach}the joints' limits in rad: they may be those of the motors, before the gears",
+        "divide positions and velocities by the gear ratios, and multiply efforts by them",
+    )
+    q, qd, qdd = (values / _DEGREE for values in view.motion)
+    if beyond_limits(view.moving(q, qd, qdd)).any():
+        return (motors,)
+    degrees = _degrees(
+        f"{reach}the joints' limits in rad: they may be degrees",
+        "convert positions and velocities to rad",
+    )
+    return motors, degrees
