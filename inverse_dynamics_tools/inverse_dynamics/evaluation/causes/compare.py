@@ -169,6 +169,8 @@ def compare(samples: Samples, arm: ArmModel) -> Comparison:
         np.isfinite(v).all() for v in (samples.q, samples.qd, samples.qdd, samples.measured)
     ):
         return Comparison()
+    if not (np.ptp(samples.flat(samples.q), axis=0) > 0).any():  # nothing moves
+        return Comparison()
     found = motions.contradiction(samples, arm)
     if found is None:
         return _Contest(View(samples, arm)).decide()
