@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.series import Arrays
     from inverse_dynamics.figures.torque_lines import TorqueLines
 
-SCHEMA = 2
+SCHEMA = 3
 MARK = "evaluation.json"
 MARK_OF_SEVERAL = "recordings.json"  # see many_evaluations.py
 
