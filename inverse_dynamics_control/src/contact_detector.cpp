@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_control/contact_detector.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <limits>
@@ -47,7 +48,13 @@ bool ContactDetector::update(const Eigen::Ref<const Eigen::VectorXd>& torques,
   double most = 0.0;  // change of a torque that is beyond its threshold
   bool lasts = !fits;
   for (Eigen::Index j = 0; fits && j < torques.size(); ++j) {
-    const double part = std::isfinite(torques[j]) ? torques[j] / thresholds_[j] : kInfinity;
+    if (!std::isfinite(torques[j])) {  // contact, of a torque that nothing is compared with later
+      if (!contact_ && most < kInfinity) joint_ = j;
+      excess_ = most = kInfinity;
+      lasts = true;
+      continue;
+    }
+    const double part = torques[j] / thresholds_[j];
     if (!contact_) held_[j] = stillHeld(held_[j], part);
     const double change =
         std::abs(part - std::clamp(part, std::min(0.0, held_[j]), std::max(0.0, held_[j])));

@@ -128,8 +128,13 @@ Peaks requirePeaks(const Series& heights, Index correlation, double period, doub
   const auto found = static_cast<double>(peaks.heights.size());
   if (stated > found / duration) {
     const double per_hour = kHour * static_cast<double>(joints);
+    const double most = std::floor(found / duration * per_hour);
+    if (most < 1.0) {
+      refuse(joint, "too few samples", "a part without contact that shows a peak of its torque",
+             number(static_cast<double>(heights.size())), "take a longer part");
+    }
     refuse(joint, "too many false alarms",
-           "at most " + number(std::floor(found / duration * per_hour)) +
+           "at most " + number(most) +
                " per hour, which is as often as its torque shows a peak",
            number(stated * per_hour), "state fewer");
   }

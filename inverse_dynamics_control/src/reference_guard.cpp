@@ -15,6 +15,7 @@ namespace {
 
 // Rounding of whoever computes references up to the limit.
 constexpr double kRounding = 1e-9;
+constexpr double kTurn = 6.283185307179586;  // rad
 
 struct Fault {
   StopReason reason = StopReason::kNone;
@@ -29,11 +30,12 @@ Fault faultOf(const Reference& desired, const ReferenceLimits& limits,
   }
   for (Eigen::Index j = 0; j < n; ++j) {
     double q = desired.q[j];
-    const double qd = desired.qd[j], middle = 0.5 * (limits.lower[j] + limits.upper[j]);
+    const double qd = desired.qd[j];
     if (!std::isfinite(q) || !std::isfinite(qd) || !std::isfinite(desired.qdd[j])) {
       return {StopReason::kNotFinite, j};
     }
-    if (std::isfinite(middle)) {
+    if (limits.upper[j] - limits.lower[j] <= kTurn) {  // wider ones count turns: of a cable
+      const double middle = 0.5 * (limits.lower[j] + limits.upper[j]);
       q = chain_dynamics::unwrapped(types[static_cast<std::size_t>(j)], q, middle);
     }
     if (q < limits.lower[j] - kRounding || q > limits.upper[j] + kRounding) {

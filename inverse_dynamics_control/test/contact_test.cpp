@@ -264,6 +264,14 @@ TEST(ContactDetector, WhatIsNotANumberIsAContact) {
   }
 }
 
+TEST(ContactDetector, WhatIsNotANumberNeitherEndsNorHidesAContact) {
+  ContactDetector detector(vec({1.0, 1.0}), {}, kJoints);
+  for (int k = 0; k < 2000; ++k) {
+    const double torque = k == 600 ? kNan : 5.0;
+    EXPECT_TRUE(detector.update(vec({torque, 0.0}), kPeriod)) << k;
+  }
+}
+
 TEST(ContactDetector, BadOptionsAreRefused) {
   const auto text = [](const Eigen::VectorXd& thresholds, ReleaseOptions release) {
     return thrownBy([&] { ContactDetector(thresholds, release, kJoints); });

@@ -133,6 +133,17 @@ TEST(TurningJoints, LimitsOfAContinuousJointHoldForAnyTurn) {
   EXPECT_EQ(guard.joint(), 1);
 }
 
+TEST(TurningJoints, LimitsWiderThanATurnCountTurns) {
+  const ReferenceLimits limits{vec({-10.0, -10.0}), vec({10.0, 10.0}), vec({kInfinity, kInfinity})};
+  ReferenceGuard guard(limits, vec({1.0, 1.0}), {"a", "b"}, arm()->jointTypes());
+  const Eigen::VectorXd zero = vec({0.0, 0.0});
+  guard.start(zero);
+  guard.next(referenceOf(vec({9.0, 0.0}), zero, zero), kPeriod);
+  EXPECT_FALSE(guard.stopped());
+  guard.next(referenceOf(vec({11.0, 0.0}), zero, zero), kPeriod);
+  EXPECT_EQ(guard.joint(), 0);
+}
+
 TEST(TurningJoints, ARevoluteJointTakesTheLongWayThatItHasToTake) {
   PdGravityCompensation law(arm(JointType::kRevolute), {vec({100.0, 100.0}), vec({0.0, 0.0})},
                             unlimited(2));

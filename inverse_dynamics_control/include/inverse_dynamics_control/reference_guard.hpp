@@ -56,7 +56,8 @@ class ReferenceGuard {
   /// @param deceleration  of the stop, n, finite, > 0; rad/s^2 (prismatic m/s^2).
   /// @param joint_names   n of them, for the text of errors.
   /// @param joint_types   n: position limits of continuous joints hold for any whole turns of the
-  ///                      reference; empty: no joint is continuous.
+  ///                      reference, if they are no more than a turn apart; empty: no joint is
+  ///                      continuous.
   /// Throws inverse_dynamics_solver::InvalidParameterValueException: wrong size or value.
   ReferenceGuard(ReferenceLimits limits, const Eigen::Ref<const Eigen::VectorXd>& deceleration,
                  const std::vector<std::string>& joint_names,
