@@ -37,7 +37,8 @@ void Unwrapper::unwrap(SampleBlock& block) {
         const double way = 0.5 * (block.time[k] - time_) * (qd_[j] + block.qd(j, k));
         const JointType type = types_[static_cast<std::size_t>(j)];
         if (type == JointType::kContinuous) {
-          joint.offset += turn;
+          // unless velocity says that the joint went there: in degrees it goes far between samples
+          if (std::abs(change + turn - way) < std::abs(change - way)) joint.offset += turn;
         } else if (type == JointType::kRevolute && std::abs(change + turn - way) < kSeam) {
           if (joint.jumps++ == 0) joint.first = block.first + k;
         }

@@ -87,6 +87,16 @@ TEST(Unwrapper, ALongJumpThatVelocitiesExplainIsNoWholeTurn) {
   EXPECT_TRUE(unwrapper.findings({"a", "b", "c"}).empty());
 }
 
+TEST(Unwrapper, PositionsThatVelocityConfirmStay) {
+  Unwrapper unwrapper(std::vector<JointType>(3, JointType::kContinuous));
+  SampleBlock block = samples(0);
+  const double degrees = 57.29577951308232 / 4.0;  // 5.7 from sample to sample
+  block.q *= degrees, block.qd *= degrees;
+  const MatrixXd q = block.q;
+  unwrapper.unwrap(block);
+  EXPECT_EQ(block.q, q);
+}
+
 TEST(Unwrapper, PositionsInDegreesStay) {
   Unwrapper unwrapper(std::vector<JointType>(3, JointType::kContinuous));
   SampleBlock block = samples(0);
