@@ -488,6 +488,7 @@ def test_progress_tells_the_time_that_is_left(monkeypatch, capsys):
     """Where standard error is a terminal."""
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("COLUMNS", "120")
+    monkeypatch.setenv("TERM", "xterm")
     with progress_bar() as progress:
         progress("reading", 0, 1000)
         progress("reading", 10, 1000)

@@ -92,7 +92,7 @@ above = os.getcwd()
 for k, (number, exchange, kind) in enumerate(json.loads(sys.argv[1])):
     os.mkdir(f"{above}/{k}")
     os.chdir(f"{above}/{k}")
-    print(json.dumps(list(interrupted_runs())))
+    print(json.dumps(list(interrupted_runs())), flush=True)  # children inherit what is buffered
 """
 
 WAYS = [("exchange", "directory"), ("two renames", "directory"), ("exchange", "file")]
