@@ -152,6 +152,11 @@ def find_contacts(
         quiet_from = evaluate(quiet_recording, robot, progress=progress, **options)
     elif quiet is None:
         held_out = _held_out(evaluation.robot)
+    if held_out and gain and gain > held_out.gain:
+        raise InvalidParameterError(
+            f"--gain (gain=): expected at most {held_out.gain:.3g} 1/s, at which `ids identify` has found the "
+            f"errors that thresholds are made of, got {gain:.3g}; give --quiet FROM,TO too"
+        )
     if gain is None:
         gain = held_out.gain if held_out else gain_for(quiet_from.accelerations.cutoff)
     estimates = plain = _estimate(evaluation, solver, gain, tracking)
