@@ -150,8 +150,8 @@ def test_a_stated_position_stays_and_is_compared(tmp_path, urdf):
     result = evaluated(recording, urdf, parameters=stated)
     assert result.robot.parameters["locked_joints.left"] == 0.5
     assert about_joints(result) == [
-        "joints beside the chain are held where the run configuration has them, not where the "
-        "recording does: left at -1.2 rad, locked_joints at 0.5 rad"
+        "joints beside the chain are held, but not where the recording has them: "
+        "left at -1.2 rad, locked_joints at 0.5 rad"
     ]
 
 
@@ -176,6 +176,18 @@ def test_ranges_are_of_all_messages(tmp_path):
     }
     ranges = position_ranges(bag(tmp_path / "bag"), ["left"])
     assert ranges["left"] == pytest.approx((LEFT, LEFT, LEFT))
+
+
+def test_ranges_are_without_whole_turns_and_what_is_no_number(tmp_path):
+    seam = np.where(np.arange(100) % 2, np.pi - 0.001, -np.pi + 0.001)
+    seam[7] = np.nan
+    time = np.arange(100) / RATE
+    stamps = np.round(1e9 * (1 + time)).astype(np.int64)
+    log = JointLog(("left",), stamps, stamps, *[seam[:, None]] * 3)
+    write_joint_logs(tmp_path / "bag", {"/joint_states": log})
+    least, mean, greatest = position_ranges(tmp_path / "bag", ["left"], turning=["left"])["left"]
+    assert greatest - least == pytest.approx(0.002)
+    assert abs(mean) == pytest.approx(np.pi, abs=0.002)
 
 
 def test_identification_starts_from_the_posture(tmp_path, urdf):

@@ -86,18 +86,31 @@ def open_motion(
 
 
 def position_ranges(
-    path: Path | str, joints: Sequence[str], *, topic: str = "", usual_topic: str = ""
+    path: Path | str,
+    joints: Sequence[str],
+    *,
+    turning: Sequence[str] = (),
+    topic: str = "",
+    usual_topic: str = "",
 ) -> dict[str, tuple[float, float, float]]:
     """Least, mean and greatest position of those of the joints that the recording has, by name.
 
-    topic, usual_topic: as for read_recording(). Of joint states only. Raises BagError.
+    turning: joints of which whole turns don't count: positions are those nearest to the first one.
+    Positions that aren't finite are left out. topic, usual_topic: as for read_recording(). Of joint states
+    only. Raises BagError.
     """
     path = Path(path)
     found: dict[str, tuple[float, float, float]] = {}
+    first: dict[str, float] = {}
     counts: dict[str, int] = {}
     for names, positions in _positions(path, joints, topic, usual_topic):
         for name in filter(names.__contains__, joints):
             q = positions[:, names.index(name)]
+            q = q[np.isfinite(q)]
+            if not len(q):
+                continue
+            if name in turning:
+                q = q - 2 * np.pi * np.round((q - first.setdefault(name, float(q[0]))) / (2 * np.pi))
             least, mean, greatest = found.get(name, (np.inf, 0.0, -np.inf))
             count = counts[name] = counts.get(name, 0) + len(q)
             mean += float((q - mean).sum()) / count

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from inverse_dynamics.base.wording import listed
 from inverse_dynamics.data.recordings import position_ranges
 from inverse_dynamics.robot.descriptions import carried_joints
+from inverse_dynamics.robot.solvers import brings_own_model
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -65,9 +66,12 @@ def posture_of(
     if not description or robot.model is not None or robot.parameters.get("attached") == "ignore":
         return Posture()
     units = carried_joints(description, joint_names, robot.root)
-    if not units:
+    if not units or brings_own_model(robot):
         return Posture()
-    ranges = position_ranges(bag, list(units), topic=topic or "", usual_topic=robot.topic)
+    turning = [joint for joint, unit in units.items() if unit == "rad"]
+    ranges = position_ranges(
+        bag, list(units), turning=turning, topic=topic or "", usual_topic=robot.topic
+    )
     held: dict[str, Parameter] = {}
     stated = locked_joints(robot)
     told, moving, others = [], [], []
@@ -92,8 +96,7 @@ def _notes(told: list[str], moving: list[str], others: list[str]) -> list[str]:
         )
     if others:
         notes.append(
-            "joints beside the chain are held where the run configuration has them, not where the "
-            f"recording does: {listed(others)}"
+            f"joints beside the chain are held, but not where the recording has them: {listed(others)}"
         )
     if moving:
         notes.append(
