@@ -13,7 +13,7 @@ from inverse_dynamics import Solver, evaluate, identify
 from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.evaluation.contacts import find_contacts
-from inverse_dynamics.evaluation.seen_range import outside_of_seen
+from inverse_dynamics.evaluation.seen_range import on_one_turn, outside_of_seen
 from inverse_dynamics.identification.payload import estimate_payload
 from inverse_dynamics.robot.robots import robot_of_description
 
@@ -140,6 +140,30 @@ def test_identified_models_are_the_same(urdf, tmp_path):
     for other in found.values():
         np.testing.assert_allclose(other.held_out["identified"], expected, rtol=1e-6)
         assert other.law == found["unbounded"].law
+
+
+def test_ranges_of_recordings_on_different_turns_are_those_of_the_motion(urdf, tmp_path):
+    """A driver that starts again reports other turns than before."""
+    effort = torques(urdf, 24.0, 0.0) + noise(6000)
+    logs = [log_of("unbounded", part, 24.0, 0.0) for part in (effort, effort + noise(6000))]
+    logs[1].q[:] += TURN * np.array([-3, 1, 0])
+    paths = [write_csv(tmp_path / f"{k}.csv", log) for k, log in enumerate(logs)]
+    seen = identify(paths, robot_of_description(urdf)).model.seen[0]
+    q = logs[0].q
+    np.testing.assert_allclose(seen, np.stack([q.min(axis=0), q.max(axis=0)], axis=1), atol=0.05)
+
+
+def test_recordings_of_joints_with_limits_stay_on_their_turns(urdf, tmp_path):
+    fixed = tmp_path / "revolute.urdf"
+    fixed.write_text(description("revolute"))
+    for arm, moved in ((urdf, 0.0), (fixed, TURN)):
+        log = log_of("unbounded", torques(urdf, 12.0, 0.0), 12.0, 0.0)
+        first = evaluate(write_csv(tmp_path / "first.csv", log), robot_of_description(arm))
+        log.q[:, 0] -= TURN
+        second = evaluate(write_csv(tmp_path / "second.csv", log), robot_of_description(arm))
+        one, other = (e.log.q for e in on_one_turn([first, second]))
+        np.testing.assert_allclose(one[:, 0] - other[:, 0], moved, rtol=0, atol=SAME)
+        np.testing.assert_array_equal(one[:, 1:], other[:, 1:])
 
 
 def test_payloads_are_the_same(urdf, tmp_path):

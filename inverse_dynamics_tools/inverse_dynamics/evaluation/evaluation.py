@@ -91,6 +91,7 @@ class Evaluation:
     diagnosis: tuple[
         Cause, ...
     ] = ()  # likely causes of the errors, the last one of the notes; not in files
+    joint_types: tuple[str, ...] = ()  # as Solver.joint_types; not in files
 
     @cached_property
     def measured(self) -> Floats:
@@ -210,7 +211,7 @@ def evaluate(
     states = (result.log.q, result.log.qd, result.qdd)
     kept = result.samples.kept
     outside = outside_of_seen(
-        arm.solver.seen, states, kept, arm.joint_names, arm.units, arm.solver.joint_types
+        arm.solver.seen, states, kept, arm.joint_names, arm.units, result.joint_types
     )
     result = replace(result, notes=(*result.notes, *filter(None, [outside])))
     if posture.moves:
@@ -332,6 +333,7 @@ def _compare(
         errors=_joint_errors(arm.joint_names, arm.units, found.errors),
         errors_of_kept=_joint_errors(arm.joint_names, arm.units, found.errors_of_kept),
         effort=effort_of(found),
+        joint_types=arm.solver.joint_types,
         notes=tuple(found.notes),
         seconds={
             "reading": found.reading_seconds,

@@ -21,6 +21,7 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import counted
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import Arm, evaluate
+from inverse_dynamics.evaluation.seen_range import on_one_turn
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import Robot, load_robot
 from inverse_dynamics.simulation.configuration import StatedSimulation
@@ -118,7 +119,7 @@ def excite(
     known: Floats | None = None
     notes: list[str] = []
     if given:
-        recordings = [_read(recording, robot, progress) for recording in given]
+        recordings = on_one_turn([_read(recording, robot, progress) for recording in given])
         unknowns = _with_noise_of(unknowns, recordings)
         noise_source = "residuals of the given recordings"
         known = np.sum([_gram(unknowns, recording) for recording in recordings], axis=0)
