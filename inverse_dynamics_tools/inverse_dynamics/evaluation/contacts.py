@@ -277,7 +277,9 @@ def _estimate(
     q, qd = log.q[used], log.qd[used]
     kind = MomentumObserver if solver.inertia_is_physical else AccelerationResidual
     estimator = kind(solver, options)
-    torques, valid = estimator.run(time, q, evaluation.measured[used], None if tracking else qd)
+    effort = evaluation.measured[used]
+    effort[1:] = (effort[1:] + effort[:-1]) / 2  # estimators take the mean since the sample before
+    torques, valid = estimator.run(time, q, effort, None if tracking else qd)
     if not valid.any():
         raise EvaluationError(
             f"{evaluation.bag}: expected a stretch of {10 / tracking if tracking else 0:.3g} s without a "
