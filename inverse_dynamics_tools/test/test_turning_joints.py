@@ -15,7 +15,9 @@ from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.evaluation.contacts import find_contacts
 from inverse_dynamics.evaluation.seen_range import on_one_turn, outside_of_seen
 from inverse_dynamics.identification.payload import estimate_payload
-from inverse_dynamics.robot.robots import robot_of_description
+from inverse_dynamics.results.excitations import default_options, excite
+from inverse_dynamics.robot.robots import load_robot, robot_of_description
+from inverse_dynamics.simulation import simulate, write_run
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
@@ -209,6 +211,26 @@ def test_a_revolute_joint_that_jumps_by_a_turn_is_reported(urdf, tmp_path):
         f"positions of yaw jump by a whole turn {count} times, first in sample {first}" in notes[0]
     )
     np.testing.assert_array_equal(result.log.q, REPORTS["within_pi"](q))
+
+
+def test_a_motion_is_found_simulated_and_evaluated(urdf, tmp_path):
+    file = tmp_path / "turning.yaml"
+    file.write_text(
+        f"schema: 1\nname: arm\ndescription: it turns\nplugin: {RIGID_BODY}\nurdf: {urdf}\n"
+    )
+    arm = load_robot(file)
+    resting = log_of("unbounded", torques(urdf, 12.0, 0.0), 12.0, 0.0)
+    resting.q[:, 0], resting.qd[:, 0] = 3.1, 0.0
+    first = write_csv(tmp_path / "first.csv", resting)
+    resting.q[:, 0] -= TURN
+    given = [first, write_csv(tmp_path / "second.csv", resting)]
+    options = default_options(iterations=6, duration=6.0, table=False)
+    found = excite(arm, given=given, options=options)
+    assert any("yaw moves by 0 of 6.28 in the 2 given recordings" in note for note in found.notes)
+
+    run = simulate(arm, trajectory=found.excitation.trajectory, rate=500, table=False)
+    write_run(run, tmp_path / "bag")
+    assert evaluate(tmp_path / "bag", arm).mean_rmse < 0.01
 
 
 def test_positions_in_degrees_stay_as_they_are(urdf, tmp_path):
