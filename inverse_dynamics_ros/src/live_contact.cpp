@@ -36,11 +36,17 @@ bool LiveContact::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eig
     return false;
   }
   const double period = started_ ? periodOf(stamp - stamp_) : 0.0;
+  // Efforts are samples as positions are; the estimator takes their mean since the sample before.
+  mean_effort_ = effort;
+  if (effort.size() == effort_.size() && effort_.allFinite()) {
+    mean_effort_ = 0.5 * (effort_ + effort);
+  }
+  effort_ = effort;
   started_ = true;
   stamp_ = stamp;
   state_.q = q;
   state_.qd = qd;
-  status_ = estimator_->update(state_, effort, period);
+  status_ = estimator_->update(state_, mean_effort_, period);
   ++counts_[static_cast<std::size_t>(status_)];
   if (detector_ && period < 0) {
     detector_->reset();

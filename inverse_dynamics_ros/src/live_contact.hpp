@@ -88,6 +88,7 @@ class LiveContact {
   std::optional<inverse_dynamics_control::TipWrench> tip_;
   const inverse_dynamics_solver::Kinematics* kinematics_ = nullptr;  // null: wrench in the root
   inverse_dynamics_control::JointState state_;
+  Eigen::VectorXd effort_, mean_effort_;  // of the last sample; over the period before it
   bool started_ = false;
   std::int64_t stamp_ = 0;                    // ns; of the last sample
   std::array<std::int64_t, 16> distances_{};  // ns; the latest ones between stamps
