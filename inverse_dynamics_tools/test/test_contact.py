@@ -474,7 +474,7 @@ def test_what_friction_holds_ends_a_contact(tmp_path, solver, robot):
 
 
 def test_jitter_of_stamps_is_no_torque(ids, tmp_path):
-    """At most 1.5 times the noise; it isn't there in the samples, only in their stamps."""
+    """It isn't in the samples, only in their stamps: next to a sensor's noise of 0.3 N m it is little."""
     noise = []
     for jitter in ("0", "5e-4"):
         options = ("--duration", "40", "--message-rate", "100", "--jitter", jitter)
@@ -483,7 +483,7 @@ def test_jitter_of_stamps_is_no_torque(ids, tmp_path):
         found = find_contacts(tmp_path / jitter, "ur10_simulated", quiet=(0.0, 35.0))
         assert found.contacts == ()
         noise.append(found.thresholds.noise)
-    assert (noise[1] <= 1.5 * noise[0] + 1e-3).all()
+    assert (noise[1] <= noise[0] + 0.1).all()  # N m
 
 
 def test_friction_that_turns_round_is_no_contact(tmp_path):
