@@ -64,7 +64,8 @@ double leastError(const VelocitySpectra& spectra, const Eigen::ArrayXd& candidat
   const Eigen::ArrayXd total = spectra.total.rowwise().sum();
   Eigen::ArrayXd confirmed = Eigen::ArrayXd::Zero(total.size());
   for (Eigen::Index j = 0; j < spectra.total.cols(); ++j) {
-    confirmed += confirmedMotion(spectra, j);
+    // steps of a coarse q have common power with the noise of qd, by chance and more than its own
+    confirmed += confirmedMotion(spectra, j).min(spectra.total.col(j));
   }
   double best = candidates[0];
   double least = std::numeric_limits<double>::infinity();
