@@ -340,7 +340,7 @@ def restart(recording: Recording, at: int, random: np.random.Generator) -> Recor
 
 MOVED = {"impact": impact, "emergency stop": emergency_stop, "slip": slip, "pause": pause}
 RECORDED = {"spike": spike, "seam": seam, "restart": restart}
-MOST_SAMPLES = 60000  # of a recording with an event
+MOST_SAMPLES = 30000  # of a recording with an event: 10 min at 50 Hz
 
 
 def coarse(motion: Motion, random: np.random.Generator) -> tuple[Floats, Floats]:
@@ -351,10 +351,13 @@ def coarse(motion: Motion, random: np.random.Generator) -> tuple[Floats, Floats]
 
 
 def differences(motion: Motion, random: np.random.Generator) -> tuple[Floats, Floats]:
-    """Backward differences of an encoder of 14 to 20 bits, in half of them behind a filter."""
+    """Backward differences of an encoder of 14 to 20 bits, in half of them behind a filter.
+
+    The driver runs when the recording begins: its first difference is like the second.
+    """
     step = 2 * np.pi / 2 ** random.integers(14, 21)
     q = step * np.round(motion.q / step + 0.3 * random.standard_normal(motion.q.shape))
-    qd = np.diff(q, axis=0, prepend=q[:1]) * motion.rate
+    qd = np.diff(q, axis=0, prepend=2 * q[:1] - q[1:2]) * motion.rate
     if random.integers(2):
         keep = np.exp(-2 * np.pi * random.uniform(10, 60) / motion.rate)
         for k in range(1, len(qd)):
