@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.effort import Effort
     from inverse_dynamics.robot.robots import Robot
 
+_STANDARD = 9.81  # m/s^2
 _BODY = "cause"  # among the solver's payloads
 _REACH = 0.1  # m: a body's torques are linear in mass and first moment, but for a small moment of inertia
 
@@ -98,8 +99,8 @@ def _pulled(other: Callable[[], Solver]) -> Callable[[Floats], Floats]:
         before, parts = other().gravity, []
         try:
             for axis in np.eye(3):
-                other().set_gravity(axis)
-                parts.append(other().gravity_vector(q))
+                other().set_gravity(_STANDARD * axis)  # of 1 m/s^2, a warning would be given
+                parts.append(other().gravity_vector(q) / _STANDARD)
         finally:
             other().set_gravity(before)
         return np.array(parts)
