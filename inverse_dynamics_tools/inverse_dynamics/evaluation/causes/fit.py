@@ -70,6 +70,12 @@ class Fitting:
         shared, own = _solve(self._gram(rival).sum(axis=0), len(rival.columns), low, high)
         return shared, own[: len(rival.own)]
 
+    def friction_of(self, rival: Rival) -> Floats:
+        """(N, n) friction and offset, fitted to all pieces."""
+        gram, columns = self._gram(rival).sum(axis=0), self._friction_columns(rival)
+        _, own = _solve(gram, len(rival.columns), *self._bounds(rival))
+        return np.asarray(np.einsum("cj,cnj->nj", own[len(rival.own) :], np.array(columns)))
+
     def mean(self, squares: Floats, weights: Floats | None = None) -> Floats:
         """Root mean square over the joints of errors beyond noise, as shares of ranges. weights: (B, K) of pieces."""
         of_joints = squares.mean(axis=0) if weights is None else weights @ squares

@@ -19,57 +19,93 @@ if TYPE_CHECKING:
 
 _FLAT = 2e-3  # of a joint's range: efforts within it of the greatest one are at the limit
 _SHARE = (0.02, 0.9)  # of the samples, at a limit
+_PILE = 5.0  # times as many efforts at a limit as in the bands beside it
 _CUT = 0.5  # of what the model asks for beyond the limit, that is missing
 _LONG = 15.0  # s: in less, friction that changes is nothing but wrong
 _LEAVES = 0.6  # most of a joint's error that its cause may leave
+_CLEARER = 1.5  # ratio of errors: wrong masses leave so many times what drift leaves
 _NOTICED = 0.03  # least error of a joint that is looked at, as a share of its range
 
 
 def rivals(view: View, fitting: Fitting) -> Iterator[Rival]:
-    """Efforts that stay at their greatest value while the model asks for more."""
-    measured, speed = view.samples.flat(view.samples.measured), np.abs(view.qd)
-    missing, at_limit = np.zeros_like(measured), np.zeros_like(measured)
-    limits: dict[int, tuple[float, float]] = {}
-    for j in range(measured.shape[1]):
-        for sign in (1.0, -1.0):
-            effort = sign * measured[:, j]
-            limit = effort.max()
-            band = np.clip(2 * fitting.noise[j], _FLAT, 10 * _FLAT) * fitting.size[j]
-            flat = effort > limit - band
-            resting = speed[flat, j].mean() < 0.05 * speed[:, j].max()
-            if limit > 0 and not resting and _SHARE[0] <= flat.mean() <= _SHARE[1]:
-                cut = measured[flat, j] - view.computed[flat, j]
-                if -sign * cut.mean() > _NOTICED * fitting.size[j]:
-                    missing[flat, j], at_limit[flat, j] = cut, 1.0
-                    limits.setdefault(j, (sign * limit, flat.mean()))
-    if limits:
-        # a limit has no friction: what the fit adds of it is taken off
-        own = (missing, *(at_limit * c for c in (view.qd, np.sign(view.qd), 1.0)))
-        none, free = np.zeros(measured.shape[1]), np.full(measured.shape[1], np.inf)
-        yield Rival(
-            "saturation",
-            view.computed,
-            view.qd,
-            lambda _, found: _saturated(view, limits, found),
-            own=own,
-            own_low=(none, -free, -free, -free),
-            own_high=(none + 1.0, free, free, free),
-        )
+    """Efforts that stay at their greatest value while the model, with friction, asks for more."""
+    at_limit, _ = _at_limit(view, fitting)
+    if at_limit.any():
+        yield _limited(view, at_limit)
 
 
-def _saturated(view: View, limits: dict[int, tuple[float, float]], own: Floats) -> Told | None:
-    found = [j for j in limits if own[0, j] > _CUT]
-    if not found:
+def _at_limit(view: View, fitting: Fitting) -> tuple[Mask, Mask]:
+    """(N, n) efforts at a limit, and (n,) the joints in which they show it by themselves."""
+    measured = view.samples.flat(view.samples.measured)
+    flat = {sign: _flat(view, fitting, sign * measured) for sign in (1.0, -1.0)}
+    wanted = view.computed + fitting.friction_of(_limited(view, flat[1.0] | flat[-1.0]))
+    at_limit, shown = np.zeros_like(flat[1.0]), np.zeros(measured.shape[1], bool)
+    for sign, mask in flat.items():
+        beyond = (mask * sign * (wanted - measured)).sum(axis=0) / np.maximum(mask.sum(axis=0), 1)
+        piled = _piled(view, fitting, sign, mask)
+        at_limit |= mask & (piled | (beyond > _NOTICED * fitting.size))
+        shown |= piled
+    return at_limit, shown
+
+
+def _flat(view: View, fitting: Fitting, effort: Floats) -> Mask:
+    """(N, n) efforts at their greatest value, of joints that move while they are."""
+    limit, speed = effort.max(axis=0), np.abs(view.qd)
+    flat = effort > limit - _band(fitting)
+    share = flat.mean(axis=0)
+    moving = (flat * speed).sum(axis=0) >= 0.05 * speed.max(axis=0) * flat.sum(axis=0)
+    fits = (limit > 0) & moving & (share >= _SHARE[0]) & (share <= _SHARE[1])
+    return np.asarray(flat & fits)
+
+
+def _piled(view: View, fitting: Fitting, sign: float, flat: Mask) -> Mask:
+    """(n,) joints whose efforts pile up at the limit as those of no motion do, while computed torques change.
+
+    Near the greatest value of a sine are as many values as in the three bands of that width beside it.
+    """
+    effort, band = sign * view.samples.flat(view.samples.measured), _band(fitting)
+    beside = (effort > effort.max(axis=0) - 4 * band) & ~flat
+    changes = np.std(view.computed, axis=0, where=flat | ~flat.any(axis=0))
+    return np.asarray((flat.mean(axis=0) > _PILE * beside.mean(axis=0)) & (changes > 2 * band))
+
+
+def _band(fitting: Fitting) -> Floats:
+    """(n,) efforts within it of the greatest one are at the limit."""
+    return np.asarray(np.clip(2 * fitting.noise, _FLAT, 10 * _FLAT) * fitting.size)
+
+
+def _limited(view: View, at_limit: Mask) -> Rival:
+    """What the model asks for at a limit is missing; a limit has no friction, so that the fit's is taken off."""
+    missing = view.samples.flat(view.samples.measured) - view.computed
+    none, free = np.zeros(at_limit.shape[1]), np.full(at_limit.shape[1], np.inf)
+    return Rival(
+        "saturation",
+        view.computed,
+        view.qd,
+        lambda _, own: _saturated(view, at_limit, own),
+        own=tuple(
+            at_limit * c for c in (missing, view.qd, np.sign(view.qd), np.ones_like(missing))
+        ),
+        own_low=(none, -free, -free, -free),
+        own_high=(none + 1.0, free, free, free),
+    )
+
+
+def _saturated(view: View, at_limit: Mask, own: Floats) -> Told | None:
+    found = at_limit.any(axis=0) & (own[0] > _CUT)
+    if not found.any():
         return None
-    limit, share = limits[found[0]]
+    j = int(np.argmax(found))
+    limit = view.samples.flat(view.samples.measured)[at_limit[:, j], j]
     return Told(
         "saturation",
         "",
-        f"joint {view.names[found[0]]}: efforts stay at {limit:.4g} in {100 * share:.0f} % of the samples while "
-        "the model asks for more: the drive or the sensor is at its limit",
+        f"joint {view.names[j]}: efforts stay at {limit[np.argmax(np.abs(limit))]:.4g} in "
+        f"{100 * at_limit[:, j].mean():.0f} % of the samples while the model asks for more: the drive or the sensor is "
+        "at its limit",
         "record a slower motion, or one with less load",
-        tuple(view.names[j] for j in found),
-        own=np.where(np.isin(np.arange(own.shape[1]), found), own, 0.0),
+        tuple(name for name, f in zip(view.names, found, strict=True) if f),
+        own=np.where(found, own, 0.0),
     )
 
 
@@ -102,10 +138,12 @@ def of_joints(view: View, fitting: Fitting, plain: Floats) -> Told | None:
 
     plain: (K, n) squares with friction alone.
     """
-    for rival in rivals(view, fitting):
-        found = _better(fitting, plain, fitting.errors(rival), _NOTICED / 2)
+    at_limit, shown = _at_limit(view, fitting)
+    if at_limit.any():
+        rival = _limited(view, at_limit)
+        found = shown | _better(fitting, plain, fitting.errors(rival), _NOTICED / 2)
         numbers = np.where(found, fitting.numbers(rival)[1], 0.0)
-        if found.any() and (told := rival.tell(np.zeros(0), numbers)):
+        if told := rival.tell(np.zeros(0), numbers):
             return told
     return _drift(view, fitting, plain)
 
@@ -131,7 +169,7 @@ def _drift(view: View, fitting: Fitting, plain: Floats) -> Told | None:
     others = [np.tile(base[:, k : k + 1], (1, base.shape[1])) for k in range(base.shape[1])]
     drifting, masses = (fitting.errors(_free(view, own)) for own in (parts, others))
     found = _better(fitting, plain, drifting, _NOTICED) & (
-        2 * 2 * drifting.mean(axis=0) < masses.mean(axis=0)
+        _CLEARER**2 * drifting.mean(axis=0) < masses.mean(axis=0)
     )
     names = tuple(n for n, f in zip(view.names, found, strict=True) if f)
     if not names:
