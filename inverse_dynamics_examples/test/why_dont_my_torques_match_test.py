@@ -186,6 +186,7 @@ def test_every_mistake_is_in_the_table_and_in_a_picture(results: Path) -> None:
     headings = [
         re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-")
         for heading in re.findall(r"^## (.*)$", PAGE, re.MULTILINE)
+        if heading != "How often the cause is right"
     ]
     assert sorted(linked) == sorted(headings)
     pictures = re.findall(r"!\[[^]]+\]\((pictures/why_\w+\.png)\)", PAGE)

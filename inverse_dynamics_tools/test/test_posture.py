@@ -135,7 +135,7 @@ def test_without_its_posture_the_torques_are_wrong(tmp_path, urdf):
 def test_an_arm_that_moves_is_said_and_no_cause_is_named(tmp_path, urdf):
     result = evaluated(table(tmp_path / "moving.csv", left=0.8), urdf)
     assert result.errors_of_kept[0].rmse > 3.0
-    assert result.diagnosis is None
+    assert result.diagnosis == ()
     held, moving = about_joints(result)
     assert "grip 0.02 m" in held
     assert (

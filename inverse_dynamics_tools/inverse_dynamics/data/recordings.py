@@ -110,7 +110,9 @@ def position_ranges(
             if not len(q):
                 continue
             if name in turning:
-                q = q - 2 * np.pi * np.round((q - first.setdefault(name, float(q[0]))) / (2 * np.pi))
+                q = q - 2 * np.pi * np.round(
+                    (q - first.setdefault(name, float(q[0]))) / (2 * np.pi)
+                )
             least, mean, greatest = found.get(name, (np.inf, 0.0, -np.inf))
             count = counts[name] = counts.get(name, 0) + len(q)
             mean += float((q - mean).sum()) / count

@@ -68,7 +68,7 @@ def add_parser(
     )
     add_robot(parser)
     quiet = parser.add_argument_group(
-        "thresholds, from a part without contact, or from the held-out errors of `ids identify`"
+        "thresholds, from a part without contact or from `ids identify`"
     )
     quiet.add_argument(
         "--quiet",
