@@ -7,16 +7,24 @@ import re
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from simulation_arms import CHAINS, robots_package, urdf_of
 
-from inverse_dynamics import Solver, evaluate, load_robot, read_joint_log, write_joint_logs
-from inverse_dynamics.evaluation.causes.compare import compare, residual_causes
+from inverse_dynamics import (
+    Solver,
+    evaluate,
+    load_robot,
+    read_joint_log,
+    write_joint_logs,
+)
+from inverse_dynamics.evaluation.causes.compare import Cause, compare, residual_causes
 from inverse_dynamics.evaluation.causes.evaluated import arm_model
 from inverse_dynamics.evaluation.causes.rival import PAGE
 from inverse_dynamics.evaluation.causes.samples import Samples, pieces_of
+from inverse_dynamics.identification.payload import PayloadError, _require_plausible
 from inverse_dynamics.robot.robots import robot_of_description
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
@@ -292,7 +300,7 @@ def test_a_mass_of_the_description_is_found(arm, factor):
     found = compare(recorded(name, torques_of(name, description=true)), model)
     (cause,) = (cause for cause in found.causes if cause.kind == "mass")
     assert cause.value == pytest.approx(1 / factor, rel=0.15)
-    assert len(found.causes) == 1 or found.rivals
+    assert len(found.causes) == 1 or all(cause.rival for cause in found.causes)
 
 
 def test_somebody_who_guides_the_arm_is_found(arm):
@@ -336,7 +344,7 @@ def test_two_mistakes_are_both_named(arm, spoil, kind):
     name, _, model = arm
     found = compare(spoil(recorded(name, torques_of(name, (-4.9, 0, -8.5)))), model)
     assert [cause.kind for cause in found.causes] == [kind, "gravity"]
-    assert not found.rivals
+    assert not any(cause.rival for cause in found.causes)
 
 
 def test_rivals_that_fit_alike_are_named_together_with_the_motion_that_tells():
@@ -354,6 +362,45 @@ def test_what_no_mistake_explains_is_said_with_what_was_excluded(arm):
     assert found.causes == ()
     assert "no single cause explains the error; these were excluded: " in found.text
     assert {"gravity", "payload", "order"} <= set(found.excluded)
+
+
+def test_a_contradiction_is_named_beside_what_nothing_explains(arm):
+    _, samples, model = arm
+    noise = np.random.default_rng(1).standard_normal(samples.measured.shape).cumsum(axis=1)
+    spoilt = replace(samples, qd=0 * samples.qd, measured=samples.measured + noise.std() * noise)
+    found = compare(spoilt, model)
+    assert [cause.kind for cause in found.causes] == ["velocity"]
+    assert found.text.startswith(found.causes[0].text)
+    assert "no single cause explains the error that is left" in found.text
+
+
+def test_white_noise_is_no_residual_cause():
+    noise = np.random.default_rng(2).standard_normal((2000, 2))
+    time = np.arange(2000) * 0.01
+    motion = [np.sin(time[:, None] * [1.0, 1.3] + phase) for phase in (0.0, np.pi / 2, np.pi)]
+    samples = pieces_of(("a", "b"), time, *motion, 0.1 * noise)
+    assert residual_causes(samples, 0 * samples.flat(samples.q)) == ()
+
+
+@pytest.mark.parametrize(
+    ("kinds", "rival", "refused"),
+    [
+        (("payload", "effort_sign"), False, True),
+        (("payload", "effort_sign"), True, False),
+        (("gravity", "effort_sign"), True, True),
+        (("payload",), False, False),
+    ],
+)
+def test_a_load_is_found_unless_something_else_is_wrong(kinds, rival, refused):
+    causes = tuple(Cause(kind, (), None, 0.5, 0.1, kind, "mend it", rival=rival) for kind in kinds)
+    evaluation = SimpleNamespace(
+        bag="bag", diagnosis=causes, effort=SimpleNamespace(meaning="torque")
+    )
+    if not refused:
+        _require_plausible(evaluation)
+        return
+    with pytest.raises(PayloadError, match="no load can be estimated: .*effort_sign; mend it"):
+        _require_plausible(evaluation)
 
 
 def test_an_effort_that_is_not_measured_shows_no_coupling(arm):

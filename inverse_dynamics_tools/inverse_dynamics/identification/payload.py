@@ -374,9 +374,11 @@ def _require_own_tip(robot: Robot, tip: str | None) -> None:
 
 
 def _require_plausible(evaluation: Evaluation) -> None:
-    causes = evaluation.diagnosis
-    if causes and not any(cause.kind in _ALLOWED for cause in causes):
-        why = "; ".join(cause.text for cause in causes)
+    others = [cause for cause in evaluation.diagnosis if cause.kind not in _ALLOWED]
+    rivals = [cause for cause in evaluation.diagnosis if cause.rival]
+    certain = any(not cause.rival for cause in others)
+    if certain or (rivals and all(cause in others for cause in rivals)):
+        why = "; ".join(cause.text for cause in others)
         raise PayloadError(f"{evaluation.bag}: no load can be estimated: {why}")
     if evaluation.effort.meaning == "torque_without_gravity":
         raise PayloadError(

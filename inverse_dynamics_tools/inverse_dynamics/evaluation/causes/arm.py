@@ -42,9 +42,13 @@ class ArmModel:
     link_names: tuple[str, ...] = ()
     mass: float = 0.0  # kg of the links; 0: it isn't known
     compared_without_gravity: bool = False
-    prismatic: tuple[bool, ...] = ()
+    joint_types: tuple[str, ...] = ()  # revolute, continuous, prismatic; none: all are revolute
     position_limits: Floats | None = None  # (2, n) rad or m
     effort_limits: Floats | None = None  # (n,) N m or N
+
+    def of_type(self, kind: str, joints: int) -> Mask:
+        """(n,) joints of a type."""
+        return np.array([t == kind for t in self.joint_types or ("revolute",) * joints])
 
     def compared(self, q: Floats, qd: Floats, qdd: Floats) -> Floats:
         """What measured torques are compared with."""
@@ -97,7 +101,12 @@ class View:
     @cached_property
     def prismatic(self) -> Mask:
         """(n,)."""
-        return np.array(self.arm.prismatic or [False] * len(self.names))
+        return self.arm.of_type("prismatic", len(self.names))
+
+    @cached_property
+    def continuous(self) -> Mask:
+        """(n,)."""
+        return self.arm.of_type("continuous", len(self.names))
 
     @cached_property
     def informative(self) -> Mask:

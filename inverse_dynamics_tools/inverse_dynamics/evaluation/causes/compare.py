@@ -37,6 +37,8 @@ from inverse_dynamics.evaluation.causes.fit import Fitting
 from inverse_dynamics.evaluation.causes.rival import PAGE, Rival
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.evaluation.causes.rival import Told
     from inverse_dynamics.evaluation.causes.samples import Samples
@@ -79,7 +81,7 @@ class Cause:
     kind: currents, effort_scale, effort_sign, effort_direction, effort_order, no_gravity, gravity, payload, tool,
     mass, friction, guided, order, direction, degrees, velocity, clock, motor_side, saturation, coupling,
     drift. mistake: the nearest heading of PAGE; "": none is near. value: what was found, of kind's unit.
-    error_after: None where the remedy's numbers aren't known.
+    error_after: None where the remedy's numbers aren't known. rival: one of several of which one is right.
     """
 
     kind: str
@@ -90,6 +92,7 @@ class Cause:
     reason: str
     remedy: str
     mistake: str = ""
+    rival: bool = False
 
     @property
     def text(self) -> str:
@@ -111,32 +114,32 @@ def residual_causes(samples: Samples, computed: Floats) -> tuple[Cause, ...]:
     for rival in (*residuals.rivals(view, contest.fit), *residuals.couplings(view)):
         contest.add(rival)
     before = float(contest.fit.mean(contest.squares[0]))
-    if named := contest.best(before):
-        return tuple(_cause(told, contest.as_is, after) for told, after in named)
+    if before > _MISMATCH and (named := contest.best(before)):
+        return _causes(named, contest.as_is)
     told = residuals.of_joints(view, contest.fit, contest.squares[0])
     return () if told is None else (_cause(told, before, None),)
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Causes: all of them, or one of several that the recording doesn't tell apart."""
+    """Causes: all of them, but one of those that are rivals."""
 
     causes: tuple[Cause, ...] = ()
-    rivals: bool = False
     excluded: tuple[str, ...] = ()  # kinds, where nothing explains an error
     scores: dict[str, float] = field(default_factory=dict)  # least error of each kind
 
     @property
     def text(self) -> str:
         """What a reader should know of it; "": nothing."""
+        told = [cause.text for cause in self.causes if not cause.rival]
+        if rivals := "; or ".join(cause.text for cause in self.causes if cause.rival):
+            told.append(f"{rivals}. This recording doesn't tell them apart: {self._experiment}")
         if self.excluded:
-            return (
-                f"no single cause explains the error; these were excluded: {listed(self.excluded)}"
+            left = " that is left" if told else ""
+            told.append(
+                f"no single cause explains the error{left}; these were excluded: {listed(self.excluded)}"
             )
-        if self.rivals:
-            told = "; or ".join(cause.text for cause in self.causes)
-            return f"{told}. This recording doesn't tell them apart: {self._experiment}"
-        return "; and ".join(cause.text for cause in self.causes)
+        return "; and ".join(told)
 
     def doubting(self, effort: Effort) -> Effort:
         """What efforts mean; not sure where a cause, or nothing that was compared, contradicts it."""
@@ -153,7 +156,7 @@ class Comparison:
     @property
     def _experiment(self) -> str:
         """The motion that tells rivals apart."""
-        kinds = {cause.kind for cause in self.causes}
+        kinds = {cause.kind for cause in self.causes if cause.rival}
         if kinds & set(_AT_REST) and kinds - set(_AT_REST):
             return (
                 "record the same motion twice as fast: torques of loads and gravity stay the same"
@@ -179,7 +182,10 @@ def compare(samples: Samples, arm: ArmModel) -> Comparison:
     known = [cause.error_after for cause in rest.causes if cause.error_after is not None]
     after = min(known, default=rest.scores["friction"])
     first = _cause(told, _Contest(View(samples, arm)).as_is, after)
-    return replace(rest, causes=(first, *(c for c in rest.causes if c.kind != "friction")))
+    others = [c for c in rest.causes if c.kind != "friction"]
+    return replace(
+        rest, causes=(first, *(replace(c, rival=len(others) > 1 and c.rival) for c in others))
+    )
 
 
 class _Contest:
@@ -193,7 +199,6 @@ class _Contest:
         self.weights = random.multinomial(pieces, np.full(pieces, 1 / pieces), _RESAMPLED) / pieces
         self.rivals: list[Rival] = []
         self.squares: list[Floats] = []
-        self.told: list[Told | None] = []
 
     def decide(self) -> Comparison:
         """The outcome."""
@@ -214,8 +219,7 @@ class _Contest:
             if both := self._pair(named, before):
                 return Comparison(both, scores=self._table())
             if named:
-                causes = tuple(_cause(told, self.as_is, after) for told, after in named)
-                return Comparison(causes, len(causes) > 1, scores=self._table())
+                return Comparison(_causes(named, self.as_is), scores=self._table())
         return self._unnamed(before)
 
     def _pair(self, named: list[tuple[Told, float]], before: float) -> tuple[Cause, ...]:
@@ -242,8 +246,8 @@ class _Contest:
         elif before > _FITS:
             told = motions.beyond_reach(self.view) or efforts.too_small(self.view)
         if told:
-            causes = tuple(_cause(one, self.as_is, None) for one in told)
-            return Comparison(causes, len(causes) > 1, scores=self._table())
+            causes = _causes([(one, None) for one in told], self.as_is)
+            return Comparison(causes, scores=self._table())
         lacks = self.fit.friction is None and self.as_is >= max(_GAIN * before, _RUBS)
         if before <= _FITS:
             causes = (_cause(frictions.FRICTION, self.as_is, before),) if lacks else ()
@@ -328,6 +332,12 @@ def _small(after: float, before: float, told: Told) -> bool:
     """Whether a remedy leaves little enough of an error; of weights, wrong masses leave more."""
     most = max(_FITS, min(before / _FAR, _MOST_LEFT)) if told.kind in _AT_REST else _FITS
     return told.gain * after <= before and after <= most
+
+
+def _causes(named: Sequence[tuple[Told, float | None]], before: float) -> tuple[Cause, ...]:
+    """One, or rivals."""
+    causes = (_cause(told, before, after) for told, after in named)
+    return tuple(replace(cause, rival=len(named) > 1) for cause in causes)
 
 
 def _cause(told: Told, before: float, after: float | None) -> Cause:

@@ -82,6 +82,7 @@ def arm_model(
         solver.gravity_vector,
         friction if rubs else None,
         compared_without_gravity=without_gravity,
+        joint_types=tuple(solver.joint_types),
     )
     with suppress(SolverError):  # solvers needn't be able to
         model = replace(model, gravity_direction=solver.gravity, pulled=_pulled(other))
@@ -132,14 +133,14 @@ def _with_description(model: ArmModel, robot: Robot, solver: Solver, description
     ]
     model = replace(
         model,
-        prismatic=tuple(joint.type == "prismatic" for joint in chain),
         position_limits=np.array(limit[:2]),
         effort_limits=np.array(limit[2]),
     )
     gravity = None if robot.gravity is None else list(robot.gravity)
     engine = FastModel.from_urdf(description, root=robot.root, tip=robot.tip, gravity=gravity)
-    if robot.model is not None or engine.joint_names != solver.joint_names:
-        return model
+    held = any(name.startswith(("attached", "locked_joints.")) for name in robot.parameters)
+    if held or robot.model is not None or engine.joint_names != solver.joint_names:
+        return model  # the engine's links have other bodies
     own = _mass_parts(engine.parameters.reshape(-1, 10))
 
     def links(q: Floats, qd: Floats, qdd: Floats) -> Floats:

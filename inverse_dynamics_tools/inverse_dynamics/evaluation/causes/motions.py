@@ -55,7 +55,7 @@ def contradiction(samples: Samples, arm: ArmModel) -> tuple[Told, Samples] | Non
         return None
     if silent.any():
         return _velocity(samples, silent, 0.0, "zero"), _with_slopes(samples, silent)
-    turning = moves & follows & ~np.array(arm.prismatic or [False] * len(moves))
+    turning = moves & follows & ~arm.of_type("prismatic", len(moves))
     usable = turning if turning.any() else moves & follows
     middle = float(np.median(rate[usable]))
     common = bool((np.abs(rate[usable] / middle - 1) < _SAME).all())
@@ -119,7 +119,7 @@ def _common(
         "A clock at the wrong speed",
         f"positions change {rate:.3g} times as fast as velocities say, in every joint"
         + (f": time is in {unit}" if unit else ""),
-        "give --clock receive, or record again with a clock that runs right",
+        "record again with a clock that runs right; that of reception may do: ids evaluate --clock receive",
         value=rate,
     )
     return told, replace(samples, time=samples.time * rate, qdd=samples.qdd / rate)
@@ -136,7 +136,7 @@ def _velocity(samples: Samples, wrong: Mask, factor: float, text: str) -> Told:
         "velocity",
         "Velocities that contradict positions",
         f"velocities{whose} contradict the slope of the positions: they are {text}",
-        "record velocities in rad/s (prismatic: m/s), or leave them out",
+        "record velocities in rad/s (prismatic: m/s)",
         () if wrong.all() else names,
         value=float(f"{factor:.3g}"),
     )
@@ -208,7 +208,7 @@ def _clock(square: float) -> Told | None:
 
 def beyond_reach(view: View) -> tuple[Told, ...]:
     """Positions that are beyond limits in most joints, and torques that fit neither as rad nor as degrees."""
-    beyond, turning = beyond_limits(view), view.informative & ~view.prismatic
+    beyond, turning = beyond_limits(view), view.informative & ~view.prismatic & ~view.continuous
     if not turning.any() or beyond[turning].mean() < 0.5:
         return ()
     greatest = np.abs(view.motion[0]).max(axis=0)
