@@ -134,8 +134,7 @@ Peaks requirePeaks(const Series& heights, Index correlation, double period, doub
              number(static_cast<double>(heights.size())), "take a longer part");
     }
     refuse(joint, "too many false alarms",
-           "at most " + number(most) +
-               " per hour, which is as often as its torque shows a peak",
+           "at most " + number(most) + " per hour, which is as often as its torque shows a peak",
            number(stated * per_hour), "state fewer");
   }
   return peaks;

@@ -13,7 +13,8 @@ from inverse_dynamics import Solver, evaluate, identify
 from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.evaluation.contacts import find_contacts
-from inverse_dynamics.evaluation.seen_range import on_one_turn, outside_of_seen
+from inverse_dynamics.evaluation.seen_range import outside_of_seen
+from inverse_dynamics.evaluation.turns import on_one_turn
 from inverse_dynamics.identification.payload import estimate_payload
 from inverse_dynamics.results.excitations import default_options, excite
 from inverse_dynamics.robot.robots import load_robot, robot_of_description

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,28 +13,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from inverse_dynamics.base.arrays import Floats, Mask
-    from inverse_dynamics.evaluation.evaluation import Evaluation
 
 _BEYOND = (0.05, 0.05, 0.25)  # of what was seen, of q, qd, qdd, that depend on the filter
 _MOST_NAMED = 4
 _NAMES = ("q", "qd", "qdd")
-
-
-def on_one_turn(evaluations: Sequence[Evaluation]) -> list[Evaluation]:
-    """Recordings of one arm whose continuous joints are on the turn that is nearest to the first recording's.
-
-    Whole turns are added to positions, so that the range of all recordings isn't wider than the motion.
-    """
-    middles = [(e.log.q.min(axis=0) + e.log.q.max(axis=0)) / 2 for e in evaluations]
-    found = []
-    for evaluation, middle in zip(evaluations, middles, strict=True):
-        turns = np.round((middles[0] - middle) / (2 * np.pi))
-        turns *= [kind == "continuous" for kind in evaluation.joint_types]
-        log = evaluation.log
-        if turns.any():
-            log = replace(log, q=log.q + 2 * np.pi * turns)
-        found.append(replace(evaluation, log=log))
-    return found
 
 
 def outside_of_seen(

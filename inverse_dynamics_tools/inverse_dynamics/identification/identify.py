@@ -15,7 +15,7 @@ from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.evaluation.posture import Posture, locked_joints, posture_of
-from inverse_dynamics.evaluation.seen_range import on_one_turn
+from inverse_dynamics.evaluation.turns import on_one_turn
 from inverse_dynamics.identification.baselines import Baselines, root_mean_squares
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import Chosen, choose, errors_of

@@ -21,7 +21,7 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import counted
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import Arm, evaluate
-from inverse_dynamics.evaluation.seen_range import on_one_turn
+from inverse_dynamics.evaluation.turns import on_one_turn
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import Robot, load_robot
 from inverse_dynamics.simulation.configuration import StatedSimulation
