@@ -48,8 +48,11 @@ if TYPE_CHECKING:
 FALSE_ALARMS = 1.0
 """Default, per hour."""
 
+LEAST_GAIN = 10.0
+"""1/s: contacts end 0.2 s after a force; and that of thresholds from held-out errors."""
+
 _GAIN_BY_TRACKING = 0.3  # the most with which the time constant is 1 / gain: motion_tracker.hpp
-_GAINS = (10.0, 60.0)  # 1/s; slower: contacts end late; faster: contacts are noticed within 17 ms
+_MOST_GAIN = 60.0  # 1/s: contacts are noticed within 17 ms
 _RELEASE = 0.1  # s; torques that are greater again after a shorter time belong to a contact
 _GAP = 2.5  # periods; one lost message isn't a gap
 _LONGEST_PERIOD = 0.02  # s, unless samples are further apart
@@ -66,11 +69,9 @@ def gain_for(cutoff: float | None) -> float:
 
     The cut-off is what noise, jitter and quantisation of the recording allow. None: there is none.
     """
-    return (
-        _GAINS[1]
-        if cutoff is None
-        else float(np.clip(_GAIN_BY_TRACKING * 2 * np.pi * cutoff, *_GAINS))
-    )
+    if cutoff is None:
+        return _MOST_GAIN
+    return float(np.clip(_GAIN_BY_TRACKING * 2 * np.pi * cutoff, LEAST_GAIN, _MOST_GAIN))
 
 
 @dataclass(frozen=True)

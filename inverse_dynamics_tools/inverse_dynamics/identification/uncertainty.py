@@ -13,7 +13,7 @@ import numpy as np
 
 from inverse_dynamics import _core
 from inverse_dynamics.base.plain import plain
-from inverse_dynamics.evaluation.contacts import gain_for
+from inverse_dynamics.evaluation.contacts import LEAST_GAIN
 from inverse_dynamics.identification.cross_validation import errors_of
 from inverse_dynamics.robot.model_errors import SCHEMA, read_model_errors, sha256
 
@@ -82,15 +82,15 @@ def uncertainty_text(found: Identification, model_text: str) -> str:
 def _held_out(found: Identification) -> dict[str, Any]:
     """Errors of the held-out blocks, low-passed as an estimator of external torques does it.
 
-    A mean over its time constant has the noise of the low-pass, or up to twice that.
+    A mean over its time constant has the noise of the low-pass, or up to twice that. The gain is the least
+    one: errors of friction where joints turn round, not noise, are what contacts are told from.
     """
-    gain = gain_for(found.cutoff)
     period = float(np.median(np.concatenate([np.diff(b.time[b.counts]) for b in found.blocks])))
-    each = max(1, round(1 / (gain * period)))
+    each = max(1, round(1 / (LEAST_GAIN * period)))
     means = [_means(block.errors["identified"], each) for block in found.blocks]
     rows = np.concatenate(means)
     step = 1 + len(rows) // _MOST_ROWS
-    return {"gain": gain, "period": step * each * period, "torques": _rows(rows[::step], 4)}
+    return {"gain": LEAST_GAIN, "period": step * each * period, "torques": _rows(rows[::step], 4)}
 
 
 def _means(values: Floats, each: int) -> Floats:
