@@ -122,7 +122,8 @@ void requireSeries(const Eigen::Ref<const Eigen::MatrixXd>& quiet,
 Peaks requirePeaks(const Series& heights, Index correlation, double period, double stated,
                    Index joints, const std::string& joint) {
   const double duration = static_cast<double>(heights.size()) * period;
-  const double independent = 0.5 * static_cast<double>(heights.size() / correlation);
+  const Index apart = heights.size() / correlation;
+  const double independent = 0.5 * static_cast<double>(apart);
   const double wanted = std::clamp(kPeakShare * independent, kFewPeaks, kMostPeaks);
   Peaks peaks = highestPeaks(heights, wanted, correlation);
   const auto found = static_cast<double>(peaks.heights.size());

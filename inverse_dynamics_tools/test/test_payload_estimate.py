@@ -269,10 +269,19 @@ def test_too_little_motion_is_refused(tmp_path, how, expected):
         estimate_payload(file, "panda_simulated")
 
 
-def test_torques_of_another_robot_are_refused(tmp_path):
+def test_efforts_that_something_else_explains_are_refused(tmp_path):
     samples = loaded()
     other = Samples(*list(vars(samples).values())[:4], measured=-samples.measured)
     file = table(tmp_path / "reversed.csv", other)
+    expected = "no load can be estimated: torques match if the efforts of all joints are reversed"
+    with pytest.raises(PayloadError, match=expected):
+        estimate_payload(file, "panda_simulated")
+
+
+def test_torques_of_another_robot_are_refused(tmp_path):
+    samples = loaded()
+    other = Samples(*list(vars(samples).values())[:4], measured=samples.measured[::-1])
+    file = table(tmp_path / "other.csv", other)
     with pytest.raises(PayloadError, match="no body at the tip explains the torques of fer_joint"):
         estimate_payload(file, "panda_simulated")
 
