@@ -14,7 +14,7 @@ and 80 Hz that knowing the truth makes best.
 
 For 200 further recordings, half of them with one event, the choice alone is judged: the error of the
 accelerations over all samples with the default is divided by the least one with a cut-off that is
-given. No constant was chosen by them.
+given. No constant was chosen by them, but one bound: motion has no more power than the velocity.
 """
 
 from __future__ import annotations
