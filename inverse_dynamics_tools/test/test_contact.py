@@ -474,16 +474,16 @@ def test_what_friction_holds_ends_a_contact(tmp_path, solver, robot):
 
 
 def test_jitter_of_stamps_is_no_torque(ids, tmp_path):
-    """It isn't in the samples, only in their stamps: next to a sensor's noise of 0.3 N m it is little."""
+    """It is in the stamps alone, and raises the noise of usual sensors by a half at most."""
     noise = []
     for jitter in ("0", "5e-4"):
-        options = ("--duration", "40", "--message-rate", "100", "--jitter", jitter)
+        options = ("--duration", "40", "--message-rate", "100", "--jitter", jitter, "--noise")
         code, _, err = ids("simulate", "--robot", "ur10_simulated", *options, "--out", jitter)
         assert code == 0, err
         found = find_contacts(tmp_path / jitter, "ur10_simulated", quiet=(0.0, 35.0))
         assert found.contacts == ()
         noise.append(found.thresholds.noise)
-    assert (noise[1] <= noise[0] + 0.1).all()  # N m
+    assert (noise[1] <= 1.5 * noise[0]).all()
 
 
 def test_friction_that_turns_round_is_no_contact(tmp_path):
