@@ -179,7 +179,7 @@ class Solver {
     return py::array_t<double>(deviation.size(), deviation.data());
   }
 
-  /// (3, n, 2): q, qd, qdd; joint; least and greatest. None where it is unknown.
+  /// n: "revolute", "continuous" or "prismatic".
   py::tuple jointTypes() const {
     const auto name = [](chain_dynamics::JointType type) {
       return type == chain_dynamics::JointType::kPrismatic    ? "prismatic"
@@ -191,6 +191,7 @@ class Solver {
     return names;
   }
 
+  /// (3, n, 2): q, qd, qdd; joint; least and greatest. None where it is unknown.
   py::object seenRanges() const {
     const auto* band = dynamic_cast<const ids::TorqueDeviation*>(solver_.get());
     if (band == nullptr || band->seenRanges().empty()) return py::none();
