@@ -26,7 +26,7 @@ ENVIRONMENT = {
 OF_WORKSPACES = {
     "inverse_dynamics_benchmarks",
     "inverse_dynamics_controllers",
-    "inverse_dynamics_examples",
+    "inverse_dynamics_documentation_tests",
     "inverse_dynamics_ros",
     "inverse_dynamics_simulation",
 }
@@ -213,7 +213,7 @@ def test_the_page_shows_the_projects_as_they_are() -> None:
     blocks = blocks_of(page("docs/cmake.md"), "cmake")
     assert len(blocks) == 3
     for _, file, code in blocks:
-        assert code in (REPOSITORY / "inverse_dynamics_examples" / file).read_text(encoding="utf-8")
+        assert code in (REPOSITORY / "examples" / file).read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(("of_pip", "version"), [("", "1.2.3"), ("2", "None")])
