@@ -36,6 +36,6 @@ def add_parser(
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from argcomplete import shellcode
+    from argcomplete.shell_integration import shellcode
 
     print(shellcode(["ids"], shell=arguments.shell))
