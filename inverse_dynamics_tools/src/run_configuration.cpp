@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "annotations.hpp"
+#include "description.hpp"
 #include "initialized.hpp"
 #include "solver.hpp"
 #include "solver_origin.hpp"
@@ -136,8 +138,8 @@ void bindRunConfiguration(py::module_& module) {
              "Names of the run configurations that the sourced workspaces bring.");
   module.def(
       "read_robot",
-      [](const std::string& name_or_file) {
-        return fieldsOf(evaluation::readRunConfiguration(name_or_file));
+      [](const PathText& name_or_file) {
+        return fieldsOf(evaluation::readRunConfiguration(name_or_file.bytes));
       },
       py::arg("name_or_file"), "Fields of the Robot of that name, or of that file.");
   module.def(
@@ -169,12 +171,14 @@ void bindRunConfiguration(py::module_& module) {
       py::arg("mapping"), "Parameters of a solver as YAML has them; dotted name to value.");
   module.def(
       "package_share",
-      [](const std::string& package) { return pathOf(evaluation::packageShare(package)); },
+      [](const std::string& package) -> FilePath {
+        return pathOf(evaluation::packageShare(package));
+      },
       py::arg("package"), "Directory `share/PACKAGE` of an installed package.");
   module.def(
       "resolved_path",
-      [](const std::string& path, const py::object& directory) {
-        return pathOf(evaluation::resolvedPath(path, bytesOf(directory)));
+      [](const std::string& path, const PathText& directory) -> FilePath {
+        return pathOf(evaluation::resolvedPath(path, directory.bytes));
       },
       py::arg("path"), py::arg("directory"),
       "File that a path in a configuration names; relative ones begin in the directory.");

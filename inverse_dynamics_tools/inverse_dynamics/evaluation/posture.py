@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from inverse_dynamics._core import Parameter
+    from inverse_dynamics.base.arrays import Parameter
     from inverse_dynamics.robot.robots import Robot
 
 LOCKED = "locked_joints."

@@ -16,10 +16,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics import _core
-from inverse_dynamics.base.ament import path_bytes
 
 if TYPE_CHECKING:
-    from inverse_dynamics._core import Parameter
+    from inverse_dynamics.base.arrays import Parameter
 
 DEFAULT_TOPIC = "/joint_states"
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
@@ -65,7 +64,7 @@ def load_robot(name_or_file: str | Path) -> Robot:
 
     What ends in .yaml or .yml, or has a directory, is a file. Raises RobotError.
     """
-    return Robot(**_core.read_robot(path_bytes(name_or_file)))
+    return Robot(**_core.read_robot(name_or_file))
 
 
 def robot_of_description(urdf: Path | str) -> Robot:
