@@ -185,9 +185,9 @@ class Solver {
              : type == chain_dynamics::JointType::kContinuous ? "continuous"
                                                               : "revolute";
     };
-    py::list names;
-    for (const auto type : get().jointTypes()) names.append(name(type));
-    return names;
+    std::vector<std::string> names;
+    for (const auto type : get().jointTypes()) names.emplace_back(name(type));
+    return tupleOf(names);
   }
 
   /// (3, n, 2): q, qd, qdd; joint; least and greatest. None where it is unknown.
