@@ -614,6 +614,14 @@ class JointStateWriter:
     def finish(self) -> None:
         """Write indexes and metadata."""
 
+def write_torques(
+    path_and_storage: tuple[str | bytes, Literal["sqlite3", "mcap"]],
+    topic: tuple[str, Sequence[str], str],
+    computed: tuple[Integers, Integers, Floats, Floats, Floats],
+    measured: Floats,
+    progress: Callable[[float], None],
+) -> None: ...
+
 class JointLogBuilder:
     """Collects messages, one row each, by the rules of joint_log.hpp.
 
@@ -755,6 +763,8 @@ class Evaluated:
     @property
     def torque_seconds(self) -> float: ...
     @property
+    def series(self) -> dict[str, NDArray[Any]]: ...
+    @property
     def notes(self) -> list[str]: ...
 
 def compare_meanings(
@@ -767,24 +777,40 @@ def compare_meanings(
 def effort_summary(
     meaning: str, stated_by: str, drive_gains: list[float], verdict: EffortVerdict | None
 ) -> str: ...
+
+class EvaluationOptions:
+    """How evaluate() is to work, by keyword: the options of evaluator.hpp."""
+
+    def __init__(self, **kwargs: Any) -> None: ...
+    @property
+    def method(self) -> str: ...
+    @property
+    def cutoff(self) -> float: ...
+    @property
+    def without_rules(self) -> list[str]: ...
+    @property
+    def effort(self) -> EffortOptions: ...
+    @property
+    def recording(self) -> str: ...
+    @property
+    def topic(self) -> str: ...
+    @property
+    def units(self) -> list[str]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def joints(self) -> list[str]: ...
+    @property
+    def clock(self) -> str: ...
+    @property
+    def window(self) -> tuple[float, float]: ...
+    @property
+    def scratch(self) -> bytes: ...
+
 def evaluate(
     solver: Solver,
     motion: JointLog | JointStates,
-    *,
-    joints: list[str],
-    clock: str,
-    start: float,
-    end: float,
-    method: str,
-    cutoff: float | None,
-    without_rules: list[str],
-    effort: EffortOptions,
-    recording: str,
-    topic: str,
-    units: list[str],
-    notes: list[str],
-    scratch: bytes,
-    take: Callable[[int, str, dict[str, NDArray[Any]]], None],
+    options: EvaluationOptions,
     progress: Callable[[float], None],
 ) -> Evaluated: ...
 def check_options(
