@@ -13,7 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "annotations.hpp"
 #include "arrays.hpp"
+#include "description.hpp"
 #include "initialized.hpp"
 #include "joint_log.hpp"
 #include "joint_states.hpp"
@@ -98,7 +100,7 @@ struct Options : evaluation::EvaluationOptions {
   evaluation::RecordingOptions source;
 };
 
-evaluation::Evaluation evaluate(const py::object& solver, const py::object& motion,
+evaluation::Evaluation evaluate(const SolverObject& solver, const py::object& motion,
                                 const Options& given, const py::function& progress) {
   const auto shared = solverOf(solver);
   evaluation::EvaluationOptions options = given;
@@ -169,7 +171,7 @@ void bindReading(py::class_<Options>& options) {
           "s since the first sample; what lies outside is left out")
       .def_property(
           "scratch", [](const Options& o) { return py::bytes(o.source.scratch); },
-          [](Options& o, const std::string& directory) { o.source.scratch = directory; },
+          [](Options& o, const PathText& directory) { o.source.scratch = directory.bytes; },
           "directory for unnamed files of the samples; empty: memory");
 }
 

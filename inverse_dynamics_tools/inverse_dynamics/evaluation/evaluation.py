@@ -8,7 +8,6 @@ for error in result.errors:
 
 from __future__ import annotations
 
-import os
 import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -37,8 +36,8 @@ from inverse_dynamics.robot.solvers import description_notes, open_solver
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from inverse_dynamics._core import JointMetrics, Parameter
-    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics._core import JointMetrics
+    from inverse_dynamics.base.arrays import Floats, Mask, Parameter
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.bags import JointStateTopic
     from inverse_dynamics.data.joint_log import Clock
@@ -291,7 +290,7 @@ def _compare(
         topic=motion.topic,
         units=list(arm.units),
         notes=list(notes),
-        scratch=os.fsencode(scratch),
+        scratch=scratch,
     )
     found = _core.evaluate(
         arm.solver,

@@ -11,7 +11,7 @@
 
 #include <type_traits>
 
-namespace inverse_dynamics_examples::migration_headers_test {
+namespace inverse_dynamics_documentation_tests::migration_headers_test {
 
 using inverse_dynamics_solver::InverseDynamicsSolver;
 
@@ -34,4 +34,4 @@ TEST(HeadersOfTheFirstRelease, DeclareTheExceptionsThatTheyDid) {
   EXPECT_TRUE((std::is_base_of_v<std::runtime_error, UninitializedException>));
 }
 
-}  // namespace inverse_dynamics_examples::migration_headers_test
+}  // namespace inverse_dynamics_documentation_tests::migration_headers_test

@@ -14,7 +14,7 @@ from pages import REPOSITORY
 
 from inverse_dynamics import Solver
 
-EXAMPLE = REPOSITORY / "inverse_dynamics_examples/dask_torques.py"
+EXAMPLE = REPOSITORY / "examples/dask_torques.py"
 sys.path.insert(0, str(EXAMPLE.parent))
 
 import dask_torques  # noqa: E402

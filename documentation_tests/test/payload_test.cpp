@@ -11,7 +11,7 @@
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <memory>
 
-namespace inverse_dynamics_examples::payload_test {
+namespace inverse_dynamics_documentation_tests::payload_test {
 
 using inverse_dynamics_identification::PayloadEstimate;
 using inverse_dynamics_identification::PayloadEstimator;
@@ -80,4 +80,4 @@ TEST(Payload, IsEstimatedInAControlLoop) {
   EXPECT_LT((solver->getGravityVector(arm.q) - g).norm(), 0.01 * g.norm());
 }
 
-}  // namespace inverse_dynamics_examples::payload_test
+}  // namespace inverse_dynamics_documentation_tests::payload_test

@@ -16,7 +16,7 @@
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 #include "ur10_inverse_dynamics_solver/ur10_inverse_dynamics_solver.hpp"
 
-namespace inverse_dynamics_examples::exported_targets_test {
+namespace inverse_dynamics_documentation_tests::exported_targets_test {
 
 // A mass of 2 kg, 0.5 m from a horizontal axis.
 const char* const kPendulum = R"(<robot name="pendulum">
@@ -82,4 +82,4 @@ TEST(ExportedTargets, EvaluationMeasuresAnError) {
   EXPECT_EQ(inverse_dynamics_evaluation::metrics(computed, measured)[0].rmse, 1);
 }
 
-}  // namespace inverse_dynamics_examples::exported_targets_test
+}  // namespace inverse_dynamics_documentation_tests::exported_targets_test

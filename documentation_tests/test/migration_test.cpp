@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace inverse_dynamics_examples::migration_test {
+namespace inverse_dynamics_documentation_tests::migration_test {
 
 using inverse_dynamics_solver::ExternalWrench;
 using inverse_dynamics_solver::Kinematics;
@@ -204,4 +204,4 @@ TEST(Migration, BodiesBeyondTheTipCountUnlessTheyAreIgnored) {
   EXPECT_NEAR(shoulder("lump") - shoulder("ignore"), -5 * 9.81 * (0.612 + 0.5723), kRounding);
 }
 
-}  // namespace inverse_dynamics_examples::migration_test
+}  // namespace inverse_dynamics_documentation_tests::migration_test

@@ -60,7 +60,7 @@ def test_a_log_of_other_names_and_units_is_converted(followed: Path) -> None:
 
 def test_the_control_loop_is_built_and_prints_what_the_page_says(tmp_path: Path) -> None:
     text = page("docs/tutorials/control_loop.md")
-    project = REPOSITORY / "inverse_dynamics_examples/control_loop"
+    project = REPOSITORY / "examples/control_loop"
     for block in blocks_of(text, "cpp", "cmake"):
         assert block.code in (project / block.file).read_text(), block.code
     subprocess.run(["cmake", "-S", project, "-B", tmp_path], check=True)

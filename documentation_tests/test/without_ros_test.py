@@ -16,6 +16,7 @@ import pytest
 from pages import REPOSITORY, blocks_of, page
 
 PROJECT = REPOSITORY / "inverse_dynamics"
+WITHOUT_ROS = REPOSITORY / "inverse_dynamics_solver/without_ros"
 ENVIRONMENT = {
     name: value
     for name, value in os.environ.items()
@@ -25,7 +26,7 @@ ENVIRONMENT = {
 OF_WORKSPACES = {
     "inverse_dynamics_benchmarks",
     "inverse_dynamics_controllers",
-    "inverse_dynamics_examples",
+    "inverse_dynamics_documentation_tests",
     "inverse_dynamics_ros",
     "inverse_dynamics_simulation",
 }
@@ -147,7 +148,7 @@ def describe(prefix: Path, package: str, text: str) -> None:
 def shapes(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Prefix with a program, its plugins and their description."""
     folder = tmp_path_factory.mktemp("shapes")
-    run("cmake", "-S", PROJECT / "test", "-B", folder / "build")
+    run("cmake", "-S", WITHOUT_ROS / "test", "-B", folder / "build")
     run("cmake", "--build", folder / "build")
     run("cmake", "--install", folder / "build", "--prefix", folder / "prefix")
     describe(folder / "prefix", "shapes", DESCRIPTION)
@@ -212,7 +213,7 @@ def test_the_page_shows_the_projects_as_they_are() -> None:
     blocks = blocks_of(page("docs/cmake.md"), "cmake")
     assert len(blocks) == 3
     for _, file, code in blocks:
-        assert code in (REPOSITORY / "inverse_dynamics_examples" / file).read_text(encoding="utf-8")
+        assert code in (REPOSITORY / "examples" / file).read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(("of_pip", "version"), [("", "1.2.3"), ("2", "None")])
@@ -224,7 +225,7 @@ def test_cmake_notes_the_version_of_a_python_package_unless_pip_does(
     (tmp_path / "package.xml").write_text("<package>\n  <version>1.2.3</version>\n</package>\n")
     (tmp_path / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.18)\nproject(arm LANGUAGES NONE)\n"
-        f"list(APPEND CMAKE_MODULE_PATH {PROJECT}/cmake)\n"
+        f"list(APPEND CMAKE_MODULE_PATH {WITHOUT_ROS}/cmake)\n"
         "find_package(ament_cmake_python REQUIRED)\nament_python_install_package(arm)\n"
     )
     build = tmp_path / "build"
