@@ -9,6 +9,7 @@
 #include <inverse_dynamics_evaluation/samples.hpp>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -35,7 +36,7 @@ using ConstVector = Eigen::Map<const Eigen::VectorXd>;
 
 ConstVector viewOf(const Array& array) { return {array.data(), array.size()}; }
 
-py::array backwardDifference(const Array& time, const Array& qd) {
+Array backwardDifference(const Array& time, const Array& qd) {
   const ConstMap qd_in = states(qd, "qd");
   chain_dynamics::OwnedMatrix qdd;
   {
@@ -45,8 +46,11 @@ py::array backwardDifference(const Array& time, const Array& qd) {
   return rowsOf(std::move(qdd));
 }
 
-py::tuple lowPassAccelerations(const Array& time, const Array& q, const Array& qd,
-                               const Array& effort, double cutoff, const SampleRules& rules) {
+std::tuple<Array, FilterChoice, SampleReport> lowPassAccelerations(const Array& time,
+                                                                   const Array& q, const Array& qd,
+                                                                   const Array& effort,
+                                                                   double cutoff,
+                                                                   const SampleRules& rules) {
   const ConstMap q_in = states(q, "q"), qd_in = states(qd, "qd"),
                  effort_in = states(effort, "effort");
   evaluation::LowPassOptions options;
@@ -57,8 +61,7 @@ py::tuple lowPassAccelerations(const Array& time, const Array& q, const Array& q
     const py::gil_scoped_release release;
     estimate = evaluation::lowPassAccelerations(viewOf(time), q_in, qd_in, effort_in, options);
   }
-  return py::make_tuple(rowsOf(std::move(estimate.qdd)), std::move(estimate.filter),
-                        std::move(estimate.samples));
+  return {rowsOf(std::move(estimate.qdd)), std::move(estimate.filter), std::move(estimate.samples)};
 }
 
 SampleReport examineSamples(const Array& time, const Array& q, const Array& qd, const Array& effort,
@@ -69,8 +72,8 @@ SampleReport examineSamples(const Array& time, const Array& q, const Array& qd, 
   return evaluation::examineSamples(viewOf(time), q_in, qd_in, effort_in, rules);
 }
 
-py::array lowPass(const Array& samples, double sampling_frequency, double cutoff, int order,
-                  Eigen::Index padding) {
+Array lowPass(const Array& samples, double sampling_frequency, double cutoff, int order,
+              Eigen::Index padding) {
   const ConstMap in = states(samples, "samples");
   chain_dynamics::OwnedMatrix result;
   {
@@ -80,8 +83,7 @@ py::array lowPass(const Array& samples, double sampling_frequency, double cutoff
   return rowsOf(std::move(result));
 }
 
-py::array lowPassDerivative(const Array& samples, double sampling_frequency, double cutoff,
-                            int order) {
+Array lowPassDerivative(const Array& samples, double sampling_frequency, double cutoff, int order) {
   const ConstMap in = states(samples, "samples");
   chain_dynamics::OwnedMatrix result;
   {

@@ -57,7 +57,7 @@ inline Map columns(Array& array) {
 }
 
 /// A matrix, one state per column, as an array, one state per row; its memory changes hands.
-inline pybind11::array rowsOf(chain_dynamics::OwnedMatrix matrix) {
+inline Array rowsOf(chain_dynamics::OwnedMatrix matrix) {
   using chain_dynamics::OwnedMatrix;
   auto* owned = new OwnedMatrix(std::move(matrix));
   const pybind11::capsule owner(owned, [](void* p) { delete static_cast<OwnedMatrix*>(p); });

@@ -6,9 +6,11 @@
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "annotations.hpp"
 #include "arrays.hpp"
 #include "initialized.hpp"
 #include "solver.hpp"
@@ -29,6 +31,7 @@ namespace py = pybind11;
 using namespace inverse_dynamics_control;
 using Vector = Eigen::VectorXd;
 using Mask = py::array_t<bool, py::array::c_style | py::array::forcecast>;
+using Unseen = py::array_t<Eigen::Index>;
 
 /// A velocity that isn't given would be taken for zero.
 void requireVelocities(const ExternalTorqueEstimator& estimator, const char* method, bool given) {
@@ -66,8 +69,9 @@ void requireRows(const char* name, const Array& array, py::ssize_t rows, py::ssi
 }
 
 /// All samples, one after the other, without the GIL.
-py::tuple runEstimator(ExternalTorqueEstimator& estimator, const Array& time, const Array& q,
-                       const Array& effort, const std::optional<Array>& qd) {
+std::tuple<Array, Mask> runEstimator(ExternalTorqueEstimator& estimator, const Array& time,
+                                     const Array& q, const Array& effort,
+                                     const std::optional<Array>& qd) {
   requireVelocities(estimator, "run", qd.has_value());
   const py::ssize_t count = time.ndim() == 1 ? time.shape(0) : 0;
   const auto n = static_cast<py::ssize_t>(estimator.jointCount());
@@ -94,7 +98,7 @@ py::tuple runEstimator(ExternalTorqueEstimator& estimator, const Array& time, co
       Eigen::Map<Vector>(out + k * n, n) = estimator.torques();
     }
   }
-  return py::make_tuple(torques, valid);
+  return {torques, valid};
 }
 
 /// What isn't an estimate isn't looked at: neither as a torque nor as time without contact.
@@ -129,13 +133,13 @@ Vector numbersOf(const WrenchInRoot& wrench) {
   return numbers;
 }
 
-py::tuple runTipWrench(TipWrench& tip, const Array& q, const Array& torques) {
+std::tuple<Array, Unseen> runTipWrench(TipWrench& tip, const Array& q, const Array& torques) {
   const py::ssize_t count = q.ndim() == 2 ? q.shape(0) : 0;
   const auto n = static_cast<py::ssize_t>(tip.jointCount());
   requireRows("q", q, count, n);
   requireRows("torques", torques, count, n);
   Array wrenches({count, py::ssize_t{6}});
-  py::array_t<Eigen::Index> unseen(count);
+  Unseen unseen(count);
   double* const out = wrenches.mutable_data();
   Eigen::Index* const number = unseen.mutable_data();
   const double* const in = q.data();
@@ -148,7 +152,7 @@ py::tuple runTipWrench(TipWrench& tip, const Array& q, const Array& torques) {
       number[k] = tip.unseen();
     }
   }
-  return py::make_tuple(wrenches, unseen);
+  return {wrenches, unseen};
 }
 
 void bindEstimateEnums(py::module_& module) {
@@ -201,13 +205,13 @@ void bindEstimators(py::module_& module) {
           "(n,) N m.");
   py::class_<MomentumObserver, ExternalTorqueEstimator>(module, "MomentumObserver",
                                                         "From the generalised momentum H(q) qd.")
-      .def(py::init([](const py::object& solver, const EstimatorOptions& options) {
+      .def(py::init([](const SolverObject& solver, const EstimatorOptions& options) {
              return std::make_unique<MomentumObserver>(solverOf(solver), options);
            }),
            py::arg("solver"), py::arg("options"));
   py::class_<AccelerationResidual, ExternalTorqueEstimator>(
       module, "AccelerationResidual", "Measured minus computed torques, low-passed.")
-      .def(py::init([](const py::object& solver, const EstimatorOptions& options) {
+      .def(py::init([](const SolverObject& solver, const EstimatorOptions& options) {
              return std::make_unique<AccelerationResidual>(solverOf(solver), options);
            }),
            py::arg("solver"), py::arg("options"));
@@ -275,13 +279,14 @@ void bindTipWrench(py::module_& module) {
       .def_property_readonly(
           "text", [](WrenchStatus status) { return text(status); }, "What happened, in words.");
   py::class_<TipWrench>(module, "TipWrench", "Wrench at the tip from external torques.")
-      .def(py::init([](const py::object& solver, const Vector& noise, double force, double torque) {
-             WrenchOptions options;
-             options.noise = noise;
-             options.force = force;
-             options.torque = torque;
-             return std::make_unique<TipWrench>(solverOf(solver), options);
-           }),
+      .def(py::init(
+               [](const SolverObject& solver, const Vector& noise, double force, double torque) {
+                 WrenchOptions options;
+                 options.noise = noise;
+                 options.force = force;
+                 options.torque = torque;
+                 return std::make_unique<TipWrench>(solverOf(solver), options);
+               }),
            py::arg("solver"), py::arg("noise"), py::kw_only(),
            py::arg("force") = WrenchOptions().force, py::arg("torque") = WrenchOptions().torque,
            "noise: (n,) N m; force: N; torque: N m.")

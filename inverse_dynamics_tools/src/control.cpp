@@ -6,8 +6,10 @@
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "annotations.hpp"
 #include "initialized.hpp"
 #include "solver.hpp"
 #include "vectors.hpp"
@@ -182,7 +184,7 @@ void bindLaws(py::module_& module) {
           "(n,) Whether the last torque was held back by its rate limit.");
   py::class_<ComputedTorque, ControlLaw>(
       module, "ComputedTorque", "tau = H(q) (qdd_ref + Kp e + Kd ed) + C(q, qd) qd + g(q) + f.")
-      .def(py::init([](const py::object& solver, const Gains& gains, const LawOptions& options) {
+      .def(py::init([](const SolverObject& solver, const Gains& gains, const LawOptions& options) {
              return ComputedTorque(solverOf(solver), gains, options);
            }),
            py::arg("solver"), py::arg("gains"), py::arg("options"))
@@ -192,17 +194,18 @@ void bindLaws(py::module_& module) {
            "From the next update on; ValueError, and nothing changed, for bad ones.");
   py::class_<PdGravityCompensation, ControlLaw>(module, "PdGravityCompensation",
                                                 "tau = g(q) + Kp e + Kd ed + f.")
-      .def(py::init([](const py::object& solver, const PdGains& gains, const LawOptions& options) {
-             return PdGravityCompensation(solverOf(solver), gains, options);
-           }),
-           py::arg("solver"), py::arg("gains"), py::arg("options"))
+      .def(
+          py::init([](const SolverObject& solver, const PdGains& gains, const LawOptions& options) {
+            return PdGravityCompensation(solverOf(solver), gains, options);
+          }),
+          py::arg("solver"), py::arg("gains"), py::arg("options"))
       .def("update", &pdGravityCompensation, py::arg("q"), py::arg("qd"), py::arg("q_reference"),
            py::arg("qd_reference"), py::arg("period"), "(tau, Status).")
       .def("set_gains", &setGains<PdGravityCompensation, PdGains>, py::arg("gains"),
            "From the next update on; ValueError, and nothing changed, for bad ones.");
   py::class_<GravityCompensation, ControlLaw>(module, "GravityCompensation",
                                               "tau = g(q) - damping qd + f.")
-      .def(py::init([](const py::object& solver, const LawOptions& options) {
+      .def(py::init([](const SolverObject& solver, const LawOptions& options) {
              return GravityCompensation(solverOf(solver), options);
            }),
            py::arg("solver"), py::arg("options"))
@@ -210,7 +213,7 @@ void bindLaws(py::module_& module) {
            py::arg("qd_reference") = py::none(), "(tau, Status).");
   py::class_<FeedForward, ControlLaw>(module, "FeedForward",
                                       "tau = effort + H qdd_ref + C qd + g + f.")
-      .def(py::init([](const py::object& solver, const LawOptions& options, ModelState at) {
+      .def(py::init([](const SolverObject& solver, const LawOptions& options, ModelState at) {
              return FeedForward(solverOf(solver), at, options);
            }),
            py::arg("solver"), py::arg("options"), py::arg("at") = ModelState::kReference)
@@ -222,7 +225,7 @@ void bindLaws(py::module_& module) {
 void bindDamping(py::module_& module) {
   module.def(
       "damping_for",
-      [](const py::object& solver, const Vector& q, double rate, double period) {
+      [](const SolverObject& solver, const Vector& q, double rate, double period) {
         return dampingFor(*solverOf(solver), q, rate, period);
       },
       py::arg("solver"), py::arg("q"), py::arg("rate"), py::arg("period"),
@@ -236,12 +239,12 @@ void bindSafeStop(py::module_& module) {
       .def("begin", &SafeStop::begin, py::arg("q"), py::arg("qd"))
       .def(
           "advance",
-          [](SafeStop& stop, double period) {
+          [](SafeStop& stop, double period) -> std::tuple<Vector, Vector, Vector> {
             Reference reference(stop.jointCount());
             if (isRefusal(stop.advance(period, reference))) {
               throw py::value_error("SafeStop.advance: call begin() first, with a finite motion");
             }
-            return py::make_tuple(reference.q, reference.qd, reference.qdd);
+            return {reference.q, reference.qd, reference.qdd};
           },
           py::arg("period"), "(q, qd, qdd) of the reference, one period later.")
       .def_property_readonly("finished", &SafeStop::finished)

@@ -30,7 +30,6 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindErrors();
   inverse_dynamics_tools::bindSolver(module);
   inverse_dynamics_tools::bindFastModel(module);
-  inverse_dynamics_tools::bindIdentification(module);
   inverse_dynamics_tools::bindAccelerations(module);
   inverse_dynamics_tools::bindRecordings(module);
   inverse_dynamics_tools::bindJointLog(module);
@@ -41,6 +40,7 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindControl(module);
   inverse_dynamics_tools::bindContact(module);
   inverse_dynamics_tools::bindPayload(module);
+  inverse_dynamics_tools::bindIdentification(module);
   inverse_dynamics_tools::explainRefusedArguments(module);
   pybind11::module_::import("inverse_dynamics.base.wheels").attr("find_other_wheels")();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// A robot description as Python gives it: the text of a URDF, or the path of a file.
+/// Paths, and robot descriptions as Python gives them: the text of a URDF, or the path of a file.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -12,6 +12,12 @@ namespace inverse_dynamics_tools {
 /// An argument `urdf`. A path is read as read_description() of Python does, .xacro files included.
 struct Description {
   std::string text;
+};
+
+/// A path, or a text of a file, in the bytes that it has there: those that aren't UTF-8 are lone
+/// surrogates in Python.
+struct PathText {
+  std::string bytes;
 };
 
 /// Whether a text names a file: no URDF ends like this.
@@ -27,9 +33,32 @@ inline bool namesDescription(const std::string& text) {
 
 namespace pybind11::detail {
 
+/// As os.fsencode(); what no path can be is escaped, for errors to show it.
+template <>
+struct type_caster<inverse_dynamics_tools::PathText> {
+  PYBIND11_TYPE_CASTER(inverse_dynamics_tools::PathText, const_name("str | os.PathLike[str]"));
+
+  bool load(handle source, bool) {
+    auto path = reinterpret_steal<object>(PyOS_FSPath(source.ptr()));
+    if (!path) {
+      PyErr_Clear();
+      return false;
+    }
+    for (const char* errors : {"surrogateescape", "backslashreplace"}) {
+      if (isinstance<bytes>(path)) break;
+      auto encoded =
+          reinterpret_steal<object>(PyUnicode_AsEncodedString(path.ptr(), "utf-8", errors));
+      if (encoded) path = std::move(encoded);
+      PyErr_Clear();
+    }
+    value.bytes = path.cast<std::string>();
+    return true;
+  }
+};
+
 template <>
 struct type_caster<inverse_dynamics_tools::Description> {
-  PYBIND11_TYPE_CASTER(inverse_dynamics_tools::Description, const_name("str | Path"));
+  PYBIND11_TYPE_CASTER(inverse_dynamics_tools::Description, const_name("str | pathlib.Path"));
 
   /// @throws RobotError  of Python: the file can't be read.
   bool load(handle source, bool) {

@@ -81,6 +81,12 @@ void translate(std::exception_ptr thrown) {
 
 }  // namespace
 
+void throwArgumentError(const std::string& text) {
+  const py::object type = py::module_::import("inverse_dynamics.errors").attr("ArgumentError");
+  PyErr_SetString(type.ptr(), text.c_str());
+  throw py::error_already_set();
+}
+
 void bindErrors() { py::register_local_exception_translator(&translate); }
 
 }  // namespace inverse_dynamics_tools

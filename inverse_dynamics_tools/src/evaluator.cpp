@@ -12,7 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "annotations.hpp"
 #include "arrays.hpp"
+#include "description.hpp"
 #include "initialized.hpp"
 #include "joint_log.hpp"
 #include "joint_states.hpp"
@@ -130,13 +132,13 @@ py::dict seriesOf(const evaluation::EvaluatedSamples& samples) {
 
 /// @param motion  a JointLog, or JointStates of a recording; joints, clock, start and end are for the
 ///                latter.
-evaluation::Evaluation evaluate(const py::object& solver, const py::object& motion,
+evaluation::Evaluation evaluate(const SolverObject& solver, const py::object& motion,
                                 const Names& joints, const std::string& clock, double start,
                                 double end, const std::string& method,
                                 const std::optional<double>& cutoff, const Names& without_rules,
                                 const evaluation::EffortOptions& effort,
                                 const std::string& recording, const std::string& topic,
-                                const Names& units, const Names& notes, const std::string& scratch,
+                                const Names& units, const Names& notes, const PathText& scratch,
                                 const py::function& take, const py::function& progress) {
   const auto shared = solverOf(solver);
   evaluation::EvaluationOptions options;
@@ -161,7 +163,7 @@ evaluation::Evaluation evaluate(const py::object& solver, const py::object& moti
     auto& states = motion.cast<JointStates&>();
     const InUse reader(states);
     const evaluation::RecordingOptions which = {
-        joints, clockOf(clock), {true, "--joints"}, scratch, {start, end}};
+        joints, clockOf(clock), {true, "--joints"}, scratch.bytes, {start, end}};
     const py::gil_scoped_release release;
     return evaluation::evaluate(*states.source, which, *shared, options, give);
   }

@@ -52,8 +52,8 @@ class FastModel {
     return py::array_t<double>(p.size(), p.data());
   }
 
-  py::object forwardDynamics(const py::object& q, const py::object& qd, const py::object& tau,
-                             const py::object& out) const {
+  Floats forwardDynamics(const ArrayLike& q, const ArrayLike& qd, const ArrayLike& tau,
+                         const MaybeFloats& out) const {
     SolverCall call("forward_dynamics", names_);
     call.input("q", q);
     call.input("qd", qd);
@@ -67,8 +67,8 @@ class FastModel {
     return call.result(0);
   }
 
-  py::tuple torqueDerivatives(const py::object& q, const py::object& qd,
-                              const py::object& qdd) const {
+  ThreeFloats torqueDerivatives(const ArrayLike& q, const ArrayLike& qd,
+                                const ArrayLike& qdd) const {
     SolverCall call = motion("torque_derivatives", q, qd, qdd);
     for (const char* name : {"dtau_dq", "dtau_dqd", "dtau_dqdd"}) {
       call.matrices(name, py::none(), jointCount(), jointCount());
@@ -79,11 +79,10 @@ class FastModel {
           call.in(2).middle(first, size), call.matricesOf(0).middle(first, size),
           call.matricesOf(1).middle(first, size), call.matricesOf(2).middle(first, size));
     });
-    return py::make_tuple(call.result(0), call.result(1), call.result(2));
+    return {call.result(0), call.result(1), call.result(2)};
   }
 
-  py::object coriolisMatrix(const py::object& q, const py::object& qd,
-                            const py::object& out) const {
+  Floats coriolisMatrix(const ArrayLike& q, const ArrayLike& qd, const MaybeFloats& out) const {
     SolverCall call("coriolis_matrix", names_);
     call.input("q", q);
     call.input("qd", qd);
@@ -95,7 +94,7 @@ class FastModel {
     return call.result(0);
   }
 
-  py::tuple tipPose(const py::object& q) const {
+  TwoFloats tipPose(const ArrayLike& q) const {
     SolverCall call("tip_pose", names_);
     call.input("q", q);
     call.matrices("R", py::none(), 3, 3);
@@ -104,10 +103,10 @@ class FastModel {
       fast_.tipPoseBatch(call.in(0).middle(first, size), call.matricesOf(0).middle(first, size),
                          call.states(1).middle(first, size));
     });
-    return py::make_tuple(call.result(0), call.result(1));
+    return {call.result(0), call.result(1)};
   }
 
-  py::object tipJacobian(const py::object& q, const py::object& out) const {
+  Floats tipJacobian(const ArrayLike& q, const MaybeFloats& out) const {
     SolverCall call("tip_jacobian", names_);
     call.input("q", q);
     call.matrices("out", out, 6, jointCount());
@@ -118,8 +117,8 @@ class FastModel {
     return call.result(0);
   }
 
-  py::object tipJacobianDerivative(const py::object& q, const py::object& qd,
-                                   const py::object& out) const {
+  Floats tipJacobianDerivative(const ArrayLike& q, const ArrayLike& qd,
+                               const MaybeFloats& out) const {
     SolverCall call("tip_jacobian_derivative", names_);
     call.input("q", q);
     call.input("qd", qd);
@@ -132,8 +131,8 @@ class FastModel {
     return call.result(0);
   }
 
-  py::object regressor(const py::object& q, const py::object& qd, const py::object& qdd,
-                       const py::object& out) const {
+  Floats regressor(const ArrayLike& q, const ArrayLike& qd, const ArrayLike& qdd,
+                   const MaybeFloats& out) const {
     SolverCall call = motion("regressor", q, qd, qdd);
     call.matrices("out", out, jointCount(), kParameters * jointCount());
     share(call, [&](Index first, Index size) {
@@ -143,9 +142,9 @@ class FastModel {
     return call.result(0);
   }
 
-  py::array regressorGram(const py::object& q, const py::object& qd, const py::object& qdd,
-                          const py::object& tau, const std::vector<py::object>& own_columns,
-                          const py::object& weights) const {
+  Array regressorGram(const ArrayLike& q, const ArrayLike& qd, const ArrayLike& qdd,
+                      const ArrayLike& tau, const std::vector<ArrayLike>& own_columns,
+                      const MaybeArrayLike& weights) const {
     SolverCall call = motion("regressor_gram", q, qd, qdd);
     call.input("tau", tau);
     for (std::size_t c = 0; c < own_columns.size(); ++c) {
@@ -173,8 +172,8 @@ class FastModel {
   }
 
  private:
-  SolverCall motion(const char* method, const py::object& q, const py::object& qd,
-                    const py::object& qdd) const {
+  SolverCall motion(const char* method, const ArrayLike& q, const ArrayLike& qd,
+                    const ArrayLike& qdd) const {
     SolverCall call(method, names_);
     call.input("q", q);
     call.input("qd", qd);
@@ -292,7 +291,7 @@ void bindFastModel(py::module_& module) {
                   "Of joints about or along z of their links' frames: (n, 3, 3) and (n, 3), of\n"
                   "each frame in the one before, and (n, 10) parameters of the links.")
       .def_property_readonly(
-          "joint_names", [](const FastModel& m) { return py::tuple(py::cast(m.names())); },
+          "joint_names", [](const FastModel& m) { return tupleOf(m.names()); },
           "Names of the joints, from root to tip: the order of all arrays.")
       .def_property_readonly("parameters", &FastModel::parameters,
                              "(10 n,) of the rigid bodies: m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy,\n"
@@ -323,7 +322,7 @@ void bindFastModel(py::module_& module) {
            py::kw_only(), py::arg("out") = none,
            "Y, (n, 10 n) or (N, n, 10 n): tau = Y parameters + rotor inertia qdd + friction.")
       .def("regressor_gram", &FastModel::regressorGram, py::arg("q"), py::arg("qd"), py::arg("qdd"),
-           py::arg("tau"), py::kw_only(), py::arg("own_columns") = std::vector<py::object>(),
+           py::arg("tau"), py::kw_only(), py::arg("own_columns") = std::vector<ArrayLike>(),
            py::arg("weights") = none,
            "Gram matrix of the rows [Y_j, own columns, tau_j] of each joint, summed over the\n"
            "samples: (n, m, m), m = 10 n + own columns + 1. own_columns: arrays like q, of what\n"

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "annotations.hpp"
 #include "arrays.hpp"
 #include "initialized.hpp"
 #include "vectors.hpp"
@@ -100,13 +101,13 @@ ArmFitOptions optionsOf(const std::string& law, double prior_strength, int most_
 }
 
 ArmFit fit(const ArmFitter& fitter, const std::vector<Block>& blocks, const std::string& law,
-           double prior_strength, int most_passes, const ArmFit* start,
+           double prior_strength, int most_passes, const std::optional<ArmFit>& start,
            const std::optional<Array>& drive_gains, const Carried& carried) {
   ArmFitOptions options = optionsOf(law, prior_strength, most_passes);
   if (drive_gains) options.drive_gains = states(*drive_gains, "drive_gains").col(0);
   const std::vector<ArmSamples> samples = samplesOf(blocks, carried);
   const py::gil_scoped_release release;
-  return fitter.fit(samples, options, start);
+  return fitter.fit(samples, options, start ? &*start : nullptr);
 }
 
 Array torques(const ArmFitter& fitter, const ArmFit& of, const Array& q, const Array& qd,
@@ -128,8 +129,10 @@ Array torques(const ArmFitter& fitter, const ArmFit& of, const Array& q, const A
   return result;
 }
 
-py::tuple information(const ArmFitter& fitter, const ArmFit& of, const std::vector<Block>& blocks,
-                      const std::string& law, double prior_strength, const Carried& carried) {
+std::tuple<Array, Array, Array> information(const ArmFitter& fitter, const ArmFit& of,
+                                            const std::vector<Block>& blocks,
+                                            const std::string& law, double prior_strength,
+                                            const Carried& carried) {
   const ArmFitOptions options = optionsOf(law, prior_strength, 1);
   const std::vector<ArmSamples> samples = samplesOf(blocks, carried);
   identification::ArmInformation found;
@@ -137,13 +140,13 @@ py::tuple information(const ArmFitter& fitter, const ArmFit& of, const std::vect
     const py::gil_scoped_release release;
     found = fitter.information(of, samples, options);
   }
-  return py::make_tuple(rowsOf(std::move(found.data)), rowsOf(std::move(found.prior)),
-                        rowsOf(std::move(found.scores)));
+  return {rowsOf(std::move(found.data)), rowsOf(std::move(found.prior)),
+          rowsOf(std::move(found.scores))};
 }
 
-py::array whitenedInformation(const ArmFitter& fitter, const ArmFit& of,
-                              const std::vector<Block>& blocks, const std::vector<Vector>& times,
-                              const std::string& law, const identification::ResidualNoise& noise) {
+Array whitenedInformation(const ArmFitter& fitter, const ArmFit& of,
+                          const std::vector<Block>& blocks, const std::vector<Vector>& times,
+                          const std::string& law, const identification::ResidualNoise& noise) {
   const FrictionTerms terms = termsOf(law);
   const std::vector<ArmSamples> samples = samplesOf(blocks, {});
   const std::vector<chain_dynamics::OwnedVector> owned(times.begin(), times.end());
@@ -156,14 +159,14 @@ py::array whitenedInformation(const ArmFitter& fitter, const ArmFit& of,
 }
 
 /// (n, 10).
-py::array rowsOfLinks(const std::vector<LinkPrior>& priors) {
+Array rowsOfLinks(const std::vector<LinkPrior>& priors) {
   chain_dynamics::OwnedMatrix rows(10, static_cast<Eigen::Index>(priors.size()));
   Eigen::Index i = 0;
   for (const LinkPrior& prior : priors) rows.col(i++) = prior.link.toVector();
   return rowsOf(std::move(rows));
 }
 
-py::dict figures(const StepFriction& law) {
+NumbersByName figures(const StepFriction& law) {
   py::dict result;
   result["fv"] = law.fv;
   result["fc"] = law.fc;
@@ -178,8 +181,8 @@ py::dict figures(const StepFriction& law) {
   return result;
 }
 
-py::array copyOf(const chain_dynamics::OwnedVector& vector) {
-  return py::array_t<double>(vector.size(), vector.data());
+Array copyOf(const chain_dynamics::OwnedVector& vector) {
+  return Array(vector.size(), vector.data());
 }
 
 void bindFit(py::module_& module) {
@@ -193,8 +196,8 @@ void bindFit(py::module_& module) {
       .def_property_readonly(
           "friction",
           [](const ArmFit& f) {
-            py::list laws;
-            for (const StepFriction& law : f.friction) laws.append(figures(law));
+            std::vector<NumbersByName> laws;
+            for (const StepFriction& law : f.friction) laws.push_back(figures(law));
             return laws;
           },
           "Figures of smooth_coulomb of each joint, by the keys of the model file.")
@@ -203,8 +206,8 @@ void bindFit(py::module_& module) {
           "(n,) root mean squares of the errors of the samples that it was fitted to.")
       .def_property_readonly(
           "drive_gains",
-          [](const ArmFit& f) -> py::object {
-            if (f.drive_gains.size() == 0) return py::none();
+          [](const ArmFit& f) -> std::optional<Array> {
+            if (f.drive_gains.size() == 0) return std::nullopt;
             return copyOf(f.drive_gains);
           },
           "(n,) N m/A (prismatic N/A) that were fitted; None: of measured torques.")
@@ -227,8 +230,7 @@ void bindIdentification(py::module_& module) {
           "Of a URDF's text, whose links are the prior. locked_joints: positions of joints\n"
           "beside the chain, else 0.")
       .def_property_readonly(
-          "joint_names",
-          [](const ArmFitter& f) { return py::tuple(py::cast(f.description().jointNames())); },
+          "joint_names", [](const ArmFitter& f) { return tupleOf(f.description().jointNames()); },
           "Names of the joints, from root to tip: the order of all arrays.")
       .def_property_readonly(
           "prior", [](const ArmFitter& f) { return rowsOfLinks(f.prior()); },

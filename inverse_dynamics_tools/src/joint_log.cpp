@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "annotations.hpp"
 #include "initialized.hpp"
 #include "joint_states.hpp"
 
@@ -38,7 +39,7 @@ JointLog finish(JointLogBuilder& builder, const std::string& clock) {
 
 /// (N, n), or (N,) of a vector: memory of `log`, which the array keeps alive.
 template <auto Member>
-py::array view(const py::object& log) {
+auto view(const py::object& log) {
   auto& matrix = log.cast<JointLog&>().*Member;
   using Matrix = std::remove_reference_t<decltype(matrix)>;
   if constexpr (Matrix::IsVectorAtCompileTime) {
@@ -67,7 +68,8 @@ void bindJointLog(py::module_& module) {
       .def_property_readonly("qd", &view<&JointLog::qd>)
       .def_property_readonly("effort", &view<&JointLog::effort>)
       .def_readonly("frame_id", &JointLog::frame_id)
-      .def_property_readonly("clock", [](const JointLog& log) { return name(log.clock); })
+      .def_property_readonly(
+          "clock", [](const JointLog& log) -> ClockName { return py::str(name(log.clock)); })
       .def_readonly("notes", &JointLog::notes);
   py::class_<JointLogBuilder>(module, "JointLogBuilder",
                               "Collects messages, by the rules of "

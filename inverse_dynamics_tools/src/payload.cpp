@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <inverse_dynamics_identification/payload_estimator.hpp>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "annotations.hpp"
 #include "arrays.hpp"
 #include "initialized.hpp"
 #include "solver.hpp"
@@ -58,9 +60,9 @@ using namespace inverse_dynamics_identification;
 using Vector = Eigen::VectorXd;
 
 /// A body of Solver.payloads, or none.
-inverse_dynamics_solver::RigidBody carriedBody(const py::object& carried) {
-  if (carried.is_none()) return {};
-  const auto body = carried.cast<py::dict>();
+inverse_dynamics_solver::RigidBody carriedBody(const std::optional<ParameterDict>& carried) {
+  if (!carried) return {};
+  const py::dict body(*carried);
   const auto part = [&body](const char* key) -> py::object {
     return body.contains(key) ? py::object(body[key]) : py::object(py::none());
   };
@@ -68,17 +70,16 @@ inverse_dynamics_solver::RigidBody carriedBody(const py::object& carried) {
                 part("frame"));
 }
 
-std::unique_ptr<SharedEstimator> makeEstimator(const py::object& solver, const ResidualNoise& noise,
-                                               const std::optional<Vector>& offset,
-                                               const std::optional<Vector>& offset_deviation,
-                                               const py::object& carried, const ArmUncertainty* arm,
-                                               double extent, double block, double model_error) {
+std::unique_ptr<SharedEstimator> makeEstimator(
+    const SolverObject& solver, const ResidualNoise& noise, const std::optional<Vector>& offset,
+    const std::optional<Vector>& offset_deviation, const std::optional<ParameterDict>& carried,
+    const std::optional<ArmUncertainty>& arm, double extent, double block, double model_error) {
   PayloadOptions options;
   options.noise = noise;
   if (offset) options.offset = *offset;
   if (offset_deviation) options.offset_deviation = *offset_deviation;
   options.carried = carriedBody(carried);
-  if (arm != nullptr) options.arm = *arm;
+  if (arm) options.arm = *arm;
   options.extent = extent;
   options.block = block;
   options.model_error = model_error;
@@ -163,15 +164,16 @@ void bindNoise(py::module_& module) {
       "Noise of measured minus computed torques (N, n) [N m], at times (N,) [s].");
 }
 
-double figure(const py::dict& law, const char* key, double otherwise) {
-  return law.contains(key) ? law[key].cast<double>() : otherwise;
+double figure(const std::map<std::string, double>& law, const char* key, double otherwise) {
+  const auto found = law.find(key);
+  return found == law.end() ? otherwise : found->second;
 }
 
-std::unique_ptr<ArmUncertainty> makeUncertainty(const std::vector<py::dict>& friction,
-                                                const Array& factor) {
+std::unique_ptr<ArmUncertainty> makeUncertainty(
+    const std::vector<std::map<std::string, double>>& friction, const Array& factor) {
   if (factor.ndim() != 2) throw py::value_error("factor: expected an array (m, K)");
   auto result = std::make_unique<ArmUncertainty>();
-  for (const py::dict& law : friction) {
+  for (const auto& law : friction) {
     const StepFriction none;
     result->friction.push_back({figure(law, "fv", none.fv), figure(law, "fo", none.fo),
                                 figure(law, "fc", none.fc), figure(law, "fl", none.fl),
@@ -183,7 +185,7 @@ std::unique_ptr<ArmUncertainty> makeUncertainty(const std::vector<py::dict>& fri
 }
 
 /// Of N states, (N, n).
-Array armTorques(const ArmUncertainty& arm, const py::object& solver, const Vector& z,
+Array armTorques(const ArmUncertainty& arm, const SolverObject& solver, const Vector& z,
                  const Array& q, const Array& qd, const Array& qdd) {
   ArmDeviations deviations(solverOf(solver), arm);
   const auto n = static_cast<py::ssize_t>(arm.friction.size());

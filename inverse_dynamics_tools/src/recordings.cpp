@@ -14,7 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "annotations.hpp"
 #include "arrays.hpp"
+#include "description.hpp"
 #include "initialized.hpp"
 #include "joint_states.hpp"
 
@@ -79,21 +81,22 @@ recordings::Storage storageOf(const std::string& name) {
   throw py::value_error("storage: expected sqlite3 or mcap, got '" + name + "'");
 }
 
-py::tuple nextBlock(Messages& messages) {
+std::tuple<std::vector<std::size_t>, std::vector<std::int64_t>, std::vector<py::bytes>> nextBlock(
+    Messages& messages) {
   constexpr std::size_t kMessages = 4096, kBytes = 1 << 26;
   std::vector<std::size_t> connections;
   std::vector<std::int64_t> received;
-  py::list data;
+  std::vector<py::bytes> data;
   recordings::Message message;
   for (std::size_t bytes = 0; connections.size() < kMessages && bytes < kBytes;) {
     if (!messages.source->next(message)) break;
     connections.push_back(message.connection);
     received.push_back(message.received);
-    data.append(py::bytes(reinterpret_cast<const char*>(message.data), message.size));
+    data.emplace_back(reinterpret_cast<const char*>(message.data), message.size);
     bytes += message.size;
   }
   if (connections.empty()) throw py::stop_iteration();
-  return py::make_tuple(connections, received, data);
+  return {std::move(connections), std::move(received), std::move(data)};
 }
 
 Array rowsOf(const inverse_dynamics_evaluation::JointStateNumbers& numbers, std::size_t count) {
@@ -103,7 +106,8 @@ Array rowsOf(const inverse_dynamics_evaluation::JointStateNumbers& numbers, std:
   return array;
 }
 
-py::tuple nextStates(JointStates& states) {
+std::tuple<NameTuple, py::str, Integers, Integers, Array, Array, Array> nextStates(
+    JointStates& states) {
   const InUse reader(states);
   auto& block = states.block;
   {
@@ -116,9 +120,13 @@ py::tuple nextStates(JointStates& states) {
     return Integers(static_cast<py::ssize_t>(given.size()), given.data());
   };
   const std::size_t count = block.size();
-  return py::make_tuple(py::tuple(names), textOf(block.frame_id), stamps(block.header_stamps),
-                        stamps(block.receive_stamps), rowsOf(block.position, count),
-                        rowsOf(block.velocity, count), rowsOf(block.effort, count));
+  return {py::tuple(names),
+          textOf(block.frame_id),
+          stamps(block.header_stamps),
+          stamps(block.receive_stamps),
+          rowsOf(block.position, count),
+          rowsOf(block.velocity, count),
+          rowsOf(block.effort, count)};
 }
 
 /// Of a topic: header and receive stamps, position, velocity, effort.
@@ -179,10 +187,15 @@ void bindRecording(py::module_& module) {
   const auto release = py::call_guard<py::gil_scoped_release>();
   py::class_<Recording>(module, "Recording",
                         "A rosbag2 recording: inverse_dynamics_recordings/recording.hpp.")
-      .def(py::init<const std::string&>(), py::arg("path"), release)
-      .def_property_readonly(
-          "storage",
-          [](const Recording& recording) { return recordings::name(recording.storage()); })
+      .def(py::init([](const PathText& path) {
+             const py::gil_scoped_release free;
+             return std::make_unique<Recording>(path.bytes);
+           }),
+           py::arg("path"))
+      .def_property_readonly("storage",
+                             [](const Recording& recording) -> StorageName {
+                               return py::str(recordings::name(recording.storage()));
+                             })
       .def("topics",
            [](const Recording& recording) {
              std::vector<std::tuple<py::str, py::str, std::int64_t>> topics;
@@ -193,24 +206,29 @@ void bindRecording(py::module_& module) {
            })
       .def(
           "topic_of_type",
-          [](const Recording& recording, const std::string& type, const std::string& topic) {
-            return textOf(recording.topicOfType(type, topic));
+          [](const Recording& recording, const std::string& type, const PathText& topic) {
+            return textOf(recording.topicOfType(type, topic.bytes));
           },
           py::arg("message_type"), py::arg("topic") = "")
-      .def("expected_messages", &Recording::expectedMessages, py::arg("topic"))
+      .def(
+          "expected_messages",
+          [](const Recording& recording, const PathText& topic) {
+            return recording.expectedMessages(topic.bytes);
+          },
+          py::arg("topic"))
       .def("connections", &Recording::definitions, release)
       .def(
           "messages",
-          [](const Recording& recording, const std::string& topic) {
-            return Messages{recording.messages(topic)};
+          [](const Recording& recording, const PathText& topic) {
+            return Messages{recording.messages(topic.bytes)};
           },
           py::arg("topic"))
       .def("all_messages",
            [](const Recording& recording) { return Messages{recording.allMessages()}; })
       .def(
           "joint_states",
-          [](const Recording& recording, const std::string& topic) {
-            return std::make_unique<JointStates>(recording.jointStates(topic));
+          [](const Recording& recording, const PathText& topic) {
+            return std::make_unique<JointStates>(recording.jointStates(topic.bytes));
           },
           py::arg("topic") = "");
 }
@@ -223,9 +241,9 @@ void bindRecordings(py::module_& module) {
   bindRecording(module);
   py::class_<Writer>(module, "JointStateWriter",
                      "A new recording: inverse_dynamics_recordings/joint_state_writer.hpp.")
-      .def(py::init([](const std::string& path, const std::string& storage,
+      .def(py::init([](const PathText& path, const std::string& storage,
                        const std::vector<Writer::Topic>& topics) {
-             return std::make_unique<Writer>(path, storageOf(storage), topics);
+             return std::make_unique<Writer>(path.bytes, storageOf(storage), topics);
            }),
            py::arg("path"), py::arg("storage"), py::arg("topics"))
       .def("write", &write, py::arg("rows"))

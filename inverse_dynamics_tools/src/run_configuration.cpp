@@ -3,14 +3,17 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <chain_dynamics/located_yaml.hpp>
 #include <inverse_dynamics_evaluation/package_share.hpp>
-#include <inverse_dynamics_evaluation/run_configuration.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "initialized.hpp"
+#include "annotations.hpp"
+#include "description.hpp"
+#include "errors.hpp"
 #include "solver.hpp"
 #include "solver_origin.hpp"
 
@@ -19,111 +22,185 @@ namespace {
 
 namespace py = pybind11;
 namespace evaluation = inverse_dynamics_evaluation;
-using evaluation::RunConfiguration;
-using evaluation::RunConfigurationChanges;
-using Names = std::vector<std::string>;
+using Robot = evaluation::RunConfiguration;
 
-/// A path, as Python's os.fsdecode() makes it of its bytes.
-py::object pathOf(const std::string& path) {
+/// A field of a Robot that holds a path; Object: its type in Python.
+template <class Object>
+struct PathOf {
+  std::string Robot::*member;
+};
+
+/// Calls visit(name, member, meaning) for each field of a Robot.
+template <class Visit>
+void forEachField(const Visit& visit) {
+  visit("name", &Robot::name, "a text");
+  visit("description", &Robot::description, "a text, one line");
+  visit("file", PathOf<FilePath>{&Robot::file}, "where it is from");
+  visit("plugin", &Robot::plugin, "package/Class of the solver");
+  visit("urdf", PathOf<MaybeFilePath>{&Robot::urdf}, "the path of a description");
+  visit("model", PathOf<MaybeFilePath>{&Robot::model}, "the path of a model file");
+  visit("root", &Robot::root, "a link; empty: the first");
+  visit("tip", &Robot::tip, "a link; empty: the last");
+  visit("gravity", &Robot::gravity, "three numbers, m/s^2, in the frame of the root link");
+  visit("friction", &Robot::friction, "whether the solver's friction model counts");
+  visit("topic", &Robot::topic, "the topic of recordings");
+  visit("joints", &Robot::joints, "names in recordings, in the order of the chain");
+  visit("effort", &Robot::effort, "what recorded efforts mean, one of EFFORT_CHOICES");
+  visit("drive_gains", &Robot::drive_gains, "N m/A (prismatic N/A); none: the solver's");
+  visit("accelerations", &Robot::accelerations, "a method, one of accelerations.METHODS");
+  visit("cutoff", &Robot::cutoff, "Hz; None: chosen from the data");
+  visit("parameters", &Robot::parameters,
+        "others of the solver: a dictionary, dotted name to value");
+  visit("source", &Robot::source, "where description and values come from");
+}
+
+MaybeFilePath pathOf(const std::string& path) {
   if (path.empty()) return py::none();
   return py::module_::import("pathlib").attr("Path")(
       py::module_::import("os").attr("fsdecode")(py::bytes(path)));
 }
 
-/// The bytes of a path, or of nothing.
-std::string bytesOf(const py::handle& path) {
-  if (path.is_none()) return "";
-  return py::module_::import("os").attr("fsencode")(path).cast<std::string>();
+ParameterDict dictOf(const evaluation::SolverParameters& parameters) {
+  py::dict found;
+  for (const auto& [name, value] : parameters) found[py::str(name)] = py::cast(value);
+  return found;
 }
 
-/// Fields of robots.py's Robot.
-py::dict fieldsOf(const RunConfiguration& robot) {
-  py::dict parameters;
-  for (const auto& [name, value] : robot.parameters) parameters[py::str(name)] = py::cast(value);
+// Values of fields as Python has them.
+template <class Object>
+Object valueOf(const Robot& robot, PathOf<Object> path) {
+  return pathOf(robot.*path.member);
+}
+ParameterDict valueOf(const Robot& robot, evaluation::SolverParameters Robot::*member) {
+  return dictOf(robot.*member);
+}
+NameTuple valueOf(const Robot& robot, std::vector<std::string> Robot::*member) {
+  return tupleOf(robot.*member);
+}
+NumberTuple valueOf(const Robot& robot, std::vector<double> Robot::*member) {
+  return py::tuple(py::cast(robot.*member));
+}
+Numbers3OrNone valueOf(const Robot& robot, std::optional<std::array<double, 3>> Robot::*member) {
+  return robot.*member ? py::object(py::tuple(py::cast(*(robot.*member)))) : py::none();
+}
+template <class Value>
+Value valueOf(const Robot& robot, Value Robot::*member) {
+  return robot.*member;
+}
+
+// The same from Python. Throws py::cast_error: another type.
+template <class Object>
+void take(const py::handle& value, Robot& robot, PathOf<Object> path) {
+  robot.*path.member = value.is_none() ? "" : value.cast<PathText>().bytes;
+}
+void take(const py::handle& value, Robot& robot, evaluation::SolverParameters Robot::*member) {
+  (robot.*member).clear();
+  for (const auto& [name, entry] : py::dict(py::reinterpret_borrow<py::object>(value))) {
+    addParameter(name.cast<std::string>(), entry, robot.*member);
+  }
+}
+template <class Value>
+void take(const py::handle& value, Robot& robot, Value Robot::*member) {
+  robot.*member = value.cast<Value>();
+}
+
+/// The robot with these fields, of a dictionary by name.
+Robot withFields(Robot robot, const py::dict& fields) {
+  std::size_t taken = 0;
+  std::string names;
+  forEachField([&](const char* name, auto member, const char* meaning) {
+    names += (names.empty() ? "" : ", ") + std::string(name);
+    if (!fields.contains(name)) return;
+    ++taken;
+    try {
+      take(fields[name], robot, member);
+    } catch (const py::cast_error&) {
+      throwArgumentError("Robot: argument " + std::string(name) + ": expected " + meaning +
+                         ", got " + std::string(py::repr(fields[name])));
+    }
+  });
+  if (taken == fields.size()) return robot;
+  throwArgumentError("Robot: expected arguments of the names " + names + ", got " +
+                     std::string(py::str(", ").attr("join")(fields).cast<py::str>()));
+}
+
+py::dict fieldsOf(const Robot& robot) {
   py::dict fields;
-  fields["name"] = robot.name;
-  fields["description"] = robot.description;
-  fields["file"] = pathOf(robot.file);
-  fields["plugin"] = robot.plugin;
-  fields["urdf"] = pathOf(robot.urdf);
-  fields["model"] = pathOf(robot.model);
-  fields["root"] = robot.root;
-  fields["tip"] = robot.tip;
-  fields["gravity"] = robot.gravity ? py::object(py::tuple(py::cast(*robot.gravity))) : py::none();
-  fields["friction"] = robot.friction;
-  fields["topic"] = robot.topic;
-  fields["joints"] = py::tuple(py::cast(robot.joints));
-  fields["effort"] = robot.effort;
-  fields["drive_gains"] = py::tuple(py::cast(robot.drive_gains));
-  fields["accelerations"] = robot.accelerations;
-  fields["cutoff"] = robot.cutoff;
-  fields["parameters"] = parameters;
-  fields["source"] = robot.source;
+  forEachField([&](const char* name, auto member, const char* /*meaning*/) {
+    fields[name] = valueOf(robot, member);
+  });
   return fields;
 }
 
-evaluation::SolverParameters parametersOf(const py::handle& parameters) {
-  evaluation::SolverParameters found;
-  for (const auto& [name, value] : py::reinterpret_borrow<py::dict>(parameters)) {
-    addParameter(name.cast<std::string>(), value, found);
+/// The robot with the changes that aren't None.
+Robot withChanges(const Robot& robot, const py::kwargs& given) {
+  py::dict stated;
+  for (const auto& [name, value] : given) {
+    if (!value.is_none()) stated[name] = value;
   }
-  return found;
+  const Robot to = withFields({}, stated);
+  evaluation::RunConfigurationChanges changes;  // those that change others too, or are added
+  if (stated.contains("urdf")) changes.urdf = to.urdf;
+  if (stated.contains("accelerations")) changes.accelerations = to.accelerations;
+  changes.cutoff = to.cutoff;
+  changes.parameters = to.parameters;
+  stated.attr("pop")("parameters", py::none());
+  return withFields(evaluation::withChanges(robot, changes), stated);
 }
 
-/// What a Robot says.
-RunConfiguration configurationOf(const py::object& robot) {
-  RunConfiguration found;
-  const auto take = [&robot](const char* name, auto& field) {
-    field = robot.attr(name).cast<std::decay_t<decltype(field)>>();
-  };
-  take("name", found.name);
-  take("description", found.description);
-  take("plugin", found.plugin);
-  take("root", found.root);
-  take("tip", found.tip);
-  take("gravity", found.gravity);
-  take("friction", found.friction);
-  take("topic", found.topic);
-  take("joints", found.joints);
-  take("effort", found.effort);
-  take("drive_gains", found.drive_gains);
-  take("accelerations", found.accelerations);
-  take("cutoff", found.cutoff);
-  take("source", found.source);
-  found.file = bytesOf(robot.attr("file"));
-  found.urdf = bytesOf(robot.attr("urdf"));
-  found.model = bytesOf(robot.attr("model"));
-  found.parameters = parametersOf(robot.attr("parameters"));
-  return found;
+void bindRobot(py::module_& module) {
+  py::class_<Robot> robot(module, "Robot",
+                          "One run configuration. Empty text or None: not stated, so the solver's "
+                          "own default.\n\n"
+                          "Its fields can't be set: dataclasses.replace() makes a changed copy.");
+  robot
+      .def(py::init([](const std::string& name, const std::string& description,
+                       const PathText& file, const std::string& plugin, const py::kwargs& others) {
+             Robot made;
+             made.name = name;
+             made.description = description;
+             made.file = file.bytes;
+             made.plugin = plugin;
+             return withFields(std::move(made), others);
+           }),
+           py::arg("name"), py::arg("description"), py::arg("file"), py::arg("plugin"),
+           "The other fields by name.")
+      .def_property_readonly(
+          "files",
+          [](const Robot& r) {
+            return std::tuple(pathOf(r.file), pathOf(r.urdf), pathOf(r.model));
+          },
+          "What is read for this robot: run configuration, description, model.")
+      .def(
+          "__eq__", [](const Robot& a, const Robot& b) { return fieldsOf(a).equal(fieldsOf(b)); },
+          py::is_operator())
+      .def("__repr__",
+           [](const Robot& r) {
+             std::string text;
+             for (const auto& [name, value] : fieldsOf(r)) {
+               text += (text.empty() ? "" : ", ") + std::string(py::str(name)) + "=" +
+                       std::string(py::repr(value));
+             }
+             return "Robot(" + text + ")";
+           })
+      .def(py::pickle(&fieldsOf, [](const py::dict& fields) { return withFields({}, fields); }));
+  py::list names;
+  forEachField([&](const char* name, auto member, const char* meaning) {
+    robot.def_property_readonly(
+        name, [member](const Robot& r) { return valueOf(r, member); }, meaning);
+    names.append(name);
+  });
+  // For dataclasses.replace() and asdict(); made when asked for, as dataclasses takes 9 ms to import.
+  robot.def_property_readonly_static("__dataclass_fields__", [names](const py::object&) {
+    const auto dataclasses = py::module_::import("dataclasses");
+    return dataclasses.attr("make_dataclass")("Robot", names).attr("__dataclass_fields__");
+  });
 }
 
-/// Changes by the names of a Robot's fields; what isn't there stays.
-RunConfigurationChanges changesOf(const py::dict& given) {
-  RunConfigurationChanges changes;
-  const auto take = [&given](const char* name, auto& change) {
-    if (given.contains(name)) change = given[name].cast<std::decay_t<decltype(change)>>();
-  };
-  take("plugin", changes.plugin);
-  take("root", changes.root);
-  take("tip", changes.tip);
-  take("gravity", changes.gravity);
-  take("friction", changes.friction);
-  take("topic", changes.topic);
-  take("joints", changes.joints);
-  take("effort", changes.effort);
-  take("drive_gains", changes.drive_gains);
-  take("accelerations", changes.accelerations);
-  take("cutoff", changes.cutoff);
-  if (given.contains("urdf")) changes.urdf = bytesOf(given["urdf"]);
-  if (given.contains("parameters")) changes.parameters = parametersOf(given["parameters"]);
-  return changes;
-}
-
-evaluation::EffortOptions effortOptions(const py::object& robot, const py::object& solver,
+evaluation::EffortOptions effortOptions(const Robot& robot, const SolverObject& solver,
                                         const std::optional<std::string>& option,
                                         const std::string& format) {
-  evaluation::EffortOptions options =
-      evaluation::effortOptions(configurationOf(robot), *solverOf(solver));
+  evaluation::EffortOptions options = evaluation::effortOptions(robot, *solverOf(solver));
   options.option = option;
   options.format = format;
   return options;
@@ -132,49 +209,43 @@ evaluation::EffortOptions effortOptions(const py::object& robot, const py::objec
 }  // namespace
 
 void bindRunConfiguration(py::module_& module) {
+  bindRobot(module);
   module.def("robot_names", &evaluation::robotNames,
-             "Names of the run configurations that the sourced workspaces bring.");
+             "Names of the robots that the sourced workspaces bring.");
   module.def(
-      "read_robot",
-      [](const std::string& name_or_file) {
-        return fieldsOf(evaluation::readRunConfiguration(name_or_file));
+      "load_robot",
+      [](const PathText& name_or_file) {
+        return evaluation::readRunConfiguration(name_or_file.bytes);
       },
-      py::arg("name_or_file"), "Fields of the Robot of that name, or of that file.");
+      py::arg("name_or_file"),
+      "Run configuration by the name of one of robot_names(), or from a file.\n\n"
+      "What ends in .yaml or .yml, or has a directory, is a file. Raises RobotError.");
   module.def(
-      "change_robot",
-      [](const py::object& robot, const py::dict& changes) {
-        return fieldsOf(evaluation::withChanges(configurationOf(robot), changesOf(changes)));
-      },
-      py::arg("robot"), py::arg("changes"),
-      "Fields of a Robot with changes, by the names of its fields.");
-  module.def(
-      "recorded_names",
-      [](const py::object& robot, const Names& joint_names) {
-        return evaluation::recordedNames(configurationOf(robot), joint_names);
-      },
-      py::arg("robot"), py::arg("joint_names"),
-      "Names in a recording of the solver's joints, in the order of the chain.");
+      "with_changes", &withChanges, py::arg("robot"),
+      "The run configuration with all fields replaced for which something is given, not None.\n\n"
+      "A description that is given stands instead of a model file too, a method of accelerations\n"
+      "without the cut-off of the configuration's own; parameters are given one by one.");
+  module.def("recorded_names", &evaluation::recordedNames, py::arg("robot"), py::arg("joint_names"),
+             "Names in a recording of the solver's joints, in the order of the chain.");
   module.def("effort_options", &effortOptions, py::arg("robot"), py::arg("solver"),
              py::arg("option") = py::none(), py::arg("format") = "",
              "What is stated of efforts: by a Robot, the user, the recording's format.");
   module.def(
       "solver_parameters",
       [](const chain_dynamics::LocatedMap& mapping) {
-        py::dict parameters;
-        for (const auto& [name, value] : evaluation::readSolverParameters(mapping)) {
-          parameters[py::str(name)] = py::cast(value);
-        }
-        return parameters;
+        return dictOf(evaluation::readSolverParameters(mapping));
       },
       py::arg("mapping"), "Parameters of a solver as YAML has them; dotted name to value.");
   module.def(
       "package_share",
-      [](const std::string& package) { return pathOf(evaluation::packageShare(package)); },
+      [](const std::string& package) -> FilePath {
+        return pathOf(evaluation::packageShare(package));
+      },
       py::arg("package"), "Directory `share/PACKAGE` of an installed package.");
   module.def(
       "resolved_path",
-      [](const std::string& path, const py::object& directory) {
-        return pathOf(evaluation::resolvedPath(path, bytesOf(directory)));
+      [](const std::string& path, const PathText& directory) -> FilePath {
+        return pathOf(evaluation::resolvedPath(path, directory.bytes));
       },
       py::arg("path"), py::arg("directory"),
       "File that a path in a configuration names; relative ones begin in the directory.");

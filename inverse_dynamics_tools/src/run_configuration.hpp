@@ -7,11 +7,13 @@
 
 #include <chain_dynamics/located_yaml.hpp>
 #include <inverse_dynamics_evaluation/effort.hpp>
+#include <inverse_dynamics_evaluation/run_configuration.hpp>
 
 #include "initialized.hpp"
 
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(chain_dynamics::LocatedMap)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::EffortOptions)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::RunConfiguration)
 
 namespace inverse_dynamics_tools {
 

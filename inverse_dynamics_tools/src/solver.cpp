@@ -56,9 +56,9 @@ class Solver {
   NamedSolver named() const { return {*solver_, origin_.plugin}; }
   std::shared_ptr<const ids::InverseDynamicsSolver> shared() const { return solver_; }
 
-  py::object torques(const py::object& q, const py::object& qd, const py::object& qdd,
-                     const py::object& wrench, const std::string& frame,
-                     const py::object& out) const {
+  Floats torques(const ArrayLike& q, const ArrayLike& qd, const ArrayLike& qdd,
+                 const MaybeArrayLike& wrench, const std::string& frame,
+                 const MaybeFloats& out) const {
     if (!wrench.is_none()) return torquesWithWrench(named(), q, qd, qdd, wrench, frame, out);
     if (frame != "root") {
       throw ids::InvalidParameterValueException(ids::errorText(
@@ -69,18 +69,17 @@ class Solver {
       get().getTorquesBatch(call.in(0), call.in(1), call.in(2), call.states(0));
     });
   }
-  py::object coriolisVector(const py::object& q, const py::object& qd,
-                            const py::object& out) const {
+  Floats coriolisVector(const ArrayLike& q, const ArrayLike& qd, const MaybeFloats& out) const {
     return vectors("coriolis_vector", {{"q", q}, {"qd", qd}}, out, [&](auto& call) {
       get().getCoriolisVectorBatch(call.in(0), call.in(1), call.states(0));
     });
   }
-  py::object gravityVector(const py::object& q, const py::object& out) const {
+  Floats gravityVector(const ArrayLike& q, const MaybeFloats& out) const {
     return vectors("gravity_vector", {{"q", q}}, out,
                    [&](auto& call) { get().getGravityVectorBatch(call.in(0), call.states(0)); });
   }
-  py::object frictionVector(const py::object& qd, const py::object& q,
-                            const py::object& out) const {
+  Floats frictionVector(const ArrayLike& qd, const MaybeArrayLike& q,
+                        const MaybeFloats& out) const {
     Arguments arguments = {{"qd", qd}};
     if (!q.is_none()) arguments.emplace_back("q", q);
     return vectors("friction_vector", arguments, out, [&](auto& call) {
@@ -88,15 +87,15 @@ class Solver {
       get().getFrictionVectorBatch(q.is_none() ? unknown : call.in(1), call.in(0), call.states(0));
     });
   }
-  py::object inertiaMatrix(const py::object& q, const py::object& out) const {
+  Floats inertiaMatrix(const ArrayLike& q, const MaybeFloats& out) const {
     SolverCall call("inertia_matrix", get());
     call.input("q", q);
     call.matrices("out", out, get().jointCount(), get().jointCount());
     call.run([&] { get().getInertiaMatrixBatch(call.in(0), call.matricesOf(0)); });
     return call.result(0);
   }
-  py::tuple dynamicComponents(const py::object& q, const py::object& qd,
-                              const py::object& out) const {
+  ThreeFloats dynamicComponents(const ArrayLike& q, const ArrayLike& qd,
+                                const py::object& out) const {
     const char* const method = "dynamic_components";
     const std::array<py::object, 3> outs = threeOf(method, out);
     SolverCall call(method, get());
@@ -109,11 +108,11 @@ class Solver {
       get().getDynamicComponentsBatch(call.in(0), call.in(1), call.matricesOf(0), call.states(1),
                                       call.states(2));
     });
-    return py::make_tuple(call.result(0), call.result(1), call.result(2));
+    return {call.result(0), call.result(1), call.result(2)};
   }
 
-  void setPayload(const std::string& name, double mass, const py::object& center_of_mass,
-                  const py::object& inertia, const py::object& frame) {
+  void setPayload(const std::string& name, double mass, const MaybeArrayLike& center_of_mass,
+                  const MaybeArrayLike& inertia, const MaybeArrayLike& frame) {
     auto& payload = capability<ids::Payload>("set_payload");
     const ids::RigidBody body = bodyOf(mass, center_of_mass, inertia, frame);
     withoutInterpreter([&] { payload.setPayload(name, body); });
@@ -134,35 +133,35 @@ class Solver {
            dynamic_cast<const ids::VariableGravity*>(solver_.get()) != nullptr;
   }
   // What is set waits for a change, which waits for batches: without the interpreter's lock.
-  py::dict payloads() {
+  ParameterDict payloads() {
     auto& payload = capability<ids::Payload>("payloads");
     return dictionaryOf(withoutInterpreter([&] { return payload.payloads(); }));
   }
 
-  void setGravity(const py::object& gravity) {
+  void setGravity(const ArrayLike& gravity) {
     auto& mount = capability<ids::VariableGravity>("set_gravity");
     const Eigen::Vector3d numbers = vectorOf("set_gravity: argument gravity", gravity);
     withoutInterpreter([&] { mount.setGravity(numbers); });
     warn(ids::doubtOf(numbers));
   }
-  void setBaseAcceleration(const py::object& acceleration) {
+  void setBaseAcceleration(const ArrayLike& acceleration) {
     auto& mount = capability<ids::VariableGravity>("set_base_acceleration");
     const Eigen::Vector3d numbers =
         vectorOf("set_base_acceleration: argument acceleration", acceleration);
     const py::gil_scoped_release release;
     mount.setBaseAcceleration(numbers);
   }
-  py::object gravity() {
+  Floats gravity() {
     auto& mount = capability<ids::VariableGravity>("gravity");
     return arrayOf(withoutInterpreter([&] { return mount.gravity(); }));
   }
-  py::object baseAcceleration() {
+  Floats baseAcceleration() {
     auto& mount = capability<ids::VariableGravity>("base_acceleration");
     return arrayOf(withoutInterpreter([&] { return mount.baseAcceleration(); }));
   }
 
   /// Drive gains of a model identified in currents; None of any other.
-  py::object driveGains() const {
+  MaybeFloats driveGains() const {
     const auto* motors = dynamic_cast<const ids::MotorCurrents*>(solver_.get());
     if (motors == nullptr) return py::none();
     const Eigen::VectorXd gains = motors->getDriveGainsMatrix().diagonal();
@@ -172,7 +171,7 @@ class Solver {
   bool frictionDependsOnPosition() const { return ids::frictionDependsOnPosition(*solver_); }
 
   /// Half the width of the band that holds 95 % of the torques; None where it is unknown.
-  py::object torqueDeviation() const {
+  MaybeFloats torqueDeviation() const {
     const auto* band = dynamic_cast<const ids::TorqueDeviation*>(solver_.get());
     if (band == nullptr || !band->hasTorqueDeviation()) return py::none();
     const Eigen::VectorXd deviation = band->getTorqueDeviation();
@@ -180,19 +179,19 @@ class Solver {
   }
 
   /// n: "revolute", "continuous" or "prismatic".
-  py::tuple jointTypes() const {
+  NameTuple jointTypes() const {
     const auto name = [](chain_dynamics::JointType type) {
       return type == chain_dynamics::JointType::kPrismatic    ? "prismatic"
              : type == chain_dynamics::JointType::kContinuous ? "continuous"
                                                               : "revolute";
     };
-    py::list names;
-    for (const auto type : get().jointTypes()) names.append(name(type));
-    return names;
+    std::vector<std::string> names;
+    for (const auto type : get().jointTypes()) names.emplace_back(name(type));
+    return tupleOf(names);
   }
 
   /// (3, n, 2): q, qd, qdd; joint; least and greatest. None where it is unknown.
-  py::object seenRanges() const {
+  MaybeFloats seenRanges() const {
     const auto* band = dynamic_cast<const ids::TorqueDeviation*>(solver_.get());
     if (band == nullptr || band->seenRanges().empty()) return py::none();
     const auto& ranges = band->seenRanges();
@@ -217,8 +216,8 @@ class Solver {
   }
 
   template <class Compute>
-  py::object vectors(const char* method, const Arguments& arguments, const py::object& out,
-                     Compute compute) const {
+  Floats vectors(const char* method, const Arguments& arguments, const MaybeFloats& out,
+                 Compute compute) const {
     SolverCall call(method, get());
     for (const auto& [name, values] : arguments) call.input(name, values);
     call.vectors("out", out);
@@ -254,9 +253,9 @@ std::unique_ptr<Solver> makeSolver(const std::string& plugin, const Description&
                                    const std::optional<std::array<double, 3>>& gravity,
                                    bool friction, const std::string& attached,
                                    const std::optional<std::string>& model,
-                                   const py::dict& parameters) {
+                                   const ParameterDict& parameters) {
   Origin origin{plugin, urdf.text, root, tip, gravity, friction, attached, model, {}};
-  for (const auto& [key, value] : parameters) {
+  for (const auto& [key, value] : py::dict(parameters)) {
     addParameter(key.cast<std::string>(), value, origin.parameters);
   }
   return std::make_unique<Solver>(std::move(origin));
@@ -274,8 +273,8 @@ py::tuple reduced(const py::object& self) {
 }
 
 /// A function of a solver as a method.
-template <class... Values>
-auto of(py::object (*function)(const NamedSolver&, Values...)) {
+template <class Result, class... Values>
+auto of(Result (*function)(const NamedSolver&, Values...)) {
   return [function](const Solver& solver, Values... values) {
     return function(solver.named(), values...);
   };
@@ -360,13 +359,13 @@ void bindSolver(py::module_& module) {
           "Raises SolverError: see inverse_dynamics.errors.")
       .def_property_readonly("plugin", [](const Solver& s) { return s.origin().plugin; })
       .def_property_readonly(
-          "joint_names", [](const Solver& s) { return py::tuple(py::cast(s.get().jointNames())); },
+          "joint_names", [](const Solver& s) { return tupleOf(s.get().jointNames()); },
           "Names of the joints, from root to tip: the order of all arrays.")
       .def_property_readonly("joint_types", &Solver::jointTypes,
                              "revolute, continuous or prismatic, of each joint. Positions of a\n"
                              "continuous joint that differ by whole turns are the same.")
       .def_property_readonly(
-          "warnings", [](const Solver& s) { return py::tuple(py::cast(s.get().warnings())); },
+          "warnings", [](const Solver& s) { return tupleOf(s.get().warnings()); },
           "Warnings about the robot that don't prevent computing, one sentence each.")
       .def_property_readonly(
           "inertia_is_physical", [](const Solver& s) { return s.get().inertiaIsPhysical(); },

@@ -76,16 +76,16 @@ void requireFrame(const char* method, const std::string& frame) {
 
 }  // namespace
 
-py::object tipPose(const NamedSolver& of, const py::object& q) {
+TwoFloats tipPose(const NamedSolver& of, const ArrayLike& q) {
   const auto& kinematics = capability<ids::Kinematics>("tip_pose", of);
   SolverCall call = callOf("tip_pose", of, {{"q", q}});
   call.matrices("R", py::none(), 3, 3);
   call.vectors("p", py::none(), 3);
   call.run([&] { kinematics.getTipPoseBatch(call.in(0), call.matricesOf(0), call.states(1)); });
-  return py::make_tuple(call.result(0), call.result(1));
+  return {call.result(0), call.result(1)};
 }
 
-py::object tipJacobian(const NamedSolver& of, const py::object& q, const py::object& out) {
+Floats tipJacobian(const NamedSolver& of, const ArrayLike& q, const MaybeFloats& out) {
   const auto& kinematics = capability<ids::Kinematics>("tip_jacobian", of);
   SolverCall call = callOf("tip_jacobian", of, {{"q", q}});
   call.matrices("out", out, 6, jointsOf(of));
@@ -93,8 +93,8 @@ py::object tipJacobian(const NamedSolver& of, const py::object& q, const py::obj
   return call.result(0);
 }
 
-py::object tipJacobianDerivative(const NamedSolver& of, const py::object& q, const py::object& qd,
-                                 const py::object& out) {
+Floats tipJacobianDerivative(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd,
+                             const MaybeFloats& out) {
   const auto& kinematics = capability<ids::Kinematics>("tip_jacobian_derivative", of);
   SolverCall call = callOf("tip_jacobian_derivative", of, {{"q", q}, {"qd", qd}});
   call.matrices("out", out, 6, jointsOf(of));
@@ -104,8 +104,8 @@ py::object tipJacobianDerivative(const NamedSolver& of, const py::object& q, con
   return call.result(0);
 }
 
-py::object externalTorques(const NamedSolver& of, const py::object& q, const py::object& wrench,
-                           const std::string& frame, const py::object& out) {
+Floats externalTorques(const NamedSolver& of, const ArrayLike& q, const ArrayLike& wrench,
+                       const std::string& frame, const MaybeFloats& out) {
   const char* const method = "external_torques";
   const auto& contact = capability<ids::ExternalWrench>(method, of);
   requireFrame(method, frame);
@@ -120,9 +120,9 @@ py::object externalTorques(const NamedSolver& of, const py::object& q, const py:
   return call.result(0);
 }
 
-py::object torquesWithWrench(const NamedSolver& of, const py::object& q, const py::object& qd,
-                             const py::object& qdd, const py::object& wrench,
-                             const std::string& frame, const py::object& out) {
+Floats torquesWithWrench(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd,
+                         const ArrayLike& qdd, const ArrayLike& wrench, const std::string& frame,
+                         const MaybeFloats& out) {
   const char* const method = "torques";
   const auto& contact = capability<ids::ExternalWrench>(method, of);
   requireFrame(method, frame);
@@ -137,8 +137,8 @@ py::object torquesWithWrench(const NamedSolver& of, const py::object& q, const p
   return call.result(0);
 }
 
-py::object coriolisMatrix(const NamedSolver& of, const py::object& q, const py::object& qd,
-                          const py::object& out) {
+Floats coriolisMatrix(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd,
+                      const MaybeFloats& out) {
   const auto& coriolis = capability<ids::CoriolisMatrix>("coriolis_matrix", of);
   SolverCall call = callOf("coriolis_matrix", of, {{"q", q}, {"qd", qd}});
   call.matrices("out", out, jointsOf(of), jointsOf(of));
@@ -146,7 +146,7 @@ py::object coriolisMatrix(const NamedSolver& of, const py::object& q, const py::
   return call.result(0);
 }
 
-py::object kineticEnergy(const NamedSolver& of, const py::object& q, const py::object& qd) {
+FloatOrFloats kineticEnergy(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd) {
   const auto& energies = capability<ids::Energies>("kinetic_energy", of);
   SolverCall call = callOf("kinetic_energy", of, {{"q", q}, {"qd", qd}});
   call.numbers("out", py::none());
@@ -154,7 +154,7 @@ py::object kineticEnergy(const NamedSolver& of, const py::object& q, const py::o
   return call.result(0)[py::tuple()];
 }
 
-py::object potentialEnergy(const NamedSolver& of, const py::object& q) {
+FloatOrFloats potentialEnergy(const NamedSolver& of, const ArrayLike& q) {
   const auto& energies = capability<ids::Energies>("potential_energy", of);
   SolverCall call = callOf("potential_energy", of, {{"q", q}});
   call.numbers("out", py::none());
@@ -162,8 +162,8 @@ py::object potentialEnergy(const NamedSolver& of, const py::object& q) {
   return call.result(0)[py::tuple()];
 }
 
-py::object torqueDerivatives(const NamedSolver& of, const py::object& q, const py::object& qd,
-                             const py::object& qdd) {
+ThreeFloats torqueDerivatives(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd,
+                              const ArrayLike& qdd) {
   const auto& derivatives = capability<ids::TorqueDerivatives>("torque_derivatives", of);
   SolverCall call = callOf("torque_derivatives", of, {{"q", q}, {"qd", qd}, {"qdd", qdd}});
   for (const char* name : {"dtau_dq", "dtau_dqd", "dtau_dqdd"}) {
@@ -173,11 +173,11 @@ py::object torqueDerivatives(const NamedSolver& of, const py::object& q, const p
     derivatives.getTorqueDerivativesBatch(call.in(0), call.in(1), call.in(2), call.matricesOf(0),
                                           call.matricesOf(1), call.matricesOf(2));
   });
-  return py::make_tuple(call.result(0), call.result(1), call.result(2));
+  return {call.result(0), call.result(1), call.result(2)};
 }
 
-py::object regressor(const NamedSolver& of, const py::object& q, const py::object& qd,
-                     const py::object& qdd, const py::object& out) {
+Floats regressor(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd,
+                 const ArrayLike& qdd, const MaybeFloats& out) {
   const auto& bodies = capability<ids::Regressor>("regressor", of);
   SolverCall call = callOf("regressor", of, {{"q", q}, {"qd", qd}, {"qdd", qdd}});
   call.matrices("out", out, jointsOf(of), 10 * jointsOf(of));
@@ -186,8 +186,8 @@ py::object regressor(const NamedSolver& of, const py::object& q, const py::objec
   return call.result(0);
 }
 
-py::object accelerations(const NamedSolver& of, const py::object& q, const py::object& qd,
-                         const py::object& tau, const py::object& out) {
+Floats accelerations(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd,
+                     const ArrayLike& tau, const MaybeFloats& out) {
   const auto& forward = capability<ids::ForwardDynamics>("accelerations", of);
   SolverCall call = callOf("accelerations", of, {{"q", q}, {"qd", qd}, {"tau", tau}});
   call.vectors("out", out);

@@ -8,6 +8,8 @@
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <string>
 
+#include "annotations.hpp"
+
 namespace inverse_dynamics_tools {
 
 /// A solver, and the plugin that errors name.
@@ -21,31 +23,25 @@ struct NamedSolver {
 ///
 /// @throws Exception  naming the solvers that have it, where this one hasn't.
 /// @{
-pybind11::object tipPose(const NamedSolver& of, const pybind11::object& q);
-pybind11::object tipJacobian(const NamedSolver& of, const pybind11::object& q,
-                             const pybind11::object& out);
-pybind11::object tipJacobianDerivative(const NamedSolver& of, const pybind11::object& q,
-                                       const pybind11::object& qd, const pybind11::object& out);
-pybind11::object externalTorques(const NamedSolver& of, const pybind11::object& q,
-                                 const pybind11::object& wrench, const std::string& frame,
-                                 const pybind11::object& out);
-pybind11::object torquesWithWrench(const NamedSolver& of, const pybind11::object& q,
-                                   const pybind11::object& qd, const pybind11::object& qdd,
-                                   const pybind11::object& wrench, const std::string& frame,
-                                   const pybind11::object& out);
-pybind11::object coriolisMatrix(const NamedSolver& of, const pybind11::object& q,
-                                const pybind11::object& qd, const pybind11::object& out);
-pybind11::object kineticEnergy(const NamedSolver& of, const pybind11::object& q,
-                               const pybind11::object& qd);
-pybind11::object potentialEnergy(const NamedSolver& of, const pybind11::object& q);
-pybind11::object torqueDerivatives(const NamedSolver& of, const pybind11::object& q,
-                                   const pybind11::object& qd, const pybind11::object& qdd);
-pybind11::object regressor(const NamedSolver& of, const pybind11::object& q,
-                           const pybind11::object& qd, const pybind11::object& qdd,
-                           const pybind11::object& out);
-pybind11::object accelerations(const NamedSolver& of, const pybind11::object& q,
-                               const pybind11::object& qd, const pybind11::object& tau,
-                               const pybind11::object& out);
+TwoFloats tipPose(const NamedSolver& of, const ArrayLike& q);
+Floats tipJacobian(const NamedSolver& of, const ArrayLike& q, const MaybeFloats& out);
+Floats tipJacobianDerivative(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd,
+                             const MaybeFloats& out);
+Floats externalTorques(const NamedSolver& of, const ArrayLike& q, const ArrayLike& wrench,
+                       const std::string& frame, const MaybeFloats& out);
+Floats torquesWithWrench(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd,
+                         const ArrayLike& qdd, const ArrayLike& wrench, const std::string& frame,
+                         const MaybeFloats& out);
+Floats coriolisMatrix(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd,
+                      const MaybeFloats& out);
+FloatOrFloats kineticEnergy(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd);
+FloatOrFloats potentialEnergy(const NamedSolver& of, const ArrayLike& q);
+ThreeFloats torqueDerivatives(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd,
+                              const ArrayLike& qdd);
+Floats regressor(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd,
+                 const ArrayLike& qdd, const MaybeFloats& out);
+Floats accelerations(const NamedSolver& of, const ArrayLike& q, const ArrayLike& qd,
+                     const ArrayLike& tau, const MaybeFloats& out);
 /// @}
 
 }  // namespace inverse_dynamics_tools

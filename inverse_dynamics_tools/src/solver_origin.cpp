@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "errors.hpp"
+
 namespace inverse_dynamics_tools {
 
 namespace py = pybind11;
@@ -47,9 +49,7 @@ ids::ParameterValue parameterOf(const std::string& name, const py::handle& value
       "parameter '" + name + "'", "",
       "bool, int, float, str, a list of one of them, or a dict of parameters below this name",
       py::str(py::type::of(value).attr("__name__")));
-  const py::object error = py::module_::import("inverse_dynamics.errors").attr("ArgumentError");
-  PyErr_SetString(error.ptr(), text.c_str());
-  throw py::error_already_set();
+  throwArgumentError(text);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "description.hpp"
 #include "run_configuration.hpp"
 
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(chain_dynamics::LocatedValue)
@@ -30,6 +31,7 @@ LocatedValue::Throw raising(const py::type& error) {
 }  // namespace
 
 void bindYaml(py::module_& module) {
+  py::class_<LocatedMap> map(module, "YamlMap", "Keys with values, and which have been asked for.");
   py::class_<LocatedValue>(module, "YamlValue", "A value of a YAML file and where it stands.")
       .def_property_readonly("where", &LocatedValue::where, "`file:line: key`, as errors begin.")
       .def_property_readonly("is_list", &LocatedValue::isList)
@@ -50,23 +52,22 @@ void bindYaml(py::module_& module) {
       .def("entries", &LocatedValue::entries, py::arg("length") = py::none(),
            "A list; of this length, if one is given.")
       .def("mapping", &LocatedValue::map, "Keys with values.");
-  py::class_<LocatedMap>(module, "YamlMap", "Keys with values, and which have been asked for.")
-      .def("required", &LocatedMap::required, py::arg("key"),
-           "The value of a key that must be there.")
+  map.def("required", &LocatedMap::required, py::arg("key"),
+          "The value of a key that must be there.")
       .def("optional", &LocatedMap::optional, py::arg("key"),
            "The value of a key, or None if it is absent or null.")
       .def("reject_others", &LocatedMap::rejectOthers,
            "Raise the error for a key that hasn't been read.");
   module.def(
       "read_yaml",
-      [](const std::string& path, const py::type& error) {
-        return LocatedValue::ofFile(path, raising(error));
+      [](const PathText& path, const py::type& error) {
+        return LocatedValue::ofFile(path.bytes, raising(error));
       },
       py::arg("path"), py::arg("error"),
       "The value that a YAML file is. error: what is raised, now and by the value.");
   module.def(
       "parse_yaml",
-      [](const std::string& text, const std::string& file, const py::type& error) {
+      [](const py::bytes& text, const std::string& file, const py::type& error) {
         return LocatedValue::ofText(text, file, raising(error));
       },
       py::arg("text"), py::arg("file"), py::arg("error"), "The value that a text of YAML is.");

@@ -72,7 +72,7 @@ def test_constructor_names_the_argument(positional: tuple, named: dict, text: st
 def test_methods_name_the_argument(solver: Solver) -> None:
     assert (
         refusal(lambda: solver.torques(Q, Q))
-        == "Solver.torques: argument qdd: expected a value, got none"
+        == "Solver.torques: argument qdd: expected an array of real numbers, got none"
     )
     assert (
         refusal(lambda: solver.torques(Q, Q, Q, Q))

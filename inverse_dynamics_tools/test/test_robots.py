@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
+import dataclasses
+import pickle
 from pathlib import Path
 
 import pytest
 from conftest import damaged
 
 from inverse_dynamics.base.ament import PackageNotFoundError
-from inverse_dynamics.errors import RobotError
-from inverse_dynamics.robot.robots import load_robot, robot_names
+from inverse_dynamics.errors import ArgumentError, RobotError
+from inverse_dynamics.robot.robots import RIGID_BODY, Robot, load_robot, robot_names, with_changes
 
 COMPLETE = """\
 schema: 1
@@ -269,3 +271,29 @@ def test_the_projects_robots_are_complete(name):
 def test_a_name_that_no_file_can_have_is_an_error(name):
     with pytest.raises(RobotError, match=r"no such file; expected|expected one of"):
         load_robot(name)
+
+
+def test_a_robot_is_a_value() -> None:
+    robot = load_robot("ur10_real")
+    assert pickle.loads(pickle.dumps(robot)) == robot == load_robot("ur10_real")
+    changed = dataclasses.replace(robot, gravity=(0, 0, 9.81), urdf=None)
+    assert (changed.gravity, changed.urdf, changed.joints) == ((0, 0, 9.81), None, robot.joints)
+    assert changed != robot
+    assert "urdf=None" in repr(changed)
+    with pytest.raises(AttributeError):
+        changed.effort = "current"
+
+
+@pytest.mark.parametrize(
+    ("field", "text"),
+    [
+        ({"gravity": (0, 9.81)}, "argument gravity: expected three numbers, m/s.2, .*, got .0, 9"),
+        ({"urdf": 3}, "argument urdf: expected the path of a description, got 3"),
+        ({"tpi": "tool0"}, "expected arguments of the names name, .*, source, got tpi"),
+    ],
+)
+def test_fields_of_a_robot_are_checked(field: dict, text: str) -> None:
+    with pytest.raises(ArgumentError, match=text):
+        Robot("arm", "", "arm.yaml", RIGID_BODY, **field)
+    with pytest.raises(ArgumentError, match=text):
+        with_changes(load_robot("ur10_real"), **field)

@@ -15,7 +15,6 @@ __all__ = [
     "PackageNotFoundError",
     "package_roots",
     "package_share",
-    "path_bytes",
     "resolve",
 ]
 
@@ -50,11 +49,3 @@ def resolve(path: str, base: Path) -> Path:
     relative to the directory `base` of the configuration. Raises PackageNotFoundError, RobotError.
     """
     return _core.resolved_path(path, base)
-
-
-def path_bytes(path: Path | str) -> bytes:
-    """A path as C++ takes it: os.fsencode(), but for what no path can be."""
-    try:
-        return os.fsencode(path)
-    except UnicodeEncodeError:
-        return str(path).encode("utf-8", "backslashreplace")

@@ -204,7 +204,11 @@ _KINDS: tuple[tuple[str, str, Callable[[Any], bool]], ...] = (
     (r"None", "None", lambda value: value is None),
     (r"bool", "True or False", lambda value: isinstance(value, (bool, np.bool_))),
     (r"str|Clock", "a text", _is_text),
-    (r"Path", "a path", lambda value: isinstance(value, os.PathLike)),
+    (
+        r"(pathlib\.)?Path|os\.PathLike\[str\]",
+        "a path",
+        lambda value: isinstance(value, os.PathLike),
+    ),
     (r".*ArrayLike, numpy\.bool\].*", "an array of True and False", _is_mask),
     (r".*(ArrayLike|NDArray|ndarray).*", "an array of real numbers", _is_array),
     (r".*(Sequence|[Ll]ist)\[str\].*", "a list of texts", _are(_is_text)),

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 from inverse_dynamics import _core
 from inverse_dynamics._core import YamlMap as Mapping
 from inverse_dynamics._core import YamlValue as Value
-from inverse_dynamics.base.ament import path_bytes
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,7 +26,7 @@ __all__ = ["Mapping", "Value", "parse_mapping", "read_mapping"]
 
 def read_mapping(file: Path, error: type[UserError]) -> Mapping:
     """Read a YAML file that holds keys with values. error: what is raised, now and by its values."""
-    return _core.read_yaml(path_bytes(file), error).mapping()
+    return _core.read_yaml(file, error).mapping()
 
 
 def parse_mapping(text: str, file: str, error: type[UserError]) -> Mapping:

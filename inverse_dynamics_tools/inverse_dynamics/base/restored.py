@@ -6,7 +6,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from inverse_dynamics._core import Floats, Solver
+    from inverse_dynamics._core import Solver
+    from inverse_dynamics.base.arrays import Floats
 
 
 def restored_solver(

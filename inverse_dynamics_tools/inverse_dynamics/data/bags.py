@@ -48,7 +48,7 @@ class TopicSummary(NamedTuple):
 
 def open_recording(path: Path | str) -> Recording:
     """The recording: directory with metadata.yaml, or a .db3 or .mcap file. Raises BagError."""
-    return Recording(os.fsencode(Path(path)))
+    return Recording(Path(path))
 
 
 def read_topics(path: Path | str) -> list[TopicSummary]:
@@ -63,7 +63,7 @@ def topics_of(recording: Recording) -> list[TopicSummary]:
 
 def topic_of_type(recording: Recording, message_type: str, topic: str = "") -> str:
     """The topic; none given: the only one with messages of the type. Raises BagError."""
-    return recording.topic_of_type(message_type, topic.encode("utf-8", "surrogateescape"))
+    return recording.topic_of_type(message_type, topic)
 
 
 def read_joint_log(
@@ -169,7 +169,7 @@ class JointLogsWriter:
         self._path = path
         about = [(topic, list(names), frame) for topic, (names, frame) in topics.items()]
         with self._errors_told():
-            self._writer = JointStateWriter(os.fsencode(Path(path)), storage, about)
+            self._writer = JointStateWriter(Path(path), storage, about)
 
     def write(self, rows: Sequence[tuple[Integers, Integers, Floats, Floats, Floats]]) -> None:
         """The next messages of each topic: header and receive stamps, positions, velocities, efforts."""

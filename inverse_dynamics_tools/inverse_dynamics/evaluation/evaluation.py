@@ -8,7 +8,6 @@ for error in result.errors:
 
 from __future__ import annotations
 
-import os
 import time
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -39,8 +38,8 @@ from inverse_dynamics.robot.solvers import description_notes, open_solver
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from inverse_dynamics._core import JointMetrics, Parameter
-    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics._core import JointMetrics
+    from inverse_dynamics.base.arrays import Floats, Mask, Parameter
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.bags import JointStateTopic
     from inverse_dynamics.data.joint_log import Clock
@@ -311,7 +310,7 @@ def _compare(
         topic=motion.topic,
         units=list(arm.units),
         notes=list(notes),
-        scratch=b"" if series.scratch is None else os.fsencode(series.scratch),
+        scratch=series.scratch or "",
         take=take,
         progress=lambda share: progress("evaluating", round(share * expected), expected),
     )

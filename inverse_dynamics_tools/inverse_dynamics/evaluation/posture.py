@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from inverse_dynamics._core import Parameter
+    from inverse_dynamics.base.arrays import Parameter
     from inverse_dynamics.robot.robots import Robot
 
 LOCKED = "locked_joints."
@@ -44,7 +44,7 @@ class Posture:
 def locked_joints(robot: Robot) -> dict[str, float]:
     """Positions of `locked_joints.JOINT` among the parameters of a run configuration, by joint."""
     return {
-        name.removeprefix(LOCKED): float(value)  # type: ignore[arg-type]
+        name.removeprefix(LOCKED): float(value)
         for name, value in robot.parameters.items()
         if name.startswith(LOCKED)
     }

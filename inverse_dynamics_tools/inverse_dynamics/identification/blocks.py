@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Mask
     from inverse_dynamics.evaluation.evaluation import Evaluation
 
+    FitBlock = tuple[Floats, Floats, Floats, Floats]
+    """q, qd, qdd, tau, (N, n) each: what ArmFitter takes."""
+
 _FEWEST = 20  # samples that a block can be differentiated with
 
 _ARRAYS = ("time", "instants", "used", "q", "qd", "qdd", "tau", "counts")  # of a block
@@ -65,7 +68,7 @@ class Block:
         return replace(self, **{name: getattr(self, name)[::step] for name in _ARRAYS})
 
     @property
-    def fitted(self) -> _core.Block:
+    def fitted(self) -> FitBlock:
         """q, qd, qdd, tau of the samples to be fitted to."""
         if self.counts.all():
             return self.q, self.qd, self.qdd, self.tau
@@ -132,6 +135,6 @@ def _accelerations(evaluation: Evaluation, part: slice) -> tuple[Floats, Floats]
     return qdd, samples.time
 
 
-def together(blocks: Sequence[Block]) -> list[_core.Block]:
+def together(blocks: Sequence[Block]) -> list[FitBlock]:
     """What a fit takes."""
     return [block.fitted for block in blocks]

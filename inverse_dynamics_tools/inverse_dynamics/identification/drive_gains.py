@@ -32,11 +32,11 @@ from inverse_dynamics.robot.robots import RIGID_BODY, with_changes
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from inverse_dynamics import _core
-    from inverse_dynamics._core import ArmFit, ArmFitter, Parameter
-    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics._core import ArmFit, ArmFitter
+    from inverse_dynamics.base.arrays import Floats, Mask, Parameter
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.identification.blocks import FitBlock
     from inverse_dynamics.robot.robots import Robot
 
     KnownPayload = tuple[Path | str, Mapping[str, Parameter]]
@@ -58,7 +58,7 @@ class _Recording:
     """Blocks of currents, and what the tip carries: (10,) in its frame, None: nothing that is known."""
 
     evaluation: Evaluation
-    blocks: list[_core.Block]
+    blocks: list[FitBlock]
     carried: Floats | None
 
 
@@ -196,7 +196,7 @@ def _check_load(path: Path | str, load: Mapping[str, Parameter]) -> None:
         )
 
 
-def _blocks(read: Sequence[_Recording]) -> tuple[list[_core.Block], list[Floats | None]]:
+def _blocks(read: Sequence[_Recording]) -> tuple[list[FitBlock], list[Floats | None]]:
     blocks = [block for recording in read for block in recording.blocks]
     return blocks, [recording.carried for recording in read for _ in recording.blocks]
 
@@ -256,7 +256,7 @@ def _half_widths(fitter: ArmFitter, fit: ArmFit, read: Sequence[_Recording]) -> 
 def _jackknife(
     fitter: ArmFitter,
     fit: ArmFit,
-    blocks: Sequence[_core.Block],
+    blocks: Sequence[FitBlock],
     carried: Sequence[Floats | None],
 ) -> Floats:
     """(n,) standard deviations of log k."""

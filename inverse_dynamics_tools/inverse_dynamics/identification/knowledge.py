@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics._core import ArmFit, ArmFitter
     from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.identification.blocks import Block
+    from inverse_dynamics.identification.blocks import Block, FitBlock
 
 PARAMETERS = ("m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz")
 UNITS = ("kg", *["kg m"] * 3, *["kg m^2"] * 6)
@@ -136,7 +136,7 @@ def knowledge(
     return Knowledge(fitter.joint_names, values, fitter.prior, data, prior, scores, worth)
 
 
-def _clusters(blocks: Sequence[Block]) -> list[_core.Block]:
+def _clusters(blocks: Sequence[Block]) -> list[FitBlock]:
     """Blocks cut further, to about ten."""
     parts = max(1, round(_CLUSTERS / len(blocks)))
     found = []

@@ -19,7 +19,7 @@ from inverse_dynamics.errors import UserError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from inverse_dynamics._core import Parameter
+    from inverse_dynamics.base.arrays import Parameter
     from inverse_dynamics.base.progress import Progress
 
 _FIRST_LINE = 10.0  # s

@@ -17,7 +17,7 @@ from inverse_dynamics.verbs.payload_option import stated_payload
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from inverse_dynamics._core import Parameter
+    from inverse_dynamics.base.arrays import Parameter
     from inverse_dynamics.identification.result import Identification
     from inverse_dynamics.results.hold_out import HoldOut
     from inverse_dynamics.results.identifications import IdentificationFiles

@@ -12,7 +12,8 @@ from inverse_dynamics.base.decimals import decimal
 from inverse_dynamics.errors import UserError
 
 if TYPE_CHECKING:
-    from inverse_dynamics._core import Parameter, YamlMap
+    from inverse_dynamics._core import YamlMap
+    from inverse_dynamics.base.arrays import Parameter
 
 _FORMS = (
     "MASS, MASS,x,y,z or MASS,x,y,z,Ixx,Ixy,Ixz,Iyy,Iyz,Izz (1, 4 or 10 numbers), or a YAML file with "
