@@ -27,7 +27,7 @@ solver_packages=(
   pinocchio_inverse_dynamics_solver
 )
 user_packages=(
-  inverse_dynamics_evaluation inverse_dynamics_recordings inverse_dynamics_control
+  inverse_dynamics_evaluation inverse_dynamics_control
   inverse_dynamics_identification inverse_dynamics_tools
 )
 

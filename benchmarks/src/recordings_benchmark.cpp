@@ -22,8 +22,8 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <inverse_dynamics_recordings/joint_state_writer.hpp>
-#include <inverse_dynamics_recordings/recording.hpp>
+#include <inverse_dynamics_evaluation/joint_state_writer.hpp>
+#include <inverse_dynamics_evaluation/recording.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -31,11 +31,11 @@
 namespace {
 
 namespace fs = std::filesystem;
-using inverse_dynamics_recordings::JointStateRows;
-using inverse_dynamics_recordings::JointStateTopic;
-using inverse_dynamics_recordings::JointStateWriter;
-using inverse_dynamics_recordings::Recording;
-using inverse_dynamics_recordings::Storage;
+using inverse_dynamics_evaluation::JointStateRows;
+using inverse_dynamics_evaluation::JointStateTopic;
+using inverse_dynamics_evaluation::JointStateWriter;
+using inverse_dynamics_evaluation::Recording;
+using inverse_dynamics_evaluation::Storage;
 
 constexpr std::size_t kJoints = 7;
 constexpr std::size_t kBlock = 4096;

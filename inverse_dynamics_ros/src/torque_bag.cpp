@@ -2,7 +2,7 @@
 
 #include "torque_bag.hpp"
 
-#include <inverse_dynamics_recordings/joint_state_writer.hpp>
+#include <inverse_dynamics_evaluation/joint_state_writer.hpp>
 #include <rclcpp/duration.hpp>
 
 #include "interrupted.hpp"
@@ -48,7 +48,7 @@ JointTrajectory trajectory(const RecordedMotion& motion,
 void writeJointStates(const std::string& target, const std::string& storage,
                       const std::string& topic, const RecordedMotion& motion,
                       const SampleTable& table) {
-  namespace recordings = inverse_dynamics_recordings;
+  namespace recordings = inverse_dynamics_evaluation;
   OutputBag bag(target);
   recordings::writeTorques(
       bag.path().string(),

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <inverse_dynamics_recordings/joint_state_writer.hpp>
-#include <inverse_dynamics_recordings/recording.hpp>
+#include <inverse_dynamics_evaluation/joint_state_writer.hpp>
+#include <inverse_dynamics_evaluation/recording.hpp>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -22,7 +22,7 @@
 
 namespace inverse_dynamics_tools {
 
-namespace recordings = inverse_dynamics_recordings;
+namespace recordings = inverse_dynamics_evaluation;
 
 /// Messages, thousands at a time.
 struct Messages {
@@ -53,8 +53,8 @@ struct Writer {
 
 }  // namespace inverse_dynamics_tools
 
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_recordings::Recording)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_recordings::Connection)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::Recording)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::Connection)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::Messages)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::Writer)
 
@@ -210,7 +210,7 @@ void bindSources(py::module_& module) {
 void bindRecording(py::module_& module) {
   const auto release = py::call_guard<py::gil_scoped_release>();
   py::class_<Recording>(module, "Recording",
-                        "A rosbag2 recording: inverse_dynamics_recordings/recording.hpp.")
+                        "A rosbag2 recording: inverse_dynamics_evaluation/recording.hpp.")
       .def(py::init([](const PathText& path) {
              const py::gil_scoped_release free;
              return std::make_unique<Recording>(path.bytes);
@@ -264,7 +264,7 @@ void bindRecordings(py::module_& module) {
   bindSources(module);
   bindRecording(module);
   py::class_<Writer>(module, "JointStateWriter",
-                     "A new recording: inverse_dynamics_recordings/joint_state_writer.hpp.")
+                     "A new recording: inverse_dynamics_evaluation/joint_state_writer.hpp.")
       .def(py::init([](const PathText& path, const std::string& storage,
                        const std::vector<Writer::Topic>& topics) {
              return std::make_unique<Writer>(path.bytes, storageOf(storage), topics);

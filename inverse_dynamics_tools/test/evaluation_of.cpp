@@ -11,8 +11,8 @@
 #include <fstream>
 #include <inverse_dynamics_evaluation/evaluator.hpp>
 #include <inverse_dynamics_evaluation/run_configuration.hpp>
-#include <inverse_dynamics_recordings/joint_state_writer.hpp>
-#include <inverse_dynamics_recordings/recording.hpp>
+#include <inverse_dynamics_evaluation/joint_state_writer.hpp>
+#include <inverse_dynamics_evaluation/recording.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <iterator>
 #include <memory>
@@ -21,7 +21,7 @@
 namespace {
 
 namespace evaluation = inverse_dynamics_evaluation;
-namespace recordings = inverse_dynamics_recordings;
+namespace recordings = inverse_dynamics_evaluation;
 namespace ids = inverse_dynamics_solver;
 using evaluation::RunConfiguration;
 

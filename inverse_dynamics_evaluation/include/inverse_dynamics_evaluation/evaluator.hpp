@@ -8,7 +8,7 @@
 ///
 /// A recording of any length is read from its file once, into a table that needn't fit into memory:
 ///
-///     const auto source = Recording("motion").jointStates();   // inverse_dynamics_recordings
+///     const auto source = Recording("motion").jointStates();   // inverse_dynamics_evaluation
 ///     RecordingOptions recording;
 ///     recording.joints = solver->jointNames();
 ///     recording.scratch = "result";   // a directory with room for the table

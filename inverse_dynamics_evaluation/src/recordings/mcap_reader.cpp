@@ -1,0 +1,481 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// @file
+/// MCAP files [https://mcap.dev/spec], as far as rosbag2 writes them: messages in chunks with an
+/// index, in chunks without one, or one after another.
+///
+/// With an index, chunks are opened when their time has come, and chunks that overlap in time are
+/// merged. Without one, messages must be stored in the order of reception.
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "bytes.hpp"
+#include "crc32.hpp"
+#include "mcap_format.hpp"
+#include "storage_reader.hpp"
+#include "unpack.hpp"
+
+namespace inverse_dynamics_evaluation {
+inline namespace v2 {
+namespace {
+
+constexpr std::uint64_t kLatest = std::numeric_limits<std::int64_t>::max();
+
+struct ChunkIndex {
+  std::uint64_t begin_time, end_time, offset, length;
+  std::map<std::uint16_t, std::uint64_t> messages;  // of channels; empty: not known
+};
+
+// A record within a chunk.
+struct Record {
+  std::uint8_t kind;
+  Fields content;
+};
+
+Record nextRecord(Fields& records) {
+  const auto kind = records.number<std::uint8_t>();
+  const auto size = records.number<std::uint64_t>();
+  return {kind, Fields(records.take(size), size)};
+}
+
+// A message record.
+struct Entry {
+  std::uint64_t time;
+  const std::uint8_t* data;
+  std::size_t size;
+  std::uint16_t channel;
+};
+
+Entry entryOf(Fields fields) {
+  Entry entry{};
+  entry.channel = fields.number<std::uint16_t>();
+  fields.take(4);  // sequence number
+  entry.time = fields.number<std::uint64_t>();
+  fields.take(8);  // time of publication
+  entry.size = fields.left();
+  entry.data = fields.at();
+  return entry;
+}
+
+// A chunk in memory, with its messages in the order of reception.
+struct Chunk {
+  Bytes memory;
+  std::vector<Entry> entries;
+  std::size_t next = 0;
+  std::uint64_t place = 0;  // in the file
+
+  std::uint64_t time() const { return entries[next].time; }
+};
+
+// Of two chunks, for a heap whose first one has the next message.
+bool isLater(const std::unique_ptr<Chunk>& a, const std::unique_ptr<Chunk>& b) {
+  return std::make_pair(a->time(), a->place) > std::make_pair(b->time(), b->place);
+}
+
+class McapReader : public StorageReader {
+ public:
+  explicit McapReader(const std::string& path) : file_(path) {
+    readHeader();
+    readFooter();
+    if (summary_ != 0) readSummary();
+    if (schemas_.empty() || connections_.empty() || (!counted_ && chunks_.empty())) scan();
+  }
+
+  void countMessages() override {
+    for (const auto& [channel, i] : connection_of_) connections_[i].messages = countOf(channel);
+  }
+  void select(const std::vector<bool>& wanted) override;
+  bool next(Message& message) override;
+
+ private:
+  void readHeader();
+  void readFooter();
+  void readSummary();
+  void readSummaryRecord(std::uint8_t kind, Fields fields);
+  void readSchema(Fields fields);
+  void readChannel(Fields fields);
+  void readChunkIndex(Fields fields);
+  void readStatistics(Fields fields);
+  void checkChunks();
+  void scan();
+  void scanRecord(std::uint8_t kind, Fields fields);
+  std::int64_t countOf(std::uint16_t channel) const;
+
+  std::uint64_t readRecord(std::uint64_t offset, std::uint64_t end, std::uint8_t& kind);
+  Fields unpackChunk(Bytes& memory);
+  void openChunk(const ChunkIndex& index);
+  void requireMemory() const;
+  bool isWanted(std::uint16_t channel) const {
+    const auto at = connection_of_.find(channel);
+    return at != connection_of_.end() && wanted_[at->second];
+  }
+  bool isWanted(const ChunkIndex& chunk) const;
+  bool nextInOrder(Message& message);
+  bool nextInMerge(Message& message);
+  bool give(const Entry& entry, Message& message) const;
+
+  InputFile file_;
+  Bytes head_, record_;  // head and content of the record that was read last
+  std::uint64_t data_ = 0, data_end_ = 0, summary_ = 0;
+  std::unordered_map<std::uint16_t, std::pair<std::string, std::string>> schemas_;  // name, text
+  std::unordered_map<std::uint16_t, std::size_t> connection_of_;                    // of a channel
+  std::unordered_map<std::uint16_t, std::uint64_t> counts_;  // of messages of a channel
+  bool counted_ = false;                                     // whether counts_ is known
+  std::vector<ChunkIndex> chunks_;                           // by time, then by place
+  ZstdUnpacker zstd_;
+
+  std::vector<bool> wanted_;
+  std::size_t next_chunk_ = 0;
+  std::vector<std::unique_ptr<Chunk>> open_;  // a heap: the next message is in the first
+  std::unique_ptr<Chunk> spent_;              // holds the message given last, then memory
+  // Without an index:
+  std::uint64_t at_ = 0, previous_ = 0;
+  std::optional<Fields> in_chunk_;
+  Bytes chunk_;
+};
+
+void McapReader::readHeader() {
+  file_.read(0, sizeof kMcapMagic, record_);
+  if (!std::equal(record_.begin(), record_.end(), kMcapMagic)) {
+    throw DamageError("expected an MCAP file, got other bytes at its beginning");
+  }
+  std::uint8_t kind = 0;
+  data_ = readRecord(sizeof kMcapMagic, file_.size(), kind);
+  const std::string profile =
+      kind == kMcapHeader ? Fields(record_.data(), record_.size()).string() : "";
+  if (profile != "ros2") throw DamageError("profile: expected 'ros2', got " + quoted(profile));
+}
+
+void McapReader::readFooter() {
+  constexpr std::uint64_t kSize = kMcapRecordHead + kMcapFooterSize + sizeof kMcapMagic;
+  const std::uint64_t begin = file_.size() < data_ + kSize ? data_ : file_.size() - kSize;
+  file_.read(begin, kSize, record_);
+  const std::uint8_t* const magic = record_.data() + kSize - sizeof kMcapMagic;
+  if (!std::equal(magic, magic + sizeof kMcapMagic, kMcapMagic) || record_[0] != kMcapFooter ||
+      littleEndian<std::uint64_t>(&record_[1]) != kMcapFooterSize) {
+    throw DamageError(
+        "the file has no end: the recorder was killed, or the file is cut off; `mcap recover` "
+        "saves "
+        "what is there");
+  }
+  summary_ = littleEndian<std::uint64_t>(&record_[kMcapRecordHead]);
+  if (summary_ != 0 && (summary_ < data_ || summary_ > begin)) {
+    throw DamageError("the summary lies outside of the file");
+  }
+  data_end_ = summary_ != 0 ? summary_ : begin;
+}
+
+// Reads a record into record_; gives the offset of the next one.
+std::uint64_t McapReader::readRecord(std::uint64_t offset, std::uint64_t end, std::uint8_t& kind) {
+  file_.read(offset, kMcapRecordHead, head_);
+  kind = head_[0];
+  const auto size = littleEndian<std::uint64_t>(&head_[1]);
+  offset += kMcapRecordHead;
+  if (offset > end || size > end - offset) {
+    throw DamageError("a record at offset " + std::to_string(offset) + " is cut off");
+  }
+  file_.read(offset, size, record_);
+  return offset + size;
+}
+
+void McapReader::readSummary() {
+  const std::uint64_t end = file_.size() - sizeof kMcapMagic;
+  std::uint8_t kind = 0;
+  for (std::uint64_t at = summary_; at < end;) {
+    at = readRecord(at, end, kind);
+    if (kind == kMcapFooter || kind == kMcapSummaryOffset) break;
+    readSummaryRecord(kind, Fields(record_.data(), record_.size()));
+  }
+  checkChunks();
+}
+
+void McapReader::readSummaryRecord(std::uint8_t kind, Fields fields) {
+  if (kind == kMcapSchema) readSchema(fields);
+  if (kind == kMcapChannel) readChannel(fields);
+  if (kind == kMcapChunkIndex) readChunkIndex(fields);
+  if (kind == kMcapStatistics) readStatistics(fields);
+}
+
+void McapReader::readSchema(Fields fields) {
+  const auto id = fields.number<std::uint16_t>();
+  std::string name = fields.string();
+  const bool is_message = fields.string() == "ros2msg";
+  std::string definition = fields.string();
+  schemas_[id] = {std::move(name), is_message ? std::move(definition) : ""};
+}
+
+void McapReader::readChannel(Fields fields) {
+  const auto id = fields.number<std::uint16_t>();
+  const auto schema = schemas_.find(fields.number<std::uint16_t>());
+  Connection connection;
+  connection.topic = fields.string();
+  connection.serialization = fields.string();
+  connection.type = schema == schemas_.end() ? "__schemaless__" : schema->second.first;
+  if (schema != schemas_.end()) connection.definition = schema->second.second;
+  Fields metadata(nullptr, 0);
+  const auto size = fields.number<std::uint32_t>();
+  for (metadata = Fields(fields.take(size), size); metadata.left() > 0;) {
+    const std::string key = metadata.string();
+    const std::string value = metadata.string();
+    if (key == "offered_qos_profiles") connection.qos_profiles = value;
+    if (key == "topic_type_hash") connection.definition_hash = value;
+  }
+  requireUtf8(connection.topic, "name of a topic");
+  requireUtf8(connection.type, "type of a topic");
+  if (connection_of_.emplace(id, connections_.size()).second) {
+    connections_.push_back(std::move(connection));
+  }
+}
+
+void McapReader::readChunkIndex(Fields fields) {
+  ChunkIndex chunk{};
+  chunk.begin_time = fields.number<std::uint64_t>();
+  chunk.end_time = fields.number<std::uint64_t>();
+  chunk.offset = fields.number<std::uint64_t>();
+  chunk.length = fields.number<std::uint64_t>();
+  const auto size = fields.number<std::uint32_t>();
+  std::map<std::uint64_t, std::uint16_t> indexes;  // place and channel
+  for (Fields pairs(fields.take(size), size); pairs.left() > 0;) {
+    const auto channel = pairs.number<std::uint16_t>();
+    indexes.emplace(pairs.number<std::uint64_t>(), channel);
+  }
+  // Records of 15 bytes and 16 bytes for each message, one after another behind the chunk.
+  std::uint64_t end = chunk.offset + chunk.length + fields.number<std::uint64_t>();
+  for (auto at = indexes.rbegin(); at != indexes.rend(); ++at) {
+    if (end < at->first + 15) throw DamageError("places in the index of a chunk don't fit");
+    chunk.messages[at->second] = (end - at->first - 15) / 16;
+    end = at->first;
+  }
+  chunks_.push_back(std::move(chunk));
+}
+
+void McapReader::readStatistics(Fields fields) {
+  fields.take(8 + 2 + 4 + 4 + 4 + 4 + 8 + 8);  // numbers of records, first and last time
+  const auto size = fields.number<std::uint32_t>();
+  for (Fields pairs(fields.take(size), size); pairs.left() > 0;) {
+    const auto channel = pairs.number<std::uint16_t>();
+    counts_[channel] = pairs.number<std::uint64_t>();
+  }
+  counted_ = true;
+}
+
+// Chunks lie within the file, one behind another, so that together they hold no more than it does.
+void McapReader::checkChunks() {
+  std::sort(chunks_.begin(), chunks_.end(),
+            [](const auto& a, const auto& b) { return a.offset < b.offset; });
+  std::uint64_t end = data_;
+  for (const ChunkIndex& chunk : chunks_) {
+    if (chunk.offset < end || chunk.offset > data_end_ || chunk.length > data_end_ - chunk.offset) {
+      throw DamageError("chunks in the index overlap or lie outside of the file");
+    }
+    end = chunk.offset + chunk.length;
+  }
+  std::stable_sort(chunks_.begin(), chunks_.end(),
+                   [](const auto& a, const auto& b) { return a.begin_time < b.begin_time; });
+}
+
+// Reads all records for their definitions and numbers of messages.
+void McapReader::scan() {
+  schemas_.clear();
+  connections_.clear();
+  connection_of_.clear();
+  counts_.clear();
+  counted_ = true;
+  std::uint8_t kind = 0;
+  for (std::uint64_t at = data_; at < data_end_;) {
+    at = readRecord(at, data_end_, kind);
+    if (kind == kMcapChunk) {
+      for (Fields records = unpackChunk(chunk_); records.left() > 0;) {
+        const Record record = nextRecord(records);
+        scanRecord(record.kind, record.content);
+      }
+    } else {
+      scanRecord(kind, Fields(record_.data(), record_.size()));
+    }
+  }
+}
+
+void McapReader::scanRecord(std::uint8_t kind, Fields fields) {
+  if (kind == kMcapSchema) readSchema(fields);
+  if (kind == kMcapChannel) readChannel(fields);
+  if (kind == kMcapMessage) ++counts_[fields.number<std::uint16_t>()];
+  if (kind == kMcapChunk) throw DamageError("a chunk within a chunk");
+}
+
+std::int64_t McapReader::countOf(std::uint16_t channel) const {
+  std::uint64_t count = 0;
+  if (counted_) {
+    const auto at = counts_.find(channel);
+    count = at == counts_.end() ? 0 : at->second;
+  } else {
+    for (const ChunkIndex& chunk : chunks_) {
+      const auto messages = chunk.messages.find(channel);
+      if (messages != chunk.messages.end()) count += messages->second;
+    }
+  }
+  if (count > file_.size()) {  // of a byte each
+    throw DamageError("a topic of " + std::to_string(count) +
+                      " messages doesn't fit into the file");
+  }
+  return static_cast<std::int64_t>(count);
+}
+
+// The records of the chunk in record_; memory: what they will lie in.
+Fields McapReader::unpackChunk(Bytes& memory) {
+  Fields fields(record_.data(), record_.size());
+  fields.take(8 + 8);  // first and last time
+  const auto size = fields.number<std::uint64_t>();
+  const auto sum = fields.number<std::uint32_t>();
+  const std::string compression = fields.string();
+  const auto packed_size = fields.number<std::uint64_t>();
+  const std::uint8_t* const packed = fields.take(packed_size);
+  Fields records(packed, packed_size);
+  if (compression.empty()) {
+    memory.swap(record_);
+  } else {
+    if (compression == "zstd") {
+      zstd_.unpack(packed, packed_size, "a message or chunk", memory);
+    } else if (compression == "lz4") {
+      unpackLz4(packed, packed_size, memory);
+    } else {
+      throw DamageError("compression of a chunk: expected zstd or lz4, got " + quoted(compression));
+    }
+    records = Fields(memory.data(), memory.size());
+  }
+  if (records.left() != size) {
+    throw DamageError("a chunk: expected " + std::to_string(size) + " bytes, got " +
+                      std::to_string(records.left()));
+  }
+  if (sum != 0 && crc32(records.at(), records.left()) != sum) {
+    throw DamageError("a chunk's checksum doesn't fit its content");
+  }
+  return records;
+}
+
+void McapReader::select(const std::vector<bool>& wanted) {
+  wanted_ = wanted;
+  next_chunk_ = 0;
+  open_.clear();
+  at_ = data_;
+  previous_ = 0;
+  in_chunk_.reset();
+}
+
+bool McapReader::next(Message& message) {
+  return chunks_.empty() ? nextInOrder(message) : nextInMerge(message);
+}
+
+bool McapReader::isWanted(const ChunkIndex& chunk) const {
+  return chunk.messages.empty() ||
+         std::any_of(chunk.messages.begin(), chunk.messages.end(),
+                     [&](const auto& item) { return item.second > 0 && isWanted(item.first); });
+}
+
+void McapReader::openChunk(const ChunkIndex& index) {
+  auto chunk = spent_ ? std::move(spent_) : std::make_unique<Chunk>();
+  std::uint8_t kind = 0;
+  const std::uint64_t end = readRecord(index.offset, data_end_, kind);
+  if (kind != kMcapChunk || end != index.offset + index.length) {
+    throw DamageError("a chunk isn't where the index says");
+  }
+  chunk->entries.clear();
+  chunk->next = 0;
+  chunk->place = index.offset;
+  for (Fields records = unpackChunk(chunk->memory); records.left() > 0;) {
+    const Record record = nextRecord(records);
+    if (record.kind != kMcapMessage) continue;
+    const Entry entry = entryOf(record.content);
+    if (entry.time >= index.begin_time && entry.time <= index.end_time && isWanted(entry.channel)) {
+      chunk->entries.push_back(entry);
+    }
+  }
+  if (chunk->entries.empty()) {
+    spent_ = std::move(chunk);
+    return;
+  }
+  const auto earlier = [](const Entry& a, const Entry& b) { return a.time < b.time; };
+  if (!std::is_sorted(chunk->entries.begin(), chunk->entries.end(), earlier)) {
+    std::stable_sort(chunk->entries.begin(), chunk->entries.end(), earlier);
+  }
+  open_.push_back(std::move(chunk));
+  std::push_heap(open_.begin(), open_.end(), isLater);
+  requireMemory();
+}
+
+// Chunks that overlap in time are in memory together.
+void McapReader::requireMemory() const {
+  const std::uint64_t most = mostUnpacked(file_.size());
+  std::uint64_t bytes = 0;
+  for (const auto& chunk : open_) bytes += chunk->memory.size();
+  if (bytes > most) throw beyondLimit("an MCAP file", file_.size(), most);
+}
+
+bool McapReader::nextInMerge(Message& message) {
+  while (next_chunk_ < chunks_.size() &&
+         (open_.empty() || chunks_[next_chunk_].begin_time <= open_.front()->time())) {
+    const ChunkIndex& chunk = chunks_[next_chunk_++];
+    if (isWanted(chunk)) openChunk(chunk);
+  }
+  if (open_.empty()) return false;
+  // Mostly one chunk is open.
+  if (open_.size() > 1) std::pop_heap(open_.begin(), open_.end(), isLater);
+  Chunk& chunk = *open_.back();
+  const Entry entry = chunk.entries[chunk.next++];
+  if (chunk.next == chunk.entries.size()) {
+    spent_ = std::move(open_.back());
+    open_.pop_back();
+  } else if (open_.size() > 1) {
+    std::push_heap(open_.begin(), open_.end(), isLater);
+  }
+  return give(entry, message);
+}
+
+bool McapReader::nextInOrder(Message& message) {
+  std::uint8_t kind = 0;
+  while (true) {
+    if (in_chunk_ && in_chunk_->left() == 0) in_chunk_.reset();
+    if (!in_chunk_ && at_ >= data_end_) return false;
+    if (!in_chunk_) at_ = readRecord(at_, data_end_, kind);
+    const Record record =
+        in_chunk_ ? nextRecord(*in_chunk_) : Record{kind, {record_.data(), record_.size()}};
+    if (record.kind == kMcapChunk) {
+      if (in_chunk_) throw DamageError("a chunk within a chunk");
+      in_chunk_ = unpackChunk(chunk_);
+    } else if (record.kind == kMcapMessage) {
+      const Entry entry = entryOf(record.content);
+      if (!isWanted(entry.channel)) continue;
+      if (entry.time < previous_) {
+        throw DamageError(
+            "messages without an index that aren't in the order of reception; `mcap recover` makes "
+            "a file with an index of it");
+      }
+      previous_ = entry.time;
+      return give(entry, message);
+    }
+  }
+}
+
+bool McapReader::give(const Entry& entry, Message& message) const {
+  if (entry.time > kLatest) {
+    throw DamageError("a time of reception of " + std::to_string(entry.time) + " ns");
+  }
+  message.connection = connection_of_.at(entry.channel);
+  message.received = static_cast<std::int64_t>(entry.time);
+  message.data = entry.data;
+  message.size = entry.size;
+  return true;
+}
+
+}  // namespace
+
+std::unique_ptr<StorageReader> openMcap(const std::string& path) {
+  return std::make_unique<McapReader>(path);
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_evaluation

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "joint_state_cdr.hpp"
+
+#include <gmock/gmock.h>
+
+#include <initializer_list>
+#include <random>
+
+#include "error_of.hpp"
+
+namespace inverse_dynamics_evaluation::joint_state_cdr_test {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using Strings = std::vector<std::string>;
+
+// Joints "a" and "bcd", frame "xyzw", 1.5 s, position 1 and 2, no velocity, effort -1 and 0.5:
+// worked out by hand from the rules of CDR.
+// clang-format off
+const Bytes kMessage = {
+    0, 1, 0, 0,                                                  // encapsulation
+    1, 0, 0, 0, 0, 0x65, 0xcd, 0x1d,                             // 1 s, 500000000 ns
+    5, 0, 0, 0, 'x', 'y', 'z', 'w', 0, 0, 0, 0,                  // frame, padding
+    2, 0, 0, 0,                                                  // two names
+    2, 0, 0, 0, 'a', 0, 0, 0,                                    // name, padding
+    4, 0, 0, 0, 'b', 'c', 'd', 0,                                // name
+    2, 0, 0, 0, 0, 0, 0, 0,                                      // two positions, padding
+    0, 0, 0, 0, 0, 0, 0xf0, 0x3f, 0, 0, 0, 0, 0, 0, 0, 0x40,     // 1, 2
+    0, 0, 0, 0,                                                  // no velocity
+    2, 0, 0, 0,                                                  // two efforts
+    0, 0, 0, 0, 0, 0, 0xf0, 0xbf, 0, 0, 0, 0, 0, 0, 0xe0, 0x3f,  // -1, 0.5
+};
+// clang-format on
+const std::size_t kPositions = 52, kEfforts = 76;
+const std::initializer_list<std::size_t> kLengths = {12, 24, 28, 36, 44, 68, 72};
+
+JointStateBlock blockOf(const std::vector<Bytes>& messages) {
+  JointStateDecoder decoder;
+  JointStateBlock block;
+  for (const Bytes& message : messages) {
+    EXPECT_TRUE(decoder.add(message.data(), message.size(), 7, block));
+  }
+  return block;
+}
+
+Bytes encoded(const Strings& names, std::int64_t stamp, const std::vector<double>& numbers) {
+  const std::size_t n = names.size();
+  const JointStateEncoder encoder(names, "base", {n, n, n});
+  Bytes message(encoder.size());
+  encoder.write(stamp, {numbers.data(), numbers.data(), numbers.data()}, message.data());
+  return message;
+}
+
+// The same message with the most significant byte of each number first.
+Bytes bigEndian(Bytes message) {
+  const auto reverse = [&](std::size_t at, std::size_t size) {
+    std::reverse(message.begin() + at, message.begin() + at + size);
+  };
+  message[1] = 0;
+  for (const std::size_t at : {4, 8}) reverse(at, 4);
+  for (const std::size_t at : kLengths) reverse(at, 4);
+  for (const std::size_t at : {kPositions, kPositions + 8, kEfforts, kEfforts + 8}) reverse(at, 8);
+  return message;
+}
+
+void expectMessage(const JointStateBlock& block) {
+  EXPECT_EQ(block.joint_names, (Strings{"a", "bcd"}));
+  EXPECT_EQ(block.frame_id, "xyzw");
+  EXPECT_THAT(block.header_stamps, ElementsAre(1'500'000'000));
+  EXPECT_THAT(block.receive_stamps, ElementsAre(7));
+  EXPECT_THAT(block.position.values, ElementsAre(1, 2));
+  EXPECT_THAT(block.velocity.values, ElementsAre());
+  EXPECT_THAT(block.effort.values, ElementsAre(-1, 0.5));
+  EXPECT_EQ(block.position.columns, 2U);
+  EXPECT_EQ(block.velocity.columns, 0U);
+}
+
+TEST(JointStateDecoder, ReadsAMessageWorkedOutByHand) { expectMessage(blockOf({kMessage})); }
+
+TEST(JointStateDecoder, ReadsTheOtherOrderOfBytes) {
+  expectMessage(blockOf({bigEndian(kMessage)}));
+  EXPECT_EQ(blockOf({kMessage, bigEndian(kMessage), kMessage}).size(), 3U);
+}
+
+TEST(JointStateEncoder, WritesAMessageWorkedOutByHand) {
+  const JointStateEncoder encoder({"a", "bcd"}, "xyzw", {2, 0, 2});
+  Bytes message(encoder.size());
+  const double position[] = {1, 2}, effort[] = {-1, 0.5};
+  encoder.write(1'500'000'000, {position, nullptr, effort}, message.data());
+  EXPECT_EQ(message, kMessage);
+}
+
+TEST(JointStateEncoder, KeepsStampsBefore1970) {
+  for (const std::int64_t stamp : {-1LL, -1'000'000'000LL, -1'500'000'000LL, 0LL, 999'999'999LL}) {
+    EXPECT_THAT(blockOf({encoded({"a"}, stamp, {0})}).header_stamps, ElementsAre(stamp));
+  }
+}
+
+TEST(JointStateDecoder, TakesMessagesThatDifferInPaddingOnlyForTheSame) {
+  Bytes other = kMessage;
+  for (const std::size_t padding : {2, 3, 21, 23, 34, 35, 48, 51}) {
+    ASSERT_EQ(other[padding], 0);
+    other[padding] = 0xee;
+  }
+  const JointStateBlock block = blockOf({kMessage, other, kMessage});
+  EXPECT_THAT(block.position.values, ElementsAre(1, 2, 1, 2, 1, 2));
+  EXPECT_THAT(block.effort.values, ElementsAre(-1, 0.5, -1, 0.5, -1, 0.5));
+}
+
+TEST(JointStateDecoder, EndsABlockWhereNamesFrameOrLengthsChange) {
+  const Bytes others[] = {encoded({"a", "bcd"}, 1, {1, 2}), encoded({"a", "b"}, 1, {1, 2})};
+  JointStateDecoder decoder;
+  JointStateBlock block;
+  EXPECT_TRUE(decoder.add(kMessage.data(), kMessage.size(), 7, block));
+  for (const Bytes& other : others) {
+    EXPECT_FALSE(decoder.add(other.data(), other.size(), 8, block));
+  }
+  EXPECT_TRUE(decoder.add(kMessage.data(), kMessage.size(), 9, block));
+  EXPECT_EQ(block.size(), 2U);
+}
+
+TEST(JointStateDecoder, BoundsABlockInMessagesAndInNumbers) {
+  for (const std::size_t joints : {1U, 1000U}) {
+    const Bytes message = encoded(Strings(joints, "j"), 1, std::vector<double>(joints));
+    JointStateDecoder decoder;
+    JointStateBlock block;
+    while (decoder.add(message.data(), message.size(), 0, block)) {
+      ASSERT_LE(block.size(), 4096U);
+    }
+    EXPECT_LE(block.position.values.size(), std::size_t{1} << 18U);
+    EXPECT_GE(block.size(), 200U);
+  }
+}
+
+TEST(JointStateDecoder, RefusesAMessageThatIsCutOffAnywhere) {
+  for (const Bytes& message : {kMessage, bigEndian(kMessage)}) {
+    for (std::size_t size = 0; size < message.size(); ++size) {
+      const Bytes cut(message.begin(), message.begin() + size);  // memory of just that size
+      EXPECT_THROW(layoutOf(cut.data(), cut.size()), DamageError) << size;
+    }
+  }
+}
+
+TEST(JointStateDecoder, AllowsThreeBytesOfPaddingAtTheEnd) {
+  Bytes message = kMessage;
+  for (const int more : {1, 2, 3}) {
+    message.push_back(0xee);
+    EXPECT_EQ(layoutOf(message.data(), message.size()).names.size(), 2U) << more;
+  }
+  message.push_back(0);
+  EXPECT_THAT(errorOf<DamageError>([&] { layoutOf(message.data(), message.size()); }),
+              HasSubstr("expected 92 bytes, got 96"));
+}
+
+TEST(JointStateDecoder, ChecksLengthsBeforeTakingMemory) {
+  for (const std::size_t at : kLengths) {
+    for (const std::uint32_t length : {0x7fffffffU, 0xffffffffU, 0x20000000U, 1000U}) {
+      Bytes message = kMessage;
+      std::memcpy(&message[at], &length, 4);
+      EXPECT_THROW(layoutOf(message.data(), message.size()), DamageError) << at << " " << length;
+    }
+  }
+}
+
+TEST(JointStateDecoder, RefusesStringsWithoutClosingZeroAndOtherThanUtf8) {
+  const std::pair<std::size_t, std::uint8_t> mistakes[] = {
+      {43, 'e'}, {12, 0}, {40, 0xff}, {40, 0xed}};
+  for (const auto& [at, byte] : mistakes) {
+    Bytes message = kMessage;
+    message[at] = byte;
+    EXPECT_THROW(layoutOf(message.data(), message.size()), DamageError) << at;
+  }
+}
+
+TEST(JointStateDecoder, KeepsZerosWithinAName) {
+  Bytes message = kMessage;
+  message[41] = 0;
+  EXPECT_EQ(layoutOf(message.data(), message.size()).names[1], std::string("b\0d", 3));
+}
+
+TEST(JointStateDecoder, ReadsOrRefusesAnyBytes) {
+  std::mt19937 random(1);
+  int read = 0;
+  for (int k = 0; k < 50'000; ++k) {
+    Bytes message(kMessage.begin(), kMessage.end() - (k % 5 == 0 ? random() % 20 : 0));
+    for (unsigned changes = random() % 4; changes > 0; --changes) {
+      message[random() % message.size()] = static_cast<std::uint8_t>(random());
+    }
+    JointStateDecoder decoder;
+    JointStateBlock block;
+    try {
+      decoder.add(kMessage.data(), kMessage.size(), 0, block);
+      decoder.add(message.data(), message.size(), 0, block);
+      ASSERT_EQ(block.position.values.size(), block.size() * block.position.columns);
+      ++read;
+    } catch (const DamageError&) {
+    }
+  }
+  EXPECT_GT(read, 10'000);
+}
+
+TEST(Utf8, IsWhatTheStandardSays) {
+  for (const char* text :
+       {"", "a", "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x98\x80", "\xf4\x8f\xbf\xbf"}) {
+    EXPECT_TRUE(isUtf8(text, std::strlen(text))) << text;
+  }
+  for (const char* text : {"\x80", "\xc3", "\xc0\x80", "\xc1\xbf", "\xe0\x80\x80", "\xed\xa0\x80",
+                           "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xe2\x82", "\xe2\x28\xa1"}) {
+    EXPECT_FALSE(isUtf8(text, std::strlen(text))) << text;
+  }
+}
+
+}  // namespace inverse_dynamics_evaluation::joint_state_cdr_test
