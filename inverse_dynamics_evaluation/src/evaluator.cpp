@@ -12,7 +12,6 @@
 #include "figures.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "table_accelerations.hpp"
-#include "turns.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -30,6 +29,7 @@ constexpr Index kSamplesAtOnce = 4096;
 constexpr double kRead = 0.4;
 constexpr double kAccelerated = 0.6;
 constexpr double kComputed = 0.85;
+constexpr double kMeasured = 0.9;
 
 // Runs from where it is made.
 class Stopwatch {
@@ -156,17 +156,12 @@ class Evaluator {
 
   // Measured torques, once it is known what efforts mean, and errors.
   void compare(Evaluation& result) const {
-    ErrorSums errors(table_.q.rows());
-    ErrorSums of_kept(table_.q.rows());
-    forEachBlock(kComputed, 1.0, [&](Index first, Index count) {
-      const auto computed = table_.computed.middleCols(first, count);
-      auto measured = table_.measured.middleCols(first, count);
-      measured = result.effort.torques(table_.effort.middleCols(first, count));
-      errors.add(computed, measured, first);
-      of_kept.add(computed, measured, first, Mask(table_.kept.segment(first, count)));
+    forEachBlock(kComputed, kMeasured, [&](Index first, Index count) {
+      table_.measured.middleCols(first, count) =
+          result.effort.torques(table_.effort.middleCols(first, count));
     });
-    result.errors = errors.metrics();
-    result.errors_of_kept = of_kept.metrics();
+    result.errors = metrics(table_.computed, table_.measured);
+    result.errors_of_kept = metrics(table_.computed, table_.measured, Mask(table_.kept));
   }
 
   void addNotes(Evaluation& result, const std::vector<std::string>& jumps) const {

@@ -12,11 +12,41 @@ namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
 
+using Eigen::ArrayXd;
 using Eigen::Index;
 using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
+using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
 
-// Samples whose sums are taken at once: short enough to be exact to some roundings.
-constexpr Index kBlock = 256;
+// Sums over samples of n joints, whose rounding errors are kept: of 256 samples at once, short enough
+// to be exact to some roundings, then of these [Neumaier 1974, doi 10.1002/zamm.19740540106].
+class Sums {
+ public:
+  explicit Sums(Index joints) : part_(ArrayXd::Zero(joints)), sum_(part_), lost_(part_) {}
+
+  /// The next sample.
+  template <class Numbers>
+  void add(const Eigen::ArrayBase<Numbers>& numbers) {
+    part_ += numbers;
+    if (++added_ % 256 == 0) join();
+  }
+
+  ArrayXd total() const {
+    Sums all = *this;
+    all.join();
+    return all.sum_ + all.lost_;
+  }
+
+ private:
+  void join() {
+    const ArrayXd total = sum_ + part_;
+    lost_ += (sum_.abs() >= part_.abs()).select((sum_ - total) + part_, (part_ - total) + sum_);
+    sum_ = total;
+    part_.setZero();
+  }
+
+  ArrayXd part_, sum_, lost_;
+  Index added_ = 0;
+};
 
 [[noreturn]] void throwNotFinite(double computed, double measured, Index j, Index k) {
   const bool in_computed = !std::isfinite(computed);
@@ -27,154 +57,93 @@ constexpr Index kBlock = 256;
                         "leave such samples out by a mask");
 }
 
-}  // namespace
-
-void ErrorSums::Sum::operator+=(double number) {
-  const double total = sum + number;
-  lost += std::abs(sum) >= std::abs(number) ? (sum - total) + number : (number - total) + sum;
-  sum = total;
-}
-
-void ErrorSums::Joint::merge(const Joint& later) {
-  if (later.count == 0) {
-    return;
-  }
-  if (count == 0) {
-    *this = later;
-    return;
-  }
-  for (const auto member : {&Joint::error, &Joint::absolute, &Joint::square}) {
-    (this->*member) += (later.*member).sum;
-    (this->*member) += (later.*member).lost;
-  }
-  // [Chan, Golub, LeVeque 1983, doi 10.1080/00031305.1983.10483115]
-  const auto before = static_cast<double>(count);
-  const auto after = static_cast<double>(later.count);
-  const double step = later.mean - mean;
-  deviation += later.deviation + step * step * before * after / (before + after);
-  mean += step * after / (before + after);
-  least = std::min(least, later.least);
-  greatest = std::max(greatest, later.greatest);
-  if (later.max_abs > max_abs) {
-    max_abs = later.max_abs;
-    max_at = later.max_at;
-  }
-  count += later.count;
-}
-
-// One block of one joint.
-void ErrorSums::addJoint(const ConstMatrix& computed, const ConstMatrix& measured, Index first,
-                         const Mask* mask, Index j) {
-  Joint block;
-  double origin = 0;  // about which the variance is taken: near the mean
-  double sum = 0;
-  double squares = 0;
-  double error_sum = 0;
-  double absolute_sum = 0;
-  double square_sum = 0;
-  for (Index k = 0; k < measured.cols(); ++k) {
-    if (mask != nullptr && !(*mask)[k]) {
-      continue;
-    }
-    const double m = measured(j, k);
-    const double e = computed(j, k) - m;
-    if (!std::isfinite(computed(j, k)) || !std::isfinite(m)) {
-      throwNotFinite(computed(j, k), m, j, first + k);
-    }
-    if (block.count == 0) {
-      origin = block.least = block.greatest = m;
-    }
-    sum += m - origin;
-    squares += (m - origin) * (m - origin);
-    error_sum += e;
-    absolute_sum += std::abs(e);
-    square_sum += e * e;
-    block.least = std::min(block.least, m);
-    block.greatest = std::max(block.greatest, m);
-    if (std::abs(e) > block.max_abs) {
-      block.max_abs = std::abs(e);
-      block.max_at = first + k;
-    }
-    ++block.count;
-  }
-  if (block.count > 0) {
-    const auto count = static_cast<double>(block.count);
-    block.error += error_sum;
-    block.absolute += absolute_sum;
-    block.square += square_sum;
-    block.mean = origin + sum / count;
-    block.deviation = std::max(0.0, squares - sum * sum / count);
-    joints_[static_cast<std::size_t>(j)].merge(block);
-  }
-}
-
-void ErrorSums::add(const ConstMatrix& computed, const ConstMatrix& measured, Index first) {
-  requireSameSize("metrics", "computed", computed, "measured", measured);
-  for (Index begin = 0; begin < measured.cols(); begin += kBlock) {
-    const Index count = std::min(kBlock, measured.cols() - begin);
+// Mean of the measured torques that count, and refuses what isn't finite.
+ArrayXd meanOf(const ConstMatrix& computed, const ConstMatrix& measured, const Mask& mask) {
+  Sums sums(measured.rows());
+  for (Index k = 0; k < mask.size(); ++k) {
+    if (!mask[k]) continue;
     for (Index j = 0; j < measured.rows(); ++j) {
-      addJoint(computed.middleCols(begin, count), measured.middleCols(begin, count), first + begin,
-               nullptr, j);
+      if (!std::isfinite(computed(j, k)) || !std::isfinite(measured(j, k))) {
+        throwNotFinite(computed(j, k), measured(j, k), j, k);
+      }
     }
+    sums.add(measured.col(k).array());
   }
+  return sums.total() / static_cast<double>(mask.count());
 }
 
-void ErrorSums::add(const ConstMatrix& computed, const ConstMatrix& measured, Index first,
-                    const Mask& mask) {
-  requireSameSize("metrics", "computed", computed, "measured", measured);
-  requireMask("metrics", mask.size(), measured);
-  for (Index begin = 0; begin < measured.cols(); begin += kBlock) {
-    const Index count = std::min(kBlock, measured.cols() - begin);
-    const Mask part = mask.segment(begin, count);
-    for (Index j = 0; j < measured.rows(); ++j) {
-      addJoint(computed.middleCols(begin, count), measured.middleCols(begin, count), first + begin,
-               &part, j);
+// What metrics are made of.
+class Errors {
+ public:
+  /// @param mean  of the measured torques.
+  explicit Errors(const ArrayXd& mean)
+      : mean_(mean),
+        error_(mean.size()),
+        sum_(mean.size()),
+        absolute_(mean.size()),
+        square_(mean.size()),
+        deviation_(mean.size()),
+        least_(ArrayXd::Constant(mean.size(), std::numeric_limits<double>::infinity())),
+        greatest_(-least_),
+        metrics_(static_cast<std::size_t>(mean.size())) {}
+
+  void add(const ConstVector& computed, const ConstVector& measured, Index k) {
+    error_ = computed.array() - measured.array();
+    sum_.add(error_);
+    absolute_.add(error_.abs());
+    square_.add(error_.square());
+    deviation_.add((measured.array() - mean_).square());
+    least_ = least_.min(measured.array());
+    greatest_ = greatest_.max(measured.array());
+    for (Index j = 0; j < error_.size(); ++j) {
+      JointMetrics& joint = metrics_[static_cast<std::size_t>(j)];
+      if (joint.count++ == 0 || std::abs(error_[j]) > joint.max_abs) {
+        joint.max_abs = std::abs(error_[j]);
+        joint.max_at = k;
+      }
     }
   }
-}
 
-void ErrorSums::merge(const ErrorSums& later) {
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    joints_[j].merge(later.joints_[j]);
-  }
-}
-
-std::vector<JointMetrics> ErrorSums::metrics() const {
-  std::vector<JointMetrics> result;
-  for (const Joint& joint : joints_) {
-    if (joint.count == 0) {
-      throw EvaluationError("metrics", "samples", "one or more to compare", "none", "select some");
-    }
-    const auto count = static_cast<double>(joint.count);
-    JointMetrics metrics;
-    metrics.count = joint.count;
-    metrics.mae = joint.absolute.value() / count;
-    metrics.rmse = std::sqrt(joint.square.value() / count);
-    metrics.bias = joint.error.value() / count;
-    metrics.max_abs = joint.max_abs;
-    metrics.max_at = joint.max_at;
-    // a constant signal has no range: its mean may still be off by rounding, so ask the range
-    metrics.measured_range = joint.greatest - joint.least;
+  std::vector<JointMetrics> metrics() const {
+    std::vector<JointMetrics> result = metrics_;
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    const bool constant = metrics.measured_range == 0;
-    metrics.nrmse = constant ? nan : metrics.rmse / metrics.measured_range;
-    metrics.r2 = constant ? nan : 1.0 - joint.square.value() / joint.deviation;
-    result.push_back(metrics);
+    for (Index j = 0; j < error_.size(); ++j) {
+      JointMetrics& joint = result[static_cast<std::size_t>(j)];
+      const auto count = static_cast<double>(joint.count);
+      joint.mae = absolute_.total()[j] / count;
+      joint.rmse = std::sqrt(square_.total()[j] / count);
+      joint.bias = sum_.total()[j] / count;
+      // a constant signal has no range: its mean may still be off by rounding, so ask the range
+      joint.measured_range = greatest_[j] - least_[j];
+      const bool constant = joint.measured_range == 0;
+      joint.nrmse = constant ? nan : joint.rmse / joint.measured_range;
+      joint.r2 = constant ? nan : 1.0 - square_.total()[j] / deviation_.total()[j];
+    }
+    return result;
   }
-  return result;
-}
+
+ private:
+  ArrayXd mean_, error_;
+  Sums sum_, absolute_, square_, deviation_;  // of e, |e|, e^2; squared differences to the mean
+  ArrayXd least_, greatest_;                  // measured
+  std::vector<JointMetrics> metrics_;
+};
+
+}  // namespace
 
 std::vector<JointMetrics> metrics(const ConstMatrix& computed, const ConstMatrix& measured,
                                   const Mask& mask) {
-  ErrorSums sums(measured.rows());
   requireSameSize("metrics", "computed", computed, "measured", measured);
   requireMask("metrics", mask.size(), measured);
   if (!mask.any()) {
     throw EvaluationError("metrics", "samples", "one or more to compare",
                           "none of " + std::to_string(mask.size()), "select some");
   }
-  sums.add(computed, measured, 0, mask);
-  return sums.metrics();
+  Errors errors(meanOf(computed, measured, mask));
+  for (Index k = 0; k < mask.size(); ++k) {
+    if (mask[k]) errors.add(computed.col(k), measured.col(k), k);
+  }
+  return errors.metrics();
 }
 
 std::vector<JointMetrics> metrics(const ConstMatrix& computed, const ConstMatrix& measured) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -11,18 +12,31 @@
 
 #include "checks.hpp"
 #include "examination.hpp"
+#include "pi.hpp"
 #include "start_transient.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
 
+using chain_dynamics::JointType;
+using chain_dynamics::unwrapped;
+using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kNanosecond = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kGapPeriods = 20.0;    // a gap is longer than this many sampling periods
+constexpr double kClearlyBetter = 0.8;  // of the stamps' disagreement: then another time base
+constexpr double kNotWorse = 1.1;       // of the stamps' disagreement in the long run
+constexpr Index kLongIntervals = 50;    // over how many intervals time bases must agree too
+
+// What is longer than this is a gap [s]: `longest_gap`, or 20 sampling periods if that is more.
+double gapFrom(double longest_gap, double period) {
+  return std::max(longest_gap, kGapPeriods * period);
+}
 
 // Whether a sample has the numbers of the one before, bit for bit.
 bool repeats(const SampleTable::JointColumns& columns, Index k) {
@@ -118,6 +132,35 @@ class Distances {
   Neighbours neighbours_;
 };
 
+// When each sample was taken, under a time base.
+struct Timing {
+  // s; of sample `k`, which is fresh sample number `i`.
+  double operator()(Index k, Index i, double stamp) const {
+    if (base == TimeBase::kStamps || fresh < 2) {
+      return stamp;
+    }
+    const double share = base == TimeBase::kRegular
+                             ? static_cast<double>(k) / static_cast<double>(count - 1)
+                             : static_cast<double>(i) / static_cast<double>(fresh - 1);
+    return begin + share * duration;
+  }
+
+  // Whether a fresh sample has an instant of its own.
+  bool uses(bool non_increasing) const { return base != TimeBase::kStamps || !non_increasing; }
+
+  // s; between neighbours at equal distances.
+  double step() const {
+    const Index samples = base == TimeBase::kRegularFresh ? fresh : count;
+    return samples > 1 ? duration / static_cast<double>(samples - 1) : 0.0;
+  }
+
+  TimeBase base = TimeBase::kStamps;
+  Index count = 0;      // N; samples
+  Index fresh = 0;      // of them, without repeats that are left out
+  double begin = 0;     // s; first stamp
+  double duration = 0;  // s; from there to the latest stamp
+};
+
 // What is counted of the faults.
 struct Census {
   SampleCounts counts;
@@ -196,33 +239,128 @@ void checkStamps(const Census& census, const SampleRules& rules, TimeBase base) 
   }
 }
 
-// Rule 3: what each time base makes of the samples.
-std::vector<TimeBaseSums> sumsOfBases(SampleTable& table, const Census& census,
-                                      const SampleRules& rules) {
-  std::vector<TimeBaseSums> bases;
+// Root mean square of q_(i+m) - q_i - sum of (t_(i+1) - t_i) (qd_i + qd_(i+1)) / 2 over blocks of m
+// intervals; intervals over a gap are left out.
+struct Disagreement {
+  Disagreement(Index m, Index joints) : intervals(m), error(ArrayXd::Zero(joints)) {}
+
+  void add(const ArrayXd& next) {
+    error += next;
+    if (++added % intervals == 0) {
+      sum += error.square().sum();
+      error.setZero();
+      ++blocks;
+    }
+  }
+
+  // NaN if there is none.
+  double rms() const {
+    return blocks > 0 ? std::sqrt(sum / static_cast<double>(blocks))
+                      : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  Index intervals;  // m
+  ArrayXd error;
+  double sum = 0;
+  Index added = 0, blocks = 0;
+};
+
+// What a time base makes of the samples.
+struct Base {
+  // A piece is at its end before sample `behind`.
+  void end(Piece piece, Index behind, Index shortest) {
+    piece.behind = behind;
+    if (piece.used >= shortest) pieces.push_back(piece);
+  }
+
+  // There is a gap before sample `behind`.
+  void cut(Index behind, double length, std::int64_t stamp_before) {
+    gaps.push_back(behind);
+    if (longest_gap.behind == 0 || length > longest_gap.length) {
+      longest_gap = {behind, length, stamp_before};
+    }
+  }
+
+  Timing timing;
+  double disagreement = 0, long_disagreement = 0;  // over one interval, over 50
+  std::vector<Piece> pieces;
+  std::vector<Index> gaps;  // first samples behind them
+  LongestGap longest_gap;
+};
+
+// Rule 3, and gaps: what is longer than `gap` [s]. `used`: how many samples have an instant.
+Base tryTimeBase(const SampleTable& table, const Timing& timing, double gap, Index used,
+                 const SampleRules& rules) {
+  Base base;
+  base.timing = timing;
+  Disagreement one(1, table.q.rows());
+  Disagreement many(std::clamp<Index>(used - 1, 1, kLongIntervals), table.q.rows());
+  ArrayXd error(table.q.rows());
+  Piece piece;
+  Index fresh = 0;    // samples before that are
+  Index before = -1;  // the sample before that has an instant
+  for (Index k = 0; k < table.size(); ++k) {
+    if (rules.repeated && table.repeated[k]) continue;
+    const double time = timing(k, fresh++, table.time[k]);
+    if (!timing.uses(table.non_increasing[k])) continue;
+    const double distance = time - piece.end;
+    const bool begins = before < 0 || distance > gap;
+    if (begins) {
+      error.setZero();
+    } else {
+      error = table.q.col(k) - table.q.col(before) -
+              0.5 * distance * (table.qd.col(before) + table.qd.col(k));
+    }
+    if (before >= 0) {
+      one.add(error);
+      many.add(error);
+    }
+    if (begins && before >= 0) {
+      base.end(piece, k, rules.shortest_piece);
+      base.cut(k, distance, table.stamps()[k - 1]);
+    }
+    if (begins) piece = {k, k, 0, time, time};
+    ++piece.used;
+    piece.end = time;
+    before = k;
+  }
+  base.end(piece, table.size(), rules.shortest_piece);  // repeats at the end and all
+  base.disagreement = one.rms();
+  base.long_disagreement = many.rms();
+  return base;
+}
+
+// The time bases, in the order of TimeBase.
+std::vector<Base> tryTimeBases(SampleTable& table, const Census& census, const SampleRules& rules) {
+  std::vector<Base> bases;
   for (const TimeBase base : {TimeBase::kStamps, TimeBase::kRegular, TimeBase::kRegularFresh}) {
     Timing timing = census.timing;
     timing.base = base;
     const double period = Periods(table, census, rules, base).mean();
-    bases.emplace_back(timing, gapFrom(rules.longest_gap, period),
-                       base == TimeBase::kStamps ? census.used : census.timing.fresh,
-                       rules.shortest_piece, table.q.rows());
-  }
-  Index fresh = 0;
-  for (Index k = 0; k < table.size(); ++k) {
-    if (rules.repeated && table.repeated[k]) continue;
-    for (TimeBaseSums& base : bases) {
-      if (base.timing().uses(table.non_increasing[k])) {
-        base.add(k, base.timing()(k, fresh, table.time[k]), table.q.col(k).data(),
-                 table.qd.col(k).data(), k > 0 ? table.stamps()[k - 1] : 0);
-      }
-    }
-    ++fresh;
-  }
-  for (TimeBaseSums& base : bases) {
-    base.finish();
+    bases.push_back(tryTimeBase(table, timing, gapFrom(rules.longest_gap, period),
+                                base == TimeBase::kStamps ? census.used : census.timing.fresh,
+                                rules));
   }
   return bases;
+}
+
+// The time base that q and qd agree with; writes what they say.
+TimeBase chooseTimeBase(const std::vector<Base>& bases, SampleReport& report) {
+  for (Index b = 0; b < 3; ++b) {
+    report.disagreement[b] = bases[static_cast<std::size_t>(b)].disagreement;
+    report.long_disagreement[b] = bases[static_cast<std::size_t>(b)].long_disagreement;
+  }
+  TimeBase best = TimeBase::kStamps;
+  double least = kClearlyBetter * report.disagreement[0];
+  for (const TimeBase base : {TimeBase::kRegular, TimeBase::kRegularFresh}) {
+    const auto b = static_cast<Index>(base);
+    if (report.disagreement[b] < least &&
+        report.long_disagreement[b] <= kNotWorse * report.long_disagreement[0]) {
+      best = base;
+      least = report.disagreement[b];
+    }
+  }
+  return best;
 }
 
 // When each sample was taken, whether it lies in a piece, and whether it is used.
@@ -286,7 +424,62 @@ void markKept(SampleTable& table, const SampleRules& rules, SampleCounts& counts
   counts.kept = table.kept.count();
 }
 
+// A driver that reports within one turn jumps by one. A longer jump is of other units (360 degrees
+// are 57 turns of a radian) or of another start, and stays for the diagnosis to see.
+constexpr double kLongestJump = 1.5 * 2.0 * kPi;  // rad
+
+// What a whole turn may be off by where velocity and time between two samples say how far the joint
+// went: 3 rad/s over stamps that are wrong by 30 ms.
+constexpr double kSeam = 0.1;  // rad
+
+// Jumps of a joint by a whole turn.
+struct Jumps {
+  Index count = 0;
+  Index first = 0;  // number of the sample
+};
+
+// Unwraps a continuous joint; finds the jumps of a revolute one.
+Jumps unwrapJoint(SampleTable& table, Index j, JointType type) {
+  Jumps jumps;
+  double offset = 0.0;  // rad; whole turns that positions get
+  double before = table.q(j, 0);
+  for (Index k = 1; k < table.size(); ++k) {
+    const double recorded = table.q(j, k), change = recorded - before;
+    if (std::abs(change) > kPi && std::abs(change) < kLongestJump) {
+      const double turn = unwrapped(JointType::kContinuous, recorded, before) - recorded;
+      const double way =
+          0.5 * (table.time[k] - table.time[k - 1]) * (table.qd(j, k - 1) + table.qd(j, k));
+      if (type == JointType::kContinuous) {
+        // unless velocity says that the joint went there: in degrees it goes far between samples
+        if (std::abs(change + turn - way) < std::abs(change - way)) offset += turn;
+      } else if (std::abs(change + turn - way) < kSeam) {
+        if (jumps.count++ == 0) jumps.first = k;
+      }
+    }
+    before = recorded;
+    if (offset != 0.0) table.q(j, k) += offset;
+  }
+  return jumps;
+}
+
 }  // namespace
+
+std::vector<std::string> unwrapPositions(SampleTable& table, const std::vector<JointType>& types,
+                                         const std::vector<std::string>& joint_names) {
+  std::vector<std::string> found;
+  if (table.q.rows() != static_cast<Index>(types.size()) || table.size() == 0) return found;
+  for (std::size_t j = 0; j < types.size(); ++j) {
+    if (types[j] != JointType::kContinuous && types[j] != JointType::kRevolute) continue;
+    const Jumps jumps = unwrapJoint(table, static_cast<Index>(j), types[j]);
+    if (jumps.count == 0) continue;
+    found.push_back("positions of " + joint_names[j] + " jump by a whole turn " +
+                    std::to_string(jumps.count) + (jumps.count == 1 ? " time" : " times, first") +
+                    " in sample " + std::to_string(jumps.first + 1) +
+                    ", and stay as recorded: the robot's model says that the joint is revolute; if "
+                    "it has no limits, state it as continuous");
+  }
+  return found;
+}
 
 std::string name(TimeBase time_base) {
   switch (time_base) {
@@ -303,26 +496,26 @@ std::string name(TimeBase time_base) {
 Examination examine(SampleTable& table, const SampleRules& rules) {
   markFaults(table);
   const Census census = takeCensus(table, rules);
-  const std::vector<TimeBaseSums> bases = sumsOfBases(table, census, rules);
+  const std::vector<Base> bases = tryTimeBases(table, census, rules);
   Examination found;
   SampleReport& report = found.report;
   report.backward = census.backward;
   const TimeBase fitting = chooseTimeBase(bases, report);
   report.time_base = rules.time_base ? fitting : TimeBase::kStamps;
   checkStamps(census, rules, report.time_base);
-  const TimeBaseSums& base = bases[static_cast<std::size_t>(report.time_base)];
+  const Base& base = bases[static_cast<std::size_t>(report.time_base)];
   const Index used = report.time_base == TimeBase::kStamps ? census.used : census.timing.fresh;
   if (used < 2) {
     throw EvaluationError("samples", "samples",
                           "2 or more that differ and have a stamp of their own",
                           std::to_string(used), "record a motion");
   }
-  found.pieces = base.pieces();
+  found.pieces = base.pieces;
   for (const Piece& piece : found.pieces) {
     report.pieces.push_back(piece.first);
   }
-  report.gaps = base.gaps();
-  report.longest_gap = base.longestGap();
+  report.gaps = base.gaps;
+  report.longest_gap = base.longest_gap;
   const Periods periods(table, census, rules, report.time_base);
   report.period = periods.mean();
   const double gap = gapFrom(rules.longest_gap, report.period);
@@ -332,7 +525,7 @@ Examination examine(SampleTable& table, const SampleRules& rules) {
   report.stamped_period = kNanosecond * stamps.median(kInfinity);
   report.jitter = kNanosecond * stamps.deviation(gap / kNanosecond);
 
-  setInstants(table, base.timing(), found.pieces, rules);
+  setInstants(table, base.timing, found.pieces, rules);
   report.counts = census.counts;
   report.counts.start_transient = lookAtStart(table, census.timing.fresh, report.period, rules);
   markKept(table, rules, report.counts);

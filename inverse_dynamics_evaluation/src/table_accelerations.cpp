@@ -3,6 +3,7 @@
 #include "table_accelerations.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -11,7 +12,6 @@
 #include "checks.hpp"
 #include "examination.hpp"
 #include "figures.hpp"
-#include "resampler.hpp"
 #include "spectrum.hpp"
 #include "zero_phase.hpp"
 
@@ -24,6 +24,95 @@ using Eigen::MatrixXd;
 
 // Equidistant samples whose spectra are computed at once: longer pieces are cut for that.
 constexpr Index kMostInStretch = 262144;
+
+// Distances of samples that a cubic may run through, in periods: across a longer hole, the noise of
+// the two samples at either end would set its slope.
+constexpr double kLeastApart = 0.5;
+constexpr double kMostApart = 3.0;
+
+// A piece, and the equidistant samples that stand for it.
+struct Grid : Piece {
+  // usual_period [s]: about their distance. There are at least as many as used samples.
+  Grid(const Piece& piece, double usual_period) : Piece(piece) {
+    const double duration = end - begin;
+    count = std::max(static_cast<Index>(std::llround(duration / usual_period)) + 1, used);
+    period = duration / static_cast<double>(count - 1);
+  }
+
+  Index count = 0;    // of the equidistant samples
+  double period = 0;  // s; between them
+};
+
+// Weights of four samples at the instants `at` in the cubic through them, at instant t.
+Eigen::Vector4d cubicWeights(const Eigen::Vector4d& at, double t) {
+  Eigen::Vector4d weights = Eigen::Vector4d::Ones();
+  for (Index i = 0; i < 4; ++i) {
+    for (Index k = 0; k < 4; ++k) {
+      weights[i] *= i == k ? 1.0 : (t - at[k]) / (at[i] - at[k]);
+    }
+  }
+  return weights;
+}
+
+// Weights on the straight line between the two samples around t.
+Eigen::Vector4d linearWeights(const Eigen::Vector4d& at, double t) {
+  Index after = 1;
+  while (after < 3 && at[after] < t) ++after;
+  const double share = std::clamp((t - at[after - 1]) / (at[after] - at[after - 1]), 0.0, 1.0);
+  Eigen::Vector4d weights = Eigen::Vector4d::Zero();
+  weights[after - 1] = 1.0 - share;
+  weights[after] = share;
+  return weights;
+}
+
+// Goes through the equidistant samples of a piece, which has at least four used samples.
+//
+// A value lies on the cubic through the four samples around its instant, or on a straight line where
+// two of these are so close, or so far apart, that a cubic would enlarge their noise.
+class Resampler {
+ public:
+  Resampler(const SampleTable& table, const Grid& grid)
+      : table_(table), grid_(grid), ahead_(grid.first) {
+    for (int i = 0; i < 4; ++i) advance();
+  }
+
+  // Weighs the neighbours of the next equidistant sample.
+  void next() {
+    const double t = grid_.begin + static_cast<double>(made_++) * grid_.period;
+    // the instant lies between the middle two where there are samples beyond
+    while (t > instants_[2] && advance()) {
+    }
+    const Eigen::Vector3d apart = (instants_.tail<3>() - instants_.head<3>()) / grid_.period;
+    weights_ = apart.minCoeff() >= kLeastApart && apart.maxCoeff() <= kMostApart
+                   ? cubicWeights(instants_, t)
+                   : linearWeights(instants_, t);
+  }
+
+  // The value there of columns of the table.
+  auto valueOf(const SampleTable::JointColumns& columns) const {
+    return weights_[0] * columns.col(samples_[0]) + weights_[1] * columns.col(samples_[1]) +
+           weights_[2] * columns.col(samples_[2]) + weights_[3] * columns.col(samples_[3]);
+  }
+
+ private:
+  // Takes one sample further; false at the end of the piece.
+  bool advance() {
+    while (ahead_ < grid_.behind && !table_.used[ahead_]) ++ahead_;
+    if (ahead_ == grid_.behind) return false;
+    std::rotate(samples_.begin(), samples_.begin() + 1, samples_.end());
+    instants_.head<3>() = instants_.tail<3>().eval();
+    samples_[3] = ahead_;
+    instants_[3] = table_.instant[ahead_++];
+    return true;
+  }
+
+  const SampleTable& table_;
+  const Grid& grid_;
+  Index made_ = 0;
+  Index ahead_;                         // first sample behind the four
+  std::array<Index, 4> samples_{};      // neighbours in the table, all used
+  Eigen::Vector4d instants_, weights_;  // s; of them
+};
 
 AccelerationMethod methodOf(const AccelerationOptions& options, bool recorded) {
   if (options.method == AccelerationMethod::kAuto) {

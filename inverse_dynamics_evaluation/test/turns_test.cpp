@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "turns.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>

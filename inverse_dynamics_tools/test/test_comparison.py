@@ -33,8 +33,9 @@ def test_other_recordings_are_refused(evaluation):
     with pytest.raises(UserError, match=text):
         compare([evaluation, make_evaluation(300)])
     log = replace(evaluation.log, effort=evaluation.log.effort + 1)
+    other = replace(evaluation, log=log, measured=log.effort)
     with pytest.raises(UserError, match="evaluate the same recording with each solver"):
-        compare([evaluation, replace(evaluation, log=log)])
+        compare([evaluation, other])
 
 
 @pytest.mark.parametrize(
@@ -53,7 +54,8 @@ def test_other_recordings_are_refused(evaluation):
 def test_other_meanings_of_the_same_efforts_are_refused_with_the_reason(
     evaluation, first, other, said
 ):
-    runs = [replace(evaluation, effort=effort) for effort in (first, other)]
+    recorded = evaluation.log.effort
+    runs = [replace(evaluation, effort=e, measured=e.torques(recorded)) for e in (first, other)]
     with pytest.raises(UserError, match=re.escape(said)) as caught:
         compare(runs)
     assert str(caught.value).startswith("compare: recording: expected evaluations with one mea")

@@ -4,8 +4,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from inverse_dynamics.figures.thinning import PeaksOfRows, peaks
-from inverse_dynamics.figures.torque_lines import TorqueLines
+from inverse_dynamics.figures.thinning import error_limit, line, peaks
 
 
 @pytest.mark.parametrize("count", [3, 10, 11, 12, 99, 1000])
@@ -28,26 +27,15 @@ def test_a_short_last_stretch_names_no_index_beyond_the_end():
     assert peaks(values, 10).max() == 22
 
 
-@pytest.mark.parametrize("count", [1, 9, 10, 11, 999, 5000])
-@pytest.mark.parametrize("block", [1, 7, 1000, 5000])
-def test_peaks_of_rows_that_come_in_blocks_are_those_of_all(count, block):
-    values = np.random.default_rng(count).normal(size=(count, 2)).round(1)
-    time = np.arange(count) * 0.5
-    rows = PeaksOfRows(count, 10)
-    for begin in range(0, count, block):
-        rows.add(time[begin : begin + block], values[begin : begin + block])
-    for i in range(2):
-        kept = peaks(values[:, i], 10)
-        np.testing.assert_array_equal(rows.line(i)[0], time[kept])
-        np.testing.assert_array_equal(rows.line(i)[1], values[kept, i])
-
-
-def test_lines_of_many_samples_need_little_memory():
-    torques = np.random.default_rng(1).normal(size=(4096, 7))
-    lines = TorqueLines(10_000_000, 7)
+def test_a_line_of_many_samples_needs_little_memory():
+    torques = np.random.default_rng(1).normal(size=(400_000, 7))
+    time = np.arange(400_000.0)
     tracemalloc.start()
-    for block in range(200):
-        lines.add(np.arange(4096.0) + 4096 * block, torques, 0.9 * torques)
-    held, _ = tracemalloc.get_traced_memory()
+    shown, values = line(time, torques[:, 3])
+    limit = error_limit(torques[:, 3])
+    _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert held < 3e6
+    assert len(shown) == len(values) <= 6000
+    assert values.max() == torques[:, 3].max()
+    assert 1.5 * 2.5 < limit < 1.5 * 3.1  # of 400,000 normal numbers, the greatest is 4.9
+    assert peak < 1.5 * time.nbytes  # one column is copied, not all

@@ -52,10 +52,6 @@ extern const Eigen::Index count;
 extern const std::vector<double> drive_gains;
 }  // namespace effort_verdict_examples
 namespace evaluator_examples {
-struct Table {
-  void append(const Eigen::VectorXd& time, const Eigen::MatrixXd& torques);
-};
-extern Table table;
 extern const EvaluationOptions options;
 }  // namespace evaluator_examples
 namespace joint_log_examples {
@@ -73,16 +69,13 @@ namespace joint_state_writer_examples {
 extern const std::vector<std::int64_t> stamps;
 extern const Eigen::MatrixXd tau;
 }  // namespace joint_state_writer_examples
-namespace metrics_examples {
-struct Block {
-  Eigen::Index first;
-  Eigen::MatrixXd computed, measured;
-};
-extern const std::vector<Block> blocks;
-}  // namespace metrics_examples
 namespace online_derivative_examples {
 extern const std::int64_t stamp;
 extern const Eigen::VectorXd qd;
 }  // namespace online_derivative_examples
+namespace sample_table_examples {
+extern const std::vector<std::string> joints;
+extern const Eigen::Index k;
+}  // namespace sample_table_examples
 
 }  // namespace given

@@ -7,13 +7,8 @@
 ///     std::vector<JointMetrics> kept = metrics(computed, measured, samples.kept);
 ///     std::cout << all[0].rmse << " N m, " << 100 * all[0].nrmse << " %\n";
 ///
-/// Or block by block, for a recording of any length:
-///
-///     ErrorSums sums(6);
-///     for (const auto& [first, computed, measured] : blocks) sums.add(computed, measured, first);
-///     std::vector<JointMetrics> all = sums.metrics();
-///
-/// The formulas are those of docs/notation.md. Metrics over a selection are to be shown beside
+/// The formulas are those of docs/notation.md. Sums are compensated: nothing is lost in long
+/// recordings. Metrics over a selection are to be shown beside
 /// those over all samples, never instead of them.
 
 #pragma once
@@ -64,59 +59,6 @@ std::vector<JointMetrics> metrics(const Eigen::Ref<const Eigen::MatrixXd>& compu
 std::vector<JointMetrics> metrics(const Eigen::Ref<const Eigen::MatrixXd>& computed,
                                   const Eigen::Ref<const Eigen::MatrixXd>& measured,
                                   const Mask& mask);
-
-/// What metrics() needs to know of samples, gathered in one pass.
-///
-/// Sums are compensated, and variances come from differences to a mean, so nothing is lost in long
-/// recordings. The sums of two parts of a recording, merged, are those of the whole.
-class ErrorSums {
- public:
-  /// @param joints  n.
-  explicit ErrorSums(Eigen::Index joints) : joints_(static_cast<std::size_t>(joints)) {}
-
-  /// Adds samples, which come after all that were added.
-  ///
-  /// @param computed,measured  n x N, one sample per column.
-  /// @param first              number of the first of them in the recording.
-  /// @param mask               N; the valid samples. The others may be anything.
-  /// @throws EvaluationError: sizes differ; a number that isn't finite.
-  void add(const Eigen::Ref<const Eigen::MatrixXd>& computed,
-           const Eigen::Ref<const Eigen::MatrixXd>& measured, Eigen::Index first);
-  void add(const Eigen::Ref<const Eigen::MatrixXd>& computed,
-           const Eigen::Ref<const Eigen::MatrixXd>& measured, Eigen::Index first, const Mask& mask);
-
-  /// Adds those of samples that come after all that were added.
-  void merge(const ErrorSums& later);
-
-  /// Valid samples.
-  Eigen::Index count() const { return joints_.empty() ? 0 : joints_.front().count; }
-
-  /// n. @throws EvaluationError: no sample counts.
-  std::vector<JointMetrics> metrics() const;
-
- private:
-  // A sum whose rounding errors are kept [Neumaier 1974, doi 10.1002/zamm.19740540106].
-  struct Sum {
-    void operator+=(double number);
-    double value() const { return sum + lost; }
-    double sum = 0, lost = 0;
-  };
-  struct Joint {
-    void merge(const Joint& later);
-    Eigen::Index count = 0;
-    Sum error, absolute, square;     // of e, |e|, e^2
-    double mean = 0, deviation = 0;  // of measured; sum of squared differences to the mean
-    double least = 0, greatest = 0;  // measured
-    double max_abs = -1;
-    Eigen::Index max_at = 0;
-  };
-
-  void addJoint(const Eigen::Ref<const Eigen::MatrixXd>& computed,
-                const Eigen::Ref<const Eigen::MatrixXd>& measured, Eigen::Index first,
-                const Mask* mask, Eigen::Index j);
-
-  std::vector<Joint> joints_;
-};
 
 }  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -4,8 +4,8 @@
 /// Samples of a recording as a table: one column per quantity, one row per sample.
 ///
 ///     SampleTable table;
-///     const JointLog about = readTable(*source, {joints}, table);   // one pass over the recording
-///     table.q.col(k);                                               // positions of sample k
+///     const JointLog about = readTable(source, {joints}, table);   // one pass over the recording
+///     std::cout << table.q.col(k);                                 // positions of sample k
 ///
 /// A recording of any length fits: with a directory, the columns lie in files there that have no
 /// name, mapped into memory, so the system may write their pages to the disk. Such files vanish with
@@ -40,7 +40,7 @@ class SampleTable {
   using JointColumns = Eigen::Map<Eigen::MatrixXd>;
   using FlagColumn = Eigen::Map<Eigen::Array<bool, Eigen::Dynamic, 1>>;
 
-  /// @param directory  of the files, about 400 bytes per sample of seven joints; empty: no files.
+  /// @param directory  of the files, 430 bytes per sample of seven joints; empty: no files.
   explicit SampleTable(std::string directory = "");
   ~SampleTable();
   SampleTable(const SampleTable&) = delete;

@@ -11,7 +11,7 @@ from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.wording import printable, shown
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.figures import palette
-from inverse_dynamics.figures.torque_lines import TorqueLines
+from inverse_dynamics.figures.thinning import error_limit, line
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -116,16 +116,15 @@ def torque_figure(evaluation: Evaluation) -> Figure:
     height = 1.25 * n + 1.7
     figure = Figure(figsize=(11.0, height))
     axes = _panels(figure, n, top=1.32, bottom=0.5)
-    lines = TorqueLines.of(evaluation)
     left_out = evaluation.samples.left_out_spans(evaluation.log)
     for j, (left, right) in enumerate(axes):
-        _draw_torques(left, evaluation, lines, j)
-        _draw_error(right, evaluation, lines, j)
+        _draw_torques(left, evaluation, j)
+        _draw_error(right, evaluation, j)
         for axis in (left, right):
             _shade(axis, left_out)
     for axis in axes[-1]:
         axis.set_xlabel("time [s]", color=_MUTED)
-        axis.set_xlim(lines.begin, lines.end)
+        axis.set_xlim(evaluation.time[0], evaluation.time[-1])
 
     def at(inches_from_top: float) -> float:
         return 1 - inches_from_top / height
@@ -172,28 +171,29 @@ def comparison_figure(comparison: Comparison) -> Figure:
         fontweight="bold",
     )
     axes = _panels(figure, n, top=0.55, bottom=0.8)
-    runs = [TorqueLines.of(evaluation) for evaluation in comparison.evaluations]
     for j, (left, right) in enumerate(axes):
-        left.plot(*runs[0].measured(j), **MEASURED, label="measured")
-        for k, run in enumerate(runs):
+        left.plot(*line(first.time, first.measured[:, j]), **MEASURED, label="measured")
+        largest = 0.0
+        for k, run in enumerate(comparison.evaluations):
             style = {
                 "color": palette.RUNS[k % len(palette.RUNS)],
                 "linewidth": 0.9,
                 "label": comparison.labels[k],
             }
-            left.plot(*run.computed(j), **style)
-            right.plot(*run.error(j), **style)
+            error = run.computed[:, j] - run.measured[:, j]
+            left.plot(*line(run.time, run.computed[:, j]), **style)
+            right.plot(*line(run.time, error), **style)
+            largest = max(largest, error_limit(error))
         left.set_title(f"{comparison.joint_names[j]} [{first.units[j]}]", loc="left", fontsize=9)
         rmse = " / ".join(f"{value:.3g}" for value in comparison.rmse[:, j])
         right.set_title(
             f"error: RMSE {rmse} {first.units[j]}", loc="left", fontsize=9, color=_MUTED
         )
         right.axhline(0, color="#999999", linewidth=0.6)
-        largest = max(run.error_limit(j) for run in runs)
         right.set_ylim(-1.1 * (largest or 1.0), 1.1 * (largest or 1.0))
     for axis in axes[-1]:
         axis.set_xlabel("time [s]", color=_MUTED)
-        axis.set_xlim(runs[0].begin, runs[0].end)
+        axis.set_xlim(first.time[0], first.time[-1])
     handles, labels = axes[0][0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", ncols=len(labels), frameon=False)
     return figure
@@ -214,21 +214,22 @@ def _panels(figure: Figure, n: int, *, top: float, bottom: float) -> NDArray[np.
     return axes
 
 
-def _draw_torques(axes: Axes, evaluation: Evaluation, lines: TorqueLines, j: int) -> None:
-    axes.plot(*lines.measured(j), **MEASURED)
-    axes.plot(*lines.computed(j), **COMPUTED)
+def _draw_torques(axes: Axes, evaluation: Evaluation, j: int) -> None:
+    axes.plot(*line(evaluation.time, evaluation.measured[:, j]), **MEASURED)
+    axes.plot(*line(evaluation.time, evaluation.computed[:, j]), **COMPUTED)
     axes.set_title(
         f"{evaluation.joint_names[j]} [{evaluation.units[j]}]", loc="left", fontsize=9, pad=3
     )
     axes.margins(y=0.08)
 
 
-def _draw_error(axes: Axes, evaluation: Evaluation, lines: TorqueLines, j: int) -> None:
+def _draw_error(axes: Axes, evaluation: Evaluation, j: int) -> None:
     from matplotlib.ticker import EngFormatter
 
     error = evaluation.errors[j]
-    largest = lines.error_limit(j) or 1.0
-    t, difference = lines.error(j)
+    differences = evaluation.computed[:, j] - evaluation.measured[:, j]
+    largest = error_limit(differences) or 1.0
+    t, difference = line(evaluation.time, differences)
     axes.axhline(0, color="#999999", linewidth=0.6)
     axes.fill_between(t, 0, difference, color=ERROR["color"], alpha=0.15, linewidth=0)
     axes.plot(t, difference, **ERROR)
