@@ -56,7 +56,8 @@ std::string Effort::summary() const {
     text += ", with drive gains " + figures("%.4g", drive_gains, " ") + " N m/A";
   }
   if (verdict) {
-    text += std::string("; ") + (verdict->sure ? "sure" : "not sure") + ": " + verdict->summary();
+    text += verdict->sure ? "; sure" : "; not sure";
+    text += verdict->summary.empty() ? "" : ": " + verdict->summary;
   }
   return text;
 }
@@ -123,7 +124,7 @@ Effort statedEffort(const EffortOptions& options) {
 Effort effortOfData(EffortVerdict verdict, const EffortOptions& options) {
   Effort effort;
   if (verdict.sure) {
-    effort.meaning = verdict.best();
+    effort.meaning = verdict.best;
     effort.stated_by = kFromData;
   } else if (!options.format.empty()) {
     effort.meaning = options.format;
@@ -146,9 +147,10 @@ std::vector<std::string> effortNotes(const Effort& effort, const EffortOptions& 
         "all recorded efforts are zero: does the robot's driver measure them? Some publish zeros");
   }
   if (effort.verdict && !effort.verdict->sure) {
+    const std::string& summary = effort.verdict->summary;
     notes.push_back("the data don't determine what effort means: " + effort.verdict->reason +
-                    "; taken as " + effort.meaning + ", " + effort.stated_by + " (" +
-                    effort.verdict->summary() + ")");
+                    "; taken as " + effort.meaning + ", " + effort.stated_by +
+                    (summary.empty() ? "" : " (" + summary + ")"));
   }
   const auto contradicted = [&](const std::string& other, const std::string& who) {
     if (isMeaning(other) && other != effort.meaning) {

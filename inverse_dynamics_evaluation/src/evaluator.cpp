@@ -56,19 +56,6 @@ auto named(const EvaluationOptions& options, Call call) {
   }
 }
 
-// The columns where `mask` is true.
-MatrixXd keptColumns(const Eigen::Ref<const MatrixXd>& columns,
-                     const Eigen::Ref<const Eigen::Array<bool, Eigen::Dynamic, 1>>& mask) {
-  MatrixXd result(columns.rows(), mask.count());
-  Index next = 0;
-  for (Index k = 0; k < mask.size(); ++k) {
-    if (mask[k]) {
-      result.col(next++) = columns.col(k);
-    }
-  }
-  return result;
-}
-
 // Evaluates a table that has what was recorded.
 class Evaluator {
  public:
@@ -92,7 +79,8 @@ class Evaluator {
     computeTorques();
     const bool recorded = table_.effort.size() > 0;
     if (result.effort.meaning == kAutomatic) {
-      result.effort = effortOfData(verdict(result.accelerations.samples), options_.effort);
+      result.effort = effortOfData(
+          options_.ask && recorded ? options_.ask(result) : EffortVerdict(), options_.effort);
     }
     if (result.effort.meaning == kTorqueWithoutGravity) {
       forEachBlock(kComputed, kComputed, [&](Index first, Index count) {
@@ -136,22 +124,6 @@ class Evaluator {
       requirePossibleTorques(options_.recording, solver_.jointNames(), options_.units, computed,
                              first);
     });
-  }
-
-  // What efforts mean by the data.
-  EffortVerdict verdict(const SampleReport& samples) const {
-    const bool recorded = table_.effort.size() > 0;
-    EffortSums sums(recorded ? samples.counts.kept : 0, table_.q.rows(),
-                    options_.effort.drive_gains);
-    if (recorded) {
-      forEachBlock(kComputed, kComputed, [&](Index first, Index count) {
-        const auto kept = table_.kept.segment(first, count);
-        sums.add(keptColumns(table_.computed.middleCols(first, count), kept),
-                 keptColumns(gravity(first, count), kept),
-                 keptColumns(table_.effort.middleCols(first, count), kept));
-      });
-    }
-    return sums.verdict();
   }
 
   // Measured torques, once it is known what efforts mean, and errors.

@@ -15,6 +15,7 @@ namespace inverse_dynamics_evaluation::evaluator_test {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr double kRounding = 1e-12;
@@ -143,15 +144,47 @@ TEST(Evaluate, TakesCurrentsTimesDriveGains) {
 TEST(Evaluate, LeavesGravityOutOfBothWhereEffortsAreWithoutIt) {
   JointLog log = recorded();
   log.effort -= gravityOf(log.q);
-  for (const char* stated : {kTorqueWithoutGravity, kAutomatic}) {
-    const Evaluation evaluation = evaluate(log, TwoJointSolver(), options(stated));
-    EXPECT_EQ(evaluation.effort.meaning, kTorqueWithoutGravity);
-    EXPECT_NEAR(evaluation.errors[0].bias, -0.25, kRounding);
-    EXPECT_NEAR(evaluation.table->computed(1, 0), -3, kRounding);
-    EXPECT_EQ(evaluation.effort.verdict.has_value(), std::string(stated) == kAutomatic);
-    EXPECT_THAT(evaluation.notes, Contains("computed torques are shown without gravity, as efforts "
-                                           "were recorded"));
-  }
+  const Evaluation evaluation = evaluate(log, TwoJointSolver(), options(kTorqueWithoutGravity));
+  EXPECT_NEAR(evaluation.errors[0].bias, -0.25, kRounding);
+  EXPECT_NEAR(evaluation.table->computed(1, 0), -3, kRounding);
+  EXPECT_FALSE(evaluation.effort.verdict.has_value());
+  EXPECT_THAT(evaluation.notes, Contains("computed torques are shown without gravity, as efforts "
+                                         "were recorded"));
+}
+
+TEST(Evaluate, AsksTheDataWhereEffortsAreAuto) {
+  EvaluationOptions given = options(kAutomatic);
+  given.ask = [](const Evaluation& found) {
+    EXPECT_NEAR(found.table->computed(1, 0), 3 * found.table->qdd(1, 0) + 20, kRounding);
+    return EffortVerdict{kTorqueWithoutGravity, true, "torque is far off", ""};
+  };
+  const Evaluation told = evaluate(recorded(200), TwoJointSolver(), given);
+  EXPECT_EQ(told.effort.summary(),
+            "torque without gravity, found from the data; sure: torque is far off");
+  EXPECT_NEAR(told.table->computed(1, 0), 3 * told.table->qdd(1, 0), kRounding);
+  given.ask = nullptr;
+  const Evaluation unasked = evaluate(recorded(200), TwoJointSolver(), given);
+  EXPECT_EQ(unasked.effort.summary(), "torque, as the run configuration says; not sure");
+  EXPECT_THAT(unasked.notes, Contains(HasSubstr("`ids evaluate` does; taken as torque, as the run "
+                                                "configuration says")));
+}
+
+TEST(EffortOfData, FallsBackOnWhatIsStated) {
+  EffortOptions options;
+  options.configuration = kTorqueWithoutGravity;
+  EXPECT_EQ(effortOfData({kTorque, true, "", ""}, options).stated_by, "found from the data");
+  const EffortVerdict open = {kTorque, false, "", "they are alike"};
+  EXPECT_EQ(effortOfData(open, options).meaning, kTorqueWithoutGravity);
+  options.format = kTorque;
+  EXPECT_EQ(effortOfData(open, options).stated_by, "as the recording's format says");
+  options.format.clear();
+  options.configuration = kAutomatic;
+  const Effort effort = effortOfData(open, options);
+  EXPECT_EQ(effort.summary(), "torque, as nothing is stated; not sure");
+  EXPECT_THAT(effortNotes(effort, options, true, {}),
+              ElementsAre(HasSubstr("all recorded efforts are zero"),
+                          "the data don't determine what effort means: they are alike; taken as "
+                          "torque, as nothing is stated"));
 }
 
 TEST(Evaluate, ComputesTorquesWhereNoEffortsAreRecorded) {
@@ -186,10 +219,8 @@ TEST(Evaluate, RefusesWhatCannotBeEvaluated) {
             "masses, gravity and units");
   without_units.units = {"N m"};
   EXPECT_THROW(evaluate(log, solver, without_units), EvaluationError);
-  EvaluationOptions another_robots = options(kAutomatic);
+  EvaluationOptions another_robots = options(kCurrent);
   another_robots.effort.drive_gains = {1.0};
-  EXPECT_THROW(evaluate(recorded(200), solver, another_robots), EvaluationError);
-  another_robots.effort.option = kCurrent;
   EXPECT_THROW(evaluate(recorded(200), solver, another_robots), EvaluationError);
   EXPECT_EQ(errorOf<EvaluationError>([&] { evaluate(log, solver, options("force")); }),
             "effort, as given: expected one of torque, current, torque_without_gravity, auto, got "

@@ -28,7 +28,6 @@ namespace {
 namespace py = pybind11;
 namespace evaluation = inverse_dynamics_evaluation;
 using Eigen::Index;
-using evaluation::EffortCandidate;
 using evaluation::EffortVerdict;
 using Names = std::vector<std::string>;
 
@@ -37,27 +36,11 @@ using Evaluated = evaluation::Evaluation;
 }  // namespace
 }  // namespace inverse_dynamics_tools
 
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::EffortCandidate)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::EffortVerdict)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::Evaluation)
 
 namespace inverse_dynamics_tools {
 namespace {
-
-using Booleans = Eigen::Array<bool, Eigen::Dynamic, 1>;
-using MaskArray = py::array_t<bool, py::array::c_style>;
-
-EffortVerdict compareMeanings(const Array& computed, const Array& gravity, const Array& effort,
-                              const std::vector<double>& drive_gains,
-                              const std::optional<MaskArray>& mask) {
-  const ConstMap computed_in = states(computed, "computed"),
-                 gravity_in = states(gravity, "gravity"), effort_in = states(effort, "effort");
-  const evaluation::Mask counts =
-      mask ? evaluation::Mask(Eigen::Map<const Booleans>(mask->data(), mask->size()))
-           : evaluation::Mask(Booleans::Constant(computed_in.cols(), true));
-  const py::gil_scoped_release release;
-  return evaluation::compareMeanings(computed_in, gravity_in, effort_in, drive_gains, counts);
-}
 
 std::string effortSummary(const std::string& meaning, const std::string& stated_by,
                           const std::vector<double>& drive_gains,
@@ -101,13 +84,18 @@ struct Options : evaluation::EvaluationOptions {
 };
 
 evaluation::Evaluation evaluate(const SolverObject& solver, const py::object& motion,
-                                const Options& given, const py::function& progress) {
+                                const Options& given, const py::function& ask,
+                                const py::function& progress) {
   const auto shared = solverOf(solver);
   evaluation::EvaluationOptions options = given;
   options.progress = [&](double share) {
     const py::gil_scoped_acquire acquire;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     progress(share);
+  };
+  options.ask = [&](const Evaluated& found) {
+    const py::gil_scoped_acquire acquire;
+    return ask(py::cast(found)).cast<EffortVerdict>();
   };
   if (py::isinstance<JointStates>(motion)) {
     auto& states = motion.cast<JointStates&>();
@@ -208,38 +196,18 @@ void bindOptions(py::module_& module) {
 }
 
 void bindEffort(py::module_& module) {
-  py::class_<EffortCandidate>(module, "EffortCandidate",
-                              "A meaning of efforts, and how far it is from the recorded ones.")
-      .def(py::init([](std::string meaning, double error, double margin, Index worse_in) {
-             return EffortCandidate{std::move(meaning), error, margin, worse_in};
+  py::class_<EffortVerdict>(module, "EffortVerdict", "What the data say efforts mean.")
+      .def(py::init([](std::string best, bool sure, std::string summary, std::string reason) {
+             return EffortVerdict{std::move(best), sure, std::move(summary), std::move(reason)};
            }),
-           py::arg("meaning"), py::arg("error"), py::arg("margin"), py::arg("worse_in"))
-      .def_readonly("meaning", &EffortCandidate::meaning)
-      .def_readonly("error", &EffortCandidate::error)
-      .def_readonly("margin", &EffortCandidate::margin)
-      .def_readonly("worse_in", &EffortCandidate::worse_in);
-  py::class_<EffortVerdict>(module, "EffortVerdict",
-                            "Candidates, the best first, and whether it is sure: see\n"
-                            "inverse_dynamics_evaluation/effort_verdict.hpp.")
-      .def(py::init([](std::vector<EffortCandidate> candidates, bool sure, Index stretches,
-                       std::string reason) {
-             if (candidates.empty()) throw py::value_error("candidates: expected one or more");
-             return EffortVerdict{std::move(candidates), sure, stretches, std::move(reason)};
-           }),
-           py::arg("candidates"), py::arg("sure"), py::arg("stretches"), py::arg("reason") = "")
-      .def_readonly("candidates", &EffortVerdict::candidates)
+           py::arg("best"), py::arg("sure"), py::arg("summary"), py::arg("reason"))
+      .def_readonly("best", &EffortVerdict::best)
       .def_readonly("sure", &EffortVerdict::sure)
-      .def_readonly("stretches", &EffortVerdict::stretches)
-      .def_readonly("reason", &EffortVerdict::reason)
-      .def_property_readonly("rivals", &EffortVerdict::rivals)
-      .def_property_readonly("summary", &EffortVerdict::summary);
-  const py::class_<evaluation::EffortOptions> effort_options(
-      module, "EffortOptions", "What is stated of efforts, and by whom: effort_options().");
-  module.def("compare_meanings", &compareMeanings, py::arg("computed"), py::arg("gravity"),
-             py::arg("effort"), py::arg("drive_gains") = std::vector<double>(),
-             py::arg("mask") = py::none(),
-             "Which meaning of recorded efforts fits the data. computed, gravity, effort: (N, n);\n"
-             "drive_gains: (n,) or none; mask: (N,) marks the valid samples.");
+      .def_readonly("summary", &EffortVerdict::summary)
+      .def_readonly("reason", &EffortVerdict::reason);
+  py::class_<evaluation::EffortOptions>(module, "EffortOptions",
+                                        "What is stated of efforts, and by whom: effort_options().")
+      .def_readonly("drive_gains", &evaluation::EffortOptions::drive_gains, "(n,) N m/A, or none");
   module.def("effort_summary", &effortSummary, py::arg("meaning"), py::arg("stated_by"),
              py::arg("drive_gains"), py::arg("verdict"), "What efforts mean, in words.");
 }
@@ -276,11 +244,13 @@ void bindEvaluator(py::module_& module) {
       .def_property_readonly("notes", [](const Evaluated& e) { return e.notes; })
       .def_property_readonly("series", &seriesOf,
                              "Arrays of all samples by name, as series.npz has them: views.");
-  module.def("evaluate", &evaluate, py::arg("solver"), py::arg("motion"), py::arg("options"),
-             py::arg("progress"),
-             "Computed torques of recorded joint states and their errors.\n\n"
-             "motion: a JointLog, or JointStates, which are read once. progress: called with the\n"
-             "share that is done.");
+  module.def(
+      "evaluate", &evaluate, py::arg("solver"), py::arg("motion"), py::arg("options"),
+      py::arg("ask"), py::arg("progress"),
+      "Computed torques of recorded joint states and their errors.\n\n"
+      "motion: a JointLog, or JointStates, which are read once. ask: called with what is known\n"
+      "before efforts are, if they are `auto`; returns an EffortVerdict. progress: called with\n"
+      "the share that is done.");
   module.def(
       "check_options",
       [](const std::string& method, const std::optional<double>& cutoff, const Names& without_rules,

@@ -20,11 +20,17 @@ from inverse_dynamics import (
     read_joint_log,
     write_joint_logs,
 )
-from inverse_dynamics.evaluation.causes.compare import Cause, compare, residual_causes
+from inverse_dynamics.evaluation.causes.compare import (
+    Cause,
+    compare,
+    meaning_of_efforts,
+    residual_causes,
+)
 from inverse_dynamics.evaluation.causes.evaluated import arm_model
 from inverse_dynamics.evaluation.causes.rival import PAGE
 from inverse_dynamics.evaluation.causes.samples import Samples, pieces_of
 from inverse_dynamics.identification.payload import PayloadError, _require_plausible
+from inverse_dynamics.robot.choices import EFFORT_MEANINGS
 from inverse_dynamics.robot.robots import robot_of_description
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
@@ -470,3 +476,51 @@ def test_a_joint_of_a_real_recording_that_is_turned_is_found(recordings, robot, 
     (note,) = notes_of(evaluate(tmp_path / "turned", robot))
     assert f"torques match if the effort of {name} is reversed" in note
     assert f"{PAGE}#a-joint-is-reversed" in note
+
+
+def efforts_of(name: str, meaning: str, **recording) -> Samples:
+    """A recording whose efforts have a meaning."""
+    samples = recorded(name, **recording)
+    if meaning == "current":
+        return scaled(1 / GAINS, samples)
+    q = samples.flat(samples.q)
+    gravity = solver_of(name).gravity_vector(q).reshape(samples.q.shape)
+    without = meaning == "torque_without_gravity"
+    return replace(samples, measured=samples.measured - gravity * without)
+
+
+@pytest.mark.parametrize("name", ["ur10", "panda"])
+@pytest.mark.parametrize("meaning", EFFORT_MEANINGS)
+def test_the_data_tell_each_meaning_of_efforts(name, meaning):
+    samples = efforts_of(name, meaning)
+    found = meaning_of_efforts(samples, model_of(name), GAINS[: len(samples.joints)])
+    assert (found.best, found.sure) == (meaning, True), found.reason
+    assert found.summary.startswith(f"{meaning} is ")
+
+
+@pytest.mark.parametrize("gravity", [(0, 0, 9.81), (9.81, 0, 0), (0, 9.81, 0)])
+@pytest.mark.parametrize("speed", [1.0, 3.0])
+def test_another_mount_isnt_taken_for_torque_without_gravity(gravity, speed):
+    samples = recorded("ur10", torques_of("ur10", gravity=gravity), speed=speed)
+    found = meaning_of_efforts(samples, model_of("ur10"), ())
+    assert found.best == "torque" or not found.sure
+
+
+def test_an_arm_that_carries_no_weight_cant_tell_its_efforts_apart():
+    weightless = torques_of("ur10", gravity=(0, 0, 0))
+    arm = replace(model_of("ur10"), torques=weightless, gravity=np.zeros_like)
+    found = meaning_of_efforts(recorded("ur10", weightless), arm, ())
+    assert not found.sure
+    assert found.reason == "torque and torque_without_gravity can't be told apart"
+
+
+def test_currents_without_gains_fit_no_meaning():
+    found = meaning_of_efforts(efforts_of("panda", "current"), model_of("panda"), ())
+    assert not found.sure or found.best == "torque"  # then the causes doubt it
+    assert "current wasn't considered, as no drive gains are known" in found.summary
+
+
+def test_too_few_samples_tell_no_meaning():
+    found = meaning_of_efforts(None, model_of("ur10"), ())
+    assert (found.best, found.sure) == ("torque", False)
+    assert "too few valid samples" in found.reason

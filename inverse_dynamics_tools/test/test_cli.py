@@ -125,7 +125,7 @@ def test_the_data_are_asked_what_efforts_mean(ids, tmp_path):
     code, out, _ = ids(*command, "--effort-is", "auto")
     assert code == 0
     assert re.search(r"^effort means +current, found from the data, .*; sure: curr", out, re.M)
-    assert re.search(r"torque [\d.]+ % \(worse in 20 of 20 stretches", out)
+    assert re.search(r"torque is [\d.e+]+ % of the range off", out)
     metrics = json.loads((tmp_path / "out/metrics.json").read_text())
     assert metrics["effort"]["verdict"]["sure"] is True
     assert read_evaluation("out").effort.meaning == "current"

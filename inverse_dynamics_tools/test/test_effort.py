@@ -104,7 +104,7 @@ def test_where_the_data_dont_tell_the_configuration_counts(tmp_path, robot, conf
     assert (result.effort.meaning, result.effort.verdict.sure) == (configured, False)
     note = " ".join(result.notes)
     assert "the data don't determine what effort means" in note
-    assert "as gravity hardly loads the joints" in note
+    assert "torque and torque_without_gravity can't be told apart" in note
     assert f"taken as {configured}, as the run configuration says" in note
     nothing = evaluate(tmp_path / "bag", replace(weightless, effort="auto"))
     assert nothing.effort.meaning == "torque"

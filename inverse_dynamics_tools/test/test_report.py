@@ -18,8 +18,7 @@ from test_joint_trajectories import points_of_motion, trajectory, write_trajecto
 from inverse_dynamics import Solver, cli, evaluate, read_evaluation, write_evaluation
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.comparison import compare
-from inverse_dynamics.evaluation.effort import DATA, Effort
-from inverse_dynamics.evaluation.effort_verdict import Candidate, Verdict
+from inverse_dynamics.evaluation.effort import DATA, Effort, Verdict
 from inverse_dynamics.report import report_comparison, report_run
 from inverse_dynamics.report.page import (
     MAX_SAMPLES,
@@ -162,11 +161,11 @@ def test_names_are_text_and_never_markup(evaluation, comparison):
 def test_what_efforts_mean_and_how_sure_that_is_stands_among_the_assumptions(evaluation, run):
     stated = dict(run.assumptions)
     assert stated["effort means"] == "torque, as the run configuration says"
-    candidates = (Candidate("current", 0.01, 1.0, 0), Candidate("torque", 0.9, 30.0, 19))
-    found = Effort("current", DATA, (2.0,) * 6, Verdict(candidates, sure=True, stretches=20))
+    verdict = Verdict("current", sure=True, summary="current is 1 % of the range off")
+    found = Effort("current", DATA, (2.0,) * 6, verdict)
     page = render_page("A page", [report_run(replace(evaluation, effort=found))])
     assert "current, found from the data, with drive gains 2 2 2 2 2 2 N m/A; sure: " in page
-    assert "torque 90 % (worse in 19 of 20 stretches, 30 times)" in page
+    assert verdict.summary in page
 
 
 def test_tables_and_trajectories_are_shown_as_recordings_are(tmp_path):

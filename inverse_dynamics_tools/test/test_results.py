@@ -11,8 +11,7 @@ from conftest import joint_log
 from inverse_dynamics import read_evaluation, read_joint_log, write_evaluation
 from inverse_dynamics.errors import BagError, OutputError, UserError
 from inverse_dynamics.evaluation.accelerations import Accelerations, Samples
-from inverse_dynamics.evaluation.effort import DATA, Effort
-from inverse_dynamics.evaluation.effort_verdict import Candidate, Verdict
+from inverse_dynamics.evaluation.effort import DATA, Effort, Verdict
 from inverse_dynamics.evaluation.evaluation import Evaluation, joint_errors
 from inverse_dynamics.robot.robots import Robot
 
@@ -97,8 +96,7 @@ def test_a_result_is_read_back_whole(result, evaluation):
 
 
 def test_currents_are_kept_beside_the_torques_that_they_mean(tmp_path):
-    candidates = (Candidate("current", 0.01, 1.0, 0), Candidate("torque", 0.9, 30.0, 20))
-    verdict = Verdict(candidates, sure=True, stretches=20)
+    verdict = Verdict("current", sure=True, summary="current is 1 % of the range off")
     effort = Effort("current", DATA, (2.0, 3.0, 4.0), verdict)
     evaluation = make_evaluation(effort=effort)
     evaluation = replace(evaluation, log=replace(evaluation.log, effort_is="current"))
@@ -117,7 +115,7 @@ def test_currents_are_kept_beside_the_torques_that_they_mean(tmp_path):
     assert metrics["effort"]["meaning"] == "current"
     assert metrics["effort"]["drive_gains"] == [2.0, 3.0, 4.0]
     assert metrics["effort"]["verdict"]["sure"] is True
-    assert metrics["effort"]["verdict"]["candidates"][1]["worse_in"] == 20
+    assert metrics["effort"]["verdict"]["summary"] == verdict.summary
 
 
 def test_metrics_say_what_they_are_of(result, evaluation):
@@ -263,8 +261,7 @@ def use(directory, *, page=True):
 @pytest.fixture(scope="module")
 def plain_result(tmp_path_factory):
     """A result without a description, and with a verdict: it can be shown, and has every kind of entry."""
-    candidates = (Candidate("current", 0.01, 1.0, 0), Candidate("torque", 0.9, 30.0, 20))
-    effort = Effort("current", DATA, (2.0,), Verdict(candidates, sure=True, stretches=20))
+    effort = Effort("current", DATA, (2.0,), Verdict("current", sure=True))
     plain = make_evaluation(samples=60, joints=1, effort=effort)
     plain = replace(plain, robot=replace(plain.robot, urdf=None))
     target = tmp_path_factory.mktemp("plain") / "result"

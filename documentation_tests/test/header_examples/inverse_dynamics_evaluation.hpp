@@ -41,16 +41,8 @@ void use(const Results&...);
 // What means something else in each header.
 namespace effort_examples {
 extern const EffortOptions options;
-extern const EffortSums sums;
+extern const EffortVerdict verdict;
 }  // namespace effort_examples
-namespace effort_verdict_examples {
-struct Block {
-  Eigen::MatrixXd computed, gravity, effort;
-};
-extern const std::vector<Block> blocks;
-extern const Eigen::Index count;
-extern const std::vector<double> drive_gains;
-}  // namespace effort_verdict_examples
 namespace evaluator_examples {
 extern const EvaluationOptions options;
 }  // namespace evaluator_examples

@@ -4,11 +4,11 @@
 /// What recorded efforts mean, and so what is compared with what.
 ///
 ///     Effort effort = statedEffort(options);
-///     if (effort.meaning == kAutomatic) effort = effortOfData(sums.verdict(), options);
+///     if (effort.meaning == kAutomatic) effort = effortOfData(verdict, options);
 ///     std::cout << effort.summary() << "\n";   // current, as given, with drive gains 13 14 N m/A
 ///
 /// The meaning is stated by the user, else by the recording's format, else by the run configuration;
-/// `auto` has the data tell: see effort_verdict.hpp.
+/// `auto` asks the data. The comparison of causes in Python answers: evaluation/causes/meanings.py.
 
 #pragma once
 
@@ -17,10 +17,15 @@
 #include <string>
 #include <vector>
 
-#include "inverse_dynamics_evaluation/effort_verdict.hpp"
+#include "inverse_dynamics_evaluation/metrics.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
+
+/// What recorded efforts can mean.
+inline constexpr const char* kTorque = "torque";
+inline constexpr const char* kCurrent = "current";
+inline constexpr const char* kTorqueWithoutGravity = "torque_without_gravity";
 
 /// Statement that the data are to tell what efforts mean.
 inline constexpr const char* kAutomatic = "auto";
@@ -36,6 +41,14 @@ struct EffortOptions {
   std::string plugin;                   ///< of the solver
   /// What states `configuration` and `drive_gains`, in words.
   std::string configured_by = "the run configuration";
+};
+
+/// What the data say efforts mean.
+struct EffortVerdict {
+  std::string best = kTorque;  ///< the meaning that fits best
+  bool sure = false;           ///< whether no other meaning or mistake fits as well
+  std::string summary;         ///< errors of the meanings, in words; may be empty
+  std::string reason = "evaluate() in C++ doesn't ask them, `ids evaluate` does";  ///< of doubt
 };
 
 /// What recorded efforts mean, and how that is known.
@@ -67,7 +80,7 @@ std::vector<double> driveGains(const std::vector<double>& configured, const std:
 /// @throws EvaluationError: another word. @throws ConfigurationError: currents without drive gains.
 Effort statedEffort(const EffortOptions& options);
 
-/// What the data tell, else what is stated without them.
+/// What the data tell if they are sure, else what is stated without them.
 ///
 /// @throws ConfigurationError: currents without drive gains.
 Effort effortOfData(EffortVerdict verdict, const EffortOptions& options);

@@ -19,13 +19,14 @@
 /// 1. What efforts mean, as it is stated (effort.hpp).
 /// 2. Faults of the samples (samples.hpp), and accelerations (log_accelerations.hpp).
 /// 3. Torques by the solver.
-/// 4. What efforts mean by the data, if they are to tell (effort_verdict.hpp).
+/// 4. What efforts mean, by the caller's comparison with the data where it is stated as `auto`.
 /// 5. Errors of the computed against the measured torques (metrics.hpp): over all samples, and over
 ///    those that were kept. Findings and notes say the same in words.
 
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
 #include <memory>
 #include <string>
@@ -41,6 +42,11 @@
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
+struct Evaluation;
+
+/// Which meaning of efforts fits the computed torques, with gravity, of an evaluation's table.
+using AskData = std::function<EffortVerdict(const Evaluation&)>;
+
 /// How a recording is to be evaluated, and how texts name it.
 struct EvaluationOptions {
   AccelerationMethod method = AccelerationMethod::kAuto;
@@ -52,6 +58,7 @@ struct EvaluationOptions {
   std::vector<std::string> units;  ///< n; of the torques: N m or N; empty: texts leave them out
   std::vector<std::string> notes;  ///< what was left out or assumed in reading: JointLog::notes
   TellProgress progress;
+  AskData ask;  ///< called where efforts are `auto`; none: what is stated without the data counts
 };
 
 /// What came of an evaluation. Copies share the table.

@@ -2,15 +2,13 @@
 """What recorded efforts mean, and so what is compared with what.
 
 The meaning is stated by the option, else by the recording's format, else by the run configuration;
-`auto` decides from the data. Decided in C++: inverse_dynamics_evaluation/effort.hpp.
+`auto` asks the data: causes/meanings.py. Applied in C++: inverse_dynamics_evaluation/effort.hpp.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
-
-from inverse_dynamics.evaluation.effort_verdict import Verdict, verdict_of
 
 if TYPE_CHECKING:
     from inverse_dynamics._core import Evaluated
@@ -21,6 +19,16 @@ OPTION = "as given"
 FORMAT = "as the recording's format says"
 CONFIGURATION = "as the run configuration says"
 DATA = "found from the data"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the data say efforts mean."""
+
+    best: str  # the meaning that fits best
+    sure: bool  # whether no other meaning or mistake fits as well
+    summary: str = ""  # errors of the meanings, in words
+    reason: str = ""  # why it isn't sure, in words
 
 
 @dataclass(frozen=True)
@@ -41,11 +49,12 @@ class Effort:
         """In words, as tables show it."""
         from inverse_dynamics import _core
 
-        verdict = self.verdict.in_core() if self.verdict else None
+        verdict = _core.EffortVerdict(**asdict(self.verdict)) if self.verdict else None
         return _core.effort_summary(self.meaning, self.stated_by, list(self.drive_gains), verdict)
 
 
 def effort_of(found: Evaluated) -> Effort:
     """What the extension module has decided."""
-    verdict = verdict_of(found.verdict) if found.verdict else None
+    v = found.verdict
+    verdict = Verdict(v.best, v.sure, v.summary, v.reason) if v else None
     return Effort(found.meaning, found.stated_by, tuple(found.drive_gains), verdict)

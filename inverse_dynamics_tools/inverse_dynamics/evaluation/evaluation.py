@@ -9,7 +9,7 @@ for error in result.errors:
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,8 +24,9 @@ from inverse_dynamics.evaluation.accelerations import (
     accelerations_of,
     samples_of,
 )
-from inverse_dynamics.evaluation.causes.compare import Cause
-from inverse_dynamics.evaluation.causes.evaluated import causes_of
+from inverse_dynamics.evaluation.causes.compare import Cause, compare, meaning_of_efforts
+from inverse_dynamics.evaluation.causes.evaluated import arm_model
+from inverse_dynamics.evaluation.causes.samples import pieces_of
 from inverse_dynamics.evaluation.effort import Effort, effort_of
 from inverse_dynamics.evaluation.posture import posture_of
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
@@ -36,7 +37,7 @@ from inverse_dynamics.robot.solvers import description_notes, open_solver
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from inverse_dynamics._core import JointMetrics
+    from inverse_dynamics._core import EffortVerdict, Evaluated, JointMetrics
     from inverse_dynamics.base.arrays import Floats, Mask, Parameter
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.bags import JointStateTopic
@@ -205,8 +206,10 @@ def evaluate(
     result = replace(result, notes=(*result.notes, *filter(None, [outside])))
     if posture.moves:
         return result
-    found = causes_of(
-        robot, arm.solver, arm.description, result.log, result.qdd, result.effort, kept
+    without_gravity = result.effort.meaning == "torque_without_gravity"
+    found = compare(
+        pieces_of(arm.joint_names, result.time, *states, result.measured, kept),
+        arm_model(robot, arm.solver, arm.description, without_gravity=without_gravity),
     )
     result = replace(result, effort=found.doubting(result.effort), diagnosis=found.causes)
     if not found.text:
@@ -278,6 +281,14 @@ def _compare(
         expected, notes = len(motion), motion.notes
     else:
         expected, notes = motion.states.expected_messages, ()
+    effort = _core.effort_options(robot, arm.solver, effort_is, motion.effort_is)
+
+    def ask(found: Evaluated) -> EffortVerdict:
+        columns = (found.series[name] for name in ("time", "q", "qd", "qdd", "effort", "kept"))
+        samples = pieces_of(arm.joint_names, *columns)
+        model = arm_model(robot, arm.solver, arm.description)
+        return _core.EffortVerdict(**asdict(meaning_of_efforts(samples, model, effort.drive_gains)))
+
     options = _core.EvaluationOptions(
         joints=list(arm.recorded_names),
         clock=clock,
@@ -285,7 +296,7 @@ def _compare(
         method=robot.accelerations,
         cutoff=robot.cutoff or 0.0,
         without_rules=list(without_rules),
-        effort=_core.effort_options(robot, arm.solver, effort_is, motion.effort_is),
+        effort=effort,
         recording=", ".join(filter(None, (f"{bag}", f"{window}"))),
         topic=motion.topic,
         units=list(arm.units),
@@ -296,6 +307,7 @@ def _compare(
         arm.solver,
         motion if isinstance(motion, JointLog) else motion.states,
         options,
+        ask,
         lambda share: progress("evaluating", round(share * expected), expected),
     )
     arrays = found.series

@@ -30,8 +30,7 @@ from inverse_dynamics.data.bags import write_torques
 from inverse_dynamics.data.joint_log import JointLog, check_storage
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.evaluation.accelerations import MASKS, Accelerations, Samples
-from inverse_dynamics.evaluation.effort import Effort
-from inverse_dynamics.evaluation.effort_verdict import Candidate, Verdict
+from inverse_dynamics.evaluation.effort import Effort, Verdict
 from inverse_dynamics.evaluation.evaluation import Evaluation, JointError, evaluate
 from inverse_dynamics.figures.plots import FORMATS
 from inverse_dynamics.results.stated_types import check_types
@@ -223,8 +222,6 @@ def _check_sizes(evaluation: Evaluation) -> None:
     for name, entries in counts.items():
         if len(entries) != joints or not joints:
             raise ValueError(f"{name}: expected {joints}, one per joint, got {len(entries)}")
-    if effort.verdict is not None and not effort.verdict.candidates:
-        raise ValueError("candidates: expected one or more, got none")
 
 
 def _layout(evaluation: Evaluation, bag: Path, storage: Storage) -> str:
@@ -350,8 +347,7 @@ def _from_files(
 def _effort(data: dict[str, Any]) -> Effort:
     verdict = data["verdict"]
     if verdict is not None:
-        candidates = tuple(Candidate(**candidate) for candidate in verdict["candidates"])
-        verdict = Verdict(**{**verdict, "candidates": candidates})
+        verdict = Verdict(**verdict)
     gains = tuple(data["drive_gains"])
     return Effort(**{**data, "drive_gains": gains, "verdict": verdict})
 

@@ -11,7 +11,6 @@ import numpy as np
 
 from inverse_dynamics.base.wording import shown
 from inverse_dynamics.data import joint_log
-from inverse_dynamics.evaluation import effort_verdict
 
 
 class _Array:
@@ -30,7 +29,6 @@ _NAMES: dict[str, Any] = {
     "Clock": joint_log.Clock,
     "Storage": joint_log.Storage,
     "JointLog": joint_log.JointLog,
-    "Verdict": effort_verdict.Verdict,
 }
 
 

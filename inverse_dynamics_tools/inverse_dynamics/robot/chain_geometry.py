@@ -17,7 +17,13 @@ import numpy as np
 
 from inverse_dynamics.base.wording import shown
 from inverse_dynamics.errors import RobotError
-from inverse_dynamics.robot.descriptions import numbers_of, parse_description
+from inverse_dynamics.robot.descriptions import (
+    fixed_above,
+    link_of,
+    numbers_of,
+    parse_description,
+    root_link,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -64,23 +70,35 @@ def chain_geometry(
     root: the link at which the chain begins; "": the description's root.
     """
     robot = parse_description(description)
-    above = {_link_of(joint, "child"): joint for joint in robot.findall("joint")}
+    above = {link_of(joint, "child"): joint for joint in robot.findall("joint")}
     by_name = {joint.get("name"): joint for joint in above.values()}
-    parent = root or next(iter({_link_of(j, "parent") for j in above.values()} - set(above)), "")
+    parent = root or root_link(description)
     chain = []
     for name in joint_names:
         joint = by_name.get(name)
         if joint is None:
             raise RobotError(f"robot description: expected a joint {shown(name)}, got none")
         xyz, rpy = _placement(*_path(above, parent, joint))
-        parent = _link_of(joint, "child")
+        parent = link_of(joint, "child")
         kind = joint.get("type", "")
         chain.append(JointGeometry(name, kind, parent, xyz, rpy, _axis(joint), _limits(joint)))
     return tuple(chain)
 
 
+def rotation_of(rpy: Floats) -> Floats:
+    """(3, 3) R = RotZ(yaw) RotY(pitch) RotX(roll), as URDF defines it. rpy: (3,) rad."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos(rpy), np.sin(rpy)
+    return np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+
+
 def roll_pitch_yaw(rotation: Floats) -> Floats:
-    """(3,) rad of a rotation matrix: R = RotZ(yaw) RotY(pitch) RotX(roll)."""
+    """(3,) rad of a rotation matrix: the inverse of rotation_of()."""
     R = rotation
     yaw = np.arctan2(R[1, 0], R[0, 0])
     pitch = np.arctan2(-R[2, 0], np.hypot(R[0, 0], R[1, 0]))
@@ -94,15 +112,9 @@ def _path(
     above: Mapping[str, Element], parent: str, joint: Element
 ) -> tuple[list[Element], list[Element]]:
     """Fixed joints up from a link, the topmost first, and from there down to a joint, with that joint."""
-    up: dict[str, list[Element]] = {parent: []}  # by the link that they lead to
-    link = parent
-    while (step := above.get(link)) is not None and step.get("type") == "fixed":
-        link, so_far = _link_of(step, "parent"), up[link]
-        if link in up:
-            break  # a loop
-        up[link] = [step, *so_far]
+    up = fixed_above(parent, above)
     path = [joint]
-    while (link := _link_of(path[0], "parent")) not in up:
+    while (link := link_of(path[0], "parent")) not in up:
         step = above.get(link)
         if step is None or len(path) > len(above):
             raise RobotError(
@@ -157,20 +169,9 @@ def _vector(element: Element | None, attribute: str, absent: Sequence[float]) ->
     return np.array(numbers_of(element, attribute, 3, RobotError))
 
 
-def _link_of(joint: Element, role: str) -> str:
-    element = joint.find(role)
-    return "" if element is None else element.get("link", "")
-
-
 def _pose(xyz: Floats, rpy: Floats) -> Floats:
-    (cr, cp, cy), (sr, sp, sy) = np.cos(rpy), np.sin(rpy)
     pose = np.eye(4)
-    pose[:3, :3] = [
-        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-        [-sp, cp * sr, cp * cr],
-    ]
-    pose[:3, 3] = xyz
+    pose[:3, :3], pose[:3, 3] = rotation_of(rpy), xyz
     return pose
 
 

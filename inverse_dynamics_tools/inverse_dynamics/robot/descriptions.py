@@ -19,7 +19,7 @@ from inverse_dynamics.base.wording import harmless, shown
 from inverse_dynamics.errors import RobotError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from xml.etree.ElementTree import Element
 
     from inverse_dynamics.base.arrays import Floats
@@ -97,6 +97,26 @@ def numbers_of(
     return numbers
 
 
+def link_of(joint: Element, role: str) -> str:
+    """Name of the parent or child link of a joint; "": none is stated."""
+    element = joint.find(role)
+    return "" if element is None else element.get("link", "")
+
+
+def fixed_above(link: str, joint_above: Mapping[str, Element]) -> dict[str, list[Element]]:
+    """A link and those that it is fixed to above it, each with the joints from there down to the link.
+
+    joint_above: by child link.
+    """
+    found: dict[str, list[Element]] = {link: []}
+    while (joint := joint_above.get(link)) is not None and joint.get("type") == "fixed":
+        below, link = found[link], link_of(joint, "parent")
+        if link in found:
+            break  # a loop
+        found[link] = [joint, *below]
+    return found
+
+
 def joint_units(
     file: Path | None, description: str, joint_names: tuple[str, ...]
 ) -> tuple[str, ...]:
@@ -142,16 +162,15 @@ def carried_joints(description: str, chain: Sequence[str], root: str = "") -> di
     movable: dict[str, tuple[str, str]] = {}
     next_to: dict[str, list[str]] = {}
     for joint in _joints(None, description):
-        ends = [joint.find(role) for role in ("parent", "child")]
-        parent, child = (None if end is None else end.get("link") for end in ends)
+        parent, child = (link_of(joint, role) for role in ("parent", "child"))
         name, kind = joint.get("name", ""), joint.get("type")
-        if parent is None or child is None or name in chain:
+        if not parent or not child or name in chain:
             continue
         next_to.setdefault(parent, []).append(child)
         next_to.setdefault(child, []).append(parent)
         if kind in ("revolute", "continuous", "prismatic") and joint.find("mimic") is None:
             movable[name] = (parent, "m" if kind == "prismatic" else "rad")
-    still = [root or _root_link(description)]
+    still = [root or root_link(description)]
     for link in still:  # grows by what is connected to the root without a joint of the chain
         still += [other for other in next_to.get(link, ()) if other not in still]
     return {name: unit for name, (link, unit) in movable.items() if link not in still}
@@ -165,20 +184,19 @@ def tip_link(file: Path | None, chain: Sequence[str]) -> str:
     fixed: dict[str, list[str]] = {}
     last = ""
     for joint in _joints(file, "" if file is None else read_description(file)):
-        parent, child = joint.find("parent"), joint.find("child")
-        if parent is None or child is None:
-            continue
+        child = link_of(joint, "child")
         if joint.get("name") == chain[-1]:
-            last = child.get("link", "")
+            last = child
         elif joint.get("type") == "fixed":
-            fixed.setdefault(parent.get("link", ""), []).append(child.get("link", ""))
+            fixed.setdefault(link_of(joint, "parent"), []).append(child)
     links = [last]
     while behind := [child for link in links for child in fixed.get(link, ())]:
         links = behind
     return links[0]
 
 
-def _root_link(description: str) -> str:
+def root_link(description: str) -> str:
+    """The first link that no joint moves or fixes; "": there is none."""
     robot = parse_description(description)
     children = {child.get("link") for child in robot.iterfind("joint/child")}
     roots = [link.get("name", "") for link in robot.iterfind("link")]

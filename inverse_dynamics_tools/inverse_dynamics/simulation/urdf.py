@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.wording import harmless, listed, shown
-from inverse_dynamics.robot.descriptions import numbers_of, parse_description
+from inverse_dynamics.robot.chain_geometry import rotation_of
+from inverse_dynamics.robot.descriptions import fixed_above, link_of, numbers_of, parse_description
 from inverse_dynamics.simulation.errors import SimulationError
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
     _check_names("joint", [joint.get("name", "") for joint in joints])
     for joint in joints:
         _check_joint(joint, links)
-    joint_above = {_link_of(joint, "child"): joint for joint in joints}
+    joint_above = {link_of(joint, "child"): joint for joint in joints}
     if len(joint_above) < len(joints):
         raise SimulationError("robot description: expected a tree, got a link below two joints")
     tree_root = _tree_root(links, joint_above)
@@ -102,7 +103,7 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
         root=root,
         tip=tip,
         joint_names=names,
-        moving_links=tuple(_link_of(joint, "child") for joint in chain),
+        moving_links=tuple(link_of(joint, "child") for joint in chain),
         lower=np.where(bounded, _numbers(limits, "lower", -np.inf), -np.inf),
         upper=np.where(bounded, _numbers(limits, "upper", np.inf), np.inf),
         velocity=_numbers(limits, "velocity", np.inf),
@@ -113,11 +114,6 @@ def chain_from_urdf(text: str, root: str = "", tip: str = "") -> UrdfChain:
         urdf=ElementTree.tostring(robot, encoding="unicode"),
         notes=notes,
     )
-
-
-def _link_of(joint: ElementTree.Element, role: str) -> str:
-    element = joint.find(role)
-    return "" if element is None else element.get("link", "")
 
 
 def _check_names(kind: str, names: list[str]) -> None:
@@ -134,8 +130,8 @@ def _check_names(kind: str, names: list[str]) -> None:
 def _check_joint(joint: ElementTree.Element, links: list[str]) -> None:
     where = f"robot description: joint {harmless(joint.get('name'))}"
     for role in ("parent", "child"):
-        if _link_of(joint, role) not in links:
-            got = shown(_link_of(joint, role))
+        if link_of(joint, role) not in links:
+            got = shown(link_of(joint, role))
             raise SimulationError(f"{where}: {role}: expected a link of the description, got {got}")
     kind = joint.get("type", "")
     if kind not in {*_MOVING, *_IMPOSSIBLE, "fixed"}:
@@ -156,7 +152,7 @@ def _tree_root(links: list[str], joint_above: dict[str, ElementTree.Element]) ->
 
 def _only_leaf(links: list[str], joint_above: dict[str, ElementTree.Element]) -> str:
     """The leaf, or any of several that lie below the same movable joints."""
-    parents = {_link_of(joint, "parent") for joint in joint_above.values()}
+    parents = {link_of(joint, "parent") for joint in joint_above.values()}
     leaves = [link for link in links if link not in parents]
     paths = {
         tuple(j.get("name", "") for j in _movable_joints(None, leaf, joint_above))
@@ -174,7 +170,7 @@ def _movable_joints(
 ) -> list[ElementTree.Element]:
     """Movable joints from root (None: the URDF's root) to tip, in that order."""
     found = []
-    link, ends = tip, _fixed_to(root, joint_above)
+    link, ends = tip, {} if root is None else fixed_above(root, joint_above)
     for _ in range(len(joint_above) + 1):
         if link in ends or link not in joint_above:
             break
@@ -188,27 +184,13 @@ def _movable_joints(
             )
         if kind in _MOVING:
             found.append(joint)
-        link = _link_of(joint, "parent")
+        link = link_of(joint, "parent")
     if root is not None and link not in ends:
         raise SimulationError(
             f"robot description: tip '{tip}' is not below root '{root}' or a link that it is fixed to; a "
             "simulated robot stands on the root of its description: choose a root nearer to that"
         )
     return found[::-1]
-
-
-def _fixed_to(root: str | None, joint_above: dict[str, ElementTree.Element]) -> set[str]:
-    """A link, and the links above it that only fixed joints are between."""
-    found: set[str] = set()
-    while root is not None and root not in found:
-        found.add(root)
-        joint = joint_above.get(root)
-        root = (
-            _link_of(joint, "parent")
-            if joint is not None and joint.get("type") == "fixed"
-            else None
-        )
-    return found
 
 
 def _numbers(elements: list[ElementTree.Element | None], attribute: str, absent: float) -> Floats:
@@ -231,18 +213,6 @@ def _vector(element: ElementTree.Element | None, attribute: str, length: int = 3
     return np.array(numbers_of(element, attribute, length, SimulationError))
 
 
-def _rotation(rpy: Floats) -> Floats:
-    """R = RotZ(yaw) RotY(pitch) RotX(roll), as URDF defines it."""
-    (cr, cp, cy), (sr, sp, sy) = np.cos(rpy), np.sin(rpy)
-    return np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr],
-        ]
-    )
-
-
 def _inertia_of_links(robot: ElementTree.Element) -> dict[str, Inertia]:
     found = {}
     for link in robot.findall("link"):
@@ -258,7 +228,7 @@ def _inertia_of_links(robot: ElementTree.Element) -> dict[str, Inertia]:
             _vector(tensor, key, 1)[0] for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
         )
         matrix = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        rotation = _rotation(_vector(origin, "rpy"))
+        rotation = rotation_of(_vector(origin, "rpy"))
         found[link.get("name", "")] = Inertia(
             mass=_vector(mass, "value", 1)[0],
             center=_vector(origin, "xyz"),

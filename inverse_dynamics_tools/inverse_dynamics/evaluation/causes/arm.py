@@ -29,7 +29,7 @@ class ArmModel:
     torques: (N, n) with friction. gravity: (N, n) of positions.
     pulled: (3, N, n) torques of positions for 1 m/s^2 of gravity along x, y, z of the root.
     loaded: (4, N, n) torques of motions for 1 kg at the tip, and for first moments of 1 kg m along x, y, z.
-    links: (n, N, n) torques of motions for the mass of each link; links_with_inertia: and for its inertia.
+    links: (2 n, N, n) torques of motions for the mass of each link, then for its mass and inertia.
     """
 
     torques: Compute

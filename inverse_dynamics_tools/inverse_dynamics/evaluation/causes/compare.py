@@ -15,7 +15,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,6 +35,7 @@ from inverse_dynamics.evaluation.causes import (
 from inverse_dynamics.evaluation.causes.arm import ArmModel, View
 from inverse_dynamics.evaluation.causes.fit import Fitting
 from inverse_dynamics.evaluation.causes.rival import PAGE, Rival
+from inverse_dynamics.evaluation.effort import Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -126,7 +127,6 @@ class Comparison:
 
     causes: tuple[Cause, ...] = ()
     excluded: tuple[str, ...] = ()  # kinds, where nothing explains an error
-    scores: dict[str, float] = field(default_factory=dict)  # least error of each kind
 
     @property
     def text(self) -> str:
@@ -166,21 +166,50 @@ class Comparison:
         return "record a motion in which the joints move one after the other"
 
 
-def compare(samples: Samples, arm: ArmModel) -> Comparison:
-    """The causes of a mismatch; none where torques match."""
-    if not all(
-        np.isfinite(v).all() for v in (samples.q, samples.qd, samples.qdd, samples.measured)
-    ):
-        return Comparison()
-    if not (np.ptp(samples.flat(samples.q), axis=0) > 0).any():  # nothing moves
+def meaning_of_efforts(
+    samples: Samples | None, arm: ArmModel, drive_gains: Sequence[float]
+) -> Verdict:
+    """Which meaning explains recorded efforts. samples.measured: as recorded. drive_gains: (n,) N m/A, or none.
+
+    Currents need known gains: gains that are fitted would be a free number for each joint, and always win.
+    """
+    if samples is None or not samples.comparable:
+        return Verdict("torque", sure=False, reason="there are too few valid samples of a motion")
+    view = View(samples, arm)
+    predicted = {"torque": view.computed, "torque_without_gravity": view.computed - view.gravity}
+    if len(drive_gains):
+        predicted["current"] = view.computed / drive_gains
+    contest = _Contest(view)
+    for meaning, base in predicted.items():
+        contest.add(Rival(meaning, base, view.qd))
+    best, *others = sorted(range(len(contest.rivals)), key=contest.score)
+    names = [contest.rivals[i].kind for i in (best, *others)]
+    errors = [f"{100 * contest.score(i):.2g} %" for i in (best, *others)]
+    summary = ", ".join(f"{n} is {e} of the range off" for n, e in zip(names, errors, strict=True))
+    if "current" not in names:
+        summary += "; current wasn't considered, as no drive gains are known"
+    alike = [contest.rivals[i].kind for i in others if contest.alike(i, best, _MARGIN)]
+    reason = f"{names[0]} and {listed(alike)} can't be told apart" if alike else ""
+    if not reason and names[0] != "torque":
+        causes = compare(samples, arm) if names[0] == "torque_without_gravity" else Comparison()
+        alone = all(cause.kind == "no_gravity" for cause in causes.causes) and not causes.excluded
+        if contest.score(best) > _FITS or not alone:
+            reason = causes.text or "no meaning fits"
+    return Verdict(names[0], not reason, summary, reason)
+
+
+def compare(samples: Samples | None, arm: ArmModel) -> Comparison:
+    """The causes of a mismatch; none where torques match, or samples tell nothing."""
+    if samples is None or not samples.comparable:
         return Comparison()
     found = motions.contradiction(samples, arm)
     if found is None:
         return _Contest(View(samples, arm)).decide()
     told, right = found
-    rest = _Contest(View(right, arm)).decide()
+    contest = _Contest(View(right, arm))
+    rest = contest.decide()
     known = [cause.error_after for cause in rest.causes if cause.error_after is not None]
-    after = min(known, default=rest.scores["friction"])
+    after = min(known, default=contest.score(0))  # of friction alone
     first = _cause(told, _Contest(View(samples, arm)).as_is, after)
     others = [c for c in rest.causes if c.kind != "friction"]
     return replace(
@@ -205,7 +234,7 @@ class _Contest:
         view, fit = self.view, self.fit
         nothing = frictions.nothing(view)
         self.add(nothing)
-        before = self._score(0)
+        before = self.score(0)
         if before > _MISMATCH:
             self.add(masses.rough(view))
             for kind in KINDS:
@@ -217,9 +246,9 @@ class _Contest:
                     self.add(rival)
                 named = self.best(before)
             if both := self._pair(named, before):
-                return Comparison(both, scores=self._table())
+                return Comparison(both)
             if named:
-                return Comparison(_causes(named, self.as_is), scores=self._table())
+                return Comparison(_causes(named, self.as_is))
         return self._unnamed(before)
 
     def _pair(self, named: list[tuple[Told, float]], before: float) -> tuple[Cause, ...]:
@@ -247,13 +276,13 @@ class _Contest:
             told = motions.beyond_reach(self.view) or efforts.too_small(self.view)
         if told:
             causes = _causes([(one, None) for one in told], self.as_is)
-            return Comparison(causes, scores=self._table())
+            return Comparison(causes)
         lacks = self.fit.friction is None and self.as_is >= max(_GAIN * before, _RUBS)
         if before <= _FITS:
             causes = (_cause(frictions.FRICTION, self.as_is, before),) if lacks else ()
-            return Comparison(causes, scores=self._table())
+            return Comparison(causes)
         excluded = tuple(sorted({r.kind for r in self.rivals} - {"rough"}))
-        return Comparison(excluded=excluded, scores=self._table())
+        return Comparison(excluded=excluded)
 
     @property
     def as_is(self) -> float:
@@ -262,14 +291,9 @@ class _Contest:
         squares = (((measured - self.view.computed) / self.fit.size) ** 2).reshape(self.fit.shape)
         return float(self.fit.mean(squares.mean(axis=1)))
 
-    def _score(self, i: int) -> float:
+    def score(self, i: int) -> float:
+        """Error that a rival leaves on pieces that were held out."""
         return float(self.fit.mean(self.squares[i]))
-
-    def _table(self) -> dict[str, float]:
-        table: dict[str, float] = {}
-        for i, rival in enumerate(self.rivals):
-            table[rival.kind] = min(self._score(i), table.get(rival.kind, np.inf))
-        return table
 
     def add(self, rival: Rival, squares: Floats | None = None) -> None:
         """One more, unless it can't be."""
@@ -283,15 +307,14 @@ class _Contest:
 
         before: the error without any.
         """
-        still = Rival("", 0.0 * self.view.computed, self.view.qd, lambda *_: None)
+        still = Rival("", 0.0 * self.view.computed, self.view.qd)
         least = {True: min(before, float(self.fit.mean(self.fit.errors(still)))), False: before}
-        scores = [self._score(i) for i in range(len(self.rivals))]
-        self.resampled = np.array([self.fit.mean(s, self.weights) for s in self.squares])
+        scores = [self.score(i) for i in range(len(self.rivals))]
         tied: list[int] = []
         result = []
         for i in map(int, np.argsort(scores, kind="stable")):
             rival = self.rivals[i]
-            if not self._alike(i, tied[:1], _MARGIN):
+            if tied and not self.alike(i, tied[0], _MARGIN):
                 break
             told = rival.tell(*self.fit.numbers(rival))
             if told is None:
@@ -304,15 +327,14 @@ class _Contest:
         rough = [i for i, rival in enumerate(self.rivals) if rival.kind == "rough"]
         static = bool(tied) and self.rivals[tied[0]].kind in _AT_REST
         margin = _ROUGH_MARGIN if static else _MARGIN
-        if any(self._alike(i, tied[:1], margin) for i in rough if tied):
+        if any(self.alike(i, tied[0], margin) for i in rough if tied):
             return []
         return self._special(tied, result)
 
-    def _alike(self, i: int, best: list[int], margin: float) -> bool:
+    def alike(self, i: int, best: int, margin: float) -> bool:
         """Whether a rival can't be told from the best one."""
-        if not best:
-            return True
-        worse = self.resampled[i] > margin * self.resampled[best[0]] + _FLAT
+        error, least = (self.fit.mean(self.squares[k], self.weights) for k in (i, best))
+        worse = error > margin * least + _FLAT
         return bool(worse.mean() < _SURE)
 
     def _special(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.wording import listed
-from inverse_dynamics.evaluation.causes.rival import Rival, Told
+from inverse_dynamics.evaluation.causes.rival import Rival, Told, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Mask
@@ -71,8 +71,7 @@ def _no_gravity(sign: float) -> Told:
 
 def _signs(view: View, fitting: Fitting) -> Iterator[Rival]:
     """All efforts reversed, or those of the joints that fit better so."""
-    as_is = Rival("", view.computed, view.qd, lambda *_: None)
-    turned = Rival("", -view.computed, -view.qd, lambda *_: None)
+    as_is, turned = Rival("", view.computed, view.qd), Rival("", -view.computed, -view.qd)
     errors = [np.sqrt(fitting.errors(rival).mean(axis=0)) for rival in (as_is, turned)]
     decided = view.informative & (np.abs(np.log(errors[1] / errors[0])) > np.log(_SAME))
     flipped = decided & (errors[1] < errors[0])
@@ -90,7 +89,7 @@ def each_reversed(view: View) -> Iterator[Rival]:
 
 def _turned(view: View, flipped: Mask, *, everything: bool) -> Rival:
     sign = np.where(flipped | everything, -1.0, 1.0)
-    names = tuple(n for n, f in zip(view.names, flipped, strict=True) if f and not everything)
+    names = () if everything else view.samples.named(flipped)
     whose = listed(names) + (" are" if len(names) > 1 else " is")
     told = Told(
         "effort_sign" if everything else "effort_direction",
@@ -171,7 +170,7 @@ def _unit(scale: float) -> tuple[str, float]:
     for exact, unit in _UNITS.items():
         if abs(scale / exact - 1) < _NAMED:
             return unit, exact
-    return "", float(f"{scale:.3g}")
+    return "", printed(scale)
 
 
 def _each(view: View, scales: Floats) -> Told | None:
@@ -182,14 +181,14 @@ def _each(view: View, scales: Floats) -> Told | None:
     off = tell & (np.abs(np.log(np.maximum(scales, 1e-12))) > np.log(1.5))
     if not off.any():
         return None
-    rounded = np.array([float(f"{s:.3g}") for s in scales])
+    rounded = np.array([printed(s) for s in scales])
     limits = view.arm.effort_limits
     if limits is not None and np.isfinite(limits[tell]).all():
         shares = scales * limits
         for exact, what in _SHARES.items():
             if (np.abs(shares[tell] / exact - 1) < 2 * _NAMED).all():
                 own = np.where(np.isfinite(limits), exact / limits, rounded)
-                return _told_each(view, tell, own, "effort_scale", f"{what} of the effort limits")
+                return _scales(view, tell, own, f"{what} of the effort limits")
     if ((scales[tell] > _CURRENTS[0]) & (scales[tell] < _CURRENTS[1])).all():
         return _currents(rounded, tell)
     turning = tell & ~view.prismatic
@@ -197,10 +196,10 @@ def _each(view: View, scales: Floats) -> Told | None:
         unit, exact = _unit(float(np.median(scales[turning])))
         if unit and (np.abs(scales[turning] / exact - 1) < _NAMED).all():
             own = np.where(view.prismatic, rounded, exact)
-            return _told_each(view, off, own, "effort_scale", unit)
+            return _scales(view, off, own, f"in {unit}")
     milli = scales[tell] / 1000
     in_ma = bool(((milli > _CURRENTS[0]) & (milli < _CURRENTS[1])).all())
-    return _told_each(view, off, rounded, "effort_scale", "motor currents in mA" if in_ma else "")
+    return _scales(view, off, rounded, "motor currents in mA" if in_ma else "")
 
 
 def _currents(scales: Floats, tell: Mask) -> Told:
@@ -215,14 +214,14 @@ def _currents(scales: Floats, tell: Mask) -> Told:
     )
 
 
-def _told_each(view: View, off: Mask, scales: Floats, kind: str, unit: str) -> Told:
-    names = tuple(n for n, o in zip(view.names, off, strict=True) if o)
+def _scales(view: View, off: Mask, scales: Floats, what: str) -> Told:
+    names = view.samples.named(off)
     numbers = listed([f"{s:.4g}" for s in scales[off]])
     return Told(
-        kind,
+        "effort_scale",
         "Efforts in another unit",
         f"efforts of {listed(names)} are {numbers} times the torques"
-        + (f": they are {'' if 'limits' in unit or 'mA' in unit else 'in '}{unit}" if unit else ""),
+        + (f": they are {what}" if what else ""),
         f"divide them by {numbers} where the recording is made",
         () if off[view.informative].all() else names,
         value=[float(s) for s in scales],

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The causes of an evaluation's errors: its samples in pieces, its solver as an ArmModel.
-
-What a solver can't compute is left out.
-"""
+"""The solver of an evaluation as an ArmModel. It leaves out what the solver can't compute."""
 
 from __future__ import annotations
 
@@ -15,8 +12,6 @@ import numpy as np
 
 from inverse_dynamics.errors import RobotError, SolverError
 from inverse_dynamics.evaluation.causes.arm import ArmModel
-from inverse_dynamics.evaluation.causes.compare import Comparison, compare
-from inverse_dynamics.evaluation.causes.samples import Samples, rows_of_pieces
 from inverse_dynamics.robot.chain_geometry import chain_geometry
 from inverse_dynamics.robot.solvers import open_solver
 
@@ -24,43 +19,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from inverse_dynamics._core import Solver
-    from inverse_dynamics.base.arrays import Floats, Mask
-    from inverse_dynamics.data.joint_log import JointLog
-    from inverse_dynamics.evaluation.effort import Effort
+    from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.robot.robots import Robot
 
 _STANDARD = 9.81  # m/s^2
 _BODY = "cause"  # among the solver's payloads
 _REACH = 0.1  # m: a body's torques are linear in mass and first moment, but for a small moment of inertia
-
-
-def causes_of(
-    robot: Robot,
-    solver: Solver,
-    description: str,
-    log: JointLog,
-    qdd: Floats,
-    effort: Effort,
-    kept: Mask,
-) -> Comparison:
-    """Why computed torques don't match the measured ones.
-
-    robot, solver, description: what the torques were computed with. qdd: (N, n). kept: (N,) valid samples.
-    """
-    valid = np.flatnonzero(kept)
-    if (pieces := rows_of_pieces(log.time_at(valid))) is None:
-        return Comparison()
-    rows = valid[pieces]
-    samples = Samples(
-        tuple(solver.joint_names),
-        log.time_at(rows),
-        log.q[rows],
-        log.qd[rows],
-        qdd[rows],
-        effort.torques(log.effort[rows]),
-    )
-    without = effort.meaning == "torque_without_gravity"
-    return compare(samples, arm_model(robot, solver, description, without_gravity=without))
 
 
 def arm_model(

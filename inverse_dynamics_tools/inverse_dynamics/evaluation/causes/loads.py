@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.evaluation.causes.rival import Rival, Told
+from inverse_dynamics.evaluation.causes.rival import Rival, Told, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
@@ -42,7 +42,7 @@ def _tell(body: Floats, parts: Floats, arm: float) -> Told | None:
         return None
     if np.linalg.norm(body[1:]) > _REACH * body[0]:
         return None
-    mass = float(f"{body[0]:.3g}")
+    mass = printed(body[0])
     center = np.round(body[1:] / body[0], 3) + 0.0
     rounded = np.array([mass, *(mass * center)])
     load = np.tensordot(rounded, parts, axes=1)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.evaluation.causes.rival import Rival, Told
+from inverse_dynamics.evaluation.causes.rival import Rival, Told, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
@@ -42,13 +42,12 @@ def rough(view: View) -> Rival:
     if view.arm.links is not None and not view.arm.compared_without_gravity:
         parts = view.arm.links(*view.motion)[: len(view.names)]
         low, high = (-_ROUGH,) * len(parts), (_ROUGH,) * len(parts)
-        return Rival("rough", view.computed, view.qd, lambda *_: None, tuple(parts), low, high)
+        return Rival("rough", view.computed, view.qd, columns=tuple(parts), low=low, high=high)
     most = np.full(len(view.names), _ROUGH)
     return Rival(
         "rough",
         view.computed,
         view.qd,
-        lambda *_: None,
         own=(view.computed,),
         own_low=(-most,),
         own_high=(most,),
@@ -56,7 +55,7 @@ def rough(view: View) -> Rival:
 
 
 def _tell(view: View, link: int, change: Floats, _: Floats) -> Told | None:
-    factor = float(f"{1 + change[0]:.2g}")
+    factor = printed(1 + change[0], 2)
     if max(factor, 1 / factor) < _LEAST:
         return None
     name = view.arm.link_names[link] if view.arm.link_names else f"of joint {view.names[link]}"

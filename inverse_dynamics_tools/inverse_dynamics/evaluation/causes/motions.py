@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.wording import listed
-from inverse_dynamics.evaluation.causes.rival import Rival, Told
+from inverse_dynamics.evaluation.causes.rival import Rival, Told, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Mask
@@ -130,7 +130,7 @@ def _degrees(reason: str, remedy: str) -> Told:
 
 
 def _velocity(samples: Samples, wrong: Mask, factor: float, text: str) -> Told:
-    names = tuple(n for n, w in zip(samples.joints, wrong, strict=True) if w)
+    names = samples.named(wrong)
     whose = "" if wrong.all() else f" of {listed(names)}"
     return Told(
         "velocity",
@@ -138,7 +138,7 @@ def _velocity(samples: Samples, wrong: Mask, factor: float, text: str) -> Told:
         f"velocities{whose} contradict the slope of the positions: they are {text}",
         "record velocities in rad/s (prismatic: m/s)",
         () if wrong.all() else names,
-        value=float(f"{factor:.3g}"),
+        value=printed(factor),
     )
 
 
@@ -193,7 +193,7 @@ def rivals(view: View, _: Fitting) -> Iterator[Rival]:
 
 
 def _clock(square: float) -> Told | None:
-    rate = float(f"{np.sqrt(square):.3g}")
+    rate = printed(np.sqrt(square))
     if max(rate, 1 / rate) < _CLOCK:
         return None
     return Told(
@@ -212,7 +212,7 @@ def beyond_reach(view: View) -> tuple[Told, ...]:
     if not turning.any() or beyond[turning].mean() < 0.5:
         return ()
     greatest = np.abs(view.motion[0]).max(axis=0)
-    names = [n for n, b in zip(view.names, beyond, strict=True) if b]
+    names = view.samples.named(beyond)
     reach = f"positions of {listed(names)} go to {listed([f'{g:.3g}' for g in greatest[beyond]])}, far beyond "
     motors = Told(
         "motor_side",

@@ -35,8 +35,8 @@ def _anything(view: View, first: Rival, fitting: Fitting) -> Rival:
     moved = view if first.motion is None else view.moving(*first.motion)
     both = [r for kind in (gravity, loads) for r in kind.rivals(moved, fitting)]
     parts = [part for rival in both for part in rival.columns]
-    base = Rival("", moved.computed, moved.qd, lambda *_: None, tuple(parts))
-    return _joined(first, base, lambda *_: None)
+    base = Rival("", moved.computed, moved.qd, columns=tuple(parts))
+    return _joined(first, base, base.tell)
 
 
 def _paired(view: View, first: Rival, fitting: Fitting) -> Iterator[Rival]:

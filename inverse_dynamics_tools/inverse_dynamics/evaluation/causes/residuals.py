@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.wording import listed
-from inverse_dynamics.evaluation.causes.rival import Rival, Told
+from inverse_dynamics.evaluation.causes.rival import Rival, Told, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Mask
@@ -104,7 +104,7 @@ def _saturated(view: View, at_limit: Mask, own: Floats) -> Told | None:
         f"{100 * at_limit[:, j].mean():.0f} % of the samples while the model asks for more: the drive or the sensor is "
         "at its limit",
         "record a slower motion, or one with less load",
-        tuple(name for name, f in zip(view.names, found, strict=True) if f),
+        view.samples.named(found),
         own=np.where(found, own, 0.0),
     )
 
@@ -121,7 +121,7 @@ def couplings(view: View) -> Iterator[Rival]:
 
 
 def _coupled(pair: tuple[str, str], ratio: Floats, _: Floats) -> Told:
-    value = float(f"{ratio[0]:.2g}")
+    value = printed(ratio[0], 2)
     return Told(
         "coupling",
         "",
@@ -171,7 +171,7 @@ def _drift(view: View, fitting: Fitting, plain: Floats) -> Told | None:
     found = _better(fitting, plain, drifting, _NOTICED) & (
         _CLEARER**2 * drifting.mean(axis=0) < masses.mean(axis=0)
     )
-    names = tuple(n for n, f in zip(view.names, found, strict=True) if f)
+    names = view.samples.named(found)
     if not names:
         return None
     return Told(
@@ -186,4 +186,4 @@ def _drift(view: View, fitting: Fitting, plain: Floats) -> Told | None:
 def _free(view: View, own: list[Floats]) -> Rival:
     most = (np.full(len(view.names), np.inf),) * len(own)
     low = tuple(-x for x in most)
-    return Rival("", view.computed, view.qd, lambda *_: None, (), (), (), tuple(own), low, most)
+    return Rival("", view.computed, view.qd, own=tuple(own), own_low=low, own_high=most)

@@ -21,6 +21,11 @@ if TYPE_CHECKING:
 PAGE = "docs/why_dont_my_torques_match.md"
 
 
+def printed(value: float, digits: int = 3) -> float:
+    """A number as remedies state it."""
+    return float(f"{value:.{digits}g}")
+
+
 @dataclass(frozen=True)
 class Told:
     """A rival in words, and the numbers of its remedy as printed: all that the remedy changes.
@@ -46,7 +51,7 @@ class Rival:
 
     base: (N, n). columns: (p, N, n) with low, high (p,). own: (m, N, n) with own_low, own_high (m, n).
     qd: (N, n) velocities that friction is against, as recorded efforts have it.
-    tell: shared numbers (p,), own ones (m, n) to words; None where no robot can have them.
+    tell: shared numbers (p,), own ones (m, n) to words; None where no robot can have them, or for comparison alone.
     includes: kinds that are special cases of it. motion, effort: q, qd, qdd that it changes, and computed
     efforts to recorded ones: for pairs.
     """
@@ -54,7 +59,7 @@ class Rival:
     kind: str
     base: Floats
     qd: Floats
-    tell: Callable[[Floats, Floats], Told | None]
+    tell: Callable[[Floats, Floats], Told | None] = lambda *_: None
     columns: tuple[Floats, ...] = ()
     low: tuple[float, ...] = ()
     high: tuple[float, ...] = ()

@@ -11,7 +11,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from inverse_dynamics.base.arrays import Floats, Integers
+    from inverse_dynamics.base.arrays import Floats, Integers, Mask
 
 _PIECES = 48  # even ones are fitted where odd ones judge, and the other way round
 _LEAST = 4  # samples of a piece: its noise is told by second differences
@@ -31,6 +31,16 @@ class Samples:
     qd: Floats
     qdd: Floats
     measured: Floats
+
+    @property
+    def comparable(self) -> bool:
+        """Whether all of them are finite, and something moves."""
+        arrays = (self.q, self.qd, self.qdd, self.measured)
+        return all(np.isfinite(v).all() for v in arrays) and bool(np.ptp(self.q, axis=(0, 1)).any())
+
+    def named(self, mask: Mask) -> tuple[str, ...]:
+        """Joints where a mask (n,) is true."""
+        return tuple(name for name, m in zip(self.joints, mask, strict=True) if m)
 
     def flat(self, values: Floats) -> Floats:
         """(K M, n)."""
@@ -55,8 +65,11 @@ def pieces_of(
     qd: Floats,
     qdd: Floats,
     measured: Floats,
+    kept: Mask | None = None,
 ) -> Samples | None:
-    """Pieces of a recording of N samples, as rows_of_pieces() chooses them."""
-    if (rows := rows_of_pieces(time)) is None:
+    """Pieces of a recording of N samples, as rows_of_pieces() chooses them. kept: (N,) marks valid ones."""
+    valid = np.flatnonzero(np.ones(len(time), dtype=bool) if kept is None else kept)
+    if (pieces := rows_of_pieces(time[valid])) is None:
         return None
+    rows = valid[pieces]
     return Samples(tuple(joints), time[rows], q[rows], qd[rows], qdd[rows], measured[rows])
