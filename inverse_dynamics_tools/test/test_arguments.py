@@ -160,6 +160,11 @@ def test_types_of_several_pybind11_releases(annotation: str, right: list, wrong:
         assert str(refused("f", signature, [value], {})).startswith("f: argument x: expected ")
 
 
+def test_signatures_that_are_not_python_are_shown() -> None:
+    signature = "f(x: std::vector<int>) -> None"
+    assert str(refused("f", signature, [1], {})) == f"f: arguments: expected {signature}, got 1"
+
+
 def test_what_fits_is_passed_on(solver: Solver) -> None:
     @checked
     def hypotenuse(a: float, *, b: float = 1) -> float:

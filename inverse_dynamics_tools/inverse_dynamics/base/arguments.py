@@ -7,11 +7,12 @@ refused("Solver", "__init__(self: Solver, plugin: str) -> None", [solver], {})
 
 from __future__ import annotations
 
-import inspect
+import ast
 import os
 import re
 from functools import wraps
-from typing import TYPE_CHECKING, Any, NamedTuple, ParamSpec, TypeVar
+from inspect import Parameter, signature
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import numpy as np
 
@@ -25,13 +26,6 @@ _Result = TypeVar("_Result")
 _Arguments = ParamSpec("_Arguments")
 
 
-class _Parameter(NamedTuple):
-    name: str
-    type: str
-    optional: bool
-    by_name: bool
-
-
 def refused(
     function: str, text: str, positional: Sequence[object], named: Mapping[str, object]
 ) -> ArgumentError:
@@ -40,12 +34,15 @@ def refused(
     function: the name of a function, of a method with its class (`Solver.torques`), or
     `Solver.__init__`.
     """
-    signature = text.partition("\n")[0]
+    head = text.partition("\n")[0]
     function = function.removesuffix(".__init__")
-    error = _mistake(function, _parameters(signature), positional, named)
+    try:
+        error = _mistake(function, _bound_parameters(head), positional, named)
+    except SyntaxError:  # pybind11 writes C++ for types that it doesn't know
+        error = None
     if error is None:
         types = ", ".join(_kind(value) for value in (*positional, *named.values()))
-        error = f"{function}: arguments: expected {signature}, got {types}"
+        error = f"{function}: arguments: expected {head}, got {types}"
     return ArgumentError(error)
 
 
@@ -54,17 +51,10 @@ def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Re
 
     What it takes as `**options` isn't looked at.
     """
-    parameters = _declared(function)
-    kinds = [parameter.kind for parameter in inspect.signature(function).parameters.values()]
-    open_ended = inspect.Parameter.VAR_KEYWORD in kinds
-    own = {parameter.name for parameter in parameters}
 
     @wraps(function)
     def call(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> _Result:
-        looked_at = {k: v for k, v in kwargs.items() if k in own} if open_ended else kwargs
-        error = _mistake(function.__name__, parameters, args, looked_at)
-        if error is not None:
-            raise ArgumentError(error)
+        check_call(function, *args, **kwargs)
         return function(*args, **kwargs)
 
     return call
@@ -72,85 +62,64 @@ def checked(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Re
 
 def check_call(function: Callable[..., object], *args: object, **kwargs: object) -> None:
     """Raise the ArgumentError that a checked function would raise of these arguments; don't call it."""
-    error = _mistake(function.__name__, _declared(function), args, kwargs)
+    error = _mistake(function.__name__, list(signature(function).parameters.values()), args, kwargs)
     if error is not None:
         raise ArgumentError(error)
 
 
-def _declared(function: Callable[..., object]) -> list[_Parameter]:
-    return [
-        _Parameter(
-            parameter.name,
-            str(parameter.annotation),
-            parameter.default is not parameter.empty,
-            parameter.kind is parameter.KEYWORD_ONLY,
-        )
-        for parameter in inspect.signature(function).parameters.values()
-        if parameter.kind is not parameter.VAR_KEYWORD
-    ]
-
-
 def _mistake(
     function: str,
-    parameters: Sequence[_Parameter],
+    parameters: Sequence[Parameter],
     positional: Sequence[object],
     named: Mapping[str, object],
 ) -> str | None:
     """What is wrong with the arguments; None where each of them is of its type."""
-    places = [parameter.name for parameter in parameters if not parameter.by_name]
-    known = [parameter.name for parameter in parameters if parameter.name != "self"]
+    own = [p for p in parameters if p.kind is not Parameter.VAR_KEYWORD]
+    places = [p.name for p in own if p.kind is not Parameter.KEYWORD_ONLY]
+    known = [p.name for p in own if p.name != "self"]
     if len(positional) > len(places):
-        own = int("self" in places)
-        most, got = len(places) - own, len(positional) - own
+        first = int("self" in places)
+        most, got = len(places) - first, len(positional) - first
         return f"{function}: expected at most {counted(most, 'argument')} without a name, got {got}"
     given = dict(zip(places, positional, strict=False))
     for name, value in named.items():
         where = f"{function}: argument {harmless(name)}"
         if name in given:
             return f"{where}: expected once, got twice"
-        if name not in known:
+        if name not in known and len(own) == len(parameters):
             hint = did_you_mean(name, known)
             return f"{where}: unknown; {f'{hint} ' if hint else ''}known: {', '.join(known)}"
         given[name] = value
-    for parameter in parameters:
-        expected, fits = _expectation(parameter.type)
+    for parameter in own:
+        expected, fits = _expectation(str(parameter.annotation))
         where = f"{function}: argument {parameter.name}: expected {expected}"
         if parameter.name not in given:
-            if not parameter.optional:
+            if parameter.default is Parameter.empty:
                 return f"{where}, got none"
         elif not fits(given[parameter.name]):
             return f"{where}, got {_kind(given[parameter.name], of='three' in expected)}"
     return None
 
 
-# ---------------------------------------------------------------- signatures, as pybind11 writes them
-
-
-def _parameters(signature: str) -> list[_Parameter]:
-    parameters: list[_Parameter] = []
-    by_name = False
-    for part in _split(signature.partition("(")[2], ","):
-        name, _, rest = part.partition(":")
-        annotation, _, default = rest.partition(" = ")
-        if name == "*":
-            by_name = True
-        elif name:
-            parameters.append(_Parameter(name, annotation.strip(), bool(default), by_name))
-    return parameters
-
-
-def _split(text: str, separator: str) -> list[str]:
-    """Parts between separators outside of brackets, up to a bracket that closes what wasn't opened."""
-    parts, depth = [""], 0
-    for character in text:
-        depth += (character in "([{<") - (character in ")]}>")
-        if depth < 0:
-            break
-        if character == separator and depth == 0:
-            parts.append("")
-        else:
-            parts[-1] += character
-    return [part.strip() for part in parts]
+def _bound_parameters(head: str) -> list[Parameter]:
+    """Parameters of a signature as pybind11 writes it: Python, but for enumerators."""
+    text = re.sub(r"= <[^>]*>", "= ...", head)
+    (definition,) = ast.parse(f"def {text}: ...").body
+    assert isinstance(definition, ast.FunctionDef)
+    places, named = definition.args.args, definition.args.kwonlyargs
+    required = len(places) - len(definition.args.defaults)
+    optional = [k >= required for k in range(len(places))]
+    optional += [default is not None for default in definition.args.kw_defaults]
+    kinds = [Parameter.POSITIONAL_OR_KEYWORD] * len(places) + [Parameter.KEYWORD_ONLY] * len(named)
+    return [
+        Parameter(
+            each.arg,
+            kind,
+            default=None if may_miss else Parameter.empty,
+            annotation=ast.unparse(each.annotation) if each.annotation else "",
+        )
+        for each, kind, may_miss in zip((*places, *named), kinds, optional, strict=True)
+    ]
 
 
 # ---------------------------------------------------------------- types
@@ -230,17 +199,22 @@ _KINDS: tuple[tuple[str, str, Callable[[Any], bool]], ...] = (
 
 def _expectation(annotation: str) -> tuple[str, Callable[[object], bool]]:
     """A type in words, and whether a value is of it; of types that aren't known here any value is."""
-    optional = re.fullmatch(r"(?:typing\.)?Optional\[(.*)\]", annotation)
-    alternatives = [*_split(optional[1], "|"), "None"] if optional else _split(annotation, "|")
-    words: list[str] = []
-    tests: list[Callable[[Any], bool]] = []
-    for alternative in alternatives:
-        if alternative.endswith("SupportsIndex"):  # beside SupportsInt and SupportsFloat
-            continue
-        word, fits = _kind_of(alternative)
-        words.append(word)
-        tests.append(fits)
-    return " or ".join(words), lambda value: any(fits(value) for fits in tests)
+    kinds = [
+        _kind_of(alternative)
+        for alternative in _alternatives(ast.parse(annotation, mode="eval").body)
+        if not alternative.endswith("SupportsIndex")  # beside SupportsInt and SupportsFloat
+    ]
+    words = " or ".join(word for word, _ in kinds)
+    return words, lambda value: any(fits(value) for _, fits in kinds)
+
+
+def _alternatives(annotation: ast.expr) -> list[str]:
+    """Types of a union; of Optional[X], X and None."""
+    if isinstance(annotation, ast.BinOp):
+        return _alternatives(annotation.left) + _alternatives(annotation.right)
+    if isinstance(annotation, ast.Subscript) and ast.unparse(annotation.value).endswith("Optional"):
+        return [*_alternatives(annotation.slice), "None"]
+    return [ast.unparse(annotation)]
 
 
 def _kind_of(alternative: str) -> tuple[str, Callable[[Any], bool]]:
