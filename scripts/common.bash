@@ -60,8 +60,6 @@ apt_packages=(
   libosmesa6
   # Tests of the report's page: in a browser, and on paper.
   chromium chromium-driver poppler-utils
-  # Tests of completion.
-  zsh
 )
 
 say() { printf '==> %s\n' "$*"; }

@@ -11,6 +11,7 @@ from docs_hooks import LINK, ROOT, beyond_docs
 
 DOCS = ROOT / "docs"
 PAGES = sorted([*ROOT.glob("*.md"), *DOCS.rglob("*.md")])
+PICTURES = DOCS / "pictures"
 PICTURE = re.compile(r"!\[[^\]]*\]\(([^()\s]+)\)")
 
 
@@ -40,6 +41,13 @@ def test_links_lead_to_files_and_headings(page: Path) -> None:
         assert file.exists(), f"{target}: no such file"
         if anchor and file.suffix == ".md":
             assert anchor in anchors(file), f"{target}: no such heading"
+
+
+def test_every_picture_is_shown() -> None:
+    shown = {
+        Path(p).name for page in PAGES for p in PICTURE.findall(page.read_text(encoding="utf-8"))
+    }
+    assert {f.name for f in PICTURES.iterdir() if f.suffix in {".png", ".gif", ".svg"}} <= shown
 
 
 def test_every_page_is_in_the_navigation() -> None:

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of README.md and docs/, and from which sources they were made. Called by ./scripts/pictures."""
+"""Makes pictures of README.md and docs/. Called by ./scripts/pictures."""
 
 from __future__ import annotations
 
 import argparse
-import hashlib
 import io
-import json
 import os
 import re
 import shutil
@@ -24,16 +22,6 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parent.parent
 PICTURES = ROOT / "docs/pictures"
-RECORD = PICTURES / "sources.json"
-
-_TOOLS = "inverse_dynamics_tools/inverse_dynamics"
-
-# What determines how each picture looks, as patterns of files: not the dynamics, whose numbers tests hold.
-SOURCES = {
-    "report": (f"{_TOOLS}/report/*.js", f"{_TOOLS}/report/*.css", f"{_TOOLS}/report/page.html",
-               f"{_TOOLS}/report/head.html", f"{_TOOLS}/figures/palette.py"),
-    "why": ("docs/pictures/*.py", f"{_TOOLS}/figures/palette.py"),
-}  # fmt: skip
 
 FLAGS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader",
@@ -43,21 +31,6 @@ FLAGS = (
 WIDTH, HEIGHT = 1240, 800  # of the browser's window, in its pixels
 SHOWN_WIDTH = 860  # of the GIF
 FRAMES, FRAME_TIME = 56, 120  # ms
-
-
-def digest(name: str, root: Path = ROOT) -> str:
-    """One number for all sources of a picture."""
-    total = hashlib.sha256()
-    for pattern in SOURCES[name]:
-        for file in sorted(root.glob(pattern)):
-            total.update(f"{file.relative_to(root)}\n".encode() + file.read_bytes())
-    return total.hexdigest()[:16]
-
-
-def stale(root: Path = ROOT) -> list[str]:
-    """Names of the pictures that were made from other sources than those that are there now."""
-    made_from = json.loads((root / RECORD.relative_to(ROOT)).read_text(encoding="utf-8"))
-    return [name for name in SOURCES if made_from.get(name) != digest(name, root)]
 
 
 # ---- The page in motion ----------------------------------------------------------------------------------------------
@@ -162,7 +135,7 @@ MAKE: dict[str, Callable[[], None]] = {"report": make_report, "why": make_why}
 
 
 def main() -> None:
-    """Make pictures and note their sources, one after the other."""
+    """Make pictures, one after the other."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument(
         "names", nargs="*", metavar="NAME", help=f"of {', '.join(MAKE)}; all by default"
@@ -174,9 +147,6 @@ def main() -> None:
     for name in given.names or MAKE:
         print(f"==> {name}", flush=True)
         MAKE[name]()
-        made_from = json.loads(RECORD.read_text(encoding="utf-8")) if RECORD.exists() else {}
-        made_from[name] = digest(name)
-        RECORD.write_text(json.dumps(dict(sorted(made_from.items())), indent=2) + "\n")
 
 
 if __name__ == "__main__":

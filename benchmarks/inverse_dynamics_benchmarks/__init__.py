@@ -15,36 +15,29 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from inverse_dynamics_benchmarks.asked import Bound, bounds
     from inverse_dynamics_benchmarks.measurement import (
         Measurement,
         read_measurement,
         write_measurement,
     )
-    from inverse_dynamics_benchmarks.pages import page, updated
     from inverse_dynamics_benchmarks.running import BenchmarkError, measure
+    from inverse_dynamics_benchmarks.tables import page
 
 _HOME = {
     "BenchmarkError": "running",
-    "Bound": "asked",
     "Measurement": "measurement",
-    "bounds": "asked",
     "measure": "running",
-    "page": "pages",
+    "page": "tables",
     "read_measurement": "measurement",
-    "updated": "pages",
     "write_measurement": "measurement",
 }
 
 __all__ = [
     "BenchmarkError",
-    "Bound",
     "Measurement",
-    "bounds",
     "measure",
     "page",
     "read_measurement",
-    "updated",
     "write_measurement",
 ]
 

@@ -48,3 +48,14 @@ ROBOTS = {
     "panda_feasible": "Panda, identified as bodies that can exist",
 }
 """Arms, and chains that are generated."""
+
+REAL = ("ur10", "panda")
+CHAINS = tuple(f"mixed{n}" for n in (1, 2, 3, 6, 7, 10, 15, 20, 30))
+"""Robots that the figure shows."""
+
+
+def in_words(name: str) -> str:
+    """A robot or a quantity, as tables have it."""
+    quantity = name.removesuffix("_batch")
+    words = {**ROBOTS, **QUANTITIES, **ENGINE_BATCHES, **OBSERVERS}.get(quantity, quantity)
+    return words if quantity == name else f"{words}, batch"

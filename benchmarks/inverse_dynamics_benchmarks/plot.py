@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.figures.plots import save_figure
-from inverse_dynamics_benchmarks import asked
-from inverse_dynamics_benchmarks.names import LIBRARIES, QUANTITIES, ROBOTS
+from inverse_dynamics_benchmarks.names import CHAINS, LIBRARIES, QUANTITIES, REAL, ROBOTS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -28,6 +27,7 @@ _COLORS = {
     "pinocchio": "#0072B2",
     "ours": "#D55E00",
 }
+_SHOWN = ("torques", "inertia", "coriolis", "gravity", "components")
 _BATCH = (f"{LIBRARIES['ours']}, batch", "#F0B88F")
 
 
@@ -49,7 +49,7 @@ def speed_figure(result: Measurement) -> Figure:
 
     figure = Figure(figsize=(10.0, 4.2), layout="constrained", facecolor="white")
     axes = figure.subplots(1, 3, width_ratios=(1, 1, 1.15))
-    for axis, robot in zip(axes, asked.REAL, strict=False):
+    for axis, robot in zip(axes, REAL, strict=False):
         _draw_robot(axis, result, robot)
         axis.set_title(f"{ROBOTS[robot]}: time of one state [ns]", loc="left")
     _draw_chains(axes[2], result)
@@ -69,10 +69,10 @@ def speed_figure(result: Measurement) -> Figure:
 
 def _draw_robot(axes: Axes, result: Measurement, robot: str) -> None:
     bars: list[tuple[str, str, dict[str, float | None]]] = [
-        (LIBRARIES[library], color, {q: _time(result, robot, q, library) for q in asked.QUANTITIES})
+        (LIBRARIES[library], color, {q: _time(result, robot, q, library) for q in _SHOWN})
         for library, color in _COLORS.items()
     ]
-    batch = {q: result.time(robot, f"{q}_batch", "ours") for q in asked.QUANTITIES}
+    batch = {q: result.time(robot, f"{q}_batch", "ours") for q in _SHOWN}
     bars.append((*_BATCH, batch))
     height = 0.85 / len(bars)
     for k, (label, color, times) in enumerate(bars):
@@ -86,7 +86,7 @@ def _draw_robot(axes: Axes, result: Measurement, robot: str) -> None:
     axes.set_xlim(8, 9900)
     axes.xaxis.set_major_formatter("{x:g}")
     axes.set_axisbelow(True)
-    axes.set_yticks(range(len(asked.QUANTITIES)), [QUANTITIES[q] for q in asked.QUANTITIES])
+    axes.set_yticks(range(len(_SHOWN)), [QUANTITIES[q] for q in _SHOWN])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
 
@@ -96,7 +96,7 @@ def _draw_chains(axes: Axes, result: Measurement) -> None:
         label = LIBRARIES[library]
         points = [
             (int(chain.removeprefix("mixed")), t)
-            for chain in asked.CHAINS
+            for chain in CHAINS
             if (t := result.time(chain, "torques", library)) is not None
         ]
         if points:
@@ -114,6 +114,7 @@ def _draw_chains(axes: Axes, result: Measurement) -> None:
 
 
 def _time(result: Measurement, robot: str, quantity: str, library: str) -> float | None:
-    if library == "pinocchio":
-        return asked.peer_time(result, robot, quantity)
-    return result.time(robot, quantity, library)
+    if library != "pinocchio" or quantity != "components":
+        return result.time(robot, quantity, library)
+    times = [result.time(robot, part, library) for part in ("inertia", "coriolis", "gravity")]
+    return sum(t for t in times if t is not None) if None not in times else None

@@ -21,8 +21,6 @@ examples:
   ids bench --latency                            the slowest of a million single calls too
   ids bench --repetitions 200 --json speed.json  with less noise; the times in a file
   ids bench --from speed.json --plot speed.svg   a figure of times measured before
-  ids bench --from docs/speed.json --update docs/speed.md --update docs/real_time.md
-      generated parts of pages, between `<!-- ids bench: NAME -->` and `<!-- ids bench: end -->`
 
 One thread, double precision, the same 1024 random states for all; time of one state, the least of
 the repetitions, which come in random order. This library is called through its public interface,
@@ -51,14 +49,6 @@ def add_parser(
     results.add_argument("--json", metavar="FILE", type=Path, help="all times, for --from")
     results.add_argument("--markdown", metavar="FILE", type=Path, help="the tables as a page")
     results.add_argument("--plot", metavar="FILE", type=Path, help="a figure: .svg, .png or .pdf")
-    results.add_argument(
-        "--update",
-        metavar="PAGE",
-        type=Path,
-        action="append",
-        default=[],
-        help="update the generated parts of a page; more than once: several pages",
-    )
     results.add_argument("--overwrite", action="store_true", help="replace existing files")
     return parser
 
@@ -106,7 +96,6 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.base.files import write_text_whole
     from inverse_dynamics.verbs.screen import Screen
     from inverse_dynamics_benchmarks import measure, page, read_measurement, write_measurement
-    from inverse_dynamics_benchmarks.pages import check_pages, update_pages
     from inverse_dynamics_benchmarks.plot import check_figure_name, save_speed_figure
 
     # Before anything is measured: that may take ten minutes.
@@ -114,7 +103,6 @@ def run(arguments: argparse.Namespace) -> None:
     _check_measuring(arguments)
     if arguments.plot is not None:
         check_figure_name(arguments.plot)
-    check_pages(arguments.update)
 
     if arguments.source is not None:
         result = read_measurement(arguments.source)
@@ -132,7 +120,6 @@ def run(arguments: argparse.Namespace) -> None:
         write_text_whole(arguments.markdown, page(result))
     if arguments.plot is not None:
         save_speed_figure(result, arguments.plot)
-    update_pages(arguments.update, result)
     _print(result)
 
 

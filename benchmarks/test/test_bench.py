@@ -7,12 +7,10 @@ from pathlib import Path
 import pytest
 
 from inverse_dynamics.base.ament import PackageNotFoundError, package_share
-from inverse_dynamics_benchmarks import bounds, measure, page, read_measurement, write_measurement
+from inverse_dynamics_benchmarks import measure, page, read_measurement, write_measurement
 from inverse_dynamics_benchmarks.measurement import measurement
-from inverse_dynamics_benchmarks.pages import PARTS, updated
 
 DOCS = Path(__file__).parents[2] / "docs"
-PAGES = ("speed.md", "real_time.md")
 
 
 def fails(result, *expected):
@@ -158,8 +156,6 @@ def test_a_benchmark_that_fails_is_told_by_its_last_words(tmp_path, monkeypatch)
             "a: expected a file of its own for each result, got the same for --json and --plot; "
             "name another file with --plot",
         ),
-        (("--update", "page.md"), "page.md: can't be read (No such file or directory); expected"),
-        (("--update", "text"), "text: expected a part between `<!-- ids bench: NAME -->`"),
         (("--from", "a", "--only", "b"), "--only: expected no such choice beside --from"),
         (("--from", "a", "--latency"), "--latency: expected no such choice beside --from"),
         (("--from", "a", "--calls", "9"), "--calls: expected no such choice beside --from"),
@@ -225,119 +221,12 @@ def test_times_are_of_one_state_and_by_the_right_clock(speed_json):
     assert result.time("ur10", "inertia", "ours") is None
 
 
-def test_a_bound_takes_the_least_ratio_and_says_where(speed_json):
-    found = {bound.what: bound for bound in bounds(read_measurement(speed_json))}
-    torques = found["torques: UR10, Panda"]
-    assert (torques.asked, torques.reached, torques.where) == (8.0, 7.0, "panda")
-    assert not torques.holds
-    batch = found["torques, batch: UR10, Panda"]
-    assert (batch.asked, batch.reached, batch.holds) == (30.0, 36.0, True)
-    kdl = found["every quantity, 1 to 30 joints"]
-    assert (kdl.reached, kdl.where) == (15.0, "ur10, torques")
-    assert found["forward dynamics"].reached is None
-    assert not found["forward dynamics"].holds
-
-
-def test_what_a_payload_costs_counts_from_a_solver_without_payloads():
-    times = {"torques_fixed": 100.0, "torques": 101.0, "torques_payload": 107.0}
-    entries = [entry(f"panda/{quantity}/ours", t) for quantity, t in times.items()]
-    result = measurement(document(*entries), "here")
-    found = {bound.what: bound for bound in bounds(result)}
-    unset, carried = found["torques, payload not set"], found["torques, payload set"]
-    assert (unset.reached, unset.where, unset.holds) == (pytest.approx(102 / 101), "panda", True)
-    assert (carried.reached, carried.holds) == (pytest.approx(105 / 107), False)
-    assert "2 ns more than without payloads | 1 | 1.01 (Panda) | yes |" in page(result)
-    assert "| Panda | torques of a solver without payloads | 100 |" in page(result)
-
-
-def test_an_update_of_an_observer_takes_half_a_microsecond_at_most():
-    times = {
-        "panda_feasible/momentum_observer": 400.0,
-        "panda_identified/acceleration_residual": 625.0,
-    }
-    result = measurement(document(*(entry(f"{n}/ours", t) for n, t in times.items())), "here")
-    found = {bound.what: bound for bound in bounds(result)}[
-        "external torques, 7 joints, one update"
-    ]
-    assert (found.other, found.reached, found.holds) == ("0.5 µs", 0.8, False)
-    assert "| Panda, identified | residual of inverse dynamics | 625 |" in page(result)
-    assert "0.5 µs | 1 | 0.8 (Panda, identified, residual of inverse dynamics) | **no** |" in page(
-        result
-    )
-
-
-def test_what_was_not_measured_is_told_on_a_page(speed_json):
-    result = read_measurement(speed_json)
-    text = updated("<!-- ids bench: observers -->\n<!-- ids bench: end -->\n", result, "here")
-    assert text == "<!-- ids bench: observers -->\nNot measured.\n<!-- ids bench: end -->\n"
-    for what in (
-        "Coriolis matrix",
-        "Jacobian of the tip",
-        "torques, payload set",
-        "external torques",
-    ):
-        row = next(line for line in page(result).splitlines() if line.startswith(f"| {what}"))
-        assert row.endswith("| not measured |  |"), row
-
-
-def test_all_components_stand_beside_the_sum_of_three_calls():
-    times = {"inertia": 400.0, "coriolis": 900.0, "gravity": 500.0}
-    entries = [entry(f"ur10/{q}/pinocchio", t) for q, t in times.items()]
-    result = measurement(document(*entries, entry("ur10/components/ours", 150.0)), "here")
-    found = {bound.what: bound for bound in bounds(result)}
-    assert found["components: UR10, Panda"].reached == 12.0
-
-
-def test_functions_of_the_engine_are_compared_for_generated_chains_too():
-    times = {("panda", "ours"): 100.0, ("mixed6", "ours"): 150.0}
-    times |= {("panda", "pinocchio"): 900.0, ("mixed6", "pinocchio"): 600.0}
-    entries = [entry(f"{robot}/derivatives/{library}", t) for (robot, library), t in times.items()]
-    result = measurement(document(*entries), "here")
-    derivatives = {bound.what: bound for bound in bounds(result)}["derivatives"]
-    assert (derivatives.asked, derivatives.reached, derivatives.where) == (3.0, 4.0, "mixed6")
-    assert "| 6 joints, 2 slide | derivatives of the torques | 150 | 600 | 4.0 |" in page(result)
-
-
-def test_kinematics_are_compared_with_pinocchio():
-    times = {"tip_jacobian/ours": 50.0, "tip_jacobian/pinocchio": 300.0}
-    result = measurement(document(*(entry(f"ur10/{name}", t) for name, t in times.items())), "here")
-    tip = {bound.what: bound for bound in bounds(result)}["Jacobian of the tip: UR10, Panda"]
-    assert (tip.asked, tip.reached, tip.where) == (4.0, 6.0, "ur10")
-    assert "| UR10 | Jacobian of the tip | 50 | 300 | 6.0 |" in page(result)
-
-
 def test_tables_say_what_was_measured(speed_json):
     text = page(read_measurement(speed_json))
     assert "| UR10 | torques | 100 | 900 | 1500 |  | 9.0 |" in text
-    assert "| UR10 | torques | 25.0 | 900 | 36.0 |" in text
-    assert "| torques: UR10, Panda | Pinocchio | 8 | 7 (Panda) | **no** |" in text
-    assert "| every quantity, 1 to 30 joints | KDL | 1 | 15 (UR10, torques) | yes |" in text
+    assert "| UR10 | torques, batch | 25.0 |  |  |  | 36.0 |" in text
     assert "| UR10 | forward dynamics |" not in text
     assert "Abacus" in text
-
-
-def test_bounds_that_were_not_measured_are_named(speed_json):
-    text = PARTS["bounds"](read_measurement(speed_json))
-    assert "| H: UR10, Panda | Pinocchio | 4 | not measured |  |\n" in text
-    assert "| 5 | not measured (Panda, identified) |  |\n" in text
-    assert "| torques, batch: two threads | one thread | 1.8 | not measured |  |\n" in text
-    complete = PARTS["bounds"](read_measurement(DOCS / "speed.json"))
-    assert set(re.findall(r"^\| (.*?) \|", text, re.M)) <= set(
-        re.findall(r"^\| (.*?) \|", complete, re.M)
-    )
-    assert "not measured" not in complete
-
-
-def test_without_any_bound_measured_there_is_no_table_of_them():
-    result = measurement(document(entry("ur10/torques/ours", 1.0)), "here")
-    assert PARTS["bounds"](result) == ""
-    assert "how many times as fast as" not in page(result)
-
-
-def test_bounds_name_chains_and_quantities_as_the_other_tables_do():
-    entries = [entry("mixed1/inertia/ours", 50.0), entry("mixed1/inertia/kdl", 200.0)]
-    text = page(measurement(document(*entries), "here"))
-    assert "| every quantity, 1 to 30 joints | KDL | 1 | 4 (1 joint, H) | yes |" in text
 
 
 def test_long_calls_are_in_units_that_can_be_read():
@@ -362,22 +251,6 @@ def test_libraries_that_are_missing_are_told():
     assert "Not found when the benchmarks were built: Pinocchio, MuJoCo." in text
 
 
-def test_only_marked_parts_of_a_page_change(ids, speed_json, tmp_path):
-    file = tmp_path / "page.md"
-    file.write_text("by hand\n<!-- ids bench: calls -->\nold\n<!-- ids bench: end -->\nthe end\n")
-    assert ids("bench", "--from", speed_json, "--update", "page.md")[0] == 0
-    text = file.read_text()
-    assert text.startswith("by hand\n<!-- ids bench: calls -->\n| robot |")
-    assert text.endswith("|\n<!-- ids bench: end -->\nthe end\n")
-    assert "old" not in text
-
-    file.write_text("nothing")
-    command = ("bench", "--from", speed_json, "--update", "page.md")
-    fails(ids(*command), "page.md: expected a part between `<!-- ids bench: NAME -->`")
-    file.write_text("<!-- ids bench: call -->\n<!-- ids bench: end -->")
-    fails(ids(*command), "page.md: part 'call': expected one of machine, calls,")
-
-
 def test_a_measurement_has_the_figures_of_its_file(tmp_path):
     result = measurement(document(entry("ur10/torques/ours", 1265.4999)), "here")
     write_measurement(result, tmp_path / "speed.json")
@@ -393,41 +266,7 @@ def test_a_figure_is_the_same_for_the_same_figures(ids, speed_json, tmp_path):
     assert b"900" in svg
 
 
-@pytest.mark.parametrize("name", PAGES)
-def test_pages_say_what_the_measurement_beside_them_says(name):
-    text = (DOCS / name).read_text(encoding="utf-8")
-    result = read_measurement(DOCS / "speed.json")
-    remedy = f"ids bench --from docs/speed.json --update docs/{name}"
-    assert updated(text, result, name) == text, remedy
-
-
-def test_every_part_is_on_one_of_the_pages():
-    text = "".join((DOCS / name).read_text(encoding="utf-8") for name in PAGES)
-    assert sorted(re.findall(r"<!-- ids bench: (\w+) -->", text)) == sorted(
-        [*PARTS, *["end"] * len(PARTS)]
-    )
-
-
 def test_the_measurement_names_neither_machine_nor_date():
     text = (DOCS / "speed.json").read_text(encoding="utf-8")
     assert not {"date", "host_name", "executable"} & set(json.loads(text)["context"])
     assert os.path.expanduser("~") + "/" not in text
-
-
-def test_generated_code_counts_by_the_better_of_its_expressions():
-    times = {"ours": 70.0, "casadi_templates": 140.0, "casadi_textbook": 105.0}
-    entries = [entry(f"ur10/torques/{library}", t) for library, t in times.items()]
-    result = measurement(document(*entries), "here")
-    torques = {bound.what: bound for bound in bounds(result)}["torques, one state: UR10, Panda"]
-    assert (torques.other, torques.asked, torques.reached) == ("C generated by CasADi", 1.43, 1.5)
-    assert "| UR10 | torques | 70 | 140 | 105 | 0.67 |" in page(result)
-
-
-def test_batches_of_the_engine_stand_beside_single_calls():
-    times = {"forward_dynamics_batch/ours": 100.0, "forward_dynamics/pinocchio": 1800.0}
-    entries = [entry(f"panda/{name}", t) for name, t in times.items()]
-    result = measurement(document(*entries, entry("panda/gram_batch/ours", 600.0)), "here")
-    batch = {b.what: b for b in bounds(result)}["forward dynamics, batch: UR10, Panda"]
-    assert (batch.asked, batch.reached) == (15.0, 18.0)
-    assert "| Panda | forward dynamics | 100 | 1800 | 18.0 |" in page(result)
-    assert "| Panda | Gram matrices of the regressor | 600 |  |  |" in page(result)

@@ -14,11 +14,9 @@ import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
-# Headers that cross no boundary: compiled by the program that includes them, as those in the place of pluginlib's,
-# or of another plugin interface.
+# Headers that cross no boundary: compiled by the program that includes them, or of another plugin interface.
 WITHOUT = (
     "conformance",
-    "inverse_dynamics/include",
     "inverse_dynamics_controllers",
     "inverse_dynamics_ros",
 )

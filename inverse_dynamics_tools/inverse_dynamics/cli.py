@@ -165,6 +165,10 @@ def _run(given: list[str]) -> int:
 
     start_noting_outputs()
     parser = make_parser()
+    if "_ARGCOMPLETE" in os.environ:  # a shell asks what may stand at the cursor: `ids completion`
+        from argcomplete import autocomplete
+
+        autocomplete(parser)
     if given[:1] == ["help"]:  # as many programs have it
         given = [*given[1:2], "--help"]
     if not given:

@@ -1,172 +1,83 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The calls of one function on the workers of a Dask cluster: as workers.py, beyond one machine.
-
-    on_cluster(work, files, "tcp://10.0.0.1:8786", paths=files, done=lambda index, outcome: ...)
-
-Dask distributed is optional: the extra `dask`.
-"""
+"""The calls of one function on the workers of a Dask cluster, which is optional: the extra `dask`."""
 
 from __future__ import annotations
 
-import asyncio
 import os
 import threading
+from asyncio import CancelledError
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, TypeVar
+from functools import partial
+from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
-from inverse_dynamics.base.extras import how_to_install
-from inverse_dynamics.base.wording import counted, listed
+from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.workers import Failure, outcome_of
 from inverse_dynamics.errors import UserError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-    from pathlib import Path
 
-    from distributed import Client
-
-_Argument = TypeVar("_Argument")
 _SECONDS = 20.0  # without an answer of the scheduler, or without a worker
-
-# Of a worker.
-_alone = threading.Lock()
-_running = ""  # the run whose call it has
-_stopped: set[str] = set()  # runs
-
-
-class ClusterError(UserError):
-    """A cluster that can't be reached, or whose workers lack something."""
-
-
-def on_cluster(
-    function: Callable[[_Argument], Any],
-    arguments: Sequence[_Argument],
-    address: str,
-    *,
-    paths: Sequence[Path],
-    done: Callable[[int, Any], None],
-) -> None:
-    """Call the function with each argument on the cluster's workers, one call at a time each.
-
-    paths: what every worker must see. done: as that of in_processes(). An exception here, Ctrl-C too,
-    cancels what hasn't begun, and stops a call where it calls check_stopped(). Raises ClusterError.
-    """
-    with _connected(address) as client:
-        from distributed import as_completed
-
-        _check_workers(client, address, paths)
-        run = uuid4().hex
-        count = len(arguments)
-        calls = client.map(
-            _outcome_alone, [run] * count, [function] * count, list(arguments), pure=False
-        )
-        indices = {call: index for index, call in enumerate(calls)}
-        try:
-            for call in as_completed(calls, loop=client.loop):
-                failed = call.status != "finished"
-                done(indices[call], Failure(_lost(call)) if failed else call.result())
-        except BaseException:
-            client.cancel(calls, force=True)
-            with suppress(Exception):  # the cluster has gone
-                client.run(_stop, run)
-            raise
-
-
-class Stopped(BaseException):
-    """The run that a call belongs to has been stopped. Not an Exception: nobody takes it for a fault."""
+_START = "`dask scheduler`, and `dask worker tcp://HOST:8786` where this workspace is sourced"
+_alone = threading.Lock()  # of a worker, which may have several threads
+_stop: Any = None  # of the call that a worker has: the event that stops its run
 
 
 def check_stopped() -> None:
-    """Raise Stopped in a call whose run has been stopped: for long calls, now and then."""
-    if _running in _stopped:
-        raise Stopped
+    """Raise CancelledError in a call whose run has been stopped: for long calls, now and then."""
+    if _stop is not None and _stop.is_set():
+        raise CancelledError
 
 
-def _outcome_alone(run: str, function: Callable[[_Argument], Any], argument: _Argument) -> Any:
-    """What a worker does: one call at a time, though it may have several threads."""
-    global _running
-    with _alone:
-        if run in _stopped:
-            return Failure("stopped")
-        _running = run
-        try:
-            return outcome_of(function, argument)
-        except Stopped:
-            return Failure("stopped")
-        finally:
-            _running = ""
+def unseen(paths: list[str]) -> str:
+    """Those that this process doesn't see."""
+    return ", ".join(f"no {path}" for path in paths if not os.path.exists(path))
 
 
-async def _stop(run: str) -> None:
-    """Have a worker begin no further call of a run, and wait for the end of the one that it has."""
-    _stopped.add(run)
-    while _running == run:
-        await asyncio.sleep(0.02)
+def on_cluster(
+    function: Callable[[Any], Any],
+    arguments: Sequence[Any],
+    address: str,
+    *,
+    paths: Sequence[object],
+    done: Callable[[int, Any], None],
+) -> None:
+    """As in_processes(), on workers that see the paths. Raises UserError.
 
+    An exception here, Ctrl-C too, stops calls where they call check_stopped(), and waits for that.
+    """
+    require(f"--scheduler {address}", "distributed")
+    from distributed import Client, Event, as_completed
 
-def missing(paths: Sequence[str]) -> list[str]:
-    """Those paths that this process doesn't see."""
-    return [path for path in paths if not os.path.exists(path)]
-
-
-def _connected(address: str) -> Client:
+    where = f"--scheduler {address}: expected a Dask scheduler with workers ({_START})"
     try:
-        from distributed import Client
-        from distributed.comm import get_address_host_port
-    except ImportError as error:
-        raise ClusterError(
-            f"--scheduler {address}: needs Dask distributed, which can't be imported ({error}): "
-            f"{how_to_install('distributed')}, or leave --scheduler out: then the cores of this "
-            "machine do the work"
-        ) from error
-    try:
-        get_address_host_port(address)  # a Client that is refused later leaves threads
-        return Client(address, timeout=_SECONDS, set_as_default=False)
-    except (OSError, ValueError, TypeError) as error:
-        raise ClusterError(
-            f"--scheduler {address}: expected the address of a Dask scheduler, as it prints it "
-            f"(tcp://HOST:8786), but none answers there ({_first_line(error)}); start one with `dask "
-            "scheduler`, and workers with `dask worker ADDRESS --nthreads 1`"
-        ) from error
-
-
-def _check_workers(client: Client, address: str, paths: Sequence[Path]) -> None:
-    """Raise ClusterError unless there are workers, which have this software and see the paths."""
-    try:
+        client = Client(address, timeout=_SECONDS, set_as_default=False)
         client.wait_for_workers(1, timeout=_SECONDS)
-    except TimeoutError:
-        raise ClusterError(
-            f"--scheduler {address}: it has no workers; start some with `dask worker {address} "
-            "--nthreads 1`, in a shell where this workspace is sourced"
-        ) from None
-    answers = client.run(missing, list(map(str, paths)), on_error="return")
-    for worker, answer in answers.items():
-        if isinstance(answer, Exception):
-            raise ClusterError(
-                f"worker {worker}: can't use this software ({_first_line(answer)}); install the same "
-                "version there, and start the worker in a shell where its workspace is sourced"
-            )
-        if answer:
-            raise ClusterError(
-                f"worker {worker}: doesn't see {counted(len(answer), 'path')} of {len(paths)} "
-                f"({listed(answer, 3)}); have recordings and results on a file system that every "
-                "worker mounts at the same place"
-            )
+    except (OSError, ValueError, TypeError) as error:
+        raise UserError(f"{where}, got {str(error).strip()}") from error
+    with client:
+        answers = client.run(unseen, list(map(str, paths)), on_error="return")
+        if wrong := {worker: answer for worker, answer in answers.items() if answer}:
+            raise UserError(f"{where}, files and software, got {wrong}")
+        stop = Event(uuid4().hex, client=client)
+        calls = client.map(partial(_outcome, stop.name, function), list(arguments), pure=False)
+        try:
+            for call in as_completed(calls, loop=client.loop):
+                lost = call.exception()  # its worker died
+                outcome = Failure(f"on the cluster: {lost}") if lost else call.result()
+                done(calls.index(call), outcome)
+        except BaseException:
+            stop.set()
+            client.gather(calls, errors="skip")
+            raise
 
 
-def _lost(call: Any) -> str:
-    """Why a call has no result: its worker died, again and again, or it was cancelled."""
-    if call.status != "error":
-        return "it was cancelled on the cluster, or the scheduler has gone"
-    error = call.exception()
-    if type(error).__name__ == "KilledWorker":
-        return (
-            f"its worker on the cluster died, at each try (the last was {error.last_worker.address}); "
-            "most likely memory ran out: see that worker's log, or give workers more memory"
-        )
-    return f"on the cluster: {type(error).__name__}: {_first_line(error)}"
+def _outcome(run: str, function: Callable[[Any], Any], argument: Any) -> Any:
+    global _stop
+    from distributed import Event
 
-
-def _first_line(error: BaseException) -> str:
-    return (str(error).strip() or type(error).__name__).splitlines()[0]
+    with _alone, suppress(CancelledError):
+        _stop = Event(run)
+        check_stopped()
+        return outcome_of(function, argument)

@@ -59,13 +59,23 @@ def add_runs(parser: argparse.ArgumentParser, more: str = "") -> None:
 
 def add_robot(parser: argparse.ArgumentParser, *, required: bool = False) -> None:
     """--robot, read by load_robot(); where it isn't required, by chosen_robot()."""
-    parser.add_argument(
+    robot = parser.add_argument(
         "--robot",
         metavar="NAME|FILE",
         required=required,
         help="run configuration: a name that `ids robots` lists, or a YAML file"
         + ("" if required else "; may be left out where --urdf is given"),
     )
+    robot.completer = robots_and_files  # type: ignore[attr-defined]
+
+
+def robots_and_files(prefix: str, **_: object) -> list[str]:
+    """What may stand for NAME|FILE, as argcomplete asks for it."""
+    from argcomplete.completers import FilesCompleter
+
+    from inverse_dynamics.robot.robots import robot_names
+
+    return [*robot_names(), *FilesCompleter()(prefix)]
 
 
 def chosen_robot(arguments: argparse.Namespace) -> Robot:

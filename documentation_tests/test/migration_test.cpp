@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What docs/migration.md shows of C++, and what it says that it does.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <fstream>
+#include <inverse_dynamics_solver/external_wrench.hpp>
+#include <inverse_dynamics_solver/kinematics.hpp>
+#include <inverse_dynamics_solver/motor_currents.hpp>
+#include <inverse_dynamics_solver/solver_loader.hpp>
+#include <iostream>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace inverse_dynamics_documentation_tests::migration_test {
+
+using inverse_dynamics_solver::ExternalWrench;
+using inverse_dynamics_solver::Kinematics;
+using inverse_dynamics_solver::MotorCurrents;
+using inverse_dynamics_solver::SolverLoader;
+using inverse_dynamics_solver::WrenchInRoot;
+
+const double kRounding = 1e-10;  // of some hundred N m
+
+const char* const kUr10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10";
+const char* const kKdl = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL";
+
+std::string ur10() {
+  std::ifstream file(UR10_URDF);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+const Eigen::VectorXd kQ = Eigen::VectorXd::LinSpaced(6, -1.0, 1.0);
+const Eigen::VectorXd kQd = Eigen::VectorXd::LinSpaced(6, 0.5, -0.5);
+const Eigen::VectorXd kQdd = Eigen::VectorXd::Constant(6, 1.0);
+
+TEST(Migration, CallsOfTheReferenceImplementationHaveTheirCounterparts) {
+  const std::string urdf = ur10();
+  const Eigen::VectorXd &q = kQ, &qd = kQd, &qdd = kQdd;
+  const Eigen::Vector3d force(20.0, 0.0, -5.0), torque(0.0, 1.0, 0.0);
+  testing::internal::CaptureStdout();
+
+  // Headers end in .hpp. pluginlib::ClassLoader works as before; SolverLoader needs no arguments.
+  const auto solver = SolverLoader().load("ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10");
+
+  // Identified solvers must be initialized, too: until then, methods throw UninitializedException.
+  solver->initialize();
+
+  // getDynamicParameters(), which still exists, too
+  const auto [H, c, g] = solver->getDynamicComponents(q, qd);
+
+  // The free function getCurrents(q, qd, qdd, i), without friction. Likewise getInertiaCurrents(),
+  // getCoriolisCurrents() and getGravityCurrents().
+  const auto& motors = dynamic_cast<const MotorCurrents&>(*solver);
+  const Eigen::VectorXd i = motors.getCurrents(q, qd, qdd) - motors.getFrictionCurrents(qd);
+
+  // The constants K1 to K6 and NUMBER_OF_JOINTS
+  const Eigen::VectorXd K = motors.getDriveGainsMatrix().diagonal();
+  const Eigen::Index n = solver->jointCount();
+
+  // rclcpp::exceptions::InvalidParameterValueException. All exceptions of that family now derive from
+  // inverse_dynamics_solver::Exception, a std::runtime_error.
+  try {
+    solver->initialize({{"gravity", std::vector<double>{0.0, -9.81}}});
+  } catch (const inverse_dynamics_solver::InvalidParameterValueException& e) {
+    std::cout << e.what() << "\n";
+  }
+
+  // The description is an argument, and parameters come from a map instead of a node. Without the
+  // parameter `tip`, the tip is the leaf of the URDF. Bodies fixed beyond the tip, or beside the chain,
+  // are included, unless `attached` is "ignore", as in the released solver.
+  const auto kdl = SolverLoader().load("kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL");
+  kdl->initialize({{"tip", "tool0"}, {"attached", "ignore"}}, "", urdf);
+
+  // getJacobian(q) and getTorques(q, qd, qdd, external_wrench), which haven't been released yet
+  const Eigen::MatrixXd J = dynamic_cast<const Kinematics&>(*kdl).getTipJacobian(q);
+  const Eigen::VectorXd tau =
+      dynamic_cast<const ExternalWrench&>(*kdl).getTorques(q, qd, qdd, WrenchInRoot{force, torque});
+
+  EXPECT_NE(testing::internal::GetCapturedStdout().find("parameter 'gravity': wrong value"),
+            std::string::npos);
+  const Eigen::VectorXd f = solver->getFrictionVector(qd);
+  EXPECT_TRUE((K.cwiseProduct(i) + f).isApprox(solver->getTorques(q, qd, qdd), kRounding));
+  EXPECT_TRUE((H * qdd + c + g + f).isApprox(solver->getTorques(q, qd, qdd), kRounding));
+  EXPECT_EQ(n, 6);
+  EXPECT_NEAR(K[0], 13.5841, 1e-12);
+  EXPECT_TRUE(kdl->getFrictionVector(qd).isZero(0.0));
+  const Eigen::VectorXd wrench = (Eigen::VectorXd(6) << force, torque).finished();
+  EXPECT_TRUE(tau.isApprox(kdl->getTorques(q, qd, qdd) + J.transpose() * wrench, kRounding));
+}
+
+TEST(Migration, GetDynamicParametersIsThere) {
+  const auto solver = SolverLoader().load(kUr10);
+  solver->initialize();
+  const auto [H, c, g] = solver->getDynamicParameters(kQ, kQd);
+  EXPECT_EQ(H, solver->getInertiaMatrix(kQ));
+  EXPECT_EQ(c, solver->getCoriolisVector(kQ, kQd));
+  EXPECT_EQ(g, solver->getGravityVector(kQ));
+}
+
+TEST(Migration, GettersTakeExpressionsAndWriteIntoMemory) {
+  const auto solver = SolverLoader().load(kUr10);
+  solver->initialize();
+  Eigen::VectorXd tau(6);
+  solver->getTorques(2 * kQ, 2 * kQd, 2 * kQdd, tau);
+  const Eigen::VectorXd q = 2 * kQ, qd = 2 * kQd, qdd = 2 * kQdd;
+  EXPECT_EQ(tau, solver->getTorques(q, qd, qdd));
+}
+
+TEST(Migration, FrictionIsLeftOutOrTakenFromTheUrdf) {
+  const auto identified = SolverLoader().load(kUr10);
+  identified->initialize({{"friction", false}});
+  EXPECT_TRUE(identified->getFrictionVector(kQd).isZero(0.0));
+
+  std::string urdf = ur10();
+  const std::string none = "damping=\"0\"", some = "damping=\"2\"";
+  for (auto at = urdf.find(none); at != std::string::npos; at = urdf.find(none)) {
+    urdf.replace(at, none.size(), some);
+  }
+  const auto kdl = SolverLoader().load(kKdl);
+  kdl->initialize({{"tip", "tool0"}, {"urdf_friction", true}}, "", urdf);
+  EXPECT_TRUE(kdl->getFrictionVector(kQd).isApprox(2.0 * kQd, kRounding));
+}
+
+TEST(Migration, GravityIsHonouredByIdentifiedSolvers) {
+  const auto solver = SolverLoader().load(kUr10);
+  solver->initialize({{"gravity", std::vector<double>{0.0, 0.0, 0.0}}});
+  EXPECT_TRUE(solver->getGravityVector(kQ).isZero(0.0));
+}
+
+TEST(Migration, AFailedInitializeLeavesTheSolverAsItWas) {
+  const auto kdl = SolverLoader().load(kKdl);
+  kdl->initialize({{"tip", "tool0"}}, "", ur10());
+  const Eigen::VectorXd before = kdl->getGravityVector(kQ);
+  EXPECT_THROW(kdl->initialize({{"tip", "nothing"}}, "", ur10()),
+               inverse_dynamics_solver::Exception);
+  EXPECT_EQ(kdl->getGravityVector(kQ), before);
+}
+
+std::string ur10With(const std::string& right, const std::string& wrong) {
+  std::string urdf = ur10();
+  return urdf.replace(urdf.find(right), right.size(), wrong);
+}
+
+TEST(Migration, WhatIsWrongInAUrdfIsAnError) {
+  const auto kdl = SolverLoader().load(kKdl);
+  for (const char* wrong : {"<mass value=\"7,1\"/>", "<mass value=\"-7.1\"/>", "<mass/>", ""}) {
+    const std::string urdf = ur10With("<mass value=\"7.1\"/>", wrong);
+    EXPECT_THROW(kdl->initialize({{"tip", "tool0"}}, "", urdf),
+                 inverse_dynamics_solver::InvalidParameterValueException)
+        << wrong;
+  }
+}
+
+TEST(Migration, ANameThatNoUrdfHasIsAWarning) {
+  const auto kdl = SolverLoader().load(kKdl);
+  kdl->initialize({{"tip", "tool0"}}, "", ur10With("<axis xyz", "<axes xyz"));
+  ASSERT_EQ(kdl->warnings().size(), 1u);
+  EXPECT_NE(kdl->warnings()[0].find("axes"), std::string::npos) << kdl->warnings()[0];
+}
+
+TEST(Migration, NothingWorksBeforeInitialize) {
+  const auto solver = SolverLoader().load("ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10");
+  EXPECT_THROW(solver->getGravityVector(Eigen::VectorXd::Zero(6)),
+               inverse_dynamics_solver::UninitializedException);
+}
+
+TEST(Migration, RootAndTipAreThoseOfTheUrdfWhereNothingIsSaid) {
+  const auto gravity = [](const inverse_dynamics_solver::Parameters& parameters) {
+    const auto kdl = SolverLoader().load(kKdl);
+    const std::string chain =
+        "<robot name='a'><link name='base'/><link name='arm'><inertial><origin xyz='0.5 0 "
+        "0'/><mass "
+        "value='2'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' "
+        "izz='0'/></inertial></link><joint "
+        "name='hinge' type='continuous'><parent link='base'/><child link='arm'/><axis xyz='0 -1 "
+        "0'/></joint></robot>";
+    kdl->initialize(parameters, "", chain);
+    return kdl->getGravityVector(Eigen::VectorXd::Zero(1))[0];
+  };
+  EXPECT_NEAR(gravity({}), 2 * 9.81 * 0.5, kRounding);
+  EXPECT_EQ(gravity({}), gravity({{"root", ""}, {"tip", ""}}));
+  EXPECT_EQ(gravity({}), gravity({{"root", "base"}, {"tip", "arm"}}));
+}
+
+TEST(Migration, BodiesBeyondTheTipCountUnlessTheyAreIgnored) {
+  std::string urdf = ur10();
+  const std::string load =
+      "<link name='load'><inertial><mass value='5'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' "
+      "iyz='0' izz='0.01'/></inertial></link><joint name='to_load' type='fixed'><parent "
+      "link='tool0'/><child link='load'/></joint></robot>";
+  urdf.replace(urdf.rfind("</robot>"), std::string::npos, load);
+  const auto shoulder = [&](const std::string& attached) {
+    const auto kdl = SolverLoader().load(kKdl);
+    kdl->initialize({{"tip", "tool0"}, {"attached", attached}}, "", urdf);
+    return kdl->getGravityVector(Eigen::VectorXd::Zero(6))[1];  // stretched out
+  };
+  EXPECT_NEAR(shoulder("ignore"), -119.172, 1e-3);
+  EXPECT_NEAR(shoulder("lump"), -177.262, 1e-3);
+  EXPECT_NEAR(shoulder("lump") - shoulder("ignore"), -5 * 9.81 * (0.612 + 0.5723), kRounding);
+}
+
+}  // namespace inverse_dynamics_documentation_tests::migration_test
