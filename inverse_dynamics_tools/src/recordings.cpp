@@ -275,8 +275,8 @@ void bindRecordings(py::module_& module) {
           "finish", [](Writer& writer) { writer.writer.finish(); },
           py::call_guard<py::gil_scoped_release>());
   module.def(
-      "write_torques", &writeTorques, py::arg("path_and_storage"), py::arg("topic"),
-      py::arg("computed"), py::arg("measured"), py::arg("progress"),
+      "write_torques", &writeTorques, py::arg("path"), py::arg("storage"), py::arg("topic"),
+      py::arg("computed"), py::arg("measured"), py::kw_only(), py::arg("progress"),
       "A new recording of computed torques, and of measured ones with _gt behind the topic's\n"
       "name.\n\n"
       "topic: name, joint names, frame. computed: header and receive stamps, (N,); positions,\n"
