@@ -13,6 +13,7 @@
 #include "annotations.hpp"
 #include "arrays.hpp"
 #include "initialized.hpp"
+#include "options.hpp"
 #include "solver.hpp"
 #include "vectors.hpp"
 
@@ -174,24 +175,13 @@ void bindEstimateEnums(py::module_& module) {
 }
 
 void bindEstimators(py::module_& module) {
-  py::class_<EstimatorOptions>(module, "EstimatorOptions", "Options of both estimators.")
-      .def(py::init([](const Vector& gain, VelocitySource velocity, double tracking,
-                       const Compensated& compensated, const Vector& friction_band,
-                       double longest_period) {
-             EstimatorOptions options;
-             options.gain = gain;
-             options.velocity = velocity;
-             options.tracking = tracking;
-             options.compensated = compensated;
-             options.friction_band = friction_band;
-             options.longest_period = longest_period;
-             return options;
-           }),
-           py::arg("gain"), py::kw_only(), py::arg("velocity") = VelocitySource::kPositions,
-           py::arg("tracking") = EstimatorOptions().tracking,
-           py::arg("compensated") = Compensated(), py::arg("friction_band") = Vector(),
-           py::arg("longest_period") = EstimatorOptions().longest_period,
-           "gain: 1/s; tracking: rad/s; friction_band: N m; longest_period: s.");
+  using O = EstimatorOptions;
+  bindOptions(module, "EstimatorOptions", "Options of both estimators.",
+              "gain: 1/s; tracking: rad/s; friction_band: N m; longest_period: s.",
+              Field{"gain", &O::gain}, Field{"velocity", &O::velocity},
+              Field{"tracking", &O::tracking}, Field{"compensated", &O::compensated},
+              Field{"friction_band", &O::friction_band},
+              Field{"longest_period", &O::longest_period});
   py::class_<ExternalTorqueEstimator>(module, "ExternalTorqueEstimator",
                                       "External torques of each joint, N m.")
       .def("update", &update, py::arg("q"), py::arg("effort"), py::arg("period"),

@@ -15,6 +15,7 @@
 #include "annotations.hpp"
 #include "arrays.hpp"
 #include "initialized.hpp"
+#include "options.hpp"
 #include "solver.hpp"
 #include "solver_payload.hpp"
 #include "vectors.hpp"
@@ -47,6 +48,7 @@ class SharedEstimator {
 
 }  // namespace inverse_dynamics_tools
 
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::PayloadOptions)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::PayloadEstimate)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::SharedEstimator)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ResidualNoise)
@@ -58,33 +60,6 @@ namespace {
 namespace py = pybind11;
 using namespace inverse_dynamics_identification;
 using Vector = Eigen::VectorXd;
-
-/// A body of Solver.payloads, or none.
-inverse_dynamics_solver::RigidBody carriedBody(const std::optional<ParameterDict>& carried) {
-  if (!carried) return {};
-  const py::dict body(*carried);
-  const auto part = [&body](const char* key) -> py::object {
-    return body.contains(key) ? py::object(body[key]) : py::object(py::none());
-  };
-  return bodyOf(part("mass").cast<double>(), part("center_of_mass"), part("inertia"),
-                part("frame"));
-}
-
-std::unique_ptr<SharedEstimator> makeEstimator(
-    const SolverObject& solver, const ResidualNoise& noise, const std::optional<Vector>& offset,
-    const std::optional<Vector>& offset_deviation, const std::optional<ParameterDict>& carried,
-    const std::optional<ArmUncertainty>& arm, double extent, double block, double model_error) {
-  PayloadOptions options;
-  options.noise = noise;
-  if (offset) options.offset = *offset;
-  if (offset_deviation) options.offset_deviation = *offset_deviation;
-  options.carried = carriedBody(carried);
-  if (arm) options.arm = *arm;
-  options.extent = extent;
-  options.block = block;
-  options.model_error = model_error;
-  return std::make_unique<SharedEstimator>(solverOf(solver), options);
-}
 
 void requireSamples(const char* name, const Array& array, py::ssize_t count, py::ssize_t joints) {
   if (array.ndim() == 2 && array.shape(0) == count && array.shape(1) == joints) return;
@@ -259,21 +234,25 @@ void bindPayload(py::module_& module) {
   bindNoise(module);
   bindArm(module);
   bindEstimate(module);
-  const PayloadOptions usual;
+  using O = PayloadOptions;
+  bindOptions(
+      module, "PayloadOptions", "What the estimate rests on.",
+      "offset, offset_deviation: (n,) N m, what is known of the offsets; arm: what its model "
+      "may be wrong by; carried: the body among solver.payloads that belongs to the estimate; "
+      "extent: m; block: s; model_error: variance of what the arm's model is wrong by, in "
+      "units of what the noise gives.",
+      Field{"noise", &O::noise}, Field{"offset", &O::offset},
+      Field{"offset_deviation", &O::offset_deviation}, Field{"arm", &O::arm},
+      Field{"carried", &O::carried}, Field{"extent", &O::extent}, Field{"block", &O::block},
+      Field{"model_error", &O::model_error});
   py::class_<SharedEstimator>(module, "PayloadEstimator",
                               "Mass, center of mass and inertia of what the tip carries. Threads: "
-                              "safe; the GIL is released, "
-                              "and each call waits for those of other threads.")
-      .def(py::init(&makeEstimator), py::arg("solver"), py::arg("noise"), py::kw_only(),
-           py::arg("offset") = py::none(), py::arg("offset_deviation") = py::none(),
-           py::arg("carried") = py::none(), py::arg("arm") = py::none(),
-           py::arg("extent") = usual.extent, py::arg("block") = usual.block,
-           py::arg("model_error") = usual.model_error,
-           "offset, offset_deviation: (n,) N m, what is known of the offsets; carried: the body "
-           "among "
-           "solver.payloads that belongs to the estimate; arm: what its model may be wrong by; "
-           "extent: m; block: s; model_error: "
-           "variance of what the arm's model is wrong by, in units of what the noise gives.")
+                              "safe; the GIL is released, and each call waits for those of other "
+                              "threads.")
+      .def(py::init([](const SolverObject& solver, const PayloadOptions& options) {
+             return std::make_unique<SharedEstimator>(solverOf(solver), options);
+           }),
+           py::arg("solver"), py::arg("options"))
       .def("update", &update, py::arg("time"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
            py::arg("measured"), "Adds a sample: s, (n,) each; PayloadStatus.")
       .def("run", &run, py::arg("time"), py::arg("q"), py::arg("qd"), py::arg("qdd"),

@@ -133,9 +133,9 @@ class Solver {
            dynamic_cast<const ids::VariableGravity*>(solver_.get()) != nullptr;
   }
   // What is set waits for a change, which waits for batches: without the interpreter's lock.
-  ParameterDict payloads() {
+  ids::Payloads payloads() {
     auto& payload = capability<ids::Payload>("payloads");
-    return dictionaryOf(withoutInterpreter([&] { return payload.payloads(); }));
+    return withoutInterpreter([&] { return payload.payloads(); });
   }
 
   void setGravity(const ArrayLike& gravity) {

@@ -96,20 +96,16 @@ ids::RigidBody bodyOf(double mass, const py::object& center_of_mass, const py::o
   return body;
 }
 
-py::dict dictionaryOf(const ids::Payloads& bodies) {
-  py::dict all;
-  for (const auto& [name, body] : bodies) {
-    Eigen::Matrix4d frame = Eigen::Matrix4d::Identity();
-    frame.topLeftCorner<3, 3>() = body.frame.R;
-    frame.topRightCorner<3, 1>() = body.frame.p;
-    py::dict one;
-    one["mass"] = body.mass;
-    one["center_of_mass"] = arrayOf(body.center_of_mass);
-    one["inertia"] = arrayOfMatrix(body.inertia);
-    one["frame"] = arrayOfMatrix(frame);
-    all[py::str(name)] = one;
-  }
-  return all;
+py::dict dictionaryOf(const ids::RigidBody& body) {
+  Eigen::Matrix4d frame = Eigen::Matrix4d::Identity();
+  frame.topLeftCorner<3, 3>() = body.frame.R;
+  frame.topRightCorner<3, 1>() = body.frame.p;
+  py::dict found;
+  found["mass"] = body.mass;
+  found["center_of_mass"] = arrayOf(body.center_of_mass);
+  found["inertia"] = arrayOfMatrix(body.inertia);
+  found["frame"] = arrayOfMatrix(frame);
+  return found;
 }
 
 }  // namespace inverse_dynamics_tools

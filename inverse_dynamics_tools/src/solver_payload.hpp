@@ -20,8 +20,8 @@ inverse_dynamics_solver::RigidBody bodyOf(double mass, const pybind11::object& c
                                           const pybind11::object& inertia,
                                           const pybind11::object& frame);
 
-/// Name to a dictionary of the arguments of set_payload().
-pybind11::dict dictionaryOf(const inverse_dynamics_solver::Payloads& bodies);
+/// A dictionary of the arguments of set_payload().
+pybind11::dict dictionaryOf(const inverse_dynamics_solver::RigidBody& body);
 
 /// Three numbers. Throws as bodyOf(); `where` is method and argument.
 Eigen::Vector3d vectorOf(const std::string& where, const pybind11::object& numbers);
@@ -42,3 +42,24 @@ Capability& capabilityOf(inverse_dynamics_solver::InverseDynamicsSolver& solver,
 }
 
 }  // namespace inverse_dynamics_tools
+
+namespace pybind11::detail {
+
+/// Bodies are dictionaries of the arguments of set_payload().
+template <>
+struct type_caster<inverse_dynamics_solver::RigidBody> {
+  PYBIND11_TYPE_CASTER(inverse_dynamics_solver::RigidBody, const_name("dict[str, typing.Any]"));
+
+  bool load(handle source, bool /*convert*/) {
+    if (!isinstance<dict>(source)) return false;
+    const auto part = [&source](const char* key) -> object { return source.attr("get")(key); };
+    value = inverse_dynamics_tools::bodyOf(part("mass").cast<double>(), part("center_of_mass"),
+                                           part("inertia"), part("frame"));
+    return true;
+  }
+  static handle cast(const inverse_dynamics_solver::RigidBody& body, return_value_policy, handle) {
+    return inverse_dynamics_tools::dictionaryOf(body).release();
+  }
+};
+
+}  // namespace pybind11::detail

@@ -14,7 +14,13 @@ from conftest import fails
 from simulation_arms import joint, link, robot
 
 from inverse_dynamics import load_robot
-from inverse_dynamics._core import PayloadEstimator, PayloadStatus, ResidualNoise, residual_noise
+from inverse_dynamics._core import (
+    PayloadEstimator,
+    PayloadOptions,
+    PayloadStatus,
+    ResidualNoise,
+    residual_noise,
+)
 from inverse_dynamics.errors import InvalidParameterError, OutputError
 from inverse_dynamics.identification.payload import (
     PayloadError,
@@ -304,7 +310,7 @@ def test_the_estimator_takes_samples_one_by_one():
     samples = loaded()
     noise = residual_noise(samples.time, np.random.default_rng(2).standard_normal((1200, 7)))
     assert noise.correlation_time == 0.2
-    whole, each = (PayloadEstimator(panda(), noise) for _ in range(2))
+    whole, each = (PayloadEstimator(panda(), PayloadOptions(noise)) for _ in range(2))
     assert whole.run(*vars(samples).values()) == len(samples.time)
     assert whole.run(*vars(samples).values()) == 0
     assert each.estimate()[1] == PayloadStatus.TOO_SHORT
@@ -323,11 +329,11 @@ def test_options_of_the_estimator_are_checked():
     noise = ResidualNoise(np.full(7, 0.1), np.full(7, 0.1), 0.3)
     assert noise.white.tolist() == [0.1] * 7
     with pytest.raises(InvalidParameterError, match="payload: extent"):
-        PayloadEstimator(panda(), noise, extent=0.0)
+        PayloadEstimator(panda(), PayloadOptions(noise, extent=0.0))
     with pytest.raises(InvalidParameterError, match="noise.white: expected 7 numbers"):
-        PayloadEstimator(panda(), ResidualNoise([1.0], [1.0]))
+        PayloadEstimator(panda(), PayloadOptions(ResidualNoise([1.0], [1.0])))
     with pytest.raises(ValueError, match=r"measured: expected an array \(2, 7\)"):
-        PayloadEstimator(panda(), noise).run(
+        PayloadEstimator(panda(), PayloadOptions(noise)).run(
             np.arange(2.0), *(np.zeros((2, 7)) for _ in range(3)), np.zeros((2, 6))
         )
 
@@ -347,7 +353,7 @@ def test_threads_that_share_an_estimator_wait_for_each_other():
     light, heavy = (solver.torques(q, qd, qdd) + more for more in (0.0, 5.0))
 
     def estimate_of(*runs):
-        estimator = PayloadEstimator(solver, noise)
+        estimator = PayloadEstimator(solver, PayloadOptions(noise))
         added = []
         start = threading.Barrier(len(runs))
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics._core import PayloadEstimator, PayloadStatus, residual_noise
+from inverse_dynamics._core import PayloadEstimator, PayloadOptions, PayloadStatus, residual_noise
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import listed
 from inverse_dynamics.errors import EvaluationError
@@ -234,39 +234,35 @@ def fit_payload(
     """
     before = samples.measured - solver.torques(samples.q, samples.qd, samples.qdd)
     offset = before.mean(axis=0) if empty is None else empty.offset
-    noise = residual_noise(samples.time, before - offset) if empty is None else empty.noise
-    found, rounds, settled = _round(samples, solver, noise, empty, arm, None, where), 1, False
+    if empty is None:
+        options = PayloadOptions(residual_noise(samples.time, before - offset))
+    else:
+        options = PayloadOptions(
+            empty.noise, offset=empty.offset, offset_deviation=empty.offset_deviation
+        )
+    if arm is not None:
+        options.arm = arm
+    found, rounds, settled = _round(samples, solver, options, where), 1, False
     try:
         after = _carry(samples, solver, found) - found.offset
         while not settled and rounds < _MOST_ROUNDS:
             if empty is None:
-                noise = residual_noise(samples.time, after - _of_arm(samples, solver, arm, found))
+                still = after - _of_arm(samples, solver, arm, found)
+                options.noise = residual_noise(samples.time, still)
             last = found
-            found = _round(samples, solver, noise, empty, arm, solver.payloads[NAME], where)
+            options.carried = solver.payloads[NAME]
+            found = _round(samples, solver, options, where)
             after = _carry(samples, solver, found) - found.offset
             settled, rounds = _settled(last, found), rounds + 1
     finally:
         solver.remove_payload(NAME)
-    return Fit(found, noise, rounds, before, after)
+    return Fit(found, options.noise, rounds, before, after)
 
 
 def _round(
-    samples: Samples,
-    solver: Solver,
-    noise: ResidualNoise,
-    empty: EmptyRun | None,
-    arm: ArmUncertainty | None,
-    carried: dict[str, Any] | None,
-    where: str,
+    samples: Samples, solver: Solver, options: PayloadOptions, where: str
 ) -> PayloadEstimate:
-    estimator = PayloadEstimator(
-        solver,
-        noise,
-        offset=None if empty is None else empty.offset,
-        offset_deviation=None if empty is None else empty.offset_deviation,
-        carried=carried,
-        arm=arm,
-    )
+    estimator = PayloadEstimator(solver, options)
     estimator.run(samples.time, samples.q, samples.qd, samples.qdd, samples.measured)
     found, status = estimator.estimate()
     if status == PayloadStatus.TOO_SHORT:
