@@ -28,7 +28,6 @@ from inverse_dynamics.identification.summary import choices_told, headings, held
 if TYPE_CHECKING:
     from payload_truth import Figures
 
-
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "identification_results.md"
 ROBOTS = {"ur10_real": "ur10_exciting_trajectory", "panda_real": "panda_exciting_trajectory"}
 SEEDS = 10
