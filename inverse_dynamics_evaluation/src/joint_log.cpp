@@ -129,8 +129,8 @@ void JointLogBuilder::noteStamps(std::int64_t header, std::int64_t receive) {
   receive_stamped_ = receive_stamped_ || receive != 0;
 }
 
-void JointLogBuilder::add(const JointStateBlock& block) {
-  if (addWhole(block)) {
+void JointLogBuilder::add(const JointStateBlock& block, std::size_t begin, std::size_t end) {
+  if (addWhole(block, begin, end)) {
     return;
   }
   // sample by sample: to decide what is recorded, or to tell what is wrong
@@ -138,7 +138,7 @@ void JointLogBuilder::add(const JointStateBlock& block) {
   const auto row = [](const JointStateNumbers& field, std::size_t i) {
     return Numbers(field.row(i), static_cast<Index>(field.columns));
   };
-  for (std::size_t i = 0; i < block.size(); ++i) {
+  for (std::size_t i = begin; i < end; ++i) {
     add(JointSample{block.joint_names, row(block.position, i), row(block.velocity, i),
                     row(block.effort, i), Numbers(nullptr, 0), block.header_stamps[i],
                     block.receive_stamps[i], static_cast<Index>(block.first) + Index(i), -1,
@@ -147,40 +147,40 @@ void JointLogBuilder::add(const JointStateBlock& block) {
 }
 
 // Adds messages in which nothing is wrong; false, and none of them added, if anything may be.
-bool JointLogBuilder::addWhole(const JointStateBlock& block) {
-  const auto count = static_cast<Index>(block.size());
+bool JointLogBuilder::addWhole(const JointStateBlock& block, std::size_t begin, std::size_t end) {
   const auto fits = [&](const Column& column, const JointStateNumbers& numbers) {
     return numbers.columns == (column.recorded ? block.joint_names.size() : 0);
   };
   if (isFirst() || matching_.match(block.joint_names) != JointMatching::Found::kAll ||
       !fits(position_, block.position) || !fits(velocity_, block.velocity) ||
       !fits(effort_, block.effort) || acceleration_.recorded ||
-      !copy(position_, block.position, count) || !copy(velocity_, block.velocity, count) ||
-      !copy(effort_, block.effort, count)) {
+      !copy(position_, block.position, begin, end) ||
+      !copy(velocity_, block.velocity, begin, end) || !copy(effort_, block.effort, begin, end)) {
     return false;
   }
-  for (std::size_t i = 0; i < block.size(); ++i) {
+  for (std::size_t i = begin; i < end; ++i) {
     noteStamps(block.header_stamps[i], block.receive_stamps[i]);
     message_.push_back(static_cast<Index>(block.first) + static_cast<Index>(i));
   }
   if (frame_id_.empty()) {
     frame_id_ = block.frame_id;
   }
-  samples_ += count;
+  samples_ += static_cast<Index>(end - begin);
   return true;
 }
 
 // Copies the numbers of the joints behind those that were added; false if one isn't of a motion.
-bool JointLogBuilder::copy(Column& column, const JointStateNumbers& numbers, Index count) {
+bool JointLogBuilder::copy(Column& column, const JointStateNumbers& numbers, std::size_t begin,
+                           std::size_t end) {
   if (!column.recorded) {
     return true;
   }
-  reserve(column, count);
+  reserve(column, static_cast<Index>(end - begin));
   const std::vector<std::size_t>& from = matching_.columns();
   double* to = column.numbers.col(static_cast<Index>(message_.size())).data();
   bool possible = true;
-  for (Index k = 0; k < count; ++k) {
-    const double* const row = numbers.row(static_cast<std::size_t>(k));
+  for (std::size_t i = begin; i < end; ++i) {
+    const double* const row = numbers.row(i);
     for (const std::size_t j : from) {
       possible = possible && std::abs(row[j]) <= kLargestNumber;
       *to++ = row[j];

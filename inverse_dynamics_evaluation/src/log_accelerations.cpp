@@ -4,10 +4,10 @@
 
 #include <utility>
 
-#include "accelerated_samples.hpp"
-#include "checks.hpp"
+#include "examination.hpp"
 #include "figures.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
+#include "table_accelerations.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -127,40 +127,17 @@ std::string accelerationSummary(AccelerationMethod method, double cutoff, bool c
          (chosen ? "chosen from the data" : "given") + "), then derivative";
 }
 
-LogAccelerations withoutSeries(const SampleStream& stream, const AccelerationPlan& plan) {
-  LogAccelerations result;
-  result.method = plan.method;
-  result.filter = plan.filter;
-  result.samples = plan.found.report;
-  result.summary = accelerationSummary(result.method, result.filter.cutoff, result.filter.chosen);
-  result.findings =
-      sampleFindings(name(stream.clock()), result.samples,
-                     result.method == AccelerationMethod::kLowPass ? &result.filter : nullptr);
-  return result;
-}
-
-void checkLog(const JointLogView& log) {
-  requireSamples("samples", "qd", log.qd, 2);
-  requireStampPerSample("samples", log.header_stamps.cast<double>(), log.qd);
-  requireStampPerSample("samples", log.receive_stamps.cast<double>(), log.qd);
-  checkSamples(log.time(), log.q, log.qd, log.effort);
-  if (log.qdd.size() > 0) {
-    requireSameSize("samples", "qdd", log.qdd, "qd", log.qd);
-  }
-}
-
 LogAccelerations logAccelerations(const JointLogView& log, AccelerationMethod method, double cutoff,
                                   const SampleRules& rules) {
   checkLog(log);
-  SamplesInMemory stream(log, log.time());
+  const auto table = tableOf(log);
   AccelerationOptions options;
   options.method = method;
   options.cutoff = cutoff;
   options.rules = rules;
-  AccelerationPlan plan = planAccelerations(stream, options);
-  OwnedMatrix qdd = gatherAccelerations(stream, plan);
-  LogAccelerations result = withoutSeries(stream, plan);
-  result.qdd = std::move(qdd);
+  LogAccelerations result = findAccelerations(*table, options);
+  addSeries(*table, result.samples);
+  result.qdd = table->qdd;
   return result;
 }
 

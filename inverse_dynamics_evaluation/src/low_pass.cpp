@@ -42,21 +42,11 @@ OwnedMatrix lowPass(const Eigen::Ref<const Eigen::MatrixXd>& samples, double sam
   const Eigen::Index pad =
       padding < 0 ? defaultPadding(count, sampling_frequency, cutoff, order) : padding;
 
-  // continue both ends by their point reflection: 2 x_0 - x_k
   Eigen::MatrixXd extended(samples.rows(), count + 2 * pad);
   extended.middleCols(pad, count) = samples;
-  for (Eigen::Index k = 1; k <= pad; ++k) {
-    extended.col(pad - k) = 2.0 * samples.col(0) - samples.col(k);
-    extended.col(pad + count - 1 + k) = 2.0 * samples.col(count - 1) - samples.col(count - 1 - k);
-  }
-
-  OwnedMatrix result(samples.rows(), count);
-  ZeroPhaseFilter filter(samples.rows(), cutoff / sampling_frequency, order,
-                         ZeroPhaseFilter::kWhole,
-                         [&](const auto& filtered) { result = filtered.middleCols(pad, count); });
-  filter.push(extended);
-  filter.finish();
-  return result;
+  mirrorEnds(extended, pad);
+  zeroPhase(extended, cutoff / sampling_frequency, order);
+  return extended.middleCols(pad, count);
 }
 
 }  // namespace v2

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -16,7 +15,6 @@ using Eigen::Index;
 // the two samples at either end would set its slope.
 constexpr double kLeastApart = 0.5;
 constexpr double kMostApart = 3.0;
-constexpr Index kGivenAtOnce = 4096;
 
 // Weights of four samples at the instants `at` in the cubic through them, at instant t.
 Eigen::Vector4d cubicWeights(const Eigen::Vector4d& at, double t) {
@@ -29,6 +27,17 @@ Eigen::Vector4d cubicWeights(const Eigen::Vector4d& at, double t) {
   return weights;
 }
 
+// Weights on the straight line between the two samples around t.
+Eigen::Vector4d linearWeights(const Eigen::Vector4d& at, double t) {
+  Index after = 1;
+  while (after < 3 && at[after] < t) ++after;
+  const double share = std::clamp((t - at[after - 1]) / (at[after] - at[after - 1]), 0.0, 1.0);
+  Eigen::Vector4d weights = Eigen::Vector4d::Zero();
+  weights[after - 1] = 1.0 - share;
+  weights[after] = share;
+  return weights;
+}
+
 }  // namespace
 
 Grid::Grid(const Piece& piece, double usual_period) : Piece(piece) {
@@ -37,68 +46,31 @@ Grid::Grid(const Piece& piece, double usual_period) : Piece(piece) {
   period = duration / static_cast<double>(count - 1);
 }
 
-Resampler::Resampler(const Grid& grid, Index rows, TakeColumns take)
-    : grid_(grid),
-      take_(std::move(take)),
-      numbers_(rows, 4),
-      values_(rows, std::min(kGivenAtOnce, grid.count)) {}
-
-void Resampler::add(double instant, const double* numbers) {
-  const Index rows = numbers_.rows();
-  std::copy_n(instants_.data() + 1, 3, instants_.data());
-  std::copy_n(numbers_.data() + rows, 3 * rows, numbers_.data());
-  instants_[3] = instant;
-  std::copy_n(numbers, rows, numbers_.data() + 3 * rows);
-  const bool last = ++added_ == grid_.used;
-  if (added_ < 4) {
-    return;
-  }
-  if (added_ > 4) {  // what lies before the second of the four has been made
-    right_ = std::max(right_, added_ - 2);
-  }
-  // an instant needs a sample more than the two around it, where there is one
-  while (made_ < grid_.count) {
-    const double t = grid_.begin + static_cast<double>(made_) * grid_.period;
-    if (!last && t > instants_[2]) {
-      break;
-    }
-    giveValue(t);
-  }
-  if (last) {
-    flush();
-  }
+Resampler::Resampler(const SampleTable& table, const Grid& grid)
+    : table_(table), grid_(grid), ahead_(grid.first) {
+  for (int i = 0; i < 4; ++i) advance();
 }
 
-void Resampler::giveValue(double t) {
-  const Index first = added_ - 4;  // number of the first of the four
-  while (right_ + 1 < grid_.used && instants_[right_ - first] < t) {
-    ++right_;
+// Takes one sample further; false at the end of the piece.
+bool Resampler::advance() {
+  while (ahead_ < grid_.behind && !table_.used[ahead_]) ++ahead_;
+  if (ahead_ == grid_.behind) return false;
+  std::rotate(samples_.begin(), samples_.begin() + 1, samples_.end());
+  instants_.head<3>() = instants_.tail<3>().eval();
+  samples_[3] = ahead_;
+  instants_[3] = table_.instant[ahead_++];
+  return true;
+}
+
+void Resampler::next() {
+  const double t = grid_.begin + static_cast<double>(made_++) * grid_.period;
+  // the instant lies between the middle two where there are samples beyond
+  while (t > instants_[2] && advance()) {
   }
   const Eigen::Vector3d apart = (instants_.tail<3>() - instants_.head<3>()) / grid_.period;
-  auto value = values_.col(waiting_);
-  if (apart.minCoeff() >= kLeastApart && apart.maxCoeff() <= kMostApart) {
-    const Eigen::Vector4d weights = cubicWeights(instants_, t);
-    value.setZero();
-    for (Index k = 0; k < 4; ++k) {
-      value += weights[k] * numbers_.col(k);
-    }
-  } else {
-    const Index after = right_ - first;
-    const double before = instants_[after - 1];
-    const double share = std::clamp((t - before) / (instants_[after] - before), 0.0, 1.0);
-    value = (1.0 - share) * numbers_.col(after - 1) + share * numbers_.col(after);
-  }
-  ++made_;
-  if (++waiting_ == values_.cols()) {
-    flush();
-  }
-}
-
-void Resampler::flush() {
-  if (waiting_ > 0) {
-    take_(values_.leftCols(waiting_));
-    waiting_ = 0;
-  }
+  weights_ = apart.minCoeff() >= kLeastApart && apart.maxCoeff() <= kMostApart
+                 ? cubicWeights(instants_, t)
+                 : linearWeights(instants_, t);
 }
 
 }  // namespace v2

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// Samples of a piece between gaps at equal distances in time, as the filter and the spectra need
-/// them.
+/// Equidistant samples from samples that aren't, weighted sums of four neighbours each.
 ///
-///     Resampler resampler(grid, 6, take);
-///     while (...) resampler.add(instant, qd.col(k).data());
+///     Resampler resampler(table, grid);
+///     for (Index i = 0; i < grid.count; ++i) {
+///       resampler.next();
+///       values.col(i) = resampler.valueOf(table.qd);
+///     }
 ///
 /// A value lies on the cubic through the four samples around its instant, or on a straight line
 /// where two of these are so close, or so far apart, that a cubic would enlarge their noise.
@@ -13,9 +15,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
+#include "inverse_dynamics_evaluation/sample_table.hpp"
 #include "time_base.hpp"
-#include "zero_phase.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -29,32 +32,32 @@ struct Grid : Piece {
   Grid(const Piece& piece, double usual_period);
 };
 
-/// Makes equidistant samples of those of a piece.
+/// Goes through the equidistant samples of a piece.
 class Resampler {
  public:
-  /// @param rows  numbers of a sample.
-  /// @param take  gets rows x grid.count numbers, some columns at a time.
-  Resampler(const Grid& grid, Eigen::Index rows, TakeColumns take);
+  /// @param grid  of a piece with at least four used samples.
+  Resampler(const SampleTable& table, const Grid& grid);
 
-  /// The next one of grid.used samples, at least four. @param numbers  `rows` of them.
-  void add(double instant, const double* numbers);
+  /// Weighs the neighbours of the next equidistant sample.
+  void next();
 
-  /// How many were added.
-  Eigen::Index added() const { return added_; }
+  /// The value there of columns of the table.
+  template <class Columns>
+  auto valueOf(const Columns& columns) const {
+    return weights_[0] * columns.col(samples_[0]) + weights_[1] * columns.col(samples_[1]) +
+           weights_[2] * columns.col(samples_[2]) + weights_[3] * columns.col(samples_[3]);
+  }
 
  private:
-  void giveValue(double t);
-  void flush();
+  bool advance();
 
-  Grid grid_;
-  TakeColumns take_;
-  Eigen::Vector4d instants_ = Eigen::Vector4d::Zero();  // of the last four samples
-  Eigen::Matrix<double, Eigen::Dynamic, 4> numbers_;    // likewise
-  Eigen::Index added_ = 0;
-  Eigen::Index made_ = 0;     // equidistant samples
-  Eigen::Index right_ = 1;    // number of the second of the two samples around an instant
-  Eigen::MatrixXd values_;    // equidistant samples that weren't given yet
-  Eigen::Index waiting_ = 0;  // of them
+  const SampleTable& table_;
+  const Grid& grid_;
+  Eigen::Index made_ = 0;
+  Eigen::Index ahead_;                   // first sample behind the four
+  std::array<Eigen::Index, 4> samples_;  // neighbours in the table, all used
+  Eigen::Vector4d instants_;             // s; of them
+  Eigen::Vector4d weights_;
 };
 
 }  // namespace v2

@@ -24,16 +24,6 @@ double gapFrom(double longest_gap, double period) {
   return std::max(longest_gap, kGapPeriods * period);
 }
 
-double meanPeriod(const DistanceCounts& distances, double unit, double longest_gap) {
-  double period = unit * distances.mean(std::numeric_limits<double>::infinity());
-  for (bool changed = true; changed;) {
-    const double mean = unit * distances.mean(gapFrom(longest_gap, period) / unit);
-    changed = mean < period;  // some distance is at most the mean
-    period = std::min(period, mean);
-  }
-  return period;
-}
-
 double Timing::step() const {
   const Index samples = base == TimeBase::kRegularFresh ? fresh : count;
   return samples > 1 ? duration / static_cast<double>(samples - 1) : 0.0;

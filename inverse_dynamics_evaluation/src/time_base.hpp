@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "distance_counts.hpp"
 #include "inverse_dynamics_evaluation/samples.hpp"
 
 namespace inverse_dynamics_evaluation {
@@ -17,9 +16,6 @@ inline namespace v2 {
 
 /// What is longer than this is a gap [s]: `longest_gap`, or 20 sampling periods if that is more.
 double gapFrom(double longest_gap, double period);
-
-/// Mean distance in time [s], gaps aside. @param unit  s; of the distances.
-double meanPeriod(const DistanceCounts& distances, double unit, double longest_gap);
 
 /// When each sample was taken, under a time base.
 struct Timing {

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <sstream>
 #include <string>
-#include <utility>
+#include <vector>
 
+#include "ends.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
+#include "inverse_dynamics_evaluation/low_pass.hpp"
 #include "pi.hpp"
 
 namespace inverse_dynamics_evaluation {
@@ -16,17 +18,59 @@ inline namespace v2 {
 namespace {
 
 using Eigen::Index;
+using Columns = Eigen::Ref<Eigen::MatrixXd>;
 
 constexpr int kGreatestOrder = 12;
-constexpr Index kLeastBlock = 512;        // samples
-constexpr double kBits = 60.0;            // of a wrong start's error that must be gone
-constexpr double kBitsPerSection = 4.0;   // for the constants of the bound
-constexpr double kSlowest = 1.0 - 1e-15;  // a pole beyond is 1, and its filter forgets nothing
+constexpr double kFitPeriods = 1.2;     // of the cut-off, to which the ends' cubics are fitted
+constexpr double kBeyondPeriods = 2.0;  // of the cut-off, by which they continue the ends
 
 std::string text(double number) {
   std::ostringstream out;
   out << number;
   return out.str();
+}
+
+// y_k = b0 x_k + b1 x_(k-1) + b2 x_(k-2) - a1 y_(k-1) - a2 y_(k-2), with a gain of one at 0 Hz
+struct Section {
+  double b0, b1, b2, a1, a2;
+};
+
+// Pairs of complex poles as sections of second order, the real pole of an odd order as a first one.
+// Analog poles lie on a circle of radius w_c; the bilinear transformation s = (z - 1) / (z + 1)
+// with w_c = tan(pi f_c / f_s) takes them to the digital filter.
+std::vector<Section> butterworth(int order, double cutoff_over_sampling) {
+  const double w = std::tan(kPi * cutoff_over_sampling);
+  std::vector<Section> sections;
+  for (int i = 0; i < order / 2; ++i) {
+    // s^2 + 2 cos(theta) w s + w^2, theta the angle of the pole to the negative real axis
+    const double theta = kPi * (order - 1 - 2 * i) / (2.0 * order);
+    const double damping = 2.0 * std::cos(theta) * w;
+    const double a0 = 1.0 + damping + w * w;
+    const double b = w * w / a0;
+    sections.push_back({b, 2.0 * b, b, 2.0 * (w * w - 1.0) / a0, (1.0 - damping + w * w) / a0});
+  }
+  if (order % 2 == 1) {
+    const double b = w / (1.0 + w);
+    sections.push_back({b, b, 0.0, (w - 1.0) / (w + 1.0), 0.0});
+  }
+  return sections;
+}
+
+// Filters columns in place, from `first` on by steps of 1 or -1, in transposed direct form II; starts
+// in the steady state of the first one.
+void filter(const Section& section, Columns columns, Index first, Index step) {
+  Eigen::ArrayXd one = (1.0 - section.b0) * columns.col(first).array();
+  Eigen::ArrayXd two = (section.b2 - section.a2) * columns.col(first).array();
+  for (Index k = first; k >= 0 && k < columns.cols(); k += step) {
+    double* const column = columns.col(k).data();
+    for (Index j = 0; j < one.size(); ++j) {
+      const double x = column[j];
+      const double y = section.b0 * x + one[j];
+      one[j] = section.b1 * x - section.a1 * y + two[j];
+      two[j] = section.b2 * x - section.a2 * y;
+      column[j] = y;
+    }
+  }
 }
 
 }  // namespace
@@ -48,117 +92,50 @@ void requireFilter(double sampling_frequency, double cutoff, int order) {
   }
 }
 
-ZeroPhaseFilter::ZeroPhaseFilter(Index joints, double cutoff_over_sampling, int order,
-                                 Index overlap, TakeColumns take)
-    : sections_(butterworth(order, cutoff_over_sampling)),
-      overlap_(overlap),
-      take_(std::move(take)),
-      waiting_(joints, 0) {}
-
-// Pairs of complex poles as sections of second order, the real pole of an odd order as a first one.
-// Analog poles lie on a circle of radius w_c; the bilinear transformation s = (z - 1) / (z + 1)
-// with w_c = tan(pi f_c / f_s) takes them to the digital filter.
-std::vector<ZeroPhaseFilter::Section> ZeroPhaseFilter::butterworth(int order,
-                                                                   double cutoff_over_sampling) {
-  const double w = std::tan(kPi * cutoff_over_sampling);
-  std::vector<Section> sections;
-  for (int i = 0; i < order / 2; ++i) {
-    // s^2 + 2 cos(theta) w s + w^2, theta the angle of the pole to the negative real axis
-    const double theta = kPi * (order - 1 - 2 * i) / (2.0 * order);
-    const double damping = 2.0 * std::cos(theta) * w;
-    const double a0 = 1.0 + damping + w * w;
-    const double b = w * w / a0;
-    sections.push_back({b, 2.0 * b, b, 2.0 * (w * w - 1.0) / a0, (1.0 - damping + w * w) / a0});
-  }
-  if (order % 2 == 1) {
-    const double b = w / (1.0 + w);
-    sections.push_back({b, b, 0.0, (w - 1.0) / (w + 1.0), 0.0});
-  }
-  return sections;
-}
-
-Index ZeroPhaseFilter::overlapOf(double cutoff_over_sampling, int order) {
+void zeroPhase(Columns samples, double cutoff_over_sampling, int order) {
   const std::vector<Section> sections = butterworth(order, cutoff_over_sampling);
-  double slowest = 0.0;
-  for (const Section& section : sections) {
-    // |z|^2 of a complex pair is a2; a first order has its pole at -a1
-    slowest = std::max(slowest, section.b2 != 0 ? std::sqrt(section.a2) : std::abs(section.a1));
-  }
-  const double fall = -std::log(std::min(slowest, kSlowest));
-  const auto count = static_cast<double>(sections.size());
-  const double bits = std::log(2.0) * (kBits + kBitsPerSection * count);
-  double overlap = bits / fall;
-  for (int i = 0; i < 50; ++i) {  // (m + 1)^(2 s) r^m = 2^-bits, by iteration from below
-    overlap = (bits + 2.0 * count * std::log(overlap + 1.0)) / fall;
-  }
-  constexpr double kMost = 1e15;  // no recording is as long
-  return static_cast<Index>(std::ceil(std::min(overlap, kMost)));
+  for (const Section& section : sections) filter(section, samples, 0, 1);
+  for (const Section& section : sections) filter(section, samples, samples.cols() - 1, -1);
 }
 
-ZeroPhaseFilter::State ZeroPhaseFilter::steady(const Section& section,
-                                               const Eigen::Ref<const Eigen::VectorXd>& value) {
-  return {(1.0 - section.b0) * value.array(), (section.b2 - section.a2) * value.array()};
-}
-
-void ZeroPhaseFilter::filterColumn(const Section& section, State& state, double* column) {
-  for (Index j = 0; j < state.first.size(); ++j) {
-    const double x = column[j];
-    const double y = section.b0 * x + state.first[j];
-    state.first[j] = section.b1 * x - section.a1 * y + state.second[j];
-    state.second[j] = section.b2 * x - section.a2 * y;
-    column[j] = y;
+void mirrorEnds(Columns samples, Index count) {
+  const Index last = samples.cols() - 1 - count;
+  for (Index k = 1; k <= count; ++k) {
+    samples.col(count - k) = 2.0 * samples.col(count) - samples.col(count + k);
+    samples.col(last + k) = 2.0 * samples.col(last) - samples.col(last - k);
   }
 }
 
-void ZeroPhaseFilter::reserve(Index more) {
-  if (count_ + more > waiting_.cols()) {
-    waiting_.conservativeResize(Eigen::NoChange, std::max(count_ + more, 2 * waiting_.cols()));
-  }
+DerivativeRoom::DerivativeRoom(Index samples, double frequency, double cutoff_frequency,
+                               int filter_order)
+    : count(samples), sampling_frequency(frequency), cutoff(cutoff_frequency), order(filter_order) {
+  const double period = sampling_frequency / cutoff;
+  const auto all = static_cast<double>(count);
+  fit =
+      std::min(std::max(static_cast<Index>(std::min(kFitPeriods * period, all)), kLeastFit), count);
+  // not further than the cubic may be trusted: as far as the samples that it is fitted to
+  beyond = std::max<Index>(
+      static_cast<Index>(std::min(kBeyondPeriods * period, kBeyondPeriods / kFitPeriods * all)),
+      3 * (Index{order} + 1));
+  mirror = defaultPadding(count + 2 * beyond, sampling_frequency, cutoff, order);
 }
 
-void ZeroPhaseFilter::push(const Eigen::Ref<const Eigen::MatrixXd>& samples) {
-  const bool whole = overlap_ == kWhole;
-  const Index block = std::max(overlap_, kLeastBlock);
-  for (Index begin = 0; begin < samples.cols();) {
-    const Index count =
-        std::min(samples.cols() - begin, whole ? samples.cols() : block + overlap_ - count_);
-    reserve(count);
-    waiting_.middleCols(count_, count) = samples.middleCols(begin, count);
-    for (std::size_t s = 0; s < sections_.size(); ++s) {
-      if (forwards_.size() == s) {
-        forwards_.push_back(steady(sections_[s], waiting_.col(0)));
-      }
-      for (Index k = 0; k < count; ++k) {
-        filterColumn(sections_[s], forwards_[s], waiting_.col(count_ + k).data());
-      }
-    }
-    count_ += count;
-    begin += count;
-    if (!whole && count_ == block + overlap_) {
-      backwards(block);
-    }
+Columns DerivativeRoom::differentiate(Columns room) const {
+  const Index first = begin();
+  room.middleCols(mirror, beyond) =
+      beyondEnd(room.middleCols(first, fit), beyond).rowwise().reverse();
+  // the end, with time counted backwards, is a beginning
+  room.middleCols(first + count, beyond) =
+      beyondEnd(room.middleCols(first + count - fit, fit).rowwise().reverse(), beyond);
+  mirrorEnds(room, mirror);
+  zeroPhase(room, cutoff / sampling_frequency, order);
+  // central differences; each takes the place of the sample two before, which no later one needs
+  const double factor = sampling_frequency / 12.0;
+  for (Index k = first; k < first + count; ++k) {
+    room.col(k - 2) =
+        factor * (8.0 * (room.col(k + 1) - room.col(k - 1)) - (room.col(k + 2) - room.col(k - 2)));
   }
-}
-
-void ZeroPhaseFilter::finish() {
-  if (count_ > 0) {
-    backwards(count_);
-  }
-}
-
-// Filters what waits backwards from its end, and gives the first of it.
-void ZeroPhaseFilter::backwards(Index give) {
-  Eigen::MatrixXd filtered = waiting_.leftCols(count_);
-  for (const Section& section : sections_) {
-    State state = steady(section, filtered.col(count_ - 1));
-    for (Index k = count_ - 1; k >= 0; --k) {
-      filterColumn(section, state, filtered.col(k).data());
-    }
-  }
-  const Index rest = count_ - give;
-  waiting_.leftCols(rest) = waiting_.middleCols(give, rest).eval();
-  count_ = rest;
-  take_(filtered.leftCols(give));
+  return room.middleCols(first - 2, count);
 }
 
 }  // namespace v2

@@ -57,36 +57,19 @@ EvaluationOptions options(const std::string& effort) {
   return options;
 }
 
-// Collects what is handed over.
-struct Series {
-  explicit Series(Index count)
-      : qdd(2, count), computed(MatrixXd::Zero(2, count)), measured(2, count) {}
-  TakeSamples take() {
-    return [this](const EvaluatedSamples& next) {
-      EXPECT_EQ(next.first, taken);
-      qdd.middleCols(taken, next.qdd.cols()) = next.qdd;
-      computed.middleCols(taken, next.computed.cols()) = next.computed;
-      measured.middleCols(taken, next.measured.cols()) = next.measured;
-      taken += next.computed.cols();
-    };
-  }
-  MatrixXd qdd, computed, measured;
-  Index taken = 0;
-};
-
 TEST(Evaluate, ComparesComputedWithMeasuredTorques) {
   const JointLog log = recorded();
-  Series series(10000);
-  const Evaluation evaluation = evaluate(log, TwoJointSolver(), options(kTorque), series.take());
-  EXPECT_EQ(series.taken, 10000);
+  const Evaluation evaluation = evaluate(log, TwoJointSolver(), options(kTorque));
+  EXPECT_EQ(evaluation.table->size(), 10000);
   EXPECT_EQ(evaluation.joint_names, (std::vector<std::string>{"a", "b"}));
   EXPECT_NEAR(evaluation.errors[0].bias, -0.25, kRounding);
   EXPECT_NEAR(evaluation.errors[1].rmse, 0.5, kRounding);
   EXPECT_EQ(evaluation.errors[0].count, 10000);
   EXPECT_EQ(evaluation.accelerations.summary, "given by the recording");
-  EXPECT_EQ(series.qdd, log.qdd);
-  EXPECT_EQ(series.measured, log.effort);
-  const std::vector<JointMetrics> whole = metrics(series.computed, series.measured);
+  EXPECT_EQ(evaluation.table->qdd, log.qdd);
+  EXPECT_EQ(evaluation.table->measured, log.effort);
+  const std::vector<JointMetrics> whole =
+      metrics(evaluation.table->computed, evaluation.table->measured);
   EXPECT_NEAR(evaluation.errors[0].r2, whole[0].r2, kRounding);
   EXPECT_EQ(evaluation.notes, (std::vector<std::string>{"the solver warns", "the reader notes"}));
 }
@@ -95,10 +78,9 @@ TEST(Evaluate, TakesAccelerationsOfTheLowPassWhereACutOffIsGiven) {
   const JointLog log = recorded();
   EvaluationOptions filtered = options(kTorque);
   filtered.cutoff = 5.0;
-  Series series(10000);
-  const Evaluation evaluation = evaluate(log, TwoJointSolver(), filtered, series.take());
+  const Evaluation evaluation = evaluate(log, TwoJointSolver(), filtered);
   const LogAccelerations expected = logAccelerations(log, AccelerationMethod::kLowPass, 5.0);
-  EXPECT_EQ(series.qdd, expected.qdd);
+  EXPECT_EQ(evaluation.table->qdd, expected.qdd);
   EXPECT_EQ(evaluation.accelerations.method, AccelerationMethod::kLowPass);
   EXPECT_EQ(evaluation.accelerations.filter.cutoff, 5.0);
 }
@@ -152,10 +134,9 @@ TEST(Evaluate, TakesCurrentsTimesDriveGains) {
   log.effort = Eigen::Vector2d(0.1, 0.2).asDiagonal() * torques;
   EvaluationOptions currents = options(kCurrent);
   currents.effort.drive_gains = {10, 5};
-  Series series(10000);
-  const Evaluation evaluation = evaluate(log, TwoJointSolver(), currents, series.take());
+  const Evaluation evaluation = evaluate(log, TwoJointSolver(), currents);
   EXPECT_NEAR(evaluation.errors[0].bias, -0.25, kRounding);
-  EXPECT_LT((series.measured - torques).cwiseAbs().maxCoeff(), kRounding);
+  EXPECT_LT((evaluation.table->measured - torques).cwiseAbs().maxCoeff(), kRounding);
   EXPECT_EQ(evaluation.effort.summary(), "current, as given, with drive gains 10 5 N m/A");
 }
 
@@ -163,11 +144,10 @@ TEST(Evaluate, LeavesGravityOutOfBothWhereEffortsAreWithoutIt) {
   JointLog log = recorded();
   log.effort -= gravityOf(log.q);
   for (const char* stated : {kTorqueWithoutGravity, kAutomatic}) {
-    Series series(10000);
-    const Evaluation evaluation = evaluate(log, TwoJointSolver(), options(stated), series.take());
+    const Evaluation evaluation = evaluate(log, TwoJointSolver(), options(stated));
     EXPECT_EQ(evaluation.effort.meaning, kTorqueWithoutGravity);
     EXPECT_NEAR(evaluation.errors[0].bias, -0.25, kRounding);
-    EXPECT_NEAR(series.computed(1, 0), -3, kRounding);
+    EXPECT_NEAR(evaluation.table->computed(1, 0), -3, kRounding);
     EXPECT_EQ(evaluation.effort.verdict.has_value(), std::string(stated) == kAutomatic);
     EXPECT_THAT(evaluation.notes, Contains("computed torques are shown without gravity, as efforts "
                                            "were recorded"));
@@ -177,14 +157,10 @@ TEST(Evaluate, LeavesGravityOutOfBothWhereEffortsAreWithoutIt) {
 TEST(Evaluate, ComputesTorquesWhereNoEffortsAreRecorded) {
   JointLog log = recorded(50);
   log.effort.resize(0, 0);
-  Series series(50);
-  const Evaluation evaluation =
-      evaluate(log, TwoJointSolver(), options(kTorque), [&](const EvaluatedSamples& next) {
-        EXPECT_EQ(next.measured.size(), 0);
-        series.computed = next.computed;
-      });
+  const Evaluation evaluation = evaluate(log, TwoJointSolver(), options(kTorque));
+  EXPECT_EQ(evaluation.table->measured.size(), 0);
   EXPECT_TRUE(evaluation.errors.empty());
-  EXPECT_NEAR(series.computed(1, 0), 3 * log.qdd(1, 0) + 20, kRounding);
+  EXPECT_NEAR(evaluation.table->computed(1, 0), 3 * log.qdd(1, 0) + 20, kRounding);
 }
 
 TEST(Evaluate, RefusesWhatCannotBeEvaluated) {

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "inverse_dynamics_evaluation/time_window.hpp"
-
 #include <gmock/gmock.h>
 
 #include <limits>
 
 #include "error_of.hpp"
+#include "inverse_dynamics_evaluation/sample_table.hpp"
 
 namespace inverse_dynamics_evaluation::time_window_test {
 
 using ::testing::ElementsAre;
-using ::testing::IsEmpty;
+using ::testing::HasSubstr;
 using Numbers = std::vector<std::int64_t>;
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr double kForever = std::numeric_limits<double>::infinity();
@@ -52,63 +51,54 @@ class Blocks : public JointStateSource {
   std::size_t at_ = 0;
 };
 
-TimeWindow windowOf(std::vector<JointStateBlock> blocks, TimeSpan span,
-                    std::vector<std::string> joints = {}, Clock clock = Clock::kAuto) {
-  return {std::make_unique<Blocks>(std::move(blocks)), span, std::move(joints), clock};
-}
+struct Part {
+  std::vector<JointStateBlock> blocks;
+  TimeSpan span;
+  std::vector<std::string> joints = {};
+  Clock clock = Clock::kAuto;
+};
 
-// Numbers of the messages that a source gives, each checked to be whole.
-Numbers messagesOf(JointStateSource& source) {
+// Numbers of the messages in a part of a recording, each checked to be whole.
+Numbers messagesOf(const Part& part) {
+  Blocks source(part.blocks);
+  RecordingOptions options;
+  options.joints = part.joints;
+  options.clock = part.clock;
+  options.log.effort_required = false;
+  options.window = part.span;
+  SampleTable table;
+  const JointLog about = readTable(source, options, table);
   Numbers numbers;
-  JointStateBlock block;
-  while (source.next(block)) {
-    EXPECT_GT(block.size(), 0U);
-    for (std::size_t i = 0; i < block.size(); ++i) {
-      const std::int64_t number = block.first + static_cast<std::int64_t>(i);
-      EXPECT_EQ(block.position.row(i)[1], static_cast<double>(number));
-      EXPECT_EQ(block.velocity.row(i)[0], 10.0 * static_cast<double>(number));
-      EXPECT_EQ(block.receive_stamps[i], (100 + number) * kSecond);
-      EXPECT_THAT(block.effort.values, IsEmpty());
-      EXPECT_EQ(block.frame_id, "base");
-      numbers.push_back(number);
-    }
-    EXPECT_EQ(block.header_stamps.size(), block.size());
-    EXPECT_EQ(block.position.values.size(), 2 * block.size());
+  for (Eigen::Index k = 0; k < table.size(); ++k) {
+    const auto number = static_cast<std::int64_t>(table.q(0, k));
+    EXPECT_EQ(table.q(1, k), static_cast<double>(number));
+    EXPECT_EQ(table.qd(0, k), 10.0 * static_cast<double>(number));
+    EXPECT_EQ(table.receive_stamps[k], (100 + number) * kSecond);
+    numbers.push_back(number);
   }
+  EXPECT_EQ(table.effort.size(), 0);
+  EXPECT_EQ(about.frame_id, "base");
   return numbers;
 }
 
 TEST(TimeWindow, GivesTheMessagesBetweenItsEndsBothIncluded) {
-  TimeWindow source = windowOf({blockOf(5, 7), blockOf(8, 9), blockOf(10, 13)}, {2, 6});
+  const Part source{{blockOf(5, 7), blockOf(8, 9), blockOf(10, 13)}, {2, 6}};
   EXPECT_THAT(messagesOf(source), ElementsAre(7, 8, 9, 10, 11));
-  EXPECT_EQ(source.expectedMessages(), 7);
-  EXPECT_EQ(source.where(), "bag: /joint_states");
 }
 
 TEST(TimeWindow, MeansItsEndsToTheNanosecond) {
   JointStateBlock block = blockOf(0, 2);
   block.header_stamps = {0, 300'000'000, 300'000'001};  // 1e-9 * 3e8 > 0.3
-  TimeWindow to = windowOf({block}, {0, 0.3});
-  TimeWindow from = windowOf({block}, {0.300000001, 1});
+  const Part to{{block}, {0, 0.3}};
+  const Part from{{block}, {0.300000001, 1}};
   EXPECT_THAT(messagesOf(to), ElementsAre(0, 1));
   EXPECT_THAT(messagesOf(from), ElementsAre(2));
 }
 
-TEST(TimeWindow, GivesTheSameInEachPass) {
-  TimeWindow source = windowOf({blockOf(0, 3), blockOf(4, 6)}, {3, 5});
-  JointStateBlock block;
-  EXPECT_TRUE(source.next(block));
-  for (int pass = 0; pass < 2; ++pass) {
-    source.rewind();
-    EXPECT_THAT(messagesOf(source), ElementsAre(3, 4, 5));
-    EXPECT_FALSE(source.next(block));
-  }
-}
-
 TEST(TimeWindow, IsOpenWhereNoEndIsGiven) {
-  TimeWindow from = windowOf({blockOf(0, 2), blockOf(3, 4)}, {3, kForever});
-  TimeWindow to = windowOf({blockOf(0, 2), blockOf(3, 4)}, {-kForever, 1});
-  TimeWindow all = windowOf({blockOf(0, 2), blockOf(3, 4)}, {});
+  const Part from{{blockOf(0, 2), blockOf(3, 4)}, {3, kForever}};
+  const Part to{{blockOf(0, 2), blockOf(3, 4)}, {-kForever, 1}};
+  const Part all{{blockOf(0, 2), blockOf(3, 4)}, {}};
   EXPECT_THAT(messagesOf(from), ElementsAre(3, 4));
   EXPECT_THAT(messagesOf(to), ElementsAre(0, 1));
   EXPECT_THAT(messagesOf(all), ElementsAre(0, 1, 2, 3, 4));
@@ -117,43 +107,53 @@ TEST(TimeWindow, IsOpenWhereNoEndIsGiven) {
 TEST(TimeWindow, TakesStampsThatDontIncreaseAsTheyAre) {
   JointStateBlock block = blockOf(0, 4);
   block.header_stamps = {0, 3 * kSecond, 1 * kSecond, 4 * kSecond, 2 * kSecond};
-  TimeWindow source = windowOf({block}, {1, 2});
+  const Part source{{block}, {1, 2}};
   EXPECT_THAT(messagesOf(source), ElementsAre(2, 4));
 }
 
 TEST(TimeWindow, GoesByTheHeaderIfAnyHasAStampElseByReception) {
-  TimeWindow stamped = windowOf({blockOf(0, 0), blockOf(1, 4)}, {2, 3});  // the first stamp is 0
+  const Part stamped{{blockOf(0, 0), blockOf(1, 4)}, {2, 3}};  // the first stamp is 0
   EXPECT_THAT(messagesOf(stamped), ElementsAre(2, 3));
-  TimeWindow received = windowOf({blockOf(0, 1, false), blockOf(2, 4, false)}, {2, 3});
+  const Part received{{blockOf(0, 1, false), blockOf(2, 4, false)}, {2, 3}};
   EXPECT_THAT(messagesOf(received), ElementsAre(2, 3));
 }
 
 TEST(TimeWindow, GoesByTheClockThatIsGiven) {
   JointStateBlock block = blockOf(0, 3);
   block.header_stamps = {0, 10 * kSecond, 20 * kSecond, 30 * kSecond};
-  TimeWindow header = windowOf({block}, {5, 25}, {}, Clock::kHeader);
-  TimeWindow receive = windowOf({block}, {2, 25}, {}, Clock::kReceive);
+  const Part header{{block}, {5, 25}, {}, Clock::kHeader};
+  const Part receive{{block}, {2, 25}, {}, Clock::kReceive};
   EXPECT_THAT(messagesOf(header), ElementsAre(1, 2));
   EXPECT_THAT(messagesOf(receive), ElementsAre(2, 3));
 }
 
 TEST(TimeWindow, CountsFromTheFirstMessageWithTheJoints) {
-  TimeWindow source =
-      windowOf({blockOf(0, 1, true, {"gripper", "lid"}), blockOf(2, 6)}, {1, 2}, {"b", "a"});
+  const Part source{{blockOf(0, 1, true, {"gripper", "lid"}), blockOf(2, 6)}, {1, 2}, {"b", "a"}};
   EXPECT_THAT(messagesOf(source), ElementsAre(3, 4));
 }
 
+TEST(TimeWindow, LeavesOutWhatIsWrongOutsideOfIt) {
+  JointStateBlock block = blockOf(0, 4);
+  block.position.values[0] = block.velocity.values[9] = std::numeric_limits<double>::quiet_NaN();
+  const Part inside{{block}, {1, 3}};
+  EXPECT_THAT(messagesOf(inside), ElementsAre(1, 2, 3));
+  const Part beyond{{block}, {1, 4}};
+  EXPECT_THAT(errorOf<RecordingError>([&] { messagesOf(beyond); }),
+              HasSubstr("message 5: velocity"));
+}
+
 TEST(TimeWindow, LeavesARecordingWithoutTheJointsToItsReader) {
-  TimeWindow source = windowOf({blockOf(0, 1)}, {1, 2}, {"c"});
-  EXPECT_THAT(messagesOf(source), ElementsAre(0, 1));
-  TimeWindow empty = windowOf({}, {1, 2});
-  EXPECT_THAT(messagesOf(empty), IsEmpty());
+  const Part others{{blockOf(0, 1)}, {1, 2}, {"c"}};
+  EXPECT_THAT(errorOf<RecordingError>([&] { messagesOf(others); }),
+              HasSubstr("expected the joints c, got only a, b"));
+  const Part empty{{}, {1, 2}};
+  EXPECT_THAT(errorOf<RecordingError>([&] { messagesOf(empty); }), HasSubstr("got no message"));
 }
 
 TEST(TimeWindow, IsAnErrorThatNamesTheRecordingsSpanWhereNoSampleLiesInIt) {
   const auto refused = [](TimeSpan span) {
     return errorOf<RecordingError>([&] {
-      TimeWindow source = windowOf({blockOf(5, 6), blockOf(7, 9)}, span);
+      const Part source{{blockOf(5, 6), blockOf(7, 9)}, span};
       messagesOf(source);
     });
   };
@@ -172,7 +172,7 @@ TEST(TimeWindow, TakesAnyTwoStamps) {
   JointStateBlock block = blockOf(0, 1);
   block.header_stamps = {std::numeric_limits<std::int64_t>::min(),
                          std::numeric_limits<std::int64_t>::max()};
-  TimeWindow source = windowOf({block}, {1e10, 2e10});
+  const Part source{{block}, {1e10, 2e10}};
   EXPECT_THAT(messagesOf(source), ElementsAre(1));  // 1.8e10 s later
 }
 

@@ -208,5 +208,31 @@ void JointStateWriter::finish() {
   content_->act([&] { content_->finish(); });
 }
 
+void writeTorques(const std::string& path, Storage storage, const JointStateTopic& topic,
+                  const JointStateRows& computed, const double* measured,
+                  const std::function<void(double)>& progress) {
+  constexpr std::size_t kAtOnce = 4096;  // messages of each topic between two calls of progress
+  std::vector<JointStateTopic> topics(measured == nullptr ? 1 : 2, topic);
+  topics.back().name += measured == nullptr ? "" : "_gt";
+  const std::size_t n = topic.joint_names.size();
+  JointStateWriter writer(path, storage, topics);
+  for (std::size_t first = 0; first < computed.count; first += kAtOnce) {
+    if (progress) progress(static_cast<double>(first) / static_cast<double>(computed.count));
+    const auto from = [&](const double* efforts) {
+      return JointStateRows{std::min(kAtOnce, computed.count - first),
+                            computed.header_stamps + first,
+                            computed.receive_stamps + first,
+                            computed.position + first * n,
+                            computed.velocity + first * n,
+                            efforts + first * n};
+    };
+    std::vector<JointStateRows> rows = {from(computed.effort)};
+    if (measured != nullptr) rows.push_back(from(measured));
+    writer.write(rows);
+  }
+  writer.finish();
+  if (progress) progress(1.0);
+}
+
 }  // namespace v2
 }  // namespace inverse_dynamics_recordings

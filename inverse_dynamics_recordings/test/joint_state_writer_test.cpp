@@ -91,6 +91,44 @@ TEST_P(JointStateWriterTest, RefusesRowsThatDontFitItsTopics) {
               HasSubstr("/torques: expected numbers of each field that the topic has"));
 }
 
+TEST_P(JointStateWriterTest, WritesComputedTorquesAndMeasuredOnesWhereThereAreAny) {
+  constexpr std::size_t kCount = 5000;  // more than are written at once
+  std::vector<std::int64_t> stamps(kCount);
+  std::vector<double> q(2 * kCount), computed(2 * kCount), measured(2 * kCount);
+  for (std::size_t k = 0; k < 2 * kCount; ++k) {
+    stamps[k / 2] = static_cast<std::int64_t>(k / 2);
+    q[k] = static_cast<double>(k);
+    computed[k] = 2.0 * q[k];
+    measured[k] = 3.0 * q[k];
+  }
+  const JointStateRows rows = {kCount,   stamps.data(), stamps.data(),
+                               q.data(), q.data(),      computed.data()};
+  const JointStateTopic topic = {"/tau", {"joint_1", "joint_2"}, "base"};
+  for (const double* efforts : {measured.data(), static_cast<double*>(nullptr)}) {
+    writeTorques(bag_, GetParam(), topic, rows, efforts);
+    const Recording recording(bag_);
+    ASSERT_EQ(recording.topics().size(), efforts == nullptr ? 1U : 2U);
+    for (const Topic& written : recording.topics()) {
+      const double* next = written.name == "/tau" ? computed.data() : efforts;
+      inverse_dynamics_evaluation::JointStateBlock block;
+      std::size_t count = 0;
+      for (const auto source = recording.jointStates(written.name); source->next(block);) {
+        EXPECT_EQ(block.frame_id, "base");
+        count += block.size();
+        for (const double effort : block.effort.values) ASSERT_EQ(effort, *next++);
+      }
+      EXPECT_EQ(count, kCount) << written.name;
+    }
+    fs::remove_all(bag_);
+  }
+  EXPECT_THROW(writeTorques(bag_, GetParam(), topic, rows, measured.data(),
+                            [](double share) {
+                              if (share > 0) throw std::runtime_error("stopped");
+                            }),
+               std::runtime_error);
+  EXPECT_FALSE(fs::exists(bag_));
+}
+
 TEST_P(JointStateWriterTest, LeavesNothingIncomplete) {
   {
     JointStateWriter made = writer();

@@ -92,7 +92,7 @@ std::string errorTable(const Evaluation& evaluation, const std::vector<std::stri
   if (evaluation.errors.empty()) {
     return "  no efforts are recorded: there is nothing to compare with\n";
   }
-  const auto& kept = evaluation.accelerations.samples.kept;
+  const auto& kept = evaluation.table->kept;
   const bool some_left_out = !kept.all();
   std::vector<Row> rows = {{"joint", "unit", "MAE", "RMSE", "NRMSE", "bias", "R²"}};
   for (std::size_t j = 0; j < units.size(); ++j) {

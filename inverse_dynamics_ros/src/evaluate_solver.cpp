@@ -110,8 +110,9 @@ void run(rclcpp::Node& node) {
 
   writeTorques(params.output_bag, params.storage.empty() ? motion.storage : params.storage,
                params.topic, motion, evaluation);
-  say(logger, "written: " + params.output_bag + ": " + params.topic + " (computed)" +
-                  (evaluation.measured.size() > 0 ? ", " + params.topic + "_gt (measured)" : ""));
+  say(logger,
+      "written: " + params.output_bag + ": " + params.topic + " (computed)" +
+          (evaluation.table->measured.size() > 0 ? ", " + params.topic + "_gt (measured)" : ""));
   std::fputs(errorTable(evaluation, options.units).c_str(), stdout);
 }
 

@@ -28,7 +28,7 @@ void OutputBag::requireFree(const std::filesystem::path& target) {
   }
 }
 
-OutputBag::OutputBag(const std::filesystem::path& target, const std::string& storage)
+OutputBag::OutputBag(const std::filesystem::path& target)
     : target_(std::filesystem::absolute(target).lexically_normal()) {
   if (target_.filename().empty()) {
     target_ = target_.parent_path();  // of `result/`
@@ -38,14 +38,20 @@ OutputBag::OutputBag(const std::filesystem::path& target, const std::string& sto
   work_ = target_.parent_path() / ("." + name + "." + std::to_string(::getpid()) + ".part");
   try {
     std::filesystem::create_directories(work_);
+  } catch (const std::exception& error) {
+    throw cannotWrite(target, error);
+  }
+}
+
+OutputBag::OutputBag(const std::filesystem::path& target, const std::string& storage)
+    : OutputBag(target) {  // so an error from here on removes what was made
+  try {
     rosbag2_storage::StorageOptions options;
-    options.uri = (work_ / name).string();
+    options.uri = path().string();
     options.storage_id = storage;
     writer_ = std::make_unique<rosbag2_cpp::Writer>();
     writer_->open(options);
   } catch (const std::exception& error) {
-    std::error_code ignored;
-    std::filesystem::remove_all(work_, ignored);
     throw cannotWrite(target, error);
   }
 }
@@ -60,7 +66,7 @@ void OutputBag::finish() {
   try {
     writer_.reset();  // writes the metadata
     requireFree(target_);
-    std::filesystem::rename(work_ / target_.filename(), target_);
+    std::filesystem::rename(path(), target_);
   } catch (const UserError&) {
     throw;
   } catch (const std::exception& error) {

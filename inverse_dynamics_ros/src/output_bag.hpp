@@ -19,14 +19,21 @@ namespace inverse_dynamics_ros {
 /// Writes into a hidden directory beside the target, which takes the target's name at the end.
 class OutputBag {
  public:
-  /// @param storage  sqlite3 or mcap.
+  /// For a recording that somebody else writes to path().
+  ///
   /// @throws UserError: the target exists, or can't be written.
+  explicit OutputBag(const std::filesystem::path& target);
+
+  /// For messages of any type. @param storage  sqlite3 or mcap. @throws UserError: likewise.
   OutputBag(const std::filesystem::path& target, const std::string& storage);
 
   /// Removes what was written, unless finish() was called.
   ~OutputBag();
   OutputBag(const OutputBag&) = delete;
   OutputBag& operator=(const OutputBag&) = delete;
+
+  /// Where the recording is until it is finished.
+  std::filesystem::path path() const { return work_ / target_.filename(); }
 
   /// @param stamp  ns; when the message was received.
   template <class Message>

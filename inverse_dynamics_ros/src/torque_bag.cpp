@@ -2,9 +2,8 @@
 
 #include "torque_bag.hpp"
 
+#include <inverse_dynamics_recordings/joint_state_writer.hpp>
 #include <rclcpp/duration.hpp>
-#include <rclcpp/time.hpp>
-#include <sensor_msgs/msg/joint_state.hpp>
 
 #include "interrupted.hpp"
 #include "output_bag.hpp"
@@ -14,7 +13,7 @@ namespace {
 
 using Eigen::Index;
 using inverse_dynamics_evaluation::JointLog;
-using sensor_msgs::msg::JointState;
+using inverse_dynamics_evaluation::SampleTable;
 using trajectory_msgs::msg::JointTrajectory;
 using trajectory_msgs::msg::JointTrajectoryPoint;
 
@@ -23,22 +22,10 @@ std::vector<double> numbers(const Eigen::Ref<const Eigen::MatrixXd>& matrix, Ind
   return {column.data(), column.data() + column.size()};
 }
 
-JointState jointState(const RecordedMotion& motion, const Eigen::MatrixXd& effort, Index k) {
-  const JointLog& log = motion.log;
-  JointState state;
-  state.header.stamp = rclcpp::Time(log.header_stamps[k]);
-  state.header.frame_id = motion.frame_id;
-  state.name = log.joint_names;
-  state.position = numbers(log.q, k);
-  state.velocity = numbers(log.qd, k);
-  state.effort = numbers(effort, k);
-  return state;
-}
-
 // The trajectory whose first sample is k; k then is the first of the next one.
 JointTrajectory trajectory(const RecordedMotion& motion,
                            const Eigen::Ref<const Eigen::MatrixXd>& qdd,
-                           const Eigen::MatrixXd& effort, Index& k) {
+                           const Eigen::Ref<const Eigen::MatrixXd>& effort, Index& k) {
   const JointLog& log = motion.log;
   const Index message = log.message[static_cast<std::size_t>(k)];
   JointTrajectory result;
@@ -57,33 +44,45 @@ JointTrajectory trajectory(const RecordedMotion& motion,
   return result;
 }
 
+// As `ids` writes them.
+void writeJointStates(const std::string& target, const std::string& storage,
+                      const std::string& topic, const RecordedMotion& motion,
+                      const SampleTable& table) {
+  namespace recordings = inverse_dynamics_recordings;
+  OutputBag bag(target);
+  recordings::writeTorques(
+      bag.path().string(),
+      storage == "mcap" ? recordings::Storage::kMcap : recordings::Storage::kSqlite3,
+      {topic, motion.log.joint_names, motion.frame_id},
+      {static_cast<std::size_t>(table.size()), table.header_stamps.data(),
+       table.receive_stamps.data(), table.q.data(), table.qd.data(), table.computed.data()},
+      table.measured.data(), [](double) { requireNoInterrupt(); });
+  bag.finish();
+}
+
+void writeTrajectories(const std::string& target, const std::string& storage,
+                       const std::string& topic, const RecordedMotion& motion,
+                       const SampleTable& table) {
+  OutputBag bag(target, storage);
+  for (Index k = 0; k < table.size();) {
+    requireNoInterrupt();
+    const auto message = static_cast<std::size_t>(motion.log.message[static_cast<std::size_t>(k)]);
+    const std::int64_t received = motion.receive_stamps[message];
+    Index next = k;
+    if (table.measured.size() > 0) {
+      bag.write(trajectory(motion, table.qdd, table.measured, next), topic + "_gt", received);
+    }
+    bag.write(trajectory(motion, table.qdd, table.computed, k), topic, received);
+  }
+  bag.finish();
+}
+
 }  // namespace
 
 void writeTorques(const std::string& target, const std::string& storage, const std::string& topic,
                   const RecordedMotion& motion, const Evaluation& evaluation) {
-  OutputBag bag(target, storage);
-  const JointLog& log = motion.log;
-  const bool measured = evaluation.measured.size() > 0;
-  for (Index k = 0; k < log.q.cols();) {
-    requireNoInterrupt();
-    if (motion.type == kJointState) {
-      bag.write(jointState(motion, evaluation.computed, k), topic, log.receive_stamps[k]);
-      if (measured) {
-        bag.write(jointState(motion, evaluation.measured, k), topic + "_gt", log.receive_stamps[k]);
-      }
-      ++k;
-      continue;
-    }
-    const std::int64_t received =
-        motion.receive_stamps[static_cast<std::size_t>(log.message[static_cast<std::size_t>(k)])];
-    Index next = k;
-    const Eigen::Ref<const Eigen::MatrixXd> qdd = evaluation.accelerations.qdd;
-    if (measured) {
-      bag.write(trajectory(motion, qdd, evaluation.measured, next = k), topic + "_gt", received);
-    }
-    bag.write(trajectory(motion, qdd, evaluation.computed, k), topic, received);
-  }
-  bag.finish();
+  const auto write = motion.type == kJointState ? writeJointStates : writeTrajectories;
+  write(target, storage, topic, motion, *evaluation.table);
 }
 
 }  // namespace inverse_dynamics_ros

@@ -90,7 +90,9 @@ TEST_F(TorqueBag, IsLeftOutWhenTheUserInterrupts) {
       inverse_dynamics_evaluation::Stamps::LinSpaced(3, 0, 2);
   motion.log.q = motion.log.qd = motion.log.effort = Eigen::MatrixXd::Zero(1, 3);
   Evaluation evaluation;
-  evaluation.computed = evaluation.measured = Eigen::MatrixXd::Ones(1, 3);
+  evaluation.table = std::make_shared<inverse_dynamics_evaluation::SampleTable>();
+  evaluation.table->append(motion.log);
+  evaluation.table->complete(motion.log.clock);
 
   ASSERT_FALSE(rclcpp::ok());  // as after Ctrl-C
   EXPECT_THROW(

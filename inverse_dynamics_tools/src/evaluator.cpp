@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -94,87 +95,116 @@ struct Log {
   std::optional<Array> qdd;
 };
 
-/// A copy (N, n), or (N,) of a vector, of samples that are columns.
-template <class Columns>
-py::array copyOf(const Columns& columns) {
-  using Scalar = typename Columns::Scalar;
-  const Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>, 0,
-                   Eigen::OuterStride<>>
-      view(columns.data(), columns.rows(), columns.cols(),
-           Eigen::OuterStride<>(columns.outerStride()));
-  std::vector<py::ssize_t> shape = {columns.cols(), columns.rows()};
-  if (Columns::ColsAtCompileTime == 1) shape = {columns.rows()};
-  py::array_t<Scalar> array(shape);
-  Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>>(
-      array.mutable_data(), columns.rows(), columns.cols()) = view;
-  return array;
-}
+/// EvaluationOptions and RecordingOptions, by keyword.
+struct Options : evaluation::EvaluationOptions {
+  evaluation::RecordingOptions source;
+};
 
-/// The samples by the names that files of results have for them.
-py::dict seriesOf(const evaluation::EvaluatedSamples& samples) {
-  py::dict series;
-  series["time"] = copyOf(samples.time);
-  series["header_stamps"] = copyOf(samples.header_stamps);
-  series["receive_stamps"] = copyOf(samples.receive_stamps);
-  series["q"] = copyOf(samples.q);
-  series["qd"] = copyOf(samples.qd);
-  series["qdd"] = copyOf(samples.qdd);
-  series["effort"] = copyOf(samples.effort);
-  series["measured"] = copyOf(samples.measured);
-  series["computed"] = copyOf(samples.computed);
-  series["repeated"] = copyOf(samples.repeated);
-  series["non_increasing"] = copyOf(samples.non_increasing);
-  series["start_transient"] = copyOf(samples.start_transient);
-  series["isolated"] = copyOf(samples.isolated);
-  series["kept"] = copyOf(samples.kept);
-  return series;
-}
-
-/// @param motion  a JointLog, or JointStates of a recording; joints, clock, start and end are for the
-///                latter.
 evaluation::Evaluation evaluate(const SolverObject& solver, const py::object& motion,
-                                const Names& joints, const std::string& clock, double start,
-                                double end, const std::string& method,
-                                const std::optional<double>& cutoff, const Names& without_rules,
-                                const evaluation::EffortOptions& effort,
-                                const std::string& recording, const std::string& topic,
-                                const Names& units, const Names& notes, const PathText& scratch,
-                                const py::function& take, const py::function& progress) {
+                                const Options& given, const py::function& progress) {
   const auto shared = solverOf(solver);
-  evaluation::EvaluationOptions options;
-  options.method = evaluation::accelerationMethod(method);
-  options.rules = evaluation::rulesWithout(without_rules);
-  options.cutoff = cutoff.value_or(0.0);
-  options.effort = effort;
-  options.recording = recording;
-  options.topic = topic;
-  options.units = units;
-  options.notes = notes;
+  evaluation::EvaluationOptions options = given;
   options.progress = [&](double share) {
     const py::gil_scoped_acquire acquire;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     progress(share);
   };
-  const auto give = [&](const evaluation::EvaluatedSamples& next) {
-    const py::gil_scoped_acquire acquire;
-    take(next.all, next.frame_id, seriesOf(next));
-  };
   if (py::isinstance<JointStates>(motion)) {
     auto& states = motion.cast<JointStates&>();
     const InUse reader(states);
-    const evaluation::RecordingOptions which = {
-        joints, clockOf(clock), {true, "--joints"}, scratch.bytes, {start, end}};
     const py::gil_scoped_release release;
-    return evaluation::evaluate(*states.source, which, *shared, options, give);
+    return evaluation::evaluate(*states.source, given.source, *shared, options);
   }
   const Log log(motion);
   if (log.effort.size() == 0) {
-    throw evaluation::EvaluationError(recording, "effort", "one row per sample", "none",
+    throw evaluation::EvaluationError(options.recording, "effort", "one row per sample", "none",
                                       "torques without efforts: trajectory_torques()");
   }
   const evaluation::JointLogView view = log.view();
   const py::gil_scoped_release release;
-  return evaluation::evaluate(view, *shared, options, give);
+  return evaluation::evaluate(view, *shared, options);
+}
+
+/// Columns of the samples by the names that files of results have for them: (N, n), or (N,) of a
+/// vector; memory of the table, which arrays keep alive.
+py::dict seriesOf(const py::object& self) {
+  const auto& table = *self.cast<const Evaluated&>().table;
+  py::dict series;
+  const auto put = [&](const char* name, const auto& columns) {
+    using Scalar = typename std::decay_t<decltype(columns)>::Scalar;
+    std::vector<py::ssize_t> shape = {columns.cols(), columns.rows()};
+    if (std::decay_t<decltype(columns)>::ColsAtCompileTime == 1) shape = {columns.rows()};
+    series[name] = py::array_t<Scalar>(shape, columns.data(), self);
+  };
+  put("time", table.time);
+  put("header_stamps", table.header_stamps);
+  put("receive_stamps", table.receive_stamps);
+  put("q", table.q);
+  put("qd", table.qd);
+  put("qdd", table.qdd);
+  put("effort", table.effort);
+  put("measured", table.measured);
+  put("computed", table.computed);
+  put("repeated", table.repeated);
+  put("non_increasing", table.non_increasing);
+  put("start_transient", table.start_transient);
+  put("isolated", table.isolated);
+  put("kept", table.kept);
+  return series;
+}
+
+void bindReading(py::class_<Options>& options) {
+  options
+      .def_property(
+          "joints", [](const Options& o) { return o.source.joints; },
+          [](Options& o, const Names& joints) { o.source.joints = joints; },
+          "in the recording, in the order of the chain")
+      .def_property(
+          "clock", [](const Options& o) { return evaluation::name(o.source.clock); },
+          [](Options& o, const std::string& clock) { o.source.clock = clockOf(clock); })
+      .def_property(
+          "window",
+          [](const Options& o) { return std::pair(o.source.window.from, o.source.window.to); },
+          [](Options& o, const std::pair<double, double>& window) {
+            o.source.window = {window.first, window.second};
+          },
+          "s since the first sample; what lies outside is left out")
+      .def_property(
+          "scratch", [](const Options& o) { return py::bytes(o.source.scratch); },
+          [](Options& o, const PathText& directory) { o.source.scratch = directory.bytes; },
+          "directory for unnamed files of the samples; empty: memory");
+}
+
+void bindOptions(py::module_& module) {
+  py::class_<Options> options(
+      module, "EvaluationOptions",
+      "How evaluate() is to work, by keyword: EvaluationOptions and, for a\n"
+      "recording, RecordingOptions of inverse_dynamics_evaluation.");
+  options
+      .def(py::init([](const py::kwargs& given) {
+        auto made = std::make_unique<Options>();
+        made->source.log.joints_option = "--joints";
+        const py::object self = py::cast(made.get(), py::return_value_policy::reference);
+        for (const auto& [name, value] : given) py::setattr(self, name, value);
+        return made;
+      }))
+      .def_property(
+          "method", [](const Options& o) { return evaluation::name(o.method); },
+          [](Options& o, const std::string& name) {
+            o.method = evaluation::accelerationMethod(name);
+          },
+          "auto, low-pass, given or backward-difference")
+      .def_readwrite("cutoff", &Options::cutoff, "Hz; 0: chosen from the data")
+      .def_property(
+          "without_rules", nullptr,
+          [](Options& o, const Names& names) { o.rules = evaluation::rulesWithout(names); },
+          "rules not to be acted upon")
+      .def_readwrite("effort", &Options::effort)
+      .def_readwrite("recording", &Options::recording, "for errors' texts")
+      .def_readwrite("topic", &Options::topic, "for errors' texts")
+      .def_readwrite("units", &Options::units)
+      .def_readwrite("notes", &Options::notes, "of reading");
+  bindReading(options);
 }
 
 void bindEffort(py::module_& module) {
@@ -218,6 +248,7 @@ void bindEffort(py::module_& module) {
 
 void bindEvaluator(py::module_& module) {
   bindEffort(module);
+  bindOptions(module);
   py::class_<Evaluated>(module, "Evaluated", "What came of evaluate().")
       .def_property_readonly(
           "method", [](const Evaluated& e) { return evaluation::name(e.accelerations.method); })
@@ -242,21 +273,14 @@ void bindEvaluator(py::module_& module) {
       .def_property_readonly("acceleration_seconds",
                              [](const Evaluated& e) { return e.acceleration_seconds; })
       .def_property_readonly("torque_seconds", [](const Evaluated& e) { return e.torque_seconds; })
-      .def_property_readonly("notes", [](const Evaluated& e) { return e.notes; });
-  module.def(
-      "evaluate", &evaluate, py::arg("solver"), py::arg("motion"), py::kw_only(), py::arg("joints"),
-      py::arg("clock"), py::arg("start"), py::arg("end"), py::arg("method"), py::arg("cutoff"),
-      py::arg("without_rules"), py::arg("effort"), py::arg("recording"), py::arg("topic"),
-      py::arg("units"), py::arg("notes"), py::arg("scratch"), py::arg("take"), py::arg("progress"),
-      "Computed torques of recorded joint states and their errors, in bounded memory.\n\n"
-      "motion: a JointLog, or JointStates, of which joints, clock, and what lies between start "
-      "and\n"
-      "end, s since the first sample, are taken. method: auto, low-pass, given or\n"
-      "backward-difference. cutoff: Hz; None: chosen from the data.\n"
-      "recording, topic: for errors' texts. scratch: a directory for a file of samples, or \"\".\n"
-      "take: called with how many samples there are, the frame of a recording that was read, and\n"
-      "the arrays of the next ones by name, some thousand at a time. progress: called with the\n"
-      "share that is done.");
+      .def_property_readonly("notes", [](const Evaluated& e) { return e.notes; })
+      .def_property_readonly("series", &seriesOf,
+                             "Arrays of all samples by name, as series.npz has them: views.");
+  module.def("evaluate", &evaluate, py::arg("solver"), py::arg("motion"), py::arg("options"),
+             py::arg("progress"),
+             "Computed torques of recorded joint states and their errors.\n\n"
+             "motion: a JointLog, or JointStates, which are read once. progress: called with the\n"
+             "share that is done.");
   module.def(
       "check_options",
       [](const std::string& method, const std::optional<double>& cutoff, const Names& without_rules,

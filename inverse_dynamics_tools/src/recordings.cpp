@@ -132,26 +132,50 @@ std::tuple<NameTuple, py::str, Integers, Integers, Array, Array, Array> nextStat
 /// Of a topic: header and receive stamps, position, velocity, effort.
 using Rows = std::tuple<Integers, Integers, Array, Array, Array>;
 
+/// Messages of a topic of n joints, looked at where they lie.
+JointStateRows rowsOf(const Rows& given, std::size_t n) {
+  const auto& [header, receive, position, velocity, effort] = given;
+  const py::ssize_t count = header.size();
+  bool fits = receive.size() == count;
+  for (const Array* numbers : {&position, &velocity, &effort}) {
+    fits = fits && numbers->ndim() == 2 && numbers->shape(0) == count &&
+           numbers->shape(1) == static_cast<py::ssize_t>(n);
+  }
+  if (!fits) throw py::value_error("joint states: expected stamps (N,) and numbers (N, n)");
+  return {static_cast<std::size_t>(count),
+          header.data(),
+          receive.data(),
+          position.data(),
+          velocity.data(),
+          effort.data()};
+}
+
 void write(Writer& writer, const std::vector<Rows>& topics) {
   if (topics.size() != writer.joints.size()) {
     throw py::value_error("JointStateWriter.write: expected rows of each topic");
   }
   std::vector<JointStateRows> rows;
-  for (const auto& [header, receive, position, velocity, effort] : topics) {
-    const py::ssize_t count = header.size();
-    bool fits = receive.size() == count;
-    for (const Array* numbers : {&position, &velocity, &effort}) {
-      fits = fits && numbers->ndim() == 2 && numbers->shape(0) == count &&
-             numbers->shape(1) == static_cast<py::ssize_t>(writer.joints[rows.size()]);
-    }
-    if (!fits) {
-      throw py::value_error("JointStateWriter.write: expected stamps (N,) and numbers (N, n)");
-    }
-    rows.push_back({static_cast<std::size_t>(count), header.data(), receive.data(), position.data(),
-                    velocity.data(), effort.data()});
-  }
+  for (const Rows& given : topics) rows.push_back(rowsOf(given, writer.joints[rows.size()]));
   const py::gil_scoped_release release;
   writer.writer.write(rows);
+}
+
+void writeTorques(const PathText& path, const std::string& storage_name, const Writer::Topic& topic,
+                  const Rows& computed, const Array& measured, const py::function& progress) {
+  const std::size_t n = std::get<1>(topic).size();
+  const JointStateRows rows = rowsOf(computed, n);
+  Rows other = computed;
+  std::get<4>(other) = measured;
+  const double* const efforts = rowsOf(other, n).effort;
+  const auto storage = storageOf(storage_name);
+  const auto tell = [&](double share) {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    progress(share);
+  };
+  const py::gil_scoped_release release;
+  recordings::writeTorques(path.bytes, storage, Writer::about({topic}).front(), rows, efforts,
+                           tell);
 }
 
 void bindConnection(py::module_& module) {
@@ -250,6 +274,14 @@ void bindRecordings(py::module_& module) {
       .def(
           "finish", [](Writer& writer) { writer.writer.finish(); },
           py::call_guard<py::gil_scoped_release>());
+  module.def(
+      "write_torques", &writeTorques, py::arg("path_and_storage"), py::arg("topic"),
+      py::arg("computed"), py::arg("measured"), py::arg("progress"),
+      "A new recording of computed torques, and of measured ones with _gt behind the topic's\n"
+      "name.\n\n"
+      "topic: name, joint names, frame. computed: header and receive stamps, (N,); positions,\n"
+      "velocities, torques, (N, n). measured: (N, n). progress: called with the share that is\n"
+      "written.");
 }
 
 }  // namespace inverse_dynamics_tools

@@ -37,56 +37,28 @@ std::shared_ptr<ids::InverseDynamicsSolver> solverOf(const RunConfiguration& rob
   return solver;
 }
 
-evaluation::JointLog logOf(const recordings::Recording& recording,
-                           const std::vector<std::string>& joints) {
-  const auto source = recording.jointStates();
-  evaluation::JointLogBuilder builder(recording.path(), joints);
-  evaluation::JointStateBlock block;
-  while (source->next(block)) {
-    builder.add(block);
-  }
-  return builder.finish();
-}
-
-void write(const std::string& path, recordings::Storage storage, const evaluation::JointLog& log,
-           const Eigen::MatrixXd& computed, const Eigen::MatrixXd& measured) {
-  recordings::JointStateWriter writer(path, storage,
-                                      {{"/torques", log.joint_names, log.frame_id},
-                                       {"/torques_gt", log.joint_names, log.frame_id}});
-  const auto rows = [&log](const Eigen::MatrixXd& effort) {
-    return recordings::JointStateRows{static_cast<std::size_t>(log.q.cols()),
-                                      log.header_stamps.data(),
-                                      log.receive_stamps.data(),
-                                      log.q.data(),
-                                      log.qd.data(),
-                                      effort.data()};
-  };
-  writer.write({rows(computed), rows(measured)});
-  writer.finish();
-}
-
 void run(const std::string& path, const std::string& name, const std::string& out) {
   const RunConfiguration robot = evaluation::readRunConfiguration(name);
   const auto solver = solverOf(robot);
   const recordings::Recording recording(path);
-  const evaluation::JointLog log =
-      logOf(recording, evaluation::recordedNames(robot, solver->jointNames()));
+  evaluation::RecordingOptions source;
+  source.joints = evaluation::recordedNames(robot, solver->jointNames());
   evaluation::EvaluationOptions options;
   options.method = evaluation::accelerationMethod(robot.accelerations);
   options.cutoff = robot.cutoff.value_or(0.0);
   options.effort = evaluation::effortOptions(robot, *solver);
-  Eigen::MatrixXd computed(log.q.rows(), log.q.cols());
-  Eigen::MatrixXd measured = computed;
-  const auto result =
-      evaluation::evaluate(log, *solver, options, [&](const evaluation::EvaluatedSamples& next) {
-        computed.middleCols(next.first, next.computed.cols()) = next.computed;
-        measured.middleCols(next.first, next.measured.cols()) = next.measured;
-      });
+  const auto result = evaluation::evaluate(*recording.jointStates(), source, *solver, options);
   for (const evaluation::JointMetrics& joint : result.errors) {
     std::printf("%.17g %.17g %.17g %.17g %.17g %.17g\n", joint.mae, joint.rmse, joint.nrmse,
                 joint.bias, joint.r2, joint.max_abs);
   }
-  write(out, recording.storage(), log, computed, measured);
+  const evaluation::SampleTable& table = *result.table;
+  recordings::writeTorques(
+      out, recording.storage(),
+      {"/torques", result.recording.joint_names, result.recording.frame_id},
+      {static_cast<std::size_t>(table.size()), table.header_stamps.data(),
+       table.receive_stamps.data(), table.q.data(), table.qd.data(), table.computed.data()},
+      table.measured.data());
 }
 
 }  // namespace

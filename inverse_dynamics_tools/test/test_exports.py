@@ -92,7 +92,9 @@ def test_units_of_a_prismatic_joint_are_metres_and_newtons(evaluation):
 
 
 def test_efforts_that_are_currents_stay_as_recorded_beside_the_torques_they_mean(evaluation):
-    currents = replace(evaluation, effort=Effort("current", drive_gains=(2.0, 3.0, 4.0)))
+    effort = Effort("current", drive_gains=(2.0, 3.0, 4.0))
+    measured = effort.torques(evaluation.log.effort)
+    currents = replace(evaluation, effort=effort, measured=measured)
     columns = {c.name: c for c in series_columns(currents)}
     assert columns["current.joint_2"].unit == "A"
     assert "effort.joint_2" not in columns

@@ -109,7 +109,10 @@ class JointLogBuilder {
   void add(const JointSample& sample);
 
   /// Adds each message of a block. @throws RecordingError by the same rules.
-  void add(const JointStateBlock& block);
+  void add(const JointStateBlock& block) { add(block, 0, block.size()); }
+
+  /// Adds messages `begin` to `end` of a block. @throws RecordingError by the same rules.
+  void add(const JointStateBlock& block, std::size_t begin, std::size_t end);
 
   /// How many samples were added, those left out too.
   Eigen::Index samples() const { return samples_; }
@@ -135,8 +138,8 @@ class JointLogBuilder {
     bool recorded;        // by the first sample, and so by all
   };
 
-  bool addWhole(const JointStateBlock& block);
-  bool copy(Column& column, const JointStateNumbers& numbers, Eigen::Index count);
+  bool addWhole(const JointStateBlock& block, std::size_t begin, std::size_t end);
+  bool copy(Column& column, const JointStateNumbers& numbers, std::size_t begin, std::size_t end);
   bool matches(const JointSample& sample);
   bool isFirst() const { return taken_ == 0 && message_.empty(); }
   void noteStamps(std::int64_t header, std::int64_t receive);

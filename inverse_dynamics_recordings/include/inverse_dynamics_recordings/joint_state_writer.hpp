@@ -17,6 +17,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -69,6 +70,17 @@ class JointStateWriter {
   class Content;
   std::unique_ptr<Content> content_;
 };
+
+/// Writes a recording of torques: computed ones as `topic`, measured ones as `topic` with `_gt`
+/// behind its name.
+///
+/// @param computed  all messages of the topic; N m (prismatic N).
+/// @param measured  N x n, row-major; N m (prismatic N); null: there are none.
+/// @param progress  called with the share that is written, 0 to 1; throwing leaves no recording.
+/// @throws RecordingError
+void writeTorques(const std::string& path, Storage storage, const JointStateTopic& topic,
+                  const JointStateRows& computed, const double* measured,
+                  const std::function<void(double)>& progress = nullptr);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_recordings

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import quote
 
+from inverse_dynamics import _core
 from inverse_dynamics._core import JointLogBuilder, JointStateWriter, Recording
 from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.progress import no_progress
@@ -155,6 +156,32 @@ def write_joint_logs(
     writer.finish()
 
 
+def write_torques(
+    path: Path,
+    storage: Storage,
+    topic: str,
+    log: JointLog,
+    torques: tuple[Floats, Floats],
+    progress: Progress = no_progress,
+) -> None:
+    """Write a new recording of torques, computed ones as `topic`, measured ones as `topic`_gt.
+
+    Stamps, positions and velocities are those of log. torques: computed and measured, (N, n).
+
+    Raises BagError if the path exists or can't be written.
+    """
+    computed, measured = torques
+    with _errors_told(path):
+        _core.write_torques(
+            path,
+            storage,
+            (topic, list(log.joint_names), log.frame_id),
+            (log.header_stamps, log.receive_stamps, log.q, log.qd, computed),
+            measured,
+            progress=lambda share: progress("writing", round(share * len(log)), len(log)),
+        )
+
+
 class JointLogsWriter:
     """A new recording of joint states, some messages at a time. Raises BagError."""
 
@@ -168,27 +195,28 @@ class JointLogsWriter:
         check_storage(storage)
         self._path = path
         about = [(topic, list(names), frame) for topic, (names, frame) in topics.items()]
-        with self._errors_told():
+        with _errors_told(self._path):
             self._writer = JointStateWriter(Path(path), storage, about)
 
     def write(self, rows: Sequence[tuple[Integers, Integers, Floats, Floats, Floats]]) -> None:
         """The next messages of each topic: header and receive stamps, positions, velocities, efforts."""
-        with self._errors_told():
+        with _errors_told(self._path):
             self._writer.write(list(rows))
 
     def finish(self) -> None:
         """Write indexes and metadata."""
-        with self._errors_told():
+        with _errors_told(self._path):
             self._writer.finish()
 
-    @contextmanager
-    def _errors_told(self) -> Iterator[None]:
-        try:
-            yield
-        except BagError:
-            raise
-        except Exception as error:  # a name that can't be encoded
-            raise unwritable(self._path, error) from error
+
+@contextmanager
+def _errors_told(path: Path | str) -> Iterator[None]:
+    try:
+        yield
+    except BagError:
+        raise
+    except Exception as error:  # a name that can't be encoded
+        raise unwritable(path, error) from error
 
 
 def _rows(log: JointLog, rows: slice) -> tuple[Integers, Integers, Floats, Floats, Floats]:

@@ -11,10 +11,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import Any
+
+    from numpy.typing import NDArray
+
     from inverse_dynamics._core import Evaluated
     from inverse_dynamics.base.arrays import Mask
     from inverse_dynamics.data.joint_log import JointLog
-    from inverse_dynamics.evaluation.series import Arrays
 
 # What each rule does, as --help says it.
 RULES = {
@@ -86,7 +90,7 @@ def accelerations_of(found: Evaluated) -> Accelerations:
     return Accelerations(found.method, choice.cutoff, choice.chosen, choice.order, choice.time_base)
 
 
-def samples_of(found: Evaluated, arrays: Arrays) -> Samples:
-    """What the extension module has found. arrays: those of all samples, by name."""
-    masks = {name: arrays[name] for name in MASKS}
+def samples_of(found: Evaluated, series: Mapping[str, NDArray[Any]]) -> Samples:
+    """What the extension module has found. series: found.series."""
+    masks = {name: series[name] for name in MASKS}
     return Samples(**masks, period=found.period, jitter=found.jitter)

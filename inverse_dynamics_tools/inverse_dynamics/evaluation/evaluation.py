@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -30,7 +29,6 @@ from inverse_dynamics.evaluation.causes.evaluated import causes_of
 from inverse_dynamics.evaluation.effort import Effort, effort_of
 from inverse_dynamics.evaluation.posture import posture_of
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
-from inverse_dynamics.evaluation.series import Recorded, SeriesInMemory
 from inverse_dynamics.robot.descriptions import joint_units, read_description
 from inverse_dynamics.robot.robots import Robot, load_robot, with_changes
 from inverse_dynamics.robot.solvers import description_notes, open_solver
@@ -43,7 +41,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.bags import JointStateTopic
     from inverse_dynamics.data.joint_log import Clock
-    from inverse_dynamics.evaluation.series import Arrays, Series
 
 CAUSE = "likely cause of the error: "
 """How the note begins that says a diagnosis."""
@@ -75,12 +72,14 @@ class Evaluation:
 
     robot: Robot
     bag: Path
-    log: JointLog  # its efforts are as recorded: see measured
+    log: JointLog  # its efforts are as recorded
     joint_names: tuple[str, ...]  # those of the solver; the recording's are log.joint_names
     units: tuple[str, ...]
     accelerations: Accelerations
     samples: Samples
+    time: Floats  # (N,) s since the first sample
     qdd: Floats  # (N, n) rad/s^2 or m/s^2
+    measured: Floats  # (N, n) N m or N: the torques that recorded efforts mean
     computed: Floats  # (N, n) N m or N; without gravity if the efforts are
     errors: tuple[JointError, ...]  # over all samples
     errors_of_kept: tuple[JointError, ...]  # over samples.kept, the valid samples
@@ -91,16 +90,6 @@ class Evaluation:
         Cause, ...
     ] = ()  # likely causes of the errors, the last one of the notes; not in files
     joint_types: tuple[str, ...] = ()  # as Solver.joint_types; not in files
-
-    @cached_property
-    def measured(self) -> Floats:
-        """(N, n) N m or N: the torques that recorded efforts mean."""
-        return self.effort.torques(self.log.effort)
-
-    @property
-    def time(self) -> Floats:
-        """(N,) s since the first sample."""
-        return self.log.time
 
     @property
     def notes_without_causes(self) -> tuple[str, ...]:
@@ -135,7 +124,7 @@ def evaluate(
     end: float | None = None,
     without_rules: Sequence[str] = (),
     progress: Progress = no_progress,
-    series: Series | None = None,
+    scratch: Path | str | None = None,
 ) -> Evaluation:
     """Compute the torques of a recorded motion and compare them with the measured ones.
 
@@ -145,7 +134,8 @@ def evaluate(
     EFFORT_CHOICES.
     accelerations: one of accelerations.METHODS; cutoff: Hz, of a low-pass. clock: which stamps are
     the time. start, end: s since the first sample; the others aren't evaluated. without_rules: those
-    of accelerations.RULES not to be acted upon. series: where samples go; none: into memory.
+    of accelerations.RULES not to be acted upon. scratch: directory for unnamed files that hold the
+    arrays of a recording that needn't fit into memory; none: memory.
 
     Raises UserError: BagError, RobotError, SolverError, EvaluationError.
     """
@@ -196,7 +186,7 @@ def evaluate(
         effort_is=effort_is,
         without_rules=without_rules,
         progress=progress,
-        series=series or SeriesInMemory(),
+        scratch="" if scratch is None else scratch,
     )
     seconds["reading"] += result.seconds["reading"]
     notes = description_notes(robot, "drawing") if urdf is not None else ()
@@ -279,42 +269,36 @@ def _compare(
     effort_is: str | None,
     without_rules: Sequence[str],
     progress: Progress,
-    series: Series,
+    scratch: Path | str,
 ) -> Evaluation:
     """Computed torques of a motion against its measured ones. Raises EvaluationError, RobotError."""
     from inverse_dynamics import _core
 
     if isinstance(motion, JointLog):
-        expected, notes, names = len(motion), motion.notes, motion.joint_names
+        expected, notes = len(motion), motion.notes
     else:
-        expected, notes, names = motion.states.expected_messages, (), arm.recorded_names
-
-    def take(count: int, frame_id: str, arrays: Arrays) -> None:
-        if isinstance(motion, JointLog):
-            frame_id = motion.frame_id
-        series.take(Recorded(count, names, frame_id, motion.storage), arrays)
-
-    start, end = window.span
-    found = _core.evaluate(
-        arm.solver,
-        motion if isinstance(motion, JointLog) else motion.states,
+        expected, notes = motion.states.expected_messages, ()
+    options = _core.EvaluationOptions(
         joints=list(arm.recorded_names),
         clock=clock,
-        start=start,
-        end=end,
+        window=window.span,
         method=robot.accelerations,
-        cutoff=robot.cutoff,
+        cutoff=robot.cutoff or 0.0,
         without_rules=list(without_rules),
         effort=_core.effort_options(robot, arm.solver, effort_is, motion.effort_is),
         recording=", ".join(filter(None, (f"{bag}", f"{window}"))),
         topic=motion.topic,
         units=list(arm.units),
         notes=list(notes),
-        scratch=series.scratch or "",
-        take=take,
-        progress=lambda share: progress("evaluating", round(share * expected), expected),
+        scratch=scratch,
     )
-    arrays = series.arrays()
+    found = _core.evaluate(
+        arm.solver,
+        motion if isinstance(motion, JointLog) else motion.states,
+        options,
+        lambda share: progress("evaluating", round(share * expected), expected),
+    )
+    arrays = found.series
     if isinstance(motion, JointLog):
         log = replace(motion, q=arrays["q"])  # continuous joints go on beyond a driver's seam
     else:
@@ -327,7 +311,9 @@ def _compare(
         units=arm.units,
         accelerations=accelerations_of(found),
         samples=samples_of(found, arrays),
+        time=arrays["time"],
         qdd=arrays["qdd"],
+        measured=arrays["measured"],
         computed=arrays["computed"],
         errors=_joint_errors(arm.joint_names, arm.units, found.errors),
         errors_of_kept=_joint_errors(arm.joint_names, arm.units, found.errors_of_kept),

@@ -67,11 +67,9 @@ def check_formats(figures: Sequence[str]) -> None:
         require("a figure", "matplotlib")
 
 
-def save_torque_figure(
-    evaluation: Evaluation, *files: Path, lines: TorqueLines | None = None
-) -> None:
+def save_torque_figure(evaluation: Evaluation, *files: Path) -> None:
     """Save torque_figure(); formats are those of the suffixes. The same evaluation, the same bytes."""
-    save_figure(lambda: torque_figure(evaluation, lines), *files)
+    save_figure(lambda: torque_figure(evaluation), *files)
 
 
 def save_comparison_figure(comparison: Comparison, *files: Path) -> None:
@@ -108,11 +106,8 @@ def make_printable(figure: Figure) -> None:
         text.set_text(shown)
 
 
-def torque_figure(evaluation: Evaluation, lines: TorqueLines | None = None) -> Figure:
-    """Measured and computed torque over time, and the error, one row per joint.
-
-    lines: what was gathered of the samples; none: those of the evaluation.
-    """
+def torque_figure(evaluation: Evaluation) -> Figure:
+    """Measured and computed torque over time, and the error, one row per joint."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
@@ -121,7 +116,7 @@ def torque_figure(evaluation: Evaluation, lines: TorqueLines | None = None) -> F
     height = 1.25 * n + 1.7
     figure = Figure(figsize=(11.0, height))
     axes = _panels(figure, n, top=1.32, bottom=0.5)
-    lines = lines or TorqueLines.of(evaluation)
+    lines = TorqueLines.of(evaluation)
     left_out = evaluation.samples.left_out_spans(evaluation.log)
     for j, (left, right) in enumerate(axes):
         _draw_torques(left, evaluation, lines, j)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 MOST_POINTS = 6000  # of a line
 _MOST_MAGNITUDES = 65536  # of errors, for their quantile
+_ROWS = 65536  # looked at together: temporary arrays stay small
 
 
 class TorqueLines:
@@ -38,9 +39,12 @@ class TorqueLines:
 
     @classmethod
     def of(cls, evaluation: Evaluation) -> TorqueLines:
-        """Those of an evaluation in memory."""
-        lines = cls(len(evaluation.log), len(evaluation.joint_names))
-        lines.add(evaluation.time, evaluation.computed, evaluation.measured)
+        """Those of an evaluation, looked at some samples at a time."""
+        time, computed, measured = evaluation.time, evaluation.computed, evaluation.measured
+        lines = cls(*computed.shape)
+        for begin in range(0, len(time), _ROWS):
+            rows = slice(begin, begin + _ROWS)
+            lines.add(time[rows], computed[rows], measured[rows])
         return lines
 
     def add(self, time: Floats, computed: Floats, measured: Floats) -> None:

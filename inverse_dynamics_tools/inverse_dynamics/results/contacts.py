@@ -6,11 +6,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from inverse_dynamics.base.files import Contents, write_text, written_whole
 from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.figures.contacts import save_contact_figure
 from inverse_dynamics.figures.plots import FORMATS, check_formats
-from inverse_dynamics.results.series_file import SeriesFile
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,8 +38,7 @@ def write_contacts(
     inputs = (contacts.evaluation.bag, *contacts.evaluation.robot.files)
     with written_whole(out, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as directory:
         write_text(directory / MARK, json_text(summary(contacts)))
-        with SeriesFile(directory / "series.npz", len(contacts.time)) as series:
-            series.add(_series(contacts))
+        np.savez(directory / "series.npz", **_series(contacts))
         save_contact_figure(contacts, *(directory / f"contacts.{suffix}" for suffix in figures))
 
 

@@ -26,26 +26,24 @@ from inverse_dynamics.base.files import Contents, write_text, written_whole
 from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.replacement import restore_interrupted
-from inverse_dynamics.data.bags import JointLogsWriter
+from inverse_dynamics.data.bags import write_torques
 from inverse_dynamics.data.joint_log import JointLog, check_storage
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.evaluation.accelerations import MASKS, Accelerations, Samples
 from inverse_dynamics.evaluation.effort import Effort
 from inverse_dynamics.evaluation.effort_verdict import Candidate, Verdict
 from inverse_dynamics.evaluation.evaluation import Evaluation, JointError, evaluate
-from inverse_dynamics.evaluation.series import Recorded
 from inverse_dynamics.figures.plots import FORMATS
-from inverse_dynamics.results.series_file import SeriesFile
 from inverse_dynamics.results.stated_types import check_types
 from inverse_dynamics.robot.robots import Robot, load_robot
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
 
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Storage
-    from inverse_dynamics.evaluation.series import Arrays
-    from inverse_dynamics.figures.torque_lines import TorqueLines
 
 SCHEMA = 3
 MARK = "evaluation.json"
@@ -70,8 +68,6 @@ CONTENTS = Contents(
 COMPUTED_TOPIC = "/torques"
 MEASURED_TOPIC = "/torques_gt"
 
-_BLOCK = 4096  # samples written together
-
 
 def write_evaluation(
     evaluation: Evaluation,
@@ -93,12 +89,7 @@ def write_evaluation(
     with written_whole(
         Path(directory), overwrite=overwrite, contents=CONTENTS, inputs=inputs
     ) as target:
-        written = _WrittenSeries(target, storage, bool(figures))
-        for recorded, arrays in _series(evaluation):
-            written.take(recorded, arrays)
-            progress("writing", written.count, recorded.samples)
-        written.arrays()
-        return _write_rest(evaluation, target, written, figures, progress)
+        return _write(evaluation, target, storage, figures, progress)
 
 
 def evaluate_into(
@@ -116,7 +107,7 @@ def evaluate_into(
     """evaluate() and write_evaluation() of a recording that needn't fit into memory.
 
     parquet: name of the recording in series.parquet; None: no such file. options: those of evaluate().
-    The arrays of the result are those of series.npz, in memory only where they are looked at.
+    The arrays of the result lie in unnamed files, in memory only where they are looked at.
 
     Raises UserError.
     """
@@ -126,9 +117,8 @@ def evaluate_into(
     with written_whole(
         Path(directory), overwrite=overwrite, contents=CONTENTS, inputs=inputs
     ) as target:
-        written = _WrittenSeries(target, storage, bool(figures))
-        evaluation = evaluate(bag, robot, progress=progress, series=written, **options)
-        seconds = _write_rest(evaluation, target, written, figures, progress)
+        evaluation = evaluate(bag, robot, progress=progress, scratch=target, **options)
+        seconds = _write(evaluation, target, storage, figures, progress)
         if parquet is not None:
             from inverse_dynamics.results.exports import export_series
 
@@ -147,69 +137,22 @@ def check_writing(storage: str | None, figures: Sequence[str]) -> None:
         check_storage(storage)
 
 
-class _WrittenSeries:
-    """Writes the bag and series.npz; keeps what the figure needs."""
-
-    def __init__(self, target: Path, storage: Storage | None, figure: bool) -> None:
-        self._target = target
-        self.scratch: Path | None = target
-        self._storage = storage
-        self._figure = figure
-        self._opened: tuple[JointLogsWriter, SeriesFile] | None = None
-        self.lines: TorqueLines | None = None
-        self.count = 0  # samples
-        self.seconds = 0.0
-
-    def take(self, recorded: Recorded, arrays: Arrays) -> None:
-        start = time.perf_counter()
-        bag, series = self._opened or self._open(recorded)
-        header, receive = arrays["header_stamps"], arrays["receive_stamps"]
-        q, qd = arrays["q"], arrays["qd"]
-        bag.write([(header, receive, q, qd, arrays[name]) for name in ("computed", "measured")])
-        series.add(arrays)
-        if self.lines:
-            self.lines.add(arrays["time"], arrays["computed"], arrays["measured"])
-        self.count += len(arrays["time"])
-        self.seconds += time.perf_counter() - start
-
-    def arrays(self) -> Arrays:
-        start = time.perf_counter()
-        if self._opened is None:
-            raise OutputError(f"{self._target}: no sample to write")
-        bag, series = self._opened
-        bag.finish()
-        series.finish()
-        self.seconds += time.perf_counter() - start
-        return series.mapped()
-
-    def _open(self, recorded: Recorded) -> tuple[JointLogsWriter, SeriesFile]:
-        from inverse_dynamics.figures.torque_lines import TorqueLines
-
-        about = (recorded.joint_names, recorded.frame_id)
-        self.storage = self._storage or recorded.storage
-        bag = JointLogsWriter(
-            self._target / "bag",
-            self.storage,
-            {COMPUTED_TOPIC: about, MEASURED_TOPIC: about},
-        )
-        self._opened = (bag, SeriesFile(self._target / "series.npz", recorded.samples))
-        if self._figure:
-            self.lines = TorqueLines(recorded.samples, len(recorded.joint_names))
-        return self._opened
-
-
-def _write_rest(
+def _write(
     evaluation: Evaluation,
     target: Path,
-    written: _WrittenSeries,
+    storage: Storage | None,
     figures: Sequence[str],
     progress: Progress,
 ) -> dict[str, float]:
-    """All but the bag and series.npz; gives what took how long [s]."""
+    """All files; gives what took how long [s]."""
     from inverse_dynamics.figures.plots import save_torque_figure
 
     start = time.perf_counter()
-    layout = _layout(evaluation, target / "bag", written.storage)
+    storage = storage or evaluation.log.storage
+    torques = (evaluation.computed, evaluation.measured)
+    write_torques(target / "bag", storage, COMPUTED_TOPIC, evaluation.log, torques, progress)
+    np.savez(target / "series.npz", **_series(evaluation))
+    layout = _layout(evaluation, target / "bag", storage)
     write_text(target / "plotjuggler.xml", layout)
     write_text(target / "metrics.json", json_text(metrics(evaluation)))
     write_text(target / MARK, json_text(_summary(evaluation)))
@@ -217,12 +160,9 @@ def _write_rest(
     if figures:
         progress("plotting", 0, 1)
         files = (target / f"torques.{suffix}" for suffix in figures)
-        save_torque_figure(evaluation, *files, lines=written.lines)
+        save_torque_figure(evaluation, *files)
         progress("plotting", 1, 1)
-    return {
-        "writing": written.seconds + plotting - start,
-        "plotting": time.perf_counter() - plotting,
-    }
+    return {"writing": plotting - start, "plotting": time.perf_counter() - plotting}
 
 
 def read_evaluation(directory: Path | str) -> Evaluation:
@@ -272,10 +212,10 @@ def _check_sizes(evaluation: Evaluation) -> None:
     samples, joints = len(log.header_stamps), len(log.joint_names)
     stamps = ("header_stamps", "receive_stamps")
     series = {name: getattr(log, name) for name in ("q", "qd", "effort", *stamps)}
-    series |= {name: getattr(evaluation, name) for name in ("qdd", "computed")}
+    series |= {name: getattr(evaluation, name) for name in ("qdd", "measured", "computed", "time")}
     series |= {name: getattr(evaluation.samples, name) for name in MASKS}
     for name, array in series.items():
-        shape = (samples,) if name in (*MASKS, *stamps) else (samples, joints)
+        shape = (samples,) if name in (*MASKS, *stamps, "time") else (samples, joints)
         if array.shape != shape or not samples:
             raise ValueError(f"{name}: expected the shape {shape}, got {array.shape}")
     counts = {name: getattr(evaluation, name) for name in ("joint_names", "units", "errors")}
@@ -299,12 +239,11 @@ def _layout(evaluation: Evaluation, bag: Path, storage: Storage) -> str:
     return torque_layout(evaluation.log, evaluation.units, topics, recording, storage)
 
 
-def _series(evaluation: Evaluation) -> Iterator[tuple[Recorded, Arrays]]:
-    """The samples of an evaluation in memory, as Series takes them."""
+def _series(evaluation: Evaluation) -> dict[str, NDArray[Any]]:
+    """What series.npz holds: the arrays of the evaluation, no copies."""
     log = evaluation.log
-    recorded = Recorded(len(log), log.joint_names, log.frame_id, log.storage)
-    arrays = {
-        "time": log.time,
+    return {
+        "time": evaluation.time,
         "header_stamps": log.header_stamps,
         "receive_stamps": log.receive_stamps,
         "q": log.q,
@@ -315,8 +254,6 @@ def _series(evaluation: Evaluation) -> Iterator[tuple[Recorded, Arrays]]:
         "computed": evaluation.computed,
         **{name: getattr(evaluation.samples, name) for name in MASKS},
     }
-    for begin in range(0, len(log), _BLOCK):
-        yield recorded, {name: array[begin : begin + _BLOCK] for name, array in arrays.items()}
 
 
 def metrics(evaluation: Evaluation) -> dict[str, Any]:
@@ -400,7 +337,9 @@ def _from_files(
         units=tuple(data["units"]),
         accelerations=Accelerations(**data["accelerations"]),
         samples=samples,
+        time=arrays["time"],
         qdd=arrays["qdd"],
+        measured=arrays["measured"],
         computed=arrays["computed"],
         errors=_errors(metrics["joints"]),
         errors_of_kept=_errors(metrics["kept"]["joints"]),
