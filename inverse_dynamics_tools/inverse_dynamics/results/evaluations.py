@@ -40,8 +40,6 @@ from inverse_dynamics.robot.robots import Robot, load_robot
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Storage
 
@@ -239,7 +237,7 @@ def _layout(evaluation: Evaluation, bag: Path, storage: Storage) -> str:
     return torque_layout(evaluation.log, evaluation.units, topics, recording, storage)
 
 
-def _series(evaluation: Evaluation) -> dict[str, NDArray[Any]]:
+def _series(evaluation: Evaluation) -> dict[str, Any]:
     """What series.npz holds: the arrays of the evaluation, no copies."""
     log = evaluation.log
     return {
