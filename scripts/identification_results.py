@@ -23,7 +23,7 @@ from payload_truth import STEP, Arm, least_errors, trials
 
 from inverse_dynamics import identify
 from inverse_dynamics.data.public_recordings import data_directory
-from inverse_dynamics.identification.summary import choices_told, headings, held_out_rows
+from inverse_dynamics.identification.summary import headings, held_out_rows
 
 if TYPE_CHECKING:
     from payload_truth import Figures
@@ -100,7 +100,6 @@ def _section(robot: str, bag: Path) -> str:
         (row.joint, *(f"{value:.3g}" for value in row.rmse), f"{100 * row.coverage:.1f} %")
         for row in held_out_rows(found)
     ]
-    choices = [f"- **{name}**: {text}" for name, text in choices_told(found)]
     findings = [f"- {finding.text}" for finding in found.findings]
     lines = [
         f"## {robot}: {bag.name}",
@@ -109,10 +108,8 @@ def _section(robot: str, bag: Path) -> str:
         _row(*["---"] * (len(headings(found)) + 2)),
         *(_row(*row) for row in rows),
         "",
-        f"{seconds:.0f} s of CPU. Chosen for the model of all data:",
-        "",
-        *choices,
-        *(["", "Found:", "", *findings] if findings else []),
+        f"{seconds:.0f} s of CPU." + (" Found:" if findings else ""),
+        *(["", *findings] if findings else []),
         "",
     ]
     return "\n".join(lines)
