@@ -130,7 +130,8 @@ _PAYLOADS = f"""\
 
 Simulated loads up to 15 cm in front of the flange on the torques of the real arms, {TRIALS} loads per row, in
 overlapping windows of the recording, one every {STEP:g} s. The arm's model is fitted to the rest of the recording, so
-its errors stay in the torques. Law, prior strength and delay are chosen on the whole recording, or outside of the window (*nested*).
+its errors stay in the torques. Law, prior strength and delay are chosen on the whole recording, or outside of the
+window (*nested*).
 *Uncertain arm*: the arm's errors are estimated too, as `ids payload` does where `ids identify` has stored them; other
 rows take the model as exact. Medians. The last two columns are the bound of Cramér and Rao for an exact model of the
 arm, Gaussian stationary noise correlated as the residuals are, and a known inertia about the center.
