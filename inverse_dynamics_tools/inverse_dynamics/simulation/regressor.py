@@ -19,6 +19,7 @@ import numpy as np
 
 from inverse_dynamics._core import FastModel
 from inverse_dynamics.base.extras import lazily_imported
+from inverse_dynamics.robot.link_parameters import turned
 
 if TYPE_CHECKING:
     import mujoco
@@ -44,7 +45,7 @@ class ArmGeometry:
         """Geometry of the chain of a robot."""
         model, data = robot.model, robot.new_data()
         mujoco.mj_kinematics(model, data)
-        rotations, offsets, axes, prismatic, turned = [], [], [], [], []
+        rotations, offsets, axes, prismatic, to_axis_frames = [], [], [], [], []
         R_W, p_W = np.eye(3), np.zeros(3)
         for name in robot.chain.joint_names:
             joint = model.joint(name)
@@ -55,7 +56,10 @@ class ArmGeometry:
             offsets.append(R_W.T @ (body.xpos - p_W))
             axes.append(np.array(joint.axis))
             prismatic.append(bool(joint.type[0] != mujoco.mjtJoint.mjJNT_HINGE))
-            turned.append(_turned_parameters(R_BA.T))
+            # column k: the unit parameter k, seen in the axis frame
+            to_axis_frames.append(
+                np.transpose([turned(p, R_BA.T) for p in np.eye(PARAMETERS_PER_LINK)])
+            )
             R_W, p_W = R_WA, np.array(body.xpos)
         p = inertial_parameters(robot).reshape(-1, PARAMETERS_PER_LINK)
         fast = FastModel.from_joints(
@@ -63,10 +67,10 @@ class ArmGeometry:
             prismatic,
             np.array(rotations),
             np.array(offsets),
-            np.einsum("icb,ib->ic", turned, p),
+            np.einsum("icb,ib->ic", to_axis_frames, p),
             list(model.opt.gravity),
         )
-        return cls(np.array(axes), fast, np.array(turned))
+        return cls(np.array(axes), fast, np.array(to_axis_frames))
 
 
 def regressor(arm: ArmGeometry, q: Floats, qd: Floats, qdd: Floats) -> Floats:
@@ -131,16 +135,3 @@ def _axis_frame(axis: Floats) -> Floats:
     x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
     x /= np.linalg.norm(x)
     return np.column_stack([x, np.cross(z, x), z])
-
-
-def _turned_parameters(R: Floats) -> Floats:
-    """T (10, 10) of `p_B = T p_A` for ten parameters in frames A and B, R = R_BA."""
-    T = np.zeros((PARAMETERS_PER_LINK, PARAMETERS_PER_LINK))
-    T[0, 0] = 1.0
-    T[1:4, 1:4] = R
-    upper = np.triu_indices(3)
-    for column, (i, j) in enumerate(zip(*upper, strict=True)):
-        unit = np.zeros((3, 3))
-        unit[i, j] = unit[j, i] = 1.0
-        T[4:, 4 + column] = (R @ unit @ R.T)[upper]
-    return T
