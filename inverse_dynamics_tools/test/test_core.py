@@ -140,31 +140,6 @@ def test_unknown_parameter_is_an_error(arguments, unknown, remedy):
     assert text.endswith(f"; {remedy}")
 
 
-def test_payload_in_the_description_of_a_solver_with_its_own_model_is_a_warning():
-    urdf = (DATA / "urdf" / "ur10.urdf").read_text()
-    payload = """<link name="gripper"><inertial><mass value="1.5"/>
-      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-      <joint name="clamp" type="fixed"><parent link="tool0"/><child link="gripper"/></joint></robot>"""
-    bare, loaded = (Solver(UR10, urdf=text) for text in (urdf, urdf.replace("</robot>", payload)))
-    assert bare.warnings == Solver(UR10).warnings
-    (warning,) = set(loaded.warnings) - set(bare.warnings)
-    assert "model ur10_identified doesn't include in its torques: gripper (1.5 kg)" in warning
-
-
-def test_friction_of_a_description_is_used_where_it_is_asked_for():
-    urdf = (DATA / "urdf" / "panda.urdf").read_text()
-    qd = np.array([1.0, -1.0, 0.0, 2.0, -2.0, 0.5, 0.0])
-    for plugin in (RIGID_BODY, KDL):
-        silent = Solver(plugin, urdf=urdf)
-        assert not silent.friction_vector(qd).any()
-        assert sum("set parameter 'urdf_friction'" in text for text in silent.warnings) == 1
-        solver = Solver(plugin, urdf=urdf, parameters={"urdf_friction": True})
-        np.testing.assert_allclose(solver.friction_vector(qd), 0.003 * qd + 0.2 * np.sign(qd))
-        assert not any("urdf_friction" in text for text in solver.warnings)
-        added = solver.torques(qd, qd, qd) - silent.torques(qd, qd, qd)
-        np.testing.assert_allclose(added, solver.friction_vector(qd), atol=1e-12)
-
-
 @pytest.mark.parametrize(
     "call",
     [
