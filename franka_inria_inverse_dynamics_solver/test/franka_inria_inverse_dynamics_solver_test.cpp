@@ -49,29 +49,6 @@ TEST(FrankaInria, FrictionIsZeroAtRestAndOpposesMotion) {
   EXPECT_LT(solver.getFrictionVector(Vector7::Constant(-0.5)).maxCoeff(), -0.05);
 }
 
-TEST(FrankaInria, FrictionCanBeSwitchedOff) {
-  InverseDynamicsSolverFrankaInria with, without;
-  with.initialize();
-  without.initialize({{"ids.friction", false}}, "ids");
-  EXPECT_EQ(without.getFrictionVector(kQd), Vector7::Zero());
-  const Vector7 difference = with.getTorques(kQ, kQd, kQdd) - without.getTorques(kQ, kQd, kQdd);
-  EXPECT_TRUE(difference.isApprox(with.getFrictionVector(kQd), 1e-12));
-}
-
-TEST(FrankaInria, GravityCanBeTurned) {
-  InverseDynamicsSolverFrankaInria standing, hanging, tilted;
-  standing.initialize();
-  hanging.initialize({{"gravity", std::vector<double>{0, 0, 9.81}}});
-  tilted.initialize({{"gravity", std::vector<double>{9.81, 0, 0}}});
-  const Vector7 g = standing.getGravityVector(kQ);
-  ASSERT_GT(g.norm(), 1.0);
-  EXPECT_TRUE(hanging.getGravityVector(kQ).isApprox(-g, 1e-14));
-
-  // Mounted on a wall, the first joint carries weight.
-  EXPECT_NEAR(g[0], 0, 1e-12);
-  EXPECT_GT(std::abs(tilted.getGravityVector(kQ)[0]), 1.0);
-}
-
 TEST(FrankaInria, IgnoresARobotDescription) {
   InverseDynamicsSolverFrankaInria alone, beside;
   alone.initialize();

@@ -33,29 +33,11 @@ JointLog log(Eigen::Index count = 50) {
   return log;
 }
 
-EvaluationOptions options(const std::string& effort = "torque") {
+EvaluationOptions options() {
   EvaluationOptions options;
-  options.effort.option = effort;
+  options.effort.option = "torque";
   options.units = {"N m", "N m"};
   return options;
-}
-
-TEST(Evaluation, ComparesComputedWithMeasuredTorques) {
-  const Evaluation evaluation = evaluate(log(), *TwoJointSolver::make(), options());
-  EXPECT_NEAR(evaluation.errors[0].bias, -0.25, 1e-12);
-  EXPECT_NEAR(evaluation.errors[1].rmse, 0.5, 1e-12);
-  EXPECT_EQ(evaluation.accelerations.summary, "given by the recording");
-}
-
-TEST(Evaluation, LeavesGravityOutOfBothWhereEffortsAreWithoutIt) {
-  JointLog without = log();
-  without.effort.row(0).array() -= 10;
-  without.effort.row(1).array() -= 20;
-  const Evaluation evaluation =
-      evaluate(without, *TwoJointSolver::make(), options("torque_without_gravity"));
-  EXPECT_NEAR(evaluation.errors[0].bias, -0.25, 1e-12);
-  EXPECT_NEAR(evaluation.table->computed(1, 0), -3, 1e-12);
-  EXPECT_EQ(evaluation.table->measured, without.effort);
 }
 
 TEST(Evaluation, HasNoErrorsWhereNoEffortsAreRecorded) {

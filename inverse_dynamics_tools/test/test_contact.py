@@ -96,17 +96,6 @@ def test_run_is_update_after_update(solver, motion, kind):
     assert one.update(q[0], effort[0], PERIOD)[1] == EstimateStatus.STARTING
 
 
-def test_a_constant_torque_is_found(solver):
-    options = EstimatorOptions([60.0], velocity=VelocitySource.MEASURED, friction_band=[2.0])
-    observer = MomentumObserver(solver, options)
-    q, qd = np.full((500, 1), 0.3), np.zeros((500, 1))
-    effort = solver.gravity_vector(q) + 5.0
-    torques, valid = observer.run(PERIOD * np.arange(500), q, effort, qd)
-    assert not valid[0]
-    assert valid[1:].all()
-    assert torques[-1] == pytest.approx(3.0, abs=1e-9)  # less the band
-
-
 def test_statuses_have_texts(solver):
     observer = MomentumObserver(solver, EstimatorOptions([60.0]))
     torques, status = observer.update([np.nan], [0.0], PERIOD)

@@ -48,62 +48,11 @@ def test_installed_solvers_are_listed():
     assert {UR10, PANDA, RIGID_BODY, KDL} <= set(available_solvers())
 
 
-@pytest.mark.parametrize(("plugin", "file"), [(UR10, "ur10"), (PANDA, "franka_inria")])
-def test_batches_of_identified_models_have_the_reference_values(plugin, file):
-    joint_names, expected = states(file)
-    solver = Solver(plugin)
-    q, qd, qdd = expected["q"], expected["qd"], expected["qdd"]
-    assert list(solver.joint_names) == joint_names
-    results = {
-        "torques": solver.torques(q, qd, qdd),
-        "inertia": solver.inertia_matrix(q),
-        "coriolis": solver.coriolis_vector(q, qd),
-        "gravity": solver.gravity_vector(q),
-        "friction": solver.friction_vector(qd),
-    }
-    for quantity, values in results.items():
-        assert values.shape == expected[quantity].shape
-        np.testing.assert_allclose(values, expected[quantity], rtol=0, atol=TOLERANCE)
-
-
 def test_inertia_that_is_not_symmetric_is_not_turned_round(ur10):
     expected = states("ur10")[1]
     H = ur10.inertia_matrix(expected["q"][3])
     assert np.abs(H - H.T).max() > 0.1
     np.testing.assert_allclose(H, expected["inertia"][3], rtol=0, atol=TOLERANCE)
-
-
-@pytest.mark.parametrize("plugin", [KDL, RIGID_BODY])
-def test_urdf_solvers_have_the_reference_values(plugin):
-    _, expected = states("panda_urdf")
-    urdf = (DATA / "urdf" / "panda.urdf").read_text()
-    solver = Solver(plugin, urdf=urdf, root="fer_link0", tip="fer_link8")
-    H, c, g = solver.dynamic_components(expected["q"], expected["qd"])
-    for values, quantity in ((H, "inertia"), (c, "coriolis"), (g, "gravity")):
-        np.testing.assert_allclose(values, expected[quantity], rtol=0, atol=TOLERANCE)
-    assert solver.inertia_is_physical
-    assert solver.drive_gains is None
-
-
-def test_pendulum_has_the_torques_worked_by_hand():
-    solver = Solver(RIGID_BODY, urdf=PENDULUM)
-    # It hangs at 0. Inertia about the axis: 0.1 + 2 * 0.5^2; held level: 2 * 9.81 * 0.5.
-    assert solver.joint_names == ("swing",)
-    assert solver.inertia_matrix([0.3]) == pytest.approx(0.6, abs=1e-12)
-    assert abs(solver.gravity_vector([np.pi / 2])[0]) == pytest.approx(9.81, abs=1e-12)
-    sideways = Solver(RIGID_BODY, urdf=PENDULUM, gravity=(0, 9.81, 0))
-    assert sideways.gravity_vector([np.pi / 2]) == pytest.approx(0, abs=1e-12)
-
-
-def test_one_state_gives_what_it_gives_within_a_batch(ur10):
-    _, expected = states("ur10")
-    q, qd, qdd = expected["q"], expected["qd"], expected["qdd"]
-    batch = ur10.torques(q, qd, qdd)
-    for k in range(len(q)):
-        assert ur10.torques(q[k], qd[k], qdd[k]).shape == (6,)
-        np.testing.assert_array_equal(ur10.torques(q[k], qd[k], qdd[k]), batch[k])
-    assert ur10.inertia_matrix(q[0]).shape == (6, 6)
-    assert ur10.inertia_matrix(q).shape == (len(q), 6, 6)
 
 
 def test_an_empty_batch_gives_an_empty_result(ur10):
@@ -128,12 +77,6 @@ def test_friction_can_be_left_out(ur10):
         ur10.torques(*motion) - without.torques(*motion), expected["friction"], atol=TOLERANCE
     )
     assert not without.friction_vector(motion[1]).any()
-
-
-def test_drive_gains_of_a_model_in_currents(ur10):
-    gains = json.loads((DATA / "reference/ur10.json").read_text())["drive_gains"]
-    np.testing.assert_array_equal(ur10.drive_gains, gains)
-    assert not ur10.inertia_is_physical
 
 
 def test_threads_compute_at_once_and_the_same(ur10):
@@ -162,22 +105,6 @@ def test_unknown_plugin_lists_what_there_is():
         Solver("ur11/Solver")
     assert "'ur11/Solver': not found: expected one of" in str(caught.value)
     assert UR10 in str(caught.value)
-
-
-def test_missing_description_is_an_error():
-    with pytest.raises(errors.ParameterMissingError, match="robot description"):
-        Solver(KDL)
-
-
-@pytest.mark.parametrize("urdf", ["<robot", "<robot name='x'/>", PENDULUM.replace('"2"', '"-2"')])
-def test_broken_description_is_an_error(urdf):
-    with pytest.raises(errors.InvalidRobotDescriptionError):
-        Solver(RIGID_BODY, urdf=urdf)
-
-
-def test_unknown_link_is_an_error():
-    with pytest.raises(errors.InvalidRobotDescriptionError, match="hand"):
-        Solver(RIGID_BODY, urdf=PENDULUM, tip="hand")
 
 
 def test_parameter_of_the_wrong_type_is_an_error():
@@ -211,31 +138,6 @@ def test_unknown_parameter_is_an_error(arguments, unknown, remedy):
     assert text.startswith(f"parameter '{unknown}': the solver doesn't know it: expected one of ")
     assert "batch_threads, friction, gravity, " in text
     assert text.endswith(f"; {remedy}")
-
-
-def test_payload_in_the_description_of_a_solver_with_its_own_model_is_a_warning():
-    urdf = (DATA / "urdf" / "ur10.urdf").read_text()
-    payload = """<link name="gripper"><inertial><mass value="1.5"/>
-      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-      <joint name="clamp" type="fixed"><parent link="tool0"/><child link="gripper"/></joint></robot>"""
-    bare, loaded = (Solver(UR10, urdf=text) for text in (urdf, urdf.replace("</robot>", payload)))
-    assert bare.warnings == Solver(UR10).warnings
-    (warning,) = set(loaded.warnings) - set(bare.warnings)
-    assert "model ur10_identified doesn't include in its torques: gripper (1.5 kg)" in warning
-
-
-def test_friction_of_a_description_is_used_where_it_is_asked_for():
-    urdf = (DATA / "urdf" / "panda.urdf").read_text()
-    qd = np.array([1.0, -1.0, 0.0, 2.0, -2.0, 0.5, 0.0])
-    for plugin in (RIGID_BODY, KDL):
-        silent = Solver(plugin, urdf=urdf)
-        assert not silent.friction_vector(qd).any()
-        assert sum("set parameter 'urdf_friction'" in text for text in silent.warnings) == 1
-        solver = Solver(plugin, urdf=urdf, parameters={"urdf_friction": True})
-        np.testing.assert_allclose(solver.friction_vector(qd), 0.003 * qd + 0.2 * np.sign(qd))
-        assert not any("urdf_friction" in text for text in solver.warnings)
-        added = solver.torques(qd, qd, qd) - silent.torques(qd, qd, qd)
-        np.testing.assert_allclose(added, solver.friction_vector(qd), atol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -288,56 +190,6 @@ def test_low_pass_is_that_of_scipy(order, cutoff):
     result = _core.low_pass(samples, rate, cutoff, order, padding)
     scale = np.abs(samples).max()
     np.testing.assert_allclose(result, expected, rtol=0, atol=1e-9 * scale)
-
-
-def test_gain_of_low_pass_is_that_of_scipy():
-    sections = signal.butter(2, 10.0, fs=500.0, output="sos")
-    for frequency in (1.0, 10.0, 100.0):
-        _, response = signal.sosfreqz(sections, [frequency], fs=500.0)
-        expected = abs(response[0]) ** 2
-        assert _core.low_pass_gain(frequency, 10.0, 500.0) == pytest.approx(expected, rel=1e-9)
-
-
-def test_backward_difference_is_that_of_numpy():
-    rng = np.random.default_rng(2)
-    time = np.cumsum(rng.uniform(0.001, 0.01, 100))
-    qd = rng.normal(size=(100, 2))
-    qdd = _core.backward_difference(time, qd)
-    np.testing.assert_array_equal(qdd[0], 0)
-    np.testing.assert_allclose(qdd[1:], np.diff(qd, axis=0) / np.diff(time)[:, None], rtol=1e-12)
-
-
-def test_findings_name_a_gap():
-    time = np.concatenate([np.arange(0, 4, 0.01), np.arange(14, 18, 0.01)])
-    q = np.sin(time)[:, None]
-    qd = np.cos(time)[:, None]
-    _, choice, report = _core.low_pass_accelerations(time, q, qd, q, cutoff=5.0)
-    found = _core.sample_findings("header", report, choice)
-    assert found == [
-        "1 gap in the recording: no sample for 10 s after sample 400 at 3.990000000 s; "
-        "each side is filtered by itself"
-    ]
-    (raw,) = _core.sample_findings("header", report)
-    assert raw.endswith("at 3.990000000 s")
-
-
-def test_low_pass_derivative_is_good_at_the_ends():
-    time = np.arange(0, 5, 0.01)
-    qd = np.sin(time)[:, None]
-    qdd = _core.low_pass_derivative(qd, 100.0, 5.0)
-    np.testing.assert_allclose(qdd, np.cos(time)[:, None], atol=2e-3)
-
-
-def test_low_pass_accelerations_of_a_sine_are_its_derivative():
-    time = np.arange(4000) * 0.002
-    phase = 2 * np.pi * 0.5 * time[:, None] + [0.0, 1.0]
-    rate = 2 * np.pi * 0.5
-    q, qd, qdd = np.sin(phase), rate * np.cos(phase), -(rate**2) * np.sin(phase)
-    result, choice, report = _core.low_pass_accelerations(time, q, qd, q, cutoff=50.0)
-    assert (choice.cutoff, choice.chosen) == (50.0, False)
-    assert report.kept.all()
-    # In the middle, away from where the filter begins and ends: gain at 0.5 Hz is 1 - 1e-8.
-    np.testing.assert_allclose(result[500:-500], qdd[500:-500], rtol=0, atol=1e-6)
 
 
 def test_metrics_are_those_of_numpy():

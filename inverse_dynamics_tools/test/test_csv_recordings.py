@@ -197,9 +197,6 @@ def test_what_urs_record_tool_should_have_recorded_is_said(file):
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("", "is empty; expected a header line and rows"),
-        (" \n\n", "is empty; expected a header line and rows"),
-        (ROWS, ":1: expected a header line that names the columns, got numbers"),
         ("time,q\n0,1\n", "expected columns time, position.JOINT"),
         ("time,q\n0,1\n", "got time, q; give them these names, in s, rad, rad/s and N m (or A)"),
         (HEADER.replace("time", "t") + ROWS, "expected a column time [s], got t, position.a"),
@@ -207,21 +204,10 @@ def test_what_urs_record_tool_should_have_recorded_is_said(file):
         (HEADER.replace("effort.a", "x") + ROWS, "`ids torques` computes them"),
         (HEADER.replace("velocity.a", "x") + ROWS, "joint a: expected a column velocity.a"),
         (HEADER.replace(".a", ".b") + ROWS, "expected the joints a, got b; missing: a; give the"),
-        ("time," + HEADER + "0," + ROWS, "expected each column once, got several named time"),
-        (HEADER + ROWS + "0.02,1,2\n", ":4: expected 4 columns, as the header has, got 3"),
-        (HEADER + "0,1,2,3,4\n", ":2: expected 4 columns, as the header has, got 5"),
-        (
-            HEADER + ROWS + "0.02,1,two,3\n",
-            ":4: column 3 (velocity.a): expected a number, got 'two'",
-        ),
-        (HEADER + ROWS + "0.02,1,,3\n", ":4: column 3 (velocity.a): expected a number, got ''"),
-        (HEADER + ROWS + "\n0.02,1,2,inf\n", ":5: column 4 (effort.a): expected a finite number"),
         (
             HEADER.replace(",", ";") + "0;1,5;2;3\n",
             ":2: column 2 (position.a): expected a number, got '1,5'; decimals need a point",
         ),
-        (HEADER, "expected at least 2 rows after the header, got 0"),
-        (HEADER + "0,1,2,3\n", "expected at least 2 rows after the header, got 1"),
         (HEADER + "0,1,2,3\n8,1,2,3\n", "expected seconds, got steps of 8: are they milliseconds?"),
         (HEADER + "0,1,2,3\n2000,1,2,3\n", "are they microseconds? Divide the column by 1e+06"),
         (HEADER + "0,1,2,3\n8e6,1,2,3\n", "are they nanoseconds? Divide the column by 1e+09"),
@@ -256,12 +242,9 @@ def test_accelerations_of_some_joints_are_not_enough(file):
     )
 
 
-def test_a_file_that_is_none_or_no_text_is_said(tmp_path):
+def test_a_file_that_is_none_is_said(tmp_path):
     with pytest.raises(BagError, match="no such file; expected a table of numbers in text"):
         read_recording(tmp_path / "nothing.csv")
-    file = tmp_path / "picture.csv"
-    file.write_bytes(b"\x89PNG\xff\xfe")
-    with pytest.raises(BagError, match="can't be read \\(it isn't text in UTF-8\\)"):
-        read_recording(file)
+    file = tmp_path / "motion.csv"
     with pytest.raises(BagError, match="clock: expected one of auto, header, receive, got 'wall'"):
         read_recording(file, clock="wall")

@@ -9,7 +9,7 @@ import pytest
 from test_evaluation import RIGID_BODY, UR10, URDF, motion, recording
 
 from inverse_dynamics import Solver, evaluate, load_robot
-from inverse_dynamics.errors import EvaluationError, RobotError
+from inverse_dynamics.errors import RobotError
 from inverse_dynamics.evaluation import evaluation
 from inverse_dynamics.robot.choices import EFFORT_MEANINGS
 
@@ -53,24 +53,6 @@ def test_every_meaning_gives_the_same_errors_in_newton_metres(bags, robot, meani
     assert result.effort.summary.startswith(
         f"{meaning.replace('_', ' ')}, as the run configuration says"
     )
-
-
-def test_measured_torques_are_drive_gains_times_currents_and_currents_stay(bags, robot):
-    result = evaluate(bags / "current", robot, effort_is="current")
-    np.testing.assert_array_equal(result.measured, result.log.effort * GAINS)
-    assert "with drive gains 13 14 11 10 9 8 N m/A" in result.effort.summary
-    torque = evaluate(bags / "torque", robot)
-    np.testing.assert_allclose(result.measured, torque.measured, rtol=1e-14)
-    assert result.effort.summary.startswith("current, as given")
-
-
-def test_without_gravity_efforts_stay_and_gravity_leaves_the_computed_torques(bags, robot, solver):
-    result = evaluate(bags / "torque_without_gravity", robot, effort_is="torque_without_gravity")
-    np.testing.assert_array_equal(result.measured, result.log.effort)
-    torque = evaluate(bags / "torque", robot)
-    gravity = solver.gravity_vector(torque.log.q)
-    np.testing.assert_array_equal(result.computed, torque.computed - gravity)
-    assert "computed torques are shown without gravity, as efforts were recorded" in result.notes
 
 
 @pytest.mark.parametrize("meaning", EFFORT_MEANINGS)
@@ -179,37 +161,3 @@ def test_currents_without_drive_gains_anywhere_are_an_error(bags, robot):
     )
     with pytest.raises(RobotError, match=re.escape(expected)):
         evaluate(bags / "current", without)
-
-
-@pytest.mark.usefixtures("currents_by_format")
-def test_nor_does_a_doubt_end_in_currents_without_drive_gains(bags, robot):
-    with pytest.raises(RobotError, match="as the recording's format says: expected drive gains"):
-        evaluate(bags / "current", replace(robot, drive_gains=()), effort_is="auto")
-
-
-@pytest.mark.parametrize(
-    ("gains", "expected"),
-    [
-        ((1.0, 2.0), r"drive_gains: expected 6 numbers, one per joint .*shoulder_pan.*, got 2"),
-        ((1.0,) * 7, r"drive_gains: expected 6 numbers, one per joint .*, got 7"),
-        ((1.0, 2.0, 3.0, 4.0, 5.0, 0.0), r"drive_gains: expected numbers above zero .*got 1 2 3 4"),
-        ((1.0, 2.0, 3.0, 4.0, 5.0, -6.0), r"drive_gains: expected numbers above zero .*-6"),
-        ((1.0, 2.0, 3.0, 4.0, 5.0, float("nan")), r"drive_gains: expected numbers above .*nan"),
-    ],
-)
-def test_drive_gains_that_make_no_sense_are_an_error_whatever_efforts_mean(
-    bags, robot, gains, expected
-):
-    with pytest.raises(RobotError, match=expected):
-        evaluate(bags / "torque", replace(robot, drive_gains=gains))
-
-
-def test_an_unknown_meaning_is_an_error(bags, robot):
-    expected = (
-        r"effort, as given: expected one of torque, current, torque_without_gravity, auto, got"
-    )
-    with pytest.raises(EvaluationError, match=expected + " 'force'"):
-        evaluate(bags / "torque", robot, effort_is="force")
-    expected = expected.replace("as given", "as the run configuration says")
-    with pytest.raises(EvaluationError, match=expected + " 'newton'"):
-        evaluate(bags / "torque", replace(robot, effort="newton"))

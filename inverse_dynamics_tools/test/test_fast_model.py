@@ -24,74 +24,39 @@ def motion() -> tuple[np.ndarray, ...]:
     return tuple(np.random.default_rng(1).uniform(-2, 2, size=(3, N, 6)))
 
 
-def test_forward_dynamics_inverts_torques(urdf: str, motion: tuple[np.ndarray, ...]) -> None:
-    q, qd, qdd = motion
+@pytest.mark.parametrize(
+    ("method", "solvers", "inputs"),
+    [
+        ("forward_dynamics", "accelerations", 3),
+        ("torque_derivatives", "torque_derivatives", 3),
+        ("coriolis_matrix", "coriolis_matrix", 2),
+        ("tip_pose", "tip_pose", 1),
+        ("tip_jacobian", "tip_jacobian", 1),
+        ("tip_jacobian_derivative", "tip_jacobian_derivative", 2),
+    ],
+)
+def test_results_are_those_of_the_solver(urdf, motion, method, solvers, inputs):
+    """Of many states and of one; test_solver_capabilities.py judges the solver."""
     model, solver = FastModel.from_urdf(urdf), Solver(RIGID_BODY, urdf=urdf)
     assert model.joint_names == solver.joint_names
-    tau = solver.torques(q, qd, qdd)
-    np.testing.assert_allclose(model.forward_dynamics(q, qd, tau), qdd, rtol=0, atol=1e-9)
-    out = np.zeros((N, 12))[:, ::2]
-    assert model.forward_dynamics(q, qd, tau, out=out) is out
-    np.testing.assert_allclose(out[3], model.forward_dynamics(q[3], qd[3], tau[3]), atol=1e-9)
+    for states in (motion[:inputs], [values[3] for values in motion[:inputs]]):
+        results = (getattr(model, method)(*states), getattr(solver, solvers)(*states))
+        for ours, theirs in zip(
+            *(r if isinstance(r, tuple) else (r,) for r in results), strict=True
+        ):
+            np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-9)
 
 
-def test_derivatives_are_difference_quotients(urdf: str, motion: tuple[np.ndarray, ...]) -> None:
-    q, qd, qdd = motion
-    model, solver = FastModel.from_urdf(urdf), Solver(RIGID_BODY, urdf=urdf)
-    by_q, by_qd, H = model.torque_derivatives(q, qd, qdd)
-    np.testing.assert_allclose(H, solver.inertia_matrix(q), atol=1e-12)
-    h = 1e-6
-    for j in range(6):
-        step = h * np.eye(6)[j]
-        quotient = (solver.torques(q + step, qd, qdd) - solver.torques(q - step, qd, qdd)) / (2 * h)
-        np.testing.assert_allclose(by_q[:, :, j], quotient, atol=1e-6)
-        quotient = (solver.torques(q, qd + step, qdd) - solver.torques(q, qd - step, qdd)) / (2 * h)
-        np.testing.assert_allclose(by_qd[:, :, j], quotient, atol=1e-6)
-
-
-def test_coriolis_matrix_gives_vector_and_rate_of_inertia(
-    urdf: str, motion: tuple[np.ndarray, ...]
-) -> None:
-    q, qd, _ = motion
-    model, solver = FastModel.from_urdf(urdf), Solver(RIGID_BODY, urdf=urdf)
-    C = model.coriolis_matrix(q, qd)
-    assert C.shape == (N, 6, 6)
-    c = solver.coriolis_vector(q, qd)
-    np.testing.assert_allclose(np.einsum("kij,kj->ki", C, qd), c, atol=1e-11)
-    h = 1e-6
-    rate = (solver.inertia_matrix(q + h * qd) - solver.inertia_matrix(q - h * qd)) / (2 * h)
-    np.testing.assert_allclose(C + C.transpose(0, 2, 1), rate, atol=1e-6)
-    out = np.zeros((N, 6, 12))[:, :, ::2]
-    assert model.coriolis_matrix(q, qd, out=out) is out
-    np.testing.assert_allclose(out[3], model.coriolis_matrix(q[3], qd[3]), atol=1e-11)
-
-
-def test_jacobian_and_its_derivative_are_difference_quotients(
-    urdf: str, motion: tuple[np.ndarray, ...]
-) -> None:
-    q, qd, _ = motion
+@pytest.mark.parametrize("method", ["forward_dynamics", "tip_jacobian"])
+def test_results_go_into_the_callers_arrays(urdf, motion, method):
     model = FastModel.from_urdf(urdf)
-    R, p = model.tip_pose(q)
-    J = model.tip_jacobian(q)
-    assert (R.shape, p.shape, J.shape) == ((N, 3, 3), (N, 3), (N, 6, 6))
-    h = 1e-6
-    for j in range(6):
-        step = h * np.eye(6)[j]
-        (R2, p2), (R1, p1) = model.tip_pose(q + step), model.tip_pose(q - step)
-        np.testing.assert_allclose(J[:, :3, j], (p2 - p1) / (2 * h), atol=1e-8)
-        w = (R2 - R1) @ R.transpose(0, 2, 1) / (2 * h)
-        angular = np.stack([w[:, 2, 1], w[:, 0, 2], w[:, 1, 0]], axis=1)
-        np.testing.assert_allclose(J[:, 3:, j], angular, atol=1e-8)
-    dJ = model.tip_jacobian_derivative(q, qd)
-    quotient = (model.tip_jacobian(q + h * qd) - model.tip_jacobian(q - h * qd)) / (2 * h)
-    np.testing.assert_allclose(dJ, quotient, atol=1e-8)
-    out = np.zeros((6, 12))[:, ::2]
-    assert model.tip_jacobian(q[3], out=out) is out
-    np.testing.assert_allclose(out, J[3], atol=1e-14)
-    np.testing.assert_allclose(model.tip_pose(q[3])[0], R[3], atol=1e-14)
-    np.testing.assert_allclose(model.tip_jacobian_derivative(q[3], qd[3]), dJ[3], atol=1e-13)
-    with pytest.raises(UserError, match=r"tip_jacobian: argument out: wrong shape: .*\(6, 6\)"):
-        model.tip_jacobian(q[3], out=np.zeros((6, 5)))
+    call, states = getattr(model, method), motion if method == "forward_dynamics" else motion[:1]
+    expected = call(*states)
+    out = np.zeros((*expected.shape[:-1], 12))[..., ::2]
+    assert call(*states, out=out) is out
+    np.testing.assert_array_equal(out, expected)
+    with pytest.raises(UserError, match=f"{method}: argument out: wrong shape"):
+        call(*states, out=out[:-1])
 
 
 def test_regressor_times_parameters_are_the_torques(

@@ -6,8 +6,6 @@ from __future__ import annotations
 import re
 import shutil
 import sqlite3
-import subprocess
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -38,10 +36,6 @@ def states(**changes: Callable[[int], object]) -> list[object]:
         **changes,
     }
     return [joint_state(**{name: at(k) for name, at in fields.items()}) for k in range(SAMPLES)]
-
-
-def at(message: int, value: object, default: Callable[[int], object]) -> Callable[[int], object]:
-    return lambda k: value if k == message else default(k)
 
 
 @pytest.fixture(scope="module")
@@ -233,105 +227,6 @@ def test_a_file_that_is_cut_off_is_refused(tmp_path, robot, share, storage, requ
     refused(file, robot)
 
 
-@pytest.mark.parametrize("storage", ["good", "good_mcap"])
-def test_a_file_with_damaged_bytes_is_read_or_refused_but_never_crashes(
-    tmp_path, robot, storage, request
-):
-    good = request.getfixturevalue(storage)
-    (file,) = (f for f in good.iterdir() if f.suffix in {".db3", ".mcap"})
-    whole = file.read_bytes()
-    random = np.random.default_rng(0)
-    for _ in range(60):
-        damaged = bytearray(whole)
-        for place in random.integers(0, len(whole), 20):
-            damaged[place] = random.integers(256)
-        bag = tmp_path / file.name
-        bag.write_bytes(damaged)
-        try:
-            log = read_joint_log(bag, NAMES)
-        except UserError:
-            continue
-        assert np.isfinite([log.q, log.qd, log.effort]).all()
-
-
-position, velocity = (lambda k: [np.sin(0.01 * k)]), (lambda k: [np.cos(0.01 * k)])
-MESSAGES = {
-    "a velocity of 1e300": (
-        {"velocity": at(20, [1e300], velocity)},
-        "message 21: velocity of joint swing: expected a number of a motion, in SI units, of at most",
-    ),
-    "not a number": (
-        {"velocity": at(20, [np.nan], velocity)},
-        "message 21: velocity of joint swing: expected a finite number, got nan",
-    ),
-    "an infinite effort": (
-        {"effort": at(0, [-np.inf], velocity)},
-        "message 1: effort of joint swing: expected a finite number, got -inf",
-    ),
-    "a joint twice": (
-        {
-            "names": at(20, ["swing", "swing"], lambda _: NAMES),
-            **{name: at(20, [0.0, 0.0], velocity) for name in ("position", "velocity", "effort")},
-        },
-        "message 21: expected each joint once, got swing, swing",
-    ),
-    "names without numbers": (
-        {"names": at(20, ["swing", "other"], lambda _: NAMES)},
-        "message 21: position: expected 2 numbers, one per name, got 1",
-    ),
-    "no names": ({"names": lambda _: []}, "expected the joints swing, got only"),
-    "names of 100 kB": (
-        {"names": lambda _: ["x" * 100_000]},
-        "expected the joints swing, got only x",
-    ),
-    "long names beyond ASCII": (
-        {"names": lambda _: ["x" + "é" * 100]},
-        f"expected the joints swing, got only x{'é' * 29}...;",
-    ),
-    "10,000 names": (
-        {"names": lambda _: [f"j{i}" for i in range(10_000)]},
-        "expected the joints swing, got only j0, j1",
-    ),
-    "escapes in names": (
-        {"names": lambda _: ["\x1b[31mred\n"]},
-        "expected the joints swing, got only \\x1b[31mred\\x0a;",
-    ),
-    "equal stamps": ({"stamp": lambda _: 10**9}, ": "),
-    "stamps from the last to the first": ({"stamp": lambda k: 10**12 - 10**7 * k}, ": "),
-}
-
-
-@pytest.mark.parametrize("name", MESSAGES)
-def test_bad_messages_are_refused(tmp_path, robot, name):
-    changes, expected = MESSAGES[name]
-    bag = write_messages(tmp_path / "bag", states(**changes))
-    refused(bag, robot, expected)
-
-
-def test_few_samples_are_refused(tmp_path, robot):
-    for count in (1, 2, 3):
-        bag = write_messages(tmp_path / f"bag{count}", states()[:count])
-        refused(bag, robot)
-
-
-def test_a_changing_set_of_joints_is_no_matter_as_long_as_ours_are_there(tmp_path, robot):
-    more = {name: lambda k: [0.0] * (k % 3) + [np.cos(0.01 * k)] for name in ("velocity", "effort")}
-    names = {"names": lambda k: [f"finger_{i}" for i in range(k % 3)] + NAMES}
-    bag = write_messages(tmp_path / "bag", states(position=more["velocity"], **names, **more))
-    assert len(evaluate(bag, robot).log) == SAMPLES
-
-
-def test_a_stamp_that_goes_back_and_stamps_of_zero_are_told(tmp_path, robot):
-    back = write_messages(
-        tmp_path / "back", states(stamp=at(50, 10**9, lambda k: 10**9 + 10**7 * k))
-    )
-    assert "1 of 300 samples have an equal or backward header stamp" in "".join(
-        evaluate(back, robot).notes
-    )
-    zero = write_messages(tmp_path / "zero", states(stamp=lambda _: 0))
-    assert "no header has a stamp: the time of reception is used" in evaluate(zero, robot).notes
-
-
 def test_a_topic_without_messages_does_not_count(tmp_path, good, robot):
     log = read_joint_log(good)
     nothing = read_joint_log(good)
@@ -344,24 +239,6 @@ def test_a_topic_without_messages_does_not_count(tmp_path, good, robot):
         UserError, match="expected one topic of type .*, got 2; name it with --topic"
     ):
         read_joint_log(tmp_path / "empty")
-
-
-def test_a_process_of_its_own_survives_an_endless_recording(tmp_path, good):
-    """What might hang hangs there, where it can be ended."""
-    bag = Path(shutil.copytree(good, tmp_path / "bag"))
-    with sqlite3.connect(bag / "bag.db3") as database:
-        database.executescript(SQL["an endless view"][0])
-    database.close()
-    script = f"from inverse_dynamics import read_recording; read_recording({str(bag)!r})"
-    done = subprocess.run(
-        [sys.executable, "-c", script],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
-    assert "BagError" in done.stderr
 
 
 def test_a_type_with_several_lines_stays_on_its_line(tmp_path: Path) -> None:

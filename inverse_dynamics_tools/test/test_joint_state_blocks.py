@@ -96,30 +96,6 @@ def test_joint_states_have_one_reader_at_a_time(tmp_path, monkeypatch):
         assert next(opened[-1].states, None) is None  # at its end, and free again
 
 
-def test_messages_of_one_layout_are_one_block(tmp_path):
-    messages = [joint_state(["a", "bcd"], [k, 1], [2, 3], [4, 5], k) for k in range(300)]
-    blocks = list(record(tmp_path / "bag", [serialized(m) for m in messages]))
-    assert len(blocks) == 1
-    check_blocks(blocks, messages)
-
-
-@pytest.mark.parametrize("more", [1, 3, 4, 40])
-def test_bytes_behind_the_fields_are_padding_or_damage(tmp_path, more):
-    message = joint_state(["a", "b"], [1, 2], [3, 4], [5, 6], 7)
-    blocks = record(tmp_path / "bag", [serialized(message) + bytes(more)])
-    if more < 4:  # padding to a multiple of 4, which some middleware adds
-        check_blocks(blocks, [message])
-    else:
-        with pytest.raises(BagError, match="message 1: can't be decoded"):
-            next(blocks)
-
-
-@pytest.mark.parametrize("name", [b"b\0Y\0\0", b"ab\0\0\0"])
-def test_zeros_within_a_name_are_read_as_rosbags_does(tmp_path, name):
-    raw = serialized(joint_state(["abcd"], [1], [2], [3], 7)).replace(b"abcd\0", name)
-    check_blocks(record(tmp_path / "bag", [raw]), [STORE.deserialize_cdr(raw, JOINT_STATE)])
-
-
 def test_a_damaged_message_is_accepted_or_refused_as_by_rosbags(tmp_path):
     rng = np.random.default_rng(0)
     whole = serialized(joint_state(["a", "bcd"], [1, 2], [], [5, 6], 7, "base"))
@@ -193,21 +169,3 @@ def test_a_long_recording_is_read_by_rosbags_message_by_message(tmp_path, storag
     blocks = list(open_recording(tmp_path / "bag").joint_states())
     np.testing.assert_array_equal(np.concatenate([b[3] for b in blocks]), stamps[order])
     np.testing.assert_array_equal(np.concatenate([b[6] for b in blocks]), numbers[2, order])
-
-
-@pytest.mark.parametrize("drop", ["chunk indexes", "summary"])
-def test_an_mcap_file_without_index_is_read(tmp_path, drop):
-    log = JointLog(("a",), *[np.arange(1, 9001)] * 2, *[np.arange(9000.0)[:, None]] * 3)
-    write_joint_logs(tmp_path / "bag", {"/joint_states": log}, storage="mcap")
-    content = bytearray((tmp_path / "bag/bag.mcap").read_bytes())
-    if drop == "summary":
-        content[-28:-20] = bytes(8)
-    else:  # another kind of record, which readers skip
-        at = int.from_bytes(content[-28:-20], "little")
-        while content[at] != 0x02:
-            content[at] = 0x80 if content[at] == 0x08 else content[at]
-            at += 9 + int.from_bytes(content[at + 1 : at + 9], "little")
-    (tmp_path / "other.mcap").write_bytes(content)
-    blocks = open_recording(tmp_path / "other.mcap").joint_states()
-    assert blocks.expected_messages == 9000
-    assert sum(len(block[2]) for block in blocks) == 9000

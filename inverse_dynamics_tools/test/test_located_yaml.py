@@ -20,41 +20,6 @@ def value(directory: Path, text: str) -> Value:
     return read_mapping(file, RobotError).required("key")
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("1", 1.0),
-        ("-9.81", -9.81),
-        ("+.5", 0.5),
-        ("5.", 5.0),
-        ("1e-3", 1e-3),  # a text in YAML 1.1
-        ("-1.5E+2", -150.0),
-        ("010", 10.0),  # 8 in YAML 1.1
-    ],
-)
-def test_numbers_are_those_of_yaml_1_2(tmp_path, text, expected):
-    assert value(tmp_path, text).number() == expected
-
-
-NO_NUMBERS = """
-1:30  -9_81  1_0  0x10  0b1  １２  '1'  "1"  1,5  --1  1e  .  e5  inf  nan  2001-01-01  true  [1]  {a:1}
-"""
-
-
-@pytest.mark.parametrize("text", [*NO_NUMBERS.split(), "1 2", "1" + "0" * 5000 + "x"])
-def test_what_is_no_number_is_an_error(tmp_path, text):
-    with pytest.raises(RobotError, match=r"robot.yaml:2: key: expected a number, got .{1,70}$"):
-        value(tmp_path, text).number()
-
-
-@pytest.mark.parametrize("text", [".inf", "-.INF", ".nan", "1e999", "9" * 400])
-def test_a_number_that_is_not_finite_is_an_error(tmp_path, text):
-    with pytest.raises(
-        RobotError, match=r"robot.yaml:2: key: expected a finite number, got .{1,70}$"
-    ):
-        value(tmp_path, text).number()
-
-
 def test_integers_fit_64_bits(tmp_path):
     assert value(tmp_path, str(-(2**63))).integer() == -(2**63)
     for text in (str(2**63), "1" * 400, "1" * 5000):
@@ -70,23 +35,6 @@ def test_truth_is_true_or_false(tmp_path, text):
     assert value(tmp_path, "True").truth() is True
     with pytest.raises(RobotError, match=r":2: key: expected true or false, got"):
         value(tmp_path, text).truth()
-
-
-def test_texts_that_look_like_something_else_need_quotes(tmp_path):
-    assert value(tmp_path, "'1'").text() == "1"
-    assert value(tmp_path, "no").text() == "no"
-    assert value(tmp_path, "1:30").text() == "1:30"
-    with pytest.raises(RobotError, match=r":2: key: expected a text, got '1'; put it in quotes"):
-        value(tmp_path, "1").text()
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [("true", True), ("3", 3), ("3.0", 3.0), ("'3'", "3"), ("abc", "abc"), ("1_0", "1_0")],
-)
-def test_a_scalar_has_the_type_it_looks_like(tmp_path, text, expected):
-    found = value(tmp_path, text).scalar()
-    assert (type(found), found) == (type(expected), expected)
 
 
 def bomb() -> str:
@@ -197,16 +145,6 @@ def test_a_file_that_may_not_be_read_is_one_line(tmp_path):
     file.chmod(0)
     with pytest.raises(RobotError, match=r": can't be read \(Permission denied\)$"):
         read_mapping(file, RobotError)
-
-
-def test_an_unknown_key_like_a_known_one_is_told(tmp_path):
-    file = tmp_path / "robot.yaml"
-    file.write_text("name: a\ngravty: 1\n")
-    top = read_mapping(file, RobotError)
-    for key in ("name", "gravity"):
-        top.optional(key)
-    with pytest.raises(RobotError, match=r":2: gravty: unknown key; did you mean gravity\?; known"):
-        top.reject_others()
 
 
 def test_escapes_of_characters_are_read(tmp_path):

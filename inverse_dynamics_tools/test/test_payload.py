@@ -224,15 +224,6 @@ def test_option_and_file_state_mass_center_and_inertia(tmp_path):
     assert payload(str(file)) == stated
 
 
-@pytest.mark.parametrize("text", ["-2,0.5,0,0", "2,0.5,0,0,0.1,0,0,0.1,0,0.3"])
-def test_impossible_bodies_are_refused(ids, tmp_path, text):
-    plan = planned(tmp_path, ("swing",))
-    fails(
-        ids("torques", plan, "--out", "x.csv", "--robot", made(tmp_path, ""), f"--payload={text}"),
-        "payload",
-    )
-
-
 WRONG_OPTIONS = {
     "2,0,1": "1, 4 or 10 numbers",
     "two": "there is no such file",

@@ -9,7 +9,7 @@ import pytest
 from conftest import joint_log
 
 from inverse_dynamics import read_evaluation, read_joint_log, write_evaluation
-from inverse_dynamics.errors import BagError, OutputError, UserError
+from inverse_dynamics.errors import OutputError, UserError
 from inverse_dynamics.evaluation.accelerations import Accelerations, Samples
 from inverse_dynamics.evaluation.effort import DATA, Effort, Verdict
 from inverse_dynamics.evaluation.evaluation import Evaluation, joint_errors
@@ -160,15 +160,6 @@ def test_the_output_recording_has_the_storage_of_the_input_or_the_one_given(
     assert read_joint_log(tmp_path / "given/bag", topic="/torques").storage == storage
 
 
-def test_an_older_result_is_replaced_only_on_demand(tmp_path, evaluation):
-    write_evaluation(evaluation, tmp_path / "result", figures=())
-    with pytest.raises(OutputError, match="exists already"):
-        write_evaluation(evaluation, tmp_path / "result", figures=())
-    short = make_evaluation(50)
-    write_evaluation(short, tmp_path / "result", figures=(), overwrite=True)
-    assert len(read_evaluation(tmp_path / "result").log) == 50
-
-
 def test_nothing_is_written_if_the_last_file_fails(tmp_path, evaluation, monkeypatch):
     from inverse_dynamics.figures import plots
 
@@ -178,23 +169,6 @@ def test_nothing_is_written_if_the_last_file_fails(tmp_path, evaluation, monkeyp
     monkeypatch.setattr(plots, "save_torque_figure", fail)
     with pytest.raises(OutputError, match="No space left on device"):
         write_evaluation(evaluation, tmp_path / "result")
-    assert os.listdir(tmp_path) == []
-
-
-def test_figures_are_those_asked_for(tmp_path, evaluation):
-    write_evaluation(evaluation, tmp_path / "none", figures=())
-    assert set(os.listdir(tmp_path / "none")) == FILES - {"torques.png"}
-    write_evaluation(evaluation, tmp_path / "none", figures=("svg", "pdf"), overwrite=True)
-    expected = FILES - {"torques.png"} | {"torques.svg", "torques.pdf"}
-    assert set(os.listdir(tmp_path / "none")) == expected
-    with pytest.raises(OutputError, match="figures: expected some of png, svg, pdf, got 'gif'"):
-        write_evaluation(evaluation, tmp_path / "other", figures=("gif",))
-    assert os.listdir(tmp_path) == ["none"]
-
-
-def test_unknown_storage_is_an_error_and_nothing_is_written(tmp_path, evaluation):
-    with pytest.raises(BagError, match="expected one of sqlite3, mcap"):
-        write_evaluation(evaluation, tmp_path / "result", storage="csv")
     assert os.listdir(tmp_path) == []
 
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-import sqlite3
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -14,7 +13,7 @@ import pytest
 import yaml
 from simulation_arms import CHAINS, pendulum, robots_package, two_links, write_robot
 
-from inverse_dynamics.data.bags import read_joint_log, read_topics
+from inverse_dynamics.data.bags import read_joint_log
 from inverse_dynamics.errors import OutputError, RobotError, UserError
 from inverse_dynamics.robot.robots import Robot, load_robot
 from inverse_dynamics.simulation import (
@@ -89,23 +88,6 @@ def test_truth_has_a_row_per_message_and_fits_the_equation_of_motion(tmp_path: P
     np.testing.assert_allclose(truth["friction"][:, 0], friction, atol=1e-9)
     np.testing.assert_allclose(truth["effort"][:, 0], needed + friction, atol=1e-9)
     assert np.abs(truth["q_desired"] - truth["q"]).max() < 0.05
-
-
-def test_form_is_that_of_a_recorded_bag(tmp_path: Path) -> None:
-    write_run(simulate(robot(tmp_path), trajectory=SWING, rate=125), tmp_path / "bag")
-    info = yaml.safe_load((tmp_path / "bag/metadata.yaml").read_text())[
-        "rosbag2_bagfile_information"
-    ]
-    assert info["version"] == 9
-    assert info["relative_file_paths"] == ["bag.db3"]
-    assert info["message_count"] == 125
-    assert info["starting_time"]["nanoseconds_since_epoch"] == 1_700_000_000_004_000_000
-    (topic,) = read_topics(tmp_path / "bag")
-    assert topic == ("/joint_states", "sensor_msgs/msg/JointState", 125)
-    with sqlite3.connect(tmp_path / "bag/bag.db3") as data:
-        assert data.execute("SELECT count(*) FROM messages").fetchone() == (125,)
-    names = sorted(file.name for file in (tmp_path / "bag").iterdir())
-    assert names == ["bag.db3", "metadata.yaml", "simulation.yaml", "trajectory.yaml", "truth.npz"]
 
 
 @pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
@@ -202,23 +184,6 @@ def test_friction_by_part_by_the_description_and_by_figures(tmp_path: Path) -> N
     assert friction("urdf") == {"coulomb": [1.5], "viscous": [0.25], "slip": 0.02}
     assert friction(0.05) == {"coulomb": [5.0], "viscous": [2.5], "slip": 0.02}
     assert friction("0.05") == friction(0.05)
-
-
-def test_payload_and_settings_are_plain_data(tmp_path: Path) -> None:
-    run = simulate(
-        robot(tmp_path),
-        trajectory=SWING,
-        rate=125,
-        payload=Payload(0.5, (0.1, 0, 0)),
-        sensors=Sensors(quantisation=Resolution(1e-4, 1e-3, 0.1)),
-    )
-    write_run(run, tmp_path / "bag")
-    settings = yaml.safe_load((tmp_path / "bag/simulation.yaml").read_text())
-    assert settings["payload"] == {"mass": 0.5, "center": [0.1, 0.0, 0.0]}
-    assert settings["quantisation"] == {"position": 1e-4, "velocity": 1e-3, "effort": 0.1}
-    assert settings["storage"] == "sqlite3"
-    assert settings["robot_description_sha256"] == run.settings["robot_description_sha256"]
-    assert run.log.effort[0, 0] == pytest.approx(-(2 * 0.5 + 0.5 * 0.1) * 9.81, rel=0.01)
 
 
 def test_description_without_shapes_is_said(tmp_path: Path) -> None:

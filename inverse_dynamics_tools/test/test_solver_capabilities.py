@@ -217,15 +217,6 @@ def test_result_may_not_stand_where_the_wrench_does() -> None:
         solver.external_torques(np.zeros((2, 6)), wrench, out=wrench)
 
 
-def test_nan_in_a_wrench_is_nan_in_the_torques() -> None:
-    solver = made(RIGID_BODY, "ur10")
-    q, qd, qdd, wrench = motion(solver, 2)
-    wrench[1, 0] = np.nan
-    tau = solver.torques(q, qd, qdd, wrench=wrench)
-    assert np.isfinite(tau[0]).all()
-    assert np.isnan(tau[1]).all()
-
-
 @pytest.mark.parametrize("shape", [(5,), (7,), (N, 5), (N - 1, 6), (6, N), (1, N, 6), ()])
 def test_wrench_of_another_shape_is_refused(shape: tuple[int, ...]) -> None:
     solver = made(RIGID_BODY, "ur10")

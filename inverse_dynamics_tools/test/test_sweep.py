@@ -9,8 +9,8 @@ import pytest
 
 SWEEP = Path(__file__).parent / "sweep"
 # One case of so many: a few seconds per group. Not a divisor of how often kinds of cases repeat.
-EVERY = {"urdf": 13, "model": 59, "robot": 7, "parameter": 3, "array": 1, "recording": 23}
-EVERY_AT_NIGHT = {"model": 29, "robot": 3, "parameter": 1, "recording": 5}
+EVERY = {"urdf": 13, "model": 59, "robot": 7, "parameter": 3}
+EVERY_AT_NIGHT = {"model": 29, "robot": 3, "parameter": 1}
 
 
 @pytest.mark.parametrize(

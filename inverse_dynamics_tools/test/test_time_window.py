@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from conftest import fails
 from test_csv_recordings import table_of, write_table
-from test_evaluation import JOINTS, RIGID_BODY, URDF, recording
+from test_evaluation import RIGID_BODY, URDF, recording
 
 from inverse_dynamics import Solver, evaluate, read_evaluation, write_joint_logs
 from inverse_dynamics.errors import ArgumentError, BagError
@@ -74,10 +74,6 @@ def test_the_window_is_told(ids, bag):
     assert read_evaluation("out").notes[0].startswith(text)
 
 
-def test_without_a_window_there_is_no_note(bag):
-    assert evaluate(bag, "ur10_simulated").notes == ()
-
-
 def test_tables_and_receive_stamps_have_windows_too(tmp_path, log, bag):
     write_table(tmp_path / "table.csv", table_of(log.effort))
     assert len(evaluate(tmp_path / "table.csv", "ur10_simulated", start=1.0, end=2.0).log) == 251
@@ -128,42 +124,8 @@ def test_too_few_samples_in_a_window_are_an_error_that_names_the_window(
     fails(ids(*command), f"table.csv, from 1 s to {end} s: ")
 
 
-def test_what_is_before_a_window_is_part_of_the_progress(bag):
-    told = []
-    evaluate(bag, "ur10_simulated", start=4.0, progress=lambda *step: told.append(step))
-    whole = []
-    evaluate(bag, "ur10_simulated", progress=lambda *step: whole.append(step))
-    for steps in (told, whole):
-        shares = [done for _, done, _ in steps]
-        assert shares == sorted(shares)
-        assert steps[-1] == ("evaluating", 1500, 1500)
-    assert told[0][1] > 0
-
-
-def test_reading_up_to_a_window_can_be_interrupted(monkeypatch, tmp_path, log):
-    """Each block of messages is told, those that are skipped too."""
-    many = np.arange(30_000)
-    fields = {name: getattr(log, name)[many % 1500] for name in ("q", "qd", "effort")}
-    stamps = 4_000_000 * (many + 1)
-    longer = replace(log, header_stamps=stamps, receive_stamps=stamps, **fields)
-    write_joint_logs(tmp_path / "long", {log.topic: longer})
-    steps = []
-    evaluate(
-        tmp_path / "long",
-        "ur10_simulated",
-        start=118.0,
-        cutoff=10.0,
-        progress=lambda *step: steps.append(step),
-    )
-    assert len(steps) >= 30_000 // 4096
-
-
 def test_what_is_no_time_is_an_error(bag):
     with pytest.raises(ArgumentError, match="argument start: expected a number or None, got '1'"):
         evaluate(bag, "ur10_simulated", start="1")
     with pytest.raises(BagError, match="--from .*: expected a time in s since .*, got nan"):
         evaluate(bag, "ur10_simulated", start=float("nan"))
-
-
-def test_joints_are_those_of_the_recording(bag):
-    assert evaluate(bag, "ur10_simulated", end=1.0).joint_names == JOINTS

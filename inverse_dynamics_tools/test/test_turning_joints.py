@@ -195,25 +195,6 @@ def test_contacts_are_the_same(urdf, tmp_path):
         assert len(other.contacts) == 1
 
 
-def test_a_revolute_joint_that_jumps_by_a_turn_is_reported(urdf, tmp_path):
-    fixed = tmp_path / "revolute.urdf"
-    fixed.write_text(description("revolute"))
-    paths = recordings(tmp_path, torques(urdf, 12.0), 12.0)
-    arm = robot_of_description(fixed)
-    unbounded = evaluate(paths["unbounded"], arm)
-    assert not any("whole turn" in note for note in unbounded.notes)
-    result = evaluate(paths["within_pi"], arm)
-    notes = [note for note in result.notes if "jump by a whole turn" in note]
-    _, q, _, _ = motion(12.0)
-    jumps = np.abs(np.diff(REPORTS["within_pi"](q), axis=0)) > np.pi
-    assert len(notes) == np.count_nonzero(jumps.any(axis=0))
-    first, count = np.flatnonzero(jumps[:, 0])[0] + 2, np.count_nonzero(jumps[:, 0])
-    assert (
-        f"positions of yaw jump by a whole turn {count} times, first in sample {first}" in notes[0]
-    )
-    np.testing.assert_array_equal(result.log.q, REPORTS["within_pi"](q))
-
-
 def test_a_motion_is_found_simulated_and_evaluated(urdf, tmp_path):
     file = tmp_path / "turning.yaml"
     file.write_text(
@@ -232,14 +213,6 @@ def test_a_motion_is_found_simulated_and_evaluated(urdf, tmp_path):
     run = simulate(arm, trajectory=found.excitation.trajectory, rate=500, table=False)
     write_run(run, tmp_path / "bag")
     assert evaluate(tmp_path / "bag", arm).mean_rmse < 0.01
-
-
-def test_positions_in_degrees_stay_as_they_are(urdf, tmp_path):
-    degrees = np.degrees(motion(12.0)[1]) % 360
-    log = log_of("unbounded", torques(urdf, 12.0), 12.0)
-    log.q[:] = degrees
-    result = evaluate(write_csv(tmp_path / "degrees.csv", log), robot_of_description(urdf))
-    np.testing.assert_array_equal(result.log.q, degrees)
 
 
 def test_the_range_of_identification_holds_for_any_turn():

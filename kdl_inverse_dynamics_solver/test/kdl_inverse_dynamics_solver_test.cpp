@@ -16,7 +16,6 @@
 
 namespace kdl_inverse_dynamics_solver::kdl_inverse_dynamics_solver_test {
 
-using inverse_dynamics_solver::InvalidRobotDescriptionException;
 using inverse_dynamics_solver::Parameters;
 
 std::string obliqueArm() {
@@ -27,23 +26,6 @@ std::string obliqueArm() {
 /// [N m, N, kg m^2] KDL and the engine do the same operations in another order, on terms of up to
 /// 1e3; 1e-16 each, some hundred of them.
 constexpr double kRounding = 1e-11;
-
-/// Text of the E that initialize() throws.
-template <class E>
-std::string errorOf(const Parameters& parameters, const std::string& urdf) {
-  InverseDynamicsSolverKDL solver;
-  try {
-    solver.initialize(parameters, "ids", urdf);
-  } catch (const E& e) {
-    return e.what();
-  }
-  ADD_FAILURE() << "no exception";
-  return "";
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 /// Worked by hand: two rods of 1 m in the x-z plane, joints about y, 2 kg and 3 kg at their ends;
 /// at q = 0 they point along +x.
@@ -140,38 +122,6 @@ TEST(InverseDynamicsSolverKDL, CalculatesRightWithMoreThreadsThanWorkspaces) {
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(different, 0);
-}
-
-TEST(InverseDynamicsSolverKDL, MistakesInTheRobotDescriptionAreNamed) {
-  const auto error = [](const Parameters& parameters, const std::string& urdf) {
-    return errorOf<InvalidRobotDescriptionException>(parameters, urdf);
-  };
-  EXPECT_TRUE(contains(error({}, "<robot"), "robot description: "));
-  EXPECT_TRUE(contains(error({{"ids.tip", "nose"}}, obliqueArm()), "nose"));
-  EXPECT_TRUE(contains(error({{"ids.root", "foot"}}, obliqueArm()), "foot"));
-
-  // A second finger: two ends that differ in their joints.
-  std::string hand = obliqueArm();
-  const std::string end = "</robot>";
-  hand.replace(hand.find(end), end.size(), R"(<link name="thumb"><inertial><mass value="1"/>
-      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
-      <joint name="oppose" type="continuous"><parent link="wrist"/><child link="thumb"/></joint>
-      </robot>)");
-  const std::string ambiguous = error({}, hand);
-  EXPECT_TRUE(contains(ambiguous, "thumb") && contains(ambiguous, "finger")) << ambiguous;
-}
-
-TEST(InverseDynamicsSolverKDL, OddInertiaIsAWarningAndStillPhysical) {
-  InverseDynamicsSolverKDL solver;
-  std::string urdf = obliqueArm();
-  const std::string sound = R"(ixx="0.2" iyy="0.15" izz="0.1")";
-  urdf.replace(urdf.find(sound), sound.size(), R"(ixx="0.4" iyy="0.15" izz="0.1")");
-  solver.initialize({{"tip", "tool"}, {"attached", "ignore"}}, "", obliqueArm());
-  EXPECT_TRUE(solver.warnings().empty());
-  solver.initialize({{"tip", "tool"}, {"attached", "ignore"}}, "", urdf);
-  ASSERT_EQ(solver.warnings().size(), 1U);
-  EXPECT_TRUE(contains(solver.warnings()[0], "upper") || contains(solver.warnings()[0], "turn"))
-      << solver.warnings()[0];
 }
 
 }  // namespace kdl_inverse_dynamics_solver::kdl_inverse_dynamics_solver_test

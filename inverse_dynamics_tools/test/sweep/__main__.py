@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from outcome import Case, Verdict
 
-GROUPS = ("urdf", "model", "robot", "parameter", "array", "recording")
+GROUPS = ("urdf", "model", "robot", "parameter")
 LONGEST_LINE = 220
 
 

@@ -18,7 +18,6 @@ from outcome import Outcome
 
 from inverse_dynamics import Solver, available_solvers, cli
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.evaluation.evaluation import evaluate
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
@@ -85,13 +84,3 @@ def ids(*arguments: str | Path, capture: Path) -> Outcome:
         notes = [found.group(1) for found in map(_NOTE.match, lines) if found]
         return Outcome("accepted", "", tuple(notes))
     return Outcome("refused" if code == 2 else "failed", f"exit code {code}: {text}")
-
-
-def evaluated(recording: Path, robot: str = "ur10_real", **options: Any) -> Outcome:
-    """`evaluate()`; the errors of the joints stand for torques, its notes for warnings."""
-    try:
-        result = evaluate(recording, robot, **options)
-    except UserError as error:
-        return Outcome("refused", str(error))
-    errors = tuple(error.rmse for error in result.errors)
-    return Outcome("accepted", "", tuple(result.notes), errors)
