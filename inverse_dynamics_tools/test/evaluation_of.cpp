@@ -10,9 +10,9 @@
 #include <exception>
 #include <fstream>
 #include <inverse_dynamics_evaluation/evaluator.hpp>
-#include <inverse_dynamics_evaluation/run_configuration.hpp>
 #include <inverse_dynamics_evaluation/joint_state_writer.hpp>
 #include <inverse_dynamics_evaluation/recording.hpp>
+#include <inverse_dynamics_evaluation/run_configuration.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
 #include <iterator>
 #include <memory>
