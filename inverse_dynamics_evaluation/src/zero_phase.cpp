@@ -58,7 +58,7 @@ std::vector<Section> butterworth(int order, double cutoff_over_sampling) {
 
 // Filters columns in place, from `first` on by steps of 1 or -1, in transposed direct form II; starts
 // in the steady state of the first one.
-void filter(const Section& section, Columns columns, Index first, Index step) {
+void filter(const Section& section, Columns& columns, Index first, Index step) {
   Eigen::ArrayXd one = (1.0 - section.b0) * columns.col(first).array();
   Eigen::ArrayXd two = (section.b2 - section.a2) * columns.col(first).array();
   for (Index k = first; k >= 0 && k < columns.cols(); k += step) {
