@@ -14,6 +14,7 @@ namespace inverse_dynamics_tools {
 
 inline int isAnything(PyObject* /*object*/) { return 1; }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): the name of a class takes none
 /// Anything; `annotation` is its type in signatures. Whoever takes it checks it.
 #define INVERSE_DYNAMICS_TOOLS_OBJECT(Name, annotation)   \
   namespace inverse_dynamics_tools {                      \
@@ -28,6 +29,7 @@ inline int isAnything(PyObject* /*object*/) { return 1; }
     static constexpr auto name = const_name(annotation);  \
   };                                                      \
   }
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace inverse_dynamics_tools
 
