@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "annotations.hpp"
 #include "arrays.hpp"
 #include "description.hpp"
 #include "initialized.hpp"
