@@ -155,6 +155,7 @@ void write(Writer& writer, const std::vector<Rows>& topics) {
     throw py::value_error("JointStateWriter.write: expected rows of each topic");
   }
   std::vector<JointStateRows> rows;
+  rows.reserve(topics.size());
   for (const Rows& given : topics) rows.push_back(rowsOf(given, writer.joints[rows.size()]));
   const py::gil_scoped_release release;
   writer.writer.write(rows);
