@@ -28,6 +28,7 @@ from described_arms import ARMS
 from known_mistakes import Mistake, Recording, real_recordings, recordings
 
 from inverse_dynamics import evaluate
+from inverse_dynamics.errors import BagError
 from inverse_dynamics.evaluation.causes.compare import Cause
 from inverse_dynamics.evaluation.effort import DATA
 from inverse_dynamics.robot.robots import load_robot, robot_of_description
@@ -106,7 +107,7 @@ def make(directory: Path, made: Iterable[Recording]) -> None:
 
 
 def outcomes_of(directory: Path) -> list[Outcome]:
-    """Of a set; prints those that aren't right."""
+    """Of a set, without recordings that reading refuses; prints those that aren't right."""
     outcomes = []
     for name, truth in json.loads((directory / "truth.json").read_text(encoding="utf-8")).items():
         given = truth["robot"]
@@ -118,7 +119,12 @@ def outcomes_of(directory: Path) -> list[Outcome]:
             Mistake(m["kind"], tuple(m["joints"]), m["value"], tuple(m["alike"]))
             for m in truth["mistakes"]
         )
-        outcome = Outcome(name, mistakes, _named(evaluate(directory / f"{name}.csv", robot)))
+        try:
+            found = evaluate(directory / f"{name}.csv", robot)
+        except BagError as error:  # stamps in ms: reading refuses them, so no cause is named
+            print(f"{'refused':11} {name}: {error}", flush=True)
+            continue
+        outcome = Outcome(name, mistakes, _named(found))
         outcomes.append(outcome)
         if outcome.verdict != "right":
             print(f"{outcome.verdict:11} {name}: {_short(outcome)}", flush=True)
