@@ -15,7 +15,7 @@ namespace inverse_dynamics_tools {
 inline int isAnything(PyObject* /*object*/) { return 1; }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): the name of a class takes none
-/// Anything; `annotation` is its type in signatures. Whoever takes it checks it.
+/// Anything; `annotation` is its type in signatures. The callee checks it.
 #define INVERSE_DYNAMICS_TOOLS_OBJECT(Name, annotation)   \
   namespace inverse_dynamics_tools {                      \
   class Name : public pybind11::object {                  \

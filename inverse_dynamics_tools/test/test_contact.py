@@ -341,7 +341,7 @@ def test_the_command_writes_table_figure_and_series(ids, tmp_path, recording, ro
     fails(ids(*command), "found: exists", "--overwrite")
     code, out, err = ids(*command, "--overwrite", "--no-figures", "--json")
     assert (code, err) == (0, "")
-    document = {"schema": 2, "verb": "contact", "written": ["found"], "result": summary}
+    document = {"schema": 3, "verb": "contact", "written": ["found"], "result": summary}
     assert json.loads(out) == document
     assert not (tmp_path / "found" / "contacts.png").exists()
 

@@ -40,7 +40,7 @@ def found(ids, tmp_path):
         assert (code, err) == (0, "")
         document = json.loads(out, parse_constant=pytest.fail)
         assert list(document) == ["schema", "verb", "written", "result"]
-        assert (document["schema"], document["verb"]) == (2, arguments[0])
+        assert (document["schema"], document["verb"]) == (3, arguments[0])
         assert document["written"] == [str(path) for path in written]
         assert all((tmp_path / path).exists() for path in written)
         assert set(document["result"]) - more == set(re.findall(r"`(\w+)`", DOCUMENTED[row]))

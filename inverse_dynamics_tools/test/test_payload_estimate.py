@@ -174,7 +174,7 @@ def test_the_verb_writes_yaml_json_and_figure(ids, recording):
     code, out, err = ids(*again, "--overwrite", "--no-figures", "--json")
     assert (code, err) == (0, "")
     written = ["payload.yaml", "payload.json"]
-    document = {"schema": 2, "verb": "payload", "written": written, "result": figures}
+    document = {"schema": 3, "verb": "payload", "written": written, "result": figures}
     assert json.loads(out) == document
 
 

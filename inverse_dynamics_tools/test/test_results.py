@@ -191,8 +191,8 @@ def test_an_incomplete_result_is_an_error(tmp_path, evaluation, file):
 def test_a_result_of_another_version_is_an_error(tmp_path, evaluation):
     write_evaluation(evaluation, tmp_path / "result", figures=())
     file = tmp_path / "result/evaluation.json"
-    file.write_text(file.read_text().replace('"schema": 3', '"schema": 7'))
-    with pytest.raises(OutputError, match="expected schema 3, got 7; evaluate again"):
+    file.write_text(file.read_text().replace('"schema": 4', '"schema": 7'))
+    with pytest.raises(OutputError, match="expected schema 4, got 7; evaluate again"):
         read_evaluation(tmp_path / "result")
 
 

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Storage
 
-SCHEMA = 3
+SCHEMA = 4
 MARK = "evaluation.json"
 MARK_OF_SEVERAL = "recordings.json"  # see many_evaluations.py
 

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from pathlib import Path
 
-SCHEMA = 2  # of the object; docs/command_line.md
+SCHEMA = 3  # of the object; docs/command_line.md
 
 
 def print_json(verb: str, result: Mapping[str, Any], written: Iterable[Path] = ()) -> None:
