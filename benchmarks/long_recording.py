@@ -4,8 +4,6 @@
 
 python3 benchmarks/long_recording.py                        1e6 messages, sqlite3 and MCAP
 python3 benchmarks/long_recording.py --messages 10000000    needs 8 GB of disk, and as much for results
-python3 benchmarks/long_recording.py --update docs/speed.md
-    the table of a page too, between `<!-- long_recording.py -->` and `<!-- long_recording.py: end -->`
 
 The recordings, of a Panda at 1 kHz with seven joints, are made here. CPU is user and system time of
 the process less that on a recording of 27 s, per message; memory is the most anonymous memory, as
@@ -103,23 +101,10 @@ def row(storage: str, messages: int, of_files: list[str]) -> str:
     return f"| {storage} | {' | '.join([*cells, *of_files])} |\n"
 
 
-def update(page: Path, table: str) -> None:
-    """Put the table between the marks of a page."""
-    text, parts = re.subn(
-        r"(?s)(<!-- long_recording.py -->\n).*?(<!-- long_recording.py: end -->)",
-        lambda marks: f"{marks[1]}{table}{marks[2]}",
-        page.read_text(encoding="utf-8"),
-    )
-    if parts != 1:
-        sys.exit(f"{page}: {parts} parts between the marks of long_recording.py; expected one")
-    page.write_text(text, encoding="utf-8")
-
-
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description="CPU and memory of ids on long recordings")
     parser.add_argument("--messages", type=int, default=1_000_000)
-    parser.add_argument("--update", type=Path, metavar="PAGE")
     arguments = parser.parse_args()
     table = (
         f"| {arguments.messages} messages | without figures [µs] | [MB] | with its PNG [µs] | [MB] "
@@ -129,8 +114,6 @@ def main() -> None:
     for storage, times in of_files().items():
         table += row(storage, arguments.messages, times)
     print(table, end="")
-    if arguments.update:
-        update(arguments.update, table)
 
 
 if __name__ == "__main__":
