@@ -21,3 +21,24 @@ function(chain_dynamics_export_own_symbols target)
   target_link_options(${target} PRIVATE LINKER:--version-script=${script})
   set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${script})
 endfunction()
+
+# chain_dynamics_add_library([<further sources>...])
+#
+# The shared library ${PROJECT_NAME} of src/*.cpp, installed and exported with the headers below include/. A macro,
+# since ament keeps what a package exports in the variables of its CMakeLists.txt.
+macro(chain_dynamics_add_library)
+  file(GLOB sources CONFIGURE_DEPENDS src/*.cpp ${ARGN})
+  add_library(${PROJECT_NAME} SHARED ${sources})
+  target_compile_features(${PROJECT_NAME} PUBLIC cxx_std_17)
+  chain_dynamics_export_own_symbols(${PROJECT_NAME})
+  target_include_directories(${PROJECT_NAME} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:include>)
+  install(DIRECTORY include/ DESTINATION include)
+  install(TARGETS ${PROJECT_NAME} EXPORT export_${PROJECT_NAME}
+    ARCHIVE DESTINATION lib LIBRARY DESTINATION lib RUNTIME DESTINATION bin)
+  ament_export_targets(export_${PROJECT_NAME} HAS_LIBRARY_TARGET)
+endmacro()
+
+# From 0.9 on yaml-cpp deprecates the target without a namespace, the only one before 0.8.
+set(chain_dynamics_yaml_cpp $<IF:$<TARGET_EXISTS:yaml-cpp::yaml-cpp>,yaml-cpp::yaml-cpp,yaml-cpp>)
