@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which causes `ids evaluate` names for recordings whose mistakes are known (known_mistakes.py).
 
-    ./scripts/causes_study                       # prints what is wrong, and the table
-    ./scripts/causes_study --seed 7 --keep DIR   # another set, left in DIR; or the one that is there
-    ./scripts/causes_study --write               # replaces the table in docs/why_dont_my_torques_match.md
+    ./scripts/study causes                       # prints what is wrong, and the table
+    ./scripts/study causes --seed 7 --keep DIR   # another set, left in DIR
+    ./scripts/study causes --write               # replaces the table in docs/why_dont_my_torques_match.md
 
 Right: each mistake is named, with its joints, alone or together with a rival that the recording can't tell
 from it. Missed: nothing or friction alone is named, or one mistake of two. Wrong: any other cause, without the right
@@ -13,34 +13,32 @@ one. Undecided: nothing is named where two mistakes were made, which is as good 
 from __future__ import annotations
 
 import argparse
-import json
-import os
-import sys
 import tempfile
 from collections import Counter
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from described_arms import ARMS
-from known_mistakes import Mistake, Recording, real_recordings, recordings
+from known_mistakes import Mistake, real_recordings, recordings
+from studies import replace_in_page, table
 
 from inverse_dynamics import evaluate
+from inverse_dynamics.data.public_recordings import data_directory
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.evaluation.causes.compare import Cause
 from inverse_dynamics.evaluation.effort import DATA
-from inverse_dynamics.robot.robots import load_robot, robot_of_description
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from known_mistakes import Recording
+
     from inverse_dynamics.evaluation.evaluation import Evaluation
 
-PAGE = Path(__file__).parent.parent / "docs" / "why_dont_my_torques_match.md"
-BEGIN, END = "<!-- scripts/causes_study: begin -->", "<!-- scripts/causes_study: end -->"
-SEED, EACH = 201, 5
+WHEELS = Path("out/wheels")  # of descriptions
+EACH = 5  # recordings of each kind
 MOST_ANGLE = 20.0  # degrees, of a direction of gravity
 MOST_RATIO = 1.25  # of a scale
 
@@ -55,10 +53,7 @@ class Outcome:
 
     @property
     def verdict(self) -> str:
-        """right, missed, undecided, wrong, false alarm.
-
-        Undecided: nothing is named where two mistakes were made, which is as good as both.
-        """
+        """right, missed, undecided, wrong, false alarm."""
         accused = [cause for cause in self.named if cause.kind != "friction"]
         if not self.mistakes:
             return "false alarm" if accused else "right"
@@ -73,6 +68,11 @@ class Outcome:
     def kinds(self) -> str:
         """Those of the mistakes."""
         return " and ".join(mistake.kind for mistake in self.mistakes) or "none"
+
+    def __str__(self) -> str:
+        told = "; ".join(f"{c.kind} ({' '.join(c.joints)}) {c.text}" for c in self.named)
+        truth = [f"{m.kind} {' '.join(m.joints)} {m.value or ''}".strip() for m in self.mistakes]
+        return f"{' and '.join(truth) or 'none'} is called: {told or 'nothing'}"
 
 
 def _means(cause: Cause, mistake: Mistake) -> bool:
@@ -93,41 +93,19 @@ def _means(cause: Cause, mistake: Mistake) -> bool:
     return True
 
 
-def make(directory: Path, made: Iterable[Recording]) -> None:
-    """Writes a set: recordings, descriptions, truth.json."""
-    truth = {}
-    for recording in made:
-        recording.write(directory)
-        arm = recording.draft.arm
-        truth[recording.name] = {
-            "robot": recording.robot or {"root": arm.root, "tip": arm.tip},
-            "mistakes": [asdict(mistake) for mistake in recording.mistakes],
-        }
-    (directory / "truth.json").write_text(json.dumps(truth, indent=1), encoding="utf-8")
-
-
-def outcomes_of(directory: Path) -> list[Outcome]:
-    """Of a set, without recordings that reading refuses; prints those that aren't right."""
+def outcomes_of(made: Iterable[Recording], directory: Path) -> list[Outcome]:
+    """Of recordings that are written to a directory, if reading accepts them; prints those that aren't right."""
     outcomes = []
-    for name, truth in json.loads((directory / "truth.json").read_text(encoding="utf-8")).items():
-        given = truth["robot"]
-        if isinstance(given, str):
-            robot = load_robot(given)
-        else:
-            robot = replace(robot_of_description(directory / f"{name}.urdf"), **given)
-        mistakes = tuple(
-            Mistake(m["kind"], tuple(m["joints"]), m["value"], tuple(m["alike"]))
-            for m in truth["mistakes"]
-        )
+    for recording in made:
+        bag, robot = recording.write(directory)
         try:
-            found = evaluate(directory / f"{name}.csv", robot)
+            named = _named(evaluate(bag, robot))
         except BagError as error:  # stamps in ms: reading refuses them, so no cause is named
-            print(f"{'refused':11} {name}: {error}", flush=True)
+            print(f"{'refused':11} {recording.name}: {error}", flush=True)
             continue
-        outcome = Outcome(name, mistakes, _named(found))
-        outcomes.append(outcome)
-        if outcome.verdict != "right":
-            print(f"{outcome.verdict:11} {name}: {_short(outcome)}", flush=True)
+        outcomes.append(Outcome(recording.name, recording.mistakes, named))
+        if outcomes[-1].verdict != "right":
+            print(f"{outcomes[-1].verdict:11} {recording.name}: {outcomes[-1]}", flush=True)
     return outcomes
 
 
@@ -143,22 +121,19 @@ def _named(result: Evaluation) -> tuple[Cause, ...]:
 
 def table_of(outcomes: Sequence[Outcome]) -> str:
     """One row for each kind of mistake: what was named, and what instead."""
-    rows = [
-        "| mistake | recordings | right | missed | undecided | wrong | named instead |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    for kinds in dict.fromkeys(outcome.kinds for outcome in outcomes):
-        rows.append(_row(kinds, [o for o in outcomes if o.kinds == kinds]))
-    return "\n".join([*rows, _row("all", outcomes)])
+    names = ("mistake", "recordings", "right", "missed", "undecided", "wrong", "named instead")
+    kinds = dict.fromkeys(outcome.kinds for outcome in outcomes)
+    rows = [_cells(kind, [o for o in outcomes if o.kinds == kind]) for kind in kinds]
+    return table(names, [*rows, _cells("all", outcomes)])
 
 
-def _row(kinds: str, members: Sequence[Outcome]) -> str:
+def _cells(kinds: str, members: Sequence[Outcome]) -> tuple[object, ...]:
     count = Counter(outcome.verdict for outcome in members)
     wrong = [o for o in members if o.verdict in ("wrong", "false alarm")]
     instead = Counter(" and ".join(sorted({c.kind for c in o.named})) for o in wrong)
     named = ", ".join(f"{name} ({n})" for name, n in instead.most_common())
-    cells = [kinds, len(members), *(count[v] for v in ("right", "missed", "undecided")), len(wrong)]
-    return f"| {' | '.join(map(str, cells))} | {named} |"
+    others = (count[verdict] for verdict in ("right", "missed", "undecided"))
+    return (kinds, len(members), *others, len(wrong), named)
 
 
 def shares_of(outcomes: Sequence[Outcome]) -> dict[str, float]:
@@ -174,41 +149,26 @@ def shares_of(outcomes: Sequence[Outcome]) -> dict[str, float]:
     }
 
 
-def _short(outcome: Outcome) -> str:
-    told = "; ".join(f"{c.kind} ({' '.join(c.joints)}) {c.text}" for c in outcome.named)
-    truth = [f"{m.kind} {' '.join(m.joints)} {m.value or ''}".strip() for m in outcome.mistakes]
-    return f"{' and '.join(truth) or 'none'} is called: {told or 'nothing'}"
-
-
-def main() -> int:
+def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--seed", type=int, default=SEED)
-    parser.add_argument("--each", type=int, default=EACH, help="recordings of each kind")
-    parser.add_argument("--arms", nargs="+", choices=ARMS, default=tuple(ARMS))
-    parser.add_argument("--wheels", type=Path, default=Path("out/wheels"), help="of descriptions")
-    parser.add_argument("--keep", type=Path, help="directory of the set; made if it isn't there")
+    parser.add_argument("--seed", type=int, default=201)
+    parser.add_argument("--keep", type=Path, help="directory for the set")
     parser.add_argument("--write", action="store_true", help="replace the table in docs")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         directory = arguments.keep or Path(temporary)
-        for needed in (arguments.wheels, directory):
+        for needed in (WHEELS, directory):
             needed.mkdir(parents=True, exist_ok=True)
-        if not (directory / "truth.json").exists():
-            simulated = recordings(arguments.seed, arguments.wheels, arguments.arms, arguments.each)
-            bags = Path(os.environ["IDS_DATA_DIR"]) / "bags"
-            make(directory, chain(simulated, real_recordings(bags, arguments.seed)))
-        outcomes = outcomes_of(directory)
+        simulated = recordings(arguments.seed, WHEELS, each=EACH)
+        real = real_recordings(data_directory() / "bags", arguments.seed)
+        outcomes = outcomes_of(chain(simulated, real), directory)
     shares = ", ".join(f"{name} {100 * share:.1f} %" for name, share in shares_of(outcomes).items())
-    table = f"{table_of(outcomes)}\n\nOf all: {shares}."
-    print(f"\n{table}")
+    text = f"{table_of(outcomes)}\n\nOf all: {shares}."
+    print(f"\n{text}")
     if arguments.write:
-        before, rest = PAGE.read_text(encoding="utf-8").split(BEGIN)
-        PAGE.write_text(
-            f"{before}{BEGIN}\n\n{table}\n\n{END}{rest.split(END)[1]}", encoding="utf-8"
-        )
-    return 0
+        replace_in_page("why_dont_my_torques_match.md", "causes_study", text)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

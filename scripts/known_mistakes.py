@@ -3,7 +3,7 @@
 
     for recording in recordings(seed=1, wheels=Path("out/wheels")):
         recording.mistakes          # what evaluate() ought to name
-        recording.write(directory)  # NAME.csv, and NAME.urdf where the arm is known by its description
+        evaluate(*recording.write(directory))
 
 Arms, motions, friction, noise, errors of the description and mistakes are drawn at random. Friction is as large as
 that of the identified UR10 and Panda: Coulomb friction, and viscous friction at 1 rad/s, of 1 to 5 % of a joint's
@@ -22,12 +22,14 @@ import numpy as np
 from described_arms import ARMS, GRAVITY, Arm, arm_of
 
 from inverse_dynamics import read_joint_log
+from inverse_dynamics.robot.robots import robot_of_description
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.robot.robots import Robot
 
 Random = np.random.Generator
 Make = Callable[["Draft", Random], "Mistake"]
@@ -90,20 +92,18 @@ class Recording:
     mistakes: tuple[Mistake, ...]  # none: nothing is wrong
     robot: str = ""  # run configuration; none: the draft's description
 
-    def write(self, directory: Path) -> None:
-        """NAME.csv, and NAME.urdf."""
-        d = self.draft
+    def write(self, directory: Path) -> tuple[Path, str | Robot]:
+        """Its CSV, and the robot: a name, or of the description beside the CSV."""
+        d, path = self.draft, directory / f"{self.name}.csv"
         columns = [f"{k}.{j}" for k in ("position", "velocity", "effort") for j in d.arm.joints]
-        np.savetxt(
-            directory / f"{self.name}.csv",
-            np.column_stack([d.time, d.q, d.qd, d.effort]),
-            fmt="%.7g",
-            delimiter=",",
-            header=",".join(["time", *columns]),
-            comments="",
-        )
-        if not self.robot:
-            (directory / f"{self.name}.urdf").write_text(d.description, encoding="utf-8")
+        samples = np.column_stack([d.time, d.q, d.qd, d.effort])
+        header = ",".join(["time", *columns])
+        np.savetxt(path, samples, fmt="%.7g", delimiter=",", header=header, comments="")
+        if self.robot:
+            return path, self.robot
+        path.with_suffix(".urdf").write_text(d.description, encoding="utf-8")
+        robot = robot_of_description(path.with_suffix(".urdf"))
+        return path, replace(robot, root=d.arm.root, tip=d.arm.tip)
 
 
 def motion(arm: Arm, random: Random, fast: bool) -> tuple[Floats, Floats, Floats, Floats]:

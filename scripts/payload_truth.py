@@ -37,12 +37,7 @@ if TYPE_CHECKING:
 
 SECONDS = 4.0
 STEP = 2.0  # s between the beginnings of windows
-MEMORY = 1.0  # s; covariances of residuals that are further apart aren't told from zero
 EDGE = 0.3  # s at either end of the recording, where accelerations are poor
-
-_OFFSET = 0.3  # of a joint's residuals: what offsets differ by
-_RIDGE = 1e-3  # white noise beside the residuals', of their variance
-_STEP = 1e-4  # kg, m
 
 
 @dataclass(frozen=True)
@@ -191,66 +186,3 @@ def trials(arm: Arm, mass: float, count: int, seed: int = 1) -> Figures:
         ratio_of_center=float(np.median(ratios[1:])),
         trials=count,
     )
-
-
-# ---- what can be reached --------------------------------------------------------------------------
-
-
-def least_errors(arm: Arm, mass: float, windows: int = 40) -> tuple[str, str]:
-    """Least median errors of mass and center of mass that an unbiased estimator has, in words.
-
-    The bound of Cramer and Rao for mass, center of mass and an offset per joint, with the inertia about the center
-    known, in stationary Gaussian noise of the covariances that the residuals have.
-    """
-    random = np.random.default_rng(2)
-    period = float(np.median(np.diff(arm.windows[0].time)))
-    count = min(len(window.time) for window in arm.windows)
-    residuals = np.concatenate(arm.residuals)
-    covariance = _covariance(arm.residuals, count, MEMORY / period)
-    whitening = np.linalg.inv(np.linalg.cholesky(covariance))
-    masses, centers = [], []
-    for _ in range(windows):
-        k = int(random.integers(len(arm.windows)))
-        load = random_load(mass, random)
-        columns = _sensitivities(part(arm.windows[k], slice(count)), arm.solvers[k], load)
-        rows = whitening @ columns.reshape(-1, columns.shape[2])
-        known = np.zeros(rows.shape[1])
-        known[4:] = 1 / (_OFFSET * residuals.std(axis=0)) ** 2
-        variances = np.linalg.inv(rows.T @ rows + np.diag(known))[:4, :4]
-        draws = np.abs(random.multivariate_normal(np.zeros(4), variances, 500))
-        masses.append(draws[:, 0] / mass)
-        centers.append(np.linalg.norm(draws[:, 1:], axis=1))
-    return f"{100 * np.median(masses):.2g} %", f"{1e3 * np.median(centers):.2g} mm"
-
-
-def _covariance(windows: Sequence[Floats], count: int, memory: float) -> Floats:
-    """Of so many samples of all joints, one after the other; lags beyond a memory (samples) fade out."""
-    mean = np.concatenate(windows).mean(axis=0)
-    centered, n = [residuals[:count] - mean for residuals in windows], len(mean)
-    covariance = np.zeros((count, n, count, n))
-    for lag in range(count):
-        at_lag = sum(c[: count - lag].T @ c[lag:] for c in centered) / (count * len(centered))
-        at_lag *= np.exp(-0.5 * (lag / memory) ** 2)
-        for i in range(count - lag):
-            covariance[i, :, i + lag], covariance[i + lag, :, i] = at_lag, at_lag.T
-    flat = covariance.reshape(count * n, count * n)
-    return flat + _RIDGE * np.diag(np.diag(flat))
-
-
-def _sensitivities(samples: Samples, solver: Solver, load: dict[str, Any]) -> Floats:
-    """(N, n, 4 + n): of the torques to mass and center of mass, and to an offset of each joint."""
-
-    def change(mass: float, center: Floats) -> Floats:
-        changed = {
-            **load,
-            "mass": load["mass"] + mass,
-            "center_of_mass": load["center_of_mass"] + center,
-        }
-        return with_load(samples, solver, changed).measured
-
-    steps = _STEP * np.eye(3)
-    columns = [(change(_STEP, np.zeros(3)) - change(-_STEP, np.zeros(3))) / (2 * _STEP)]
-    columns += [(change(0.0, step) - change(0.0, -step)) / (2 * _STEP) for step in steps]
-    count, n = samples.q.shape
-    offsets = np.broadcast_to(np.eye(n), (count, n, n))
-    return np.concatenate([np.stack(columns, axis=2), offsets], axis=2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which causes are named for recordings with a known mistake: a short form of ./scripts/causes_study."""
+"""Which causes are named for recordings with a known mistake: a short form of `./scripts/study causes`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-from causes_study import make, outcomes_of, shares_of
+from causes_study import outcomes_of, shares_of
 from described_arms import OWN, arm_of
 from known_mistakes import real_recordings
 from known_mistakes import recordings as recordings_with_mistakes
@@ -21,8 +21,8 @@ MOST_WRONG, MOST_MISSED = 0.03, 0.05  # one of so few is 3 %; of the whole set 1
 @pytest.fixture(scope="module")
 def outcomes(tmp_path_factory):
     directory = tmp_path_factory.mktemp("set")
-    make(directory, recordings_with_mistakes(seed=12, wheels=directory, arms=OWN))
-    return outcomes_of(directory)
+    made = recordings_with_mistakes(seed=12, wheels=directory, arms=OWN)
+    return outcomes_of(made, directory)
 
 
 def test_no_wrong_cause_is_named(outcomes):
@@ -36,9 +36,8 @@ def test_an_arm_without_a_mistake_is_accused_of_none(outcomes):
 
 
 def test_real_arms_are_accused_of_nothing_but_friction(recordings, tmp_path):
-    made = real_recordings(recordings, seed=1)
-    make(tmp_path, (recording for recording in made if not recording.mistakes))
-    assert not [o.recording for o in outcomes_of(tmp_path) if o.verdict != "right"]
+    made = [made for made in real_recordings(recordings, seed=1) if not made.mistakes]
+    assert not [o.recording for o in outcomes_of(made, tmp_path) if o.verdict != "right"]
 
 
 def test_torques_of_an_arm_worked_by_hand(tmp_path):
