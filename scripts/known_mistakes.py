@@ -87,7 +87,6 @@ class Recording:
     """Samples and what is wrong with them."""
 
     name: str
-    arm: str
     draft: Draft
     mistakes: tuple[Mistake, ...]  # none: nothing is wrong
     robot: str = ""  # run configuration; none: the draft's description
@@ -118,11 +117,8 @@ def motion(arm: Arm, random: Random, fast: bool) -> tuple[Floats, Floats, Floats
     def harmonics(phase: Floats) -> tuple[Floats, Floats, Floats]:
         angle = phase[:, None, None] * k
         x, y = np.cos(angle), np.sin(angle)
-        return (
-            (a * x + b * y).sum(2),
-            ((b * x - a * y) * k).sum(2),
-            -((a * x + b * y) * k**2).sum(2),
-        )
+        values, slopes = a * x + b * y, b * x - a * y
+        return values.sum(2), (slopes * k).sum(2), -(values * k**2).sum(2)
 
     q, qd, _ = harmonics(np.linspace(0, 2 * np.pi, 400))
     size = amplitude / np.abs(q).max(axis=0)
@@ -162,14 +158,12 @@ def drafted(arm: Arm, random: Random, fast: bool, *before: Make) -> tuple[Draft,
     level = float(random.choice([0.0, 0.25, 0.5, 1.0]))
     draft.friction = friction_of(arm, random, level)
     mistakes = [make(draft, random) for make in before]
-    factors = 1 + random.choice([0.0, 0.03, 0.07]) * np.clip(
-        random.normal(size=len(arm.joints)), -2, 2
-    )
-    torques = arm.torques(q, qd, qdd, gravity=draft.gravity, payload=draft.payload, factors=factors)
+    size = random.choice([0.0, 0.03, 0.07])
+    factors = 1 + size * np.clip(random.normal(size=len(arm.joints)), -2, 2)
+    world = {"gravity": draft.gravity, "payload": draft.payload, "factors": factors}
+    torques = arm.torques(q, qd, qdd, **world)
     if draft.weightless:
-        torques = torques - arm.torques(
-            q, gravity=draft.gravity, payload=draft.payload, factors=factors
-        )
+        torques = torques - arm.torques(q, **world)
     effort = torques + draft.friction(draft, torques, random)
     span = np.maximum(np.ptp(effort, axis=0), 1e-3 * np.ptp(effort, axis=0).max())
     draft.effort = effort + span * random.choice([0.002, 0.01, 0.03]) * random.normal(size=q.shape)
@@ -208,9 +202,8 @@ def no_gravity(d: Draft, _: Random) -> Mistake:
 
 
 def _held(d: Draft, r: Random, center: Sequence[float]) -> Mistake:
-    mass = float(
-        r.uniform(0.15, 0.5) * d.arm.strength.max() / 9.81
-    )  # of the load that doubles it at 1 m
+    # a share of the load that doubles the strongest torque at 1 m
+    mass = float(r.uniform(0.15, 0.5) * d.arm.strength.max() / 9.81)
     d.payload = (mass, center)
     links = (f"mass of {joint}" for joint in d.arm.joints[-2:])  # hardly another thing
     return Mistake("payload", value=mass, alike=("tool", *links))
@@ -278,10 +271,8 @@ MOTION = "q qd qdd"
 
 def currents(d: Draft, r: Random) -> Mistake:
     """In A, without gains."""
-    d.scale(
-        "effort",
-        1 / (d.arm.effort / d.arm.effort.max() * 15 * r.uniform(0.7, 1.4, len(d.arm.joints)) + 1.7),
-    )
+    share = d.arm.effort / d.arm.effort.max()
+    d.scale("effort", 1 / (share * 15 * r.uniform(0.7, 1.4, len(share)) + 1.7))
     return Mistake("currents", alike=("effort_scale",))
 
 
@@ -451,16 +442,14 @@ def recordings(
             label = "+".join(make.__name__ for make in makers) or "clean"
             for _ in range(MOST_TRIES):
                 name = arms[int(random.integers(len(arms)))]
-                draft, mistakes = drafted(
-                    built[name], random, bool((number + k) % 2), *(m for m in makers if m in WORLD)
-                )
+                before = (make for make in makers if make in WORLD)
+                draft, mistakes = drafted(built[name], random, bool((number + k) % 2), *before)
                 clear = len(makers) < 2 or visible(draft)  # the first of two, too
                 mistakes += [make(draft, random) for make in makers if make not in WORLD]
                 clear &= not makers or makers[0] in SEEN or visible(draft)
                 if clear:
-                    yield Recording(
-                        f"{label}_{name}_{seed}_{number}_{k}", name, draft, tuple(mistakes)
-                    )
+                    title = f"{label}_{name}_{seed}_{number}_{k}"
+                    yield Recording(title, draft, tuple(mistakes))
                     break
 
 
@@ -481,16 +470,15 @@ def real_recordings(bags: Path, seed: int) -> Iterator[Recording]:
             for _ in range(MOST_TRIES):
                 rows = slice(int(begin * len(whole.q)), int(end * len(whole.q)))
                 draft = replace(whole, **{k: getattr(whole, k)[rows] for k in ("time", *_COLUMNS)})
-                draft.effort = draft.effort + noise * np.ptp(whole.effort, axis=0) * random.normal(
-                    size=draft.q.shape
-                )
+                white = random.normal(size=draft.q.shape)
+                draft.effort = draft.effort + noise * np.ptp(whole.effort, axis=0) * white
                 mistakes = [make(draft, random)] if make else []
                 draft.effort = draft.effort + _statics(draft)
                 if make is None or make in SEEN or visible(draft, before):
                     break
             label = make.__name__ if make else f"clean_{begin:g}_{end:g}_{noise:g}"
             for robot in (f"{name}_real", f"{name}_simulated"):
-                yield Recording(f"real_{label}_{robot}_{seed}", name, draft, tuple(mistakes), robot)
+                yield Recording(f"real_{label}_{robot}_{seed}", draft, tuple(mistakes), robot)
 
 
 _COLUMNS = ("q", "qd", "qdd", "effort")

@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-import argparse
 import io
-import os
 import re
 import shutil
 import subprocess
@@ -14,8 +12,10 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.data.public_recordings import data_directory
+
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from PIL.Image import Image
     from selenium.webdriver import Chrome
@@ -40,18 +40,11 @@ def make_report() -> None:
     """The page of a real UR10, from its own player."""
     from PIL import Image
 
-    data = os.environ.get("IDS_DATA_DIR")
-    if not data:
-        sys.exit(
-            "error: report: IDS_DATA_DIR isn't set; it names the directory with the recordings of `ids data`"
-        )
+    bag = data_directory() / "bags/ur10_exciting_trajectory"
     with tempfile.TemporaryDirectory() as scratch:
-        bag = Path(data) / "bags/ur10_exciting_trajectory"
         result, html = Path(scratch) / "Real UR10", Path(scratch) / "report.html"
-        _ids(
-            "evaluate", str(bag), "--robot", "ur10_real", "--figures", "none", "--out", str(result)
-        )
-        _ids("report", str(result), "--title", "Real UR10", "--out", str(html))
+        _ids("evaluate", bag, "--robot", "ur10_real", "--figures", "none", "--out", result)
+        _ids("report", result, "--title", "Real UR10", "--out", html)
         frames = list(_frames(html, Path(scratch) / "profile"))
     colours = frames[len(frames) // 2].quantize(96)
     frames = [frame.quantize(palette=colours, dither=Image.Dither.NONE) for frame in frames]
@@ -91,19 +84,12 @@ def _frames(html: Path, profile: Path) -> Iterator[Image]:
 def _browser(profile: Path) -> Chrome:
     from selenium import webdriver
 
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    driver = shutil.which("chromedriver")
-    if not (chromium and driver):
-        sys.exit(
-            "error: report: no Chromium here; ./scripts/setup installs chromium and chromium-driver"
-        )
     options = webdriver.ChromeOptions()
-    options.binary_location = chromium
+    options.binary_location = shutil.which("chromium")
     for flag in (*FLAGS, f"--window-size={WIDTH},{HEIGHT}", f"--user-data-dir={profile}"):
         options.add_argument(flag)
-    return webdriver.Chrome(
-        options=options, service=webdriver.ChromeService(executable_path=driver)
-    )
+    service = webdriver.ChromeService(executable_path=shutil.which("chromedriver"))
+    return webdriver.Chrome(options=options, service=service)
 
 
 # ---- The page of mistakes --------------------------------------------------------------------------------------------
@@ -116,9 +102,9 @@ def make_why() -> None:
     for file in re.finditer(r"`(\w+\.xml)`:\n\n```xml\n(.*?)```", page, re.DOTALL):
         (ROOT / file[1]).write_text(file[2])  # the page's commands read it from here
     for block in re.finditer(r"^```(bash|python)\n(.*?)^```", page, re.MULTILINE | re.DOTALL):
-        command = {"bash": ["bash", "-euo", "pipefail", "-c"], "python": [sys.executable, "-c"]}[
-            block[1]
-        ]
+        command = (
+            ["bash", "-euo", "pipefail", "-c"] if block[1] == "bash" else [sys.executable, "-c"]
+        )
         code = block[2].replace("ids evaluate ", "ids evaluate --figures none ")
         subprocess.run([*command, code], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     (ROOT / "payload.xml").unlink(missing_ok=True)
@@ -127,27 +113,9 @@ def make_why() -> None:
     )
 
 
-def _ids(*arguments: str) -> None:
+def _ids(*arguments: str | Path) -> None:
     subprocess.run(["ids", *arguments], check=True, stdout=subprocess.DEVNULL)
 
 
-MAKE: dict[str, Callable[[], None]] = {"report": make_report, "why": make_why}
-
-
-def main() -> None:
-    """Make pictures, one after the other."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument(
-        "names", nargs="*", metavar="NAME", help=f"of {', '.join(MAKE)}; all by default"
-    )
-    given = parser.parse_args()
-    unknown = set(given.names) - set(MAKE)
-    if unknown:
-        parser.error(f"unknown: {', '.join(sorted(unknown))}; known: {', '.join(MAKE)}")
-    for name in given.names or MAKE:
-        print(f"==> {name}", flush=True)
-        MAKE[name]()
-
-
 if __name__ == "__main__":
-    main()
+    {"report": make_report, "why": make_why}[sys.argv[1]]()
