@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a wheel must be, as ./scripts/wheel checks it.
 
-python check_wheel.py --megabytes 15 inverse_dynamics-*.whl   # the file
-python check_wheel.py --installed --out DIR                   # installed: version, ids demo
-python check_wheel.py --plugin PACKAGE/CLASS                  # a solver that another wheel brings
+python check_wheel.py file inverse_dynamics-*.whl     # size, contents, licences
+python check_wheel.py installed DIR                   # version, ids demo into the directory
+python check_wheel.py plugin PACKAGE/CLASS            # a solver that another wheel brings
 """
 
 from __future__ import annotations
 
-import argparse
 import re
 import subprocess
 import sys
@@ -16,6 +15,7 @@ from pathlib import Path
 from zipfile import ZipFile
 
 ROOT = Path(__file__).resolve().parents[1]
+MOST_MEGABYTES = 15.0  # of a wheel, without its dependencies
 
 # What a user finds inside, below the module's directory.
 NEEDED = (
@@ -32,12 +32,12 @@ NEEDED = (
 )
 
 
-def faults_of_file(wheel: Path, megabytes: float) -> list[str]:
+def faults_of_file(wheel: Path) -> list[str]:
     """What is wrong with a wheel, in words."""
     faults = []
     size = wheel.stat().st_size / 1e6
-    if size > megabytes:
-        faults.append(f"{size:.1f} MB, expected at most {megabytes:g} MB")
+    if size > MOST_MEGABYTES:
+        faults.append(f"{size:.1f} MB, expected at most {MOST_MEGABYTES:g} MB")
     with ZipFile(wheel) as archive:
         names = archive.namelist()
         notices = [n for n in names if n.endswith("/licenses/licenses/THIRD_PARTY.md")]
@@ -65,17 +65,13 @@ def bundled_libraries(names: list[str]) -> set[str]:
 def faults_of_installation(out: Path) -> list[str]:
     """What is wrong with the installed package, in words."""
     faults = []
-    version = re.search(
-        "<version>(.*)</version>", (ROOT / "inverse_dynamics_tools/package.xml").read_text()
-    )
-    told = subprocess.run(
-        [Path(sys.executable).with_name("ids"), "--version"], capture_output=True, text=True
-    ).stdout.split()
+    ids = Path(sys.executable).with_name("ids")
+    manifest = (ROOT / "inverse_dynamics_tools/package.xml").read_text()
+    version = re.search("<version>(.*)</version>", manifest)
+    told = subprocess.run([ids, "--version"], capture_output=True, text=True).stdout.split()
     if version is None or told != ["ids", version[1]]:
         faults.append(f"ids --version says {' '.join(told)}")
-    demo = subprocess.run(
-        [Path(sys.executable).with_name("ids"), "demo", "--out", out, "--overwrite"]
-    )
+    demo = subprocess.run([ids, "demo", "--out", out, "--overwrite"])
     if demo.returncode != 0 or not (out / "report.html").is_file():
         faults.append(f"ids demo: exit status {demo.returncode}")
     return faults
@@ -95,28 +91,18 @@ def faults_of_plugin(name: str) -> list[str]:
     return [] if abs(torque - expected) < 1e-12 else [f"{torque} N m, expected {expected}"]
 
 
-def main() -> int:
+def main(what: str, argument: str) -> int:
     """Print what is wrong; give the exit status."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("wheels", nargs="*", type=Path)
-    parser.add_argument("--megabytes", type=float, default=15.0)
-    parser.add_argument("--installed", action="store_true")
-    parser.add_argument("--out", type=Path, default=Path("demo"))
-    parser.add_argument("--plugin")
-    options = parser.parse_args()
-    faults = [
-        f"{wheel.name}: {fault}"
-        for wheel in options.wheels
-        for fault in faults_of_file(wheel, options.megabytes)
-    ]
-    if options.installed:
-        faults += faults_of_installation(options.out)
-    if options.plugin:
-        faults += faults_of_plugin(options.plugin)
+    if what == "file":
+        faults = faults_of_file(Path(argument))
+    elif what == "installed":
+        faults = faults_of_installation(Path(argument))
+    else:
+        faults = faults_of_plugin(argument)
     for fault in faults:
         print(f"error: {fault}", file=sys.stderr)
     return 1 if faults else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(*sys.argv[1:]))

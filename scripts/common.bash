@@ -31,10 +31,6 @@ user_packages=(
   inverse_dynamics_identification inverse_dynamics_tools
 )
 
-# What the command line works without, so that a first build is short: a plain ./scripts/build, and
-# ./scripts/demo, leave it out.
-optional_packages=(inverse_dynamics_benchmarks pinocchio_inverse_dynamics_solver)
-
 # Debian and Ubuntu packages, in groups.
 apt_packages=(
   # Fetching, compiling (make: a plain `colcon build` of a user's workspace), checking.

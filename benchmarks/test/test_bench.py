@@ -64,7 +64,7 @@ def benchmarks_installed():
 
 needs_benchmarks = pytest.mark.skipif(
     not benchmarks_installed(),
-    reason="without the benchmarks (./scripts/build --all; Debian: libbenchmark-dev)",
+    reason="without the benchmarks (./scripts/build; Debian: libbenchmark-dev)",
 )
 
 
