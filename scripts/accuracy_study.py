@@ -102,39 +102,49 @@ def points(rate: float, duration: float, frequency: float, random: Random) -> Mo
 # ---- what a robot records ------------------------------------------------------------------------
 
 
-def fine(motion: Motion, random: Random) -> Floats:
-    """Positions of a good encoder."""
-    return motion.q + 1e-6 * random.standard_normal(motion.q.shape)
-
-
-def white(motion: Motion, random: Random, deviation: float = 0.003) -> tuple[Floats, Floats]:
-    """Velocities with white noise [rad/s]."""
-    return fine(motion, random), motion.qd + deviation * random.standard_normal(motion.qd.shape)
-
-
-def little(motion: Motion, random: Random) -> tuple[Floats, Floats]:
-    """Velocities with a tenth of that noise."""
-    return white(motion, random, 0.0003)
+def white(motion: Motion, random: Random) -> tuple[Floats, Floats]:
+    """Positions of an encoder of 12 to 22 bits, velocities with white noise of their own."""
+    return encoded(motion, random.integers(12, 23)), motion.qd + noise(motion, random)
 
 
 def low_passed(motion: Motion, random: Random) -> tuple[Floats, Floats]:
-    """Noise below 40 Hz, or of all frequencies where the samples hold no more."""
-    noise = 0.01 * random.standard_normal(motion.qd.shape)
+    """Such positions; noise of velocities below 40 Hz, or of all frequencies where the samples hold no more."""
+    values = 3 * noise(motion, random)
     if motion.rate > 100:
-        noise = _core.low_pass(noise, motion.rate, 40.0, 1)
-    return fine(motion, random), motion.qd + noise
+        values = _core.low_pass(values, motion.rate, 40.0, 1)
+    return encoded(motion, random.integers(12, 23)), motion.qd + values
 
 
 def quantised(motion: Motion, random: Random) -> tuple[Floats, Floats]:
     """Velocities in steps of 0.005 rad/s."""
-    return fine(motion, random), 0.005 * np.round(motion.qd / 0.005)
+    return encoded(motion, 20), 0.005 * np.round(motion.qd / 0.005)
 
 
-def differentiated(motion: Motion, random: Random) -> tuple[Floats, Floats]:
-    """Differences of the recorded positions, in steps of 1e-5 rad, smoothed by a filter of 30 Hz."""
-    q = 1e-5 * np.round((motion.q + 3e-6 * random.standard_normal(motion.q.shape)) / 1e-5)
-    qd = np.gradient(q, 1 / motion.rate, axis=0)
-    return q, _core.low_pass(qd, motion.rate, 30.0, 1) if motion.rate > 100 else qd
+def differences(motion: Motion, random: Random) -> tuple[Floats, Floats]:
+    """Backward differences of an encoder of 14 to 20 bits, in half of them behind a filter.
+
+    The driver runs when the recording begins: its first difference is like the second.
+    """
+    bits = random.integers(14, 21)
+    tremor = 0.3 * 2 * np.pi / 2**bits * random.standard_normal(motion.q.shape)
+    q = encoded(replace(motion, q=motion.q + tremor), bits)
+    qd = np.diff(q, axis=0, prepend=2 * q[:1] - q[1:2]) * motion.rate
+    if random.integers(2):
+        keep = np.exp(-2 * np.pi * random.uniform(10, 60) / motion.rate)
+        for k in range(1, len(qd)):
+            qd[k] = keep * qd[k - 1] + (1 - keep) * qd[k]
+    return q, qd
+
+
+def encoded(motion: Motion, bits: int) -> Floats:
+    """Positions of an encoder."""
+    step = 2 * np.pi / 2**bits
+    return step * np.round(motion.q / step)
+
+
+def noise(motion: Motion, random: Random) -> Floats:
+    """White, of 3e-4 to 3e-2 rad/s."""
+    return 10 ** random.uniform(-3.5, -1.5) * random.standard_normal(motion.qd.shape)
 
 
 # ---- recordings with one event -------------------------------------------------------------------
@@ -224,31 +234,9 @@ RECORDED = {"spike": spike, "seam": seam, "restart": restart}
 MOST_SAMPLES = 30000  # of a recording with an event: 10 min at 50 Hz
 
 
-def coarse(motion: Motion, random: Random) -> tuple[Floats, Floats]:
-    """Positions of an encoder of 12 to 17 bits, velocities with noise of their own."""
-    step = 2 * np.pi / 2 ** random.integers(12, 18)
-    q = step * np.round(motion.q / step)
-    return q, motion.qd + 10 ** random.uniform(-3.5, -1.5) * random.standard_normal(q.shape)
-
-
-def differences(motion: Motion, random: Random) -> tuple[Floats, Floats]:
-    """Backward differences of an encoder of 14 to 20 bits, in half of them behind a filter.
-
-    The driver runs when the recording begins: its first difference is like the second.
-    """
-    step = 2 * np.pi / 2 ** random.integers(14, 21)
-    q = step * np.round(motion.q / step + 0.3 * random.standard_normal(motion.q.shape))
-    qd = np.diff(q, axis=0, prepend=2 * q[:1] - q[1:2]) * motion.rate
-    if random.integers(2):
-        keep = np.exp(-2 * np.pi * random.uniform(10, 60) / motion.rate)
-        for k in range(1, len(qd)):
-            qd[k] = keep * qd[k - 1] + (1 - keep) * qd[k]
-    return q, qd
-
-
 def recordings() -> Iterator[Recording]:
     """200 recordings of 2 to 7 joints, 3 s to 10 min, 50 Hz to 1 kHz; every second has an event."""
-    noises = (white, little, low_passed, quantised, differentiated, coarse, differences)
+    noises = (white, low_passed, quantised, differences)
     events = [*MOVED, *RECORDED]
     for number in range(200):
         random = np.random.default_rng(500000 + number)
