@@ -120,11 +120,14 @@ def _named(result: Evaluation) -> tuple[Cause, ...]:
 
 
 def table_of(outcomes: Sequence[Outcome]) -> str:
-    """One row for each kind of mistake: what was named, and what instead."""
+    """One row for each kind of mistake that isn't always named; one for the others, for none and for all."""
     names = ("mistake", "recordings", "right", "missed", "undecided", "wrong", "named instead")
-    kinds = dict.fromkeys(outcome.kinds for outcome in outcomes)
-    rows = [_cells(kind, [o for o in outcomes if o.kinds == kind]) for kind in kinds]
-    return table(names, [*rows, _cells("all", outcomes)])
+    poor = dict.fromkeys(o.kinds for o in outcomes if o.verdict != "right" and o.mistakes)
+    rows = {kind: [o for o in outcomes if o.kinds == kind] for kind in poor}
+    rows["others"] = [o for o in outcomes if o.mistakes and o.kinds not in poor]
+    rows["none"] = [o for o in outcomes if not o.mistakes]
+    rows["all"] = list(outcomes)
+    return table(names, [_cells(name, members) for name, members in rows.items()])
 
 
 def _cells(kinds: str, members: Sequence[Outcome]) -> tuple[object, ...]:
