@@ -34,13 +34,10 @@ TRIALS = 100
 LOADS = (
     ("panda", 1.0, 4.0, False, True),
     ("panda", 1.0, 4.0, True, False),
-    ("panda", 1.0, 6.0, False, False),
     ("panda", 1.0, 8.0, False, True),
-    ("panda", 1.0, 8.0, True, True),
+    ("panda", 1.0, 8.0, True, False),
     ("ur10", 5.0, 4.0, False, True),
-    ("ur10", 5.0, 4.0, True, False),
     ("ur10", 5.0, 8.0, False, True),
-    ("ur10", 5.0, 8.0, True, False),
 )
 
 HEAD = """\
