@@ -17,8 +17,6 @@ from launch import LaunchDescription
 from launch.actions import (
     DeclareLaunchArgument,
     IncludeLaunchDescription,
-    LogInfo,
-    OpaqueFunction,
     RegisterEventHandler,
 )
 from launch.event_handlers import OnProcessExit
@@ -26,10 +24,8 @@ from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration
 from launch_ros.parameter_descriptions import ParameterValue
 
-from inverse_dynamics_ros.robots import SOURCES, robot_description
-
 if TYPE_CHECKING:
-    from launch import Action, LaunchContext
+    from launch import LaunchContext
     from launch.event_handlers import ProcessExited
 
 _ACCELERATIONS = {
@@ -248,31 +244,11 @@ def failing_with_its_node() -> RegisterEventHandler:
 
 def evaluate_robot(name: str) -> LaunchDescription:
     """Launch description that evaluates a recording of a robot with a run configuration."""
-    return LaunchDescription(
-        [
-            *bag_arguments(),
-            *sample_arguments(),
-            choice("description", "Where the robot description comes from", SOURCES, "auto"),
-            OpaqueFunction(function=_include_evaluation, args=[name]),
-        ]
-    )
-
-
-def _include_evaluation(context: LaunchContext, robot: str) -> list[Action]:
-    description, origin = robot_description(robot, text(context, "description"))
     own = [*bag_arguments(), *sample_arguments()]
-    arguments = {
-        **{argument.name: text(context, argument.name) for argument in own},
-        "robot": robot,
-        "robot_description": description,
-    }
-    return [
-        LogInfo(msg=f"{robot}; robot description: {origin}"),
-        IncludeLaunchDescription(
-            PythonLaunchDescriptionSource(launch_file("evaluate_solver.launch.py")),
-            launch_arguments=arguments.items(),
-        ),
-    ]
+    given = {argument.name: LaunchConfiguration(argument.name) for argument in own}
+    evaluation = PythonLaunchDescriptionSource(launch_file("evaluate_solver.launch.py"))
+    arguments = {**given, "robot": name}.items()
+    return LaunchDescription([*own, IncludeLaunchDescription(evaluation, launch_arguments=arguments)])
 
 
 def launch_file(name: str) -> str:

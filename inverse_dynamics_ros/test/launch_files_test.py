@@ -8,7 +8,6 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from ament_index_python.packages import get_package_share_directory
 from launch import LaunchDescription
 from launch_testing.actions import ReadyToTest
 from launch_testing.util import KeepAliveProc
@@ -165,7 +164,6 @@ class TestLaunchFiles(unittest.TestCase):
                     f"input_bag:={FOLDER / arm}",
                     f"output_bag:={out}",
                     "topic:=/tau",
-                    "description:=urdf",
                 )
                 self.assertEqual(run.returncode, 0, run.stdout)
                 self.assertIn(f"inverse_dynamics_robots/urdf/{arm}.urdf", run.stdout)
@@ -173,19 +171,6 @@ class TestLaunchFiles(unittest.TestCase):
                 self.assertEqual(len(topics["/tau"]), 400)
                 self.assertEqual(topics["/tau"][0][0].name, JOINTS[arm])
                 self.assertEqual(set(topics), {"/tau", "/tau_gt"})
-
-    def test_take_the_manufacturers_description_by_xacro(self):
-        try:
-            get_package_share_directory("ur_description")
-        except LookupError:
-            self.skipTest("ur_description is not installed")
-        out = FOLDER / "out_xacro"
-        run = launch(
-            "ur10_simulated.launch.py", f"input_bag:={FOLDER / 'ur10'}", f"output_bag:={out}"
-        )
-        self.assertEqual(run.returncode, 0, run.stdout)
-        self.assertIn("ur_description/urdf/ur.urdf.xacro, by xacro", run.stdout)
-        self.assertEqual(len(read_bag(out)["/torques"]), 400)
 
     def test_explain_their_arguments(self):
         arguments = {
@@ -205,7 +190,7 @@ class TestLaunchFiles(unittest.TestCase):
                 "contacts_file",
                 "container",
             ],
-            **{name: ["input_bag", "output_bag", "topic", "description"] for name in ROBOTS},
+            **{name: ["input_bag", "output_bag", "topic"] for name in ROBOTS},
         }
         for name, expected in arguments.items():
             with self.subTest(name):
