@@ -248,7 +248,9 @@ def evaluate_robot(name: str) -> LaunchDescription:
     given = {argument.name: LaunchConfiguration(argument.name) for argument in own}
     evaluation = PythonLaunchDescriptionSource(launch_file("evaluate_solver.launch.py"))
     arguments = {**given, "robot": name}.items()
-    return LaunchDescription([*own, IncludeLaunchDescription(evaluation, launch_arguments=arguments)])
+    return LaunchDescription(
+        [*own, IncludeLaunchDescription(evaluation, launch_arguments=arguments)]
+    )
 
 
 def launch_file(name: str) -> str:
