@@ -45,6 +45,8 @@ bool isNotFinite(const std::string& word) {
 
 bool isNumber(const std::string& word) { return isDecimal(word) || isNotFinite(word); }
 
+constexpr const char* kSecondTime = "stands here for a second time";
+
 void throwModelError(const std::string& text) { throw ModelError(text); }
 
 std::string meant(const std::string& word, const std::vector<std::string>& known) {
@@ -72,9 +74,22 @@ std::optional<std::string> contentOf(const std::string& path, std::size_t most) 
 // ---------------------------------------------------------------------------------------------
 // A value
 
-LocatedValue::LocatedValue(std::shared_ptr<const Document> document, const Content& node,
-                           std::string key)
-    : document_(std::move(document)), node_(&node), key_(std::move(key)) {}
+LocatedValue::LocatedValue(std::shared_ptr<const Document> document, const Content& node)
+    : document_(std::move(document)), node_(&node) {}
+
+LocatedValue LocatedValue::inner(const Content& node, const std::string& key) const {
+  LocatedValue value = *this;
+  value.node_ = &node;
+  value.key_ = key;
+  return value;
+}
+
+LocatedValue LocatedValue::named(const std::string& item) const {
+  LocatedValue value = *this;
+  value.item_ = item;
+  value.key_.clear();
+  return value;
+}
 
 LocatedValue LocatedValue::ofText(const std::string& text, const std::string& file,
                                   const Throw& raise) {
@@ -82,7 +97,7 @@ LocatedValue LocatedValue::ofText(const std::string& text, const std::string& fi
   const auto document =
       std::make_shared<Document>(Document{file, raise ? raise : Throw(&throwModelError)});
   document->read(text.rfind(kByteOrderMark, 0) == 0 ? text.substr(3) : text);
-  return {document, document->root, ""};
+  return {document, document->root};
 }
 
 LocatedValue LocatedValue::ofFile(const std::string& path, const Throw& raise) {
@@ -109,7 +124,7 @@ const std::string* LocatedValue::plain() const {
 
 std::string LocatedValue::where() const {
   const std::string place = file() + ":" + std::to_string(node_->line);
-  return key_.empty() ? place : place + ": " + key_;
+  return place + (item_.empty() ? "" : ": " + item_) + (key_.empty() ? "" : ": " + key_);
 }
 
 std::string LocatedValue::shown() const {
@@ -173,6 +188,11 @@ std::string LocatedValue::text(const std::vector<std::string>& one_of) const {
   return value;
 }
 
+std::size_t LocatedValue::choice(const std::vector<std::string>& words) const {
+  return static_cast<std::size_t>(std::find(words.begin(), words.end(), text(words)) -
+                                  words.begin());
+}
+
 double LocatedValue::number() const {
   if (plain() == nullptr || !isNumber(*plain())) {
     fail("a number");
@@ -213,8 +233,18 @@ std::vector<LocatedValue> LocatedValue::entries(std::optional<std::size_t> lengt
   std::vector<LocatedValue> values;
   values.reserve(node_->parts.size());
   for (const Content& part : node_->parts) {
-    const std::string key = key_ + "[" + std::to_string(values.size()) + "]";
-    values.push_back(LocatedValue(document_, part, key));
+    values.push_back(inner(part, key_ + "[" + std::to_string(values.size()) + "]"));
+  }
+  return values;
+}
+
+std::vector<double> LocatedValue::numbers(std::size_t count) const {
+  if (!isList() || node_->parts.size() != count) {
+    fail(std::to_string(count) + " numbers");
+  }
+  std::vector<double> values;
+  for (const LocatedValue& entry : entries()) {
+    values.push_back(entry.number());
   }
   return values;
 }
@@ -233,28 +263,50 @@ LocatedMap::LocatedMap(const LocatedValue& value) : value_(value) {
   const std::vector<Content>& parts = value.node_->parts;
   for (std::size_t i = 0; i + 1 < parts.size(); i += 2) {
     if (parts[i].kind != Content::Kind::kScalar) {
-      LocatedValue(value.document_, parts[i], value.key_).fail("a text as a key");
+      value.inner(parts[i], value.key_).fail("a text as a key");
     }
     const std::string& name = parts[i].text;
     const std::string key = value.key_.empty() ? name : value.key_ + "." + name;
     if (!names.insert(name).second) {
-      LocatedValue(value.document_, parts[i], key).refuse("stands here for a second time");
+      value.inner(parts[i], key).refuse(kSecondTime);
     }
-    entries_.emplace_back(name, LocatedValue(value.document_, parts[i + 1], key));
+    entries_.emplace_back(name, value.inner(parts[i + 1], key));
   }
 }
 
 LocatedValue LocatedMap::required(const std::string& key) {
-  auto found = optional(key);
-  if (!found) {
-    std::vector<std::string> keys;
-    for (const auto& entry : entries_) {
-      keys.push_back(entry.first);
-    }
-    value_.refuse("the key " + key +
-                  " is missing; keys: " + (keys.empty() ? "none" : joined(keys)));
+  if (const auto found = optional(key)) {
+    return *found;
   }
-  return *found;
+  std::vector<std::string> keys;
+  for (const auto& [other, value] : entries_) {
+    if (other == key) {
+      value.fail("a value");
+    }
+    keys.push_back(other);
+  }
+  value_.refuse("the key " + key + " is missing; keys: " + (keys.empty() ? "none" : joined(keys)));
+}
+
+LocatedMap::Entries LocatedMap::leaves() const {
+  Entries leaves;
+  std::set<std::string> names;
+  for (const auto& [key, value] : entries_) {
+    if (value.isNull()) {
+      continue;
+    }
+    Entries found{{"", value}};
+    if (value.isMap()) {
+      found = value.map().leaves();
+    }
+    for (const auto& [name, leaf] : found) {
+      leaves.emplace_back(name.empty() ? key : key + "." + name, leaf);
+      if (!names.insert(leaves.back().first).second) {
+        leaf.refuse(kSecondTime);
+      }
+    }
+  }
+  return leaves;
 }
 
 std::optional<LocatedValue> LocatedMap::optional(const std::string& key) {

@@ -3,16 +3,15 @@
 #include "chain_dynamics/model_file.hpp"
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <cstdint>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "chain_dynamics/located_yaml.hpp"
 #include "joint_frame.hpp"
 #include "model_file_joint.hpp"
-#include "yaml_value.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -96,9 +95,9 @@ Model makeModel(const std::string& file, const std::string& name,
 // ---------------------------------------------------------------------------------------------
 // The file
 
-void verifyState(const YamlValue& value, double tolerance, const Model& model) {
+void verifyState(const LocatedValue& value, double tolerance, const Model& model) {
   const auto count = static_cast<std::size_t>(model.chain.jointCount());
-  YamlMap map(value);
+  LocatedMap map = value.map();
   const auto read = [&map, count](const std::string& key) {
     const std::vector<double> numbers = map.required(key).numbers(count);
     return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
@@ -108,7 +107,7 @@ void verifyState(const YamlValue& value, double tolerance, const Model& model) {
   const Eigen::VectorXd qd = read("qd");
   const Eigen::VectorXd qdd = read("qdd");
   const Eigen::VectorXd expected = read("torques");
-  map.rejectOtherKeys();
+  map.rejectOthers();
 
   Eigen::VectorXd tau(q.size());
   Eigen::VectorXd f(q.size());
@@ -120,35 +119,33 @@ void verifyState(const YamlValue& value, double tolerance, const Model& model) {
       std::ostringstream difference;
       difference << "one that is " << tau[j] - expected[j] << " off";
       throw ModelError(value.where(),
-                       value.what() + ": torque of joint " +
-                           model.chain.joints()[static_cast<std::size_t>(j)].name,
+                       "torque of joint " + model.chain.joints()[static_cast<std::size_t>(j)].name,
                        "the model's torque", difference.str(),
-                       "a figure of the model or of this row is wrong");
+                       "a number of the model or of this row is wrong");
     }
   }
 }
 
-void verifyChecks(YamlMap map, const Model& model) {
-  const YamlValue tolerance = map.required("tolerance");
+void verifyChecks(LocatedMap map, const Model& model) {
+  const LocatedValue tolerance = map.required("tolerance");
   if (tolerance.number() <= 0) {
-    throw tolerance.error("a number > 0 [N m]");
+    tolerance.fail("a number > 0 [N m]");
   }
-  for (const YamlValue& state : map.required("states").list()) {
+  for (const LocatedValue& state : map.required("states").entries()) {
     verifyState(state, tolerance.number(), model);
   }
-  map.rejectOtherKeys();
+  map.rejectOthers();
 }
 
-int readSchema(const YamlValue& schema) {
-  const int number = schema.wholeNumber();
+int readSchema(const LocatedValue& schema) {
+  const std::int64_t number = schema.integer();
   if (number < 1 || number > kNewestSchema) {
-    throw schema.error("1 or " + std::to_string(kNewestSchema),
-                       "this program reads no other schema");
+    schema.fail("1 or " + std::to_string(kNewestSchema), "this program reads no other schema");
   }
-  return number;
+  return static_cast<int>(number);
 }
 
-Conventions readConventions(YamlMap& file, int schema) {
+Conventions readConventions(LocatedMap& file, int schema) {
   Conventions conventions{};
   conventions.schema = schema;
   file.required("units").choice({"SI"});
@@ -157,19 +154,19 @@ Conventions readConventions(YamlMap& file, int schema) {
   conventions.parameters = static_cast<Parameters>(
       file.required("parameters").choice({"about_origin", "about_center_of_mass"}));
   if (const auto levels = file.optional("levels")) {
-    YamlMap map(*levels);
+    LocatedMap map = levels->map();
     conventions.gains = true;
     conventions.parameters_level =
         static_cast<Level>(map.required("parameters").choice({"torque", "current"}));
     conventions.friction_level =
         static_cast<Level>(map.required("friction").choice({"torque", "current"}));
-    map.rejectOtherKeys();
+    map.rejectOthers();
   }
   return conventions;
 }
 
-Model readModel(const YamlValue& document) {
-  YamlMap file(document, false);
+Model readModel(const LocatedValue& document) {
+  LocatedMap file = document.map();
   const int schema = readSchema(file.required("schema"));
   const std::string name = file.required("name").text();
   const std::string source = file.required("source").text();
@@ -178,19 +175,19 @@ Model readModel(const YamlValue& document) {
   const Eigen::Vector3d gravity = readVector(file.required("gravity"));
   Transform<double> X_U_tip = Transform<double>::identity();
   if (const auto tip = file.optional("tip")) {
-    YamlMap map(*tip);
+    LocatedMap map = tip->map();
     X_U_tip = readPose(map);
-    map.rejectOtherKeys();
+    map.rejectOthers();
   }
   const std::vector<JointEntry> entries = readJoints(file.required("joints"), conventions);
   const auto checks = file.optional("checks");
-  file.rejectOtherKeys();
+  file.rejectOthers();
 
   Model model = makeModel(document.file(), name, entries, conventions, gravity, X_U_tip);
   model.source = source;
   model.validity = validity;
   if (checks) {
-    verifyChecks(YamlMap(*checks), model);
+    verifyChecks(checks->map(), model);
   }
   return model;
 }
@@ -198,21 +195,10 @@ Model readModel(const YamlValue& document) {
 }  // namespace
 
 Model modelFromYaml(const std::string& text, const std::string& where) {
-  return readModel(YamlValue::ofText(text, where));
+  return readModel(LocatedValue::ofText(text, where));
 }
 
-Model modelFromFile(const std::string& path) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) {
-    throw ModelError(path, "model file", "a file that can be read", file ? "a directory" : "none",
-                     "correct the path, or its permissions");
-  }
-  // a device may have no end
-  std::string text(YamlValue::kLongestText + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  return modelFromYaml(text, path);
-}
+Model modelFromFile(const std::string& path) { return readModel(LocatedValue::ofFile(path)); }
 
 }  // namespace v2
 }  // namespace chain_dynamics

@@ -18,17 +18,17 @@ struct Angle {
 };
 
 /// The key `name` [rad] or `name_quarter_turns` (right angles, without the rounding of pi / 2).
-Angle angle(YamlMap& map, const std::string& name) {
+Angle angle(LocatedMap& map, const std::string& name) {
   const auto quarter_turns = map.optional(name + "_quarter_turns");
   if (!quarter_turns) {
     const double value = map.required(name).number();
     return {std::sin(value), std::cos(value)};
   }
   if (const auto both = map.optional(name)) {
-    throw both->error("either this key or " + name + "_quarter_turns");
+    both->fail("either this key or " + name + "_quarter_turns");
   }
   constexpr double kSine[] = {0, 1, 0, -1};
-  const int turns = quarter_turns->wholeNumber() & 3;  // modulo 4, negative ones too
+  const std::int64_t turns = quarter_turns->integer() & 3;  // modulo 4, negative ones too
   return {kSine[turns], kSine[(turns + 1) & 3]};
 }
 
@@ -50,34 +50,34 @@ Transform<double> shift(double x, double y, double z) {
 
 }  // namespace
 
-Eigen::Vector3d readVector(const YamlValue& value) {
+Eigen::Vector3d readVector(const LocatedValue& value) {
   return Eigen::Vector3d(value.numbers(3).data());
 }
 
-JointGeometry readDH(YamlMap map, Geometry geometry) {
+JointGeometry readDH(LocatedMap map, Geometry geometry) {
   const double a = map.required("a").number();
   const double d = map.required("d").number();
   const auto X_alpha_a = turnAboutX(angle(map, "alpha")) * shift(a, 0, 0);
   const auto X_offset_d = turnAboutZ(angle(map, "offset")) * shift(0, 0, d);
-  map.rejectOtherKeys();
+  map.rejectOthers();
   if (geometry == Geometry::kModifiedDH) {
     return {X_alpha_a * X_offset_d, Transform<double>::identity()};
   }
   return {X_offset_d, X_alpha_a};
 }
 
-Transform<double> readPose(YamlMap& map) {
+Transform<double> readPose(LocatedMap& map) {
   const Eigen::Vector3d xyz = readVector(map.required("xyz"));
   return {rotationFromRollPitchYaw(readVector(map.required("rpy"))), xyz};
 }
 
-JointGeometry readPlacement(YamlMap map) {
+JointGeometry readPlacement(LocatedMap map) {
   const Transform<double> X = readPose(map);
-  const YamlValue axis = map.required("axis");
-  map.rejectOtherKeys();
+  const LocatedValue axis = map.required("axis");
+  map.rejectOthers();
   const Eigen::Vector3d direction = readVector(axis);
   if (direction.isZero(0)) {
-    throw axis.error("a direction", "the zero vector has none; for example [0, 0, 1]");
+    axis.fail("a direction", "the zero vector has none; for example [0, 0, 1]");
   }
   const Matrix3<double> R_UE = rotationFromZ(direction.stableNormalized());
   return {{X.R * R_UE, X.p}, {R_UE.transpose(), Eigen::Vector3d::Zero()}};

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "chain_dynamics/chain.hpp"
+#include "chain_dynamics/located_yaml.hpp"
 #include "chain_dynamics/model.hpp"
 #include "model_file_geometry.hpp"
-#include "yaml_value.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -34,8 +34,8 @@ struct Conventions {
 
 /// One joint of a file, with the link it moves. The file's link frame is U, the chain's is E.
 struct JointEntry {
-  std::string where;
-  Joint joint;                                             // placement: E in the previous link's U
+  std::string where;  // file, line and name, as error texts begin
+  Joint joint;        // placement: E in the previous link's U
   Transform<double> X_EU = Transform<double>::identity();  // differs from link to link
   std::vector<LinkParameters> own;                         // in U: one set, or none
   std::vector<LinkParameters> row;                         // in U: n links, or none
@@ -47,7 +47,7 @@ struct JointEntry {
 };
 
 /// The joints from root to tip; what one has of row, friction and so on, all have.
-std::vector<JointEntry> readJoints(const YamlValue& value, const Conventions& conventions);
+std::vector<JointEntry> readJoints(const LocatedValue& value, const Conventions& conventions);
 
 }  // namespace v2
 }  // namespace chain_dynamics

@@ -73,6 +73,26 @@ TEST(LocatedYaml, ErrorsNameFileLineKeyAndRemedy) {
             "a.yaml:3: a: stands here for a second time");
 }
 
+TEST(LocatedYaml, NamedValuesAreCalledThatInErrors) {
+  const LocatedValue joint =
+      mapOf("a: 1\njoints: [{name: elbow, mass: {value: x}}]\n").required("joints").entries()[0];
+  LocatedMap map = joint.named("joint elbow").map();
+  EXPECT_EQ(errorOf([&] { map.required("mass").map().required("value").number(); }),
+            "a.yaml:2: joint elbow: mass.value: expected a number, got 'x'");
+  EXPECT_EQ(errorOf([&] { map.required("limits"); }),
+            "a.yaml:2: joint elbow: the key limits is missing; keys: name, mass");
+}
+
+TEST(LocatedYaml, LeavesHaveDottedNames) {
+  const auto leaves = mapOf("a: {b: {c: 1, d: [2]}, e: ~}\nf.g: x\n").leaves();
+  ASSERT_EQ(leaves.size(), 3U);
+  EXPECT_EQ(leaves[0].first, "a.b.c");
+  EXPECT_EQ(leaves[1].second.entries()[0].integer(), 2);
+  EXPECT_EQ(leaves[2].first, "f.g");
+  EXPECT_EQ(errorOf([] { mapOf("a: {b: 1}\na.b: 2\n").leaves(); }),
+            "a.yaml:2: a.b: stands here for a second time");
+}
+
 TEST(LocatedYaml, OneDocumentOfPlainYaml) {
   EXPECT_EQ(errorOf([] { mapOf("a: 1\n---\nb: 2\n"); }),
             "a.yaml:2: isn't YAML: expected one document, got another one");

@@ -46,7 +46,7 @@ TEST(ModelFile, DocumentedFileIsReadAndItsCheckRowsHold) {
 TEST(ModelFile, FailedCheckRowNamesRowAndJoint) {
   EXPECT_THAT(fileError(replaced(documentedFile(), "[10.9, 11.76]", "[10.9, 11.77]")),
               AllOf(StartsWith("arm.yaml:"),
-                    HasSubstr("checks: states[1]: torque of joint hinge: expected the model's "
+                    HasSubstr("checks.states[1]: torque of joint hinge: expected the model's "
                               "torque, got one that is -0.01 off")));
   EXPECT_THAT(fileError(replaced(documentedFile(), "1.5, fo: 0", "1.4, fo: 0")),
               HasSubstr("torque of joint cart"));

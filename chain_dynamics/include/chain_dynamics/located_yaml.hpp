@@ -62,14 +62,18 @@ class LocatedValue {
   /// @param one_of  those that are allowed; none: all.
   std::string text(const std::vector<std::string>& one_of = {}) const;
 
+  /// One of these words, as its place among them.
+  std::size_t choice(const std::vector<std::string>& words) const;
+
   double number() const;         ///< a finite one
   std::int64_t integer() const;  ///< of 64 bits
   bool truth() const;            ///< `true` or `false`
 
-  /// A list.
-  ///
-  /// @param length  of it, if only one will do.
+  /// A list; of this length, if one is given.
   std::vector<LocatedValue> entries(std::optional<std::size_t> length = std::nullopt) const;
+
+  /// A list of finite numbers.
+  std::vector<double> numbers(std::size_t count) const;
 
   /// Keys with values.
   LocatedMap map() const;
@@ -83,6 +87,10 @@ class LocatedValue {
   /// `file:line: key`, as error texts begin.
   std::string where() const;
 
+  /// The same value, which error texts call by this name: `joint elbow`. Keys inside of it follow:
+  /// `file:line: joint elbow: friction.fv`.
+  LocatedValue named(const std::string& item) const;
+
   const std::string& key() const { return key_; }
   const std::string& file() const;
 
@@ -92,12 +100,14 @@ class LocatedValue {
   struct Content;
   class Builder;
 
-  LocatedValue(std::shared_ptr<const Document> document, const Content& node, std::string key);
+  LocatedValue(std::shared_ptr<const Document> document, const Content& node);
+  LocatedValue inner(const Content& node, const std::string& key) const;
   const std::string* plain() const;
   std::string shown() const;
 
   std::shared_ptr<const Document> document_;
   const Content* node_;
+  std::string item_;  // begins the names of keys in error texts
   std::string key_;
 };
 
@@ -116,15 +126,21 @@ class LocatedMap {
   /// Where the map stands.
   const LocatedValue& value() const { return value_; }
 
+  using Entries = std::vector<std::pair<std::string, LocatedValue>>;
+
   /// All of it, in the order of the file. Their LocatedValue::key() is dotted: `outer.inner`.
-  const std::vector<std::pair<std::string, LocatedValue>>& entries() const { return entries_; }
+  const Entries& entries() const { return entries_; }
+
+  /// All values inside that are neither maps nor null, by dotted names below this map. Throws the
+  /// error of a name that stands twice: `{a: {b: 1}, a.b: 2}`.
+  Entries leaves() const;
 
  private:
   friend class LocatedValue;
   explicit LocatedMap(const LocatedValue& value);
 
   LocatedValue value_;
-  std::vector<std::pair<std::string, LocatedValue>> entries_;
+  Entries entries_;
   std::vector<std::string> asked_;
 };
 
