@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chain_dynamics/text.hpp>
-#include <cmath>
 #include <filesystem>
 #include <set>
 #include <utility>
@@ -22,7 +21,6 @@ namespace fs = std::filesystem;
 using chain_dynamics::joined;
 using chain_dynamics::LocatedMap;
 using chain_dynamics::LocatedValue;
-using inverse_dynamics_solver::ParameterValue;
 
 constexpr std::int64_t kSchema = 1;
 constexpr const char* kRobotsPackage = "inverse_dynamics_robots";
@@ -131,77 +129,6 @@ void readAccelerations(const std::optional<LocatedValue>& value, RunConfiguratio
 }
 
 // ---------------------------------------------------------------------------------------------
-// Parameters of solvers
-
-const char* kindOf(const LocatedValue::Scalar& scalar) {
-  return std::holds_alternative<bool>(scalar)          ? "true or false"
-         : std::holds_alternative<std::string>(scalar) ? "a text"
-                                                       : "a number";
-}
-
-template <class T>
-std::vector<T> allOf(const std::vector<LocatedValue::Scalar>& scalars) {
-  std::vector<T> values;
-  values.reserve(scalars.size());
-  for (const LocatedValue::Scalar& scalar : scalars) {
-    values.push_back(std::get<T>(scalar));
-  }
-  return values;
-}
-
-/// Entries of one kind; integers among doubles are doubles.
-ParameterValue listOf(const std::vector<LocatedValue>& entries) {
-  std::vector<LocatedValue::Scalar> scalars;
-  bool doubles = false;
-  for (const LocatedValue& entry : entries) {
-    scalars.push_back(entry.scalar());
-    if (kindOf(scalars.back()) != std::string(kindOf(scalars.front()))) {
-      entry.fail(std::string(kindOf(scalars.front())) + ", as the entries before it");
-    }
-    doubles = doubles || std::holds_alternative<double>(scalars.back());
-  }
-  if (doubles) {
-    std::vector<double> values;
-    values.reserve(entries.size());
-    for (const LocatedValue& entry : entries) {
-      values.push_back(entry.number());
-    }
-    return values;
-  }
-  if (scalars.empty() || std::holds_alternative<std::int64_t>(scalars.front())) {
-    return allOf<std::int64_t>(scalars);
-  }
-  return std::holds_alternative<bool>(scalars.front()) ? ParameterValue(allOf<bool>(scalars))
-                                                       : allOf<std::string>(scalars);
-}
-
-ParameterValue parameterOf(const LocatedValue& value) {
-  if (value.isList()) {
-    return listOf(value.entries());
-  }
-  return std::visit([](const auto& scalar) { return ParameterValue(scalar); }, value.scalar());
-}
-
-// Adds what isn't a map itself; `start` is the length of what is left out of names.
-void addLeaves(const LocatedMap& map, std::size_t start, SolverParameters& found) {
-  const std::vector<std::string> keys = {"root",     "tip",   "gravity",
-                                         "friction", "model", "robot_description"};
-  for (const auto& [key, value] : map.entries()) {
-    if (value.isMap()) {
-      addLeaves(value.map(), start, found);
-      continue;
-    }
-    const std::string name = value.key().substr(start);
-    if (std::find(keys.begin(), keys.end(), name) != keys.end()) {
-      value.refuse("is a key of its own: put " + name + " at the top of the run configuration");
-    }
-    if (!found.emplace(name, parameterOf(value)).second) {
-      value.refuse("stands here for a second time");
-    }
-  }
-}
-
-// ---------------------------------------------------------------------------------------------
 // Files
 
 void throwConfigurationError(const std::string& text) {
@@ -285,9 +212,15 @@ std::vector<std::string> robotNames() {
 }
 
 SolverParameters readSolverParameters(const LocatedMap& map) {
+  const std::vector<std::string> keys = {"root",     "tip",   "gravity",
+                                         "friction", "model", "robot_description"};
   SolverParameters found;
-  const std::string& key = map.value().key();
-  addLeaves(map, key.empty() ? 0 : key.size() + 1, found);
+  for (const auto& [name, value] : map.leaves()) {
+    if (std::find(keys.begin(), keys.end(), name) != keys.end()) {
+      value.refuse("is a key of its own: put " + name + " at the top of the run configuration");
+    }
+    found.emplace(name, inverse_dynamics_solver::parameterOf(value));
+  }
   return found;
 }
 

@@ -21,6 +21,12 @@
 #include <variant>
 #include <vector>
 
+namespace chain_dynamics {
+inline namespace v2 {
+class LocatedValue;
+}  // namespace v2
+}  // namespace chain_dynamics
+
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
@@ -94,16 +100,17 @@ class Parameters {
   Parameters(std::map<std::string, ParameterValue> values);  // NOLINT(google-explicit-constructor)
   Parameters(std::initializer_list<std::pair<const std::string, ParameterValue>> values);
 
-  /// The parameters of a YAML text. Nested maps become dotted names, null is absence; in a ROS 2
-  /// parameter file everything down to `ros__parameters` is left out of the names.
+  /// The parameters of a YAML text, read as in chain_dynamics/located_yaml.hpp. Nested maps become
+  /// dotted names, null is absence; in a ROS 2 parameter file everything down to `ros__parameters`
+  /// is left out of the names.
   ///
-  /// @param text   the YAML.
+  /// @param text   the YAML; empty: no parameter.
   /// @param where  what to call it in errors, for example its file name.
   /// Throws InvalidParameterValueException with line: not YAML, not a map, a name twice, mixed or
   /// nested list.
   static Parameters fromYaml(const std::string& text, const std::string& where = "YAML");
 
-  /// The same from a file. Throws Exception if it can't be read.
+  /// The same from a file. Throws also where it can't be read.
   static Parameters fromYamlFile(const std::string& path);
 
   /// The value, or nothing if the parameter is absent or not set.
@@ -143,6 +150,10 @@ class Parameters {
   bool shared_ = false;
   bool strict_ = false;
 };
+
+/// A plain value or a list of values of one type; integers among doubles are doubles. Throws what
+/// the value throws.
+ParameterValue parameterOf(const chain_dynamics::LocatedValue& value);
 
 /// For error texts: `bool`, `integer`, `double`, `string`, `list of bools`, ...
 std::string typeName(const ParameterValue& value);
