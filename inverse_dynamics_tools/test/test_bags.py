@@ -82,17 +82,6 @@ def test_two_topics_are_interleaved_and_told_apart(tmp_path, storage):
 
 
 @STORAGES
-def test_recordings_have_the_current_metadata_version_and_definitions(tmp_path, storage):
-    write_joint_logs(tmp_path / "bag", {TOPIC: joint_log()}, storage=storage)
-    metadata = (tmp_path / "bag/metadata.yaml").read_text()
-    assert "version: 9" in metadata
-    assert f"storage_identifier: {storage}" in metadata
-    assert "RIHS01_" in metadata
-    with Reader(tmp_path / "bag") as reader:
-        assert "float64[] effort" in reader.connections[0].msgdef.data
-
-
-@STORAGES
 def test_a_recording_by_rosbags_alone_is_read(tmp_path, storage):
     messages = [
         joint_state(["b", "a"], [k, -k], [2 * k, 0], [3 * k, 1], (k + 1) * 10**7) for k in range(5)
@@ -256,6 +245,3 @@ def test_unknown_storage_is_an_error(tmp_path):
 def test_storage_file_alone_is_a_recording(bag, tmp_path):
     copy = shutil.copy(storage_file(bag), tmp_path / "alone.db3")
     assert len(read_joint_log(copy)) == 50
-
-
-# Real recordings.

@@ -4,7 +4,6 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 from dataclasses import replace
 
 import pytest
@@ -310,15 +309,6 @@ def test_names_of_joints_are_whole_on_a_narrow_screen(ids, bag, monkeypatch):
     assert re.search(r"^ +shoulder_lift_joint +N m ", out, re.MULTILINE)
 
 
-def test_a_wrong_command_line_takes_one_line_that_names_the_help(ids):
-    _, _, err = ids("simulate", "--out", "bag")
-    assert err == (
-        "ids simulate: error: the following arguments are required: --robot; see "
-        "`ids simulate --help`\n"
-    )
-    assert ids("torque")[2].endswith("; see `ids --help`\n")
-
-
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
@@ -348,12 +338,6 @@ def test_what_is_like_something_known_is_proposed_and_the_right_help_named(
     assert code == 2
     assert err.count("\n") == 1
     assert expected is None or err.endswith(expected)
-
-
-def test_a_robot_that_is_like_a_known_one_is_proposed(ids):
-    fails(
-        ids("robots", "ur10real"), "robot 'ur10real': expected one of", "; did you mean ur10_real?"
-    )
 
 
 def test_without_a_verb_the_help_is_shown(ids):
@@ -392,17 +376,6 @@ def test_robots_shows_either_one_robot_or_solvers(ids):
     )
 
 
-def test_robots_lists_solvers(ids):
-    assert UR10 in ids("robots", "--plugins")[1].splitlines()
-
-
-@pytest.mark.parametrize("verb", [(), *((verb,) for verb in cli.VERBS)])
-def test_help_teaches_by_examples(ids, verb):
-    code, out, _ = ids(*verb, "--help")
-    assert code == 0
-    assert re.search(rf"^  ids {verb[0] if verb else ''}", out, re.MULTILINE)
-
-
 def test_help_is_a_verb_too(ids):
     assert ids("help") == ids("--help")
     assert ids("help", "robots") == ids("robots", "--help")
@@ -432,17 +405,6 @@ def test_a_verb_whose_package_is_not_built_names_the_remedy(ids, monkeypatch):
             f"as it is built only on request: {build}`source install/local_setup.bash`; see",
         )
     assert "bench" not in ids("--help")[1]
-
-
-def test_help_is_quick_to_load():
-    """No array, plot or recording library is loaded before it is needed."""
-    program = "import sys; from inverse_dynamics.cli import make_parser; make_parser(); " + (
-        "print({'numpy', 'matplotlib', 'rosbags', 'rich', 'mujoco'} & set(sys.modules))"
-    )
-    result = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
-    )
-    assert result.stdout.strip() == "set()"
 
 
 def test_the_installed_command_runs_without_a_virtual_environment(bag, tmp_path):

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from inverse_dynamics import cli
@@ -10,10 +12,11 @@ from inverse_dynamics.base.help_text import wrapped
 
 
 @pytest.mark.parametrize("verb", [(), *((verb,) for verb in cli.VERBS)])
-def test_no_line_is_longer_than_the_terminal(ids, monkeypatch, verb):
+def test_help_has_an_example_and_fits_the_terminal(ids, monkeypatch, verb):
     monkeypatch.setenv("COLUMNS", "80")
     code, out, _ = ids(*verb, "--help")
     assert code == 0
+    assert re.search(rf"^  ids {verb[0] if verb else ''}", out, re.MULTILINE)
     assert [line for line in out.splitlines() if len(line) > 80] == []
 
 

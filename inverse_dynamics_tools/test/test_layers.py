@@ -30,11 +30,11 @@ LEVEL = {part: level for level, parts in enumerate(LAYERS) for part in parts}
 IN_BASE = ("errors", "_core")  # modules whose names users know
 
 
-def modules(package: Path = PACKAGE) -> dict[str, Path]:
+def modules() -> dict[str, Path]:
     """Files by the dotted names of their modules, without the package's own."""
     files = {}
-    for file in sorted(package.rglob("*.py")):
-        parts = file.relative_to(package).with_suffix("").parts
+    for file in sorted(PACKAGE.rglob("*.py")):
+        parts = file.relative_to(PACKAGE).with_suffix("").parts
         files[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = file
     del files[""]  # the public names, from everywhere
     return files
@@ -64,21 +64,11 @@ def imports(source: str, known: set[str]) -> set[str]:
     return found
 
 
-def graph(package: Path = PACKAGE) -> dict[str, set[str]]:
+def graph() -> dict[str, set[str]]:
     """What each module imports."""
-    files = modules(package)
+    files = modules()
     known = {*files, "_core"}
     return {module: imports(file.read_text(), known) for module, file in files.items()}
-
-
-def upward(arrows: dict[str, set[str]]) -> list[str]:
-    """Imports that don't point down."""
-    return [
-        f"{module} imports {other}"
-        for module, others in arrows.items()
-        for other in sorted(others)
-        if part_of(module) != part_of(other) and LEVEL[part_of(module)] <= LEVEL[part_of(other)]
-    ]
 
 
 def test_every_module_belongs_to_a_part() -> None:
@@ -86,7 +76,13 @@ def test_every_module_belongs_to_a_part() -> None:
 
 
 def test_imports_point_down() -> None:
-    assert upward(graph()) == []
+    upward = [
+        f"{module} imports {other}"
+        for module, others in graph().items()
+        for other in sorted(others)
+        if part_of(module) != part_of(other) and LEVEL[part_of(module)] <= LEVEL[part_of(other)]
+    ]
+    assert upward == []
 
 
 def test_no_module_imports_itself_over_others() -> None:
@@ -103,28 +99,3 @@ def test_verbs_import_no_other_verb() -> None:
     verbs = {f"verbs.{verb}" for verb in VERBS}
     arrows = graph()
     assert {verb: arrows[verb] & verbs for verb in verbs if arrows[verb] & verbs} == {}
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
-        "from inverse_dynamics.verbs.screen import Screen",
-        "import inverse_dynamics.verbs.screen",
-        "from inverse_dynamics.verbs import screen",
-        "def f():\n    from inverse_dynamics.verbs.screen import Screen",
-        "if TYPE_CHECKING:\n    from inverse_dynamics.verbs.screen import Screen",
-    ],
-)
-def test_an_upward_import_is_found(line: str, tmp_path: Path) -> None:
-    for name, text in (("results/exports.py", line), ("verbs/screen.py", ""), ("__init__.py", "")):
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(text)
-    assert upward(graph(tmp_path)) == ["results.exports imports verbs.screen"]
-
-
-def test_siblings_are_found(tmp_path: Path) -> None:
-    (tmp_path / "__init__.py").touch()
-    for part, text in (("data", "from inverse_dynamics.robot.robots import Robot"), ("robot", "")):
-        (tmp_path / part).mkdir()
-        (tmp_path / part / "robots.py").write_text(text)
-    assert upward(graph(tmp_path)) == ["data.robots imports robot.robots"]

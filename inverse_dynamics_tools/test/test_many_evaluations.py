@@ -22,7 +22,6 @@ from inverse_dynamics import Solver, evaluate, evaluate_many, read_evaluation, w
 from inverse_dynamics.base.workers import outcome_of
 from inverse_dynamics.errors import ArgumentError, BagError, OutputError, UserError
 from inverse_dynamics.results import exports, many_evaluations
-from inverse_dynamics.results.many_evaluations import FailedRecording, failures_told
 from inverse_dynamics.results.summaries import COLUMNS
 
 ROBOT = ("--robot", "ur10_simulated")
@@ -219,14 +218,6 @@ def test_a_recording_that_fails_is_named_and_the_others_are_finished(ids, bags, 
     assert "Not evaluated" in html
     assert "can&#39;t be read as a rosbag2 recording" in html
     assert not (tmp_path / "week/tuesday").exists()
-
-
-def test_the_only_recording_that_fails_is_named_whatever_its_error_says():
-    killed = FailedRecording("tuesday", Path("week/tuesday"), "its process was killed")
-    assert (
-        failures_told("1 of 2 failed", [killed])
-        == "1 of 2 failed:\n  tuesday: its process was killed"
-    )
 
 
 def test_where_everything_fails_nothing_is_written(ids, tmp_path):

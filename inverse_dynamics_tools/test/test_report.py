@@ -357,38 +357,6 @@ def test_a_spike_does_not_flatten_the_plot_of_errors(opened):
     assert opened.execute_script(ask, "measured", [200.0, *values])[1] > 200.0
 
 
-@pytest.mark.parametrize("width", [980, 1400])
-def test_values_at_the_cursor_stay_clear_of_titles(opened, section, width):
-    """Extents of what is written into the first line of each plot."""
-    size = opened.get_window_size()
-    opened.set_window_size(width, 1300)
-    lines = opened.execute_script(
-        """
-        const usual = CanvasRenderingContext2D.prototype.fillText;
-        const lines = new Map();
-        CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
-          const length = this.measureText(text).width;
-          const plot = this.canvas.parentElement;
-          if (!lines.has(plot)) lines.set(plot, {});
-          const low = this.textAlign === "right" ? x - length : x;
-          if (y === 12) lines.get(plot)[text] = [low, low + length];
-          usual.apply(this, arguments);
-        };
-        arguments[0].querySelector(".show-all").click();
-        CanvasRenderingContext2D.prototype.fillText = usual;
-        return [...lines.values()];
-        """,
-        section,
-    )
-    opened.set_window_size(size["width"], size["height"])
-    assert len(lines) == 12
-    for line in lines:
-        extents = sorted(line.values())
-        assert len(extents) >= 2
-        for (_, end), (begin, _) in pairwise(extents):
-            assert begin - end > 8, line
-
-
 @pytest.mark.parametrize("how", ["click", "space key"])
 def test_playing_moves_the_time_and_the_robot(opened, section, how):
     play, robot = child(section, ".play"), child(section, ".robot canvas")
@@ -525,18 +493,6 @@ def test_video_says_so_where_nothing_can_be_drawn(evaluation, tmp_path, monkeypa
     assert list(tmp_path.iterdir()) == []
 
 
-def test_video_names_the_library_that_is_absent(evaluation, tmp_path, monkeypatch):
-    from inverse_dynamics.figures import video
-
-    monkeypatch.delenv("MUJOCO_GL", raising=False)
-    monkeypatch.setattr(video, "find_library", lambda _: None)
-    monkeypatch.setattr(video, "import_module", lambda _: None)
-    with pytest.raises(
-        video.VideoError, match=r"osmesa: libOSMesa isn't installed\); install libosm"
-    ):
-        video.write_video(evaluation, tmp_path / "film.gif", seconds=0.2)
-
-
 def test_video_refuses_other_formats(evaluation, tmp_path):
     from inverse_dynamics.figures.video import write_video
 
@@ -565,23 +521,6 @@ def test_demo_shows_the_simulated_robots_and_how_to_get_the_others(tmp_path, cap
     assert json.loads((out / "demo.json").read_text())["robots"]["panda_simulated"]["samples"] > 0
     assert cli.main(["demo", "--quick", "--out", str(out)]) == 2
     assert "exists already" in capsys.readouterr().err
-
-
-def test_demo_prints_json_and_what_it_does_on_standard_error(tmp_path, capsys, monkeypatch):
-    from inverse_dynamics.results import demo
-
-    def run_demo(out, *, say, **_):
-        say("simulating")
-        return demo.Demo(out, {}, None, (), ("no recordings",))
-
-    monkeypatch.setattr(demo, "run_demo", run_demo)
-    monkeypatch.setattr(demo, "find_recordings", lambda: None)
-    assert cli.main(["demo", "--out", "demo", "--json"]) == 0
-    printed = capsys.readouterr()
-    assert printed.err == "simulating ...\n"
-    document = json.loads(printed.out)
-    assert (document["verb"], document["written"]) == ("demo", ["demo"])
-    assert document["result"] == {"schema": 1, "robots": {}, "notes": ["no recordings"]}
 
 
 def test_demo_that_fails_leaves_nothing(tmp_path, monkeypatch):

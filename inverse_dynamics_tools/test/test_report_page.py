@@ -141,24 +141,6 @@ def test_a_column_of_pixels_is_drawn_in_the_order_of_time(show):
     assert y.min() == pytest.approx(-1.0, abs=0.001)
 
 
-def test_drawing_asks_for_the_size_of_a_plot_not_of_each_sample(show):
-    """The browser lays the page out for each answer."""
-    asked = show("evaluation").execute_script(
-        """
-        let asked = 0;
-        const usual = Object.getOwnPropertyDescriptor(Element.prototype, "clientWidth");
-        Object.defineProperty(Element.prototype, "clientWidth", {...usual, get() {
-          ++asked;
-          return usual.get.call(this);
-        }});
-        document.querySelector("#run-1 .show-all").click();
-        Object.defineProperty(Element.prototype, "clientWidth", usual);
-        return asked;
-        """
-    )
-    assert 12 <= asked <= 100  # twelve plots of two layers each, of 8000 samples
-
-
 def test_measured_and_computed_are_both_visible_at_1_khz(show):
     driver = show("evaluation")
     plot = child(driver, "#run-1 [data-joint='1'] .plot-base")
@@ -299,13 +281,6 @@ def test_texts_stand_out_from_what_is_behind_them(turn, scheme):
     assert weak == []
     ground = color(driver.execute_script("return getComputedStyle(document.body).backgroundColor"))
     assert ground == (palette.LIGHT if scheme == "light" else palette.DARK)["paper"]
-
-
-def test_smooth_scrolling_is_for_readers_who_like_motion(tmp_path, pages):
-    """The browser of the other tests asks for reduced motion in its flags."""
-    style = (pages / "evaluation.html").read_text(encoding="utf-8")
-    reduced = style[style.index("@media (prefers-reduced-motion: reduce)") :]
-    assert "scroll-behavior: auto" in reduced[:200]
 
 
 # ---- keyboard and screen reader --------------------------------------------------------------------------------------

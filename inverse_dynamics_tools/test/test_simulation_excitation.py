@@ -108,12 +108,6 @@ def test_same_seed_same_motion() -> None:
     assert np.abs(found[0].positions - found[2].positions).max() > 1e-3
 
 
-def test_progress_ends_at_the_number_of_iterations() -> None:
-    seen: list[tuple[str, int, int]] = []
-    optimise_excitation(arm(), QUICK, progress=lambda *a: seen.append(a))
-    assert seen[-1] == ("optimising", 9, 9)
-
-
 def slow_reversals(found: Excitation) -> list[tuple[int, float]]:
     """Joint and gravity torque where a velocity crosses zero with little acceleration, all being slow."""
     # between waypoints, at which velocities are zero: to the last bit, or with either sign

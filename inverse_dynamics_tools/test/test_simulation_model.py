@@ -7,7 +7,7 @@ import json
 
 import numpy as np
 import pytest
-from simulation_arms import CHAINS, joint, link, pendulum, robot, robots_package, simulated, urdf_of
+from simulation_arms import CHAINS, joint, link, pendulum, robot, robots_package, simulated
 
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.model import JointFriction, Payload, SimulatedRobot
@@ -213,9 +213,3 @@ def test_meshes_are_left_out() -> None:
     urdf = pendulum().replace('<link name="arm">', f'<link name="arm">{mesh}')
     assert mesh in urdf
     assert "collision mesh" in SimulatedRobot.from_urdf(urdf).chain.notes[0]
-
-
-def test_both_robots_state_their_own_chain() -> None:
-    assert urdf_of("ur10").count('type="revolute"') == 6
-    assert SimulatedRobot.from_urdf(urdf_of("ur10")).chain.joint_names[0] == "shoulder_pan_joint"
-    assert SimulatedRobot.from_urdf(urdf_of("panda")).chain.joint_names[-1] == "fer_joint7"

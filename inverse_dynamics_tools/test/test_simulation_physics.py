@@ -171,15 +171,3 @@ def test_other_rates_are_refused(rate: int) -> None:
 def test_too_short_a_duration_is_refused() -> None:
     with pytest.raises(SimulationError, match=r"duration: expected at least two periods"):
         follow(simulated("ur10"), stored("ur10"), rate=500, duration=0.003)
-
-
-def test_progress_ends_at_the_number_of_ticks() -> None:
-    seen: list[tuple[str, int, int]] = []
-    follow(
-        simulated("ur10"),
-        stored("ur10"),
-        rate=125,
-        duration=1.0,
-        progress=lambda *a: seen.append(a),
-    )
-    assert seen[-1] == ("simulating", 125, 125)

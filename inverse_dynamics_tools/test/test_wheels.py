@@ -8,7 +8,6 @@ import re
 import subprocess
 import sys
 from pathlib import Path
-from xml.etree import ElementTree
 
 import pytest
 from conftest import fails
@@ -24,24 +23,6 @@ ROOT = Path(__file__).resolve().parents[2]
 def pyproject():
     tomllib = pytest.importorskip("tomllib", reason="Python 3.10 can't read pyproject.toml")
     return tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-
-
-def test_the_version_is_that_of_package_xml(pyproject):
-    version = pyproject["tool"]["scikit-build"]["metadata"]["version"]
-    file = ROOT / version["input"]
-    found = re.search(version["regex"], file.read_text(encoding="utf-8"))
-    assert found["value"] == ElementTree.parse(file).findtext("version")
-
-
-def test_what_pip_installs_is_what_the_virtual_environment_has(pyproject):
-    lines = (ROOT / "inverse_dynamics_tools/requirements.txt").read_text().splitlines()
-    asked = {re.split("[;#]", line)[0].strip() for line in lines}
-    project = pyproject["project"]
-    needed = [*project["dependencies"]]
-    for extra, packages in project["optional-dependencies"].items():
-        if extra != "all":
-            needed += packages
-    assert {re.split(";", package)[0] for package in needed} <= asked
 
 
 def test_each_extra_that_messages_name_is_there(pyproject):
@@ -84,18 +65,6 @@ def test_figures_need_matplotlib_if_they_are_asked_for(monkeypatch, ids):
     assert f"figure         none, it needs matplotlib: {extras.how_to_install('matplotlib')}" in out
     assert Path("result/metrics.json").is_file()
     assert not Path("result/torques.png").exists()
-
-
-def test_a_module_is_imported_when_it_is_first_used():
-    module = extras.lazily_imported("math", "this")
-    assert module.pi == pytest.approx(3.14159265)
-    missing = extras.lazily_imported("no_such_module", "this")
-    extras.EXTRAS["no_such_module"] = "sim"
-    try:
-        with pytest.raises(extras.MissingPackageError, match="^this needs no_such_module: "):
-            _ = missing.pi
-    finally:
-        del extras.EXTRAS["no_such_module"]
 
 
 def test_a_package_works_without_its_extras():

@@ -10,14 +10,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 from test_evaluation import RIGID_BODY, URDF, recording
-from test_results import make_evaluation
 
-from inverse_dynamics import Solver, save_torque_figure
-from inverse_dynamics.evaluation.comparison import compare
-from inverse_dynamics.results.comparisons import write_comparison
+from inverse_dynamics import Solver
 
 # Imports of tens of milliseconds and more, each.
 HEAVY = (
@@ -84,37 +80,3 @@ def test_a_picture_of_pixels_needs_no_tables_of_fonts(bag: Path, tmp_path: Path)
     """PDF takes fonts apart; PNG needs the glyphs alone."""
     command = ("evaluate", bag, "--robot", "ur10_simulated")
     assert not {"fontTools.subset", "mujoco", "scipy"} & imported(*command, cwd=tmp_path)
-
-
-def test_a_figure_is_made_once_for_all_formats_and_laid_out_without_trials(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
-
-    joints = 3
-    made: list[Axes] = []
-    measured: list[Axis] = []  # boxes of ticks and labels are asked for to find places for others
-    make, measure = Axes.__init__, Axis.get_tightbbox
-    monkeypatch.setattr(Axes, "__init__", lambda a, *x, **k: (made.append(a), make(a, *x, **k))[1])
-    monkeypatch.setattr(
-        Axis, "get_tightbbox", lambda a, *x, **k: (measured.append(a), measure(a, *x, **k))[1]
-    )
-    evaluation = make_evaluation(200, joints)
-    save_torque_figure(evaluation, tmp_path / "a.png", tmp_path / "a.svg")
-    assert len(made) == 2 * joints
-    assert measured == []
-    both = compare([evaluation, evaluation], ("one", "two"))
-    write_comparison(both, tmp_path / "out", figures=("png", "svg"), page=False)
-    assert len(made) == 4 * joints
-    assert measured == []
-    assert not (tmp_path / "out" / "report.html").exists()
-
-
-def test_lines_of_a_figure_are_thinned(tmp_path: Path) -> None:
-    """However long the recording is, what is drawn has some thousand points."""
-    from inverse_dynamics.figures.plots import torque_figure
-
-    evaluation = make_evaluation(30_000, 1)
-    lines = [line for axes in torque_figure(evaluation).axes for line in axes.get_lines()]
-    assert max(len(np.atleast_1d(line.get_xdata())) for line in lines) <= 6002
