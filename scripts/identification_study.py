@@ -53,11 +53,10 @@ makes this page.
 KNOWN = f"""\
 ## Robots that are known
 
-Simulated arms with the links, rotor inertias, friction and delay found above. MuJoCo moves them as in the recordings,
-with as many messages and quantised encoders; stretches of the real residuals, in random order, are the noise. They are
-identified from the description alone. Medians of {SEEDS} seeds: the error of the identified torques on states that are
-uniform in the recorded ranges, mean over joints; the error of the delay; the share of 95 % intervals of inertial
-combinations that hold the truth. inverse_dynamics_tools/test/identification/test_known_truth.py holds the bounds.
+[Rehearsals](identification.md#rehearsal-would-my-motion-be-enough) of the models found above, identified from the description
+alone. Medians of {SEEDS} seeds: the error of the identified torques on states that are uniform in the recorded ranges, mean
+over joints; the error of the delay; the share of 95 % intervals of inertial combinations that hold the truth.
+`test_known_truth.py` holds the bounds.
 """
 
 PAYLOADS = f"""\
@@ -66,8 +65,7 @@ PAYLOADS = f"""\
 Simulated loads up to 15 cm in front of the flange on the torques of the real arms, {TRIALS} loads per row, in
 overlapping windows of the recording, one every {STEP:g} s. The arm's model is fitted to the rest of the recording, so
 its errors stay in the torques. Law, prior strength and delay are chosen on the whole recording, or outside of the
-window (*nested*). *Uncertain arm*: the arm's errors are estimated too, as `ids payload` does where `ids identify` has
-stored them; other rows take the model as exact. Medians.
+window (*nested*). *Uncertain arm*: the arm's errors are estimated too; other rows take the model as exact. Medians.
 """
 
 identified = cache(lambda name: identify([recording_of(name)], name))
