@@ -52,8 +52,6 @@ apt_packages=(
   liblz4-dev libsqlite3-dev libzstd-dev
   # How fast this machine is: ids bench.
   libbenchmark-dev
-  # Pictures of simulated robots without a screen.
-  libosmesa6
   # Tests of the report's page: in a browser, and on paper.
   chromium chromium-driver poppler-utils
 )

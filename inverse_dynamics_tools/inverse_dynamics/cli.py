@@ -45,7 +45,6 @@ VERBS = (
     "identify",
     "payload",
     "report",
-    "video",
     "export",
     "completion",
 )

@@ -84,12 +84,11 @@ def test_robots_and_descriptions_inside_the_output_are_kept(ids, bag, result, tm
     fails(ids(*command), "out: holds out/series.csv, which is read and would be replaced")
 
 
-def test_pages_tables_and_videos_do_not_replace_what_they_are_made_of(ids, result, tmp_path):
+def test_pages_and_tables_do_not_replace_what_they_are_made_of(ids, result, tmp_path):
     shutil.copytree(result, tmp_path / "run")
     for command in (
         ("report", "run", "--out", "run/evaluation.json"),
         ("report", "run", "--out", "run/bag/bag.db3"),
-        ("video", "run", "--out", "run/torques.png"),
         ("export", "run", "--out", "run/metrics.json"),
     ):
         fails(ids(*command, "--overwrite"), "lies in run, which is read; name another file")

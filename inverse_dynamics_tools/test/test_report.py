@@ -458,46 +458,7 @@ def test_paper_shows_the_plots(page, tmp_path):
     assert vermilion > 600  # the curves of computed torques; the legends alone have fewer than 300
 
 
-# ---- videos and the demonstration ------------------------------------------------------------------------------------
-
-
-def test_video_shows_the_robot_in_motion(evaluation, tmp_path):
-    from PIL import Image, ImageChops
-
-    from inverse_dynamics.figures.video import VideoError, write_video
-
-    file = tmp_path / "film.gif"
-    try:
-        write_video(evaluation, file, seconds=0.6)
-    except VideoError as error:
-        pytest.skip(str(error))
-    with Image.open(file) as film:
-        assert film.n_frames == 6
-        frames = []
-        for k in range(film.n_frames):
-            film.seek(k)
-            frames.append(film.convert("RGB"))
-    half = (0, 0, 360, 480)
-    for before, after in pairwise(frames):
-        moved = ImageChops.difference(before.crop(half), after.crop(half)).convert("L")
-        assert sum(moved.point(lambda value: value > 30).histogram()[1:]) > 500
-    assert list(tmp_path.iterdir()) == [file]
-
-
-def test_video_says_so_where_nothing_can_be_drawn(evaluation, tmp_path, monkeypatch):
-    from inverse_dynamics.figures.video import VideoError, write_video
-
-    monkeypatch.setenv("MUJOCO_GL", "no_such_backend")
-    with pytest.raises(VideoError, match=r"isn't possible here.*no_such_backend.*libosmesa6"):
-        write_video(evaluation, tmp_path / "film.gif", seconds=0.2)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_video_refuses_other_formats(evaluation, tmp_path):
-    from inverse_dynamics.figures.video import write_video
-
-    with pytest.raises(UserError, match="gif"):
-        write_video(evaluation, tmp_path / "film.mp4")
+# ---- the demonstration -----------------------------------------------------------------------------------------------
 
 
 def test_demo_shows_the_simulated_robots_and_how_to_get_the_others(tmp_path, capsys, monkeypatch):

@@ -18,8 +18,6 @@ from inverse_dynamics.errors import UserError
 
 # Importable module to the extra of pyproject.toml that brings it.
 EXTRAS = {
-    "OpenGL": "sim",
-    "PIL": "sim",
     "collada": "meshes",
     "dask": "dask",
     "distributed": "dask",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The colours of all figures, films and pages: one quantity, one colour.
+"""The colours of all figures and pages: one quantity, one colour.
 
 Computed and error are of Okabe and Ito's palette, other models of Tol's: colour-blind readers can tell them apart.
 Measured torques are a wide

@@ -9,7 +9,6 @@ DIR/demo.json               mean errors of each robot; marks the directory
 DIR/ur10_simulated_bag, DIR/panda_simulated_bag   recordings of the simulated robots; without MuJoCo the
                             shorter ones that come with the package are evaluated, and not written
 DIR/ROBOT                   an evaluation of each robot: figures, errors, bag (see evaluations.py)
-DIR/ROBOT.gif               the robot in motion beside its torques, where such pictures can be made
 DIR/ur10_real_urdf          the real UR10 computed from its URDF alone
 DIR/comparison              that against the identified model
 """
@@ -22,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.ament import DATA_PACKAGE, package_share
-from inverse_dynamics.base.extras import MissingPackageError, how_to_install, is_installed
+from inverse_dynamics.base.extras import how_to_install, is_installed
 from inverse_dynamics.base.files import Contents, write_text, written_whole
 from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.base.progress import no_progress
@@ -61,7 +60,6 @@ HOW_TO_GET_RECORDINGS = (
 )
 
 _QUICK_SECONDS = 4.0  # of simulated motion
-_FILM_SECONDS = 4.0  # drawing the robots is the larger part of the work
 
 
 @dataclass(frozen=True)
@@ -71,7 +69,6 @@ class Demo:
     directory: Path
     evaluations: dict[str, Evaluation]
     comparison: Comparison | None  # None: without a recording of the real UR10
-    videos: tuple[Path, ...]
     notes: tuple[str, ...]  # what is missing, and why, in words
 
     @property
@@ -107,14 +104,13 @@ def run_demo(
     recordings: Path | None = None,
     overwrite: bool = False,
     quick: bool = False,
-    video: bool = True,
     say: Callable[[str], None] = lambda text: None,
     progress: Progress = no_progress,
 ) -> Demo:
     """Simulate, evaluate, compare, show; writes everything or nothing.
 
     recordings: directory with those of REAL; None: simulated robots only.
-    overwrite: replace an older demonstration. quick: a few seconds of simulated motion, no video.
+    overwrite: replace an older demonstration. quick: a few seconds of simulated motion.
     say: called with a sentence before each step. Raises UserError.
     """
     out = Path(out)
@@ -143,12 +139,9 @@ def run_demo(
         if "ur10_real" in real:
             say("comparing the URDF's rigid bodies with the identified model on the real UR10")
             comparison = work.compare(real["ur10_real"])
-        if video and not quick:
-            work.film()
         say("writing the page")
         work.write_page(comparison)
-    videos = tuple(out / file.name for file in work.videos)
-    return Demo(out, work.evaluations, comparison, videos, tuple(work.notes))
+    return Demo(out, work.evaluations, comparison, tuple(work.notes))
 
 
 def summary(evaluations: Mapping[str, Evaluation], notes: Sequence[str]) -> dict[str, Any]:
@@ -177,8 +170,7 @@ def _contents() -> Contents:
         for directory, contents in parts.items()
         for file in (*contents.files, *contents.added)
     )
-    videos = (f"{name}.gif" for name in (*SIMULATED, *REAL))
-    return Contents(MARK, (MARK, "report.html", *videos, *files))
+    return Contents(MARK, (MARK, "report.html", *files))
 
 
 def _recordings_in(directory: Path | None) -> dict[str, Path]:
@@ -201,7 +193,6 @@ class _Work:
     ) -> None:
         self.target, self.final, self.say, self.progress = target, final, say, progress
         self.evaluations: dict[str, Evaluation] = {}
-        self.videos: list[Path] = []
         self.notes: list[str] = []
 
     def simulate(self, name: str, duration: float | None) -> None:
@@ -249,26 +240,6 @@ class _Work:
             comparison, self.target / "comparison", figures=_figures(), page=False
         )
         return comparison
-
-    def film(self) -> None:
-        from inverse_dynamics.figures.video import VideoError, require_packages, write_video
-
-        for name, evaluation in self.evaluations.items():
-            file = self.target / f"{name}.gif"
-            try:
-                require_packages()
-                self.say(f"filming {TITLES[name]}")
-                write_video(
-                    evaluation,
-                    file,
-                    title=TITLES[name],
-                    seconds=_FILM_SECONDS,
-                    progress=self.progress,
-                )
-            except (VideoError, MissingPackageError) as error:
-                self.notes.append(f"no videos: {error}")
-                return
-            self.videos.append(file)
 
     def write_page(self, comparison: Comparison | None) -> None:
         from inverse_dynamics.report import report_comparison, report_run, write_page

@@ -19,12 +19,11 @@ _EPILOG = """\
 examples:
   ids demo                                  simulated robots; the real ones too if `ids data` has fetched them
   ids demo --recordings bags --out robots   real ones too, from recordings in the directory bags
-  ids demo --quick                          a few seconds of motion, no videos: checks the installation
+  ids demo --quick                          a few seconds of motion: checks the installation
 
 results, written whole or not at all:
   report.html      all robots: 3D view beside the torques, errors, assumptions; needs no network
   ROBOT/           figure (torques.png), errors and series of each robot, as `ids evaluate` writes them
-  ROBOT.gif        animation of the robot and its torques, for slides
   comparison/      URDF against identified model on the real UR10, as `ids compare` writes it
 """
 
@@ -53,10 +52,7 @@ def add_parser(
         "(default: $IDS_DATA_DIR/bags, else where `ids data` puts them)",
     )
     parser.add_argument("--overwrite", action="store_true", help="replace an older demonstration")
-    parser.add_argument(
-        "--quick", action="store_true", help="a few seconds of simulated motion, no videos"
-    )
-    parser.add_argument("--no-video", dest="video", action="store_false", help="no videos")
+    parser.add_argument("--quick", action="store_true", help="a few seconds of simulated motion")
     return parser
 
 
@@ -72,7 +68,6 @@ def run(arguments: argparse.Namespace) -> None:
             recordings=arguments.recordings or find_recordings(),
             overwrite=arguments.overwrite,
             quick=arguments.quick,
-            video=arguments.video,
             say=lambda text: console.print(f"{text} ..."),
             progress=progress,
         )
@@ -94,6 +89,4 @@ def _print(demo: Demo, console: Screen) -> None:
         console.print(f"note           {note}")
     if any(demo.directory.glob("*/torques.png")):
         console.print(f"figures        {demo.directory}/*/torques.png")
-    for video in demo.videos:
-        console.print(f"video          {video}")
     console.print(f"page           {demo.page.absolute()}")
