@@ -8,13 +8,14 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.common import positive_number
-from inverse_dynamics.verbs.options import add_verb
+from inverse_dynamics.verbs.values import positive_number
 
 if TYPE_CHECKING:
     from inverse_dynamics_benchmarks import Measurement
 
-_EPILOG = """\
+SUMMARY = "how fast this machine is, beside KDL, Pinocchio and MuJoCo"
+DESCRIPTION = "Time this library, KDL, Pinocchio and MuJoCo on this machine."
+EPILOG = """\
 examples:
   ids bench                                      this machine's tables, in about a minute
   ids bench --only ur10/torques                  only what has such a name
@@ -33,24 +34,14 @@ _SECONDS = 0.003
 _CALLS = 1_000_000
 
 
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-) -> argparse.ArgumentParser:
-    """Declare the verb."""
-    parser = add_verb(
-        subparsers,
-        "bench",
-        summary="how fast this machine is, beside KDL, Pinocchio and MuJoCo",
-        description="Time this library, KDL, Pinocchio and MuJoCo on this machine.",
-        epilog=_EPILOG,
-    )
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Arguments and options."""
     _add_measuring(parser.add_argument_group("what is measured"))
     results = parser.add_argument_group("where results go, besides the screen")
     results.add_argument("--json", metavar="FILE", type=Path, help="all times, for --from")
     results.add_argument("--markdown", metavar="FILE", type=Path, help="the tables as a page")
     results.add_argument("--plot", metavar="FILE", type=Path, help="a figure: .svg, .png or .pdf")
     results.add_argument("--overwrite", action="store_true", help="replace existing files")
-    return parser
 
 
 def _add_measuring(group: argparse._ArgumentGroup) -> None:

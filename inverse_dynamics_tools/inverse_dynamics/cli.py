@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command `ids`: verbs, errors, exit codes.
 
-A verb is a module of inverse_dynamics.verbs with `add_parser(subparsers)` and `run(arguments)`; it
-imports what is heavy inside `run`. A package that is built on request brings its verb along.
+A verb is a module of inverse_dynamics.verbs with SUMMARY (its line in the list of verbs), EPILOG (examples),
+perhaps DESCRIPTION, `declare(parser)` and `run(arguments)`, which imports what is heavy. A package that is
+built on request brings its verb along.
 Exit code 0: done; 2: something that the user can correct, named on stderr (without a verb: the help);
 3: some of several recordings failed, the others are done; 1: an unexpected error, with a report in a
 file; 128 + n: ended by signal n (141: the reader of the output has gone).
@@ -29,7 +30,7 @@ from inverse_dynamics.errors import PartialError, UserError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from types import FrameType, ModuleType
+    from types import FrameType
     from typing import NoReturn
 
 VERBS = (
@@ -124,18 +125,22 @@ def make_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     subparsers = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
-    for module in _verb_modules():
-        verb_parser = module.add_parser(subparsers)
-        verb_parser.set_defaults(run=module.run, parser=verb_parser, program=parser)
+    modules = {verb: f"inverse_dynamics.verbs.{verb}" for verb in VERBS}
+    built = {v: package for v, package in BUILT_ON_REQUEST.items() if find_spec(package)}
+    modules |= {verb: f"{package}.verb" for verb, package in built.items()}
+    for verb, name in modules.items():
+        module = import_module(name)
+        summary = module.SUMMARY
+        verb_parser = subparsers.add_parser(
+            verb,
+            help=summary,
+            description=getattr(module, "DESCRIPTION", f"{summary[0].upper()}{summary[1:]}."),
+            epilog=module.EPILOG,
+            formatter_class=HelpFormatter,
+        )
+        module.declare(verb_parser)
+        verb_parser.set_defaults(run=module.run, parser=verb_parser)
     return parser
-
-
-def _verb_modules() -> Iterator[ModuleType]:
-    for verb in VERBS:
-        yield import_module(f"inverse_dynamics.verbs.{verb}")
-    for package in BUILT_ON_REQUEST.values():
-        if find_spec(package) is not None:
-            yield import_module(f"{package}.verb")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -105,7 +105,7 @@ def identified(recordings: Path) -> Callable[[str], Identification]:
 @pytest.fixture(autouse=True)
 def _no_progress_lines(monkeypatch) -> None:
     """Lines that tell the progress of long work depend on how busy the machine is."""
-    monkeypatch.setattr("inverse_dynamics.verbs.common._FIRST_LINE", float("inf"))
+    monkeypatch.setattr("inverse_dynamics.verbs.screen._FIRST_LINE", float("inf"))
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from test_evaluation import RIGID_BODY, UR10, URDF, recording
 from inverse_dynamics import Solver, cli, evaluate, read_evaluation
 from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.verbs.common import _ProgressLines, progress_bar
+from inverse_dynamics.verbs.screen import _ProgressLines, progress_bar
 from inverse_dynamics.verbs.tables import figure
 
 RAW = ("--accelerations", "backward-difference")
@@ -34,7 +34,6 @@ def test_evaluate_prints_errors_and_writes_results(ids, bag, tmp_path):
     assert re.search(r"elbow_joint +N m( +[-+.e\d]+){2} +[\d.]+ % +[-+.e\d]+ +[\d.]+", out)
     assert re.search(r"mean +N m", out)
     assert "cut-off" in out
-    assert "µs" not in out
     assert re.search(r"figure +result/torques.png\n", out)
     result = read_evaluation(tmp_path / "result")
     assert re.search(rf"mean +N m .*{re.escape(figure(result.mean_rmse))}", out)
@@ -42,15 +41,6 @@ def test_evaluate_prints_errors_and_writes_results(ids, bag, tmp_path):
     fails(ids("evaluate", "result", "--robot", "ur10_simulated"), remedy)
     metrics = json.loads((tmp_path / "result/metrics.json").read_text())
     assert [j["joint"] for j in metrics["joints"]] == list(result.joint_names)
-
-
-def test_times_are_told_on_demand(ids, bag):
-    _, out, _ = ids("evaluate", bag, "--robot", "ur10_simulated", *RAW, *NO_FIGURE, "--verbose")
-    assert re.search(
-        r"time +reading [\d.]+ µs, accelerations [\d.]+ µs, torques [\d.]+ µs, writing [\d.]+ µs per "
-        r"message, [\d.]+ s together; solver [\d.]+ s, plots [\d.]+ s",
-        out,
-    )
 
 
 def test_figures_have_the_formats_that_are_asked_for(ids, bag, tmp_path):
@@ -283,7 +273,10 @@ def test_the_projects_robots_pass_the_check(ids, name):
         (("torque",), "invalid choice: 'torque'"),
         (("simulate", "--out", "b"), "the following arguments are required: --robot"),
         (("evaluate", "bag", "--robot", "x", "--gravity", "1,2"), "expected three numbers, x,y,z"),
-        (("evaluate", "bag", "--robot", "x", "--gravity", "1,2,1e999"), "expected finite numbers"),
+        (
+            ("evaluate", "bag", "--robot", "x", "--gravity", "1,2,1e999"),
+            "expected three numbers, x",
+        ),
         (
             ("evaluate", "bag", "--robot", "x", "--gravity", "0,0,-9_81"),
             "expected three numbers, x",
@@ -436,7 +429,7 @@ def test_without_a_sourced_workspace_the_command_names_the_remedy():
 
 
 def test_long_work_is_reported_where_standard_error_is_no_terminal(capsys, monkeypatch):
-    monkeypatch.setattr("inverse_dynamics.verbs.common._FIRST_LINE", 10.0)
+    monkeypatch.setattr("inverse_dynamics.verbs.screen._FIRST_LINE", 10.0)
     seconds = iter([0.0, 5.0, 11.0, 12.0, 25.0, 60.0])
     lines = _ProgressLines(lambda: next(seconds))
     for done in (1, 2, 3, 4, 10):

@@ -17,7 +17,7 @@ from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.identification.drive_gains import body, identify_drive_gains
 from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.robot.descriptions import read_description
-from inverse_dynamics.verbs.payload_option import payload
+from inverse_dynamics.verbs.values import payload
 
 RATE, SECONDS = 125.0, 40.0  # Hz, s
 LOAD = payload("5,0.03,-0.02,0.12")

@@ -49,9 +49,9 @@ def test_writes_a_motion_and_the_message_to_send(
     assert main(["excite", "--urdf", str(arm), "--duration", "8", "--out", str(out)]) == 0
     printed = capsys.readouterr()
     assert printed.err == "ids: searching for the motion, which takes about a minute ...\n"
-    assert "motion      8 s, condition number of the base regressor" in printed.out
-    assert "noise       1 % of each effort limit" in printed.out
-    assert f"written     {out}, {tmp_path / 'motion_joint_trajectory.yaml'}" in printed.out
+    assert "motion         8 s, condition number of the base regressor" in printed.out
+    assert "noise          1 % of each effort limit" in printed.out
+    assert f"written        {out}, {tmp_path / 'motion_joint_trajectory.yaml'}" in printed.out
     motion, source = read_trajectory(out, ("shoulder", "lift", "fold"))
     assert "made by ids excite" in source
     message = yaml.safe_load((tmp_path / "motion_joint_trajectory.yaml").read_text())

@@ -12,7 +12,7 @@ from simulation_arms import joint, link, robot
 from test_solver_parameters import efforts, planned, write
 
 from inverse_dynamics import Solver, errors
-from inverse_dynamics.verbs.payload_option import payload
+from inverse_dynamics.verbs.values import payload
 
 RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"

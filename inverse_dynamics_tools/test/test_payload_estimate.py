@@ -35,7 +35,7 @@ from inverse_dynamics.results.payload import check_payload_output, payload_files
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import robot_of_description
 from inverse_dynamics.robot.solvers import open_solver
-from inverse_dynamics.verbs.payload_option import payload as option
+from inverse_dynamics.verbs.values import payload as option
 
 JOINTS = tuple(f"fer_joint{j + 1}" for j in range(7))
 LOAD = {

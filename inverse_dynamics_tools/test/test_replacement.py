@@ -231,7 +231,7 @@ def test_an_older_result_stays_where_something_else_took_its_place(tmp_path, kin
         target.touch()
     old = tmp_path / ".result.part" / "old"
     for _ in range(2):
-        with pytest.raises(OutputError, match=f"{target}: .*the older result is {old}.*move"):
+        with pytest.raises(OutputError, match=f"{target}: .*the older result is still {old}.*move"):
             replacement.restore_interrupted(target)
     assert (old / "data").read_text() == "old"
     assert os.listdir(target) == ["mine"] if kind == "directory" else target.is_file()

@@ -47,9 +47,10 @@ def test_says_what_was_made(
     bag = tmp_path / "bag"
     assert main([*arm, "--out", str(bag), "--rate", "125"]) == 0
     printed = capsys.readouterr()
-    assert "trajectory  1 s" in printed.out
+    assert "trajectory     1 s" in printed.out
     assert (
-        f"recording   {bag}, /joint_states: 125 messages of 1 joint, 1 s at 125 Hz" in printed.out
+        f"recording      {bag}, /joint_states: 125 messages of 1 joint, 1 s at 125 Hz"
+        in printed.out
     )
     assert printed.err == ""
     assert len(read_joint_log(bag)) == 125
@@ -59,7 +60,7 @@ def test_says_that_efforts_are_torques_where_the_configuration_says_otherwise(
     arm: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     said = (
-        "note        efforts are recorded as torques, though the run configuration says {}: evaluate "
+        "note           efforts are recorded as torques, though the run configuration says {}: evaluate "
         "them with --effort-is torque"
     )
     configuration = Path(arm[2])

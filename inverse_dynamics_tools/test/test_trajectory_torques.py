@@ -192,7 +192,7 @@ def test_the_verb_says_which_limit_is_passed(tmp_path, capsys, monkeypatch):
     assert re.search(
         r"shoulder_lift_joint +-?[\d.]+ N m +[\d.]+ s +330 N m +first at [\d.]+ s", out
     )
-    assert "trajectories  1, with 1500 points together" in out
+    assert "trajectories   1, with 1500 points together" in out
     assert cli.main(arguments) == 2
     assert "out: exists already; name another directory" in capsys.readouterr().err
     made = json.loads((tmp_path / "out" / "torques.json").read_text())
@@ -288,7 +288,7 @@ def test_another_description_and_chain_may_be_given(tmp_path, capsys):
     assert "999 N m" in printed
     assert "computed from" not in printed
     assert cli.main([*arguments, "--robot", "ur10_real", "--urdf", str(strong)]) == 0
-    said = f"note          {strong} is used only for effort limits: "
+    said = f"note           {strong} is used only for effort limits: "
     assert said in capsys.readouterr().out
     assert cli.main([*arguments, "--robot", "ur10_simulated", "--tip", "nowhere"]) == 2
     assert "nowhere" in capsys.readouterr().err

@@ -6,6 +6,7 @@
         (directory / "metrics.json").write_text("{}")
 
 Whatever happens meanwhile, the older result or the new one is there, whole: see replacement.py.
+Everything here raises OutputError.
 """
 
 from __future__ import annotations
@@ -15,7 +16,6 @@ import os
 import stat
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from glob import escape
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
@@ -23,7 +23,6 @@ from typing import TYPE_CHECKING
 from inverse_dynamics.base.replacement import (
     WorkFolder,
     put_directory,
-    put_file,
     put_files,
     restore_interrupted,
     signals_deferred,
@@ -36,6 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
 _MOST_NAMED = 5  # files, in a text
+_DIRECTORY = "name another directory with --out"
 
 _outputs: dict[Path, bool] = {}  # of this process, and whether they were written
 _at_work: list[WorkFolder] = []
@@ -65,12 +65,11 @@ class Contents:
             raise error
 
         found = []
+        own = (self.mark, *self.files, *self.added)
         for place, directories, names in os.walk(directory, onerror=fail):
             links = [name for name in directories if Path(place, name).is_symlink()]
-            for name in (*names, *links):
-                path = Path(place, name).relative_to(directory)
-                if not _matches(path, (self.mark, *self.files, *self.added), directory):
-                    found.append(str(path))
+            paths = [Path(place, name).relative_to(directory) for name in (*names, *links)]
+            found += [str(path) for path in paths if not _matches(path, own, directory)]
         return sorted(found)
 
 
@@ -85,19 +84,17 @@ def check_output_directory(
     contents: Contents = NOTHING,
     inputs: Iterable[Path | None] = (),
 ) -> None:
-    """Raise OutputError unless a directory of results may be made at `target`.
+    """Check that a directory of results may be made at `target`.
 
     contents: an older result is known by them; only it (or an empty directory) is ever overwritten,
     and only if it holds nothing else. inputs: what is read, which must lie elsewhere.
     """
-    with _errors_told(target, "directory with --out"):
-        _check_name(target)
-        _note(target)
+    with _output(target, _DIRECTORY):
         restore_interrupted(target.absolute())
         if os.path.lexists(target):
             _check_existing_directory(target, overwrite=overwrite, contents=contents)
-        _check_apart(target, inputs, "directory with --out")
-        _check_parent(target, "directory with --out")
+        _check_apart(target, inputs, _DIRECTORY)
+        _check_parent(target, _DIRECTORY)
 
 
 def check_output_file(
@@ -108,27 +105,23 @@ def check_output_file(
     inputs: Iterable[Path | None] = (),
     results: Contents | None = None,
 ) -> None:
-    """Raise OutputError unless a file may be made at `target`. option: what names it.
+    """Check that a file may be made at `target`. option: what names it.
 
     inputs: what is read, which must lie elsewhere. results: those of the inputs that are directories
     are such results, and the file may be put into them beside their own files.
     """
-    other = f"file with {option}"
-    with _errors_told(target, other):
-        _check_name(target)
-        _note(target)
+    remedy = f"name another file with {option}"
+    with _output(target, remedy):
         restore_interrupted(_file_meant(target))
-        _check_regular(target, other)
+        _check_regular(target, remedy)
         if target.exists() and not overwrite:
-            raise OutputError(
-                f"{target}: exists already; name another {other}, or replace it with --overwrite"
-            )
-        _check_apart(target, inputs, other, results)
-        _check_parent(target, other)
+            raise OutputError(f"{target}: exists already; {remedy}, or replace it with --overwrite")
+        _check_apart(target, inputs, remedy, results)
+        _check_parent(target, remedy)
 
 
 def write_text_whole(target: Path, text: str) -> None:
-    """Write a file, or leave what was there. Raises OutputError."""
+    """Write a file, or leave what was there."""
     with file_written_whole(target) as work:
         write_text(work, text)
 
@@ -140,19 +133,12 @@ def write_text(file: Path, text: str) -> None:
 
 @contextmanager
 def file_written_whole(target: Path) -> Iterator[Path]:
-    """File to write; it becomes `target` at the end, and vanishes on an error. Raises OutputError.
+    """File to write; it becomes `target` at the end, and vanishes on an error.
 
     Where `target` is a symbolic link, what it points to is replaced.
     """
-    with _work(target, "name another file with --out") as (work, place):
-        _check_regular(target, "file with --out")
-        fresh = work.new / place.name
+    with files_written_whole([target]) as (fresh,):
         yield fresh
-        with signals_deferred():
-            sync_files(work.new)
-            put_file(fresh, place)
-            _done(target)
-            work.remove()
 
 
 @contextmanager
@@ -160,21 +146,21 @@ def files_written_whole(targets: Sequence[Path]) -> Iterator[list[Path]]:
     """Files to write; they become `targets` together at the end, or none of them does.
 
     They are put in place in this order. On an error, what was there stays. A process that is killed
-    between two of them leaves some new ones. Raises OutputError.
+    between two of them leaves some new ones.
     """
-    for target in targets:
-        _note(target)
+    remedy = "name another file with --out"
+    _note(targets)
     with ExitStack() as stack:
-        works = [stack.enter_context(_work(target, "name another output")) for target in targets]
+        works = [stack.enter_context(_work(target, remedy)) for target in targets]
         for target in targets:
-            _check_regular(target, "output")
+            _check_regular(target, remedy)
         fresh = [work.new / place.name for work, place in works]
         yield fresh
         with signals_deferred():
             for work, _ in works:
                 sync_files(work.new)
             put_files(fresh, [place for _, place in works])
-            _outputs.update(dict.fromkeys(targets, True))
+            _note(targets, written=len(_at_work) == len(targets))
             for work, _ in works:
                 work.remove()
 
@@ -189,19 +175,19 @@ def written_whole(
 ) -> Iterator[Path]:
     """Directory to write into; it becomes `target` at the end, and vanishes on an error.
 
-    The arguments are those of check_output_directory(). Raises OutputError.
+    The arguments are those of check_output_directory().
     """
     check_output_directory(target, overwrite=overwrite, contents=contents, inputs=inputs)
-    nested = bool(_at_work)
-    with _work(target, "name another directory with --out", link=False) as (work, place):
+    with _work(target, _DIRECTORY, link=False) as (work, place):
         yield work.new
+        outermost = len(_at_work) == 1
         with signals_deferred():
-            if not nested:
+            if outermost:
                 sync_files(work.new)
             if os.path.lexists(place):
                 _check_existing_directory(target, overwrite=overwrite, contents=contents)
             put_directory(work.new, place, work.old, overwrite=overwrite)
-            _done(target)
+            _note([target], written=outermost)
             work.remove()
 
 
@@ -210,18 +196,17 @@ def start_noting_outputs() -> None:
     _outputs.clear()
 
 
-def outcome() -> str:
-    """What there is now of all that was to be written, in words."""
-    written = [str(path) for path, done in _outputs.items() if done]
-    kept = [str(path) for path, done in _outputs.items() if not done and os.path.lexists(path)]
-    text = f"written, whole: {', '.join(written)}" if written else "nothing was written"
-    return text + (f"; as it was before: {', '.join(kept)}" if kept else "")
-
-
 def written_before() -> str:
     """Outputs that were written before another one failed, in words; "": none."""
     written = [str(path) for path, done in _outputs.items() if done]
     return f"written before, whole: {', '.join(written)}" if written else ""
+
+
+def outcome() -> str:
+    """What there is now of all that was to be written, in words."""
+    kept = [str(path) for path, done in _outputs.items() if not done and os.path.lexists(path)]
+    text = written_before().replace("written before", "written") or "nothing was written"
+    return text + (f"; as it was before: {', '.join(kept)}" if kept else "")
 
 
 def is_plain_name(text: str) -> bool:
@@ -231,18 +216,42 @@ def is_plain_name(text: str) -> bool:
 
 def move_up(directory: Path) -> None:
     """Move the files of a directory into the one above, which may share their names, and remove it."""
+    directory = directory.rename(directory.with_name(".moved"))
     for file in list(directory.iterdir()):
-        file.rename(directory.parent / f"{file.name}.moved")
+        file.rename(directory.parent / file.name)
     directory.rmdir()
-    for file in directory.parent.glob("*.moved"):
-        file.rename(file.with_suffix(""))
+
+
+def _note(targets: Iterable[Path], *, written: bool = False) -> None:
+    """For outcome(). A part of what is being made isn't noted."""
+    for target in targets:
+        if written and target in _outputs:
+            _outputs[target] = True
+        elif not _at_work:
+            _outputs.setdefault(target, False)
+
+
+@contextmanager
+def _output(target: Path, remedy: str) -> Iterator[None]:
+    """An output that is going to be written, of a name that texts, which have lines, can hold."""
+    try:
+        if not target.absolute().name or not target.absolute().name.isprintable():
+            raise OutputError(
+                f"{target}: expected a name in UTF-8 without control characters; name another output"
+            )
+        _note([target])
+        with suppress(FileNotFoundError, NotADirectoryError):
+            target.lstat()  # else too long, for one
+        yield
+    except OSError as error:
+        raise _cannot_write(target, error, remedy) from error
 
 
 @contextmanager
 def _work(target: Path, remedy: str, *, link: bool = True) -> Iterator[tuple[WorkFolder, Path]]:
-    """A work folder, gone at the end, and the place that is meant. Raises OutputError."""
+    """A work folder, removed at the end, and the place that is meant."""
     work: WorkFolder | None = None
-    _note(target)
+    _note([target])
     try:
         place = _file_meant(target) if link else target.absolute()
         with signals_deferred():
@@ -251,7 +260,7 @@ def _work(target: Path, remedy: str, *, link: bool = True) -> Iterator[tuple[Wor
             _at_work.append(work)
         yield work, place
     except OSError as error:
-        raise OutputError(_cannot_write(target, error, remedy)) from error
+        raise _cannot_write(target, error, remedy) from error
     except UserError as error:
         text = " ".join(map(str, error.args))  # str() of it may be shortened
         if work is None or str(work.path) not in text:
@@ -278,94 +287,67 @@ def _check_existing_directory(target: Path, *, overwrite: bool, contents: Conten
     if not any(target.iterdir()):
         return
     if not overwrite:
-        raise OutputError(
-            f"{target}: exists already; name another directory with --out, or replace it with "
-            "--overwrite"
-        )
+        raise OutputError(f"{target}: exists already; {_DIRECTORY}, or replace it with --overwrite")
     if not contents.mark or not (target / contents.mark).is_file():
         raise OutputError(
             f"{target}: won't be overwritten: it holds no {contents.mark or 'older result'}, so it is "
             "not a result of this command; remove it by hand or name another directory with --out"
         )
-    foreign = contents.foreign(target)
-    if foreign:
+    if foreign := contents.foreign(target):
         raise OutputError(
             f"{target}: won't be overwritten: it holds {counted(len(foreign), 'file')} that this "
             f"command doesn't write ({listed(foreign, _MOST_NAMED)}); move what is yours elsewhere, or "
-            "name another directory with --out"
+            f"{_DIRECTORY}"
         )
 
 
-def _check_regular(target: Path, other: str) -> None:
+def _check_regular(target: Path, remedy: str) -> None:
     """A device, FIFO or socket of that name must stay."""
     if target.is_dir():
         raise OutputError(f"{target}: is a directory; expected the name of a file to write")
     with suppress(FileNotFoundError, NotADirectoryError):
         if not stat.S_ISREG(target.stat().st_mode):
-            raise OutputError(
-                f"{target}: is a device, pipe or socket, not a file; name another {other}"
-            )
+            raise OutputError(f"{target}: is a device, pipe or socket, not a file; {remedy}")
 
 
 def _check_apart(
-    target: Path, inputs: Iterable[Path | None], other: str, results: Contents | None = None
+    target: Path, inputs: Iterable[Path | None], remedy: str, results: Contents | None = None
 ) -> None:
     """What is written must not replace what is read, nor be put among its files."""
-    place = _real(target)
+    place = Path(os.path.realpath(target))
     for source in inputs:
         if source is None or not os.path.exists(source):
             continue
-        read = _real(source)
+        read = Path(os.path.realpath(source))
         if any(_same(part, place) for part in (read, *read.parents)):
             relation = "is" if _same(read, place) else "holds"
             raise OutputError(
-                f"{target}: {relation} {source}, which is read and would be replaced; name another "
-                f"{other}"
+                f"{target}: {relation} {source}, which is read and would be replaced; {remedy}"
             )
         around = next((part for part in place.parents if _same(part, read)), None)
-        if around is None or (results and not results.has(place.relative_to(around), around)):
-            continue
-        raise OutputError(f"{target}: lies in {source}, which is read; name another {other}")
+        if around and not (results and not results.has(place.relative_to(around), around)):
+            raise OutputError(f"{target}: lies in {source}, which is read; {remedy}")
 
 
-def _check_parent(target: Path, other: str) -> None:
+def _check_parent(target: Path, remedy: str) -> None:
     above = next(parent for parent in target.absolute().parents if parent.exists())
     if not above.is_dir() or not os.access(above, os.W_OK | os.X_OK):
         reason = "may not be written to" if above.is_dir() else "is not a directory"
-        raise OutputError(f"{target}: can't be written ({above} {reason}); name another {other}")
-
-
-def _check_name(target: Path) -> None:
-    """Files name each other in texts, which are UTF-8 and have lines."""
-    name = target.absolute().name
-    if not name or not name.isprintable():
-        raise OutputError(
-            f"{target}: expected a name in UTF-8 without control characters; name another output"
-        )
-    with suppress(FileNotFoundError, NotADirectoryError):
-        target.lstat()  # else too long, for one
+        raise OutputError(f"{target}: can't be written ({above} {reason}); {remedy}")
 
 
 def _file_meant(target: Path) -> Path:
     """What a symbolic link points to, if it is one."""
-    return _real(target) if target.is_symlink() else target.absolute()
-
-
-def _real(path: Path) -> Path:
-    return Path(os.path.realpath(path))
+    return Path(os.path.realpath(target)) if target.is_symlink() else target.absolute()
 
 
 def _matches(path: PurePath, patterns: Iterable[str], directory: Path) -> bool:
     own = escape(directory.absolute().name)
-
-    def match(pattern: str) -> bool:
-        parts = pattern.split("/")
-        return len(parts) == len(path.parts) and all(
-            fnmatchcase(name, part.replace("{name}", own))
-            for name, part in zip(path.parts, parts, strict=True)
-        )
-
-    return any(map(match, patterns))
+    return any(
+        pattern.count("/") == len(path.parts) - 1 and path.match(pattern.replace("{name}", own))
+        for pattern in patterns
+        if pattern
+    )
 
 
 def _same(one: Path, other: Path) -> bool:
@@ -376,27 +358,11 @@ def _same(one: Path, other: Path) -> bool:
         return one == other
 
 
-def _note(target: Path) -> None:
-    if not _at_work:  # else it is a part of what is being made
-        _outputs.setdefault(target, False)
-
-
-def _done(target: Path) -> None:
-    if target in _outputs and len(_at_work) == 1:
-        _outputs[target] = True
-
-
-@contextmanager
-def _errors_told(target: Path, other: str) -> Iterator[None]:
-    try:
-        yield
-    except OSError as error:
-        raise OutputError(_cannot_write(target, error, f"name another {other}")) from error
-
-
-def _cannot_write(target: Path, error: OSError, remedy: str) -> str:
+def _cannot_write(target: Path, error: OSError, remedy: str) -> OutputError:
     kept = ""
     with suppress(OSError):
         kept = "; what was there is kept" if os.path.lexists(target) else ""
     room = "free some space, or " if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
-    return f"{target}: can't be written ({error.strerror or error}){kept}; {room}{remedy}"
+    return OutputError(
+        f"{target}: can't be written ({error.strerror or error}){kept}; {room}{remedy}"
+    )

@@ -62,7 +62,7 @@ class WorkFolder:
     def remove(self) -> None:
         """Remove it with everything in it, unless the older result is there: the next run puts it back."""
         if self._lock is not None:
-            if not _is_between_renames(self.path):
+            if not (self.old.exists() and self.new.exists()):
                 shutil.rmtree(self.path, ignore_errors=True)
             os.close(self._lock)
             self._lock = None
@@ -94,9 +94,17 @@ def restore_interrupted(target: Path) -> None:
         lock = _lock(path, target)
         try:
             with signals_deferred():
-                if _is_between_renames(path) or not os.path.lexists(target):
-                    _put_back(path / "old", target)
+                old = path / "old"
+                if old.exists() and ((path / "new").exists() or not os.path.lexists(target)):
+                    os.rename(old, target)  # replaces an empty directory too
                 shutil.rmtree(path)
+        except OSError as error:
+            if error.errno not in (errno.ENOTEMPTY, errno.EEXIST, errno.ENOTDIR):
+                raise
+            raise OutputError(
+                f"{target}: can't be written: it was made after a run was killed, and the older result "
+                f"is still {path / 'old'}; move one of them elsewhere, or name another output"
+            ) from error
         finally:
             os.close(lock)
 
@@ -119,34 +127,31 @@ def put_directory(new: Path, target: Path, old: Path, *, overwrite: bool) -> Non
                 "left alone; name another directory with --out"
             ) from error
         if not _exchange(new, target):
-            _rename_twice(new, target, old)
-    _sync(target.parent)
-
-
-def put_file(new: Path, target: Path) -> None:
-    """Rename a file over another one. Raises OSError."""
-    with suppress(FileNotFoundError):
-        shutil.copymode(target, new)
-    os.replace(new, target)
+            os.rename(target, old)  # restore_interrupted() puts it back if this process ends here
+            try:
+                os.rename(new, target)
+            except BaseException:
+                os.rename(old, target)
+                raise
     _sync(target.parent)
 
 
 def put_files(new: Sequence[Path], targets: Sequence[Path]) -> None:
     """Rename files over others, one after another; on an error, put back what was there. Raises OSError."""
-    kept: dict[Path, Path] = {}
-    for file, target in zip(new, targets, strict=True):
-        if os.path.lexists(target):
-            kept[target] = file.parent / f"{file.name}.before"
-            shutil.copy2(target, kept[target])
-    put: list[Path] = []
+    kept: dict[Path, Path | None] = {}
     try:
         for file, target in zip(new, targets, strict=True):
-            put.append(target)
-            put_file(file, target)
+            older = os.path.lexists(target)
+            if older:
+                shutil.copymode(target, file)
+            if len(new) > 1:
+                kept[target] = Path(shutil.copy2(target, f"{file}.before")) if older else None
+            os.replace(file, target)
+            _sync(target.parent)
     except BaseException:
-        for target in put:
-            if target in kept:
-                os.replace(kept[target], target)
+        for target, before in kept.items():
+            if before is not None:
+                os.replace(before, target)
             else:
                 target.unlink(missing_ok=True)
         raise
@@ -180,35 +185,6 @@ def signals_deferred() -> Iterator[None]:
             signal.raise_signal(caught)
 
 
-def _rename_twice(new: Path, target: Path, old: Path) -> None:
-    """Where directories can't be exchanged: between the two steps, restore_interrupted() finds both."""
-    os.rename(target, old)
-    try:
-        os.rename(new, target)
-    except BaseException:
-        os.rename(old, target)
-        raise
-
-
-def _is_between_renames(path: Path) -> bool:
-    """Whether the older result is in a work folder because the new one has not taken its place."""
-    return (path / "old").exists() and (path / "new").exists()
-
-
-def _put_back(old: Path, target: Path) -> None:
-    """Undo the first of two renames. Raises OutputError, OSError."""
-    try:
-        with suppress(FileNotFoundError):  # there was none
-            os.rename(old, target)  # replaces an empty directory too
-    except OSError as error:
-        if error.errno not in (errno.ENOTEMPTY, errno.EEXIST, errno.ENOTDIR):
-            raise
-        raise OutputError(
-            f"{target}: can't be written: it was made after a run was killed, and the older result is "
-            f"{old} still; move one of them elsewhere, or name another output"
-        ) from error
-
-
 def _exchange(one: Path, other: Path) -> bool:
     """Swap two directories in one step; false where kernel, C library or file system can't."""
     try:
@@ -233,16 +209,11 @@ def _lock(path: Path, target: Path, *, fresh: bool = False) -> int:
     try:
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise OutputError(
-                f"{target}: can't be written: another run is writing it now ({path} is locked); wait "
-                "for its end, or name another output"
-            ) from None
-        except OSError:
-            if not fresh:
+        except OSError as error:
+            if not fresh or isinstance(error, BlockingIOError):
                 raise OutputError(
-                    f"{target}: can't be written: {path} is there, of a run that goes on or was "
-                    "killed; remove it by hand if none goes on, or name another output"
+                    f"{target}: can't be written: another run is writing it now; wait for its end, or "
+                    f"name another output; if no run is left, remove {path} by hand"
                 ) from None
         if not os.path.samestat(os.fstat(descriptor), os.stat(path)):
             raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path))

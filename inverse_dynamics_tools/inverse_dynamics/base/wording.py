@@ -47,9 +47,14 @@ def listed(names: Sequence[str], most: int = 6) -> str:
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """`did you mean tool0?`, or "" where nothing that is known is like the word."""
-    distances = {other: _distance(word, other) for other in known if len(other) < 2 * len(word)}
-    best = min(distances, key=lambda other: distances[other], default="")
-    return f"did you mean {best}?" if best and 3 * distances[best] <= max(3, len(word)) else ""
+    from difflib import get_close_matches
+
+    if len(word) > _LONGEST_WORD:
+        return ""
+    plain, word = {other.lstrip("-"): other for other in known}, word.lstrip("-")
+    close = get_close_matches(word, plain, cutoff=0.65)
+    best = min(close, key=lambda other: abs(len(other) - len(word)), default="")
+    return f"did you mean {plain[best]}?" if best else ""
 
 
 def not_built(package: str) -> str:
@@ -84,22 +89,6 @@ def message(text: str) -> str:
     text = _WORD.sub(lambda word: _shortened(word[0], _LONGEST_WORD), printable(text).strip())
     first, *others = _shortened(text, _LONGEST_TEXT).splitlines() or [""]
     return "\n".join([first, *(line if line.startswith(" ") else f"  {line}" for line in others)])
-
-
-def _distance(a: str, b: str) -> int:
-    """How many letters must be put in, left out, replaced or swapped with the next to make b of a."""
-    if abs(len(a) - len(b)) > len(b):
-        return abs(len(a) - len(b))
-    before: list[int] = []
-    above = list(range(len(b) + 1))
-    for i, letter in enumerate(a, 1):
-        row = [i]
-        for j, other in enumerate(b, 1):
-            row.append(min(row[-1] + 1, above[j] + 1, above[j - 1] + (letter != other)))
-            if i > 1 and j > 1 and letter == b[j - 2] and a[i - 2] == other:
-                row[-1] = min(row[-1], before[j - 2] + 1)
-        before, above = above, row
-    return above[-1]
 
 
 def _shortened(text: str, most: int) -> str:

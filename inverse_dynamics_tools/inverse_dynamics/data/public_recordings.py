@@ -12,11 +12,14 @@ inverse_dynamics_robots.
 from __future__ import annotations
 
 import hashlib
+import http.client
 import os
 import shutil
+import urllib.error
+import urllib.request
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.ament import DATA_PACKAGE, package_share
 from inverse_dynamics.base.files import Contents, written_whole
@@ -25,13 +28,16 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.errors import OutputError, RecordingsError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from inverse_dynamics.base.located_yaml import Mapping
     from inverse_dynamics.base.progress import Progress
 
 SCHEMA = 1
 METADATA = "metadata.yaml"
+
+_SECONDS = 30.0  # without an answer
+_BLOCK = 65536
 
 
 @dataclass(frozen=True)
@@ -57,6 +63,12 @@ class PublicRecording:
         """Bytes to fetch."""
         return sum(file.size for file in self.files)
 
+    def is_intact(self, directory: Path) -> bool:
+        """Whether a directory holds all its files, as they were published."""
+        files = [(directory / f.name, f.sha256) for f in self.files]
+        files.append((directory / METADATA, _sha256(self.metadata)))
+        return all(file.is_file() and _sha256(file) == expected for file, expected in files)
+
 
 @dataclass(frozen=True)
 class PublicRecordings:
@@ -68,12 +80,11 @@ class PublicRecordings:
     license: str
     recordings: tuple[PublicRecording, ...]
 
-    @property
-    def how_to_fetch_otherwise(self) -> str:
-        """What to do without network, in words."""
-        return (
-            f"without network here: `git clone {self.repository}` elsewhere, `git checkout {self.commit}` "
-            "in it, bring it along, and name it with --from"
+    def unusable(self, text: str) -> RecordingsError:
+        """The error of a file that can't be fetched or isn't the published one."""
+        return RecordingsError(
+            f"{text}; without network here: `git clone {self.repository}` elsewhere, `git checkout "
+            f"{self.commit}` in it, bring it along, and name it with --from"
         )
 
 
@@ -97,43 +108,44 @@ def public_recordings() -> PublicRecordings:
     schema = top.required("schema")
     if schema.integer() != SCHEMA:
         schema.fail(f"{SCHEMA}", "it was written for another version of this command")
-    table = PublicRecordings(
-        repository=top.required("repository").text(),
-        commit=top.required("commit").text(),
-        url=top.required("url").text(),
-        license=top.required("license").text(),
-        recordings=tuple(
-            _recording(entry.mapping(), file.parent)
-            for entry in top.required("recordings").entries()
-        ),
-    )
+    texts = {k: top.required(k).text() for k in ("repository", "commit", "url", "license")}
+    entries = [entry.mapping() for entry in top.required("recordings").entries()]
     top.reject_others()
-    return table
+    recordings = tuple(_recording(entry, file.parent) for entry in entries)
+    return PublicRecordings(**texts, recordings=recordings)
 
 
 def _recording(mapping: Mapping, directory: Path) -> PublicRecording:
     name = mapping.required("name").text()
-    files = tuple(_file(entry.mapping()) for entry in mapping.required("files").entries())
+    entries = [entry.mapping() for entry in mapping.required("files").entries()]
     mapping.reject_others()
-    return PublicRecording(name, files, directory / name / METADATA)
+    files = []
+    for entry in entries:
+        texts = {key: entry.required(key).text() for key in ("source", "name", "sha256")}
+        files.append(PublicFile(**texts, size=entry.required("size").integer()))
+        entry.reject_others()
+    return PublicRecording(name, tuple(files), directory / name / METADATA)
 
 
-def _file(mapping: Mapping) -> PublicFile:
-    file = PublicFile(
-        source=mapping.required("source").text(),
-        name=mapping.required("name").text(),
-        size=mapping.required("size").integer(),
-        sha256=mapping.required("sha256").text(),
-    )
-    mapping.reject_others()
-    return file
-
-
-def is_intact(recording: PublicRecording, directory: Path) -> bool:
-    """Whether a directory holds all files of a recording, as they were published."""
-    files = [(directory / f.name, f.sha256) for f in recording.files]
-    files.append((directory / METADATA, _sha256(recording.metadata)))
-    return all(file.is_file() and _sha256(file) == expected for file, expected in files)
+def listed(directory: Path) -> dict[str, Any]:
+    """The public recordings, and whether they are in the directory, for JSON."""
+    table = public_recordings()
+    places = {recording: directory / "bags" / recording.name for recording in table.recordings}
+    return {
+        "repository": table.repository,
+        "commit": table.commit,
+        "license": table.license,
+        "recordings": [
+            {
+                "name": recording.name,
+                "directory": place,
+                "intact": recording.is_intact(place),
+                "bytes": recording.size,
+                "files": recording.files,
+            }
+            for recording, place in places.items()
+        ],
+    }
 
 
 def fetch_recordings(
@@ -156,7 +168,7 @@ def fetch_recordings(
     missing = []
     for recording in table.recordings:
         place = places[recording.name]
-        if is_intact(recording, place):
+        if recording.is_intact(place):
             say(f"{place}: already there and intact")
             continue
         if place.exists() and not overwrite:
@@ -193,23 +205,41 @@ def _base_url(source: str) -> str:
 def _fetch(
     url: str, file: PublicFile, target: Path, table: PublicRecordings, progress: Progress
 ) -> None:
-    """Fetch a file; raise RecordingsError unless it is the published one."""
-    from inverse_dynamics.base.downloads import DownloadError, download
+    """Fetch a file; raise RecordingsError unless it is the published one, OSError if it can't be written."""
+    digest, done = hashlib.sha256(), 0
+    with (target / file.name).open("wb") as out:
+        for block in _blocks(url, table):
+            done += len(block)
+            if done > file.size:
+                raise table.unusable(
+                    f"{url}: expected {file.size} bytes, got more: it is another file"
+                )
+            digest.update(block)
+            out.write(block)
+            progress(file.name, done, file.size)
+    if done < file.size:
+        raise table.unusable(
+            f"{url}: expected {file.size} bytes, got {done}: the transfer was cut off; try again"
+        )
+    if digest.hexdigest() != file.sha256:
+        raise table.unusable(
+            f"{url}: expected SHA-256 {file.sha256}, got {digest.hexdigest()}: checksum mismatch, and "
+            "nothing of the file was kept"
+        )
 
+
+def _blocks(url: str, table: PublicRecordings) -> Iterator[bytes]:
+    """What a URL (http, https, file) gives. Raises RecordingsError."""
     try:
-        digest = download(
-            url,
-            target / file.name,
-            expected_size=file.size,
-            progress=lambda done: progress(file.name, done, file.size),
-        )
-    except DownloadError as error:
-        raise RecordingsError(f"{url}: {error}; {table.how_to_fetch_otherwise}") from error
-    if digest != file.sha256:
-        raise RecordingsError(
-            f"{url}: expected SHA-256 {file.sha256}, got {digest}: it isn't the published file, and "
-            f"nothing of it was kept; {table.how_to_fetch_otherwise}"
-        )
+        with urllib.request.urlopen(url, timeout=_SECONDS) as answer:
+            while block := answer.read(_BLOCK):
+                yield block
+    except urllib.error.HTTPError as error:
+        raise table.unusable(f"{url}: the server says {error.code} {error.reason}") from error
+    except (http.client.HTTPException, OSError, ValueError) as error:
+        reason = getattr(error, "reason", error)
+        text = getattr(reason, "strerror", None) or str(reason) or type(error).__name__
+        raise table.unusable(f"{url}: can't be reached ({text}); try again") from error
 
 
 def _sha256(file: Path) -> str:

@@ -3,20 +3,17 @@
 
 from __future__ import annotations
 
-import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.common import names
-from inverse_dynamics.verbs.json_output import print_json
-from inverse_dynamics.verbs.options import add_figures, add_runs, add_verb
+from inverse_dynamics.verbs.options import figures, option, output, runs, shared
+from inverse_dynamics.verbs.values import names
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    import argparse
 
-    from inverse_dynamics.evaluation.comparison import Comparison
-
-_EPILOG = """\
+SUMMARY = "put evaluations of one recording side by side"
+DESCRIPTION = "Put evaluations of one recording side by side: solvers, models, filters."
+EPILOG = """\
 examples:
   ids evaluate recording --robot ur10_real --out identified
   ids evaluate recording --robot ur10_real --out urdf \\
@@ -31,39 +28,19 @@ results, written whole or not at all:
 """
 
 
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-) -> argparse.ArgumentParser:
-    """Declare the verb."""
-    parser = add_verb(
-        subparsers,
-        "compare",
-        summary="put evaluations of one recording side by side",
-        description="Put evaluations of one recording side by side: solvers, models, filters.",
-        epilog=_EPILOG,
-        json=True,
-    )
-    add_runs(parser, ", two or more")
-    parser.add_argument(
-        "--labels",
-        metavar="A,B,...",
-        type=names,
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Arguments and options."""
+    runs(parser, "results of `ids evaluate`, two or more")
+    option(
+        parser,
+        "--labels A,B,...",
+        "names of the runs (default: what differs between them)",
+        names,
         default=(),
-        help="names of the runs (default: what differs between them)",
     )
-    parser.add_argument(
-        "--out",
-        metavar="DIR",
-        type=Path,
-        help="directory for figure and page (default: only the table is printed)",
-    )
-    parser.add_argument(
-        "--overwrite",
-        action="store_true",
-        help="replace an older result in that directory, unless it holds other files too",
-    )
-    add_figures(parser)
-    return parser
+    output(parser, "DIR", "directory for figure and page (default: only the table is printed)")
+    shared(parser, "--json")
+    figures(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -72,32 +49,20 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.evaluation.comparison import compare
     from inverse_dynamics.results.comparisons import CONTENTS, summary, write_comparison
     from inverse_dynamics.results.evaluations import read_evaluation
-
-    if arguments.out is not None:
-        check_output_directory(
-            arguments.out,
-            overwrite=arguments.overwrite,
-            contents=CONTENTS,
-            inputs=arguments.runs,
-        )
-    comparison = compare([read_evaluation(run) for run in arguments.runs], arguments.labels)
-    if arguments.out is not None:
-        write_comparison(
-            comparison, arguments.out, overwrite=arguments.overwrite, figures=arguments.figures
-        )
-    if arguments.json:
-        print_json("compare", summary(comparison), filter(None, [arguments.out]))
-    else:
-        _print(comparison, arguments.out, arguments.figures)
-
-
-def _print(comparison: Comparison, out: Path | None, figures: Sequence[str]) -> None:
-    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.screen import Screen, print_json
     from inverse_dynamics.verbs.tables import comparison_table
 
+    out, overwrite = arguments.out, arguments.overwrite
+    if out is not None:
+        check_output_directory(out, overwrite=overwrite, contents=CONTENTS, inputs=arguments.runs)
+    comparison = compare([read_evaluation(run) for run in arguments.runs], arguments.labels)
+    if out is not None:
+        write_comparison(comparison, out, overwrite=overwrite, figures=arguments.figures)
+    if arguments.json:
+        print_json("compare", summary(comparison), filter(None, [out]))
+        return
     console = Screen()
     console.print(comparison_table(comparison))
     if out is not None:
-        for suffix in figures:
-            console.print(f"figure         {out / f'comparison.{suffix}'}")
+        console.rows("figure", (out / f"comparison.{suffix}" for suffix in arguments.figures))
         console.print(f"page           {out / 'report.html'}")

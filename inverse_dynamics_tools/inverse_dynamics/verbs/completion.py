@@ -5,12 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.options import add_verb
-
 if TYPE_CHECKING:
     import argparse
 
-_EPILOG = """\
+SUMMARY = "print the script that completes `ids` commands in bash, zsh or fish"
+EPILOG = """\
 examples:
   source <(ids completion bash)   complete in this shell; in ~/.bashrc: in every one
   source <(ids completion zsh)    the same for zsh, in ~/.zshrc after compinit
@@ -18,20 +17,10 @@ examples:
 """
 
 
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-) -> argparse.ArgumentParser:
-    """Declare the verb."""
-    parser = add_verb(
-        subparsers,
-        "completion",
-        summary="print the script that completes `ids` commands in bash, zsh or fish",
-        epilog=_EPILOG,
-    )
-    parser.add_argument(
-        "shell", choices=("bash", "zsh", "fish"), help="the shell that reads the script"
-    )
-    return parser
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Arguments and options."""
+    shells = ("bash", "zsh", "fish")
+    parser.add_argument("shell", choices=shells, help="the shell that reads the script")
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
-import argparse
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.verbs.common import progress_bar
-from inverse_dynamics.verbs.json_output import print_json
-from inverse_dynamics.verbs.options import add_verb
+from inverse_dynamics.verbs.options import option, output, shared
 
-_EPILOG = """\
+if TYPE_CHECKING:
+    import argparse
+
+    from inverse_dynamics.verbs.screen import Screen
+
+SUMMARY = "fetch the public recordings of a real UR10 and a real Panda"
+EPILOG = """\
 examples:
   ids data --dry-run          what would be fetched, from where, how large
   ids data                    fetch it; `ids demo` finds it
@@ -24,50 +26,31 @@ and intact are kept; each recording is written whole or not at all.
 """
 
 
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-) -> argparse.ArgumentParser:
-    """Declare the verb."""
-    parser = add_verb(
-        subparsers,
-        "data",
-        summary="fetch the public recordings of a real UR10 and a real Panda",
-        description="Fetch the public recordings of a real UR10 and a real Panda, and check them.",
-        epilog=_EPILOG,
-        json=True,
-    )
-    parser.add_argument(
-        "--out",
-        metavar="DIR",
-        type=Path,
-        help="output directory (default: $IDS_DATA_DIR, else $XDG_DATA_HOME/inverse_dynamics, else "
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Arguments and options."""
+    output(
+        parser,
+        "DIR",
+        "output directory (default: $IDS_DATA_DIR, else $XDG_DATA_HOME/inverse_dynamics, else "
         "~/.local/share/inverse_dynamics)",
     )
-    parser.add_argument(
-        "--from",
+    shared(parser, "--json")
+    option(
+        parser,
+        "--from URL|CLONE",
+        "source of the files, instead of GitHub: another server, or the directory of a clone",
         dest="source",
-        metavar="URL|CLONE",
         default="",
-        help="source of the files, instead of GitHub: another server, or the directory of a clone",
     )
-    parser.add_argument("--dry-run", action="store_true", help="only list what would be fetched")
-    parser.add_argument(
-        "--overwrite",
-        action="store_true",
-        help="replace recordings that differ from the published ones",
-    )
-    return parser
+    option(parser, "--dry-run", "only list what would be fetched")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.data.public_recordings import data_directory, fetch_recordings
-    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.data.public_recordings import data_directory, fetch_recordings, listed
+    from inverse_dynamics.verbs.screen import Screen, print_json, progress_bar
 
     directory = arguments.out or data_directory()
-    if arguments.dry_run and not arguments.json:
-        _print_plan(directory)
-        return
     written = []
     if not arguments.dry_run:
         with progress_bar() as progress:
@@ -79,47 +62,20 @@ def run(arguments: argparse.Namespace) -> None:
                 progress=progress,
             )
     if arguments.json:
-        print_json("data", _summary(directory), written)
+        print_json("data", listed(directory), written)
+    elif arguments.dry_run:
+        _print(listed(directory), Screen())
 
 
-def _summary(directory: Path) -> dict[str, Any]:
-    """The published recordings, and whether they are there."""
-    from inverse_dynamics.data.public_recordings import is_intact, public_recordings
-
-    table = public_recordings()
-    places = {recording.name: directory / "bags" / recording.name for recording in table.recordings}
-    return {
-        "repository": table.repository,
-        "commit": table.commit,
-        "license": table.license,
-        "recordings": [
-            {
-                "name": recording.name,
-                "directory": places[recording.name],
-                "intact": is_intact(recording, places[recording.name]),
-                "bytes": recording.size,
-                "files": recording.files,
-            }
-            for recording in table.recordings
-        ],
-    }
-
-
-def _print_plan(directory: Path) -> None:
-    from inverse_dynamics.data.public_recordings import is_intact, public_recordings
-    from inverse_dynamics.verbs.screen import Screen
-
-    screen = Screen()
-    table = public_recordings()
-    screen.print(f"{table.repository}, commit {table.commit}, license {table.license}")
-    missing = 0
-    for recording in table.recordings:
-        place = directory / "bags" / recording.name
-        there = is_intact(recording, place)
-        missing += 0 if there else recording.size
-        screen.print(f"{place}: {'already there and intact' if there else 'to be fetched'}")
-        for file in recording.files:
+def _print(found: dict[str, Any], screen: Screen) -> None:
+    """What would be fetched."""
+    screen.print(f"{found['repository']}, commit {found['commit']}, license {found['license']}")
+    for recording in found["recordings"]:
+        state = "already there and intact" if recording["intact"] else "to be fetched"
+        screen.print(f"{recording['directory']}: {state}")
+        for file in recording["files"]:
             screen.print(
                 f"  {file.size:>9} bytes  {file.source}\n             SHA-256 {file.sha256}"
             )
+    missing = sum(r["bytes"] for r in found["recordings"] if not r["intact"])
     screen.print(f"to fetch: {missing / 1e6:.2f} MB; nothing was fetched")

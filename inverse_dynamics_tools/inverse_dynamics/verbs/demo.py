@@ -3,19 +3,23 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.common import progress_bar
-from inverse_dynamics.verbs.json_output import print_json
-from inverse_dynamics.verbs.options import add_verb
+from inverse_dynamics.verbs.options import option, output, shared
 
 if TYPE_CHECKING:
+    import argparse
+
     from inverse_dynamics.results.demo import Demo
     from inverse_dynamics.verbs.screen import Screen
 
-_EPILOG = """\
+SUMMARY = "simulate and evaluate four robots, show them on one page"
+DESCRIPTION = (
+    "Simulate a UR10 and a Panda, compute the torques of their motion and, with recordings, of the "
+    "real ones; compare them with the measured torques; show it on one page."
+)
+EPILOG = """\
 examples:
   ids demo                                  simulated robots; the real ones too if `ids data` has fetched them
   ids demo --recordings bags --out robots   real ones too, from recordings in the directory bags
@@ -28,38 +32,24 @@ results, written whole or not at all:
 """
 
 
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-) -> argparse.ArgumentParser:
-    """Declare the verb."""
-    parser = add_verb(
-        subparsers,
-        "demo",
-        summary="simulate and evaluate four robots, show them on one page",
-        description="Simulate a UR10 and a Panda, compute the torques of their motion and, with "
-        "recordings, of the real ones; compare them with the measured torques; show it on one page.",
-        epilog=_EPILOG,
-        json=True,
-    )
-    parser.add_argument(
-        "--out", metavar="DIR", type=Path, default=Path("demo"), help="results (default: demo)"
-    )
-    parser.add_argument(
-        "--recordings",
-        metavar="DIR",
-        type=Path,
-        help="directory with ur10_exciting_trajectory and panda_exciting_trajectory "
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Arguments and options."""
+    output(parser, "DIR", "results (default: demo)", default=Path("demo"))
+    shared(parser, "--json")
+    option(
+        parser,
+        "--recordings DIR",
+        "directory with ur10_exciting_trajectory and panda_exciting_trajectory "
         "(default: $IDS_DATA_DIR/bags, else where `ids data` puts them)",
+        Path,
     )
-    parser.add_argument("--overwrite", action="store_true", help="replace an older demonstration")
-    parser.add_argument("--quick", action="store_true", help="a few seconds of simulated motion")
-    return parser
+    option(parser, "--quick", "a few seconds of simulated motion")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.results.demo import find_recordings, run_demo, summary
-    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.screen import Screen, print_json, progress_bar
 
     console = Screen(stderr=arguments.json)
     with progress_bar() as progress:
@@ -85,8 +75,7 @@ def _print(demo: Demo, console: Screen) -> None:
     if demo.comparison is not None:
         console.print("UR10, real: gain by identification")
         console.print(comparison_table(demo.comparison))
-    for note in demo.notes:
-        console.print(f"note           {note}")
+    console.rows("note", demo.notes)
     if any(demo.directory.glob("*/torques.png")):
         console.print(f"figures        {demo.directory}/*/torques.png")
     console.print(f"page           {demo.page.absolute()}")

@@ -3,24 +3,31 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.common import (
-    announce,
-    positive_number,
-    progress_bar,
-    share,
-    whole_number,
+from inverse_dynamics.verbs.options import (
+    chosen_robot,
+    given_overrides,
+    option,
+    output,
+    overrides,
+    robot_option,
+    shared,
 )
-from inverse_dynamics.verbs.json_output import print_json
-from inverse_dynamics.verbs.options import add_gravity, add_verb, chosen_robot
+from inverse_dynamics.verbs.values import positive_number, share, whole_number
 
 if TYPE_CHECKING:
+    import argparse
+
     from inverse_dynamics.results.excitations import ExcitationResult
 
-_EPILOG = """\
+SUMMARY = "find the motion to record for identification"
+DESCRIPTION = (
+    "Find the motion after which the torques of a robot can be predicted best: within the "
+    "limits, clear of the robot itself and of the table, with slow reversals for friction."
+)
+EPILOG = """\
 examples:
   ids excite --robot ur10_simulated --out motion.yaml
       20 s within 80 % of the limits of the URDF; rehearse it in simulation:
@@ -43,96 +50,76 @@ results, written together or not at all; Ctrl-C leaves nothing:
 """
 
 
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-) -> argparse.ArgumentParser:
-    """Declare the verb."""
-    parser = add_verb(
-        subparsers,
-        "excite",
-        summary="find the motion to record for identification",
-        description=(
-            "Find the motion after which the torques of a robot can be predicted best: within the "
-            "limits, clear of the robot itself and of the table, with slow reversals for friction."
-        ),
-        epilog=_EPILOG,
-        json=True,
-    )
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Arguments and options."""
     which = parser.add_mutually_exclusive_group(required=True)
-    which.add_argument(
-        "--robot",
-        metavar="NAME|FILE",
-        help="run configuration: a name that `ids robots` lists, or a YAML file",
-    )
-    which.add_argument(
-        "--urdf", metavar="FILE", type=Path, help="robot description, instead of --robot"
-    )
-    parser.add_argument("--root", metavar="LINK", help="first link of the chain")
-    parser.add_argument("--tip", metavar="LINK", help="last link of the chain")
-    add_gravity(parser)
-    parser.add_argument("--out", metavar="FILE", type=Path, required=True, help="the motion (YAML)")
-    parser.add_argument("--overwrite", action="store_true", help="replace older files")
-    parser.add_argument(
-        "--given",
-        metavar="RECORDING",
-        type=Path,
+    robot_option(which)
+    option(which, "--urdf FILE", "robot description, instead of --robot", Path)
+    output(parser, "FILE", "the motion (YAML)", required=True)
+    shared(parser, "--json")
+    option(
+        parser,
+        "--given RECORDING",
+        "recordings that will also be used: the motion adds the information that they lack",
+        Path,
         nargs="+",
         default=[],
-        help="recordings that will also be used: the motion adds the information that they lack",
     )
-    parser.add_argument(
+    option(
+        parser,
         "--payload",
-        action="store_true",
-        help="a motion that identifies only the ten parameters of a body at the tip",
+        "a motion that identifies only the ten parameters of a body at the tip",
     )
-    parser.add_argument(
-        "--seed",
-        type=whole_number,
+    option(
+        parser,
+        "--seed SEED",
+        "seed of the search: the same seed gives the same motion",
+        whole_number,
         default=0,
-        help="seed of the search: the same seed gives the same motion",
     )
-    _add_limits(parser)
-    return parser
+    overrides(parser, "--root", "--tip", "--gravity")
+    _declare_limits(parser.add_argument_group("limits"))
 
 
-def _add_limits(parser: argparse.ArgumentParser) -> None:
-    limits = parser.add_argument_group("limits")
-    limits.add_argument(
-        "--duration",
-        metavar="S",
-        type=positive_number,
-        help="length of the motion (default: 20; with --payload: 8)",
+def _declare_limits(limits: argparse._ArgumentGroup) -> None:
+    option(
+        limits,
+        "--duration S",
+        "length of the motion (default: 20; with --payload: 8)",
+        positive_number,
     )
-    limits.add_argument(
-        "--share",
-        metavar="P",
-        type=share,
-        help="share of the limits of position, velocity, acceleration and effort (default: 0.8)",
+    option(
+        limits,
+        "--share P",
+        "share of the limits of position, velocity, acceleration and effort (default: 0.8)",
+        share,
     )
-    limits.add_argument(
-        "--full-speed-in",
-        metavar="S",
-        type=positive_number,
-        help="shortest time to reach the velocity limit, which limits the acceleration (default: 0.5)",
+    option(
+        limits,
+        "--full-speed-in S",
+        "shortest time to reach the velocity limit, which limits the acceleration (default: 0.5)",
+        positive_number,
+        dest="time_to_full_speed",
     )
-    limits.add_argument(
-        "--clearance",
-        metavar="M",
-        type=positive_number,
-        help="least distance to the arm itself and to the table (default: 0.01)",
+    option(
+        limits,
+        "--clearance M",
+        "least distance to the arm itself and to the table (default: 0.01)",
+        positive_number,
     )
-    limits.add_argument(
+    option(
+        limits,
         "--no-table",
+        "allow the arm to reach below its base",
         dest="table",
         action="store_false",
-        help="allow the arm to reach below its base",
     )
-    limits.add_argument(
-        "--step",
-        metavar="S",
-        type=positive_number,
-        help="time between points of the JointTrajectory (default: at the waypoints, about 0.5 s apart, "
+    option(
+        limits,
+        "--step S",
+        "time between points of the JointTrajectory (default: at the waypoints, about 0.5 s apart, "
         "which controllers join by polynomials of the fifth order)",
+        positive_number,
     )
 
 
@@ -147,14 +134,14 @@ def run(arguments: argparse.Namespace) -> None:
         write_excitation,
     )
     from inverse_dynamics.robot.robots import with_changes
+    from inverse_dynamics.verbs.screen import announce, print_json, progress_bar
 
-    robot = chosen_robot(arguments)
-    robot = with_changes(robot, root=arguments.root, tip=arguments.tip, gravity=arguments.gravity)
+    robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
     check_output(arguments.out, robot, arguments.given, overwrite=arguments.overwrite)
     options = default_options(
         duration=arguments.duration,
         share=arguments.share,
-        time_to_full_speed=arguments.full_speed_in,
+        time_to_full_speed=arguments.time_to_full_speed,
         clearance=arguments.clearance,
         table=arguments.table,
         payload=arguments.payload,
@@ -169,26 +156,25 @@ def run(arguments: argparse.Namespace) -> None:
             progress=progress,
         )
     write_excitation(result, arguments.out, overwrite=arguments.overwrite, step=arguments.step)
+    files = [arguments.out, sending_file(arguments.out)]
     if arguments.json:
-        print_json("excite", summary(result), [arguments.out, sending_file(arguments.out)])
+        print_json("excite", summary(result), files)
     else:
-        _print(result, arguments.out)
+        _print(result, files)
 
 
-def _print(result: ExcitationResult, out: Path) -> None:
-    from inverse_dynamics.results.excitations import sending_file
+def _print(result: ExcitationResult, files: list[Path]) -> None:
     from inverse_dynamics.verbs.screen import Screen
     from inverse_dynamics.verbs.tables import excitation_table
 
     console = Screen()
     found = result.excitation
     console.print(result.robot.description or result.robot.name, style="bold")
-    for note in result.notes:
-        console.print(f"note        {note}")
+    console.rows("note", result.notes)
     console.print(
-        f"motion      {found.trajectory.duration:g} s, condition number of the base regressor "
+        f"motion         {found.trajectory.duration:g} s, condition number of the base regressor "
         f"{found.condition_number:.1f}"
     )
-    console.print(f"noise       {result.noise_source}")
+    console.print(f"noise          {result.noise_source}")
     console.print(excitation_table(result))
-    console.print(f"written     {out}, {sending_file(out)}")
+    console.print(f"written        {', '.join(map(str, files))}")

@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.common import progress_bar
-from inverse_dynamics.verbs.options import add_runs, add_verb
+from inverse_dynamics.verbs.options import option, output, runs
 
-_EPILOG = """\
+if TYPE_CHECKING:
+    import argparse
+
+SUMMARY = "write all series of evaluations as tables: CSV, Parquet"
+EPILOG = """\
 examples:
   ids export result                            result/series.csv
   ids export ur10 panda --format parquet       ur10/series.parquet, panda/series.parquet
@@ -28,33 +31,16 @@ All digits are kept. A Parquet file states the unit of each column; a CSV file h
 """
 
 
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-) -> argparse.ArgumentParser:
-    """Declare the verb."""
-    from inverse_dynamics.results.exports import FORMATS
-
-    parser = add_verb(
-        subparsers,
-        "export",
-        summary="write all series of evaluations as tables: CSV, Parquet",
-        description="Write all series of evaluations as tables: CSV or Parquet, one file each.",
-        epilog=_EPILOG,
-    )
-    add_runs(parser)
-    parser.add_argument(
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Arguments and options."""
+    runs(parser)
+    option(
+        parser,
         "--format",
-        choices=FORMATS,
-        help="format of the table (default: by the ending of --out, else csv)",
+        "format of the table (default: by the ending of --out, else csv)",
+        choices=("csv", "parquet"),
     )
-    parser.add_argument(
-        "--out",
-        metavar="FILE",
-        type=Path,
-        help="the table of one RUN (default: RUN/series.csv or RUN/series.parquet)",
-    )
-    parser.add_argument("--overwrite", action="store_true", help="replace older tables")
-    return parser
+    output(parser, "FILE", "the table of one RUN (default: RUN/series.csv or RUN/series.parquet)")
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -62,18 +48,16 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.base.files import check_output_file
     from inverse_dynamics.results.evaluations import CONTENTS, read_evaluation
     from inverse_dynamics.results.exports import check_pyarrow, export_series
-    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.screen import Screen, progress_bar
 
     check_pyarrow()
-    files = _files(arguments)
+    files, overwrite = _files(arguments), arguments.overwrite
     for file in files:  # before the work
-        check_output_file(
-            file, overwrite=arguments.overwrite, inputs=arguments.runs, results=CONTENTS
-        )
+        check_output_file(file, overwrite=overwrite, inputs=arguments.runs, results=CONTENTS)
     with progress_bar() as progress:
         for directory, file in zip(arguments.runs, files, strict=True):
             evaluation = read_evaluation(directory)
-            export_series(evaluation, file, overwrite=arguments.overwrite, progress=progress)
+            export_series(evaluation, file, overwrite=overwrite, progress=progress)
     for file in files:
         Screen().print(str(file))
 

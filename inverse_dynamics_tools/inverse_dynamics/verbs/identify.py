@@ -9,10 +9,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.verbs.common import file_name, number, positive_number, progress_bar
-from inverse_dynamics.verbs.json_output import print_json
-from inverse_dynamics.verbs.options import add_chain, add_verb, chosen_robot, robot_changes
-from inverse_dynamics.verbs.payload_option import stated_payload
+from inverse_dynamics.verbs.options import (
+    CHAIN,
+    RECORDING,
+    chosen_robot,
+    given_overrides,
+    option,
+    output,
+    overrides,
+    recording,
+    robot_option,
+    shared,
+)
+from inverse_dynamics.verbs.values import file_name, stated_payload
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +32,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.results.identifications import IdentificationFiles
     from inverse_dynamics.robot.robots import Robot
 
-_EPILOG = """\
+SUMMARY = "identify a model with friction from recordings of a robot, and state its errors"
+EPILOG = """\
 examples:
   ids identify recording --robot ur10_real --out arm.yaml
       a model of the recorded arm: geometry from its description, masses and friction from the data
@@ -55,108 +65,67 @@ results, all of them or none:
   arm.json                all figures
 """
 
+_OF_RECORDINGS = ("effort_is", "topic", "start", "end")  # arguments of identify()
 
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-) -> argparse.ArgumentParser:
-    """Declare the verb."""
-    from inverse_dynamics.robot.choices import EFFORT_CHOICES
 
-    parser = add_verb(
-        subparsers,
-        "identify",
-        summary="identify a model with friction from recordings of a robot, and state its errors",
-        epilog=_EPILOG,
-        json=True,
-    )
-    parser.add_argument(
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Arguments and options."""
+    recording(
+        parser,
         "recordings",
-        metavar="RECORDING",
-        type=file_name,
+        "recording, as for `ids evaluate`; several recordings must be of one robot with the same load",
         nargs="+",
-        help="recording, as for `ids evaluate`; several recordings must be of one robot with the same load",
     )
-    parser.add_argument(
-        "--robot",
-        metavar="NAME|FILE",
-        help="run configuration: its URDF is the prior, its model is compared with the identified one",
-    )
-    parser.add_argument(
-        "--out",
-        metavar="FILE",
-        type=Path,
+    robot_option(parser)
+    output(
+        parser,
+        "FILE",
+        "run configuration to write, NAME.yaml; NAME_model.yaml, NAME_model.json, NAME.json and "
+        "NAME.html are written with it",
         required=True,
-        help="run configuration to write, NAME.yaml; NAME_model.yaml, NAME_model.json, NAME.json and NAME.html "
-        "are written with it",
     )
-    parser.add_argument(
-        "--hold-out",
-        metavar="RECORDING",
-        type=file_name,
+    shared(parser, "--json")
+    option(
+        parser,
+        "--hold-out RECORDING",
+        "a recording to test the model on, for example of another day; may be given several times",
+        file_name,
         action="append",
         default=[],
-        help="a recording to test the model on, for example of another day; may be given several times",
     )
-    parser.add_argument(
-        "--known-payload",
-        metavar="RECORDING=LOAD",
-        type=_known_payload,
+    option(
+        parser,
+        "--known-payload RECORDING=LOAD",
+        "a further recording of motor currents, with a known load, which determines the drive gains. "
+        "LOAD as for --payload of other verbs, with its center of mass: "
+        "MASS,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz] in the tip frame, or a YAML file; may be given several "
+        "times",
+        _known_payload,
         action="append",
         default=[],
-        help="a further recording of motor currents, with a known load, which determines the drive gains. "
-        "LOAD as for --payload of other verbs, with its center of mass: MASS,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz] in the "
-        "tip frame, or a YAML file; may be given several times",
     )
-    parser.add_argument(
-        "--accept",
-        metavar="KIND",
+    option(
+        parser,
+        "--accept KIND",
+        "identify a model although this mistake is found; a refusal names its KIND. May be given "
+        "several times",
         action="append",
         default=[],
-        help="identify a model although this mistake is found; a refusal names its KIND. May be given several times",
     )
-    parser.add_argument(
-        "--urdf-out",
-        metavar="FILE",
-        type=Path,
-        help="also write the description with the identified inertia, and friction as far as <dynamics> can state it",
+    option(
+        parser,
+        "--urdf-out FILE",
+        "also write the description with the identified inertia, and friction as far as <dynamics> "
+        "can state it",
+        Path,
     )
-    parser.add_argument(
-        "--mjcf-out",
-        metavar="FILE",
-        type=Path,
-        help="also write MuJoCo <default> classes of the joints: armature, damping, frictionloss",
+    option(
+        parser,
+        "--mjcf-out FILE",
+        "also write MuJoCo <default> classes of the joints: armature, damping, frictionloss",
+        Path,
     )
-    parser.add_argument("--overwrite", action="store_true", help="replace older files")
-    parser.add_argument(
-        "--effort-is",
-        metavar="MEANING",
-        choices=tuple(EFFORT_CHOICES),
-        help="meaning of the recorded efforts. "
-        + "; ".join(f"{name}: {text}" for name, text in EFFORT_CHOICES.items()),
-    )
-    parser.add_argument("--topic", metavar="NAME", help="topic of the joint states")
-    parser.add_argument(
-        "--cutoff",
-        metavar="HZ",
-        type=positive_number,
-        help="cut-off frequency of the low-pass filter (default: chosen from the data)",
-    )
-    add_chain(parser.add_argument_group("overrides of the run configuration"), "recordings")
-    parser.add_argument(
-        "--from",
-        dest="start",
-        metavar="SECONDS",
-        type=number,
-        help="leave out the samples before this time, counted from the first sample of each recording",
-    )
-    parser.add_argument(
-        "--to",
-        dest="end",
-        metavar="SECONDS",
-        type=number,
-        help="leave out the samples after this time",
-    )
-    return parser
+    overrides(parser, *CHAIN, *RECORDING)
 
 
 def _known_payload(text: str) -> tuple[Path, dict[str, Parameter]]:
@@ -178,7 +147,7 @@ def run(arguments: argparse.Namespace) -> None:
         write_identification,
     )
     from inverse_dynamics.results.urdf_export import mjcf_text, urdf_text
-    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.screen import Screen, print_json, progress_bar
 
     robot = _robot(arguments)
     loads = [recording for recording, _ in arguments.known_payload]
@@ -194,11 +163,8 @@ def run(arguments: argparse.Namespace) -> None:
             robot,
             known_payloads=arguments.known_payload,
             accept=arguments.accept,
-            effort_is=arguments.effort_is,
-            topic=arguments.topic,
-            start=arguments.start,
-            end=arguments.end,
             progress=progress,
+            **{name: getattr(arguments, name) for name in _OF_RECORDINGS},
         )
         options = {"effort_is": arguments.effort_is, "topic": arguments.topic}
         tests = [
@@ -226,7 +192,9 @@ def _robot(arguments: argparse.Namespace) -> Robot:
     from inverse_dynamics.evaluation.posture import LOCKED
     from inverse_dynamics.robot.robots import with_changes
 
-    changes = robot_changes(arguments)
+    changes = given_overrides(arguments)
+    for name in _OF_RECORDINGS:
+        changes.pop(name)
     for name in changes["parameters"] or ():
         if not name.startswith(LOCKED):
             raise UserError(
@@ -236,7 +204,7 @@ def _robot(arguments: argparse.Namespace) -> Robot:
     robot = chosen_robot(arguments)
     if arguments.robot is None:
         robot = replace(robot, effort="torque", friction=False)
-    return with_changes(robot, cutoff=arguments.cutoff, **changes)
+    return with_changes(robot, **changes)
 
 
 def _print(found: Identification, files: IdentificationFiles, tests: Sequence[HoldOut]) -> None:

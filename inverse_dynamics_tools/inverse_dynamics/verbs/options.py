@@ -1,75 +1,105 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Verbs and options that several verbs have."""
+"""Options: how a verb declares one, and those that several verbs have.
+
+option(parser, "--gain PER_SECOND", "1 / time constant", positive_number)
+shared(parser, "--robot", "--json")
+overrides(parser, *SOLVER, *RECORDING)     # evaluate(..., **given_overrides(arguments))
+"""
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.extras import is_installed
-from inverse_dynamics.base.help_text import HelpFormatter
+from inverse_dynamics.data.joint_log import CLOCKS
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.robot.choices import EFFORT_CHOICES
-from inverse_dynamics.verbs.common import figure_formats, names, parameter, three_numbers
-from inverse_dynamics.verbs.payload_option import payload
+from inverse_dynamics.evaluation.accelerations import RULES
+from inverse_dynamics.robot.choices import EFFORT_CHOICES, METHODS
+from inverse_dynamics.verbs.values import (
+    figure_formats,
+    file_name,
+    names,
+    number,
+    parameter,
+    payload,
+    positive_number,
+    three_numbers,
+)
 
 if TYPE_CHECKING:
+    import argparse
+
     from inverse_dynamics.robot.robots import Robot
 
-# Options of add_robot_changes(), by the names that with_changes() has for them.
-_CHANGES = ("plugin", "friction", "urdf", "root", "tip", "gravity", "joints", "parameters")
+# Overrides of the run configuration, by name.
+CHAIN = ("--urdf", "--root", "--tip", "--gravity", "--joints", "--parameter")
+SOLVER = (*CHAIN, "--plugin", "--no-friction", "--payload")
+RECORDING = ("--topic", "--effort-is", "--cutoff", "--from", "--to")
+FILTER = ("--accelerations", "--clock", "--without-rule")
 
 
-def add_verb(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-    name: str,
-    *,
-    summary: str,
-    description: str = "",
-    epilog: str,
-    json: bool = False,
-) -> argparse.ArgumentParser:
-    """A verb. summary: in the list of verbs; description: of its own help, else the summary.
-
-    json: whether it has the option --json, see json_output.py.
-    """
-    parser = subparsers.add_parser(
-        name,
-        help=summary,
-        description=description or f"{summary[0].upper()}{summary[1:]}.",
-        epilog=epilog,
-        formatter_class=HelpFormatter,
-    )
-    if json:
-        parser.add_argument(
-            "--json",
-            action="store_true",
-            help="print one JSON object instead of tables (docs/command_line.md)",
-        )
-    return parser
+def option(
+    group: argparse._ActionsContainer, usage: str, help: str, type: Any = None, **more: Any
+) -> argparse.Action:
+    """Declare an option. usage: its name and, unless it is a switch, its value: `--cutoff HZ`."""
+    name, _, metavar = usage.partition(" ")
+    more |= {"metavar": metavar} if metavar else {}
+    more |= {"type": type} if type else {}
+    if not more.keys() & {"metavar", "type", "choices", "action"}:
+        more["action"] = "store_true"
+    return group.add_argument(name, help=help, **more)
 
 
-def add_runs(parser: argparse.ArgumentParser, more: str = "") -> None:
-    """RUN..., read by read_evaluation()."""
-    parser.add_argument(
-        "runs", metavar="RUN", type=Path, nargs="+", help=f"results of `ids evaluate`{more}"
-    )
+def shared(group: argparse._ActionsContainer, *wanted: str) -> list[str]:
+    """Declare options of the table below; gives the names of their values."""
+    return [
+        option(group, usage, help, type, **more).dest
+        for usage, help, type, more in map(_SHARED.__getitem__, wanted)
+    ]
 
 
-def add_robot(parser: argparse.ArgumentParser, *, required: bool = False) -> None:
-    """--robot, read by load_robot(); where it isn't required, by chosen_robot()."""
-    robot = parser.add_argument(
-        "--robot",
-        metavar="NAME|FILE",
-        required=required,
-        help="run configuration: a name that `ids robots` lists, or a YAML file"
-        + ("" if required else "; may be left out where --urdf is given"),
-    )
-    robot.completer = robots_and_files  # type: ignore[attr-defined]
+def overrides(parser: argparse.ArgumentParser, *wanted: str) -> None:
+    """Declare overrides of the run configuration; given_overrides() reads them."""
+    group = parser.add_argument_group("overrides of the run configuration")
+    parser.set_defaults(overrides=shared(group, *wanted))
 
 
-def robots_and_files(prefix: str, **_: object) -> list[str]:
+def figures(parser: argparse.ArgumentParser) -> None:
+    """Declare --figures and --no-figures."""
+    shared(parser.add_mutually_exclusive_group(), "--figures", "--no-figures")
+
+
+def output(
+    parser: argparse.ArgumentParser, usage: str, help: str, type: Any = Path, **more: Any
+) -> None:
+    """Declare --out and --overwrite."""
+    option(parser, f"--out {usage}", help, type, **more)
+    option(parser, "--overwrite", "replace an older result, unless it holds other files too")
+
+
+def recording(
+    parser: argparse.ArgumentParser, name: str = "bag", help: str = "", **more: Any
+) -> None:
+    """Declare RECORDING."""
+    help = help or "recording, as for `ids evaluate`"
+    parser.add_argument(name, metavar="RECORDING", type=file_name, help=help, **more)
+
+
+def runs(parser: argparse.ArgumentParser, help: str = "results of `ids evaluate`") -> None:
+    """Declare RUN..., read by read_evaluation()."""
+    parser.add_argument("runs", metavar="RUN", type=Path, nargs="+", help=help)
+
+
+def robot_option(parser: argparse._ActionsContainer, **more: Any) -> None:
+    """Declare --robot; chosen_robot() reads it."""
+    named = "run configuration: a name that `ids robots` lists, or a YAML file"
+    if not more.get("required"):
+        named += "; may be left out where --urdf is given"
+    option(parser, "--robot NAME|FILE", named, **more).completer = _robots  # type: ignore[attr-defined]
+
+
+def _robots(prefix: str, **_: object) -> list[str]:
     """What may stand for NAME|FILE, as argcomplete asks for it."""
     from argcomplete.completers import FilesCompleter
 
@@ -96,107 +126,116 @@ def chosen_robot(arguments: argparse.Namespace) -> Robot:
     return robot_of_description(arguments.urdf)
 
 
-def add_figures(parser: argparse.ArgumentParser) -> None:
-    """--figures, --no-figures."""
-    figures = parser.add_mutually_exclusive_group()
-    figures.add_argument(
-        "--figures",
-        metavar="FORMATS",
-        type=figure_formats,
-        default=("png",) if is_installed("matplotlib") else (),
-        help="formats of the figure: some of png,svg,pdf, or none (default: png; without matplotlib: none)",
+def given_overrides(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Arguments of evaluate(), or of with_changes(), that overrides() declared."""
+    given = {name: getattr(arguments, name) for name in arguments.overrides}
+    parameters = dict(given.pop("parameters", None) or {})
+    body = given.pop("payload", None) or {}
+    if twice := parameters.keys() & body.keys():
+        raise UserError(
+            f"--payload and --parameter {min(twice)}: expected one of them; leave out one"
+        )
+    return {**given, "parameters": {**parameters, **body} or None}
+
+
+def _meanings(choices: dict[str, str]) -> str:
+    return "; ".join(f"{name}: {text}" for name, text in choices.items())
+
+
+# Usage, help, type and what else option() takes; by name.
+_SHARED: dict[str, tuple[str, str, Any, dict[str, Any]]] = {
+    usage.partition(" ")[0]: (usage, help, type, more)
+    for usage, help, type, more in (
+        ("--json", "print one JSON object instead of tables (docs/command_line.md)", None, {}),
+        (
+            "--urdf FILE",
+            "robot description, with or without --robot; a .xacro file needs xacro",
+            Path,
+            {},
+        ),
+        ("--root LINK", "first link of the chain", None, {}),
+        ("--tip LINK", "last link of the chain", None, {}),
+        (
+            "--gravity X,Y,Z",
+            "gravitational acceleration [m/s^2] in the frame of the root link (usually 0,0,-9.81)",
+            three_numbers,
+            {},
+        ),
+        (
+            "--joints A,B,...",
+            "names of the joints in the recording, in the order of the chain",
+            names,
+            {},
+        ),
+        (
+            "--parameter NAME=VALUE",
+            "a parameter of the solver, as under `parameters:` (docs/add_a_robot.md): "
+            "locked_joints.finger=0.02; may be given several times",
+            parameter,
+            {"dest": "parameters", "action": "append"},
+        ),
+        ("--plugin PACKAGE/CLASS", "solver (`ids robots --plugins`)", None, {}),
+        (
+            "--no-friction",
+            "leave out the solver's friction: for a robot whose controller compensates it",
+            None,
+            {"dest": "friction", "action": "store_false", "default": None},
+        ),
+        (
+            "--payload BODY",
+            "a rigid body at the tip: MASS[,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz]]: mass [kg], center of "
+            "mass in the tip frame [m], moments of inertia about it [kg m^2]; or a YAML file with "
+            "mass, center_of_mass, inertia and frame (docs/add_a_robot.md)",
+            payload,
+            {},
+        ),
+        ("--topic NAME", "topic of the joint states, or of the trajectory", None, {}),
+        (
+            "--effort-is MEANING",
+            f"meaning of the recorded efforts. {_meanings(EFFORT_CHOICES)}",
+            None,
+            {"choices": tuple(EFFORT_CHOICES)},
+        ),
+        ("--accelerations METHOD", _meanings(METHODS), None, {"choices": tuple(METHODS)}),
+        ("--cutoff HZ", "cut-off frequency of the low-pass filter", positive_number, {}),
+        (
+            "--from SECONDS",
+            "leave out samples before this time, counted from the first sample of each recording",
+            number,
+            {"dest": "start"},
+        ),
+        ("--to SECONDS", "leave out samples after this time", number, {"dest": "end"}),
+        (
+            "--clock",
+            "time stamps that are used: the header's, those of reception, or the header's if there "
+            "are any (auto)",
+            None,
+            {"choices": CLOCKS, "default": "auto"},
+        ),
+        (
+            "--without-rule RULE",
+            "report what this rule finds, but do not act on it; may be given several times. "
+            + _meanings(RULES),
+            None,
+            {
+                "dest": "without_rules",
+                "choices": tuple(RULES),
+                "action": "append",
+                "default": [],
+            },
+        ),
+        (
+            "--figures FORMATS",
+            "formats of the figure: some of png,svg,pdf, or none, which is faster (default: png; "
+            "without matplotlib: none)",
+            figure_formats,
+            {"default": ("png",) if is_installed("matplotlib") else ()},
+        ),
+        (
+            "--no-figures",
+            "short for --figures none",
+            None,
+            {"dest": "figures", "action": "store_const", "const": ()},
+        ),
     )
-    figures.add_argument(
-        "--no-figures",
-        dest="figures",
-        action="store_const",
-        const=(),
-        help="no figure, which is faster: short for --figures none",
-    )
-
-
-def add_gravity(group: argparse._ActionsContainer) -> None:
-    """--gravity."""
-    group.add_argument(
-        "--gravity",
-        metavar="X,Y,Z",
-        type=three_numbers,
-        help="gravitational acceleration [m/s^2] in the frame of the root link (usually 0,0,-9.81)",
-    )
-
-
-def add_effort_is(group: argparse._ActionsContainer) -> None:
-    """--effort-is."""
-    group.add_argument(
-        "--effort-is",
-        metavar="MEANING",
-        choices=tuple(EFFORT_CHOICES),
-        help="meaning of the recorded efforts. "
-        + "; ".join(f"{name}: {text}" for name, text in EFFORT_CHOICES.items()),
-    )
-
-
-def add_robot_changes(parser: argparse.ArgumentParser, what: str) -> argparse._ArgumentGroup:
-    """Options that override the run configuration. what: what names the joints."""
-    group = parser.add_argument_group("overrides of the run configuration")
-    group.add_argument("--plugin", metavar="PACKAGE/CLASS", help="solver (`ids robots --plugins`)")
-    group.add_argument(
-        "--no-friction",
-        dest="friction",
-        action="store_false",
-        default=None,
-        help="leave out the solver's friction: for a robot whose controller compensates it",
-    )
-    add_chain(group, what)
-    group.add_argument(
-        "--payload",
-        metavar="BODY",
-        type=payload,
-        help="a rigid body at the tip: MASS[,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz]]: mass [kg], "
-        "center of mass in the tip frame [m], moments of inertia "
-        "about it [kg m^2]; or a YAML file with mass, center_of_mass, inertia and frame "
-        "(docs/add_a_robot.md)",
-    )
-    return group
-
-
-def add_chain(group: argparse._ActionsContainer, what: str) -> None:
-    """--urdf and the options that say what of it moves. what: what names the joints."""
-    group.add_argument(
-        "--urdf",
-        metavar="FILE",
-        type=Path,
-        help="robot description, with or without --robot; a .xacro file needs xacro",
-    )
-    group.add_argument("--root", metavar="LINK", help="first link of the chain")
-    group.add_argument("--tip", metavar="LINK", help="last link of the chain")
-    add_gravity(group)
-    group.add_argument(
-        "--joints",
-        metavar="A,B,...",
-        type=names,
-        help=f"names of the joints in the {what}, in the order of the chain",
-    )
-    group.add_argument(
-        "--parameter",
-        dest="parameters",
-        metavar="NAME=VALUE",
-        type=parameter,
-        action="append",
-        help="a parameter of the solver, as under `parameters:` (docs/add_a_robot.md): "
-        "locked_joints.finger=0.02; may be given several times",
-    )
-
-
-def robot_changes(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Values of the options of add_robot_changes(), or of add_chain(); None: not given."""
-    changes = {name: getattr(arguments, name, None) for name in _CHANGES}
-    parameters = dict(changes["parameters"] or {})
-    for name, value in (getattr(arguments, "payload", None) or {}).items():
-        if name in parameters:
-            raise UserError(
-                f"--payload and --parameter {name}: expected one of them; leave out one"
-            )
-        parameters[name] = value
-    changes["parameters"] = parameters or None
-    return changes
+}

@@ -3,26 +3,31 @@
 
 from __future__ import annotations
 
-import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.common import file_name, progress_bar
-from inverse_dynamics.verbs.heading import print_heading
-from inverse_dynamics.verbs.json_output import print_json
 from inverse_dynamics.verbs.options import (
-    add_figures,
-    add_robot,
-    add_robot_changes,
-    add_verb,
+    RECORDING,
+    SOLVER,
     chosen_robot,
-    robot_changes,
+    figures,
+    given_overrides,
+    option,
+    output,
+    overrides,
+    recording,
+    robot_option,
+    shared,
 )
+from inverse_dynamics.verbs.values import file_name
 
 if TYPE_CHECKING:
+    import argparse
+    from pathlib import Path
+
     from inverse_dynamics.identification.payload import Payload
 
-_EPILOG = """\
+SUMMARY = "estimate what the robot carries in a recording: mass, center of mass, inertia"
+EPILOG = """\
 examples:
   ids payload loaded --robot ur10_real --out payload.yaml
   ids evaluate loaded --robot ur10_real --payload payload.yaml
@@ -43,49 +48,25 @@ results, all of them or none:
 """
 
 
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-) -> argparse.ArgumentParser:
-    """Declare the verb."""
-    from inverse_dynamics.robot.choices import EFFORT_CHOICES
-
-    parser = add_verb(
-        subparsers,
-        "payload",
-        summary="estimate what the robot carries in a recording: mass, center of mass, inertia",
-        epilog=_EPILOG,
-        json=True,
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Arguments and options."""
+    recording(parser)
+    robot_option(parser)
+    option(
+        parser,
+        "--empty RECORDING",
+        "recording of the same robot without the load, on the same day",
+        file_name,
     )
-    parser.add_argument(
-        "bag", metavar="RECORDING", type=file_name, help="recording, as for `ids evaluate`"
-    )
-    add_robot(parser)
-    parser.add_argument(
-        "--empty",
-        metavar="RECORDING",
-        type=file_name,
-        help="recording of the same robot without the load, on the same day",
-    )
-    parser.add_argument(
-        "--out",
-        metavar="FILE",
-        type=Path,
+    output(
+        parser,
+        "FILE",
+        "the load, a YAML file; a .json file and the figure are written next to it",
         required=True,
-        help="the load, a YAML file; a .json file and the figure are written next to it",
     )
-    parser.add_argument(
-        "--overwrite", action="store_true", help="replace older results of these names"
-    )
-    add_figures(parser)
-    robot = add_robot_changes(parser, "recording")
-    robot.add_argument("--topic", metavar="NAME", help="topic of the joint states")
-    robot.add_argument(
-        "--effort-is",
-        metavar="MEANING",
-        choices=tuple(EFFORT_CHOICES),
-        help=f"meaning of the recorded efforts: {', '.join(EFFORT_CHOICES)} (`ids evaluate --help`)",
-    )
-    return parser
+    shared(parser, "--json")
+    figures(parser)
+    overrides(parser, *SOLVER, *RECORDING)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -96,6 +77,7 @@ def run(arguments: argparse.Namespace) -> None:
         summary,
         write_payload,
     )
+    from inverse_dynamics.verbs.screen import print_json, progress_bar
 
     robot = chosen_robot(arguments)
     inputs = (arguments.bag, arguments.empty, arguments.urdf, *robot.files)
@@ -111,34 +93,26 @@ def run(arguments: argparse.Namespace) -> None:
             robot,
             empty=arguments.empty,
             progress=progress,
-            topic=arguments.topic,
-            effort_is=arguments.effort_is,
-            **robot_changes(arguments),
+            **given_overrides(arguments),
         )
     write_payload(payload, arguments.out, overwrite=arguments.overwrite, figures=arguments.figures)
+    files = payload_files(arguments.out, arguments.figures)
     if arguments.json:
-        print_json("payload", summary(payload), payload_files(arguments.out, arguments.figures))
+        print_json("payload", summary(payload), files)
     else:
-        _print(payload, arguments.out, arguments.figures)
+        _print(payload, files)
 
 
-def _print(payload: Payload, out: Path, figures: tuple[str, ...]) -> None:
-    from inverse_dynamics.results.payload import payload_files
-    from inverse_dynamics.verbs.screen import Screen
+def _print(payload: Payload, files: tuple[Path, ...]) -> None:
+    from inverse_dynamics.verbs.screen import Screen, print_heading
     from inverse_dynamics.verbs.tables import payload_table, residual_table
 
     console = Screen()
-    print_heading(
-        console,
-        payload.evaluation,
-        samples=len(payload.time),
-        duration=payload.estimate.duration,
-    )
+    samples, duration = len(payload.time), payload.estimate.duration
+    print_heading(console, payload.evaluation, samples=samples, duration=duration)
     if payload.empty is not None:
         console.print(f"without load   {payload.empty}")
-    for note in payload.notes:
-        console.print(f"note           {note}")
+    console.rows("note", payload.notes)
     console.print(payload_table(payload))
     console.print(residual_table(payload))
-    for file in payload_files(out, figures):
-        console.print(f"written        {file}")
+    console.rows("written", files)

@@ -3,13 +3,17 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.common import names
-from inverse_dynamics.verbs.options import add_runs, add_verb
+from inverse_dynamics.verbs.options import option, output, runs
+from inverse_dynamics.verbs.values import names
 
-_EPILOG = """\
+if TYPE_CHECKING:
+    import argparse
+
+SUMMARY = "make one HTML page of evaluations: the robot in motion and its torques"
+EPILOG = """\
 examples:
   ids report result                             report.html of one evaluation
   ids report ur10 panda --out robots.html       two on one page
@@ -18,31 +22,12 @@ The page is a single file: it needs no network, and can be mailed and printed.
 """
 
 
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-) -> argparse.ArgumentParser:
-    """Declare the verb."""
-    parser = add_verb(
-        subparsers,
-        "report",
-        summary="make one HTML page of evaluations: the robot in motion and its torques",
-        description="Make one HTML page of evaluations: the robot in motion and its torques.",
-        epilog=_EPILOG,
-    )
-    add_runs(parser)
-    parser.add_argument(
-        "--out",
-        metavar="FILE",
-        type=Path,
-        default=Path("report.html"),
-        help="the page (default: report.html)",
-    )
-    parser.add_argument("--title", metavar="TEXT", default="", help="headline of the page")
-    parser.add_argument(
-        "--labels", metavar="A,B,...", type=names, default=(), help="names of the runs"
-    )
-    parser.add_argument("--overwrite", action="store_true", help="replace an older page")
-    return parser
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Arguments and options."""
+    runs(parser)
+    output(parser, "FILE", "the page (default: report.html)", default=Path("report.html"))
+    option(parser, "--title TEXT", "headline of the page", default="")
+    option(parser, "--labels A,B,...", "names of the runs", names, default=())
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -59,10 +44,10 @@ def run(arguments: argparse.Namespace) -> None:
     labels = arguments.labels or [""] * len(arguments.runs)
     if len(labels) != len(arguments.runs):
         raise UserError(f"--labels: expected {len(arguments.runs)} names, got {len(labels)}")
-    runs = [
+    pages = [
         report_run(read_evaluation(directory), label)
         for directory, label in zip(arguments.runs, labels, strict=True)
     ]
-    title = arguments.title or f"Measured and computed torques: {', '.join(r.title for r in runs)}"
-    write_page(arguments.out, title, runs)
+    title = arguments.title or f"Measured and computed torques: {', '.join(r.title for r in pages)}"
+    write_page(arguments.out, title, pages)
     Screen().print(str(arguments.out))

@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.verbs.json_output import print_json
-from inverse_dynamics.verbs.options import add_verb
+from inverse_dynamics.verbs.options import option, shared
 
 if TYPE_CHECKING:
     import argparse
@@ -14,7 +13,9 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.evaluation import Arm
     from inverse_dynamics.robot.robots import Robot
 
-_EPILOG = """\
+SUMMARY = "list robots, show one"
+DESCRIPTION = "List the run configurations of the sourced workspaces, or show one."
+EPILOG = """\
 examples:
   ids robots                     names and descriptions
   ids robots ur10_real           its run configuration
@@ -25,100 +26,77 @@ To add a robot, write one more file: docs/add_a_robot.md.
 """
 
 
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-) -> argparse.ArgumentParser:
-    """Declare the verb."""
-    parser = add_verb(
-        subparsers,
-        "robots",
-        summary="list robots, show one",
-        description="List the run configurations of the sourced workspaces, or show one.",
-        epilog=_EPILOG,
-        json=True,
-    )
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Arguments and options."""
     shown = parser.add_mutually_exclusive_group()
     shown.add_argument("robot", nargs="?", metavar="NAME|FILE", help="show this robot")
-    shown.add_argument("--plugins", action="store_true", help="list installed solvers instead")
-    return parser
+    option(shown, "--plugins", "list installed solvers instead")
+    shared(parser, "--json")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    if arguments.plugins:
-        _list_solvers(json=arguments.json)
-    elif arguments.robot:
-        _show(arguments.robot, json=arguments.json)
-    else:
-        _list(json=arguments.json)
-
-
-def _list_solvers(*, json: bool) -> None:
     from inverse_dynamics import _core
-    from inverse_dynamics.verbs.screen import Screen
-
-    plugins = _core.available_solvers()
-    if json:
-        print_json("robots", {"plugins": plugins})
-    else:
-        Screen().print("\n".join(plugins))
-
-
-def _list(*, json: bool) -> None:
     from inverse_dynamics.robot.robots import load_robot, robot_names
+    from inverse_dynamics.verbs.screen import print_json
 
-    robots = [load_robot(name) for name in robot_names()]
-    if json:
-        print_json("robots", {"robots": robots})
+    found: dict[str, Any]
+    if arguments.plugins:
+        plugins = _core.available_solvers()
+        found, rows = {"plugins": plugins}, [(plugin, "") for plugin in plugins]
+    elif arguments.robot:
+        robot = load_robot(arguments.robot)
+        arm, notes = _checked(robot)
+        found = {"robot": robot, "chain": arm.joint_names, "units": arm.units, "notes": notes}
+        rows = _rows(robot, arm, notes)
     else:
-        _print_rows({robot.name: robot.description for robot in robots})
+        robots = [load_robot(name) for name in robot_names()]
+        found, rows = {"robots": robots}, [(robot.name, robot.description) for robot in robots]
+    if arguments.json:
+        print_json("robots", found)
+    else:
+        _print(rows)
 
 
-def _print_rows(rows: dict[str, str]) -> None:
-    """One key and text per line; lines stay whole, so that paths can be copied. No text: no line."""
+def _print(rows: list[tuple[str, str]]) -> None:
+    """One key and text per line; lines stay whole, so that paths can be copied."""
     from rich.text import Text
 
     from inverse_dynamics.verbs.screen import Screen
 
     console = Screen()
-    width = max(map(len, rows), default=0) + 2
-    for key, text in rows.items():
-        if text:
-            console.print(Text(f"{key:<{width}}", "bold") + Text(text, "not bold"))
+    width = max((len(key) for key, _ in rows), default=0) + 2
+    for key, text in rows:
+        line = Text(f"{key:<{width}}", "bold") + Text(text, "not bold") if text else key
+        console.print(line)
 
 
-def _show(robot: str, *, json: bool) -> None:
+def _rows(robot: Robot, arm: Arm, notes: list[str]) -> list[tuple[str, str]]:
+    """Keys of the run configuration that say something, in words."""
     from inverse_dynamics.robot.choices import EFFORT_CHOICES, METHODS
-    from inverse_dynamics.robot.robots import load_robot
 
-    shown = load_robot(robot)
-    arm, notes = _checked(shown)
-    if json:
-        found = {"robot": shown, "chain": arm.joint_names, "units": arm.units, "notes": notes}
-        print_json("robots", found)
-        return
-    gravity = shown.gravity
-    cutoff = "" if shown.cutoff is None else f", cut-off {shown.cutoff:g} Hz"
+    gravity = robot.gravity
+    cutoff = "" if robot.cutoff is None else f", cut-off {robot.cutoff:g} Hz"
     rows = {
-        "name": shown.name,
-        "description": shown.description,
-        "plugin": shown.plugin,
-        "urdf": str(shown.urdf or ""),
-        "model": str(shown.model or ""),
-        "root, tip": f"{shown.root or '(the first link)'}, {shown.tip or '(the last link)'}",
+        "name": robot.name,
+        "description": robot.description,
+        "plugin": robot.plugin,
+        "urdf": str(robot.urdf or ""),
+        "model": str(robot.model or ""),
+        "root, tip": f"{robot.root or '(the first link)'}, {robot.tip or '(the last link)'}",
         "chain": ", ".join(arm.joint_names),
         "gravity": "(the solver's default)" if gravity is None else f"{list(gravity)} m/s²",
-        "friction": "yes" if shown.friction else "no",
-        "topic": shown.topic,
-        "joints": ", ".join(shown.joints) or "(named as in the chain)",
-        "effort": f"{shown.effort}: {EFFORT_CHOICES[shown.effort]}",
-        "drive gains": f"{list(shown.drive_gains)} N m/A" if shown.drive_gains else "",
-        "parameters": ", ".join(f"{name}: {value}" for name, value in shown.parameters.items()),
-        "accelerations": f"{shown.accelerations}{cutoff}: {METHODS[shown.accelerations]}",
-        "source": shown.source,
-        "file": str(shown.file),
+        "friction": "yes" if robot.friction else "no",
+        "topic": robot.topic,
+        "joints": ", ".join(robot.joints) or "(named as in the chain)",
+        "effort": f"{robot.effort}: {EFFORT_CHOICES[robot.effort]}",
+        "drive gains": f"{list(robot.drive_gains)} N m/A" if robot.drive_gains else "",
+        "parameters": ", ".join(f"{name}: {value}" for name, value in robot.parameters.items()),
+        "accelerations": f"{robot.accelerations}{cutoff}: {METHODS[robot.accelerations]}",
+        "source": robot.source,
+        "file": str(robot.file),
     }
-    _print_rows(rows | {f"note{'' if i == 0 else f' {i + 1}'}": n for i, n in enumerate(notes)})
+    return [(k, text) for k, text in rows.items() if text] + [("note", note) for note in notes]
 
 
 def _checked(robot: Robot) -> tuple[Arm, list[str]]:

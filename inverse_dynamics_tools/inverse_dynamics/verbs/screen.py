@@ -1,23 +1,35 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is printed: names come from recordings and descriptions, and must not control the terminal."""
+"""What verbs print: results, as text or JSON, on standard output; progress on standard error."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import json
+import sys
+import time
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
-from inverse_dynamics.base.wording import printable
+from inverse_dynamics.base.plain import plain
+from inverse_dynamics.base.wording import message, printable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from pathlib import Path
 
     from rich.console import ConsoleOptions, RenderableType
     from rich.segment import Segment
 
+    from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.evaluation.evaluation import Evaluation
+
+SCHEMA = 3  # of the object of --json; docs/command_line.md
+_FIRST_LINE = 10.0  # s
+
 
 class Screen(Console):
-    """Standard output (or standard error): lines stay whole, control characters become escapes."""
+    """Standard output, or standard error: lines stay whole, control characters become escapes."""
 
     def __init__(
         self, *, stderr: bool = False, soft_wrap: bool = True, width: int | None = None
@@ -34,5 +46,95 @@ class Screen(Console):
             yield segment if segment.control else segment._replace(text=printable(segment.text))
 
     def on_broken_pipe(self) -> None:
-        """The reader has gone: the command's own affair, see cli.py."""
+        """The reader has gone: cli.py ends the program."""
         raise BrokenPipeError
+
+    def rows(self, key: str, texts: Iterable[object]) -> None:
+        """A line for each text, behind the key."""
+        for text in texts:
+            self.print(f"{key:<15}{text}")
+
+
+def print_heading(
+    screen: Screen,
+    evaluation: Evaluation,
+    *,
+    samples: int | None = None,
+    duration: float | None = None,
+) -> None:
+    """Robot, solver and recording. samples, duration [s]: those that are used; None: all."""
+    robot, log = evaluation.robot, evaluation.log
+    samples = len(log) if samples is None else samples
+    duration = log.duration if duration is None else duration
+    source = ", ".join(filter(None, (str(evaluation.bag), log.topic)))
+    screen.print(robot.description or robot.name, style="bold")
+    screen.print(f"solver         {robot.plugin}{'' if robot.friction else ', friction left out'}")
+    screen.print(f"recording      {source}: {samples} samples, {duration:.1f} s")
+
+
+def print_json(verb: str, result: Mapping[str, Any], written: Iterable[Path] = ()) -> None:
+    """Print the object of --json. written: files and directories that the verb has written.
+
+    Undefined values are null; non-ASCII characters become escapes, so that a terminal acts on none.
+    """
+    document = {"schema": SCHEMA, "verb": verb, "written": list(written), "result": result}
+    print(json.dumps(plain(document), indent=2, allow_nan=False))
+
+
+def announce(text: str) -> None:
+    """Say on stderr that something takes long."""
+    print(message(f"ids: {text} ..."), file=sys.stderr, flush=True)
+
+
+class _ProgressLines:
+    """Progress where stderr isn't a terminal: a line after 10 s, 20 s, 40 s and so on of work."""
+
+    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
+        self._now = now
+        self._start = now()
+        self._next = _FIRST_LINE
+
+    def __call__(self, what: str, done: int, total: int) -> None:
+        passed = self._now() - self._start
+        if passed >= self._next and 0 < done < total:
+            self._next = 2.0 * passed
+            announce(f"{what}: {100 * done // total} % done after {passed:.0f} s")
+
+
+@contextmanager
+def progress_bar() -> Iterator[Progress]:
+    """A bar per kind of work on stderr, removed at the end; lines where stderr isn't a terminal.
+
+    It shows the work done, the time it took, and the time left.
+    """
+    console = Screen(stderr=True)
+    if not console.is_terminal:
+        yield _ProgressLines()
+        return
+
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    columns = (
+        TextColumn("{task.description:<16}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        TextColumn("left"),
+    )
+    with Progress(*columns, console=console, transient=True) as bars:
+        tasks: dict[str, Any] = {}
+
+        def show(what: str, done: int, total: int) -> None:
+            if what not in tasks:
+                tasks[what] = bars.add_task(what, total=total)
+            bars.update(tasks[what], completed=done, total=total)
+
+        yield show

@@ -3,29 +3,25 @@
 
 from __future__ import annotations
 
-import argparse
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.base.decimals import decimal
 from inverse_dynamics.base.wording import counted
-from inverse_dynamics.verbs.common import (
-    announce,
-    number,
-    positive_number,
-    progress_bar,
-    whole_number,
-)
-from inverse_dynamics.verbs.json_output import print_json
-from inverse_dynamics.verbs.options import add_gravity, add_robot, add_verb
+from inverse_dynamics.data.joint_log import STORAGES
+from inverse_dynamics.verbs.options import option, output, robot_option, shared
+from inverse_dynamics.verbs.values import number, numbers, positive_number, whole_number
 
 if TYPE_CHECKING:
+    import argparse
+
     from inverse_dynamics.simulation import Payload, Resolution, SimulatedRun
 
-_MOUNTS = ("floor", "wall", "ceiling")
-
-_EPILOG = """\
+SUMMARY = "record a simulated robot (MuJoCo) following an exciting trajectory"
+DESCRIPTION = (
+    "Simulate a robot (MuJoCo) under a joint trajectory controller that commands efforts, "
+    "while it follows an exciting trajectory, and record its joint states to a bag."
+)
+EPILOG = """\
 examples:
   ids simulate --robot ur10_simulated --out recording
       a UR10 follows its exciting trajectory; `ids evaluate recording --robot ur10_simulated` evaluates it
@@ -58,189 +54,164 @@ results, written whole or not at all:
 """
 
 
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-) -> argparse.ArgumentParser:
-    """Declare the verb."""
-    parser = add_verb(
-        subparsers,
-        "simulate",
-        summary="record a simulated robot (MuJoCo) following an exciting trajectory",
-        description=(
-            "Simulate a robot (MuJoCo) under a joint trajectory controller that commands efforts, "
-            "while it follows an exciting trajectory, and record its joint states to a bag."
-        ),
-        epilog=_EPILOG,
-        json=True,
-    )
-    add_robot(parser, required=True)
-    parser.add_argument("--out", metavar="BAG", type=Path, required=True, help="the new recording")
-    parser.add_argument(
-        "--overwrite", action="store_true", help="replace an older simulated recording"
-    )
-    parser.add_argument(
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Arguments and options."""
+    robot_option(parser, required=True)
+    output(parser, "BAG", "the new recording", required=True)
+    shared(parser, "--json")
+    option(
+        parser,
         "--storage",
-        choices=("sqlite3", "mcap"),
+        "storage of the recording (default: sqlite3)",
+        choices=STORAGES,
         default="sqlite3",
-        help="storage of the recording (default: sqlite3)",
     )
-    parser.add_argument(
-        "--seed",
-        type=whole_number,
+    option(
+        parser,
+        "--seed SEED",
+        "seed of all random numbers, and of where in its period the run configuration's motion "
+        "begins: the same seed gives the same recording, another one another (default: 0, from the "
+        "beginning)",
+        whole_number,
         default=0,
-        help="seed of all random numbers, and of where in its period the run configuration's motion begins: "
-        "the same seed gives the same recording, another one another (default: 0, from the beginning)",
     )
+    _declare_motion(parser.add_argument_group("motion"))
+    _declare_robot(parser.add_argument_group("robot"))
+    _declare_recording(parser.add_argument_group("recording"))
 
-    motion = parser.add_argument_group("motion")
-    motion.add_argument(
-        "--trajectory",
-        metavar="FILE",
-        type=Path,
-        help="desired motion (YAML: waypoints or Fourier series; default: the run configuration's)",
+
+def _declare_motion(motion: argparse._ArgumentGroup) -> None:
+    option(
+        motion,
+        "--trajectory FILE",
+        "desired motion (YAML: waypoints or Fourier series; default: the run configuration's)",
+        Path,
     )
-    motion.add_argument(
+    option(
+        motion,
         "--optimise",
-        action="store_true",
-        help="search for a new exciting trajectory instead, as `ids excite` does",
+        "search for a new exciting trajectory instead, as `ids excite` does",
     )
-    motion.add_argument(
-        "--duration",
-        metavar="S",
-        type=positive_number,
-        help="length of the motion (default: once through the trajectory; exciting ones repeat)",
+    option(
+        motion,
+        "--duration S",
+        "length of the motion (default: once through the trajectory; exciting ones repeat)",
+        positive_number,
     )
-    motion.add_argument(
-        "--rate",
-        metavar="HZ",
-        type=whole_number,
-        help="rate of controller and recording: 125, 500 or 1000 (default: the run configuration's)",
+    option(
+        motion,
+        "--rate HZ",
+        "rate of controller and recording: 125, 500 or 1000 (default: the run configuration's)",
+        whole_number,
     )
-    motion.add_argument(
+    option(
+        motion,
         "--no-table",
+        "allow the arm to reach below its base",
         dest="table",
         action="store_false",
-        help="allow the arm to reach below its base",
     )
 
-    robot = parser.add_argument_group("robot")
-    robot.add_argument(
-        "--payload", metavar="KG[,X,Y,Z]", type=_payload, help="point mass at the tip [kg; m]"
-    )
-    robot.add_argument(
-        "--joint-friction",
-        metavar="PART|urdf|model",
+
+def _declare_robot(robot: argparse._ArgumentGroup) -> None:
+    option(robot, "--payload KG[,X,Y,Z]", "point mass at the tip [kg; m]", _payload)
+    option(
+        robot,
+        "--joint-friction PART|urdf|model",
+        "Coulomb friction as a share of each effort limit, and as much viscous friction at the "
+        "velocity limit (without a value: 0.02); urdf: what the description's <dynamics> says; "
+        "model: that of the run configuration's solver",
         nargs="?",
         const="0.02",
-        help="Coulomb friction as a share of each effort limit, and as much viscous friction at the "
-        "velocity limit (without a value: 0.02); urdf: what the description's <dynamics> says; model: that of "
-        "the run configuration's solver",
     )
-    robot.add_argument(
+    option(
+        robot,
         "--from-model",
-        action="store_true",
-        help="links, rotor inertias and friction of the run configuration's model, as `ids identify` "
+        "links, rotor inertias and friction of the run configuration's model, as `ids identify` "
         "writes it, instead of the description's links without friction",
     )
     gravity = robot.add_mutually_exclusive_group()
-    add_gravity(gravity)
-    gravity.add_argument(
-        "--mount", choices=_MOUNTS, help="floor; wall: the x axis up; ceiling: upside down"
+    shared(gravity, "--gravity")
+    option(
+        gravity,
+        "--mount",
+        "floor; wall: the x axis up; ceiling: upside down",
+        choices=("floor", "wall", "ceiling"),
     )
 
-    recording = parser.add_argument_group("recording")
-    recording.add_argument(
-        "--noise",
-        metavar="Q,QD,EFFORT",
+
+def _declare_recording(recording: argparse._ArgumentGroup) -> None:
+    option(
+        recording,
+        "--noise Q,QD,EFFORT",
+        "standard deviations of Gaussian noise [rad, rad/s, N m] (without a value: 1e-5,1e-3,0.1)",
+        _resolution,
         nargs="?",
-        const="default",
-        type=_resolution,
-        help="standard deviations of Gaussian noise [rad, rad/s, N m] (without a value: 1e-5,1e-3,0.1)",
+        const="1e-5,1e-3,0.1",
     )
-    recording.add_argument(
-        "--effort-noise",
-        metavar="DIR",
-        type=Path,
-        help="a result of `ids evaluate` of a real robot: stretches of 2 s of its measured minus computed "
-        "torques, in random order, are the noise of the efforts",
+    option(
+        recording,
+        "--effort-noise DIR",
+        "a result of `ids evaluate` of a real robot: stretches of 2 s of its measured minus "
+        "computed torques, in random order, are the noise of the efforts",
+        Path,
     )
-    recording.add_argument(
-        "--effort-delay",
-        metavar="S",
-        type=number,
+    option(
+        recording,
+        "--effort-delay S",
+        "delay of recorded efforts behind positions and velocities [s]",
+        number,
         default=0.0,
-        help="delay of recorded efforts behind positions and velocities [s]",
     )
-    recording.add_argument(
-        "--message-rate",
-        metavar="HZ",
-        type=positive_number,
-        help="messages per second (default: one per period of the controller)",
+    option(
+        recording,
+        "--message-rate HZ",
+        "messages per second (default: one per period of the controller)",
+        positive_number,
     )
-    recording.add_argument(
-        "--quantisation",
-        metavar="Q,QD,EFFORT",
+    option(
+        recording,
+        "--quantisation Q,QD,EFFORT",
+        "steps of the values [rad, rad/s, N m] (without a value: 1e-5,1e-3,0.01)",
+        _resolution,
         nargs="?",
-        const="default",
-        type=_resolution,
-        help="steps of the values [rad, rad/s, N m] (without a value: 1e-5,1e-3,0.01)",
+        const="1e-5,1e-3,0.01",
     )
-    recording.add_argument(
-        "--drop", metavar="P", type=number, default=0.0, help="share of messages that are lost"
-    )
-    recording.add_argument(
-        "--repeat",
-        metavar="P",
-        type=number,
+    option(recording, "--drop P", "share of messages that are lost", number, default=0.0)
+    option(
+        recording,
+        "--repeat P",
+        "share of messages that repeat the values of the previous one",
+        number,
         default=0.0,
-        help="share of messages that repeat the values of the previous one",
     )
-    recording.add_argument(
-        "--jitter",
-        metavar="S",
-        type=number,
-        default=0.0,
-        help="standard deviation of the time stamps [s]",
+    option(
+        recording, "--jitter S", "standard deviation of the time stamps [s]", number, default=0.0
     )
-    recording.add_argument(
-        "--start-stamp",
-        metavar="S",
-        type=number,
-        help="time stamp of the start [s] (default: 1700000000)",
+    option(
+        recording, "--start-stamp S", "time stamp of the start [s] (default: 1700000000)", number
     )
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.base.files import check_output_directory
     from inverse_dynamics.robot.robots import load_robot
+    from inverse_dynamics.simulation.writer import CONTENTS
+    from inverse_dynamics.verbs.screen import announce, print_json, progress_bar
 
     robot = load_robot(arguments.robot)
-    from inverse_dynamics.simulation.writer import CONTENTS
-
-    # Before the work.
     inputs = (arguments.trajectory, arguments.effort_noise, *robot.files)
     check_output_directory(
         arguments.out, overwrite=arguments.overwrite, contents=CONTENTS, inputs=inputs
     )
 
-    from inverse_dynamics.simulation import (
-        MOUNTS,
-        NOISE,
-        QUANTISATION,
-        EffortNoise,
-        simulate,
-        write_run,
-    )
+    from inverse_dynamics.simulation import MOUNTS, EffortNoise, simulate, write_run
     from inverse_dynamics.simulation.sensors import EPOCH, Sensors
 
-    def chosen(three: Resolution | str | None, default: Resolution) -> Resolution | None:
-        return default if isinstance(three, str) else three
-
     sensors = Sensors(
-        noise=chosen(arguments.noise, NOISE),
-        quantisation=chosen(arguments.quantisation, QUANTISATION),
+        noise=arguments.noise,
+        quantisation=arguments.quantisation,
         drop=arguments.drop,
         repeat=arguments.repeat,
         jitter=arguments.jitter,
@@ -296,11 +267,10 @@ def _print(result: SimulatedRun, out: Path) -> None:
     console = Screen()
     settings, log = result.settings, result.log
     excitation = f", condition number of the base regressor {result.condition_number:.4g}"
-    for note in result.notes:
-        console.print(f"note        {note}")
-    console.print(f"trajectory  {result.trajectory.duration:g} s{excitation}")
+    console.rows("note", result.notes)
+    console.print(f"trajectory     {result.trajectory.duration:g} s{excitation}")
     console.print(
-        f"recording   {out}, {log.topic}: {counted(len(log), 'message')} of "
+        f"recording      {out}, {log.topic}: {counted(len(log), 'message')} of "
         f"{counted(len(log.joint_names), 'joint')}, "
         f"{settings['duration']:g} s at {settings['message_rate'] or settings['rate']:g} Hz"
     )
@@ -309,27 +279,12 @@ def _print(result: SimulatedRun, out: Path) -> None:
 def _payload(text: str) -> Payload:
     from inverse_dynamics.simulation.model import Payload
 
-    numbers = _numbers(text, (1, 4))
-    x, y, z = numbers[1:] or [0.0, 0.0, 0.0]
-    return Payload(numbers[0], (x, y, z))
+    mass, *center = numbers(text, "1 or 4 numbers, separated by commas", 1, 4)
+    x, y, z = center or (0.0, 0.0, 0.0)
+    return Payload(mass, (x, y, z))
 
 
-def _resolution(text: str) -> Resolution | str:
-    if text == "default":
-        return text
+def _resolution(text: str) -> Resolution:
     from inverse_dynamics.simulation.sensors import Resolution
 
-    return Resolution(*_numbers(text, (3,)))
-
-
-def _numbers(text: str, counts: tuple[int, ...]) -> list[float]:
-    try:
-        numbers = [decimal(part) for part in text.split(",")]
-    except ValueError:
-        numbers = []
-    if len(numbers) not in counts or not all(math.isfinite(entry) for entry in numbers):
-        expected = " or ".join(map(str, counts))
-        raise argparse.ArgumentTypeError(
-            f"expected {expected} numbers, separated by commas, got '{text}'"
-        )
-    return numbers
+    return Resolution(*numbers(text, "3 numbers, separated by commas", 3))

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from statistics import fmean
 from typing import TYPE_CHECKING
 
 from rich import box
@@ -26,22 +27,39 @@ if TYPE_CHECKING:
     from inverse_dynamics.results.excitations import ExcitationResult
 
 
+def _table(*values: str, text: Sequence[str] = ("joint", "unit"), title: str = "") -> Table:
+    """Columns of text, whose words stay whole, then columns of numbers."""
+    table = Table(
+        box=box.SIMPLE_HEAD,
+        title=title or None,
+        title_justify="left",
+        caption_justify="left",
+        collapse_padding=True,
+    )
+    for heading in text:
+        table.add_column(heading, overflow="fold")
+    for heading in values:
+        table.add_column(heading, justify="right", overflow="fold")
+    return table
+
+
+def _have_one_unit(units: Sequence[str]) -> bool:
+    """Whether a mean over several joints means something."""
+    return len(set(units)) == 1 and len(units) > 1
+
+
 def error_table(evaluation: Evaluation) -> Table:
     """Errors of the computed torques, one row per joint.
 
     Where samples are invalid, a column has the errors over the valid ones.
     """
-    left_out = evaluation.samples.left_out
-    count = len(evaluation.log)
-    table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
-    table.add_column("joint", overflow="fold")  # names whole
-    table.add_column("unit")
-    for heading in ("MAE", "RMSE", "NRMSE", "bias", "R²"):
-        table.add_column(heading, justify="right")
+    left_out, total = evaluation.samples.left_out, len(evaluation.log)
+    errors, kept = evaluation.errors, evaluation.errors_of_kept
+    last = ["RMSE*"] if left_out else []
+    table = _table("MAE", "RMSE", "NRMSE", "bias", "R²", *last)
     if left_out:
-        table.add_column("RMSE*", justify="right")
-        table.caption = f"* over the {count - left_out} valid samples of {count}"
-    for error, kept in zip(evaluation.errors, evaluation.errors_of_kept, strict=True):
+        table.caption = f"* over the {total - left_out} valid samples of {total}"
+    for error, of_kept in zip(errors, kept, strict=True):
         table.add_row(
             error.joint,
             error.unit,
@@ -50,78 +68,55 @@ def error_table(evaluation: Evaluation) -> Table:
             _percent(error.nrmse),
             f"{error.bias:+.3g}" if abs(error.bias) < 0.1 else f"{error.bias:+.3f}",
             _number(error.r2),
-            *([figure(kept.rmse)] if left_out else []),
+            *(figure(of_kept.rmse) for _ in last),
         )
-    if len(set(evaluation.units)) == 1 and len(evaluation.errors) > 1:
+    if _have_one_unit(evaluation.units):
+        mae, rmse = fmean(e.mae for e in errors), evaluation.mean_rmse
+        means = [figure(mae), figure(rmse), "", "", ""]
         table.add_section()
         table.add_row(
             "mean",
             evaluation.units[0],
-            figure(_mean([e.mae for e in evaluation.errors])),
-            figure(evaluation.mean_rmse),
-            "",
-            "",
-            "",
-            *([figure(_mean([e.rmse for e in evaluation.errors_of_kept]))] if left_out else []),
+            *means,
+            *(figure(fmean(e.rmse for e in kept)) for _ in last),
         )
     return table
 
 
 def identification_table(found: Identification, rows: Sequence[HeldOutRow], title: str) -> Table:
     """Errors of held-out data, one row per joint, one column per model."""
-    table = Table(
-        box=box.SIMPLE_HEAD,
-        title=title,
-        title_justify="left",
-        collapse_padding=True,
-    )
-    table.add_column("joint", overflow="fold")
-    table.add_column("unit")
-    for heading in (*headings(found), "in 95 % band"):
-        table.add_column(heading.replace(" ", "\n").replace("95\n%", "95 %"), justify="right")
+    columns = (heading.replace(" ", "\n") for heading in headings(found))
+    table = _table(*columns, "in\n95 %\nband", title=title)
     for row in rows:
         if row.joint == "mean":
             table.add_section()
-        figures = ("-" if math.isnan(value) else figure(value) for value in row.rmse)
-        table.add_row(row.joint, row.unit, *figures, f"{100 * row.coverage:.1f} %")
+        values = ("-" if math.isnan(value) else figure(value) for value in row.rmse)
+        table.add_row(row.joint, row.unit, *values, f"{100 * row.coverage:.1f} %")
     return table
 
 
 def threshold_table(contacts: Contacts) -> Table:
     """External torques that are a contact, one row per joint."""
     thresholds, evaluation = contacts.thresholds, contacts.evaluation
-    table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
-    table.add_column("joint", overflow="fold")
-    table.add_column("unit")
-    for heading in ("noise", "threshold", "peaks"):
-        table.add_column(heading, justify="right")
+    table = _table("noise", "threshold", "peaks")
     for j, (joint, unit) in enumerate(zip(evaluation.joint_names, evaluation.units, strict=True)):
-        table.add_row(
-            joint,
-            unit,
-            figure(float(thresholds.noise[j])),
-            figure(float(thresholds.torques[j])),
-            f"{thresholds.peaks[j]:.0f}",
-        )
+        noise, threshold = float(thresholds.noise[j]), float(thresholds.torques[j])
+        table.add_row(joint, unit, figure(noise), figure(threshold), f"{thresholds.peaks[j]:.0f}")
     rate = thresholds.false_alarms_per_hour
-    alarms = f"{rate:g} false alarm{'' if rate == 1 else 's'} per hour"
-    table.caption = f"thresholds for {alarms}"
+    table.caption = f"thresholds for {rate:g} false alarm{'' if rate == 1 else 's'} per hour"
     return table
 
 
 def contact_table(contacts: Contacts) -> Table:
     """One row per contact."""
-    table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
-    table.add_column("contact [s]")
-    table.add_column("joint", overflow="fold")
-    table.add_column("torque", justify="right")
     force = contacts.wrenches is not None
+    columns = ["torque", *(["force [N]\nmean, peak", "direction"] if force else [])]
+    table = _table(*columns, text=("contact [s]", "joint"))
     if force:
-        table.add_column("force [N]\nmean, peak", justify="right")
-        table.add_column("direction", justify="right", no_wrap=True)
+        table.columns[-1].no_wrap = True
         table.caption = (
-            "force: on the assumption that only the tip is touched; direction of its mean in the axes of the root; "
-            "* some directions can't be observed there"
+            "force: on the assumption that only the tip is touched; direction of its mean in the axes of "
+            "the root; * some directions can't be observed there"
         )
     for contact in contacts.contacts:
         row = [
@@ -144,11 +139,8 @@ def contact_table(contacts: Contacts) -> Table:
 def payload_table(payload: Payload) -> Table:
     """The load with its intervals, one number per row."""
     found = payload.estimate
-    table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
-    table.add_column(f"load, in the frame of {payload.frame}", overflow="fold")
-    table.add_column("unit")
-    table.add_column("estimate", justify="right")
-    table.add_column("95 % interval", justify="right")
+    name = f"load, in the frame of {payload.frame}"
+    table = _table("estimate", "95 % interval", text=(name, "unit"))
 
     def add(name: str, unit: str, value: float, half: float) -> None:
         interval = f"+- {half:.2g}" if math.isfinite(half) else "any"
@@ -167,98 +159,69 @@ def payload_table(payload: Payload) -> Table:
 
 def residual_table(payload: Payload) -> Table:
     """Measured minus computed torques without and with the load, one joint per row."""
-    table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
-    table.add_column("joint", overflow="fold")
-    table.add_column("unit")
-    for heading in ("RMSE without load", "RMSE with load", "offset"):
-        table.add_column(heading, justify="right")
-    before, after = payload.rmse_before, payload.rmse_after
+    table = _table("RMSE without load", "RMSE with load", "offset")
     for j, name in enumerate(payload.joint_names):
-        table.add_row(
-            name,
-            payload.evaluation.units[j],
-            figure(before[j]),
-            figure(after[j]),
-            f"{payload.estimate.offset[j]:+.3f}",
-        )
+        before, after = figure(payload.rmse_before[j]), figure(payload.rmse_after[j])
+        offset = f"{payload.estimate.offset[j]:+.3f}"
+        table.add_row(name, payload.evaluation.units[j], before, after, offset)
     return table
 
 
 def mean_table(evaluations: Mapping[str, Evaluation]) -> Table:
     """Mean over the joints of the root mean square errors, one row per robot."""
-    table = Table(box=box.SIMPLE_HEAD)
-    table.add_column("robot")
-    table.add_column("solver")
-    for heading in ("samples", "mean RMSE", "mean NRMSE"):
-        table.add_column(heading, justify="right")
+    table = _table("samples", "mean RMSE", "mean NRMSE", text=("robot", "solver"))
     for title, evaluation in evaluations.items():
         units = set(evaluation.units)
         mean = f"{figure(evaluation.mean_rmse)} {units.pop()}" if len(units) == 1 else "-"
         shares = [e.nrmse for e in evaluation.errors if not math.isnan(e.nrmse)]
-        table.add_row(
-            title,
-            solver_name(evaluation.robot.plugin),
-            str(len(evaluation.log)),
-            mean,
-            _percent(_mean(shares)) if shares else "-",
-        )
+        share = _percent(fmean(shares)) if shares else "-"
+        solver = solver_name(evaluation.robot.plugin)
+        table.add_row(title, solver, str(len(evaluation.log)), mean, share)
     return table
 
 
 def recordings_table(summaries: Sequence[EvaluationSummary]) -> Table:
     """Root mean square errors, one row per recording, one column per joint."""
     first = summaries[0].errors
-    table = Table(box=box.SIMPLE_HEAD, title="RMSE", title_justify="left", collapse_padding=True)
-    table.add_column("recording", overflow="fold")
-    for error in first:  # a name in lines, so that columns are narrow
-        name = error.joint.replace("_", "\n")
-        table.add_column(f"{name}\n{error.unit}", justify="right", overflow="fold")
-    one_unit = len({error.unit for error in first}) == 1 and len(first) > 1
+    # A name in lines, so that columns are narrow.
+    columns = [f"{error.joint}_{error.unit}".replace("_", "\n") for error in first]
+    one_unit = _have_one_unit([error.unit for error in first])
     if one_unit:
-        table.add_column(f"mean\n{first[0].unit}", justify="right")
+        columns.append(f"mean\n{first[0].unit}")
+    table = _table(*columns, text=("recording",), title="RMSE")
     for summary in summaries:
-        table.add_row(
-            summary.name,
-            *(figure(error.rmse) for error in summary.errors),
-            *([figure(summary.mean_rmse)] if one_unit else []),
-        )
+        mean = [figure(summary.mean_rmse)] if one_unit else []
+        table.add_row(summary.name, *(figure(error.rmse) for error in summary.errors), *mean)
     return table
 
 
 def comparison_table(comparison: Comparison) -> Table:
     """Root mean square errors, one column per run."""
-    table = Table(box=box.SIMPLE_HEAD, title="RMSE", title_justify="left")
-    table.add_column("joint")
-    table.add_column("unit")
-    for label in comparison.labels:
-        table.add_column(label, justify="right", overflow="fold")
+    table = _table(*comparison.labels, title="RMSE")
     units = comparison.evaluations[0].units
     for joint, unit, row in zip(comparison.joint_names, units, comparison.rmse.T, strict=True):
-        table.add_row(joint, unit, *(figure(value) for value in row))
-    if len(set(units)) == 1 and len(units) > 1:
+        table.add_row(joint, unit, *map(figure, row))
+    if _have_one_unit(units):
         table.add_section()
-        means = comparison.rmse.mean(axis=1)
-        table.add_row("mean", units[0], *(figure(value) for value in means))
+        table.add_row("mean", units[0], *map(figure, comparison.rmse.mean(axis=1)))
     return table
 
 
 def load_table(result: TrajectoryTorques) -> Table:
-    """Greatest torque of each joint and, where it is too much, when it is first."""
+    """Greatest torque of each joint and, where it exceeds the limit, when it first does."""
     several = len(result.times) > 1
-    table = Table(box=box.SIMPLE_HEAD)
-    table.add_column("joint")
-    for heading in ("peak", "at", "limit"):
-        table.add_column(heading, justify="right")
+    table = _table("peak", "at", "limit", text=("joint",))
     table.add_column("passes its limit")
     for load in result.loads:
-        passed = "-" if math.isfinite(load.limit) else "not known"
+        limited = math.isfinite(load.limit)
+        passed = "-" if limited else "not known"
         if load.passed_time is not None:
             passed = "first at " + _moment(load.passed_time, load.passed_trajectory, several)
         table.add_row(
             load.joint,
             f"{load.peak:.3f} {load.unit}",
             _moment(load.peak_time, load.peak_trajectory, several),
-            f"{load.limit:g} {load.unit}" if math.isfinite(load.limit) else "-",
+            f"{load.limit:g} {load.unit}" if limited else "-",
             passed,
         )
     return table
@@ -269,13 +232,12 @@ _AFTER = {"description": "before", "given": "given", "stored": "stored", "motion
 
 def excitation_table(result: ExcitationResult) -> Table:
     """How each joint moves, and how uncertain its predicted torque is before and after."""
-    table = Table(box=box.SIMPLE_HEAD, caption_justify="left", collapse_padding=True)
-    table.add_column("joint", overflow="fold")
-    for heading in ("from", "to", "speed", "accel.", "torque"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    for name in result.deviation:
-        table.add_column(_AFTER[name], justify="right", no_wrap=True)
-    table.add_column("unit", no_wrap=True)
+    after = [_AFTER[name] for name in result.deviation]
+    columns = ("from", "to", "speed", "accel.", "torque", *after)
+    table = _table(*columns, text=("joint",))
+    table.add_column("unit")
+    for column in table.columns[1:]:
+        column.no_wrap = True
     for j, (joint, unit) in enumerate(zip(result.joint_names, result.units, strict=True)):
         table.add_row(
             joint,
@@ -301,10 +263,6 @@ def _moment(time: float, trajectory: int | None, several: bool) -> str:
 def figure(value: float) -> str:
     """Three decimals, or three significant digits where that says nothing."""
     return f"{value:.3f}" if abs(value) >= 0.1 or value == 0 else f"{value:.3g}"
-
-
-def _mean(numbers: list[float]) -> float:
-    return sum(numbers) / len(numbers)
 
 
 def _percent(share: float) -> str:

@@ -3,21 +3,25 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.wording import counted
-from inverse_dynamics.verbs.common import progress_bar
-from inverse_dynamics.verbs.json_output import print_json
 from inverse_dynamics.verbs.options import (
-    add_robot,
-    add_robot_changes,
-    add_verb,
+    SOLVER,
     chosen_robot,
-    robot_changes,
+    given_overrides,
+    output,
+    overrides,
+    robot_option,
+    shared,
 )
 
-_EPILOG = """\
+if TYPE_CHECKING:
+    import argparse
+
+SUMMARY = "fill in the efforts of a planned trajectory, and check them against the limits"
+EPILOG = """\
 examples:
   ids torques planned --robot ur10_simulated --out filled
       a recording of trajectory_msgs/JointTrajectory; `filled` is a copy with the effort of each
@@ -36,42 +40,23 @@ joints would exceed the effort limits of the robot description, and when first.
 """
 
 
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-) -> argparse.ArgumentParser:
-    """Declare the verb."""
-    parser = add_verb(
-        subparsers,
-        "torques",
-        summary="fill in the efforts of a planned trajectory, and check them against the limits",
-        epilog=_EPILOG,
-        json=True,
-    )
+def declare(parser: argparse.ArgumentParser) -> None:
+    """Arguments and options."""
     parser.add_argument(
         "trajectory",
         metavar="TRAJECTORY",
         type=Path,
         help="rosbag2 recording of trajectory_msgs/JointTrajectory, or a table (.csv or .txt)",
     )
-    add_robot(parser)
-    parser.add_argument(
-        "--out",
-        metavar="OUT",
-        type=Path,
+    robot_option(parser)
+    output(
+        parser,
+        "OUT",
+        "the copy with efforts: a directory for a recording, a file for a table",
         required=True,
-        help="the copy with efforts: a directory for a recording, a file for a table",
     )
-    parser.add_argument(
-        "--overwrite", action="store_true", help="replace an older result of that name"
-    )
-    parser.add_argument(
-        "--topic",
-        metavar="NAME",
-        default="",
-        help="topic of the trajectories, if there are several",
-    )
-    add_robot_changes(parser, "trajectory")
-    return parser
+    shared(parser, "--json", "--topic")
+    overrides(parser, *SOLVER)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -79,37 +64,33 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.results.trajectory_torques import check_output
     from inverse_dynamics.robot.robots import with_changes
 
-    robot = with_changes(chosen_robot(arguments), **robot_changes(arguments))
+    robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
     check_output(arguments.trajectory, arguments.out, robot, overwrite=arguments.overwrite)
 
     from inverse_dynamics.evaluation.trajectory_torques import trajectory_torques
     from inverse_dynamics.results.trajectory_torques import summary, write_trajectory_torques
     from inverse_dynamics.robot.solvers import description_notes
-    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.screen import Screen, print_json, progress_bar
     from inverse_dynamics.verbs.tables import load_table
 
     with progress_bar() as progress:
         result = trajectory_torques(
-            arguments.trajectory, robot, topic=arguments.topic, progress=progress
+            arguments.trajectory, robot, topic=arguments.topic or "", progress=progress
         )
         notes = write_trajectory_torques(
             result, arguments.out, overwrite=arguments.overwrite, progress=progress
         )
-
+    notes = (*result.notes, *notes)
     if arguments.urdf is not None:
         notes = (*notes, *description_notes(robot, "effort limits"))
     if arguments.json:
-        found = {**summary(result), "notes": [*result.notes, *notes]}
-        print_json("torques", found, [arguments.out])
+        print_json("torques", {**summary(result), "notes": notes}, [arguments.out])
         return
     console = Screen()
+    points = counted(sum(map(len, result.times)), "point")
     console.print(robot.description or robot.name, style="bold")
-    console.print(f"solver        {robot.plugin}{'' if robot.friction else ', friction left out'}")
-    console.print(
-        f"trajectories  {len(result.times)}, with "
-        f"{counted(sum(map(len, result.times)), 'point')} together"
-    )
-    for note in (*result.notes, *notes):
-        console.print(f"note          {note}")
+    console.print(f"solver         {robot.plugin}{'' if robot.friction else ', friction left out'}")
+    console.print(f"trajectories   {len(result.times)}, with {points} together")
+    console.rows("note", notes)
     console.print(load_table(result))
-    console.print(f"written       {arguments.out}")
+    console.print(f"written        {arguments.out}")
