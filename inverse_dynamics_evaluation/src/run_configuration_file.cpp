@@ -128,6 +128,26 @@ void readAccelerations(const std::optional<LocatedValue>& value, RunConfiguratio
   map.rejectOthers();
 }
 
+// How a recorded table is read; the reader checks what the values mean.
+void readTable(const std::optional<LocatedValue>& value, RunConfiguration& robot) {
+  if (!value) {
+    return;
+  }
+  LocatedMap map = value->map();
+  robot.columns = textOf(map.optional("columns"));
+  if (const auto scale = map.optional("scale")) {
+    for (const LocatedValue& entry : scale->entries()) robot.scale.push_back(entry.text());
+  }
+  if (const auto sign = map.optional("sign")) {
+    for (const LocatedValue& entry : sign->entries()) robot.sign.push_back(entry.number());
+  }
+  if (const auto rate = map.optional("rate")) {
+    robot.rate = rate->number();
+    if (*robot.rate <= 0) rate->fail("samples per second, above zero");
+  }
+  map.rejectOthers();
+}
+
 // ---------------------------------------------------------------------------------------------
 // Files
 
@@ -170,6 +190,7 @@ RunConfiguration readFile(const std::string& file) {
   if (const auto parameters = top.optional("parameters")) {
     robot.parameters = readSolverParameters(parameters->map());
   }
+  readTable(top.optional("table"), robot);
   robot.source = stripped(textOf(top.optional("source")));
   if (const auto simulation = top.optional("simulation")) {
     simulation->map();  // what it holds, the simulator reads

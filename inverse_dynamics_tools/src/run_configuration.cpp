@@ -51,6 +51,10 @@ void forEachField(const Visit& visit) {
   visit("cutoff", &Robot::cutoff, "Hz; None: chosen from the data");
   visit("parameters", &Robot::parameters,
         "others of the solver: a dictionary, dotted name to value");
+  visit("columns", &Robot::columns, "of a table: KEY=PATTERN, ...");
+  visit("scale", &Robot::scale, "of a table: KEY=NUMBER or KEY=UNIT, a text each");
+  visit("sign", &Robot::sign, "of a table: 1 or -1 for each joint");
+  visit("rate", &Robot::rate, "of a table without time: samples per second");
   visit("source", &Robot::source, "where description and values come from");
 }
 

@@ -34,7 +34,6 @@ HOSTILE = {
     "an ideographic space": (row("\u30001"), ":3: column 3 (velocity.a): expected a number, got"),
     "a hexadecimal number": (row("0x10"), ":3: column 3 (velocity.a): expected a number, got"),
     "a quoted number": (row('"1"'), ":3: column 3 (velocity.a): expected a number, got '\"1\"'"),
-    "an empty field": (row(""), ":3: column 3 (velocity.a): expected a number, got ''"),
     "not a number": (row("nan"), ":3: column 3 (velocity.a): expected a finite number, got 'nan'"),
     "infinity": (row("-Infinity"), ":3: column 3 (velocity.a): expected a finite number, got"),
     "too large for a double": (row("1e999"), ":3: column 3 (velocity.a): expected a finite numbe"),
@@ -65,7 +64,7 @@ HOSTILE = {
     "one row": (HEADER + ROW, ": expected at least 2 rows after the header, got 1"),
     "nothing": ("", ": is empty; expected a header line and rows of numbers"),
     "blank lines": ("\n \n", ": is empty; expected a header line and rows of numbers"),
-    "numbers alone": (ROW + ROW, ":1: expected a header line that names the columns, got numbers"),
+    "numbers alone": (ROW + ROW, ": expected a header line that names the columns, got numbers"),
     "a column twice": (
         "time,time,position.a,velocity.a,effort.a\n0,0,1,2,3\n",
         ": expected each col",
@@ -73,17 +72,17 @@ HOSTILE = {
     "a header of 10 MB": ("x" * 10_000_000, ":1: expected a header line of at most"),
     "100,000 columns": (
         ",".join(f"c{i}" for i in range(100_000)) + "\n",
-        ": expected columns time",
+        ": expected columns of position",
     ),
-    "names of 100 kB": (f"time,{'x' * 100_000}\n0,1\n", ": expected columns time, position.JOINT"),
-    "escapes in names": ("time,\x1b[31mred\n0,1\n", ": expected columns time, position.JOINT"),
+    "names of 100 kB": (f"time,{'x' * 100_000}\n0,1\n", ": expected columns of position"),
+    "escapes in names": ("time,\x1b[31mred\n0,1\n", ": expected columns of position"),
     "a joint of 100 kB": (
         HEADER.replace(".a", "." + "x" * 100_000) + ROW,
-        ": expected the joints a",
+        ": expected columns of position for the joints a, got time, position.xxx",
     ),
     "no time": (
         HEADER[5:] + "1,2,3\n" * 2,
-        ": expected a column time [s], got position.a, velocity",
+        ": expected a column of time [s], got position.a, velocity",
     ),
     "time in words": (
         HEADER + "now,1,2,3\n" * 2,

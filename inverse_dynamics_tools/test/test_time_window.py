@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import fails
-from test_csv_recordings import table_of, write_table
+from test_table_logs import table_of, write_table
 from test_evaluation import RIGID_BODY, URDF, recording
 
 from inverse_dynamics import Solver, evaluate, read_evaluation, write_joint_logs

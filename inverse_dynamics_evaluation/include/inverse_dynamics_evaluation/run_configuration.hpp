@@ -47,6 +47,11 @@ struct RunConfiguration {
   std::string accelerations = "auto";  ///< name() of an AccelerationMethod
   std::optional<double> cutoff;        ///< Hz; none: chosen from the data
   SolverParameters parameters;         ///< of the solver, beyond the fields above
+  /// What the names of a recorded table's columns don't say: see columns.py and table_logs.py.
+  std::string columns;             ///< `KEY=PATTERN, ...`
+  std::vector<std::string> scale;  ///< `KEY=NUMBER`, or a unit, or one for each joint
+  std::vector<double> sign;        ///< of each joint, 1 or -1; none: 1
+  std::optional<double> rate;      ///< Hz; of samples in a table without time
   std::string source;                  ///< where description and figures come from
 };
 

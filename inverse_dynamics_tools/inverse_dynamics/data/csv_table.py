@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of numbers in text files: a header line, then one row per line.
 
-Between columns: comma, semicolon, tab or spaces, whichever the header has. Columns that aren't
-asked for may hold anything.
+Between columns: comma, semicolon, tab or spaces, whichever the header has. Decimals have a point, or a
+comma where no comma lies between columns. Columns that aren't asked for may hold anything; rows with an
+empty field in a column that is are left out and counted.
+
+Without a header, or with one that names fewer columns than there are, columns are called by their number, from
+1 on.
 """
 
 from __future__ import annotations
@@ -23,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.base.arrays import Floats, Mask
     from inverse_dynamics.base.progress import Progress
 
 SUFFIXES = (".csv", ".txt")
@@ -44,6 +48,7 @@ class CsvTable:
         try:
             with self._open() as file:
                 self._lines_before, header = _first_line(file)
+                first_row = _first_line(file)[1]
         except (OSError, UnicodeDecodeError) as error:
             raise self._unreadable(error) from error
         if len(header) >= _LONGEST_HEADER:
@@ -55,13 +60,24 @@ class CsvTable:
             raise BagError(f"{path}: is empty; expected a header line and rows of numbers")
         self._delimiter = _delimiter(header)
         self.names = tuple(
-            name.strip().strip('"').strip() for name in header.split(self._delimiter)
+            name.strip().strip('"').strip() for name in header.lstrip("# ").split(self._delimiter)
         )
-        if all(_is_number(name) for name in self.names):
-            raise BagError(
-                f"{path}:{self._lines_before}: expected a header line that names the columns, got "
-                f"numbers; put one before them, such as time{self._delimiter or ' '}position.joint_1"
+        self.unnamed = ""  # why the file doesn't name its columns
+        self.incomplete = 0  # rows left out so far
+        self._set_unnamed(first_row)
+
+    def _set_unnamed(self, first_row: str) -> None:
+        if all(_is_number(name.replace(",", ".")) for name in self.names):
+            self.unnamed = "expected a header line that names the columns, got numbers"
+            self._lines_before -= 1
+        columns = len(first_row.split(self._delimiter))
+        if len(self.names) < columns and first_row and not self.unnamed:
+            self.unnamed = (
+                f"expected a header with {counted(columns, 'name')}, as the first row has columns, got "
+                f"{len(self.names)}"
             )
+        if self.unnamed:
+            self.names = tuple(str(k) for k in range(1, max(columns, len(self.names)) + 1))
 
     def read(
         self,
@@ -70,6 +86,7 @@ class CsvTable:
         progress: Progress = no_progress,
     ) -> Floats:
         """(N, columns) numbers, all of them finite and none larger than those. Raises BagError."""
+        self.incomplete = 0
         limits = np.full(len(columns), np.inf) if largest is None else np.array(largest)
         where = [self.names.index(name) for name in columns]
         size = self.path.stat().st_size
@@ -111,16 +128,33 @@ class CsvTable:
         if set(map(len, rows)) - {len(self.names)}:
             raise self._wrong_length(lines, first)
         values = np.empty((len(rows), len(where)))
+        complete = np.ones(len(rows), dtype=bool)
         try:
             for j, column in enumerate(where):
                 texts = list(map(itemgetter(column), rows))
                 _refuse_other_notations("".join(texts))
-                values[:, j] = np.fromiter(map(float, texts), float, len(rows))
+                values[:, j] = self._column(texts, complete)
         except ValueError:
             raise self._no_number(lines, first, where, limits) from None
+        values = values[complete]
+        self.incomplete += len(rows) - len(values)
         if not (np.abs(values) <= np.minimum(limits, np.finfo(float).max)).all():
             raise self._no_number(lines, first, where, limits)
         return values
+
+    def _column(self, texts: list[str], complete: Mask) -> Floats:
+        """Its numbers; where a text is blank, NaN, and the row isn't complete. Raises ValueError."""
+        try:
+            return np.fromiter(map(float, texts), float, len(texts))
+        except ValueError:
+            numbers = [self._plain(text) or "nan" for text in texts]
+        complete &= np.array([bool(self._plain(text)) for text in texts])
+        return np.fromiter(map(float, numbers), float, len(texts))
+
+    def _plain(self, text: str) -> str:
+        """A field without blanks around it, and with a point."""
+        text = text.strip(ASCII_SPACE)
+        return text if self._delimiter == "," else text.replace(",", ".")
 
     def _wrong_length(self, lines: list[str], first: int) -> BagError:
         line, got = next(
@@ -141,10 +175,11 @@ class CsvTable:
                 continue
             fields = text.split(self._delimiter)
             for column, largest in sorted(zip(where, limits, strict=True)):
-                got = fields[column].strip(ASCII_SPACE)
+                got = self._plain(fields[column])
+                if not got:
+                    continue
                 if not _is_number(got):
-                    hint = "; decimals need a point" if _is_number(got.replace(",", ".")) else ""
-                    return self._bad_field(line, column, f"a number, got {shown(got)}{hint}")
+                    return self._bad_field(line, column, f"a number, got {shown(got)}")
                 if not np.isfinite(float(got)):
                     return self._bad_field(line, column, f"a finite number, got {shown(got)}")
                 if abs(float(got)) > largest:

@@ -4,7 +4,7 @@
     log = read_recording("recording", ["joint_1", "joint_2"])
 
 rosbag2 recordings of sensor_msgs/JointState (bags.py) or trajectory_msgs/JointTrajectory
-(joint_trajectories.py), and text files, .csv or .txt (csv_recordings.py).
+(joint_trajectories.py), ROS 1 recordings (ros1_bags.py), and tables: .csv, .txt, .parquet, .npz, .mat (table_logs.py).
 """
 
 from __future__ import annotations
@@ -16,9 +16,16 @@ import numpy as np
 
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data import bags, joint_trajectories
-from inverse_dynamics.data.csv_recordings import open_table, read_csv_log
-from inverse_dynamics.data.csv_table import is_csv
 from inverse_dynamics.data.joint_log import JointLog, check_clock
+from inverse_dynamics.data.ros1_bags import is_ros1_bag, read_ros1_log
+from inverse_dynamics.data.table_logs import (
+    PLAIN,
+    LogFormat,
+    is_table,
+    open_table,
+    read_named_positions,
+    read_table_log,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -37,19 +44,26 @@ def read_recording(
     topic: str = "",
     usual_topic: str = "",
     clock: Clock = "auto",
+    form: LogFormat = PLAIN,
     progress: Progress = no_progress,
 ) -> JointLog:
     """Samples of a motion: time, positions, velocities, efforts, accelerations where there are any.
 
-    path: a file ending in .csv or .txt, else a rosbag2 recording. joints: names, in the order
+    path: a table (.csv, .txt, .parquet, .npz, .mat), else a rosbag2 recording. joints: names, in the order
     wanted; none: those of the recording. topic, of a bag; none: usual_topic if it is there, else
     the only one of joint states, else the only one of trajectories if there are no joint states. clock:
-    which stamp of messages is the time.
+    which stamp of messages is the time. form: what the names of a table's columns don't say.
 
     Raises BagError.
     """
     motion = open_motion(
-        path, joints, topic=topic, usual_topic=usual_topic, clock=clock, progress=progress
+        path,
+        joints,
+        topic=topic,
+        usual_topic=usual_topic,
+        clock=clock,
+        form=form,
+        progress=progress,
     )
     if isinstance(motion, JointLog):
         return motion
@@ -63,6 +77,7 @@ def open_motion(
     topic: str,
     usual_topic: str,
     clock: Clock,
+    form: LogFormat,
     progress: Progress,
 ) -> JointLog | bags.JointStateTopic:
     """The samples, but for those of joint states, which may be too many for the memory.
@@ -71,8 +86,11 @@ def open_motion(
     """
     path = Path(path)
     check_clock(clock)
-    if is_csv(path):
-        return read_csv_log(open_table(path, topic=topic, clock=clock), joints, progress=progress)
+    if is_table(path):
+        table = open_table(path, topic=topic, clock=clock)
+        return read_table_log(table, joints, form, progress=progress)
+    if is_ros1_bag(path):
+        return read_ros1_log(path, joints, topic=topic, clock=clock, progress=progress)
     recording = bags.open_recording(path)
     topics = bags.topics_of(recording)
     types = {t.name: t.message_type for t in topics if t.message_count or t.name == topic}
@@ -92,6 +110,7 @@ def position_ranges(
     turning: Sequence[str] = (),
     topic: str = "",
     usual_topic: str = "",
+    form: LogFormat = PLAIN,
 ) -> dict[str, tuple[float, float, float]]:
     """Least, mean and greatest position of those of the joints that the recording has, by name.
 
@@ -103,7 +122,7 @@ def position_ranges(
     found: dict[str, tuple[float, float, float]] = {}
     first: dict[str, float] = {}
     counts: dict[str, int] = {}
-    for names, positions in _positions(path, joints, topic, usual_topic):
+    for names, positions in _positions(path, joints, topic, usual_topic, form):
         for name in filter(names.__contains__, joints):
             q = positions[:, names.index(name)]
             q = q[np.isfinite(q)]
@@ -121,17 +140,20 @@ def position_ranges(
 
 
 def _positions(
-    path: Path, joints: Sequence[str], topic: str, usual_topic: str
+    path: Path, joints: Sequence[str], topic: str, usual_topic: str, form: LogFormat
 ) -> Iterator[tuple[tuple[str, ...], Floats]]:
     """Names, and positions of them in some messages, until it shows that none is of the joints."""
-    if is_csv(path):
-        table = open_table(path)
-        there = tuple(joint for joint in joints if table.names.count(f"position.{joint}") == 1)
-        if there:
-            yield there, table.read([f"position.{joint}" for joint in there])
+    if is_table(path):
+        found = read_named_positions(open_table(path), joints, form)
+        if found:
+            yield tuple(found), np.column_stack([*found.values()])
+        return
+    if is_ros1_bag(path):
+        log = read_ros1_log(path, topic=topic)
+        yield log.joint_names, log.q
         return
     motion = open_motion(
-        path, (), topic=topic, usual_topic=usual_topic, clock="auto", progress=no_progress
+        path, (), topic=topic, usual_topic=usual_topic, clock="auto", form=form, progress=no_progress
     )
     messages, published = 0, False
     for block in () if isinstance(motion, JointLog) else motion.states:

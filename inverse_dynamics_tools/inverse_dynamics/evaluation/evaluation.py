@@ -17,6 +17,7 @@ from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data.joint_log import JointLog, check_clock
 from inverse_dynamics.data.recordings import open_motion
+from inverse_dynamics.data.table_logs import LogFormat
 from inverse_dynamics.data.time_window import TimeWindow
 from inverse_dynamics.evaluation.accelerations import (
     Accelerations,
@@ -172,6 +173,7 @@ def evaluate(
         topic=topic or "",
         usual_topic=robot.topic,
         clock=clock,
+        form=LogFormat.of(robot),
         progress=progress,
     )
     if isinstance(motion, JointLog):

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.wording import listed
 from inverse_dynamics.data.recordings import position_ranges
+from inverse_dynamics.data.table_logs import LogFormat
 from inverse_dynamics.robot.descriptions import carried_joints
 from inverse_dynamics.robot.solvers import brings_own_model
 
@@ -70,7 +71,12 @@ def posture_of(
         return Posture()
     turning = [joint for joint, unit in units.items() if unit == "rad"]
     ranges = position_ranges(
-        bag, list(units), turning=turning, topic=topic or "", usual_topic=robot.topic
+        bag,
+        list(units),
+        turning=turning,
+        topic=topic or "",
+        usual_topic=robot.topic,
+        form=LogFormat.of(robot),
     )
     held: dict[str, Parameter] = {}
     stated = locked_joints(robot)

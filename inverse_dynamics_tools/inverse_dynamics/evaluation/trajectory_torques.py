@@ -18,15 +18,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.data.csv_recordings import (
-    TIME,
-    check_seconds,
-    generic_columns,
-    open_table,
-    read_columns,
-)
+from inverse_dynamics.data.columns import ACCELERATION, POSITION, VELOCITY
 from inverse_dynamics.data.csv_table import is_csv
 from inverse_dynamics.data.joint_trajectories import JointTrajectory, read_joint_trajectories
+from inverse_dynamics.data.table_logs import (
+    LogFormat,
+    check_seconds,
+    open_table,
+    read_motion,
+)
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.robot.descriptions import effort_limits, read_description
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.base.arrays import Floats, Integers
     from inverse_dynamics.base.progress import Progress
-    from inverse_dynamics.data.csv_table import CsvTable
+    from inverse_dynamics.data.table_logs import Table
 
 _FAR_LONGER = 100.0  # times; milliseconds make it 1000 times
 _WHY = "torques can't be computed without them"
@@ -108,8 +108,8 @@ def trajectory_torques(
 ) -> TrajectoryTorques:
     """Compute the torques of each point of each trajectory.
 
-    path: rosbag2 recording of trajectory_msgs/JointTrajectory, or a text file as
-    csv_recordings.py has it, efforts not needed. robot: as evaluate() takes it. topic: none: the
+    path: rosbag2 recording of trajectory_msgs/JointTrajectory, or a table as table_logs.py has it,
+    efforts not needed. robot: as evaluate() takes it. topic: none: the
     only one with trajectories.
 
     Raises UserError: BagError, RobotError, SolverError.
@@ -124,7 +124,8 @@ def trajectory_torques(
     solver, joints = arm.solver, arm.recorded_names
     trajectories: list[JointTrajectory] = []
     if is_csv(path):
-        states = [_states_of_table(open_table(path, topic=topic), joints, progress)]
+        table = open_table(path, topic=topic)
+        states = [_states_of_table(table, joints, LogFormat.of(robot), progress)]
     else:
         trajectories = read_joint_trajectories(path, topic, progress)
         states = [_states_of_message(trajectory, joints) for trajectory in trajectories]
@@ -152,15 +153,14 @@ def trajectory_torques(
 
 
 def _states_of_table(
-    table: CsvTable, joints: Sequence[str], progress: Progress
+    table: Table, joints: Sequence[str], form: LogFormat, progress: Progress
 ) -> tuple[Floats, list[Floats]]:
-    kinds = ("position", "velocity", "acceleration")
-    _, columns = generic_columns(table, joints, kinds)
-    values = read_columns(table, TIME, {kind: columns[kind] for kind in kinds}, progress)
-    time = values[TIME][:, 0]
-    if _much_faster_than_it_moves(time, values["position"], values["velocity"]):
-        check_seconds(table, TIME, time)
-    return time, [values[kind] for kind in kinds]
+    kinds = (POSITION, VELOCITY, ACCELERATION)
+    motion = read_motion(table, joints, form, kinds, kinds, progress)
+    states = [motion.numbers[kind] for kind in kinds]
+    if _much_faster_than_it_moves(motion.time, *states[:2]):
+        check_seconds(table, motion.time)
+    return motion.time, states
 
 
 def _much_faster_than_it_moves(time: Floats, q: Floats, qd: Floats) -> bool:

@@ -1,0 +1,391 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which column of a log is which quantity of which joint.
+
+    mapping = match_columns(["time", "q0", "q1", "tau0", "tau1"], ["shoulder", "elbow"])
+    mapping.columns["position"]   # ("q0", "q1")
+
+The names alone decide. A column has the quantity that a word of its name says (`q`, `pos`, `tau`, ...)
+and belongs to the joint whose name it holds, or whose number: from 0 or from 1, in the order of the
+chain. Commanded and external values are passed over. What the names don't say, a user states:
+
+    match_columns(names, joints, stated="time=t, q=axis*_angle, effort=13-18")
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+from inverse_dynamics.base.wording import listed, shown
+from inverse_dynamics.errors import BagError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+TIME, POSITION, VELOCITY, ACCELERATION = "time", "position", "velocity", "acceleration"
+EFFORT, CURRENT = "effort", "current"
+QUANTITIES = (POSITION, VELOCITY, ACCELERATION, EFFORT, CURRENT)
+
+# Words that say a quantity. Those of the second row do so only beside no word of the first row:
+# `current_q_0` and `state_tau_0` are a position and an effort.
+_WORDS = {
+    POSITION: "position positions pos q angle angles theta jpos",
+    VELOCITY: "velocity velocities vel qd dq qdot speed speeds omega jvel",
+    ACCELERATION: "acceleration accelerations acc accel qdd ddq qddot",
+    EFFORT: "effort efforts torque torques tau trq",
+}
+_WEAK_WORDS = {CURRENT: "current currents cur i amps", POSITION: "state"}
+_TIME_WORDS = frozenset("time t timestamp timestamps stamp secs seconds".split())
+# These words say nothing: a name that has fewer others is preferred.
+_NEUTRAL = frozenset(
+    "actual act measured meas joint joints j axis a state states robot arm field data observation "
+    "header cont abs rec".split()
+)
+# Not what the arm did, or not what its motors did.
+_OTHER = frozenset(
+    "target desired des ref reference cmd command commanded goal setpoint ext external error err "
+    "limit limits max min std temperature temp".split()
+)
+
+# Factors to SI units.
+UNITS = {
+    "deg": 0.017453292519943295,
+    "degrees": 0.017453292519943295,
+    "rad": 1.0,
+    "rpm": 0.10471975511965977,
+    "m": 1.0,
+    "mm": 1e-3,
+    "nm": 1.0,
+    "mnm": 1e-3,
+    "nmm": 1e-3,
+    "a": 1.0,
+    "ma": 1e-3,
+    "s": 1.0,
+    "ms": 1e-3,
+    "us": 1e-6,
+    "ns": 1e-9,
+}
+# Units that a name's last words may state; `a`, `m` and `s` alone are too often something else.
+_UNITS_OF_NAMES = {
+    TIME: ("ms", "us", "ns", "s", "sec", "secs", "seconds"),
+    POSITION: ("deg", "degrees", "rad", "mm"),
+    VELOCITY: ("deg", "degrees", "rad", "rpm"),
+    ACCELERATION: ("deg", "degrees", "rad"),
+    EFFORT: ("nm", "mnm", "nmm"),
+    CURRENT: ("ma",),
+}
+_PER_TIME = frozenset("per s s2 sec second".split())
+
+_KEYS = {
+    **{name: name for name in (TIME, *_WORDS, CURRENT)},
+    **{"t": TIME, "q": POSITION, "qd": VELOCITY, "dq": VELOCITY, "qdd": ACCELERATION},
+    **{"ddq": ACCELERATION, "tau": EFFORT, "torque": EFFORT, "i": CURRENT},
+}
+
+
+class Family(NamedTuple):
+    """Columns whose names differ in the joint alone."""
+
+    rank: tuple[int, ...]  # the least is the best
+    pattern: str  # what their names have in common
+    columns: dict[str | int, str]  # by joint or number
+    unit: str  # that the names state; "": none
+
+
+@dataclass(frozen=True)
+class Matched:
+    """Columns by quantity, in the order of the joints."""
+
+    joints: tuple[str, ...]
+    columns: dict[str, tuple[str, ...]]
+    units: dict[str, str] = field(default_factory=dict)  # that names state: keys of UNITS
+
+    @property
+    def exact(self) -> bool:
+        """Whether the names are `time` and QUANTITY.JOINT."""
+        return self.columns.get(TIME, (TIME,)) == (TIME,) and all(
+            names == tuple(f"{quantity}.{joint}" for joint in self.joints)
+            for quantity, names in self.columns.items()
+            if quantity != TIME
+        )
+
+    @property
+    def text(self) -> str:
+        """One line that says which columns were taken for what."""
+        return "; ".join(
+            f"{quantity}: {_first_to_last(names)}"
+            + (f" [{self.units[quantity]}]" if quantity in self.units else "")
+            for quantity, names in self.columns.items()
+        )
+
+
+def match_columns(
+    names: Sequence[str],
+    joints: Sequence[str] = (),
+    stated: str = "",
+    where: str = "",
+    quantities: Sequence[str] = QUANTITIES,
+) -> Matched:
+    """Columns of time, positions, velocities, accelerations, and efforts or currents.
+
+    names: of all columns. joints: of the chain, in its order; none: those that the columns name, or their
+    numbers. stated: `KEY=PATTERN, ...`, which comes before what names say: KEY is a quantity or one of t,
+    q, qd, qdd, tau, i; PATTERN the name of a column with `*` in the place of the joint's name or number,
+    names separated by spaces, or numbers of columns from 1 on, `2-7`.
+    where: the file, for errors. quantities: which of QUANTITIES to look for.
+
+    What isn't found is left out; the caller knows what it needs. Raises BagError: a pattern that fits
+    nothing, two sets of columns that fit as well, some joints of a quantity missing.
+    """
+    given = dict(_stated(stated, where))
+    joints = tuple(joints) or _joints_of(names, given)
+    columns: dict[str, tuple[str, ...]] = {}
+    units: dict[str, str] = {}
+    time = _chosen_time(given[TIME], names) if TIME in given else time_columns(names)
+    if len(time) > 1:
+        raise _ambiguous(where, TIME, time)
+    if time:
+        _known(names, time, where, f"{TIME}=")
+        columns[TIME] = (time[0],)
+        units[TIME] = _unit(TIME, _words(time[0]))
+    found = _families(names, joints)
+    for quantity in quantities:
+        if quantity in given:
+            columns[quantity] = _matching(given[quantity], names, joints, where)
+            units[quantity] = _unit(quantity, _words(columns[quantity][0]))
+            continue
+        _refuse_incomplete(names, joints, quantity, where)
+        if best := _best(found[quantity], quantity, where):
+            columns[quantity] = tuple(best.columns.values())
+            units[quantity] = best.unit
+    return Matched(joints, columns, {kind: unit for kind, unit in units.items() if unit})
+
+
+def named_positions(names: Sequence[str], joints: Sequence[str]) -> dict[str, str]:
+    """Columns of positions by joint, of those joints whose names they hold."""
+    found: dict[str, str] = {}
+    for name in names:
+        for _, pattern, joint in _places(name, joints):
+            if isinstance(joint, str) and "*" in pattern and _quantity(pattern) == POSITION:
+                found.setdefault(joint, name)
+    return found
+
+
+# ---- what names say ------------------------------------------------------------------------------
+
+
+def _words(name: str) -> tuple[str, ...]:
+    """Words and numbers of a name: `Joint1_Pos` has joint, 1, pos."""
+    apart = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[^\W\d_])(?=\d)|(?<=\d)(?=[^\W\d_])", " ", name)
+    return tuple(re.findall(r"[^\W\d_]+|\d+", apart.lower()))
+
+
+def _quantity(words: Sequence[str]) -> str | None:
+    """What the words say; None: nothing, or another thing than a measured quantity."""
+    if _OTHER.intersection(words):
+        return None
+    for vocabulary in (_WORDS, _WEAK_WORDS):
+        said = {kind for kind, text in vocabulary.items() if not set(text.split()).isdisjoint(words)}
+        if said:
+            return said.pop() if len(said) == 1 else None
+    return None
+
+
+def _unit(quantity: str, words: Sequence[str]) -> str:
+    known = {"sec": "s", "secs": "s", "seconds": "s", "degrees": "deg"}
+    found = [word for word in words if word in _UNITS_OF_NAMES[quantity]]
+    unit = known.get(found[-1], found[-1]) if found else ""
+    return "" if UNITS.get(unit, 1.0) == 1.0 else unit
+
+
+def _rank(kind: int, quantity: str, words: Sequence[str]) -> tuple[int, ...]:
+    """Fewest words that say nothing of the quantity come first, then fewest neutral ones."""
+    said = {*_WORDS.get(quantity, "").split(), *_WEAK_WORDS.get(quantity, "").split(), "*"}
+    others = [
+        word
+        for word in words
+        if word not in said and word not in _UNITS_OF_NAMES[quantity] and word not in _PER_TIME
+    ]
+    return kind, sum(word not in _NEUTRAL for word in others), len(others)
+
+
+def _families(names: Sequence[str], joints: Sequence[str]) -> dict[str, list[Family]]:
+    """Columns of all joints, by quantity."""
+    groups: dict[tuple[int, tuple[str, ...]], dict[str | int, str]] = defaultdict(dict)
+    for name in names:
+        for kind, pattern, joint in _places(name, joints):
+            groups[kind, pattern].setdefault(joint, name)
+    found: dict[str, list[Family]] = defaultdict(list)
+    for (kind, pattern), columns in groups.items():
+        numbers = sorted(key for key in columns if isinstance(key, int))
+        order = numbers if kind == 2 else joints
+        complete = (
+            numbers in ([*range(len(joints))], [*range(1, len(joints) + 1)])
+            if kind == 2
+            else len(columns) == len(joints)
+        )
+        quantity = _quantity(pattern)
+        if complete and quantity:
+            ordered = {joint: columns[joint] for joint in order}
+            rank = _rank(kind, quantity, pattern)
+            found[quantity].append(
+                Family(rank, " ".join(pattern), ordered, _unit(quantity, pattern))
+            )
+    return found
+
+
+def _places(
+    name: str, joints: Sequence[str]
+) -> Iterator[tuple[int, tuple[str, ...], str | int]]:
+    """Where a column's name may have a joint: kind (0 exactly, 1 by name, 2 by number), the rest, joint."""
+    quantity, _, joint = name.partition(".")
+    if joint in joints and quantity in _KEYS:
+        yield 0, (quantity, "*"), joint
+        return
+    words = _words(name)
+    named = [
+        (len(own), at, joint)
+        for joint in joints
+        if (own := _words(joint))
+        for at in range(len(words) - len(own) + 1)
+        if words[at : at + len(own)] == own
+    ]
+    if named:
+        size, at, joint = max(named)
+        rest = (*words[:at], "*", *words[at + size :])
+        if _quantity(rest):
+            yield 1, rest, joint
+            return
+    if len(joints) == 1 and (quantity := _quantity(words)) and not _rank(1, quantity, words)[1]:
+        yield 1, words, joints[0]
+    for at, word in enumerate(words):
+        if word.isdecimal():
+            yield 2, (*words[:at], "*", *words[at + 1 :]), int(word)
+
+
+def time_columns(names: Sequence[str]) -> list[str]:
+    """Columns that are as good as any for the time."""
+    known = _TIME_WORDS.union(_UNITS_OF_NAMES[TIME])
+    ranked = defaultdict(list)
+    for name in names:
+        words = [word for word in _words(name) if word not in _NEUTRAL]
+        if _TIME_WORDS.intersection(words) and known.issuperset(words):
+            ranked[len(_words(name))].append(name)
+    return [*dict.fromkeys(ranked[min(ranked)])] if ranked else []
+
+
+def _chosen_time(pattern: str, names: Sequence[str]) -> list[str]:
+    by_number = pattern.isdecimal() and pattern not in names and int(pattern) <= len(names)
+    return [names[int(pattern) - 1]] if by_number else [pattern]
+
+
+def _best(families: list[Family], quantity: str, where: str) -> Family | None:
+    if not families:
+        return None
+    least = min(family.rank for family in families)
+    best = [family for family in families if family.rank == least]
+    if len(best) > 1:
+        raise _ambiguous(where, quantity, [_first_to_last([*f.columns.values()]) for f in best])
+    return best[0]
+
+
+def _ambiguous(where: str, quantity: str, candidates: Sequence[str]) -> BagError:
+    return BagError(
+        f"{where}: {quantity}: expected one set of columns, got {listed(candidates)}; state the right one: "
+        f"--columns '{quantity}=...'"
+    )
+
+
+def _refuse_incomplete(
+    names: Sequence[str], joints: Sequence[str], quantity: str, where: str
+) -> None:
+    """Raise BagError where QUANTITY.JOINT is there for some of the joints only."""
+    missing = [joint for joint in joints if f"{quantity}.{joint}" not in names]
+    if 0 < len(missing) < len(joints):
+        raise BagError(
+            f"{where}: joint {missing[0]}: expected a column {quantity}.{missing[0]}, got none"
+        )
+
+
+def _joints_of(names: Sequence[str], given: dict[str, str]) -> tuple[str, ...]:
+    """The joints that columns QUANTITY.JOINT name, else the numbers of the largest set of positions."""
+    split = [name.partition(".") for name in names]
+    named = dict.fromkeys(joint for kind, _, joint in split if joint and kind in _UNITS_OF_NAMES)
+    if named and POSITION not in given:
+        return tuple(named)
+    counts = defaultdict(set)
+    for name in names:
+        for kind, pattern, number in _places(name, ()):
+            if kind == 2 and _quantity(pattern) == POSITION:
+                counts[pattern].add(number)
+    largest = max(map(len, counts.values()), default=0)
+    return tuple(map(str, range(largest)))
+
+
+def _first_to_last(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{names[0]} to {names[-1]}"
+
+
+# ---- what users state ----------------------------------------------------------------------------
+
+
+def quantity_named(key: str, where: str) -> str:
+    """The quantity that a key means. Raises BagError."""
+    if key not in _KEYS:
+        raise BagError(f"{where}: expected one of {', '.join(_KEYS)}, got {shown(key)}")
+    return _KEYS[key]
+
+
+def _stated(text: str, where: str) -> Iterator[tuple[str, str]]:
+    """Quantities and patterns of `KEY=PATTERN, ...`."""
+    for part in filter(None, map(str.strip, text.split(","))):
+        key, equals, pattern = map(str.strip, part.partition("="))
+        if key not in _KEYS or not equals or not pattern:
+            raise BagError(
+                f"columns: expected KEY=PATTERN with a KEY of {', '.join(_KEYS)}, got {shown(part)}; for "
+                "example: time=t, q=q*, qd=dq*, effort=tau*"
+            )
+        yield _KEYS[key], pattern
+
+
+def _matching(
+    pattern: str, names: Sequence[str], joints: Sequence[str], where: str
+) -> tuple[str, ...]:
+    """One column per joint."""
+    if numbers := re.fullmatch(r"(\d+)-(\d+)", pattern):
+        chosen = list(names[max(int(numbers[1]) - 1, 0) : int(numbers[2])])
+    elif "*" in pattern:
+        chosen = _of_wildcard(pattern, names, joints)
+    else:
+        chosen = pattern.split() if pattern not in names else [pattern]
+    _known(names, chosen, where, pattern)
+    if len(chosen) != len(joints):
+        raise BagError(
+            f"{where}: columns: {pattern}: expected a column for each of the joints {listed(joints, 20)}, got "
+            f"{len(chosen)}: {listed(chosen, 20)}; the file's columns are {listed(names, 40)}"
+        )
+    return tuple(chosen)
+
+
+def _of_wildcard(pattern: str, names: Sequence[str], joints: Sequence[str]) -> list[str]:
+    """By the joints' names, else by number: the first ones, if there are more than joints."""
+    form = re.compile("(.+)".join(map(re.escape, pattern.split("*", 1))))
+    fits = {found[1]: name for name in names if (found := form.fullmatch(name))}
+    words = {_words(key): name for key, name in fits.items()}
+    if all(_words(joint) in words for joint in joints):
+        return [words[_words(joint)] for joint in joints]
+    numbered = sorted((int(key), name) for key, name in fits.items() if key.isdecimal())
+    return [name for _, name in numbered][: len(joints)]
+
+
+def _known(names: Sequence[str], chosen: Sequence[str], where: str, pattern: str) -> None:
+    unknown = [name for name in chosen if name not in names]
+    if unknown or not chosen:
+        raise BagError(
+            f"{where}: columns: {pattern}: expected columns of the file, got {listed(unknown) or 'none'}; "
+            f"the file has {listed(names, 40)}"
+        )
+    if twice := [name for name in chosen if list(names).count(name) > 1]:
+        raise BagError(f"{where}: expected each column once, got several named {twice[0]}")
