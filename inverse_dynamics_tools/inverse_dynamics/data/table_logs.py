@@ -171,7 +171,7 @@ def open_table(path: Path, *, topic: str = "", clock: Clock = "auto") -> Table:
             raise BagError(
                 f"{path}: --{option} {given}: a table has no {option}s, recordings have; leave it out"
             )
-    if "+" in path.name and not path.exists():
+    if "+" in f"{path}" and not path.exists():
         return JoinedTable(path, [open_table(Path(part)) for part in f"{path}".split("+")])
     return ArrayFile(path) if is_array_file(path) else CsvTable(path)
 
