@@ -265,6 +265,15 @@ def _places(
             yield 2, (*words[:at], "*", *words[at + 1 :]), int(word)
 
 
+def quantities_named(names: Sequence[str], file: str) -> set[str]:
+    """Quantities that any of the names says, or the file's name together with it."""
+    for prefix in ("", f"{file}."):
+        found = {kind for name in names if (kind := _quantity(_words(f"{prefix}{name}")))}
+        if found:
+            return found
+    return set()
+
+
 def time_columns(names: Sequence[str]) -> list[str]:
     """Columns that are as good as any for the time."""
     known = _TIME_WORDS.union(_UNITS_OF_NAMES[TIME])

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 METADATA = "metadata.yaml"
-_LOOSE = (".db3", ".mcap", ".csv")
+_LOOSE = (".db3", ".mcap", ".bag", ".csv")
 
 
 def named_recordings(paths: Iterable[Path | str], *, taken: Sequence[str] = ()) -> dict[str, Path]:

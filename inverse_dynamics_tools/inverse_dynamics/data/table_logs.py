@@ -33,6 +33,7 @@ from inverse_dynamics.data.columns import (
     Matched,
     match_columns,
     named_positions,
+    quantities_named,
     quantity_named,
     time_columns,
 )
@@ -174,6 +175,15 @@ def open_table(path: Path, *, topic: str = "", clock: Clock = "auto") -> Table:
     if "+" in f"{path}" and not path.exists():
         return JoinedTable(path, [open_table(Path(part)) for part in f"{path}".split("+")])
     return ArrayFile(path) if is_array_file(path) else CsvTable(path)
+
+
+def parts_joined(paths: Sequence[Path]) -> list[Path]:
+    """`A+B` in place of A and B if only together they have positions and efforts; else the paths."""
+    if len(paths) < 2 or not all(map(is_table, paths)):
+        return list(paths)
+    found = [quantities_named(open_table(path).names, path.stem) for path in paths]
+    whole = [POSITION in kinds and bool(kinds & {EFFORT, CURRENT}) for kinds in (*found, set().union(*found))]
+    return [Path("+".join(map(str, paths)))] if whole.pop() and not any(whole) else list(paths)
 
 
 def read_table_log(

@@ -121,6 +121,11 @@ def evaluate(
     effort_is: str | None = None,
     accelerations: str | None = None,
     cutoff: float | None = None,
+    drive_gains: Sequence[float] | None = None,
+    columns: str | None = None,
+    scale: Sequence[str] | None = None,
+    sign: Sequence[float] | None = None,
+    rate: float | None = None,
     clock: Clock = "auto",
     start: float | None = None,
     end: float | None = None,
@@ -130,10 +135,12 @@ def evaluate(
 ) -> Evaluation:
     """Compute the torques of a recorded motion and compare them with the measured ones.
 
-    bag: rosbag2 recording or text file, see recordings.py. robot: a name of robot_names(), the file of a
+    bag: a recording or a table, see recordings.py. robot: a name of robot_names(), the file of a
     run configuration, or one that is loaded. What else is given replaces what the configuration
     says: see Robot; parameters, of the solver, one by one. effort_is: what recorded efforts mean, one of
     EFFORT_CHOICES.
+    drive_gains: N m/A (prismatic N/A) of efforts that are currents. columns, scale, sign, rate: what the
+    names of a table's columns don't say, see table_logs.LogFormat.
     accelerations: one of accelerations.METHODS; cutoff: Hz, of a low-pass. clock: which stamps are
     the time. start, end: s since the first sample; the others aren't evaluated. without_rules: those
     of accelerations.RULES not to be acted upon. scratch: directory for unnamed files that hold the
@@ -156,6 +163,11 @@ def evaluate(
         parameters=parameters,
         accelerations=accelerations,
         cutoff=cutoff,
+        drive_gains=drive_gains,
+        columns=columns,
+        scale=scale,
+        sign=sign,
+        rate=rate,
     )
     bag = Path(bag)
     window = TimeWindow(start, end)

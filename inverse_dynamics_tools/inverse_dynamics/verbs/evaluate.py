@@ -58,12 +58,11 @@ examples:
   ids evaluate recording --robot ur10_real --effort-is auto
       find out whether efforts are torques, motor currents or torques without gravity
 
-  ids evaluate motion.csv --robot my_robot.yaml
-      a table: columns time [s] and, for each joint, position.JOINT, velocity.JOINT, effort.JOINT
-      (or current.JOINT [A]), optionally acceleration.JOINT; separated by comma, semicolon, tab or spaces
+  ids evaluate motion.csv --urdf my_arm.urdf
+      a table with columns such as time, q0, dq0, tau0 or JOINT_position, JOINT_effort
 
-  ids evaluate robot_data.csv --robot ur10_real
-      a recording of UR's RTDE client library: efforts are motor currents
+  ids evaluate log.csv --urdf my_arm.urdf --columns "time=t, q=axis*_pos, i=axis*_amp" --scale q=deg
+      a table whose names don't say what its columns are (docs/tables.md)
 
   ids evaluate monday tuesday wednesday --robot ur10_real --out week
   ids evaluate recordings_of_a_week --robot ur10_real --jobs 4
@@ -99,8 +98,9 @@ def declare(parser: argparse.ArgumentParser) -> None:
         type=file_name,
         nargs="+",
         help="rosbag2 recording of sensor_msgs/JointState or trajectory_msgs/JointTrajectory (a "
-        "directory, or a .db3 or .mcap file), or a table of numbers (.csv or .txt); or a directory "
-        "that holds recordings",
+        "directory, or a .db3 or .mcap file), a ROS 1 recording (.bag), or a table (.csv, .txt, "
+        ".parquet, .npz, .mat; several files of one recording: A+B); or a directory that holds "
+        "recordings",
     )
     robot_option(parser)
     output(
@@ -137,7 +137,9 @@ def declare(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.data.several_recordings import holds_recordings
+    from inverse_dynamics.data.table_logs import parts_joined
 
+    arguments.bags = parts_joined(arguments.bags)
     robot = chosen_robot(arguments)
     asked = arguments.jobs is not None or arguments.scheduler is not None
     several = asked or len(arguments.bags) > 1 or holds_recordings(arguments.bags[0])

@@ -21,6 +21,7 @@ from inverse_dynamics.verbs.values import (
     file_name,
     names,
     number,
+    numbers,
     parameter,
     payload,
     positive_number,
@@ -35,7 +36,8 @@ if TYPE_CHECKING:
 # Overrides of the run configuration, by name.
 CHAIN = ("--urdf", "--root", "--tip", "--gravity", "--joints", "--parameter")
 SOLVER = (*CHAIN, "--plugin", "--no-friction", "--payload")
-RECORDING = ("--topic", "--effort-is", "--cutoff", "--from", "--to")
+TABLE = ("--columns", "--scale", "--sign", "--rate")
+RECORDING = ("--topic", "--effort-is", "--drive-gains", *TABLE, "--cutoff", "--from", "--to")
 FILTER = ("--accelerations", "--clock", "--without-rule")
 
 
@@ -195,6 +197,38 @@ _SHARED: dict[str, tuple[str, str, Any, dict[str, Any]]] = {
             f"meaning of the recorded efforts. {_meanings(EFFORT_CHOICES)}",
             None,
             {"choices": tuple(EFFORT_CHOICES)},
+        ),
+        (
+            "--drive-gains A,B,...",
+            "torque per motor current of each joint [N m/A], for efforts that are currents",
+            numbers,
+            {},
+        ),
+        (
+            "--columns KEY=PATTERN,...",
+            "of a table: which column is what: time=t, q=q*, qd=dq*, effort=tau* (or current=i*); * is "
+            "the joint's name or number; or numbers of columns: time=1, q=2-7 (docs/tables.md)",
+            None,
+            {},
+        ),
+        (
+            "--scale KEY=FACTOR",
+            "of a table: what a quantity's numbers are multiplied by, a number or a unit, or one for "
+            "each joint: effort=1e-3, q=deg, time=ms; may be given several times",
+            None,
+            {"action": "append"},
+        ),
+        (
+            "--sign S,S,...",
+            "of a table: 1 or -1 for each joint; -1 turns its positions, velocities and efforts around",
+            numbers,
+            {},
+        ),
+        (
+            "--rate HZ",
+            "of a table without time: samples per second",
+            positive_number,
+            {},
         ),
         ("--accelerations METHOD", _meanings(METHODS), None, {"choices": tuple(METHODS)}),
         ("--cutoff HZ", "cut-off frequency of the low-pass filter", positive_number, {}),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from inverse_dynamics.base.wording import counted
 from inverse_dynamics.verbs.options import (
     SOLVER,
+    TABLE,
     chosen_robot,
     given_overrides,
     output,
@@ -56,7 +57,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
         required=True,
     )
     shared(parser, "--json", "--topic")
-    overrides(parser, *SOLVER)
+    overrides(parser, *SOLVER, *TABLE)
 
 
 def run(arguments: argparse.Namespace) -> None:
