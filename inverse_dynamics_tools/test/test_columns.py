@@ -24,7 +24,6 @@ def of(*patterns, numbers=range(7)):
     return [pattern.format(k) for pattern in patterns for k in numbers]
 
 
-
 @pytest.mark.parametrize(
     ("names", "joints", "expected"),
     [

@@ -10,9 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_table_logs import table_of, write_table
 from test_evaluation import JOINTS, RIGID_BODY, URDF, motion, recording
 from test_joint_trajectories import points_of_motion, trajectory, write_trajectories
+from test_table_logs import table_of, write_table
 
 from inverse_dynamics import Solver, cli, evaluate, read_evaluation, write_evaluation
 from inverse_dynamics.errors import UserError

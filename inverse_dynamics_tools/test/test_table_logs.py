@@ -190,11 +190,17 @@ def test_commanded_values_of_urs_record_tool_are_not_measured_ones(file):
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("time,foo\n0,1\n", "expected columns of position for the joints a, got time, foo; torques"),
+        (
+            "time,foo\n0,1\n",
+            "expected columns of position for the joints a, got time, foo; torques",
+        ),
         (HEADER.replace("time", "x") + ROWS, "expected a column of time [s], got x, position.a"),
         (HEADER.replace("effort.a", "x") + ROWS, "expected columns of effort for the joints a"),
         (HEADER.replace("effort.a", "x") + ROWS, "`ids torques` computes them"),
-        (HEADER.replace(".a", ".b") + ROWS, "expected columns of position for the joints a, got time"),
+        (
+            HEADER.replace(".a", ".b") + ROWS,
+            "expected columns of position for the joints a, got time",
+        ),
         (HEADER + "0,1,2,3\n8,1,2,3\n", "expected seconds, got steps of 8: are they ms?"),
         (HEADER + "0,1,2,3\n2000,1,2,3\n", "are they us? Then state --scale time=us"),
         (HEADER + "0,1,2,3\n8e6,1,2,3\n", "are they ns? Then state --scale time=ns"),
@@ -253,9 +259,15 @@ def test_what_the_names_do_not_say_is_stated(file):
 @pytest.mark.parametrize(
     ("form", "expected"),
     [
-        (LogFormat(scale=("effort=furlong",)), "scale: expected a number other than 0 or one of deg"),
+        (
+            LogFormat(scale=("effort=furlong",)),
+            "scale: expected a number other than 0 or one of deg",
+        ),
         (LogFormat(scale=("effort=1,2",)), "scale: effort: expected 1 or 1 number, got 2"),
-        (LogFormat(scale=("current=2",)), "scale: expected one of time, position, velocity, effort"),
+        (
+            LogFormat(scale=("current=2",)),
+            "scale: expected one of time, position, velocity, effort",
+        ),
         (LogFormat(scale=("torgue=2",)), "scale: expected one of time, position"),
         (LogFormat(sign=(1.0, -1.0)), "sign: expected 1 or -1 for each of 1 joint, got 1, -1"),
         (LogFormat(sign=(2.0,)), "sign: expected 1 or -1 for each of 1 joint, got 2"),

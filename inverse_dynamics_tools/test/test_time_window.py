@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import fails
-from test_table_logs import table_of, write_table
 from test_evaluation import RIGID_BODY, URDF, recording
+from test_table_logs import table_of, write_table
 
 from inverse_dynamics import Solver, evaluate, read_evaluation, write_joint_logs
 from inverse_dynamics.errors import ArgumentError, BagError

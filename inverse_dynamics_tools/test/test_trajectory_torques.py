@@ -11,7 +11,6 @@ from conftest import STORE, joint_state, write_messages
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, Reader, StoragePlugin, Writer
 from rosbags.rosbag2.writer import zstd
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-from test_table_logs import table_of, write_table
 from test_evaluation import JOINTS, RIGID_BODY, URDF, motion
 from test_joint_trajectories import (
     TOPIC,
@@ -20,6 +19,7 @@ from test_joint_trajectories import (
     trajectory,
     write_trajectories,
 )
+from test_table_logs import table_of, write_table
 
 from inverse_dynamics import (
     Solver,
@@ -176,7 +176,9 @@ def test_a_file_without_a_plan_is_said(tmp_path, robot):
         trajectory_torques(states, robot)
     q, *_ = motion()
     write_table(tmp_path / "no.csv", table_of(q))
-    with pytest.raises(BagError, match="expected columns of acceleration for the joints shoulder_pan_joint"):
+    with pytest.raises(
+        BagError, match="expected columns of acceleration for the joints shoulder_pan_joint"
+    ):
         trajectory_torques(tmp_path / "no.csv", robot)
 
 

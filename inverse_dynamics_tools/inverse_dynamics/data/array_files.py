@@ -51,7 +51,7 @@ class ArrayFile:
     def read(
         self,
         columns: Sequence[str],
-        largest: Sequence[float] | None = None,  # noqa: ARG002
+        largest: Sequence[float] | None = None,
         progress: Progress = no_progress,
     ) -> Floats:
         """(N, columns) numbers."""

@@ -37,17 +37,20 @@ _WORDS = {
     EFFORT: "effort efforts torque torques tau trq",
 }
 _WEAK_WORDS = {CURRENT: "current currents cur i amps", POSITION: "state"}
-_TIME_WORDS = frozenset("time t timestamp timestamps stamp secs seconds".split())
+_TIME = "time t timestamp timestamps stamp secs seconds"
+_TIME_WORDS = frozenset(_TIME.split())
 # These words say nothing: a name that has fewer others is preferred.
-_NEUTRAL = frozenset(
-    "actual act measured meas joint joints j axis a state states robot arm field data observation "
-    "header cont abs rec".split()
+_SAYING_NOTHING = (
+    "actual act measured meas joint joints j axis a state states robot arm field data observation header "
+    "cont abs rec"
 )
+_NEUTRAL = frozenset(_SAYING_NOTHING.split())
 # Not what the arm did, or not what its motors did.
-_OTHER = frozenset(
-    "target desired des ref reference cmd command commanded goal setpoint ext external error err "
-    "limit limits max min std temperature temp".split()
+_PASSED_OVER = (
+    "target desired des ref reference cmd command commanded goal setpoint ext external error err limit "
+    "limits max min std temperature temp"
 )
+_OTHER = frozenset(_PASSED_OVER.split())
 
 # Factors to SI units.
 UNITS = {
@@ -76,7 +79,7 @@ _UNITS_OF_NAMES = {
     EFFORT: ("nm", "mnm", "nmm"),
     CURRENT: ("ma",),
 }
-_PER_TIME = frozenset("per s s2 sec second".split())
+_PER_TIME = frozenset({"per", "s", "s2", "sec", "second"})
 
 _KEYS = {
     **{name: name for name in (TIME, *_WORDS, CURRENT)},
@@ -187,7 +190,9 @@ def _quantity(words: Sequence[str]) -> str | None:
     if _OTHER.intersection(words):
         return None
     for vocabulary in (_WORDS, _WEAK_WORDS):
-        said = {kind for kind, text in vocabulary.items() if not set(text.split()).isdisjoint(words)}
+        said = {
+            kind for kind, text in vocabulary.items() if not set(text.split()).isdisjoint(words)
+        }
         if said:
             return said.pop() if len(said) == 1 else None
     return None
@@ -236,9 +241,7 @@ def _families(names: Sequence[str], joints: Sequence[str]) -> dict[str, list[Fam
     return found
 
 
-def _places(
-    name: str, joints: Sequence[str]
-) -> Iterator[tuple[int, tuple[str, ...], str | int]]:
+def _places(name: str, joints: Sequence[str]) -> Iterator[tuple[int, tuple[str, ...], str | int]]:
     """Where a column's name may have a joint: kind (0 exactly, 1 by name, 2 by number), the rest, joint."""
     quantity, _, joint = name.partition(".")
     if joint in joints and quantity in _KEYS:

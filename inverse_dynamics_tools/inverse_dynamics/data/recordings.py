@@ -153,7 +153,13 @@ def _positions(
         yield log.joint_names, log.q
         return
     motion = open_motion(
-        path, (), topic=topic, usual_topic=usual_topic, clock="auto", form=form, progress=no_progress
+        path,
+        (),
+        topic=topic,
+        usual_topic=usual_topic,
+        clock="auto",
+        form=form,
+        progress=no_progress,
     )
     messages, published = 0, False
     for block in () if isinstance(motion, JointLog) else motion.states:

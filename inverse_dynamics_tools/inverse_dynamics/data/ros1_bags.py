@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Joint states from ROS 1 recordings (.bag), by the package rosbags.
 
-    log = read_ros1_log(Path("old.bag"), ["joint_1", "joint_2"])
+log = read_ros1_log(Path("old.bag"), ["joint_1", "joint_2"])
 """
 
 from __future__ import annotations

@@ -80,8 +80,8 @@ class LogFormat:
     """What a table's names don't say. Empty: nothing.
 
     columns: see match_columns(). scale: texts `KEY=FACTOR` or `KEY=FACTOR,FACTOR,...`, one for each joint:
-    what the quantity's numbers are multiplied by, a number or one of UNITS. sign: of each joint, 1 or -1; -1 turns the joint around:
-    positions, velocities, efforts. rate: Hz, of a table without time.
+    what the quantity's numbers are multiplied by, a number or one of UNITS. sign: of each joint, 1 or -1;
+    -1 turns its positions, velocities and efforts around. rate: Hz, of a table without time.
     """
 
     columns: str = ""
@@ -182,7 +182,10 @@ def parts_joined(paths: Sequence[Path]) -> list[Path]:
     if len(paths) < 2 or not all(map(is_table, paths)):
         return list(paths)
     found = [quantities_named(open_table(path).names, path.stem) for path in paths]
-    whole = [POSITION in kinds and bool(kinds & {EFFORT, CURRENT}) for kinds in (*found, set().union(*found))]
+    whole = [
+        POSITION in kinds and bool(kinds & {EFFORT, CURRENT})
+        for kinds in (*found, set().union(*found))
+    ]
     return [Path("+".join(map(str, paths)))] if whole.pop() and not any(whole) else list(paths)
 
 
@@ -256,9 +259,7 @@ def read_motion(
     return Motion(matched.joints, time[:, 0], numbers, tuple(notes))
 
 
-def read_named_positions(
-    table: Table, joints: Sequence[str], form: LogFormat
-) -> dict[str, Floats]:
+def read_named_positions(table: Table, joints: Sequence[str], form: LogFormat) -> dict[str, Floats]:
     """Positions (N,) in SI units of those joints that the table has by name. Raises BagError."""
     columns = named_positions(table.names, joints)
     if not columns:
