@@ -7,7 +7,7 @@ import pytest
 from test_evaluation import JOINTS, RIGID_BODY, URDF, motion
 
 from inverse_dynamics import Solver, evaluate, load_robot, read_recording
-from inverse_dynamics.data.table_logs import LogFormat
+from inverse_dynamics.data.table_logs import LogFormat, parts_joined
 from inverse_dynamics.errors import BagError, EvaluationError
 
 HEADER = "time,position.a,velocity.a,effort.a\n"
@@ -317,3 +317,43 @@ def test_a_damaged_file_of_arrays_is_named(tmp_path, kind):
     path.write_bytes(b"PK\x03\x04 nonsense" * 20)
     with pytest.raises(BagError, match=f"motion.{kind}: can't be read as .{kind}"):
         read_recording(path, JOINTS)
+
+
+def test_a_table_of_rostopic_has_its_joints_by_name(file):
+    file.write_text(
+        "%time,field.header.seq,field.header.stamp,field.name0,field.name1,field.position0,"
+        "field.position1,field.velocity0,field.velocity1,field.effort0,field.effort1\n"
+        "1600000000100000000,1,1600000000000000000,b,a,1,2,3,4,5,6\n"
+        "1600000000120000000,2,1600000000010000000,b,a,1,2,3,4,5,7\n"
+    )
+    log = read_recording(file, ("a", "b"))
+    np.testing.assert_array_equal(log.q, [[2, 1], [2, 1]])
+    np.testing.assert_array_equal(log.effort, [[6, 5], [7, 5]])
+    assert log.stamps[1] - log.stamps[0] == pytest.approx(10_000_000, abs=300)
+
+
+def test_episodes_follow_each_other(file):
+    rows = "".join(f"{0.1 * k:.1f},{k},{k},0\n" for k in [0, 1, 2, 3, 0, 1, 2])
+    file.write_text(HEADER + rows)
+    log = read_recording(file, ("a",))
+    np.testing.assert_allclose(log.time, [0, 0.1, 0.2, 0.3, 5.3, 5.4, 5.5])
+    assert log.notes == ("time begins anew 1 time: runs are taken one after another, 5 s apart",)
+
+
+def test_files_of_one_recording_are_joined_at_the_times_of_the_first(tmp_path):
+    q, tau = tmp_path / "q.csv", tmp_path / "tau.csv"
+    time = 0.1 * np.arange(21)
+    write_table(q, {"t": time, "joint1": np.sin(time)})
+    write_table(tau, {"t": time[::2], "joint1": 10 * time[::2]})
+    assert parts_joined([q, tau]) == [tmp_path / f"q.csv+{tau}"]
+    log = read_recording(f"{q}+{tau}", ("joint1",))
+    np.testing.assert_array_equal(log.q[:, 0], np.sin(time))
+    np.testing.assert_allclose(log.effort[:, 0], 10 * time)
+    tau.write_text("joint1\n1\n2\n")
+    with pytest.raises(
+        BagError, match=r"tau\.csv: expected 21 rows, as .*q\.csv has, .*got 2 rows"
+    ):
+        read_recording(f"{q}+{tau}", ("joint1",))
+    whole = tmp_path / "motion.csv"
+    whole.write_text(HEADER + ROWS)
+    assert parts_joined([whole, whole]) == [whole, whole]

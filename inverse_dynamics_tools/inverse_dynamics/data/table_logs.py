@@ -11,6 +11,7 @@ names, units, signs, a rate. Without velocities, the filtered derivative of the 
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.robot.robots import Robot
 
 _LONGEST_PERIOD = 0.5  # s: no recording of a motion is as slow
+_BETWEEN_RUNS, _PERIODS_BETWEEN_RUNS = 1.0, 50.0  # s; what the time base takes for a gap
 _UNITS_OF_TIME = ((5e5, "ns"), (5e2, "us"), (0.0, "ms"))
 _NEEDED_FOR = {
     POSITION: "torques depend on them",
@@ -174,7 +176,23 @@ def open_table(path: Path, *, topic: str = "", clock: Clock = "auto") -> Table:
             )
     if "+" in f"{path}" and not path.exists():
         return JoinedTable(path, [open_table(Path(part)) for part in f"{path}".split("+")])
-    return ArrayFile(path) if is_array_file(path) else CsvTable(path)
+    if is_array_file(path):
+        return ArrayFile(path)
+    table = CsvTable(path)
+    table.names = _without_fields(table)
+    return table
+
+
+def _without_fields(table: CsvTable) -> tuple[str, ...]:
+    """Names of columns; those of `rostopic echo -p` by joint: `field.position0` is `position.JOINT`."""
+    if "field.name0" not in table.names:
+        return table.names
+    first = dict(zip(table.names, next(table.rows(), []), strict=False))
+    renamed = {"%time": "received_ns", "field.header.stamp": "time_ns"}
+    for name in table.names:
+        if found := re.fullmatch(r"field\.(position|velocity|effort)(\d+)", name):
+            renamed[name] = f"{found[1]}.{first.get(f'field.name{found[2]}', found[2])}"
+    return tuple(renamed.get(name, name) for name in table.names)
 
 
 def parts_joined(paths: Sequence[Path]) -> list[Path]:
@@ -202,11 +220,12 @@ def read_table_log(
     """
     motion = read_motion(table, joints, form, (POSITION, EFFORT), QUANTITIES, progress)
     check_seconds(table, motion.time)
-    stamps: Integers = np.asarray(np.round(motion.time * 1e9), dtype=np.int64)
-    numbers, notes = motion.numbers, motion.notes
+    time, runs = _one_after_another(motion.time)
+    stamps: Integers = np.asarray(np.round(time * 1e9), dtype=np.int64)
+    numbers, notes = motion.numbers, (*motion.notes, *runs)
     measured = CURRENT if CURRENT in numbers else EFFORT
     if VELOCITY not in numbers:
-        numbers[VELOCITY], note = _differentiated(motion.time, numbers[POSITION])
+        numbers[VELOCITY], note = _differentiated(time, numbers[POSITION])
         notes = (*notes, note)
     return JointLog(
         joint_names=motion.joints,
@@ -375,6 +394,20 @@ def check_seconds(table: Table, time: Floats) -> None:
             f"{table.path}: {TIME}: expected seconds, got {np.abs(time).max():g}; count from the start of "
             "the recording, or state their unit with --scale"
         )
+
+
+def _one_after_another(time: Floats) -> tuple[Floats, list[str]]:
+    """Time (N,) that goes on where it begins anew, as that of a file with several episodes does."""
+    steps = np.diff(time)
+    back = np.flatnonzero(steps < 0) + 1
+    period = float(np.median(np.abs(steps)))
+    if not len(back) or (np.abs(time[back] - time[0]) > 2 * period).any():
+        return time, []
+    between = max(_BETWEEN_RUNS, _PERIODS_BETWEEN_RUNS * period)
+    shifts = np.zeros(len(time))
+    shifts[back] = between - steps[back - 1]
+    note = f"time begins anew {counted(len(back), 'time')}: runs are taken one after another, {between:g} s apart"
+    return time + np.cumsum(shifts), [note]
 
 
 def _differentiated(time: Floats, q: Floats) -> tuple[Floats, str]:
