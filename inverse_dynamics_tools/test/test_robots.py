@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 import dataclasses
 import pickle
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from conftest import damaged
 
+from inverse_dynamics import cli
 from inverse_dynamics.base.ament import PackageNotFoundError
 from inverse_dynamics.errors import ArgumentError, RobotError
 from inverse_dynamics.robot.robots import RIGID_BODY, Robot, load_robot, robot_names, with_changes
@@ -297,3 +299,44 @@ def test_fields_of_a_robot_are_checked(field: dict, text: str) -> None:
         Robot("arm", "", "arm.yaml", RIGID_BODY, **field)
     with pytest.raises(ArgumentError, match=text):
         with_changes(load_robot("ur10_real"), **field)
+
+
+def test_a_new_robot_is_a_file_that_reads_back_as_it_was_stated(tmp_path):
+    from inverse_dynamics.results.robot_files import write_robot
+
+    stated = replace(
+        load_robot("ur10_simulated"),
+        gravity=(0.0, 9.81, 0.0),
+        joints=("a", "b", "c", "d", "e", "f"),
+        effort="current",
+        drive_gains=(1.5, 2.0, 3.0, 4.0, 5.0, 6.0),
+        columns="q=q*, i=cur*",
+        scale=("q=deg", "i=1,1,1,2,2,2"),
+        sign=(1.0, -1.0, 1.0, 1.0, 1.0, 1.0),
+        rate=125.0,
+        cutoff=7.5,
+        accelerations="low-pass",
+        parameters={},
+    )
+    file = tmp_path / "arm.yaml"
+    write_robot(stated, file)
+    assert replace(load_robot(file), file=stated.file, urdf=stated.urdf) == stated
+    assert load_robot(file).urdf.samefile(stated.urdf)
+
+
+def test_ids_robots_writes_a_new_robot_from_a_recording(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    urdf = str(load_robot("ur10_simulated").urdf)
+    arguments = ["robots", "--new", "arm.yaml", "--urdf", urdf, "--root", "base_link"]
+    assert cli.main([*arguments, "--tip", "tool0"]) == 0
+    robot = load_robot("arm.yaml")
+    assert (robot.name, robot.root, robot.tip, robot.effort) == (
+        "arm",
+        "base_link",
+        "tool0",
+        "auto",
+    )
+    assert cli.main(arguments) == 2
+    assert "arm.yaml: exists already" in capsys.readouterr().err
+    assert cli.main(["robots", "--new", "other.yaml"]) == 2
+    assert "--new: expected --urdf FILE, got none" in capsys.readouterr().err

@@ -3,9 +3,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.verbs.options import option, shared
+from inverse_dynamics.errors import UserError
+from inverse_dynamics.verbs.options import (
+    CHAIN,
+    TABLE,
+    given_overrides,
+    option,
+    overrides,
+    shared,
+)
+from inverse_dynamics.verbs.values import file_name
 
 if TYPE_CHECKING:
     import argparse
@@ -22,7 +32,10 @@ examples:
   ids robots my_robot.yaml       the run configuration in a file, which is checked
   ids robots --plugins           installed solvers
 
-To add a robot, write one more file: docs/add_a_robot.md.
+  ids robots --new my_robot.yaml --urdf my_arm.urdf --from log.csv
+      a run configuration of your own, commented; what efforts mean is found from the recording
+
+What each key means: docs/add_a_robot.md.
 """
 
 
@@ -31,7 +44,19 @@ def declare(parser: argparse.ArgumentParser) -> None:
     shown = parser.add_mutually_exclusive_group()
     shown.add_argument("robot", nargs="?", metavar="NAME|FILE", help="show this robot")
     option(shown, "--plugins", "list installed solvers instead")
+    option(
+        shown, "--new FILE", "write a run configuration of the robot that the options state", Path
+    )
     shared(parser, "--json")
+    option(parser, "--overwrite", "with --new: replace an older file")
+    option(
+        parser,
+        "--from RECORDING",
+        "with --new: a recording that it must fit, from which it is found what efforts mean",
+        file_name,
+        dest="recording",
+    )
+    overrides(parser, *CHAIN, "--plugin", "--no-friction", "--topic", "--drive-gains", *TABLE)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -41,7 +66,11 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.verbs.screen import print_json
 
     found: dict[str, Any]
-    if arguments.plugins:
+    if arguments.new:
+        arm = _new(arguments)
+        robot = load_robot(arguments.new)
+        found, rows = {"robot": robot}, [("written", f"{arguments.new}"), *_rows(robot, arm, [])]
+    elif arguments.plugins:
         plugins = _core.available_solvers()
         found, rows = {"plugins": plugins}, [(plugin, "") for plugin in plugins]
     elif arguments.robot:
@@ -56,6 +85,27 @@ def run(arguments: argparse.Namespace) -> None:
         print_json("robots", found)
     else:
         _print(rows)
+
+
+def _new(arguments: argparse.Namespace) -> Arm:
+    """Write the file of a new robot; gives its arm. Raises UserError."""
+    from dataclasses import replace
+
+    from inverse_dynamics.evaluation.evaluation import Arm, evaluate
+    from inverse_dynamics.results.robot_files import write_robot
+    from inverse_dynamics.robot.robots import robot_of_description, with_changes
+
+    if arguments.urdf is None:
+        raise UserError("--new: expected --urdf FILE, got none; give the robot's description")
+    robot = with_changes(robot_of_description(arguments.urdf), **given_overrides(arguments))
+    arm = Arm(robot)
+    description = f"{arguments.urdf.name}, {len(arm.joint_names)} joints"
+    robot = replace(robot, name=arguments.new.stem, description=description)
+    if arguments.recording is not None:
+        evaluated = evaluate(arguments.recording, robot)
+        robot = replace(evaluated.robot, effort=evaluated.effort.meaning)
+    write_robot(robot, arguments.new, overwrite=arguments.overwrite)
+    return arm
 
 
 def _print(rows: list[tuple[str, str]]) -> None:
