@@ -33,7 +33,10 @@ class _DocumentTypeError(Exception):
 
 
 def read_description(file: Path) -> str:
-    """URDF text of a .urdf or .xacro file. Raises RobotError, MissingPackageError."""
+    """URDF text of a .urdf or .xacro file, or of a .yaml file of Denavit-Hartenberg parameters.
+
+    Raises RobotError, MissingPackageError.
+    """
     if not os.path.isfile(file):  # Path.is_file() raises where the path is too long
         raise RobotError(f"{file}: no such file; expected a robot description (URDF or .xacro)")
     if file.suffix == ".xacro":
@@ -45,6 +48,10 @@ def read_description(file: Path) -> str:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise RobotError(f"{file}: isn't text in UTF-8; expected a URDF") from error
+    if file.suffix in (".yaml", ".yml"):
+        from inverse_dynamics.robot.dh_tables import urdf_of_dh
+
+        return urdf_of_dh(text, f"{file}")
     if not text.lstrip().startswith("<"):
         raise RobotError(f"{file}: isn't XML; expected a URDF, got {shown(text.strip(), 20)}")
     return text

@@ -8,6 +8,7 @@ overrides(parser, *SOLVER, *RECORDING)     # evaluate(..., **given_overrides(arg
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -44,13 +45,13 @@ FILTER = ("--accelerations", "--clock", "--without-rule")
 def option(
     group: argparse._ActionsContainer, usage: str, help: str, type: Any = None, **more: Any
 ) -> argparse.Action:
-    """Declare an option. usage: its name and, unless it is a switch, its value: `--cutoff HZ`."""
-    name, _, metavar = usage.partition(" ")
+    """Declare an option. usage: its names and, unless it is a switch, its value: `--urdf|--dh FILE`."""
+    names, _, metavar = usage.partition(" ")
     more |= {"metavar": metavar} if metavar else {}
     more |= {"type": type} if type else {}
     if not more.keys() & {"metavar", "type", "choices", "action"}:
         more["action"] = "store_true"
-    return group.add_argument(name, help=help, **more)
+    return group.add_argument(*names.split("|"), help=help, **more)
 
 
 def shared(group: argparse._ActionsContainer, *wanted: str) -> list[str]:
@@ -146,12 +147,13 @@ def _meanings(choices: dict[str, str]) -> str:
 
 # Usage, help, type and what else option() takes; by name.
 _SHARED: dict[str, tuple[str, str, Any, dict[str, Any]]] = {
-    usage.partition(" ")[0]: (usage, help, type, more)
+    re.split("[| ]", usage)[0]: (usage, help, type, more)
     for usage, help, type, more in (
         ("--json", "print one JSON object instead of tables (docs/command_line.md)", None, {}),
         (
-            "--urdf FILE",
-            "robot description, with or without --robot; a .xacro file needs xacro",
+            "--urdf|--dh FILE",
+            "robot description, with or without --robot: .urdf; .xacro, which needs xacro; or .yaml, "
+            "Denavit-Hartenberg parameters for `ids identify` (docs/identification.md#without-a-urdf)",
             Path,
             {},
         ),
