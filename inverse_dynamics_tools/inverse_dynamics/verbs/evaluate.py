@@ -61,7 +61,7 @@ examples:
   ids evaluate motion.csv --urdf my_arm.urdf
       a table with columns such as time, q0, dq0, tau0 or JOINT_position, JOINT_effort
 
-  ids evaluate log.csv --urdf my_arm.urdf --columns "q=ax*_pos, i=ax*_amp" --scale q=deg
+  ids evaluate log.csv --urdf arm.urdf --columns "q=ax*_pos, i=ax*_amp"
       a table whose names don't say what its columns are (docs/tables.md)
 
   ids evaluate monday tuesday wednesday --robot ur10_real --out week
