@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.crash import crash_report
 from inverse_dynamics.base.extras import EXTRAS, missing
-from inverse_dynamics.base.help_text import HelpFormatter
+from inverse_dynamics.base.help_text import HelpFormatter, terminal_width, wrapped
 from inverse_dynamics.base.wording import did_you_mean, not_built
 from inverse_dynamics.base.wording import message as _message
 from inverse_dynamics.errors import PartialError, UserError
@@ -33,25 +33,17 @@ if TYPE_CHECKING:
     from types import FrameType
     from typing import NoReturn
 
-VERBS = (
-    "demo",
-    "robots",
-    "data",
-    "simulate",
-    "excite",
-    "evaluate",
-    "compare",
-    "torques",
-    "contact",
-    "identify",
-    "payload",
-    "report",
-    "export",
-    "completion",
-)
+GROUPS = {
+    "look": ("demo", "data", "robots", "evaluate", "compare", "contact"),
+    "identify": ("excite", "identify", "payload"),
+    "plan": ("simulate", "torques"),
+    "share": ("report", "export", "completion"),
+}
+VERBS = tuple(verb for group in GROUPS.values() for verb in group)
 
 # Packages that are built on request: their modules `verb` are verbs too, where they are built.
 BUILT_ON_REQUEST = {"bench": "inverse_dynamics_benchmarks"}
+_SHORT_EXAMPLES = 2  # in `-h`
 
 _EPILOG = """\
 start here:
@@ -60,7 +52,7 @@ start here:
   ids robots                                     list the robots
   ids simulate --robot ur10_simulated --out BAG  record a simulated robot
   ids evaluate RECORDING --robot ur10_real       computed against measured torques: table and plots
-  ids VERB --help                                describe a verb, with examples
+  ids VERB -h, ids VERB --help                   a verb on one screen, and all of it
 
 Outputs are written whole or not at all. Exit status: 0 done, 2 something to
 correct, 3 some of several recordings failed, 1 an unexpected error, 128 + N
@@ -82,6 +74,30 @@ class _Version(argparse.Action):
 
         print(f"ids {version()}")
         parser.exit()
+
+
+class _ShortHelp(argparse.Action):
+    """-h: a verb on one screen."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        actions = [a for a in parser._actions if a.help is not argparse.SUPPRESS]
+        positional = " ".join(f"{a.metavar or a.dest}" for a in actions if not a.option_strings)
+        lines = [f"usage: {parser.prog} {positional} [options]", "", parser.description or "", ""]
+        examples = re.split(r"\n\n", (parser.epilog or "").partition("examples:\n")[2])
+        lines += [*examples[:_SHORT_EXAMPLES], ""]
+        for group in parser._action_groups:
+            options = [_usage(a) for a in group._group_actions if a.option_strings]
+            if options:
+                lines += [f"{group.title}:", f"  {', '.join(options)}"]
+        lines += ["", f"All of it: {parser.prog} --help"]
+        print("\n".join(wrapped("\n".join(lines), terminal_width())))
+        parser.exit()
+
+
+def _usage(action: argparse.Action) -> str:
+    """`--out DIR`, `--json`."""
+    value = "" if action.nargs == 0 else f" {action.metavar or action.dest.upper()}"
+    return f"{action.option_strings[0]}{value}"
 
 
 class _Parser(argparse.ArgumentParser):
@@ -119,28 +135,45 @@ def make_parser() -> argparse.ArgumentParser:
     """Parser of the whole command line."""
     parser = _Parser(
         prog="ids",
+        usage="ids VERB ...",
         description="Inverse dynamics of robot arms: which joint torques belong to this motion?",
         epilog=_EPILOG,
         formatter_class=HelpFormatter,
     )
-    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
-    subparsers = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
-    modules = {verb: f"inverse_dynamics.verbs.{verb}" for verb in VERBS}
+    parser.add_argument(
+        "-V", "--version", action=_Version, nargs=0, help="show the version and exit"
+    )
+    subparsers = parser.add_subparsers(
+        prog="ids", metavar="VERB", required=True, help=argparse.SUPPRESS
+    )
     built = {v: package for v, package in BUILT_ON_REQUEST.items() if find_spec(package)}
-    modules |= {verb: f"{package}.verb" for verb, package in built.items()}
-    for verb, name in modules.items():
-        module = import_module(name)
-        summary = module.SUMMARY
-        verb_parser = subparsers.add_parser(
-            verb,
-            help=summary,
-            description=getattr(module, "DESCRIPTION", f"{summary[0].upper()}{summary[1:]}."),
-            epilog=module.EPILOG,
-            formatter_class=HelpFormatter,
-        )
-        module.declare(verb_parser)
-        verb_parser.set_defaults(run=module.run, parser=verb_parser)
+    rows = []
+    for group, verbs in GROUPS.items():
+        rows.append(f"\n{group}:")
+        for verb in (*verbs, *(built if group == "share" else ())):
+            module = import_module(
+                f"{built[verb]}.verb" if verb in built else f"inverse_dynamics.verbs.{verb}"
+            )
+            _add_verb(subparsers, verb, module)
+            rows.append(f"  {verb:<11} {module.SUMMARY}")
+    parser.description = "\n".join((parser.description or "", *rows))
     return parser
+
+
+def _add_verb(subparsers: Any, verb: str, module: Any) -> None:
+    summary = module.SUMMARY
+    parser = subparsers.add_parser(
+        verb,
+        help=summary,
+        description=getattr(module, "DESCRIPTION", f"{summary[0].upper()}{summary[1:]}."),
+        epilog=module.EPILOG,
+        formatter_class=HelpFormatter,
+        add_help=False,
+    )
+    parser.add_argument("-h", action=_ShortHelp, nargs=0, help="show this verb on one screen")
+    parser.add_argument("--help", action="help", help="show all of this")
+    module.declare(parser)
+    parser.set_defaults(run=module.run, parser=parser)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

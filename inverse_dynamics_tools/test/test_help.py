@@ -20,6 +20,17 @@ def test_help_has_an_example_and_fits_the_terminal(ids, monkeypatch, verb):
     assert [line for line in out.splitlines() if len(line) > 80] == []
 
 
+@pytest.mark.parametrize("verb", cli.VERBS)
+def test_short_help_fits_one_screen(ids, monkeypatch, verb):
+    monkeypatch.setenv("COLUMNS", "80")
+    code, out, _ = ids(verb, "-h")
+    lines = out.splitlines()
+    assert (code, lines[0][: len(verb) + 11]) == (0, f"usage: ids {verb}")
+    assert len(lines) <= 30
+    assert [line for line in lines if len(line) > 80] == []
+    assert "--help" in lines[-1]
+
+
 def test_rows_paragraphs_and_commands_are_told_apart():
     text = (
         "results:\n"

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import re
+import shutil
 import textwrap
 
 _WIDEST = 98  # characters
@@ -19,11 +20,10 @@ class HelpFormatter(argparse.RawDescriptionHelpFormatter):
         width = min(width, _WIDEST) - len(indent)
         return "".join(f"{indent}{line}\n" for line in wrapped(text, width))
 
-    def add_argument(self, action: argparse.Action) -> None:
-        """Argparse forgets that the names of verbs are indented, and puts the longest on its own line."""
-        super().add_argument(action)
-        if isinstance(action, argparse._SubParsersAction):
-            self._action_max_length += self._indent_increment
+
+def terminal_width() -> int:
+    """Characters that a line of help may have."""
+    return min(shutil.get_terminal_size().columns - 2, _WIDEST)
 
 
 def wrapped(text: str, width: int) -> list[str]:

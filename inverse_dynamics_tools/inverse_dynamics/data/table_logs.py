@@ -14,7 +14,7 @@ import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -48,7 +48,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Integers
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Clock
-    from inverse_dynamics.robot.robots import Robot
 
 _LONGEST_PERIOD = 0.5  # s: no recording of a motion is as slow
 _BETWEEN_RUNS, _PERIODS_BETWEEN_RUNS = 1.0, 50.0  # s; what the time base takes for a gap
@@ -92,7 +91,7 @@ class LogFormat:
     rate: float | None = None
 
     @staticmethod
-    def of(robot: Robot) -> LogFormat:
+    def of(robot: Any) -> LogFormat:
         """What a run configuration states."""
         return LogFormat(robot.columns, robot.scale, robot.sign, robot.rate)
 

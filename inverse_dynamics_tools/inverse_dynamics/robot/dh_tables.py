@@ -20,16 +20,10 @@ import math
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
-import numpy as np
-
 from inverse_dynamics.base.located_yaml import parse_mapping
 from inverse_dynamics.errors import RobotError
-from inverse_dynamics.robot.chain_geometry import roll_pitch_yaw
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.located_yaml import Mapping
 
 GUESSED_MASS = 2.0  # kg, of each link
@@ -39,87 +33,81 @@ _GUESSED_RADIUS = 0.1  # m, of gyration
 def urdf_of_dh(text: str, file: str) -> str:
     """URDF text of a table; links `base`, `link1`, ..., `tip`. Raises RobotError."""
     table = parse_mapping(text, file, RobotError)
-    modified = table.required("convention").text(["modified", "standard"]) == "modified"
+    convention = table.optional("convention")
+    if convention is None:
+        raise RobotError(
+            f"{file}: expected a URDF, or Denavit-Hartenberg parameters, which have the key convention; a run "
+            "configuration is given as --robot"
+        )
+    modified = convention.text(["modified", "standard"]) == "modified"
     degrees = table.optional("degrees")
     unit = math.pi / 180 if degrees and degrees.truth() else 1.0
     rows = [entry.mapping() for entry in table.required("joints").entries()]
     table.reject_others()
     if not rows:
         raise RobotError(f"{file}: joints: expected one or more, got none")
-    # origins of joints in the link before; the last one is that of the tip
-    origins = [np.eye(4)]
-    for row in rows:
-        a, alpha, d, theta = (_number(row, name) for name in ("a", "alpha", "d", "theta"))
-        across = _pose("x", unit * alpha, (a, 0.0, 0.0))
-        along = _pose("z", unit * theta, (0.0, 0.0, d))
-        if modified:
-            origins[-1] = origins[-1] @ across @ along
-            origins.append(np.eye(4))
-        else:
-            origins[-1] = origins[-1] @ _pose("z", unit * theta)
-            origins.append(_pose("z", 0.0, (0.0, 0.0, d)) @ across)
     lines = ['<robot name="dh">', '  <link name="base"/>']
-    for number, (row, origin, following) in enumerate(
-        zip(rows, origins, origins[1:], strict=False), 1
-    ):
-        mass = row.optional("mass")
-        lines += _link(number, following, mass.number() if mass else GUESSED_MASS)
-        lines += _joint(row, number, origin, unit)
-    lines += [
-        '  <link name="tip"/>',
-        f'  <joint name="tip" type="fixed"><parent link="link{len(rows)}"/><child link="tip"/>'
-        f"{_origin(origins[-1])}</joint>",
-        "</robot>",
-    ]
-    return "\n".join(lines)
+    parent = "base"
+    for number, row in enumerate(rows, 1):
+        a, alpha, d, theta = (_number(row, name) for name in ("a", "alpha", "d", "theta"))
+        link, frame = f"link{number}", f"frame{number}"
+        mass = _number(row, "mass", GUESSED_MASS)
+        if modified:
+            lines += _fixed(parent, frame, (a, 0.0, 0.0), unit * alpha)
+            lines += _joint(row, number, (frame, link), d, unit * theta, unit)
+            lines += _link(link, mass, (0.0, 0.0, d / 2))
+            parent = link
+        else:
+            lines += _joint(row, number, (parent, link), 0.0, unit * theta, unit)
+            lines += _link(link, mass, (a / 2, 0.0, d / 2))
+            lines += _fixed(link, frame, (a, 0.0, d), unit * alpha)
+            parent = frame
+    return "\n".join([*lines, *_fixed(parent, "tip", (0.0, 0.0, 0.0), 0.0), "</robot>"])
 
 
-def _number(row: Mapping, name: str) -> float:
+def _number(row: Mapping, name: str, absent: float = 0.0) -> float:
     value = row.optional(name)
-    return 0.0 if value is None else value.number()
+    return absent if value is None else value.number()
 
 
-def _pose(axis: str, angle: float, xyz: Sequence[float] = (0.0, 0.0, 0.0)) -> Floats:
-    """A turn about x or z, and a position."""
-    c, s = math.cos(angle), math.sin(angle)
-    pose = np.eye(4)
-    i, j = (1, 2) if axis == "x" else (0, 1)
-    pose[[i, i, j, j], [i, j, i, j]] = c, -s, s, c
-    pose[:3, 3] = xyz
-    return pose
+def _origin(xyz: tuple[float, ...], rpy: tuple[float, ...]) -> str:
+    texts = [" ".join(map(repr, numbers)) for numbers in (xyz, rpy)]
+    return f'<origin xyz="{texts[0]}" rpy="{texts[1]}"/>'
 
 
-def _origin(pose: Floats) -> str:
-    xyz, rpy = (
-        " ".join(map(repr, map(float, numbers)))
-        for numbers in (pose[:3, 3], roll_pitch_yaw(pose[:3, :3]))
-    )
-    return f'<origin xyz="{xyz}" rpy="{rpy}"/>'
+def _fixed(parent: str, child: str, xyz: tuple[float, ...], alpha: float) -> list[str]:
+    """A link without mass, turned about x."""
+    return [
+        f'  <link name="{child}"/><joint name="to_{child}" type="fixed"><parent link="{parent}"/>',
+        f'    <child link="{child}"/>{_origin(xyz, (alpha, 0.0, 0.0))}</joint>',
+    ]
 
 
-def _joint(row: Mapping, number: int, origin: Floats, unit: float) -> list[str]:
+def _joint(
+    row: Mapping, number: int, links: tuple[str, str], d: float, theta: float, unit: float
+) -> list[str]:
+    """A joint about or along z, at `d` and turned by `theta`. unit: of limits of angles, rad."""
     kind, name, limits = (row.optional(key) for key in ("type", "name", "limits"))
     stated = kind.text(["revolute", "prismatic"]) if kind else "revolute"
-    unlimited = limits is None and stated == "revolute"
     factor = unit if stated == "revolute" else 1.0
     ends = [factor * entry.number() for entry in limits.entries(2)] if limits else [-1e3, 1e3]
     velocity, effort = (_number(row, key) for key in ("velocity", "effort"))
     row.reject_others()
     called = quoteattr(name.text() if name else f"joint{number}")
-    parent = "base" if number == 1 else f"link{number - 1}"
+    unlimited = limits is None and stated == "revolute"
     return [
         f'  <joint name={called} type="{"continuous" if unlimited else stated}">',
-        f'    <parent link="{parent}"/><child link="link{number}"/>{_origin(origin)}<axis xyz="0 0 1"/>',
+        f'    <parent link="{links[0]}"/><child link="{links[1]}"/>',
+        f'    {_origin((0.0, 0.0, d), (0.0, 0.0, theta))}<axis xyz="0 0 1"/>',
         f'    <limit lower="{ends[0]!r}" upper="{ends[1]!r}" velocity="{velocity!r}" effort="{effort!r}"/>',
         "  </joint>",
     ]
 
 
-def _link(number: int, following: Floats, mass: float) -> list[str]:
-    center = " ".join(map(repr, map(float, following[:3, 3] / 2)))
+def _link(name: str, mass: float, center: tuple[float, ...]) -> list[str]:
     inertia = mass * _GUESSED_RADIUS**2
-    moments = " ".join(f'{name}="{inertia!r}"' for name in ("ixx", "iyy", "izz"))
+    moments = " ".join(f'{key}="{inertia!r}"' for key in ("ixx", "iyy", "izz"))
     return [
-        f'  <link name="link{number}"><inertial><origin xyz="{center}"/><mass value="{mass!r}"/>',
+        f'  <link name="{name}"><inertial>{_origin(center, (0.0, 0.0, 0.0))}<mass value="{mass!r}"/>',
         f'    <inertia {moments} ixy="0" ixz="0" iyz="0"/></inertial></link>',
     ]
