@@ -198,7 +198,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(given: list[str]) -> int:
-    from inverse_dynamics.base.files import start_noting_outputs, written_before
+    from inverse_dynamics.base.files import replaced, start_noting_outputs, written_before
 
     start_noting_outputs()
     parser = make_parser()
@@ -214,6 +214,8 @@ def _run(given: list[str]) -> int:
     try:
         options = parser.parse_args(_with_numbers_joined(given))
         options.run(options)
+        if told := replaced():
+            _say(told)
         if sys.stdout is not None:
             sys.stdout.flush()
     except BrokenPipeError:

@@ -160,14 +160,20 @@ def test_no_figures_is_short_for_figures_none(ids, bag, tmp_path):
     fails(ids(*evaluate, "--no-figures", "--figures", "svg"), "not allowed with argument")
 
 
-def test_an_existing_result_is_kept_unless_told_otherwise(ids, bag, tmp_path):
+def test_an_earlier_result_is_replaced_and_said(ids, bag, tmp_path):
     command = ("evaluate", bag, "--robot", "ur10_simulated", "--out", "out", *RAW, *NO_FIGURE)
     assert ids(*command)[0] == 0
     before = (tmp_path / "out/series.npz").stat().st_mtime_ns
-    fails(ids(*command), "ids: error: out: exists already", "--overwrite")
-    assert (tmp_path / "out/series.npz").stat().st_mtime_ns == before
-    assert ids(*command, "--overwrite")[0] == 0
-    assert (tmp_path / "out/series.npz").stat().st_mtime_ns != before
+    code, _, err = ids(*command)
+    assert (code, err) == (0, "ids: replaced the earlier result in out\n")
+    after = (tmp_path / "out/series.npz").stat().st_mtime_ns
+    assert after != before
+    (tmp_path / "out/mine.txt").write_text("mine")
+    fails(
+        ids(*command),
+        "ids: error: out: won't be overwritten: it holds 1 file that this command doesn't",
+    )
+    assert (tmp_path / "out/series.npz").stat().st_mtime_ns == after
 
 
 def test_mistakes_of_the_user_are_told_and_nothing_is_written(ids, bag, tmp_path):

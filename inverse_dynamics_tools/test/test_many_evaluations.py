@@ -172,10 +172,9 @@ def test_a_robot_may_be_given_as_an_object_or_by_a_file(bags, tmp_path, monkeypa
 def test_an_older_result_is_replaced_unless_it_holds_other_files(ids, bags, tmp_path):
     command = ("evaluate", bags / "monday", *ROBOT, *RAW, *NO_FIGURE, "--out", "week", "--jobs=1")
     assert ids(*command)[0] == 0
-    fails(ids(*command), "week: exists already")
-    assert ids(*command, "--overwrite")[0] == 0
+    assert ids(*command)[::2] == (0, "ids: replaced the earlier result in week\n")
     (tmp_path / "week/monday/mine.txt").write_text("mine")
-    fails(ids(*command, "--overwrite"), "holds 1 file that this command doesn't write (monday/mine")
+    fails(ids(*command), "holds 1 file that this command doesn't write (monday/mine")
 
 
 def test_one_recording_goes_into_the_same_layout_where_processes_are_asked_for(ids, bags, tmp_path):

@@ -479,8 +479,9 @@ def test_demo_shows_the_simulated_robots_and_how_to_get_the_others(tmp_path, cap
     assert all(0 < float(match) < 1e-6 for match in matches)
     assert (out / "ur10_simulated" / "torques.png").is_file()
     assert json.loads((out / "demo.json").read_text())["robots"]["panda_simulated"]["samples"] > 0
+    (out / "mine.txt").write_text("mine")
     assert cli.main(["demo", "--quick", "--out", str(out)]) == 2
-    assert "exists already" in capsys.readouterr().err
+    assert "holds 1 file that this command doesn't write (mine.txt)" in capsys.readouterr().err
 
 
 def test_demo_that_fails_leaves_nothing(tmp_path, monkeypatch):

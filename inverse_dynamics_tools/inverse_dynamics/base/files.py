@@ -38,6 +38,7 @@ _MOST_NAMED = 5  # files, in a text
 _DIRECTORY = "name another directory with --out"
 
 _outputs: dict[Path, bool] = {}  # of this process, and whether they were written
+_replaced: list[Path] = []
 _at_work: list[WorkFolder] = []
 
 
@@ -186,6 +187,7 @@ def written_whole(
                 sync_files(work.new)
             if os.path.lexists(place):
                 _check_existing_directory(target, overwrite=overwrite, contents=contents)
+                _replaced.extend([target] if outermost and any(target.iterdir()) else [])
             put_directory(work.new, place, work.old, overwrite=overwrite)
             _note([target], written=outermost)
             work.remove()
@@ -194,6 +196,12 @@ def written_whole(
 def start_noting_outputs() -> None:
     """Forget what earlier calls have written: outcome() is of what follows."""
     _outputs.clear()
+    _replaced.clear()
+
+
+def replaced() -> str:
+    """Earlier results that were replaced since, in words; "": none."""
+    return f"replaced the earlier result in {', '.join(map(str, _replaced))}" if _replaced else ""
 
 
 def written_before() -> str:

@@ -38,7 +38,12 @@ def declare(parser: argparse.ArgumentParser) -> None:
         names,
         default=(),
     )
-    output(parser, "DIR", "directory for figure and page (default: only the table is printed)")
+    output(
+        parser,
+        "DIR",
+        "directory for figure and page (default: only the table is printed)",
+        replaces=True,
+    )
     shared(parser, "--json")
     figures(parser)
 

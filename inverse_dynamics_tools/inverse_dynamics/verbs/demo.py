@@ -34,7 +34,7 @@ results, written whole or not at all:
 
 def declare(parser: argparse.ArgumentParser) -> None:
     """Arguments and options."""
-    output(parser, "DIR", "results (default: demo)", default=Path("demo"))
+    output(parser, "DIR", "results (default: demo)", default=Path("demo"), replaces=True)
     shared(parser, "--json")
     option(
         parser,

@@ -108,6 +108,7 @@ def declare(parser: argparse.ArgumentParser) -> None:
         "DIR",
         "output directory (default: BAG_ROBOT in the working directory; for several recordings: "
         "recordings_ROBOT)",
+        replaces=True,
     )
     option(
         parser,

@@ -8,6 +8,7 @@ overrides(parser, *SOLVER, *RECORDING)     # evaluate(..., **given_overrides(arg
 
 from __future__ import annotations
 
+import argparse
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,8 +31,6 @@ from inverse_dynamics.verbs.values import (
 )
 
 if TYPE_CHECKING:
-    import argparse
-
     from inverse_dynamics.robot.robots import Robot
 
 # Overrides of the run configuration, by name.
@@ -74,11 +73,18 @@ def figures(parser: argparse.ArgumentParser) -> None:
 
 
 def output(
-    parser: argparse.ArgumentParser, usage: str, help: str, type: Any = Path, **more: Any
+    parser: argparse.ArgumentParser,
+    usage: str,
+    help: str,
+    type: Any = Path,
+    *,
+    replaces: bool = False,
+    **more: Any,
 ) -> None:
-    """Declare --out and --overwrite."""
+    """Declare --out and --overwrite. replaces: an older result of the verb is replaced without it."""
     option(parser, f"--out {usage}", help, type, **more)
-    option(parser, "--overwrite", "replace an older result, unless it holds other files too")
+    text = "replace an older result, unless it holds other files too"
+    option(parser, "--overwrite", argparse.SUPPRESS if replaces else text, default=replaces)
 
 
 def recording(
