@@ -59,7 +59,6 @@ def make_evaluation(
         errors_of_kept=joint_errors(names, units, computed, log.effort, kept),
         effort=effort or Effort(),
         notes=("the first 5 of 400 samples are a start transient: efforts jump",),
-        seconds={"reading": 0.1},
     )
 
 

@@ -8,7 +8,6 @@ for error in result.errors:
 
 from __future__ import annotations
 
-import time
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -87,7 +86,6 @@ class Evaluation:
     errors_of_kept: tuple[JointError, ...]  # over samples.kept, the valid samples
     effort: Effort = field(default_factory=Effort)  # what recorded efforts mean
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
-    seconds: dict[str, float] = field(default_factory=dict)  # what took how long
     diagnosis: tuple[
         Cause, ...
     ] = ()  # likely causes of the errors, the last one of the notes; not in files
@@ -172,13 +170,11 @@ def evaluate(
     bag = Path(bag)
     window = TimeWindow(start, end)
 
-    begin = time.perf_counter()
     arm = Arm(robot)
     posture = posture_of(bag, robot, arm.description, arm.joint_names, topic=topic)
     if posture.parameters:
         robot = replace(robot, parameters={**robot.parameters, **posture.parameters})
         arm = Arm(robot)
-    ready = time.perf_counter()
     motion = open_motion(
         bag,
         arm.recorded_names,
@@ -190,7 +186,6 @@ def evaluate(
     )
     if isinstance(motion, JointLog):
         motion = window.of(motion, f"{bag}")
-    seconds = {"solver": ready - begin, "reading": time.perf_counter() - ready}
     result = _compare(
         bag,
         robot,
@@ -203,7 +198,6 @@ def evaluate(
         progress=progress,
         scratch="" if scratch is None else scratch,
     )
-    seconds["reading"] += result.seconds["reading"]
     notes = description_notes(robot, "drawing") if urdf is not None else ()
     notes = (
         *window.notes,
@@ -211,7 +205,7 @@ def evaluate(
         *posture.notes,
         *notes,
     )
-    result = replace(result, notes=(*notes, *result.notes), seconds={**result.seconds, **seconds})
+    result = replace(result, notes=(*notes, *result.notes))
     states = (result.log.q, result.log.qd, result.qdd)
     kept = result.samples.kept
     outside = outside_of_seen(
@@ -346,11 +340,6 @@ def _compare(
         effort=effort_of(found),
         joint_types=arm.solver.joint_types,
         notes=tuple(found.notes),
-        seconds={
-            "reading": found.reading_seconds,
-            "accelerations": found.acceleration_seconds,
-            "torques": found.torque_seconds,
-        },
     )
 
 

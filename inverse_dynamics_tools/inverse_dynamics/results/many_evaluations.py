@@ -7,7 +7,6 @@ for row in result.rows:
 
 recordings.json   what was evaluated, and what failed, with its message; marks the directory
 summary.csv       errors, a row per recording and joint: see summaries.py
-summary.parquet   the same with types, where pyarrow is installed
 report.html       all recordings on one page
 NAME/             an evaluation of each recording: see evaluations.py; with figures, its page too
 NAME/series.parquet   its series, with a column `recording`, where that is asked for
@@ -36,13 +35,7 @@ from inverse_dynamics.errors import ArgumentError, OutputError, UserError
 from inverse_dynamics.evaluation.evaluation import check_options, evaluate
 from inverse_dynamics.evaluation.summary import EvaluationSummary, summary_of
 from inverse_dynamics.results import evaluations
-from inverse_dynamics.results.evaluations import check_writing
-from inverse_dynamics.results.summaries import (
-    Row,
-    summary_rows,
-    write_summary_csv,
-    write_summary_parquet,
-)
+from inverse_dynamics.results.summaries import Row, summary_rows, write_summary_csv
 from inverse_dynamics.robot.robots import Robot, load_robot
 
 if TYPE_CHECKING:
@@ -55,15 +48,10 @@ if TYPE_CHECKING:
 SCHEMA = 1
 MARK = evaluations.MARK_OF_SEVERAL
 PAGE = "report.html"
-OWN_FILES = (MARK, "summary.csv", "summary.parquet", PAGE)
+OWN_FILES = (MARK, "summary.csv", PAGE)
 
-CONTENTS = Contents(
-    MARK,
-    (
-        *OWN_FILES,
-        *(f"*/{file}" for file in (*evaluations.CONTENTS.files, *evaluations.CONTENTS.added)),
-    ),
-)
+_OF_EACH = (*evaluations.CONTENTS.files, *evaluations.CONTENTS.added)
+CONTENTS = Contents(MARK, (*OWN_FILES, *(f"*/{file}" for file in _OF_EACH)))
 
 _MOST_TOLD = 5  # failures, in a text
 _MOST_ON_A_PAGE = 1_000_000  # samples: the page of a recording holds them in memory
@@ -108,11 +96,10 @@ class _Task:
     name: str
     bag: Path
     target: Path
-    robot: Robot | str
-    options: Mapping[str, Any]
-    storage: Storage | None
-    figures: tuple[str, ...]
+    robot: Robot
     parquet: bool
+    writing: Mapping[str, Any]  # storage and figures
+    options: Mapping[str, Any]  # of evaluate()
 
 
 @checked
@@ -144,25 +131,6 @@ def evaluate_many(
     """
     given = [recordings] if isinstance(recordings, (str, os.PathLike)) else list(recordings)
     names = named_recordings(given, taken=OWN_FILES)
-    _check(names, jobs, parquet, robot, options)
-    loaded = robot if isinstance(robot, Robot) else load_robot(robot)
-    check_options(loaded, **options)
-    check_writing(storage, figures)
-    inputs = (*names.values(), options.get("urdf"), *loaded.files)
-    with written_whole(Path(out), overwrite=overwrite, contents=CONTENTS, inputs=inputs) as target:
-        task = _Task("", Path(), target, _for_workers(robot, loaded), options, storage,
-                     tuple(figures), parquet)  # fmt: skip
-        tasks = [replace(task, name=n, bag=bag, target=target / n) for n, bag in names.items()]
-        outcomes = _outcomes(tasks, jobs, scheduler, progress)
-        result = _sorted_out(Path(out), tasks, outcomes)
-        _write(result, target, names, loaded)
-    return result
-
-
-def _check(
-    names: Mapping[str, Path], jobs: int | None, parquet: bool, robot: object, options: Any
-) -> None:
-    """Raise UserError for what no recording could be evaluated with."""
     if not names:
         raise UserError("evaluate_many: recordings: expected one or more, got none")
     if jobs is not None and jobs < 1:
@@ -172,17 +140,20 @@ def _check(
             "evaluate_many: argument series: unknown; samples go into the directory"
         )
     check_call(evaluate, next(iter(names.values())), robot, **options)
-    if parquet:
-        from inverse_dynamics.results.exports import check_pyarrow
-
-        check_pyarrow()
-
-
-def _for_workers(given: Robot | Path | str, loaded: Robot) -> Robot | str:
-    """The robot as a worker finds it, whose working directory may be another one."""
-    if isinstance(given, Robot) or str(given) == loaded.file.stem:
-        return given if isinstance(given, Robot) else str(given)
-    return str(loaded.file.absolute())
+    robot = robot if isinstance(robot, Robot) else load_robot(robot)
+    check_options(robot, **options)
+    evaluations.check_writing(storage, figures, parquet=parquet)
+    writing = {"storage": storage, "figures": tuple(figures)}
+    inputs = (*names.values(), options.get("urdf"), *robot.files)
+    with written_whole(Path(out), overwrite=overwrite, contents=CONTENTS, inputs=inputs) as target:
+        tasks = [
+            _Task(name, bag, target / name, robot, parquet, writing, options)
+            for name, bag in names.items()
+        ]
+        outcomes = _outcomes(tasks, jobs, scheduler, progress)
+        result = _sorted_out(Path(out), tasks, outcomes)
+        _write(result, target, tuple(names), robot)
+    return result
 
 
 def _outcomes(
@@ -202,7 +173,9 @@ def _outcomes(
         in_processes(_evaluate_one, tasks, jobs=jobs or cores(), done=done)
     else:
         far = [_with_whole_paths(task) for task in tasks]
-        on_cluster(_evaluate_one, far, scheduler, paths=_seen_by_workers(far), done=done)
+        there = [task.bag for task in far if task.bag.exists()]
+        paths = [far[0].target.parent, *there, *filter(None, far[0].robot.files)]
+        on_cluster(_evaluate_one, far, scheduler, paths=paths, done=done)
     return [found[index] for index in range(len(tasks))]
 
 
@@ -217,13 +190,12 @@ def _evaluate_one(task: _Task) -> EvaluationSummary:
         task.target,
         task.bag,
         task.robot,
-        storage=task.storage,
-        figures=task.figures,
         parquet=task.name if task.parquet else None,
         progress=progress,
+        **task.writing,
         **task.options,
     )
-    if task.figures and len(evaluation.log) <= _MOST_ON_A_PAGE:
+    if task.writing["figures"] and len(evaluation.log) <= _MOST_ON_A_PAGE:
         from inverse_dynamics.report import report_run, write_page
 
         write_page(task.target / PAGE, task.name, [report_run(evaluation, task.name)])
@@ -259,12 +231,12 @@ def _sorted_out(
 
 def summary(result: ManyEvaluations, robot: Robot) -> dict[str, Any]:
     """Recordings, why some failed, and the rows of summary.csv, for JSON."""
+    return {"robot": robot.name, "recordings": _recordings(result), "rows": result.rows}
+
+
+def _recordings(result: ManyEvaluations) -> list[dict[str, Any]]:
     done = [{"name": s.name, "bag": s.bag, "error": None} for s in result.summaries]
-    return {
-        "robot": robot.name,
-        "recordings": [*done, *result.failures],
-        "rows": result.rows,
-    }
+    return [*done, *map(vars, result.failures)]
 
 
 def failures_told(what: str, failures: Sequence[FailedRecording]) -> str:
@@ -275,37 +247,26 @@ def failures_told(what: str, failures: Sequence[FailedRecording]) -> str:
     return "\n".join([f"{what}:", *lines])
 
 
-def _write(result: ManyEvaluations, target: Path, names: Mapping[str, Path], robot: Robot) -> None:
+def _write(result: ManyEvaluations, target: Path, names: Sequence[str], robot: Robot) -> None:
     from inverse_dynamics.report.recordings import write_recordings_page
 
     write_summary_csv(target / "summary.csv", result.rows)
-    write_summary_parquet(target / "summary.parquet", result.rows)
-    failures = {failure.name: failure.error for failure in result.failures}
-    about = {
-        "schema": SCHEMA,
-        "robot": robot.name,
-        "recordings": [
-            {"name": name, "bag": str(bag), "error": failures.get(name)}
-            for name, bag in names.items()
-        ],
-    }
+    recordings = sorted(_recordings(result), key=lambda recording: names.index(recording["name"]))
+    about = {"schema": SCHEMA, "robot": robot.name, "recordings": recordings}
     write_text(target / MARK, json_text(about))
-    title = f"{robot.description or robot.name}: {counted(len(names), 'recording')}"
+    title = f"{robot.description or robot.name}: {counted(len(recordings), 'recording')}"
+    failures = {failure.name: failure.error for failure in result.failures}
     links = {s.name: PAGE for s in result.summaries if (target / s.name / PAGE).is_file()}
     write_recordings_page(target / PAGE, title, result.summaries, failures, links)
 
 
 def _with_whole_paths(task: _Task) -> _Task:
     """For a worker with another working directory."""
-    options = dict(task.options)
-    if options.get("urdf") is not None:
-        options["urdf"] = Path(options["urdf"]).absolute()
-    return replace(task, bag=task.bag.absolute(), target=task.target.absolute(), options=options)
 
+    def whole(path: Path | str | None) -> Path | None:
+        return None if path is None else Path(path).absolute()
 
-def _seen_by_workers(tasks: Sequence[_Task]) -> list[Path]:
-    """What workers must see: recordings, the directory of results, files of the robot."""
-    robot = tasks[0].robot
-    files = [Path(robot)] if isinstance(robot, str) and Path(robot).is_absolute() else []
-    there = [task.bag for task in tasks if task.bag.exists()]
-    return [tasks[0].target.parent, *there, *files]
+    robot, options = task.robot, {**task.options, "urdf": whole(task.options.get("urdf"))}
+    paths = {name: whole(getattr(robot, name)) for name in ("file", "urdf", "model")}
+    bag, target = task.bag.absolute(), task.target.absolute()
+    return replace(task, bag=bag, target=target, robot=replace(robot, **paths), options=options)

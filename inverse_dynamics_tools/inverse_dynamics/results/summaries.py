@@ -30,38 +30,26 @@ if TYPE_CHECKING:
 
 Row = dict[str, Any]
 
-# What the columns hold, in their order.
-COLUMNS: dict[str, type] = {
-    **dict.fromkeys(("recording", "bag", "robot", "plugin", "joint", "unit"), str),
-    **dict.fromkeys(("start", "duration", "window_from", "window_to"), float),
-    "samples": int,
-    **dict.fromkeys(("mae", "rmse", "nrmse", "bias", "r2", "max_abs"), float),
-    "kept_samples": int,
-    "kept_rmse": float,
-    "accelerations": str,
-    "cutoff": float,
-    "effort": str,
-}
+COLUMNS = (
+    *("recording", "bag", "robot", "plugin", "joint", "unit"),
+    *("start", "duration", "window_from", "window_to", "samples"),
+    *("mae", "rmse", "nrmse", "bias", "r2", "max_abs", "kept_samples", "kept_rmse"),
+    *("accelerations", "cutoff", "effort"),
+)
 
 
 def summary_rows(summaries: Iterable[EvaluationSummary]) -> list[Row]:
-    """The table, row by row; None where a figure is undefined."""
+    """The table, row by row; None where a value is undefined."""
     rows = []
     for summary in summaries:
         of_all = {
+            **vars(summary),
             "recording": summary.name,
             "bag": str(summary.bag),
-            "robot": summary.robot,
-            "plugin": summary.plugin,
-            "start": summary.start,
-            "duration": summary.duration,
             "window_from": summary.window.start,
             "window_to": summary.window.end,
-            "samples": summary.samples,
-            "kept_samples": summary.kept_samples,
             "accelerations": summary.accelerations.method,
             "cutoff": summary.accelerations.cutoff,
-            "effort": summary.effort,
         }
         for error, kept in zip(summary.errors, summary.errors_of_kept, strict=True):
             row = {**of_all, **vars(error), "kept_rmse": kept.rmse}
@@ -70,31 +58,13 @@ def summary_rows(summaries: Iterable[EvaluationSummary]) -> list[Row]:
 
 
 def write_summary_csv(file: Path, rows: Iterable[Row]) -> None:
-    """Every digit is kept; an undefined figure is empty."""
-    with file.open("w", encoding="utf-8", errors="backslashreplace", newline="") as sink:
-        writer = csv.DictWriter(sink, tuple(COLUMNS), lineterminator="\n")
+    """Every digit is kept; an undefined value is empty; names that aren't UTF-8 become escapes."""
+    with file.open("w", encoding="utf-8", newline="") as sink:
+        writer = csv.DictWriter(sink, COLUMNS, lineterminator="\n")
         writer.writeheader()
-        writer.writerows({k: _text(v) for k, v in row.items()} for row in rows)
-
-
-def write_summary_parquet(file: Path, rows: list[Row]) -> bool:
-    """The same with types; false where pyarrow isn't installed."""
-    try:
-        import pyarrow as pa
-        from pyarrow.parquet import write_table
-    except ImportError:
-        return False
-    types = {str: pa.string(), float: pa.float64(), int: pa.int64()}
-    schema = pa.schema([(name, types[kind]) for name, kind in COLUMNS.items()])
-    columns = [[_text(row[name]) for row in rows] for name in COLUMNS]
-    write_table(pa.table(columns, schema=schema), file, compression="zstd")
-    return True
+        for row in rows:
+            writer.writerow({k: printable(v) if isinstance(v, str) else v for k, v in row.items()})
 
 
 def _defined(value: object) -> object:
     return None if isinstance(value, float) and math.isnan(value) else value
-
-
-def _text(value: object) -> object:
-    """Names of files that aren't UTF-8 become escapes."""
-    return printable(value) if isinstance(value, str) else value

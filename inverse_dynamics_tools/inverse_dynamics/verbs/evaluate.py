@@ -79,7 +79,7 @@ results, written whole or not at all:
 
 results of several recordings:
   report.html             all recordings on one page; NAME/report.html shows a single one
-  summary.csv, .parquet   errors, one row per recording and joint, for pandas, polars, DuckDB
+  summary.csv             errors, one row per recording and joint, for pandas, polars, DuckDB
   recordings.json         the recordings, and why some failed
   NAME/                   the files listed above, for each recording; with --parquet also series.parquet
 
@@ -177,7 +177,7 @@ def _run_many(arguments: argparse.Namespace, robot: Robot, options: dict[str, An
     with progress_bar() as progress:
         result = evaluate_many(
             arguments.bags,
-            arguments.robot or robot,
+            robot,
             arguments.out or Path(f"recordings_{robot.name}"),
             jobs=arguments.jobs,
             scheduler=arguments.scheduler,
