@@ -59,8 +59,8 @@ correct, 3 some of several recordings failed, 1 an unexpected error, 128 + N
 ended by signal N.
 """
 
-# A list of numbers that begins with a minus looks like an option to argparse.
-_NUMBERS = re.compile(r"-[\d.]+(e[-+]?\d+)?,[-+\d.,e]+", re.IGNORECASE)
+# To argparse, what begins with a minus is an option unless it looks like this: a number, or several.
+_NUMBERS = re.compile(r"-[\d.]+(e[-+]?\d+)?(,[-+\d.,e]+)?$", re.IGNORECASE)
 
 # What argparse says of a wrong verb or value.
 _CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)")
@@ -102,6 +102,10 @@ def _usage(action: argparse.Action) -> str:
 
 class _Parser(argparse.ArgumentParser):
     """Says what is wrong in one line, and where help is: pages of usage would hide it."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._negative_number_matcher = _NUMBERS
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
         """What is given; an unknown option is an error of the verb, whose help lists the known ones."""
@@ -212,7 +216,7 @@ def _run(given: list[str]) -> int:
         parser.print_help(sys.stderr)
         return 2
     try:
-        options = parser.parse_args(_with_numbers_joined(given))
+        options = parser.parse_args(given)
         options.run(options)
         if told := replaced():
             _say(told)
@@ -301,15 +305,3 @@ def _drop_output() -> None:
     """What is still to be printed goes nowhere: Python would fail again at its end."""
     with suppress(AttributeError, OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _with_numbers_joined(arguments: list[str]) -> list[str]:
-    """`--gravity -9.81,0,0` as `--gravity=-9.81,0,0`."""
-    joined: list[str] = []
-    for argument in arguments:
-        previous = joined[-1] if joined else ""
-        if _NUMBERS.fullmatch(argument) and previous.startswith("--") and "=" not in previous:
-            joined[-1] = f"{previous}={argument}"
-        else:
-            joined.append(argument)
-    return joined

@@ -82,7 +82,7 @@ def in_processes(
                         workers.append(_Worker(function, scratch))
                     index = waiting.popleft()
                     workers[-1].take(index, arguments[index])
-                for worker in _ready(workers):
+                for worker in wait(workers):  # type: ignore[arg-type]  # anything with fileno()
                     index, outcome = worker.index, worker.outcome()
                     if waiting and worker.alive:
                         following = waiting.popleft()
@@ -160,11 +160,6 @@ class _Worker:
     def _send(self, what: object) -> None:
         with suppress(OSError):  # it has died already: outcome() says so
             self._connection.send(what)
-
-
-def _ready(workers: list[_Worker]) -> list[_Worker]:
-    found = set(map(id, wait(workers)))  # type: ignore[arg-type]  # anything with fileno()
-    return [worker for worker in workers if id(worker) in found]
 
 
 def _how_it_ended(code: int) -> str:

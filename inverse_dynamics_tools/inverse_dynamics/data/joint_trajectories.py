@@ -34,6 +34,11 @@ if TYPE_CHECKING:
 MESSAGE_TYPE = "trajectory_msgs/msg/JointTrajectory"
 FIELDS = ("positions", "velocities", "accelerations", "effort")
 
+_EFFORT_NEEDED = (
+    "measured efforts are what computed torques are compared with; where there are none, `ids torques` "
+    "computes them"
+)
+
 
 @dataclass(frozen=True)
 class JointTrajectory:
@@ -57,8 +62,16 @@ class JointTrajectory:
 
     def numbers(self, field: str, joints: Sequence[str], reason: str = "") -> Floats:
         """(N, len(joints)) of one of FIELDS. Raises BagError where a number is missing."""
-        columns = self._columns(joints)
         names = self.joint_names
+        if missing := [joint for joint in joints if joint not in names]:
+            raise BagError(
+                f"{self.where}: expected the joints {', '.join(joints)}, got {', '.join(names)}; "
+                f"missing: {', '.join(missing)}; give the trajectory's names with --joints, in the "
+                "order of the chain"
+            )
+        if len(set(names)) < len(names):
+            raise BagError(f"{self.where}: expected each joint once, got {', '.join(names)}")
+        columns = [names.index(joint) for joint in joints]
         values = np.empty((len(self), len(joints)))
         for k, point in enumerate(self.message.points):
             row = getattr(point, field)
@@ -69,34 +82,14 @@ class JointTrajectory:
                     f"joint, got {len(row)}{without}{reason and f'; {reason}'}"
                 )
             values[k] = row[columns]
-        finite = np.isfinite(values)
-        if not finite.all():
-            k, j = (int(i) for i in np.argwhere(~finite)[0])
+        wrong = ~(np.abs(values) <= LARGEST)
+        if wrong.any():
+            k, j = (int(i) for i in np.argwhere(wrong)[0])
             raise BagError(
-                f"{self.where}, point {k + 1}: {field} of joint {joints[j]}: expected a finite "
-                f"number, got {values[k, j]}"
-            )
-        if (np.abs(values) > LARGEST).any():
-            k, j = (int(i) for i in np.argwhere(np.abs(values) > LARGEST)[0])
-            raise BagError(
-                f"{self.where}, point {k + 1}: {field} of joint {joints[j]}: expected a number of a "
-                f"motion, in SI units, of at most {LARGEST:g}, got {values[k, j]:g}; is it damaged?"
+                f"{self.where}, point {k + 1}: {field} of joint {joints[j]}: expected a finite number "
+                f"of a motion, in SI units, of at most {LARGEST:g}, got {values[k, j]:g}; is it damaged?"
             )
         return values
-
-    def _columns(self, joints: Sequence[str]) -> list[int]:
-        names = self.joint_names
-        missing = [joint for joint in joints if joint not in names]
-        if missing:
-            raise BagError(
-                f"{self.where}: expected the joints {', '.join(joints)}, got {', '.join(names)}; "
-                f"missing: {', '.join(missing)}; give the trajectory's names with --joints, in the "
-                "order of the chain"
-            )
-        twice = [name for name in names if names.count(name) > 1]
-        if twice:
-            raise BagError(f"{self.where}: expected each joint once, got {', '.join(names)}")
-        return [names.index(joint) for joint in joints]
 
 
 def read_joint_trajectories(
@@ -162,15 +155,10 @@ def joint_log_of(
             "belong together; `ids torques` takes any number of trajectories"
         )
     joints = tuple(joints) or filled[0].joint_names
-    q = _joined(filled, "positions", joints, "joint positions are needed")
-    qd = _joined(filled, "velocities", joints, "joint velocities are needed")
-    effort = _joined(
-        filled,
-        "effort",
-        joints,
-        "measured efforts are what computed torques are compared with; where there are none, "
-        "`ids torques` computes them",
-    )
+
+    def joined(field: str, reason: str) -> Floats:
+        return np.concatenate([each.numbers(field, joints, reason) for each in filled])
+
     given = any(trajectory.has("accelerations") for trajectory in filled)
     since = np.concatenate([trajectory.time_from_start for trajectory in filled])
     counts = [len(trajectory) for trajectory in filled]
@@ -184,22 +172,16 @@ def joint_log_of(
         joint_names=joints,
         header_stamps=header + since,
         receive_stamps=np.repeat([trajectory.received for trajectory in filled], counts) + since,
-        q=q,
-        qd=qd,
-        effort=effort,
-        qdd=_joined(filled, "accelerations", joints, "other points have them") if given else None,
+        q=joined("positions", "joint positions are needed"),
+        qd=joined("velocities", "joint velocities are needed"),
+        effort=joined("effort", _EFFORT_NEEDED),
+        qdd=joined("accelerations", "other points have them") if given else None,
         frame_id=filled[0].frame_id,
         clock=clock,
         topic=topic,
         storage=storage,
         notes=tuple(notes),
     )
-
-
-def _joined(
-    trajectories: Sequence[JointTrajectory], field: str, joints: Sequence[str], reason: str
-) -> Floats:
-    return np.concatenate([t.numbers(field, joints, reason) for t in trajectories])
 
 
 def _nanoseconds(time: Any) -> int:

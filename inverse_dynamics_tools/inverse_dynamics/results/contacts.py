@@ -38,34 +38,16 @@ def write_contacts(
     inputs = (contacts.evaluation.bag, *contacts.evaluation.robot.files)
     with written_whole(out, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as directory:
         write_text(directory / MARK, json_text(summary(contacts)))
-        np.savez(directory / "series.npz", **_series(contacts))
+        names = ("time", "torques", "valid", "contact")
+        names = (*names, "wrenches", "unseen") if contacts.wrenches is not None else names
+        np.savez(directory / "series.npz", **{name: getattr(contacts, name) for name in names})
         save_contact_figure(contacts, *(directory / f"contacts.{suffix}" for suffix in figures))
-
-
-def _series(contacts: Contacts) -> dict[str, Any]:
-    arrays: dict[str, Any] = {
-        "time": contacts.time,
-        "torques": contacts.torques,
-        "valid": contacts.valid,
-        "contact": contacts.contact,
-    }
-    if contacts.wrenches is not None:
-        arrays |= {"wrenches": contacts.wrenches, "unseen": contacts.unseen}
-    return arrays
 
 
 def summary(contacts: Contacts) -> dict[str, Any]:
     """Contacts, thresholds and how they came about, for JSON."""
     evaluation, thresholds = contacts.evaluation, contacts.thresholds
-    figures = (
-        "torques",
-        "noise",
-        "correlation_time",
-        "peaks",
-        "level",
-        "scale",
-        "shape",
-    )
+    names = ("torques", "noise", "correlation_time", "peaks", "level", "scale", "shape")
     return {
         "schema": 1,
         "bag": str(evaluation.bag),
@@ -76,18 +58,17 @@ def summary(contacts: Contacts) -> dict[str, Any]:
         "gain": contacts.gain,
         "tracking": contacts.tracking,
         "measured_velocities": contacts.measured_velocities,
-        "friction_band": list(contacts.friction_band),
+        "friction_band": contacts.friction_band,
         "effort": evaluation.effort.meaning,
         "quiet": contacts.quiet,
         "false_alarms_per_hour": thresholds.false_alarms_per_hour,
         "joints": [
-            {"joint": joint, "unit": unit}
-            | {figure: getattr(thresholds, figure)[j] for figure in figures}
+            {"joint": joint, "unit": unit} | {name: getattr(thresholds, name)[j] for name in names}
             for j, (joint, unit) in enumerate(
                 zip(evaluation.joint_names, evaluation.units, strict=True)
             )
         ],
         "contacts": contacts.contacts,
-        "interruptions": [list(times) for times in contacts.interruptions],
-        "notes": list(contacts.notes),
+        "interruptions": contacts.interruptions,
+        "notes": contacts.notes,
     }

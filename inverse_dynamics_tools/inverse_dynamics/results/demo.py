@@ -28,10 +28,11 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data.public_recordings import data_directory
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.comparison import compare
-from inverse_dynamics.evaluation.evaluation import evaluate
-from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.evaluation.evaluation import Arm, evaluate
+from inverse_dynamics.results import comparisons
+from inverse_dynamics.results.comparisons import write_comparison
+from inverse_dynamics.results.evaluations import CONTENTS, write_evaluation
 from inverse_dynamics.robot.robots import RIGID_BODY, load_robot
-from inverse_dynamics.robot.solvers import open_solver
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.comparison import Comparison
     from inverse_dynamics.evaluation.evaluation import Evaluation
-    from inverse_dynamics.simulation.run import SimulatedRun
 
 MARK = "demo.json"
 SIMULATED = ("ur10_simulated", "panda_simulated")
@@ -113,35 +113,43 @@ def run_demo(
     overwrite: replace an older demonstration. quick: a few seconds of simulated motion.
     say: called with a sentence before each step. Raises UserError.
     """
-    out = Path(out)
     real = _recordings_in(recordings)
+    figures = ("png",) if is_installed("matplotlib") else ()
+    evaluations, notes = {}, []
     with written_whole(
-        out, overwrite=overwrite, contents=_contents(), inputs=real.values()
+        Path(out), overwrite=overwrite, contents=_contents(), inputs=real.values()
     ) as target:
-        work = _Work(target, out, say, progress)
-        for name in SIMULATED:
-            if is_installed("mujoco"):
-                say(f"simulating {TITLES[name].partition(',')[0]}, computing its torques")
-                work.simulate(name, _QUICK_SECONDS if quick else None)
+        for name, title in TITLES.items():
+            if name in SIMULATED and is_installed("mujoco"):
+                say(f"simulating {title.partition(',')[0]}, computing its torques")
+                evaluation = _simulated(name, target, Path(out), quick, progress)
+            elif name in SIMULATED:
+                say(f"computing the torques of {title}")
+                evaluation = _stored(name)
+            elif name in real:
+                say(f"computing the torques of {title}")
+                evaluation = evaluate(real[name], name, progress=progress)
             else:
-                say(f"computing the torques of {TITLES[name]}")
-                work.evaluate_stored(name)
-        for name, bag in real.items():
-            say(f"computing the torques of {TITLES[name]}")
-            work.evaluate(name, bag)
-        absent = {TITLES[name]: file for name, file in REAL.items() if name not in real}
-        if absent:
-            work.notes.append(
+                continue
+            write_evaluation(evaluation, target / name, figures=figures, progress=progress)
+            evaluations[name] = evaluation
+        if absent := {TITLES[name]: file for name, file in REAL.items() if name not in real}:
+            notes.append(
                 f"{' and '.join(absent)}: left out, there is no recording "
                 f"{' or '.join(absent.values())}: {HOW_TO_GET_RECORDINGS}"
             )
         comparison = None
         if "ur10_real" in real:
             say("comparing the URDF's rigid bodies with the identified model on the real UR10")
-            comparison = work.compare(real["ur10_real"])
+            rigid = evaluate(real["ur10_real"], "ur10_real", plugin=RIGID_BODY, progress=progress)
+            # The figure of the comparison shows its torques.
+            write_evaluation(rigid, target / "ur10_real_urdf", figures=(), progress=progress)
+            labels = ("rigid bodies of the URDF", "identified, with friction")
+            comparison = compare([rigid, evaluations["ur10_real"]], labels)
+            write_comparison(comparison, target / "comparison", figures=figures, page=False)
         say("writing the page")
-        work.write_page(comparison)
-    return Demo(out, work.evaluations, comparison, tuple(work.notes))
+        _write_page(target, evaluations, comparison, notes)
+    return Demo(Path(out), evaluations, comparison, tuple(notes))
 
 
 def summary(evaluations: Mapping[str, Evaluation], notes: Sequence[str]) -> dict[str, Any]:
@@ -158,12 +166,10 @@ def summary(evaluations: Mapping[str, Evaluation], notes: Sequence[str]) -> dict
 
 def _contents() -> Contents:
     """What a demonstration may have written."""
-    from inverse_dynamics.results import comparisons as comparison_results
-    from inverse_dynamics.results import evaluations as results
     from inverse_dynamics.simulation import writer
 
-    parts = {"comparison": comparison_results.CONTENTS, "ur10_real_urdf": results.CONTENTS}
-    parts |= dict.fromkeys((*SIMULATED, *REAL), results.CONTENTS)
+    parts = {"comparison": comparisons.CONTENTS, "ur10_real_urdf": CONTENTS}
+    parts |= dict.fromkeys(TITLES, CONTENTS)
     parts |= {f"{name}_bag": writer.CONTENTS for name in SIMULATED}
     files = (
         f"{directory}/{file.replace('{name}', directory)}"
@@ -185,97 +191,52 @@ def _recordings_in(directory: Path | None) -> dict[str, Path]:
     return found
 
 
-class _Work:
-    """The demonstration while it is made, in a directory that isn't yet where it will be."""
-
-    def __init__(
-        self, target: Path, final: Path, say: Callable[[str], None], progress: Progress
-    ) -> None:
-        self.target, self.final, self.say, self.progress = target, final, say, progress
-        self.evaluations: dict[str, Evaluation] = {}
-        self.notes: list[str] = []
-
-    def simulate(self, name: str, duration: float | None) -> None:
-        from inverse_dynamics.simulation import simulate, write_run
-
-        bag = f"{name}_bag"
-        run = simulate(load_robot(name), duration=duration, seed=0, progress=self.progress)
-        write_run(run, self.target / bag, progress=self.progress)
-        evaluation = evaluate(self.target / bag, name, progress=self.progress)
-        notes = (*evaluation.notes, _match(run, evaluation))
-        self._keep(name, replace(evaluation, bag=self.final / bag, notes=notes))
-
-    def evaluate_stored(self, name: str) -> None:
-        """The simulated recording that comes with the package."""
-        evaluation = evaluate(stored_recording(name), name)
-        note = (
-            "a recording that comes with this package: with MuJoCo the demo simulates the robots: "
-            f"{how_to_install('mujoco')}"
-        )
-        self._keep(name, replace(evaluation, notes=(*evaluation.notes, note)))
-
-    def evaluate(self, name: str, bag: Path) -> None:
-        self._keep(name, evaluate(bag, name, progress=self.progress))
-
-    def _keep(self, name: str, evaluation: Evaluation) -> None:
-        from inverse_dynamics.results.evaluations import write_evaluation
-
-        write_evaluation(evaluation, self.target / name, figures=_figures(), progress=self.progress)
-        self.evaluations[name] = evaluation
-
-    def compare(self, bag: Path) -> Comparison:
-        """Rigid bodies of the URDF, without friction, against the identified model."""
-        from inverse_dynamics.results.comparisons import write_comparison
-        from inverse_dynamics.results.evaluations import write_evaluation
-
-        rigid = evaluate(bag, "ur10_real", plugin=RIGID_BODY, progress=self.progress)
-        write_evaluation(  # the figure of the comparison shows its torques
-            rigid, self.target / "ur10_real_urdf", figures=(), progress=self.progress
-        )
-        comparison = compare(
-            [rigid, self.evaluations["ur10_real"]],
-            ("rigid bodies of the URDF", "identified, with friction"),
-        )
-        write_comparison(  # report.html shows it
-            comparison, self.target / "comparison", figures=_figures(), page=False
-        )
-        return comparison
-
-    def write_page(self, comparison: Comparison | None) -> None:
-        from inverse_dynamics.report import report_comparison, report_run, write_page
-
-        comparisons = []
-        if comparison is not None:
-            comparisons.append(
-                report_comparison(
-                    comparison,
-                    "Gain by identification",
-                    "The same recording of the real UR10, computed from the masses and inertia that its "
-                    "URDF states, and from the model identified on the robot, with friction.",
-                )
-            )
-        runs = [report_run(e, TITLES[name]) for name, e in self.evaluations.items()]
-        title = f"{_COUNTS[len(runs)]} robots: measured and computed torques"
-        write_page(self.target / "report.html", title, runs, comparisons, self.notes)
-        write_text(self.target / MARK, json_text(summary(self.evaluations, self.notes)))
-
-
-def _figures() -> tuple[str, ...]:
-    """Formats of the figures that can be made here."""
-    return ("png",) if is_installed("matplotlib") else ()
-
-
-def _match(run: SimulatedRun, evaluation: Evaluation) -> str:
-    """What is left of the error where accelerations aren't estimated, in words."""
+def _simulated(name: str, target: Path, final: Path, quick: bool, progress: Progress) -> Evaluation:
+    """Of a simulated motion, whose recording is kept. final: where `target` will be."""
+    from inverse_dynamics.simulation import simulate, write_run
     from inverse_dynamics.simulation.match import greatest_differences
 
-    robot = evaluation.robot
-    description = "" if robot.urdf is None else read_description(robot.urdf)
-    most = float(greatest_differences(run, open_solver(robot, description)).max())
-    return (
-        f"with the simulator's own accelerations, computed and measured torques differ by {most:.1g} "
-        "N m at most: the errors shown are those of estimated accelerations"
+    robot, bag = load_robot(name), f"{name}_bag"
+    run = simulate(robot, duration=_QUICK_SECONDS if quick else None, seed=0, progress=progress)
+    write_run(run, target / bag, progress=progress)
+    evaluation = evaluate(target / bag, name, progress=progress)
+    solver = Arm(evaluation.robot).solver
+    note = (
+        "with the simulator's own accelerations, computed and measured torques differ by "
+        f"{float(greatest_differences(run, solver).max()):.1g} N m at most: the errors shown are those "
+        "of estimated accelerations"
     )
+    return replace(evaluation, bag=final / bag, notes=(*evaluation.notes, note))
+
+
+def _stored(name: str) -> Evaluation:
+    """Of the simulated recording that comes with the package."""
+    evaluation = evaluate(stored_recording(name), name)
+    note = (
+        "a recording that comes with this package: with MuJoCo the demo simulates the robots: "
+        f"{how_to_install('mujoco')}"
+    )
+    return replace(evaluation, notes=(*evaluation.notes, note))
+
+
+def _write_page(
+    target: Path,
+    evaluations: Mapping[str, Evaluation],
+    comparison: Comparison | None,
+    notes: Sequence[str],
+) -> None:
+    from inverse_dynamics.report import report_comparison, report_run, write_page
+
+    shown = [] if comparison is None else [report_comparison(comparison, *_COMPARISON)]
+    runs = [report_run(e, TITLES[name]) for name, e in evaluations.items()]
+    title = f"{_COUNTS[len(runs)]} robots: measured and computed torques"
+    write_page(target / "report.html", title, runs, shown, notes)
+    write_text(target / MARK, json_text(summary(evaluations, notes)))
 
 
 _COUNTS = {2: "Two", 3: "Three", 4: "Four"}
+_COMPARISON = (
+    "Gain by identification",
+    "The same recording of the real UR10, computed from the masses and inertia that its URDF states, and "
+    "from the model identified on the robot, with friction.",
+)

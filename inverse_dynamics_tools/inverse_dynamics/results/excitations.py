@@ -22,7 +22,7 @@ from inverse_dynamics.base.wording import counted
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import Arm, evaluate
 from inverse_dynamics.evaluation.turns import on_one_turn
-from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.descriptions import joint_units, read_description
 from inverse_dynamics.robot.robots import Robot, load_robot
 from inverse_dynamics.simulation.configuration import StatedSimulation
 from inverse_dynamics.simulation.errors import SimulationError, described_by
@@ -106,9 +106,10 @@ def excite(
         raise SimulationError(
             f"{robot.file}: names no urdf; a motion needs the robot's description"
         )
+    description = read_description(robot.urdf)
     with described_by(robot.urdf):
         simulated = SimulatedRobot.from_urdf(
-            read_description(robot.urdf), robot.root, robot.tip, gravity=robot.gravity or GRAVITY
+            description, robot.root, robot.tip, gravity=robot.gravity or GRAVITY
         )
     limits = options.limits(simulated)
     check_limits(simulated, limits)
@@ -122,19 +123,20 @@ def excite(
         recordings = on_one_turn([_read(recording, robot, progress) for recording in given])
         unknowns = _with_noise_of(unknowns, recordings)
         noise_source = "residuals of the given recordings"
-        known = np.sum([_gram(unknowns, recording) for recording in recordings], axis=0)
+        known = np.zeros_like(unknowns.scale)
+        for recording in recordings:
+            (q, qd, qdd, _), period = _samples(recording)
+            known += unknowns.gram(q, qd, qdd, period)
         notes += _resting(simulated, recordings)
     say("searching for the motion, which takes about a minute")
     found = optimise_excitation(
         simulated, options, seed=seed, noise=unknowns.noise, given=known, progress=progress
     )
-    stored = (
-        None if robot.file == robot.urdf else StatedSimulation.of(robot, simulated.chain).trajectory
-    )
     motions = {} if known is None else {"given": known}
     base = np.zeros_like(unknowns.scale) if known is None else known
-    if stored is not None:
-        trajectory, _ = read_trajectory(stored, simulated.chain.joint_names)
+    stated = None if robot.file == robot.urdf else StatedSimulation.of(robot, simulated.chain)
+    if stated is not None and stated.trajectory is not None:
+        trajectory, _ = read_trajectory(stated.trajectory, simulated.chain.joint_names)
         motions["stored"] = base + motion_gram(unknowns, trajectory, options.duration)
     motions["motion"] = base + found.gram
     states = unknowns.random_states(_TEST_STATES, seed=2)
@@ -144,7 +146,7 @@ def excite(
     return ExcitationResult(
         robot=robot,
         joint_names=robot.joints or simulated.chain.joint_names,
-        units=_units(simulated),
+        units=joint_units(robot.urdf, description, simulated.chain.joint_names),
         options=options,
         limits=limits,
         excitation=found,
@@ -265,11 +267,6 @@ def _samples(recording: Evaluation) -> tuple[list[Floats], float]:
     return [array[chosen] for array in arrays], stride * recording.samples.period
 
 
-def _gram(unknowns: Unknowns, recording: Evaluation) -> Floats:
-    (q, qd, qdd, _), period = _samples(recording)
-    return unknowns.gram(q, qd, qdd, period)
-
-
 def _band_noise(robot: Robot, simulated: SimulatedRobot) -> Floats | None:
     """(n,) N m, standard deviation of the errors of the robot's model, where it states them."""
     solver = Arm(robot).solver
@@ -330,10 +327,3 @@ def _use_of_limits(
         )
     ]
     return np.array(shares), np.column_stack([q.min(axis=0), q.max(axis=0)])
-
-
-def _units(robot: SimulatedRobot) -> tuple[str, ...]:
-    import mujoco
-
-    types = [robot.model.joint(name).type[0] for name in robot.chain.joint_names]
-    return tuple("N m" if kind == mujoco.mjtJoint.mjJNT_HINGE else "N" for kind in types)

@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.evaluation import Evaluation
 
-FORMATS = ("csv", "parquet")
-
 _ROWS = 65536  # written together
 
 
@@ -89,7 +87,7 @@ def export_series(
     installed.
     """
     file_format = file.suffix.removeprefix(".").lower()
-    if file_format not in FORMATS:
+    if file_format not in ("csv", "parquet"):
         raise OutputError(f"{file}: expected a name ending in .csv or .parquet")
     check_output_file(file, overwrite=overwrite)
     check_pyarrow()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A load in files: payload.yaml for --payload and run configurations, all figures in payload.json."""
+"""A load in files: payload.yaml for --payload and run configurations, all numbers in payload.json."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.errors import OutputError
 from inverse_dynamics.figures.payload import save_payload_figure
 from inverse_dynamics.figures.plots import check_formats
+from inverse_dynamics.results.yaml_text import yaml_list, yaml_number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -74,15 +75,15 @@ def yaml_text(payload: Payload) -> str:
     lines = [
         f"# What {evaluation.robot.name} carries at its tip, by `ids payload`; 95 % intervals.",
         f"# Tip frame: {payload.frame}.",
-        f"mass: {_number(found.mass)}  # kg, +- {found.mass_half_width:.2g}",
-        f"center_of_mass: {_list(payload.center_of_mass)}  # m, tip frame, +- "
+        f"mass: {yaml_number(found.mass)}  # kg, +- {found.mass_half_width:.2g}",
+        f"center_of_mass: {yaml_list(payload.center_of_mass)}  # m, tip frame, +- "
         + ", ".join(f"{width:.2g}" if math.isfinite(width) else "any" for width in center),
     ]
     if found.inertia_is_known:
         widths = _upper(found.inertia_half_width)
         lines.append("# ixx ixy ixz iyy iyz izz about center_of_mass [kg m^2]")
         lines.append(
-            f"inertia: {_list(_upper(found.inertia))}  # +- "
+            f"inertia: {yaml_list(_upper(found.inertia))}  # +- "
             + ", ".join(f"{width:.2g}" for width in widths)
         )
     else:
@@ -91,24 +92,24 @@ def yaml_text(payload: Payload) -> str:
 
 
 def summary(payload: Payload) -> dict[str, Any]:
-    """All figures, for JSON."""
+    """All numbers, for JSON."""
     found, evaluation = payload.estimate, payload.evaluation
     known = found.inertia_is_known
     return {
         "schema": 1,
-        "bag": str(evaluation.bag),
-        "empty": None if payload.empty is None else str(payload.empty),
+        "bag": evaluation.bag,
+        "empty": payload.empty,
         "topic": evaluation.log.topic,
         "robot": evaluation.robot.name,
         "plugin": evaluation.robot.plugin,
         "mass": found.mass,
         "mass_half_width": found.mass_half_width,
         "frame": payload.frame,
-        "center_of_mass": payload.center_of_mass.tolist(),
-        "center_of_mass_half_width": payload.center_of_mass_half_width.tolist(),
+        "center_of_mass": payload.center_of_mass,
+        "center_of_mass_half_width": payload.center_of_mass_half_width,
         "inertia": _upper(found.inertia) if known else None,
         "inertia_half_width": _upper(found.inertia_half_width) if known else None,
-        "covariance": found.covariance.tolist(),
+        "covariance": found.covariance,
         "confidence": 0.95,
         "blocks": found.blocks,
         "duration": found.duration,
@@ -119,25 +120,17 @@ def summary(payload: Payload) -> dict[str, Any]:
             {
                 "joint": name,
                 "unit": evaluation.units[j],
-                "rmse_before": float(payload.rmse_before[j]),
-                "rmse_after": float(payload.rmse_after[j]),
-                "offset": float(found.offset[j]),
-                "white_noise": float(payload.noise.white[j]),
-                "correlated_noise": float(payload.noise.correlated[j]),
+                "rmse_before": payload.rmse_before[j],
+                "rmse_after": payload.rmse_after[j],
+                "offset": found.offset[j],
+                "white_noise": payload.noise.white[j],
+                "correlated_noise": payload.noise.correlated[j],
             }
             for j, name in enumerate(payload.joint_names)
         ],
-        "notes": list(payload.notes),
+        "notes": payload.notes,
     }
 
 
 def _upper(matrix: Floats) -> list[float]:
     return [float(matrix[entry]) for entry in _UPPER]
-
-
-def _number(value: float) -> str:
-    return repr(float(value))
-
-
-def _list(values: Iterable[float]) -> str:
-    return f"[{', '.join(map(_number, values))}]"

@@ -11,10 +11,10 @@ comment says what it can't. Everything else stays: comments, shapes, limits, ord
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ElementTree
 from io import StringIO
 from typing import TYPE_CHECKING
-from xml.parsers import expat
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -79,29 +79,10 @@ def mjcf_text(found: Identification) -> str:
 
 def _around_root(text: str) -> tuple[str, str, str]:
     """What is before the root element, that element, and what is after it."""
-    data = text.encode("utf-8")
-    span = [0, 0]
-    depth = 0
-    parser = expat.ParserCreate("utf-8")
-
-    def start(*_: object) -> None:
-        nonlocal depth
-        if depth == 0:
-            span[0] = parser.CurrentByteIndex
-        depth += 1
-
-    def end(_: str) -> None:
-        nonlocal depth
-        depth -= 1
-        if depth == 0:
-            span[1] = parser.CurrentByteIndex
-
-    parser.StartElementHandler, parser.EndElementHandler = start, end
-    parser.Parse(data, True)
-    close = data.index(b">", span[1]) + 1
-    parts = data[: span[0]], data[span[0] : close], data[close:]
-    before, body, after = (part.decode("utf-8") for part in parts)
-    return before, body, after
+    prolog = re.match(r"(\s|<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>]*>)*", text, re.DOTALL)
+    begin = prolog.end() if prolog else 0
+    end = text.rindex("</robot>") + len("</robot>")
+    return text[:begin], text[begin:end], text[end:]
 
 
 def _parsed(body: str) -> ElementTree.Element:
