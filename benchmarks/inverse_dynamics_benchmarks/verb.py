@@ -8,9 +8,10 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.values import positive_number
+from inverse_dynamics.verbs.values import count, positive_number
 
 if TYPE_CHECKING:
+    from inverse_dynamics.verbs.options import Options
     from inverse_dynamics_benchmarks import Measurement
 
 SUMMARY = "how fast this machine is, beside KDL, Pinocchio and MuJoCo"
@@ -34,52 +35,29 @@ _SECONDS = 0.003
 _CALLS = 1_000_000
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    _add_measuring(parser.add_argument_group("what is measured"))
-    results = parser.add_argument_group("where results go, besides the screen")
-    results.add_argument("--json", metavar="FILE", type=Path, help="all times, for --from")
-    results.add_argument("--markdown", metavar="FILE", type=Path, help="the tables as a page")
-    results.add_argument("--plot", metavar="FILE", type=Path, help="a figure: .svg, .png or .pdf")
-    results.add_argument("--overwrite", action="store_true", help="replace existing files")
-
-
-def _add_measuring(group: argparse._ArgumentGroup) -> None:
-    group.add_argument(
-        "--from",
-        dest="source",
-        metavar="FILE",
-        type=Path,
-        help="nothing: show what --json wrote earlier",
-    )
-    group.add_argument(
-        "--only",
-        metavar="REGEX",
-        type=_regular_expression,
+    measured = options.group("what is measured")
+    measured.add("--from FILE", "nothing: show what --json wrote earlier", Path, dest="source")
+    measured.add(
+        "--only REGEX",
+        "benchmarks whose name, ROBOT/QUANTITY/LIBRARY, matches",
+        _regular_expression,
         default="",
-        help="benchmarks whose name, ROBOT/QUANTITY/LIBRARY, matches",
     )
-    group.add_argument(
-        "--repetitions",
-        metavar="N",
-        type=_repetitions,
-        help=f"of each benchmark, two or more (default: {_REPETITIONS})",
+    measured.add(
+        "--repetitions N",
+        f"of each benchmark, two or more (default: {_REPETITIONS})",
+        _repetitions,
     )
-    group.add_argument(
-        "--seconds",
-        metavar="S",
-        type=positive_number,
-        help=f"of each repetition (default: {_SECONDS})",
-    )
-    group.add_argument(
-        "--latency", action="store_true", help="time single calls too: their worst, not their least"
-    )
-    group.add_argument(
-        "--calls",
-        metavar="N",
-        type=_count,
-        help=f"how many with --latency (default: {_CALLS})",
-    )
+    measured.add("--seconds S", f"of each repetition (default: {_SECONDS})", positive_number)
+    measured.add("--latency", "time single calls too: their worst, not their least")
+    measured.add("--calls N", f"how many with --latency (default: {_CALLS})", count)
+    results = options.group("where results go, besides the screen")
+    results.add("--json FILE", "all times, for --from", Path)
+    results.add("--markdown FILE", "the tables as a page", Path)
+    results.add("--plot FILE", "a figure: .svg, .png or .pdf", Path)
+    results.add("--overwrite", "replace existing files")
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -159,17 +137,11 @@ def _print(result: Measurement) -> None:
     Screen(soft_wrap=False, width=max(120, Screen().width)).print(Markdown(page(result)))
 
 
-def _count(text: str) -> int:
-    if not re.fullmatch(r"[0-9]{1,10}", text) or int(text) == 0:
-        raise argparse.ArgumentTypeError(f"expected a whole number above zero, got '{text}'")
-    return int(text)
-
-
 def _repetitions(text: str) -> int:
-    count = _count(text)
-    if count == 1:  # no statistics of one
+    repetitions = count(text)
+    if repetitions == 1:  # no statistics of one
         raise argparse.ArgumentTypeError("expected two or more, got '1'")
-    return count
+    return repetitions
 
 
 def _regular_expression(text: str) -> str:

@@ -2,7 +2,7 @@
 """The command `ids`: verbs, errors, exit codes.
 
 A verb is a module of inverse_dynamics.verbs with SUMMARY (its line in the list of verbs), EPILOG (examples),
-perhaps DESCRIPTION, `declare(parser)` and `run(arguments)`, which imports what is heavy. A package that is
+perhaps DESCRIPTION, `declare(options)` and `run(arguments)`, which imports what is heavy. A package that is
 built on request brings its verb along.
 Exit code 0: done; 2: something that the user can correct, named on stderr (without a verb: the help);
 3: some of several recordings failed, the others are done; 1: an unexpected error, with a report in a
@@ -27,6 +27,7 @@ from inverse_dynamics.base.help_text import HelpFormatter, terminal_width, wrapp
 from inverse_dynamics.base.wording import did_you_mean, not_built
 from inverse_dynamics.base.wording import message as _message
 from inverse_dynamics.errors import PartialError, UserError
+from inverse_dynamics.verbs.options import Options
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -176,8 +177,8 @@ def _add_verb(subparsers: Any, verb: str, module: Any) -> None:
     )
     parser.add_argument("-h", action=_ShortHelp, nargs=0, help="show this verb on one screen")
     parser.add_argument("--help", action="help", help="show all of this")
-    module.declare(parser)
-    parser.set_defaults(run=module.run, parser=parser)
+    module.declare(Options(parser))
+    parser.set_defaults(run=module.run, parser=parser, verb=verb)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

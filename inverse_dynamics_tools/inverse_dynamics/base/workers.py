@@ -82,7 +82,8 @@ def in_processes(
                         workers.append(_Worker(function, scratch))
                     index = waiting.popleft()
                     workers[-1].take(index, arguments[index])
-                for worker in wait(workers):  # type: ignore[arg-type]  # anything with fileno()
+                ready: list[Any] = wait(workers)  # type: ignore[arg-type]  # anything with fileno()
+                for worker in ready:
                     index, outcome = worker.index, worker.outcome()
                     if waiting and worker.alive:
                         following = waiting.popleft()

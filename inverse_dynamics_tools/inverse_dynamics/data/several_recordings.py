@@ -86,21 +86,19 @@ def _check_once(paths: Sequence[Path]) -> None:
     for path in paths:
         place = os.path.realpath(path)
         if place in places:
-            raise BagError(_twice(places[place], path))
+            raise _twice(places[place], path)
         places[place] = path
     for place, path in places.items():
         directory = os.path.dirname(place)
         if directory in places and directory != place:  # that of / is /
-            raise BagError(_twice(places[directory], path))
+            raise _twice(places[directory], path)
 
 
-def _twice(one: Path, other: Path) -> str:
-    if str(one) == str(other):
-        return f"{one}: expected each recording once, got it twice; leave one of them out"
-    return (
-        f"{one}, {other}: expected each recording once, but they are the same one; leave one of them "
-        "out"
-    )
+def _twice(one: Path, other: Path) -> BagError:
+    same = str(one) == str(other)
+    got = f"{one}: expected each recording once, got it twice"
+    pair = f"{one}, {other}: expected each recording once, but they are the same one"
+    return BagError(f"{got if same else pair}; leave one of them out")
 
 
 def _names(paths: Sequence[Path], taken: Sequence[str]) -> list[str]:

@@ -38,8 +38,8 @@ def write_contacts(
     inputs = (contacts.evaluation.bag, *contacts.evaluation.robot.files)
     with written_whole(out, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as directory:
         write_text(directory / MARK, json_text(summary(contacts)))
-        names = ("time", "torques", "valid", "contact")
-        names = (*names, "wrenches", "unseen") if contacts.wrenches is not None else names
+        names = ["time", "torques", "valid", "contact"]
+        names += ["wrenches", "unseen"] if contacts.wrenches is not None else []
         np.savez(directory / "series.npz", **{name: getattr(contacts, name) for name in names})
         save_contact_figure(contacts, *(directory / f"contacts.{suffix}" for suffix in figures))
 

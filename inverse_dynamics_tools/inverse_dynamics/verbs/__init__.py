@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The verbs of the command `ids`, a module each: `add_parser(subparsers)` and `run(arguments)`."""
+"""The verbs of the command `ids`, a module each: see cli.py."""

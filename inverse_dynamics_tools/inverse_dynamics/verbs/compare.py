@@ -5,11 +5,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.options import figures, option, output, runs, shared
+from inverse_dynamics.verbs.options import Options
 from inverse_dynamics.verbs.values import names
 
 if TYPE_CHECKING:
     import argparse
+
+    from inverse_dynamics.verbs.screen import Line
 
 SUMMARY = "put evaluations of one recording side by side"
 DESCRIPTION = "Put evaluations of one recording side by side: solvers, models, filters."
@@ -28,24 +30,20 @@ results, written whole or not at all:
 """
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    runs(parser, "results of `ids evaluate`, two or more")
-    option(
-        parser,
+    options.runs("results of `ids evaluate`, two or more")
+    options.add(
         "--labels A,B,...",
         "names of the runs (default: what differs between them)",
         names,
         default=(),
     )
-    output(
-        parser,
-        "DIR",
-        "directory for figure and page (default: only the table is printed)",
-        replaces=True,
+    options.output(
+        "DIR", "directory for figure and page (default: only the table is printed)", replaces=True
     )
-    shared(parser, "--json")
-    figures(parser)
+    options.shared("--json")
+    options.figures()
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -54,7 +52,7 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.evaluation.comparison import compare
     from inverse_dynamics.results.comparisons import CONTENTS, summary, write_comparison
     from inverse_dynamics.results.evaluations import read_evaluation
-    from inverse_dynamics.verbs.screen import Screen, print_json
+    from inverse_dynamics.verbs.screen import show
     from inverse_dynamics.verbs.tables import comparison_table
 
     out, overwrite = arguments.out, arguments.overwrite
@@ -63,11 +61,10 @@ def run(arguments: argparse.Namespace) -> None:
     comparison = compare([read_evaluation(run) for run in arguments.runs], arguments.labels)
     if out is not None:
         write_comparison(comparison, out, overwrite=overwrite, figures=arguments.figures)
-    if arguments.json:
-        print_json("compare", summary(comparison), filter(None, [out]))
-        return
-    console = Screen()
-    console.print(comparison_table(comparison))
-    if out is not None:
-        console.rows("figure", (out / f"comparison.{suffix}" for suffix in arguments.figures))
-        console.print(f"page           {out / 'report.html'}")
+    files = [out / f"comparison.{suffix}" for suffix in arguments.figures] if out else []
+    lines: list[Line] = [
+        comparison_table(comparison),
+        ("figure", files),
+        ("page", [out / "report.html"] if out else []),
+    ]
+    show(arguments, summary(comparison), [out], lines)

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import argparse
 
+    from inverse_dynamics.verbs.options import Options
+
 SUMMARY = "print the script that completes `ids` commands in bash, zsh or fish"
 EPILOG = """\
 examples:
@@ -17,10 +19,10 @@ examples:
 """
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
     shells = ("bash", "zsh", "fish")
-    parser.add_argument("shell", choices=shells, help="the shell that reads the script")
+    options.argument("shell", choices=shells, help="the shell that reads the script")
 
 
 def run(arguments: argparse.Namespace) -> None:

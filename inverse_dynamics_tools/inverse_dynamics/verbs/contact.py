@@ -6,25 +6,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.options import (
-    RECORDING,
-    SOLVER,
-    chosen_robot,
-    figures,
-    given_overrides,
-    option,
-    output,
-    overrides,
-    recording,
-    robot_option,
-    shared,
-)
+from inverse_dynamics.verbs.options import RECORDING, SOLVER, Options, chosen_robot, given_overrides
 from inverse_dynamics.verbs.values import file_name, numbers, positive_number, span
 
 if TYPE_CHECKING:
     import argparse
-
-    from inverse_dynamics.evaluation.contacts import Contacts
 
 SUMMARY = "find what touched the robot in a recording, and with which force"
 EPILOG = """\
@@ -54,57 +40,49 @@ results, written whole or not at all:
 """
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    recording(parser)
-    robot_option(parser)
-    quiet = parser.add_argument_group(
-        "thresholds, from a part without contact or from `ids identify`"
-    )
-    option(quiet, "--quiet FROM,TO", "the part without contact, in s since the first sample", span)
-    option(
-        quiet,
+    options.recording()
+    options.robot()
+    quiet = options.group("thresholds, from a part without contact or from `ids identify`")
+    quiet.add("--quiet FROM,TO", "the part without contact, in s since the first sample", span)
+    quiet.add(
         "--quiet-recording RECORDING",
         "a recording without contact; with --quiet, only that part of it",
         file_name,
     )
-    option(
-        quiet,
+    quiet.add(
         "--false-alarms PER_HOUR",
         "false alarms per hour, of all joints together (default: 1)",
         positive_number,
         default=1.0,
     )
-    estimator = parser.add_argument_group("estimator")
-    option(
-        estimator,
+    estimator = options.group("estimator")
+    estimator.add(
         "--gain PER_SECOND",
         "1 / time constant (default: 10 to 60 1/s, 1.9 times the cut-off [Hz] of the accelerations "
         "of the recording that gives the thresholds)",
         positive_number,
     )
-    option(
-        estimator,
+    estimator.add(
         "--tracking RAD_PER_SECOND",
         "take velocities from positions, tracked with this bandwidth (default: recorded velocities)",
         positive_number,
     )
-    option(
-        estimator,
+    estimator.add(
         "--friction-band A,B,...",
         "error of the friction model [N m] in addition to that of the part without contact, one "
         "number per joint, or one for all: only what exceeds it is an external torque",
         numbers,
         default=(),
     )
-    output(
-        parser,
+    options.output(
         "DIR",
         "output directory (default: RECORDING_ROBOT_contacts in the working directory)",
     )
-    shared(parser, "--json")
-    figures(parser)
-    overrides(parser, *SOLVER, *RECORDING)
+    options.shared("--json")
+    options.figures()
+    options.overrides(*SOLVER, *RECORDING)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -113,7 +91,8 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.data.several_recordings import name_of
     from inverse_dynamics.evaluation.contacts import find_contacts
     from inverse_dynamics.results.contacts import CONTENTS, summary, write_contacts
-    from inverse_dynamics.verbs.screen import print_json, progress_bar
+    from inverse_dynamics.verbs.screen import heading, progress_bar, show
+    from inverse_dynamics.verbs.tables import contact_table, threshold_table
 
     robot = chosen_robot(arguments)
     out = arguments.out or Path(f"{name_of(arguments.bag)}_{robot.name}_contacts")
@@ -133,23 +112,19 @@ def run(arguments: argparse.Namespace) -> None:
             **given_overrides(arguments),
         )
     write_contacts(contacts, out, overwrite=arguments.overwrite, figures=arguments.figures)
-    if arguments.json:
-        print_json("contact", summary(contacts), [out])
-    else:
-        _print(contacts, out, arguments.figures)
-
-
-def _print(contacts: Contacts, out: Path, formats: tuple[str, ...]) -> None:
-    from inverse_dynamics.verbs.screen import Screen, print_heading
-    from inverse_dynamics.verbs.tables import contact_table, threshold_table
-
-    console = Screen()
-    print_heading(console, contacts.evaluation)
-    console.print(f"effort means   {contacts.evaluation.effort.summary}")
-    console.print(f"estimator      {contacts.estimator}, {contacts.gain:.3g} 1/s")
-    console.print(f"quiet          {contacts.quiet}")
-    console.rows("note", contacts.notes)
-    console.print(threshold_table(contacts))
-    console.print(contact_table(contacts) if contacts.contacts else "contacts       none")
-    console.rows("figure", (out / f"contacts.{suffix}" for suffix in formats))
-    console.print(f"contacts       {out / 'contacts.json'}")
+    show(
+        arguments,
+        summary(contacts),
+        [out],
+        [
+            *heading(contacts.evaluation),
+            ("effort means", contacts.evaluation.effort.summary),
+            ("estimator", f"{contacts.estimator}, {contacts.gain:.3g} 1/s"),
+            ("quiet", contacts.quiet),
+            ("note", contacts.notes),
+            threshold_table(contacts),
+            contact_table(contacts) if contacts.contacts else ("contacts", "none"),
+            ("figure", [out / f"contacts.{suffix}" for suffix in arguments.figures]),
+            ("contacts", out / "contacts.json"),
+        ],
+    )

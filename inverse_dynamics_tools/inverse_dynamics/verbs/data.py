@@ -5,12 +5,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from inverse_dynamics.verbs.options import option, output, shared
+from inverse_dynamics.verbs.options import Options
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Iterator
 
-    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.screen import Line
 
 SUMMARY = "fetch the public recordings of a real UR10 and a real Panda"
 EPILOG = """\
@@ -26,29 +27,27 @@ and intact are kept; each recording is written whole or not at all.
 """
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    output(
-        parser,
+    options.output(
         "DIR",
         "output directory (default: $IDS_DATA_DIR, else $XDG_DATA_HOME/inverse_dynamics, else "
         "~/.local/share/inverse_dynamics)",
     )
-    shared(parser, "--json")
-    option(
-        parser,
+    options.shared("--json")
+    options.add(
         "--from URL|CLONE",
         "source of the files, instead of GitHub: another server, or the directory of a clone",
         dest="source",
         default="",
     )
-    option(parser, "--dry-run", "only list what would be fetched")
+    options.add("--dry-run", "only list what would be fetched")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.data.public_recordings import data_directory, fetch_recordings, listed
-    from inverse_dynamics.verbs.screen import Screen, print_json, progress_bar
+    from inverse_dynamics.verbs.screen import Screen, progress_bar, show
 
     directory = arguments.out or data_directory()
     written = []
@@ -61,21 +60,18 @@ def run(arguments: argparse.Namespace) -> None:
                 say=Screen(stderr=arguments.json).print,
                 progress=progress,
             )
-    if arguments.json:
-        print_json("data", listed(directory), written)
-    elif arguments.dry_run:
-        _print(listed(directory), Screen())
+    if arguments.json or arguments.dry_run:
+        found = listed(directory)
+        show(arguments, found, written, _plan(found))
 
 
-def _print(found: dict[str, Any], screen: Screen) -> None:
+def _plan(found: dict[str, Any]) -> Iterator[Line]:
     """What would be fetched."""
-    screen.print(f"{found['repository']}, commit {found['commit']}, license {found['license']}")
+    yield f"{found['repository']}, commit {found['commit']}, license {found['license']}"
     for recording in found["recordings"]:
         state = "already there and intact" if recording["intact"] else "to be fetched"
-        screen.print(f"{recording['directory']}: {state}")
+        yield f"{recording['directory']}: {state}"
         for file in recording["files"]:
-            screen.print(
-                f"  {file.size:>9} bytes  {file.source}\n             SHA-256 {file.sha256}"
-            )
+            yield f"  {file.size:>9} bytes  {file.source}\n             SHA-256 {file.sha256}"
     missing = sum(r["bytes"] for r in found["recordings"] if not r["intact"])
-    screen.print(f"to fetch: {missing / 1e6:.2f} MB; nothing was fetched")
+    yield f"to fetch: {missing / 1e6:.2f} MB; nothing was fetched"

@@ -6,13 +6,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.options import option, output, shared
+from inverse_dynamics.verbs.options import Options
 
 if TYPE_CHECKING:
     import argparse
 
-    from inverse_dynamics.results.demo import Demo
-    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.screen import Line
 
 SUMMARY = "simulate and evaluate four robots, show them on one page"
 DESCRIPTION = (
@@ -32,24 +31,24 @@ results, written whole or not at all:
 """
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    output(parser, "DIR", "results (default: demo)", default=Path("demo"), replaces=True)
-    shared(parser, "--json")
-    option(
-        parser,
+    options.output("DIR", "results (default: demo)", default=Path("demo"), replaces=True)
+    options.shared("--json")
+    options.add(
         "--recordings DIR",
         "directory with ur10_exciting_trajectory and panda_exciting_trajectory "
         "(default: $IDS_DATA_DIR/bags, else where `ids data` puts them)",
         Path,
     )
-    option(parser, "--quick", "a few seconds of simulated motion")
+    options.add("--quick", "a few seconds of simulated motion")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
-    from inverse_dynamics.results.demo import find_recordings, run_demo, summary
-    from inverse_dynamics.verbs.screen import Screen, print_json, progress_bar
+    from inverse_dynamics.results.demo import TITLES, find_recordings, run_demo, summary
+    from inverse_dynamics.verbs.screen import Screen, progress_bar, show
+    from inverse_dynamics.verbs.tables import comparison_table, mean_table
 
     console = Screen(stderr=arguments.json)
     with progress_bar() as progress:
@@ -61,21 +60,12 @@ def run(arguments: argparse.Namespace) -> None:
             say=lambda text: console.print(f"{text} ..."),
             progress=progress,
         )
-    if arguments.json:
-        print_json("demo", summary(demo.evaluations, demo.notes), [demo.directory])
-    else:
-        _print(demo, console)
-
-
-def _print(demo: Demo, console: Screen) -> None:
-    from inverse_dynamics.results.demo import TITLES
-    from inverse_dynamics.verbs.tables import comparison_table, mean_table
-
-    console.print(mean_table({TITLES[name]: e for name, e in demo.evaluations.items()}))
-    if demo.comparison is not None:
-        console.print("UR10, real: gain by identification")
-        console.print(comparison_table(demo.comparison))
-    console.rows("note", demo.notes)
-    if any(demo.directory.glob("*/torques.png")):
-        console.print(f"figures        {demo.directory}/*/torques.png")
-    console.print(f"page           {demo.page.absolute()}")
+    out, comparison = demo.directory, demo.comparison
+    lines: list[Line] = [mean_table({TITLES[name]: e for name, e in demo.evaluations.items()})]
+    if comparison is not None:
+        lines += ["UR10, real: gain by identification", comparison_table(comparison)]
+    lines.append(("note", demo.notes))
+    if any(out.glob("*/torques.png")):
+        lines.append(("figures", f"{out}/*/torques.png"))
+    lines.append(("page", demo.page.absolute()))
+    show(arguments, summary(demo.evaluations, demo.notes), [out], lines)

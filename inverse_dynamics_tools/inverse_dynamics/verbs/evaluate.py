@@ -12,23 +12,17 @@ from inverse_dynamics.verbs.options import (
     FILTER,
     RECORDING,
     SOLVER,
+    Options,
     chosen_robot,
-    figures,
     given_overrides,
-    option,
-    output,
-    overrides,
-    robot_option,
-    shared,
 )
 from inverse_dynamics.verbs.values import count, file_name
 
 if TYPE_CHECKING:
     import argparse
 
-    from inverse_dynamics.evaluation.evaluation import Evaluation
-    from inverse_dynamics.results.many_evaluations import ManyEvaluations
     from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.verbs.screen import Line
 
 SUMMARY = "compute the torques of a recorded motion and compare them with the measured ones"
 EPILOG = """\
@@ -90,9 +84,9 @@ variable IDS_UNPACK_LIMIT_MB sets another limit.
 """
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    parser.add_argument(
+    options.argument(
         "bags",
         metavar="BAG",
         type=file_name,
@@ -102,37 +96,33 @@ def declare(parser: argparse.ArgumentParser) -> None:
         ".parquet, .npz, .mat; several files of one recording: A+B); or a directory that holds "
         "recordings",
     )
-    robot_option(parser)
-    output(
-        parser,
+    options.robot()
+    options.output(
         "DIR",
         "output directory (default: BAG_ROBOT in the working directory; for several recordings: "
         "recordings_ROBOT)",
         replaces=True,
     )
-    option(
-        parser,
+    options.add(
         "--storage",
         "storage of the output recording (default: that of BAG; for a table: sqlite3)",
         choices=STORAGES,
     )
-    shared(parser, "--json")
-    figures(parser)
-    option(parser, "--parquet", "write series.parquet too: see `ids export --help`")
+    options.shared("--json")
+    options.figures()
+    options.add("--parquet", "write series.parquet too: see `ids export --help`")
 
-    many = parser.add_argument_group("several recordings")
-    option(
-        many,
+    many = options.group("several recordings")
+    many.add(
         "--jobs N",
         "number evaluated at the same time, each in its own process (default: one per core)",
         count,
     )
-    option(
-        many,
+    many.add(
         "--scheduler ADDRESS",
         "on the workers of a Dask cluster instead: tcp://HOST:8786 of its scheduler",
     )
-    overrides(parser, *SOLVER, *RECORDING, *FILTER)
+    options.overrides(*SOLVER, *RECORDING, *FILTER)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -156,23 +146,39 @@ def run(arguments: argparse.Namespace) -> None:
 def _run_one(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any]) -> None:
     from inverse_dynamics.data.several_recordings import name_of
     from inverse_dynamics.results.evaluations import evaluate_into, metrics
-    from inverse_dynamics.verbs.screen import print_json, progress_bar
+    from inverse_dynamics.verbs.screen import heading, progress_bar, show
+    from inverse_dynamics.verbs.tables import error_table
 
     (bag,) = arguments.bags
     out = arguments.out or Path(f"{name_of(bag)}_{robot.name}")
     parquet = name_of(bag) if arguments.parquet else None
     with progress_bar() as progress:
         evaluation = evaluate_into(out, bag, robot, parquet=parquet, progress=progress, **options)
-    if arguments.json:
-        print_json("evaluate", metrics(evaluation), [out])
-    else:
-        _print(evaluation, out, arguments.figures)
+    drawn = [str(out / f"torques.{suffix}") for suffix in arguments.figures]
+    if not drawn and not is_installed("matplotlib"):
+        drawn = [f"none, it needs matplotlib: {how_to_install('matplotlib')}"]
+    show(
+        arguments,
+        metrics(evaluation),
+        [out],
+        [
+            *heading(evaluation),
+            ("accelerations", evaluation.accelerations.summary),
+            ("effort means", evaluation.effort.summary),
+            ("note", evaluation.notes),
+            error_table(evaluation),
+            ("figure", drawn),
+            ("bag", f"{out / 'bag'}: /torques (computed), /torques_gt (measured)"),
+            ("errors", out / "metrics.json"),
+        ],
+    )
 
 
 def _run_many(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any]) -> None:
     from inverse_dynamics.errors import PartialError
     from inverse_dynamics.results.many_evaluations import evaluate_many, failures_told, summary
-    from inverse_dynamics.verbs.screen import print_json, progress_bar
+    from inverse_dynamics.verbs.screen import progress_bar, show, title
+    from inverse_dynamics.verbs.tables import recordings_table
 
     with progress_bar() as progress:
         result = evaluate_many(
@@ -185,41 +191,16 @@ def _run_many(arguments: argparse.Namespace, robot: Robot, options: dict[str, An
             progress=progress,
             **options,
         )
-    if arguments.json:
-        print_json("evaluate", summary(result, robot), [result.directory])
-    else:
-        _print_many(result, robot)
+    lines: list[Line] = [
+        title(robot),
+        ("solver", result.summaries[0].plugin),
+        recordings_table(result.summaries),
+        ("page", result.directory / "report.html"),
+        ("summary", result.directory / "summary.csv"),
+        ("results", f"{result.directory}/NAME"),
+    ]
+    show(arguments, summary(result, robot), [result.directory], lines)
     if result.failures:
         failed = len(result.failures)
         what = f"{failed} of {failed + len(result.summaries)} recordings failed"
         raise PartialError(failures_told(what, result.failures))
-
-
-def _print_many(result: ManyEvaluations, robot: Robot) -> None:
-    from inverse_dynamics.verbs.screen import Screen
-    from inverse_dynamics.verbs.tables import recordings_table
-
-    console = Screen()
-    console.print(robot.description or robot.name, style="bold")
-    console.print(f"solver         {result.summaries[0].plugin}")
-    console.print(recordings_table(result.summaries))
-    console.print(f"page           {result.directory / 'report.html'}")
-    console.print(f"summary        {result.directory / 'summary.csv'}")
-    console.print(f"results        {result.directory}/NAME")
-
-
-def _print(evaluation: Evaluation, out: Path, formats: tuple[str, ...]) -> None:
-    from inverse_dynamics.verbs.screen import Screen, print_heading
-    from inverse_dynamics.verbs.tables import error_table
-
-    console = Screen()
-    print_heading(console, evaluation)
-    console.print(f"accelerations  {evaluation.accelerations.summary}")
-    console.print(f"effort means   {evaluation.effort.summary}")
-    console.rows("note", evaluation.notes)
-    console.print(error_table(evaluation))
-    console.rows("figure", (out / f"torques.{suffix}" for suffix in formats))
-    if not formats and not is_installed("matplotlib"):
-        console.print(f"figure         none, it needs matplotlib: {how_to_install('matplotlib')}")
-    console.print(f"bag            {out / 'bag'}: /torques (computed), /torques_gt (measured)")
-    console.print(f"errors         {out / 'metrics.json'}")

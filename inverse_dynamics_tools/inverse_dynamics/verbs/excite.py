@@ -6,21 +6,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.options import (
-    chosen_robot,
-    given_overrides,
-    option,
-    output,
-    overrides,
-    robot_option,
-    shared,
-)
+from inverse_dynamics.verbs.options import Options, chosen_robot, given_overrides
 from inverse_dynamics.verbs.values import positive_number, share, whole_number
 
 if TYPE_CHECKING:
     import argparse
-
-    from inverse_dynamics.results.excitations import ExcitationResult
 
 SUMMARY = "find the motion to record for identification"
 DESCRIPTION = (
@@ -50,72 +40,63 @@ results, written together or not at all; Ctrl-C leaves nothing:
 """
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    which = parser.add_mutually_exclusive_group(required=True)
-    robot_option(which)
-    option(which, "--urdf FILE", "robot description, instead of --robot", Path)
-    output(parser, "FILE", "the motion (YAML)", required=True)
-    shared(parser, "--json")
-    option(
-        parser,
+    which = options.one_of(required=True)
+    which.robot()
+    which.add("--urdf FILE", "robot description, instead of --robot", Path)
+    options.output("FILE", "the motion (YAML)", required=True)
+    options.shared("--json")
+    options.add(
         "--given RECORDING",
         "recordings that will also be used: the motion adds the information that they lack",
         Path,
         nargs="+",
         default=[],
     )
-    option(
-        parser,
+    options.add(
         "--payload",
         "a motion that identifies only the ten parameters of a body at the tip",
     )
-    option(
-        parser,
+    options.add(
         "--seed SEED",
         "seed of the search: the same seed gives the same motion",
         whole_number,
         default=0,
     )
-    overrides(parser, "--root", "--tip", "--gravity")
-    _declare_limits(parser.add_argument_group("limits"))
+    options.overrides("--root", "--tip", "--gravity")
+    _declare_limits(options.group("limits"))
 
 
-def _declare_limits(limits: argparse._ArgumentGroup) -> None:
-    option(
-        limits,
+def _declare_limits(limits: Options) -> None:
+    limits.add(
         "--duration S",
         "length of the motion (default: 20; with --payload: 8)",
         positive_number,
     )
-    option(
-        limits,
+    limits.add(
         "--share P",
         "share of the limits of position, velocity, acceleration and effort (default: 0.8)",
         share,
     )
-    option(
-        limits,
+    limits.add(
         "--full-speed-in S",
         "shortest time to reach the velocity limit, which limits the acceleration (default: 0.5)",
         positive_number,
         dest="time_to_full_speed",
     )
-    option(
-        limits,
+    limits.add(
         "--clearance M",
         "least distance to the arm itself and to the table (default: 0.01)",
         positive_number,
     )
-    option(
-        limits,
+    limits.add(
         "--no-table",
         "allow the arm to reach below its base",
         dest="table",
         action="store_false",
     )
-    option(
-        limits,
+    limits.add(
         "--step S",
         "time between points of the JointTrajectory (default: at the waypoints, about 0.5 s apart, "
         "which controllers join by polynomials of the fifth order)",
@@ -134,7 +115,8 @@ def run(arguments: argparse.Namespace) -> None:
         write_excitation,
     )
     from inverse_dynamics.robot.robots import with_changes
-    from inverse_dynamics.verbs.screen import announce, print_json, progress_bar
+    from inverse_dynamics.verbs.screen import announce, progress_bar, show, title
+    from inverse_dynamics.verbs.tables import excitation_table
 
     robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
     check_output(arguments.out, robot, arguments.given, overwrite=arguments.overwrite)
@@ -157,24 +139,21 @@ def run(arguments: argparse.Namespace) -> None:
         )
     write_excitation(result, arguments.out, overwrite=arguments.overwrite, step=arguments.step)
     files = [arguments.out, sending_file(arguments.out)]
-    if arguments.json:
-        print_json("excite", summary(result), files)
-    else:
-        _print(result, files)
-
-
-def _print(result: ExcitationResult, files: list[Path]) -> None:
-    from inverse_dynamics.verbs.screen import Screen
-    from inverse_dynamics.verbs.tables import excitation_table
-
-    console = Screen()
     found = result.excitation
-    console.print(result.robot.description or result.robot.name, style="bold")
-    console.rows("note", result.notes)
-    console.print(
-        f"motion         {found.trajectory.duration:g} s, condition number of the base regressor "
+    motion = (
+        f"{found.trajectory.duration:g} s, condition number of the base regressor "
         f"{found.condition_number:.1f}"
     )
-    console.print(f"noise          {result.noise_source}")
-    console.print(excitation_table(result))
-    console.print(f"written        {', '.join(map(str, files))}")
+    show(
+        arguments,
+        summary(result),
+        files,
+        [
+            title(result.robot),
+            ("note", result.notes),
+            ("motion", motion),
+            ("noise", result.noise_source),
+            excitation_table(result),
+            ("written", ", ".join(map(str, files))),
+        ],
+    )

@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.options import option, output, runs
+from inverse_dynamics.verbs.options import Options
 
 if TYPE_CHECKING:
     import argparse
@@ -31,16 +31,15 @@ All digits are kept. A Parquet file states the unit of each column; a CSV file h
 """
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    runs(parser)
-    option(
-        parser,
+    options.runs()
+    options.add(
         "--format",
         "format of the table (default: by the ending of --out, else csv)",
         choices=("csv", "parquet"),
     )
-    output(parser, "FILE", "the table of one RUN (default: RUN/series.csv or RUN/series.parquet)")
+    options.output("FILE", "the table of one RUN (default: RUN/series.csv or RUN/series.parquet)")
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -9,28 +9,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.verbs.options import (
-    CHAIN,
-    RECORDING,
-    chosen_robot,
-    given_overrides,
-    option,
-    output,
-    overrides,
-    recording,
-    robot_option,
-    shared,
-)
+from inverse_dynamics.verbs.options import CHAIN, RECORDING, Options, chosen_robot, given_overrides
 from inverse_dynamics.verbs.values import file_name, stated_payload
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from inverse_dynamics.base.arrays import Parameter
     from inverse_dynamics.identification.result import Identification
     from inverse_dynamics.results.hold_out import HoldOut
     from inverse_dynamics.results.identifications import IdentificationFiles
     from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.verbs.screen import Line
 
 SUMMARY = "identify a model with friction from recordings of a robot, and state its errors"
 EPILOG = """\
@@ -68,33 +58,29 @@ results, all of them or none:
 _OF_RECORDINGS = ("effort_is", "topic", "start", "end")  # arguments of identify()
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    recording(
-        parser,
+    options.recording(
         "recordings",
         "recording, as for `ids evaluate`; several recordings must be of one robot with the same load",
         nargs="+",
     )
-    robot_option(parser)
-    output(
-        parser,
+    options.robot()
+    options.output(
         "FILE",
         "run configuration to write, NAME.yaml; NAME_model.yaml, NAME_model.json, NAME.json and "
         "NAME.html are written with it",
         required=True,
     )
-    shared(parser, "--json")
-    option(
-        parser,
+    options.shared("--json")
+    options.add(
         "--hold-out RECORDING",
         "a recording to test the model on, for example of another day; may be given several times",
         file_name,
         action="append",
         default=[],
     )
-    option(
-        parser,
+    options.add(
         "--known-payload RECORDING=LOAD",
         "a further recording of motor currents, with a known load, which determines the drive gains. "
         "LOAD as for --payload of other verbs, with its center of mass: "
@@ -104,28 +90,25 @@ def declare(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
     )
-    option(
-        parser,
+    options.add(
         "--accept KIND",
         "identify a model although this mistake is found; a refusal names its KIND. May be given "
         "several times",
         action="append",
         default=[],
     )
-    option(
-        parser,
+    options.add(
         "--urdf-out FILE",
         "also write the description with the identified inertia, and friction as far as <dynamics> "
         "can state it",
         Path,
     )
-    option(
-        parser,
+    options.add(
         "--mjcf-out FILE",
         "also write MuJoCo <default> classes of the joints: armature, damping, frictionloss",
         Path,
     )
-    overrides(parser, *CHAIN, *RECORDING)
+    options.overrides(*CHAIN, *RECORDING)
 
 
 def _known_payload(text: str) -> tuple[Path, dict[str, Parameter]]:
@@ -147,7 +130,7 @@ def run(arguments: argparse.Namespace) -> None:
         write_identification,
     )
     from inverse_dynamics.results.urdf_export import mjcf_text, urdf_text
-    from inverse_dynamics.verbs.screen import Screen, print_json, progress_bar
+    from inverse_dynamics.verbs.screen import progress_bar, show
 
     robot = _robot(arguments)
     loads = [recording for recording, _ in arguments.known_payload]
@@ -179,12 +162,8 @@ def run(arguments: argparse.Namespace) -> None:
         more={file: texts[option](found) for option, file in more.items()},
         tests=tests,
     )
-    if arguments.json:
-        print_json("identify", summary(found, tests), [*files, *more.values()])
-        return
-    _print(found, files, tests)
-    for file in more.values():
-        Screen().print(f"also           {file}")
+    lines = [*_lines(found, files, tests), ("also", list(more.values()))]
+    show(arguments, summary(found, tests), [*files, *more.values()], lines)
 
 
 def _robot(arguments: argparse.Namespace) -> Robot:
@@ -207,29 +186,25 @@ def _robot(arguments: argparse.Namespace) -> Robot:
     return with_changes(robot, **changes)
 
 
-def _print(found: Identification, files: IdentificationFiles, tests: Sequence[HoldOut]) -> None:
+def _lines(
+    found: Identification, files: IdentificationFiles, tests: Sequence[HoldOut]
+) -> Iterator[Line]:
     from inverse_dynamics.identification.summary import choices_told, error_rows, held_out_rows
-    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.screen import title
     from inverse_dynamics.verbs.tables import identification_table
 
-    console = Screen()
-    console.print(found.robot.description or found.robot.name, style="bold")
-    console.print(f"recordings     {', '.join(map(str, found.recordings))}")
-    for name, text in choices_told(found):
-        console.print(f"{name:<14} {text}")
-    for note in found.notes:
-        console.print(f"note           {note}")
-    rows = held_out_rows(found)
-    console.print(identification_table(found, rows, "RMSE on held-out blocks"))
+    yield title(found.robot)
+    yield "recordings", ", ".join(map(str, found.recordings))
+    yield from choices_told(found)
+    yield "note", found.notes
+    yield identification_table(found, held_out_rows(found), "RMSE on held-out blocks")
     for test in tests:
         rows = error_rows(found, test.rmse, test.coverage)
-        console.print(identification_table(found, rows, f"RMSE on {test.recording}"))
-        for note in test.notes:
-            console.print(f"note           {test.recording}: {note}")
-    for finding in found.findings:
-        console.print(f"finding        {finding.text}")
-    console.print(f"robot          {files.robot}: `ids evaluate RECORDING --robot {files.robot}`")
-    console.print(f"model          {files.model}")
-    console.print(f"uncertainty    {files.uncertainty}: for `ids payload` and `contact`")
-    console.print(f"page           {files.page}")
-    console.print(f"figures        {files.figures}")
+        yield identification_table(found, rows, f"RMSE on {test.recording}")
+        yield "note", [f"{test.recording}: {note}" for note in test.notes]
+    yield "finding", [finding.text for finding in found.findings]
+    yield "robot", f"{files.robot}: `ids evaluate RECORDING --robot {files.robot}`"
+    yield "model", files.model
+    yield "uncertainty", f"{files.uncertainty}: for `ids payload` and `contact`"
+    yield "page", files.page
+    yield "figures", files.figures

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Options: how a verb declares one, and those that several verbs have.
+"""Options: how a verb declares them, and those that several verbs have.
 
-option(parser, "--gain PER_SECOND", "1 / time constant", positive_number)
-shared(parser, "--robot", "--json")
-overrides(parser, *SOLVER, *RECORDING)     # evaluate(..., **given_overrides(arguments))
+def declare(options: Options) -> None:
+options.recording()
+options.robot()
+options.add("--gain PER_SECOND", "1 / time constant", positive_number)
+options.overrides(*SOLVER, *RECORDING)  # evaluate(..., **given_overrides(arguments))
 """
 
 from __future__ import annotations
@@ -41,71 +43,69 @@ RECORDING = ("--topic", "--effort-is", "--drive-gains", *TABLE, "--cutoff", "--f
 FILTER = ("--accelerations", "--clock", "--without-rule")
 
 
-def option(
-    group: argparse._ActionsContainer, usage: str, help: str, type: Any = None, **more: Any
-) -> argparse.Action:
-    """Declare an option. usage: its names and, unless it is a switch, its value: `--urdf|--dh FILE`."""
-    names, _, metavar = usage.partition(" ")
-    more |= {"metavar": metavar} if metavar else {}
-    more |= {"type": type} if type else {}
-    if not more.keys() & {"metavar", "type", "choices", "action"}:
-        more["action"] = "store_true"
-    return group.add_argument(*names.split("|"), help=help, **more)
+class Options:
+    """Where a verb declares its arguments: its parser, or a group of options in it."""
 
+    def __init__(self, place: argparse._ActionsContainer) -> None:
+        self._place = place
 
-def shared(group: argparse._ActionsContainer, *wanted: str) -> list[str]:
-    """Declare options of the table below; gives the names of their values."""
-    return [
-        option(group, usage, help, type, **more).dest
-        for usage, help, type, more in map(_SHARED.__getitem__, wanted)
-    ]
+    def add(self, usage: str, help: str, type: Any = None, **more: Any) -> argparse.Action:
+        """An option. usage: its names and, unless it is a switch, its value: `--urdf|--dh FILE`."""
+        names, _, metavar = usage.partition(" ")
+        more |= {"metavar": metavar} if metavar else {}
+        more |= {"type": type} if type else {}
+        if not more.keys() & {"metavar", "type", "choices", "action"}:
+            more["action"] = "store_true"
+        return self._place.add_argument(*names.split("|"), help=help, **more)
 
+    def argument(self, name: str, **more: Any) -> None:
+        """An argument without a name on the command line."""
+        self._place.add_argument(name, **more)
 
-def overrides(parser: argparse.ArgumentParser, *wanted: str) -> None:
-    """Declare overrides of the run configuration; given_overrides() reads them."""
-    group = parser.add_argument_group("overrides of the run configuration")
-    parser.set_defaults(overrides=shared(group, *wanted))
+    def group(self, title: str) -> Options:
+        """Options under a title."""
+        return Options(self._place.add_argument_group(title))
 
+    def one_of(self, *, required: bool = False) -> Options:
+        """Options of which one may be given, or must be."""
+        return Options(self._place.add_mutually_exclusive_group(required=required))
 
-def figures(parser: argparse.ArgumentParser) -> None:
-    """Declare --figures and --no-figures."""
-    shared(parser.add_mutually_exclusive_group(), "--figures", "--no-figures")
+    def shared(self, *wanted: str) -> list[str]:
+        """Options of the table below; gives the names of their values."""
+        options = map(_SHARED.__getitem__, wanted)
+        return [self.add(usage, help, type, **more).dest for usage, help, type, more in options]
 
+    def overrides(self, *wanted: str) -> None:
+        """Overrides of the run configuration; given_overrides() reads them."""
+        group = self.group("overrides of the run configuration")
+        self._place.set_defaults(overrides=group.shared(*wanted))
 
-def output(
-    parser: argparse.ArgumentParser,
-    usage: str,
-    help: str,
-    type: Any = Path,
-    *,
-    replaces: bool = False,
-    **more: Any,
-) -> None:
-    """Declare --out and --overwrite. replaces: an older result of the verb is replaced without it."""
-    option(parser, f"--out {usage}", help, type, **more)
-    text = "replace an older result, unless it holds other files too"
-    option(parser, "--overwrite", argparse.SUPPRESS if replaces else text, default=replaces)
+    def figures(self) -> None:
+        """--figures and --no-figures."""
+        self.one_of().shared("--figures", "--no-figures")
 
+    def output(self, usage: str, help: str, *, replaces: bool = False, **more: Any) -> None:
+        """--out and --overwrite. replaces: an older result of the verb is replaced without it."""
+        self.add(f"--out {usage}", help, Path, **more)
+        text = "replace an older result, unless it holds other files too"
+        self.add("--overwrite", argparse.SUPPRESS if replaces else text, default=replaces)
 
-def recording(
-    parser: argparse.ArgumentParser, name: str = "bag", help: str = "", **more: Any
-) -> None:
-    """Declare RECORDING."""
-    help = help or "recording, as for `ids evaluate`"
-    parser.add_argument(name, metavar="RECORDING", type=file_name, help=help, **more)
+    def recording(
+        self, name: str = "bag", help: str = "recording, as for `ids evaluate`", **more: Any
+    ) -> None:
+        """RECORDING."""
+        self.argument(name, metavar="RECORDING", type=file_name, help=help, **more)
 
+    def runs(self, help: str = "results of `ids evaluate`") -> None:
+        """RUN..., read by read_evaluation()."""
+        self.argument("runs", metavar="RUN", type=Path, nargs="+", help=help)
 
-def runs(parser: argparse.ArgumentParser, help: str = "results of `ids evaluate`") -> None:
-    """Declare RUN..., read by read_evaluation()."""
-    parser.add_argument("runs", metavar="RUN", type=Path, nargs="+", help=help)
-
-
-def robot_option(parser: argparse._ActionsContainer, **more: Any) -> None:
-    """Declare --robot; chosen_robot() reads it."""
-    named = "run configuration: a name that `ids robots` lists, or a YAML file"
-    if not more.get("required"):
-        named += "; may be left out where --urdf is given"
-    option(parser, "--robot NAME|FILE", named, **more).completer = _robots  # type: ignore[attr-defined]
+    def robot(self, **more: Any) -> None:
+        """--robot, read by chosen_robot()."""
+        help = "run configuration: a name that `ids robots` lists, or a YAML file"
+        if not more.get("required"):
+            help += "; may be left out where --urdf is given"
+        self.add("--robot NAME|FILE", help, **more).completer = _robots  # type: ignore[attr-defined]
 
 
 def _robots(prefix: str, **_: object) -> list[str]:

@@ -5,26 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.options import (
-    RECORDING,
-    SOLVER,
-    chosen_robot,
-    figures,
-    given_overrides,
-    option,
-    output,
-    overrides,
-    recording,
-    robot_option,
-    shared,
-)
+from inverse_dynamics.verbs.options import RECORDING, SOLVER, Options, chosen_robot, given_overrides
 from inverse_dynamics.verbs.values import file_name
 
 if TYPE_CHECKING:
     import argparse
-    from pathlib import Path
-
-    from inverse_dynamics.identification.payload import Payload
 
 SUMMARY = "estimate what the robot carries in a recording: mass, center of mass, inertia"
 EPILOG = """\
@@ -48,25 +33,23 @@ results, all of them or none:
 """
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    recording(parser)
-    robot_option(parser)
-    option(
-        parser,
+    options.recording()
+    options.robot()
+    options.add(
         "--empty RECORDING",
         "recording of the same robot without the load, on the same day",
         file_name,
     )
-    output(
-        parser,
+    options.output(
         "FILE",
         "the load, a YAML file; a .json file and the figure are written next to it",
         required=True,
     )
-    shared(parser, "--json")
-    figures(parser)
-    overrides(parser, *SOLVER, *RECORDING)
+    options.shared("--json")
+    options.figures()
+    options.overrides(*SOLVER, *RECORDING)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -77,7 +60,8 @@ def run(arguments: argparse.Namespace) -> None:
         summary,
         write_payload,
     )
-    from inverse_dynamics.verbs.screen import print_json, progress_bar
+    from inverse_dynamics.verbs.screen import heading, progress_bar, show
+    from inverse_dynamics.verbs.tables import payload_table, residual_table
 
     robot = chosen_robot(arguments)
     inputs = (arguments.bag, arguments.empty, arguments.urdf, *robot.files)
@@ -97,22 +81,16 @@ def run(arguments: argparse.Namespace) -> None:
         )
     write_payload(payload, arguments.out, overwrite=arguments.overwrite, figures=arguments.figures)
     files = payload_files(arguments.out, arguments.figures)
-    if arguments.json:
-        print_json("payload", summary(payload), files)
-    else:
-        _print(payload, files)
-
-
-def _print(payload: Payload, files: tuple[Path, ...]) -> None:
-    from inverse_dynamics.verbs.screen import Screen, print_heading
-    from inverse_dynamics.verbs.tables import payload_table, residual_table
-
-    console = Screen()
-    samples, duration = len(payload.time), payload.estimate.duration
-    print_heading(console, payload.evaluation, samples=samples, duration=duration)
-    if payload.empty is not None:
-        console.print(f"without load   {payload.empty}")
-    console.rows("note", payload.notes)
-    console.print(payload_table(payload))
-    console.print(residual_table(payload))
-    console.rows("written", files)
+    show(
+        arguments,
+        summary(payload),
+        files,
+        [
+            *heading(payload.evaluation, len(payload.time), payload.estimate.duration),
+            ("without load", [payload.empty] if payload.empty else []),
+            ("note", payload.notes),
+            payload_table(payload),
+            residual_table(payload),
+            ("written", files),
+        ],
+    )

@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.options import option, output, runs
+from inverse_dynamics.verbs.options import Options
 from inverse_dynamics.verbs.values import names
 
 if TYPE_CHECKING:
@@ -22,12 +22,12 @@ The page is a single file: it needs no network, and can be mailed and printed.
 """
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    runs(parser)
-    output(parser, "FILE", "the page (default: report.html)", default=Path("report.html"))
-    option(parser, "--title TEXT", "headline of the page", default="")
-    option(parser, "--labels A,B,...", "names of the runs", names, default=())
+    options.runs()
+    options.output("FILE", "the page (default: report.html)", default=Path("report.html"))
+    options.add("--title TEXT", "headline of the page", default="")
+    options.add("--labels A,B,...", "names of the runs", names, default=())
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -7,14 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.verbs.options import (
-    CHAIN,
-    TABLE,
-    given_overrides,
-    option,
-    overrides,
-    shared,
-)
+from inverse_dynamics.verbs.options import CHAIN, TABLE, Options, given_overrides
 from inverse_dynamics.verbs.values import file_name
 
 if TYPE_CHECKING:
@@ -39,31 +32,30 @@ What each key means: docs/add_a_robot.md.
 """
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    shown = parser.add_mutually_exclusive_group()
-    shown.add_argument("robot", nargs="?", metavar="NAME|FILE", help="show this robot")
-    option(shown, "--plugins", "list installed solvers instead")
-    option(
-        shown, "--new FILE", "write a run configuration of the robot that the options state", Path
-    )
-    shared(parser, "--json")
-    option(parser, "--overwrite", "with --new: replace an older file")
-    option(
-        parser,
+    shown = options.one_of()
+    shown.argument("robot", nargs="?", metavar="NAME|FILE", help="show this robot")
+    shown.add("--plugins", "list installed solvers instead")
+    shown.add("--new FILE", "write a run configuration of the robot that the options state", Path)
+    options.shared("--json")
+    options.add("--overwrite", "with --new: replace an older file")
+    options.add(
         "--from RECORDING",
         "with --new: a recording that it must fit, from which it is found what efforts mean",
         file_name,
         dest="recording",
     )
-    overrides(parser, *CHAIN, "--plugin", "--no-friction", "--topic", "--drive-gains", *TABLE)
+    options.overrides(*CHAIN, "--plugin", "--no-friction", "--topic", "--drive-gains", *TABLE)
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
+    from rich.text import Text
+
     from inverse_dynamics import _core
     from inverse_dynamics.robot.robots import load_robot, robot_names
-    from inverse_dynamics.verbs.screen import print_json
+    from inverse_dynamics.verbs.screen import show
 
     found: dict[str, Any]
     if arguments.new:
@@ -81,10 +73,12 @@ def run(arguments: argparse.Namespace) -> None:
     else:
         robots = [load_robot(name) for name in robot_names()]
         found, rows = {"robots": robots}, [(robot.name, robot.description) for robot in robots]
-    if arguments.json:
-        print_json("robots", found)
-    else:
-        _print(rows)
+    width = max((len(key) for key, _ in rows), default=0) + 2
+    lines = [
+        Text(f"{key:<{width}}", "bold") + Text(text, "not bold") if text else Text(key)
+        for key, text in rows
+    ]
+    show(arguments, found, [arguments.new], lines)
 
 
 def _new(arguments: argparse.Namespace) -> Arm:
@@ -106,19 +100,6 @@ def _new(arguments: argparse.Namespace) -> Arm:
         robot = replace(evaluated.robot, effort=evaluated.effort.meaning)
     write_robot(robot, arguments.new, overwrite=arguments.overwrite)
     return arm
-
-
-def _print(rows: list[tuple[str, str]]) -> None:
-    """One key and text per line; lines stay whole, so that paths can be copied."""
-    from rich.text import Text
-
-    from inverse_dynamics.verbs.screen import Screen
-
-    console = Screen()
-    width = max((len(key) for key, _ in rows), default=0) + 2
-    for key, text in rows:
-        line = Text(f"{key:<{width}}", "bold") + Text(text, "not bold") if text else key
-        console.print(line)
 
 
 def _rows(robot: Robot, arm: Arm, notes: list[str]) -> list[tuple[str, str]]:

@@ -7,22 +7,27 @@ import json
 import sys
 import time
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
+from rich.text import Text
 
 from inverse_dynamics.base.plain import plain
 from inverse_dynamics.base.wording import message, printable
 
 if TYPE_CHECKING:
+    import argparse
     from collections.abc import Callable, Iterable, Iterator, Mapping
-    from pathlib import Path
 
     from rich.console import ConsoleOptions, RenderableType
     from rich.segment import Segment
 
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.robot.robots import Robot
+
+    Line = RenderableType | tuple[str, str | Path | Iterable[object]]
 
 SCHEMA = 3  # of the object of --json; docs/command_line.md
 _FIRST_LINE = 10.0  # s
@@ -49,36 +54,52 @@ class Screen(Console):
         """The reader has gone: cli.py ends the program."""
         raise BrokenPipeError
 
-    def rows(self, key: str, texts: Iterable[object]) -> None:
-        """A line for each text, behind the key."""
-        for text in texts:
-            self.print(f"{key:<15}{text}")
 
-
-def print_heading(
-    screen: Screen,
-    evaluation: Evaluation,
-    *,
-    samples: int | None = None,
-    duration: float | None = None,
+def show(
+    arguments: argparse.Namespace,
+    result: Mapping[str, Any],
+    written: Iterable[Path],
+    lines: Iterable[Line],
 ) -> None:
+    """Print a verb's result: with --json as one object, else line by line.
+
+    written: files and directories that the verb has written. lines: a key and its text, or a line for
+    each of several texts; or what rich prints. In JSON, undefined values are null; non-ASCII characters
+    become escapes, so that a terminal acts on none.
+    """
+    if arguments.json:
+        verb, paths = arguments.verb, [path for path in written if path is not None]
+        document = {"schema": SCHEMA, "verb": verb, "written": paths, "result": result}
+        print(json.dumps(plain(document), indent=2, allow_nan=False))
+        return
+    console = Screen()
+    for line in lines:
+        if isinstance(line, tuple):
+            key, texts = line
+            for text in [texts] if isinstance(texts, (str, Path)) else texts:
+                console.print(f"{key:<14} {text}")
+        else:
+            console.print(line)
+
+
+def title(robot: Robot) -> Text:
+    """The first line."""
+    return Text(robot.description or robot.name, "bold")
+
+
+def heading(
+    evaluation: Evaluation, samples: int | None = None, duration: float | None = None
+) -> list[Line]:
     """Robot, solver and recording. samples, duration [s]: those that are used; None: all."""
     robot, log = evaluation.robot, evaluation.log
     samples = len(log) if samples is None else samples
     duration = log.duration if duration is None else duration
     source = ", ".join(filter(None, (str(evaluation.bag), log.topic)))
-    screen.print(robot.description or robot.name, style="bold")
-    screen.print(f"solver         {robot.plugin}{'' if robot.friction else ', friction left out'}")
-    screen.print(f"recording      {source}: {samples} samples, {duration:.1f} s")
-
-
-def print_json(verb: str, result: Mapping[str, Any], written: Iterable[Path] = ()) -> None:
-    """Print the object of --json. written: files and directories that the verb has written.
-
-    Undefined values are null; non-ASCII characters become escapes, so that a terminal acts on none.
-    """
-    document = {"schema": SCHEMA, "verb": verb, "written": list(written), "result": result}
-    print(json.dumps(plain(document), indent=2, allow_nan=False))
+    return [
+        title(robot),
+        ("solver", f"{robot.plugin}{'' if robot.friction else ', friction left out'}"),
+        ("recording", f"{source}: {samples} samples, {duration:.1f} s"),
+    ]
 
 
 def announce(text: str) -> None:

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.wording import counted
 from inverse_dynamics.data.joint_log import STORAGES
-from inverse_dynamics.verbs.options import option, output, robot_option, shared
+from inverse_dynamics.verbs.options import Options
 from inverse_dynamics.verbs.values import number, numbers, positive_number, whole_number
 
 if TYPE_CHECKING:
     import argparse
 
     from inverse_dynamics.simulation import Payload, Resolution, SimulatedRun
+    from inverse_dynamics.verbs.screen import Line
 
 SUMMARY = "record a simulated robot (MuJoCo) following an exciting trajectory"
 DESCRIPTION = (
@@ -54,20 +55,18 @@ results, written whole or not at all:
 """
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    robot_option(parser, required=True)
-    output(parser, "BAG", "the new recording", required=True)
-    shared(parser, "--json")
-    option(
-        parser,
+    options.robot(required=True)
+    options.output("BAG", "the new recording", required=True)
+    options.shared("--json")
+    options.add(
         "--storage",
         "storage of the recording (default: sqlite3)",
         choices=STORAGES,
         default="sqlite3",
     )
-    option(
-        parser,
+    options.add(
         "--seed SEED",
         "seed of all random numbers, and of where in its period the run configuration's motion "
         "begins: the same seed gives the same recording, another one another (default: 0, from the "
@@ -75,37 +74,32 @@ def declare(parser: argparse.ArgumentParser) -> None:
         whole_number,
         default=0,
     )
-    _declare_motion(parser.add_argument_group("motion"))
-    _declare_robot(parser.add_argument_group("robot"))
-    _declare_recording(parser.add_argument_group("recording"))
+    _declare_motion(options.group("motion"))
+    _declare_robot(options.group("robot"))
+    _declare_recording(options.group("recording"))
 
 
-def _declare_motion(motion: argparse._ArgumentGroup) -> None:
-    option(
-        motion,
+def _declare_motion(motion: Options) -> None:
+    motion.add(
         "--trajectory FILE",
         "desired motion (YAML: waypoints or Fourier series; default: the run configuration's)",
         Path,
     )
-    option(
-        motion,
+    motion.add(
         "--optimise",
         "search for a new exciting trajectory instead, as `ids excite` does",
     )
-    option(
-        motion,
+    motion.add(
         "--duration S",
         "length of the motion (default: once through the trajectory; exciting ones repeat)",
         positive_number,
     )
-    option(
-        motion,
+    motion.add(
         "--rate HZ",
         "rate of controller and recording: 125, 500 or 1000 (default: the run configuration's)",
         whole_number,
     )
-    option(
-        motion,
+    motion.add(
         "--no-table",
         "allow the arm to reach below its base",
         dest="table",
@@ -113,10 +107,9 @@ def _declare_motion(motion: argparse._ArgumentGroup) -> None:
     )
 
 
-def _declare_robot(robot: argparse._ArgumentGroup) -> None:
-    option(robot, "--payload KG[,X,Y,Z]", "point mass at the tip [kg; m]", _payload)
-    option(
-        robot,
+def _declare_robot(robot: Options) -> None:
+    robot.add("--payload KG[,X,Y,Z]", "point mass at the tip [kg; m]", _payload)
+    robot.add(
         "--joint-friction PART|urdf|model",
         "Coulomb friction as a share of each effort limit, and as much viscous friction at the "
         "velocity limit (without a value: 0.02); urdf: what the description's <dynamics> says; "
@@ -124,73 +117,61 @@ def _declare_robot(robot: argparse._ArgumentGroup) -> None:
         nargs="?",
         const="0.02",
     )
-    option(
-        robot,
+    robot.add(
         "--from-model",
         "links, rotor inertias and friction of the run configuration's model, as `ids identify` "
         "writes it, instead of the description's links without friction",
     )
-    gravity = robot.add_mutually_exclusive_group()
-    shared(gravity, "--gravity")
-    option(
-        gravity,
+    gravity = robot.one_of()
+    gravity.shared("--gravity")
+    gravity.add(
         "--mount",
         "floor; wall: the x axis up; ceiling: upside down",
         choices=("floor", "wall", "ceiling"),
     )
 
 
-def _declare_recording(recording: argparse._ArgumentGroup) -> None:
-    option(
-        recording,
+def _declare_recording(recording: Options) -> None:
+    recording.add(
         "--noise Q,QD,EFFORT",
         "standard deviations of Gaussian noise [rad, rad/s, N m] (without a value: 1e-5,1e-3,0.1)",
         _resolution,
         nargs="?",
         const="1e-5,1e-3,0.1",
     )
-    option(
-        recording,
+    recording.add(
         "--effort-noise DIR",
         "a result of `ids evaluate` of a real robot: stretches of 2 s of its measured minus "
         "computed torques, in random order, are the noise of the efforts",
         Path,
     )
-    option(
-        recording,
+    recording.add(
         "--effort-delay S",
         "delay of recorded efforts behind positions and velocities [s]",
         number,
         default=0.0,
     )
-    option(
-        recording,
+    recording.add(
         "--message-rate HZ",
         "messages per second (default: one per period of the controller)",
         positive_number,
     )
-    option(
-        recording,
+    recording.add(
         "--quantisation Q,QD,EFFORT",
         "steps of the values [rad, rad/s, N m] (without a value: 1e-5,1e-3,0.01)",
         _resolution,
         nargs="?",
         const="1e-5,1e-3,0.01",
     )
-    option(recording, "--drop P", "share of messages that are lost", number, default=0.0)
-    option(
-        recording,
+    recording.add("--drop P", "share of messages that are lost", number, default=0.0)
+    recording.add(
         "--repeat P",
         "share of messages that repeat the values of the previous one",
         number,
         default=0.0,
     )
-    option(
-        recording, "--jitter S", "standard deviation of the time stamps [s]", number, default=0.0
-    )
-    option(
-        recording, "--start-stamp S", "time stamp of the start [s] (default: 1700000000)", number
-    )
+    recording.add("--jitter S", "standard deviation of the time stamps [s]", number, default=0.0)
+    recording.add("--start-stamp S", "time stamp of the start [s] (default: 1700000000)", number)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -198,7 +179,7 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.base.files import check_output_directory
     from inverse_dynamics.robot.robots import load_robot
     from inverse_dynamics.simulation.writer import CONTENTS
-    from inverse_dynamics.verbs.screen import announce, print_json, progress_bar
+    from inverse_dynamics.verbs.screen import announce, progress_bar, show
 
     robot = load_robot(arguments.robot)
     inputs = (arguments.trajectory, arguments.effort_noise, *robot.files)
@@ -244,10 +225,7 @@ def run(arguments: argparse.Namespace) -> None:
             overwrite=arguments.overwrite,
             progress=progress,
         )
-    if arguments.json:
-        print_json("simulate", _summary(result), [arguments.out])
-    else:
-        _print(result, arguments.out)
+    show(arguments, _summary(result), [arguments.out], _lines(result, arguments.out))
 
 
 def _summary(result: SimulatedRun) -> dict[str, Any]:
@@ -261,19 +239,16 @@ def _summary(result: SimulatedRun) -> dict[str, Any]:
     }
 
 
-def _print(result: SimulatedRun, out: Path) -> None:
-    from inverse_dynamics.verbs.screen import Screen
-
-    console = Screen()
+def _lines(result: SimulatedRun, out: Path) -> list[Line]:
     settings, log = result.settings, result.log
-    excitation = f", condition number of the base regressor {result.condition_number:.4g}"
-    console.rows("note", result.notes)
-    console.print(f"trajectory     {result.trajectory.duration:g} s{excitation}")
-    console.print(
-        f"recording      {out}, {log.topic}: {counted(len(log), 'message')} of "
-        f"{counted(len(log.joint_names), 'joint')}, "
-        f"{settings['duration']:g} s at {settings['message_rate'] or settings['rate']:g} Hz"
-    )
+    excitation = f"condition number of the base regressor {result.condition_number:.4g}"
+    size = f"{counted(len(log), 'message')} of {counted(len(log.joint_names), 'joint')}"
+    rate = settings["message_rate"] or settings["rate"]
+    return [
+        ("note", result.notes),
+        ("trajectory", f"{result.trajectory.duration:g} s, {excitation}"),
+        ("recording", f"{out}, {log.topic}: {size}, {settings['duration']:g} s at {rate:g} Hz"),
+    ]
 
 
 def _payload(text: str) -> Payload:

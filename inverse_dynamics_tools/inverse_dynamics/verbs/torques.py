@@ -7,16 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.wording import counted
-from inverse_dynamics.verbs.options import (
-    SOLVER,
-    TABLE,
-    chosen_robot,
-    given_overrides,
-    output,
-    overrides,
-    robot_option,
-    shared,
-)
+from inverse_dynamics.verbs.options import SOLVER, TABLE, Options, chosen_robot, given_overrides
 
 if TYPE_CHECKING:
     import argparse
@@ -41,23 +32,22 @@ joints would exceed the effort limits of the robot description, and when first.
 """
 
 
-def declare(parser: argparse.ArgumentParser) -> None:
+def declare(options: Options) -> None:
     """Arguments and options."""
-    parser.add_argument(
+    options.argument(
         "trajectory",
         metavar="TRAJECTORY",
         type=Path,
         help="rosbag2 recording of trajectory_msgs/JointTrajectory, or a table (.csv or .txt)",
     )
-    robot_option(parser)
-    output(
-        parser,
+    options.robot()
+    options.output(
         "OUT",
         "the copy with efforts: a directory for a recording, a file for a table",
         required=True,
     )
-    shared(parser, "--json", "--topic")
-    overrides(parser, *SOLVER, *TABLE)
+    options.shared("--json", "--topic")
+    options.overrides(*SOLVER, *TABLE)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -71,7 +61,7 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.evaluation.trajectory_torques import trajectory_torques
     from inverse_dynamics.results.trajectory_torques import summary, write_trajectory_torques
     from inverse_dynamics.robot.solvers import description_notes
-    from inverse_dynamics.verbs.screen import Screen, print_json, progress_bar
+    from inverse_dynamics.verbs.screen import progress_bar, show, title
     from inverse_dynamics.verbs.tables import load_table
 
     with progress_bar() as progress:
@@ -84,14 +74,17 @@ def run(arguments: argparse.Namespace) -> None:
     notes = (*result.notes, *notes)
     if arguments.urdf is not None:
         notes = (*notes, *description_notes(robot, "effort limits"))
-    if arguments.json:
-        print_json("torques", {**summary(result), "notes": notes}, [arguments.out])
-        return
-    console = Screen()
     points = counted(sum(map(len, result.times)), "point")
-    console.print(robot.description or robot.name, style="bold")
-    console.print(f"solver         {robot.plugin}{'' if robot.friction else ', friction left out'}")
-    console.print(f"trajectories   {len(result.times)}, with {points} together")
-    console.rows("note", notes)
-    console.print(load_table(result))
-    console.print(f"written        {arguments.out}")
+    show(
+        arguments,
+        {**summary(result), "notes": notes},
+        [arguments.out],
+        [
+            title(robot),
+            ("solver", f"{robot.plugin}{'' if robot.friction else ', friction left out'}"),
+            ("trajectories", f"{len(result.times)}, with {points} together"),
+            ("note", notes),
+            load_table(result),
+            ("written", arguments.out),
+        ],
+    )

@@ -72,17 +72,19 @@ def share(text: str) -> float:
     return value
 
 
-def whole_number(text: str) -> int:
+def whole_number(text: str, expected: str = "an integer that isn't negative") -> int:
     """0, 1, 2, ..."""
     if not (text.isascii() and text.isdecimal() and len(text) <= 18):
-        raise _wrong("an integer that isn't negative", text)
+        raise _wrong(expected, text)
     return int(text)
 
 
 def count(text: str) -> int:
     """1, 2, ..."""
-    if (value := whole_number(text)) == 0:
-        raise _wrong("a number above zero", text)
+    expected = "a whole number above zero"
+    value = whole_number(text, expected)
+    if value == 0:
+        raise _wrong(expected, text)
     return value
 
 
