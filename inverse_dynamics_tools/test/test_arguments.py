@@ -109,8 +109,18 @@ def test_functions_and_laws_name_the_argument(solver: Solver) -> None:
 @pytest.mark.parametrize(
     ("positional", "named", "text"),
     [
-        ((), {}, "evaluate: argument bag: expected a path or a text, got none"),
-        ((3, "ur10_real"), {}, "evaluate: argument bag: expected a path or a text, got 3"),
+        (
+            (),
+            {},
+            "evaluate: argument bag: expected a path or a text or a dictionary whose keys are texts or a "
+            "DataFrame, got none",
+        ),
+        (
+            (3, "ur10_real"),
+            {},
+            "evaluate: argument bag: expected a path or a text or a dictionary whose keys are texts or a "
+            "DataFrame, got 3",
+        ),
         (
             ("bag", 3),
             {},

@@ -222,7 +222,7 @@ def _kind_of(alternative: str) -> tuple[str, Callable[[Any], bool]]:
         if re.fullmatch(pattern, alternative):
             return word, fits
     name = alternative.rpartition(".")[2]
-    if "." not in alternative and name != "Robot":
+    if "." not in alternative and name not in ("Robot", "DataFrame"):
         return "a value", lambda _: True
     return f"a {name}", lambda value: name in {base.__name__ for base in type(value).__mro__}
 

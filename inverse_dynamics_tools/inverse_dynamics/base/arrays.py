@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from typing import Any
 
     import numpy as np
     from numpy.typing import NDArray
@@ -17,3 +18,4 @@ if TYPE_CHECKING:
     Parameter = (
         bool | int | float | str | Sequence[bool] | Sequence[int] | Sequence[float] | Sequence[str]
     )
+    DataFrame = Any  # of pandas or polars, which needn't be installed

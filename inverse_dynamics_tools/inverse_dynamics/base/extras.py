@@ -25,6 +25,7 @@ EXTRAS = {
     "mujoco": "sim",
     "pyarrow": "parquet",
     "rosbags": "rosbags",
+    "scipy": "mat",
     "trimesh": "meshes",
     "xacro": "xacro",
     "yaml": "sim",
@@ -54,6 +55,8 @@ def missing(use: str, *modules: str) -> MissingPackageError:
 
 def how_to_install(*modules: str) -> str:
     """The command that installs modules, for whoever has installed this package."""
+    if not set(modules) <= EXTRAS.keys():
+        return f"pip install {' '.join(modules)}"
     if not installed_by_pip():
         return "run ./scripts/setup in the workspace"
     extras = ",".join(sorted({EXTRAS[module] for module in modules}))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Logs in files of arrays: Parquet, NumPy's .npz, MATLAB's .mat.
+"""Logs as arrays: in files of Parquet, NumPy (.npz) and MATLAB (.mat), or in memory.
 
-    table = ArrayFile(Path("episode.parquet"))
+    table = open_arrays(Path("episode.parquet"))
     table.names    # ("timestamp", "observation.state[0]", "observation.state[1]", ...)
 
 An array of N samples is a column; an array of N x n or n x N numbers is n columns `NAME[0]` ..
@@ -11,6 +11,7 @@ file. Other arrays are passed over.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import BadZipFile
 
@@ -22,28 +23,32 @@ from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from pathlib import Path
 
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
 
 
-class ArrayFile:
-    """The columns of a file. Raises BagError, MissingPackageError."""
+class Arrays(type(Path())):  # type: ignore[misc]
+    """Columns in memory, where a path may stand: `Arrays.of({"time": t, "q": q, "tau": tau})`."""
 
-    def __init__(self, path: Path) -> None:
+    arrays: dict[str, Any]
+
+    @classmethod
+    def of(cls, source: Any) -> Arrays:
+        """Of a mapping from names to arrays, N or N x n, or of a table of pandas or polars."""
+        made = cls("arrays")
+        made.arrays = {str(name): np.asarray(source[name]) for name in list(source)}
+        return made
+
+
+class ArrayTable:
+    """Arrays as a table. path: for errors. Raises BagError."""
+
+    def __init__(self, path: Path, arrays: dict[str, Any]) -> None:
         self.path = path
-        read = _READERS[path.suffix.lower()]
-        try:
-            arrays = {name: array for name, array in read(path) if _is_numeric(array)}
-        except FileNotFoundError as error:
-            raise BagError(f"{path}: no such file") from error
-        except (OSError, ValueError, NotImplementedError, BadZipFile) as error:
-            raise BagError(
-                f"{path}: can't be read as {path.suffix} ({error}); is it damaged or of another kind?"
-            ) from error
-        samples = max((size for array in arrays.values() for size in array.shape), default=0)
-        self._columns = dict(_columns(arrays, samples))
+        numeric = {name: array for name, array in arrays.items() if _is_numeric(array)}
+        samples = max((size for array in numeric.values() for size in array.shape), default=0)
+        self._columns = dict(_columns(numeric, samples))
         self.names = tuple(self._columns)
         if not self.names:
             raise BagError(f"{path}: expected arrays of numbers, got none")
@@ -54,14 +59,35 @@ class ArrayFile:
         largest: Sequence[float] | None = None,
         progress: Progress = no_progress,
     ) -> Floats:
-        """(N, columns) numbers."""
+        """(N, columns) numbers, all of them finite. Raises BagError."""
         progress("reading", 1, 1)
-        return np.column_stack([np.asarray(self._columns[name], float) for name in columns])
+        rows = np.column_stack([np.asarray(self._columns[name], float) for name in columns])
+        if not np.isfinite(rows).all():
+            k, j = (int(i) for i in np.argwhere(~np.isfinite(rows))[0])
+            raise BagError(
+                f"{self.path}: {columns[j]}: expected finite numbers, got {rows[k, j]} in row {k + 1}; leave "
+                "such rows out"
+            )
+        return rows
+
+
+def open_arrays(path: Path) -> ArrayTable:
+    """The columns of a file, or of Arrays. Raises BagError, MissingPackageError."""
+    if isinstance(path, Arrays):
+        return ArrayTable(path, path.arrays)
+    try:
+        return ArrayTable(path, dict(_READERS[path.suffix.lower()](path)))
+    except FileNotFoundError as error:
+        raise BagError(f"{path}: no such file") from error
+    except (OSError, ValueError, NotImplementedError, BadZipFile) as error:
+        raise BagError(
+            f"{path}: can't be read as {path.suffix} ({error}); is it damaged or of another kind?"
+        ) from error
 
 
 def is_array_file(path: Path) -> bool:
-    """Whether the name is that of such a file."""
-    return path.suffix.lower() in _READERS and not path.is_dir()
+    """Whether it is Arrays, or the name of such a file."""
+    return isinstance(path, Arrays) or (path.suffix.lower() in _READERS and not path.is_dir())
 
 
 def _is_numeric(array: Any) -> bool:

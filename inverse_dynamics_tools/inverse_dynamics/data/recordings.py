@@ -84,7 +84,7 @@ def open_motion(
 
     The arguments are those of read_recording().
     """
-    path = Path(path)
+    path = path if isinstance(path, Path) else Path(path)
     check_clock(clock)
     if is_table(path):
         table = open_table(path, topic=topic, clock=clock)
@@ -118,7 +118,7 @@ def position_ranges(
     Positions that aren't finite are left out. topic, usual_topic: as for read_recording(). Of joint states
     only. Raises BagError.
     """
-    path = Path(path)
+    path = path if isinstance(path, Path) else Path(path)
     found: dict[str, tuple[float, float, float]] = {}
     first: dict[str, float] = {}
     counts: dict[str, int] = {}

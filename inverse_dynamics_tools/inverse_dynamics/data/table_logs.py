@@ -21,7 +21,7 @@ import numpy as np
 from inverse_dynamics.base.decimals import LARGEST, decimal
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import counted, listed, shown
-from inverse_dynamics.data.array_files import ArrayFile, is_array_file
+from inverse_dynamics.data.array_files import is_array_file, open_arrays
 from inverse_dynamics.data.columns import (
     ACCELERATION,
     CURRENT,
@@ -176,7 +176,7 @@ def open_table(path: Path, *, topic: str = "", clock: Clock = "auto") -> Table:
     if "+" in f"{path}" and not path.exists():
         return JoinedTable(path, [open_table(Path(part)) for part in f"{path}".split("+")])
     if is_array_file(path):
-        return ArrayFile(path)
+        return open_arrays(path)
     table = CsvTable(path)
     table.names = _without_fields(table)
     return table

@@ -10,10 +10,11 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.data.array_files import Arrays
 from inverse_dynamics.data.joint_log import JointLog, check_clock
 from inverse_dynamics.data.recordings import open_motion
 from inverse_dynamics.data.table_logs import LogFormat
@@ -30,6 +31,7 @@ from inverse_dynamics.evaluation.causes.samples import pieces_of
 from inverse_dynamics.evaluation.effort import Effort, effort_of
 from inverse_dynamics.evaluation.posture import posture_of
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
+from inverse_dynamics.evaluation.views import Views
 from inverse_dynamics.robot.descriptions import joint_units, read_description
 from inverse_dynamics.robot.robots import Robot, load_robot, with_changes
 from inverse_dynamics.robot.solvers import description_notes, open_solver
@@ -38,7 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from inverse_dynamics._core import EffortVerdict, Evaluated, JointMetrics
-    from inverse_dynamics.base.arrays import Floats, Mask, Parameter
+    from inverse_dynamics.base.arrays import DataFrame, Floats, Mask, Parameter
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.bags import JointStateTopic
     from inverse_dynamics.data.joint_log import Clock
@@ -64,8 +66,8 @@ class JointError:
     max_abs: float
 
 
-@dataclass(frozen=True)
-class Evaluation:
+@dataclass(frozen=True, repr=False)
+class Evaluation(Views):
     """Measured and computed torques of a recorded motion. N samples, n joints; order of the chain.
 
     robot: the run configuration with everything that was overridden; joints and effort filled in.
@@ -104,7 +106,7 @@ class Evaluation:
 
 @checked
 def evaluate(
-    bag: Path | str,
+    bag: Path | str | Mapping[str, Any] | DataFrame,
     robot: Robot | Path | str,
     *,
     plugin: str | None = None,
@@ -133,7 +135,8 @@ def evaluate(
 ) -> Evaluation:
     """Compute the torques of a recorded motion and compare them with the measured ones.
 
-    bag: a recording or a table, see recordings.py. robot: a name of robot_names(), the file of a
+    bag: a recording or a table, see recordings.py; or arrays by name, (N,) or (N, n), or a table of pandas
+    or polars, with columns as docs/tables.md has them. robot: a name of robot_names(), the file of a
     run configuration, or one that is loaded. What else is given replaces what the configuration
     says: see Robot; parameters, of the solver, one by one. effort_is: what recorded efforts mean, one of
     EFFORT_CHOICES.
@@ -167,7 +170,7 @@ def evaluate(
         sign=sign,
         rate=rate,
     )
-    bag = Path(bag)
+    bag = Path(bag) if isinstance(bag, str) else bag if isinstance(bag, Path) else Arrays.of(bag)
     window = TimeWindow(start, end)
 
     arm = Arm(robot)

@@ -3,16 +3,8 @@
 
 export_series(read_evaluation("result"), Path("series.parquet"))
 
-A row per sample. Columns, J being a joint as the recording names it:
-
-recording                             its name among others, where one is given
-time                                  s since the first sample
-position.J velocity.J acceleration.J  of the motion; the acceleration is the estimated one
-effort.J                              as recorded; current.J in its place where it is a current
-measured.J computed.J error.J         torques; error = computed - measured
-repeated ... kept                     what was found in a sample, true or false: see Samples
-
-Every digit is kept. Parquet knows the unit of each column (key `unit` of its metadata).
+Its columns: evaluation/series.py. Every digit is kept. Parquet knows the unit of each column (key
+`unit` of its metadata).
 """
 
 from __future__ import annotations
@@ -20,55 +12,23 @@ from __future__ import annotations
 import csv
 import io
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.extras import how_to_install
 from inverse_dynamics.base.files import check_output_file, file_written_whole
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import printable
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.evaluation.accelerations import MASKS
+from inverse_dynamics.evaluation.series import series_columns
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from inverse_dynamics.base.arrays import Floats, Mask
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.evaluation import Evaluation
 
 _ROWS = 65536  # written together
-
-
-class Column(NamedTuple):
-    """A series: N values of a unit; none for what is true or false."""
-
-    name: str
-    unit: str
-    values: Floats | Mask
-
-
-def series_columns(evaluation: Evaluation) -> list[Column]:
-    """The table, column by column, in the order of the module's text."""
-    columns = [Column("time", "s", evaluation.time)]
-    log = evaluation.log
-    error = evaluation.computed - evaluation.measured
-    currents = evaluation.effort.meaning == "current"
-    for j, joint in enumerate(log.joint_names):
-        torque = evaluation.units[j]
-        angle = "m" if torque == "N" else "rad"
-        series = (
-            ("position", angle, log.q),
-            ("velocity", f"{angle}/s", log.qd),
-            ("acceleration", f"{angle}/s^2", evaluation.qdd),
-            ("current", "A", log.effort) if currents else ("effort", torque, log.effort),
-            ("measured", torque, evaluation.measured),
-            ("computed", torque, evaluation.computed),
-            ("error", torque, error),
-        )
-        columns += [Column(f"{name}.{joint}", unit, rows[:, j]) for name, unit, rows in series]
-    columns += [Column(mask, "", getattr(evaluation.samples, mask)) for mask in MASKS]
-    return columns
 
 
 def export_series(
