@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash disable=SC2034  # variables for the commands that source this
 #
-# What the commands of this directory share. Each of them starts with
+# What the commands of this directory share. Each of them starts with its help, which -h and --help print, and
 #
 #     set -euo pipefail
 #     source "$(dirname "${BASH_SOURCE[0]}")/common.bash"
@@ -12,6 +12,9 @@ shopt -s inherit_errexit nullglob
 
 workspace=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$workspace" || exit
+
+usage() { sed -n '4,/^$/s/^# \{0,1\}//p' "scripts/${0##*/}"; }
+case "${1:-}" in -h | --help) usage && exit ;; esac
 
 venv=$workspace/.venv
 requirements=inverse_dynamics_tools/requirements.txt

@@ -74,13 +74,6 @@ class Draft:
         for name in names.split():
             setattr(self, name, getattr(self, name) * factor)
 
-    def exchange(self, names: str, i: int, j: int) -> None:
-        """Two columns."""
-        order = list(range(len(self.arm.joints)))
-        order[i], order[j] = j, i
-        for name in names.split():
-            setattr(self, name, getattr(self, name)[:, order])
-
 
 @dataclass(frozen=True)
 class Recording:
@@ -326,7 +319,10 @@ def direction(d: Draft, r: Random) -> Mistake:
 
 def _exchanged(d: Draft, r: Random, columns: str, kind: str) -> Mistake:
     i, j = sorted(map(int, r.choice(d.informative, 2, replace=False)))
-    d.exchange(columns, i, j)
+    order = np.arange(len(d.arm.joints))
+    order[[i, j]] = j, i
+    for name in columns.split():
+        setattr(d, name, getattr(d, name)[:, order])
     return Mistake(kind, (d.arm.joints[i], d.arm.joints[j]))
 
 

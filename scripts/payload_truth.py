@@ -49,7 +49,6 @@ class Figures:
     coverage: float  # of the 95 % intervals of mass and center
     ratio_of_mass: float  # median half width by median error
     ratio_of_center: float
-    trials: int
 
 
 @dataclass(frozen=True)
@@ -184,5 +183,4 @@ def trials(arm: Arm, mass: float, count: int, seed: int = 1) -> Figures:
         coverage=float(np.mean(errors <= widths)),
         ratio_of_mass=float(ratios[0]),
         ratio_of_center=float(np.median(ratios[1:])),
-        trials=count,
     )
