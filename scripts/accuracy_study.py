@@ -11,12 +11,11 @@ a given cut-off. No constant was chosen by these recordings, but one bound: moti
 
 from __future__ import annotations
 
-import argparse
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from studies import replace_in_page, table
+from studies import show, table
 
 from inverse_dynamics import _core
 
@@ -299,16 +298,6 @@ def table_of(ratios: list[tuple[str, float]]) -> str:
     return table(("event", "recordings", "median", "95 %", "greatest", "within 1.3"), rows)
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--write", action="store_true", help="replace the table in docs")
-    arguments = parser.parse_args()
-    text = table_of([(recording.event, ratio(recording)) for recording in recordings()])
-    print(text)
-    if arguments.write:
-        replace_in_page("accuracy.md", "accuracy_study", text)
-
-
 if __name__ == "__main__":
-    main()
+    ratios = [(recording.event, ratio(recording)) for recording in recordings()]
+    show(table_of(ratios), "accuracy.md", "accuracy_study")

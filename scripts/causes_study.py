@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from known_mistakes import Mistake, real_recordings, recordings
-from studies import replace_in_page, table
+from studies import show, table
 
 from inverse_dynamics import evaluate
 from inverse_dynamics.data.public_recordings import data_directory
@@ -168,9 +168,7 @@ def main() -> None:
         outcomes = outcomes_of(chain(simulated, real), directory)
     shares = ", ".join(f"{name} {100 * share:.1f} %" for name, share in shares_of(outcomes).items())
     text = f"{table_of(outcomes)}\n\nOf all: {shares}."
-    print(f"\n{text}")
-    if arguments.write:
-        replace_in_page("why_dont_my_torques_match.md", "causes_study", text)
+    show(text, "why_dont_my_torques_match.md", "causes_study")
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ All is what `ids identify` does by default.
 
 from __future__ import annotations
 
-import argparse
+import sys
 import time
 from functools import cache
 from pathlib import Path
@@ -53,10 +53,10 @@ makes this page.
 KNOWN = f"""\
 ## Robots that are known
 
-[Rehearsals](identification.md#rehearsal-would-my-motion-be-enough) of the models found above, identified from the description
-alone. Medians of {SEEDS} seeds: the error of the identified torques on states that are uniform in the recorded ranges, mean
-over joints; the error of the delay; the share of 95 % intervals of inertial combinations that hold the truth.
-`test_known_truth.py` holds the bounds.
+[Rehearsals](identification.md#rehearsal-would-my-motion-be-enough) of the models found above, identified from the
+description alone. Medians of {SEEDS} seeds: the error of the identified torques on states that are uniform in the
+recorded ranges, mean over joints; the error of the delay; the share of 95 % intervals of inertial combinations that hold the
+truth. `test_known_truth.py` holds the bounds.
 """
 
 PAYLOADS = f"""\
@@ -149,17 +149,12 @@ def _cells(label: str, arm: Arm, mass: float) -> tuple[str, ...]:
 
 def main() -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument(
-        "--write", action="store_true", help="replace docs/identification_results.md"
-    )
-    given = parser.parse_args()
     with TemporaryDirectory() as folder:
         directory = Path(folder)
         sections = [*map(real_robot, ROBOTS), known_robots(directory), payloads(directory)]
     text = "\n".join([HEAD, *sections])
     print(text, end="")
-    if given.write:
+    if "--write" in sys.argv:
         (DOCS / "identification_results.md").write_text(text, encoding="utf-8")
 
 

@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
 ROBOTS = {"ur10_real": "ur10_exciting_trajectory", "panda_real": "panda_exciting_trajectory"}
 """Real robots, and their recordings."""
@@ -15,19 +16,17 @@ ROBOTS = {"ur10_real": "ur10_exciting_trajectory", "panda_real": "panda_exciting
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 
 
-def row(*cells: object) -> str:
-    """One row of a table."""
-    return f"| {' | '.join(map(str, cells))} |"
-
-
-def table(names: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
+def table(names: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
     """A table with these names of columns."""
-    names = list(names)
-    return "\n".join([row(*names), "|" + "---|" * len(names), *(row(*cells) for cells in rows)])
+    head, *lines = (f"| {' | '.join(map(str, cells))} |" for cells in (names, *rows))
+    return "\n".join([head, "|" + "---|" * len(names), *lines])
 
 
-def replace_in_page(page: str, study: str, text: str) -> None:
-    """Put the text between the comments of a study."""
+def show(text: str, page: str, study: str) -> None:
+    """Print a study's text; with the option --write, put it between the study's comments in a page."""
+    print(text)
+    if "--write" not in sys.argv:
+        return
     begin, end = (f"<!-- scripts/{study}: {place} -->" for place in ("begin", "end"))
     file = DOCS / page
     before, rest = file.read_text(encoding="utf-8").split(begin)
