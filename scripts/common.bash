@@ -95,10 +95,14 @@ find_recordings() {
 enter_install() {
   enter_venv
   [ -f install/local_setup.bash ] || fail "nothing is built yet" "run ./scripts/build first"
-  # colcon's script reads variables that nobody has set
+  source_workspace .
+}
+
+# Sources what colcon has built in a directory; its script reads variables that nobody has set.
+source_workspace() {
   set +u
   # shellcheck source=/dev/null
-  source install/local_setup.bash
+  source "$1/install/local_setup.bash"
   set -u
 }
 
@@ -138,11 +142,7 @@ build_into() {
   shift
   colcon --log-base "$out/log" build --build-base "$out/build" --install-base "$out/install" \
     --packages-select "$@" --cmake-args "${cmake_arguments[@]}" -DBUILD_TESTING=OFF
-  # colcon's script reads variables that nobody has set
-  set +u
-  # shellcheck source=/dev/null
-  source "$out/install/local_setup.bash"
-  set -u
+  source_workspace "$out"
 }
 
 # test_in DIRECTORY PROGRAMS PACKAGE...

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hooks of MkDocs: what the pages of docs/ need to be pages of a site, too.
 
-Pages link to files of the repository beyond docs/, as on GitHub. On the site such a link leads to the
-repository where DOCS_REPOSITORY_URL names it, and is plain text elsewhere; a link to a file that
-doesn't exist is an error.
+Pages link to files beyond docs/, as on GitHub. On the site such a link leads to the repository that DOCS_REPOSITORY_URL
+names, or is plain text.
 """
 
 from __future__ import annotations

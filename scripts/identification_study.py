@@ -55,8 +55,8 @@ KNOWN = f"""\
 
 [Rehearsals](identification.md#rehearsal-would-my-motion-be-enough) of the models found above, identified from the
 description alone. Medians of {SEEDS} seeds: the error of the identified torques on states that are uniform in the
-recorded ranges, mean over joints; the error of the delay; the share of 95 % intervals of inertial combinations that hold the
-truth. `test_known_truth.py` holds the bounds.
+recorded ranges, mean over joints; the error of the delay; the share of 95 % intervals of inertial combinations that
+hold the truth. `test_known_truth.py` holds the bounds.
 """
 
 PAYLOADS = f"""\

@@ -62,7 +62,6 @@ class Result:
 
     error: Floats  # (n,) N m, RMSE on states that are uniform in the ranges that were seen
     delay_error: float  # s
-    law: str
     inside: Mask  # of each inertial combination that torques depend on, whether its 95 % interval holds the truth
 
     @property
@@ -141,7 +140,6 @@ class Truth:
         return Result(
             error=np.sqrt((error**2).mean(axis=0)),
             delay_error=chosen.delay - max(self.found.delay, 0.0),
-            law=chosen.law,
             inside=self._inside(fitter, chosen, blocks),
         )
 

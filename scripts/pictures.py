@@ -33,9 +33,6 @@ SHOWN_WIDTH = 860  # of the GIF
 FRAMES, FRAME_TIME = 56, 120  # ms
 
 
-# ---- The page in motion ----------------------------------------------------------------------------------------------
-
-
 def make_report() -> None:
     """The page of a real UR10, from its own player."""
     from PIL import Image
@@ -48,14 +45,8 @@ def make_report() -> None:
         frames = list(_frames(html, Path(scratch) / "profile"))
     colours = frames[len(frames) // 2].quantize(96)
     frames = [frame.quantize(palette=colours, dither=Image.Dither.NONE) for frame in frames]
-    frames[0].save(
-        PICTURES / "report.gif",
-        save_all=True,
-        append_images=frames[1:],
-        duration=FRAME_TIME,
-        loop=0,
-        optimize=True,
-    )
+    shown = {"append_images": frames[1:], "duration": FRAME_TIME, "loop": 0}
+    frames[0].save(PICTURES / "report.gif", save_all=True, optimize=True, **shown)
 
 
 def _frames(html: Path, profile: Path) -> Iterator[Image]:
@@ -90,9 +81,6 @@ def _browser(profile: Path) -> Chrome:
         options.add_argument(flag)
     service = webdriver.ChromeService(executable_path=shutil.which("chromedriver"))
     return webdriver.Chrome(options=options, service=service)
-
-
-# ---- The page of mistakes --------------------------------------------------------------------------------------------
 
 
 def make_why() -> None:
