@@ -86,8 +86,8 @@ Setup ArmSource::setup(const std::string& managers_description, unsigned update_
   const auto solver = loader.load(parameters.plugin_name);
   const std::string description =
       description_.find(parameters.robot_description, managers_description);
-  inverse_dynamics_solver::initializeStrictly(*solver, node_->get_node_parameters_interface(),
-                                              "ids", description);
+  const inverse_dynamics_solver::Parameters given(node_->get_node_parameters_interface());
+  solver->initialize(given.strict(), "ids", description);
   for (const std::string& warning : solver->warnings()) {
     RCLCPP_WARN(node_->get_logger(), "%s: %s", parameters.plugin_name.c_str(), warning.c_str());
   }

@@ -5,7 +5,6 @@
 #include <inverse_dynamics_controllers/feed_forward_controller_parameters.hpp>
 
 #include "follower.hpp"
-#include "pd_gains.hpp"
 
 namespace inverse_dynamics_controllers {
 

@@ -8,6 +8,16 @@ namespace inverse_dynamics_controllers {
 using inverse_dynamics_control::ReferenceGuard;
 using inverse_dynamics_control::ReferenceLimits;
 
+ChangingGains<inverse_dynamics_control::PdGains> pdGains(const Setup& setup) {
+  const auto make = [joints = setup.arm.joints](const ParameterValues& values) {
+    const auto numbers = [&](const std::string& name) {
+      return jointNumbers(name, values.at(name).get<std::vector<double>>(), joints);
+    };
+    return inverse_dynamics_control::PdGains{numbers("gains.p"), numbers("gains.d")};
+  };
+  return {setup.node, {"gains.p", "gains.d"}, make};
+}
+
 ReferenceInput referenceInput(const Setup& setup, const ReferenceLayout& layout,
                               const reference_parameters::Params& params) {
   const std::vector<std::string>& joints = setup.arm.joints;

@@ -5,7 +5,7 @@
 #include <inverse_dynamics_controllers/inverse_dynamics_controller_parameters.hpp>
 #include <sstream>
 
-#include "follower_with_gains.hpp"
+#include "follower.hpp"
 #include "joint_numbers.hpp"
 
 namespace inverse_dynamics_controllers {

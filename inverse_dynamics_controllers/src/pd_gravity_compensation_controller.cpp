@@ -4,8 +4,7 @@
 #include <inverse_dynamics_control/pd_gravity_compensation.hpp>
 #include <inverse_dynamics_controllers/pd_gravity_compensation_controller_parameters.hpp>
 
-#include "follower_with_gains.hpp"
-#include "pd_gains.hpp"
+#include "follower.hpp"
 
 namespace inverse_dynamics_controllers {
 

@@ -42,15 +42,18 @@ _EFFORTS = {
 _EFFORTS_OF_RECORDINGS = {**_EFFORTS, "auto": "what clearly fits the data"}
 
 
+def argument(name: str, description: str, default: str = "", **more: Any) -> DeclareLaunchArgument:
+    """An argument with a default."""
+    return DeclareLaunchArgument(name, default_value=default, description=description, **more)
+
+
 def choice(name: str, what: str, choices: dict[str, str], default: str) -> DeclareLaunchArgument:
     """An argument with a few values, each explained."""
     lines = [f"{what}:", *(f"  {value}: {text}" for value, text in choices.items())]
-    return DeclareLaunchArgument(
-        name, default_value=default, choices=list(choices), description="\n        ".join(lines)
-    )
+    return argument(name, "\n        ".join(lines), default, choices=list(choices))
 
 
-def bag_arguments(default_topic: str = "/torques") -> list[DeclareLaunchArgument]:
+def bag_arguments() -> list[DeclareLaunchArgument]:
     """Arguments of every launch file that evaluates a recording."""
     return [
         DeclareLaunchArgument(
@@ -61,17 +64,16 @@ def bag_arguments(default_topic: str = "/torques") -> list[DeclareLaunchArgument
         DeclareLaunchArgument(
             "output_bag", description="Recording to write; it must not exist yet"
         ),
-        DeclareLaunchArgument(
+        argument(
             "topic",
-            default_value=default_topic,
-            description="Topic of the computed torques in output_bag; the measured ones are on this "
-            "name with _gt behind it",
+            "Topic of the computed torques in output_bag; the measured ones are on this name with "
+            "_gt behind it",
+            "/torques",
         ),
-        DeclareLaunchArgument(
+        argument(
             "storage",
-            default_value="",
+            "Storage of output_bag; empty: that of input_bag",
             choices=["", "sqlite3", "mcap"],
-            description="Storage of output_bag; empty: that of input_bag",
         ),
     ]
 
@@ -79,11 +81,10 @@ def bag_arguments(default_topic: str = "/torques") -> list[DeclareLaunchArgument
 def sample_arguments() -> list[DeclareLaunchArgument]:
     """Arguments about what the samples mean."""
     return [
-        DeclareLaunchArgument(
+        argument(
             "input_topic",
-            default_value="",
-            description="Topic of the motion in input_bag; empty: the run configuration's, else the "
-            "only one of joint states, else that of trajectories",
+            "Topic of the motion in input_bag; empty: the run configuration's, else the only one of "
+            "joint states, else that of trajectories",
         ),
         choice(
             "accelerations",
@@ -91,10 +92,9 @@ def sample_arguments() -> list[DeclareLaunchArgument]:
             {"": "what the run configuration says, else auto", **_ACCELERATIONS},
             "",
         ),
-        DeclareLaunchArgument(
+        argument(
             "cutoff",
-            default_value="",
-            description="Cut-off of the low-pass [Hz]; 0.0: chosen from the data; empty: what the run "
+            "Cut-off of the low-pass [Hz]; 0.0: chosen from the data; empty: what the run "
             "configuration says, else chosen",
         ),
         *effort_arguments(_EFFORTS_OF_RECORDINGS),
@@ -110,11 +110,10 @@ def effort_arguments(efforts: dict[str, str] = _EFFORTS) -> list[DeclareLaunchAr
             {"": "what the run configuration says, else torque", **efforts},
             "",
         ),
-        DeclareLaunchArgument(
+        argument(
             "drive_gains",
-            default_value="",
-            description="Torque per current of each joint [N m/A], comma-separated, for currents; "
-            "empty: the run configuration's, else the solver's, if it has any",
+            "Torque per current of each joint [N m/A], comma-separated, for currents; empty: the "
+            "run configuration's, else the solver's, if it has any",
         ),
     ]
 
@@ -130,52 +129,37 @@ def effort_parameters(context: LaunchContext) -> dict[str, Any]:
 def solver_arguments() -> list[DeclareLaunchArgument]:
     """Arguments of a robot and its solver: a run configuration, and what replaces parts of it."""
     return [
-        DeclareLaunchArgument(
+        argument(
             "robot",
-            default_value="",
-            description="Run configuration: ur10_real for one, or a YAML file; empty: the other "
-            "arguments say all",
+            "Run configuration: ur10_real for one, or a YAML file; empty: the other arguments say all",
         ),
-        DeclareLaunchArgument(
+        argument(
             "plugin_name",
-            default_value="",
-            description="Solver, package/Class of a plugin: "
+            "Solver, package/Class of a plugin: "
             "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL for one; needed without robot",
         ),
-        DeclareLaunchArgument(
+        argument(
             "robot_description",
-            default_value="",
-            description="Text of a URDF, for a solver that doesn't bring its own model: "
+            "Text of a URDF, for a solver that doesn't bring its own model: "
             'robot_description:="$(xacro robot.urdf.xacro)"; empty: that of robot, if it has one',
         ),
-        DeclareLaunchArgument(
-            "root",
-            default_value="",
-            description="First link of the chain; empty: that of robot, else the URDF's root",
-        ),
-        DeclareLaunchArgument(
-            "tip",
-            default_value="",
-            description="Last link of the chain; empty: that of robot, else the URDF's leaf",
-        ),
-        DeclareLaunchArgument(
+        argument("root", "First link of the chain; empty: that of robot, else the URDF's root"),
+        argument("tip", "Last link of the chain; empty: that of robot, else the URDF's leaf"),
+        argument(
             "gravity",
-            default_value="",
-            description="Where things fall, in the frame of the root link [m/s^2]: [0, 0, -9.81] for "
-            "one; empty: what robot says, else that",
+            "Where things fall, in the frame of the root link [m/s^2]: [0, 0, -9.81] for one; empty: "
+            "what robot says, else that",
         ),
-        DeclareLaunchArgument(
+        argument(
             "friction",
-            default_value="",
+            "Whether the solver's friction model counts; false where the robot's controller "
+            "compensates friction; empty: what robot says, else true",
             choices=["", "true", "false"],
-            description="Whether the solver's friction model counts; false where the robot's "
-            "controller compensates friction; empty: what robot says, else true",
         ),
-        DeclareLaunchArgument(
+        argument(
             "joints",
-            default_value="",
-            description="Names of the joints in the messages, comma-separated, in the order of the "
-            "chain; empty: those of robot, else the solver's names",
+            "Names of the joints in the messages, comma-separated, in the order of the chain; "
+            "empty: those of robot, else the solver's names",
         ),
     ]
 

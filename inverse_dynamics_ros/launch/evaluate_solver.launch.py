@@ -6,6 +6,7 @@ ros2 launch inverse_dynamics_ros evaluate_solver.launch.py --show-args
 """
 
 from inverse_dynamics_ros.launch_files import (
+    argument,
     bag_arguments,
     choice,
     effort_parameters,
@@ -19,7 +20,7 @@ from inverse_dynamics_ros.launch_files import (
     text,
 )
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.actions import OpaqueFunction
 from launch_ros.actions import Node
 
 CLOCKS = {
@@ -58,11 +59,10 @@ def generate_launch_description():
             *solver_arguments(),
             *sample_arguments(),
             choice("clock", "Stamps that are the time", CLOCKS, "auto"),
-            DeclareLaunchArgument(
+            argument(
                 "without_rules",
-                default_value="",
-                description="What is found in the samples but not acted upon, comma-separated: "
-                "repeated, non-increasing, time-base, start-transient",
+                "What is found in the samples but not acted upon, comma-separated: repeated, "
+                "non-increasing, time-base, start-transient",
             ),
             OpaqueFunction(function=nodes),
             failing_with_its_node(),

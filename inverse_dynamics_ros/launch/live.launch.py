@@ -7,6 +7,7 @@ ros2 launch inverse_dynamics_ros live.launch.py --show-args
 """
 
 from inverse_dynamics_ros.launch_files import (
+    argument,
     choice,
     effort_arguments,
     effort_parameters,
@@ -19,7 +20,7 @@ from inverse_dynamics_ros.launch_files import (
     text,
 )
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.actions import OpaqueFunction
 from launch_ros.actions import LoadComposableNodes, Node
 from launch_ros.descriptions import ComposableNode
 
@@ -64,49 +65,42 @@ def generate_launch_description():
         [
             *solver_arguments(),
             *effort_arguments(),
-            DeclareLaunchArgument(
+            argument(
                 "cutoff",
-                default_value="5.0",
-                description="Cut-off of the causal filter that accelerations come from [Hz]; they "
-                "come late by 1 / (pi cutoff) s",
+                "Cut-off of the causal filter that accelerations come from [Hz]; they come late by "
+                "1 / (pi cutoff) s",
+                "5.0",
             ),
-            DeclareLaunchArgument(
+            argument(
                 "external_torques",
-                default_value="false",
+                "Whether external torques are estimated and published",
+                "false",
                 choices=["true", "false"],
-                description="Whether external torques are estimated and published",
             ),
-            DeclareLaunchArgument(
+            argument(
                 "contacts_file",
-                default_value="",
-                description="contacts.json of `ids contact`: with it, contacts and the wrench at the "
-                "tip are published, too",
+                "contacts.json of `ids contact`: with it, contacts and the wrench at the tip are "
+                "published, too",
             ),
-            DeclareLaunchArgument(
+            argument(
                 "payload_noise",
-                default_value="",
-                description="Standard deviation of measured - computed torques without a load [N m], "
+                "Standard deviation of measured - computed torques without a load [N m], "
                 "comma-separated, of each joint or one for all; needed to estimate what the tip carries",
             ),
-            DeclareLaunchArgument(
-                "joint_states",
-                default_value="/joint_states",
-                description="Topic of the joint states, in full",
-            ),
+            argument("joint_states", "Topic of the joint states, in full", "/joint_states"),
             choice(
                 "reliability", "Quality of service of joint_states", RELIABILITIES, "best_effort"
             ),
-            DeclareLaunchArgument(
+            argument(
                 "use_sim_time",
-                default_value="false",
+                "Whether time is that of the topic /clock",
+                "false",
                 choices=["true", "false"],
-                description="Whether time is that of the topic /clock",
             ),
-            DeclareLaunchArgument(
+            argument(
                 "container",
-                default_value="",
-                description="Name of a running component container to load the node into; empty: a "
-                "process of its own",
+                "Name of a running component container to load the node into; empty: a process of "
+                "its own",
             ),
             OpaqueFunction(function=nodes),
             failing_with_its_node(),

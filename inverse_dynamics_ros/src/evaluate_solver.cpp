@@ -85,12 +85,11 @@ void run(rclcpp::Node& node) {
   const NodeRobot made(givenParameters(node));
   const RunConfiguration& robot = made.configuration();
   sayRobot(logger, robot);
-  const std::string description = made.description();
-  const auto solver = made.makeSolver(description);
+  const auto solver = made.makeSolver(made.description());
   const std::vector<std::string> warnings = solver->warnings();
   sayAll(logger, warnings);
   EvaluationOptions options = optionsOf(params, robot, *solver);
-  options.units = made.torqueUnits(solver->jointNames(), description);
+  options.units = torqueUnits(*solver);
   say(logger, "solver: " + robot.plugin);
 
   const std::vector<std::string> joints =

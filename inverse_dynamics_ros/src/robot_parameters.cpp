@@ -5,11 +5,8 @@
 #include <chain_dynamics/robot_description.hpp>
 #include <fstream>
 #include <inverse_dynamics_evaluation/joint_matching.hpp>
-#include <inverse_dynamics_solver/configuration.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
-#include <inverse_dynamics_solver/strict_initialization.hpp>
 #include <optional>
-#include <set>
 #include <sstream>
 
 #include "user_error.hpp"
@@ -102,8 +99,7 @@ std::shared_ptr<InverseDynamicsSolver> NodeRobot::makeSolver(const std::string& 
                         ", or set 'robot' to a run configuration");
   }
   const auto solver = loader.load(configuration_.plugin);
-  inverse_dynamics_solver::initializeStrictly(*solver, solver_parameters_, kSolverNamespace,
-                                              description);
+  solver->initialize(solver_parameters_.strict(), kSolverNamespace, description);
   return solver;
 }
 
@@ -136,27 +132,10 @@ std::string NodeRobot::tipLink(const std::string& description) const {
   return leaves.size() == 1 ? leaves.front() : "";
 }
 
-std::vector<std::string> NodeRobot::torqueUnits(const std::vector<std::string>& joint_names,
-                                                const std::string& description) const {
-  std::set<std::string> prismatic;
-  if (!description.empty()) {
-    try {
-      const auto chain =
-          inverse_dynamics_solver::chainFromDescription(inverse_dynamics_solver::readConfiguration(
-              solver_parameters_, kSolverNamespace, description));
-      for (const chain_dynamics::Joint& joint : chain.joints()) {
-        if (joint.type == chain_dynamics::JointType::kPrismatic) {
-          prismatic.insert(joint.name);
-        }
-      }
-    } catch (const inverse_dynamics_solver::Exception&) {
-      // a solver with its own model takes no notice of the description either
-    }
-  }
+std::vector<std::string> torqueUnits(const InverseDynamicsSolver& solver) {
   std::vector<std::string> units;
-  units.reserve(joint_names.size());
-  for (const std::string& name : joint_names) {
-    units.emplace_back(prismatic.count(name) > 0 ? "N" : "N m");
+  for (const chain_dynamics::JointType type : solver.jointTypes()) {
+    units.emplace_back(type == chain_dynamics::JointType::kPrismatic ? "N" : "N m");
   }
   return units;
 }

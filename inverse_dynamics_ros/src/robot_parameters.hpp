@@ -59,10 +59,6 @@ class NodeRobot {
   std::string rootLink(const std::string& description) const;
   std::string tipLink(const std::string& description) const;
 
-  /// Unit of each joint's torque: N for a prismatic joint of the description, else N m.
-  std::vector<std::string> torqueUnits(const std::vector<std::string>& joint_names,
-                                       const std::string& description) const;
-
  private:
   std::string statedLink(const std::string& parameter) const;
 
@@ -70,5 +66,8 @@ class NodeRobot {
   std::string description_;                                // the parameter
   inverse_dynamics_solver::Parameters solver_parameters_;  // below kSolverNamespace
 };
+
+/// Unit of each joint's torque: N for a prismatic joint, else N m.
+std::vector<std::string> torqueUnits(const inverse_dynamics_solver::InverseDynamicsSolver& solver);
 
 }  // namespace inverse_dynamics_ros

@@ -56,7 +56,7 @@ TEST_F(RobotParameters, AreARunConfiguration) {
   const auto solver = robot.makeSolver(robot.description());
   EXPECT_EQ(solver->jointNames(), std::vector<std::string>{"slide"});
   EXPECT_DOUBLE_EQ(solver->getGravityVector(Eigen::VectorXd::Zero(1))[0], 4.0);
-  EXPECT_EQ(robot.torqueUnits(solver->jointNames(), kUrdf), std::vector<std::string>{"N"});
+  EXPECT_EQ(torqueUnits(*solver), std::vector<std::string>{"N"});
 }
 
 TEST_F(RobotParameters, GivenBesideItReplaceWhatItSays) {

@@ -11,14 +11,9 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from ament_index_python.packages import get_package_share_directory
-from inverse_dynamics_ros.launch_files import failing_with_its_node, number, text
+from inverse_dynamics_ros.launch_files import argument, failing_with_its_node, number, text
 from launch import LaunchDescription
-from launch.actions import (
-    DeclareLaunchArgument,
-    ExecuteProcess,
-    OpaqueFunction,
-    RegisterEventHandler,
-)
+from launch.actions import ExecuteProcess, OpaqueFunction, RegisterEventHandler
 from launch.event_handlers import OnProcessExit
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
@@ -66,32 +61,21 @@ def generate_launch_description():
     """Arguments and processes, as `ros2 launch` asks for them."""
     return LaunchDescription(
         [
-            DeclareLaunchArgument(
-                "robot", default_value="ur10", choices=list(INITIAL), description="Which arm"
-            ),
-            DeclareLaunchArgument(
+            argument("robot", "Which arm", "ur10", choices=list(INITIAL)),
+            argument(
                 "controller",
-                default_value="inverse_dynamics",
-                choices=list(CONTROLLERS),
-                description="inverse_dynamics: computed torque after a joint_trajectory_controller; "
+                "inverse_dynamics: computed torque after a joint_trajectory_controller; "
                 "feed_forward: PD and the model's torque after one; gravity_compensation: hand "
                 "guiding; pd_gravity_compensation: PD and gravity after one",
+                "inverse_dynamics",
+                choices=list(CONTROLLERS),
             ),
-            DeclareLaunchArgument(
-                "config",
-                default_value="",
-                description="Parameter file; empty: this package's for the robot",
-            ),
-            DeclareLaunchArgument(
-                "payload",
-                default_value="0.0",
-                description="Mass at the tip, unknown to the solver [kg]",
-            ),
-            DeclareLaunchArgument(
+            argument("config", "Parameter file; empty: this package's for the robot"),
+            argument("payload", "Mass at the tip, unknown to the solver [kg]", "0.0"),
+            argument(
                 "bag",
-                default_value="",
-                description="Directory to record /joint_states into, once the controllers are active; "
-                "it must not exist yet. Empty: no recording",
+                "Directory to record /joint_states into, once the controllers are active; it must "
+                "not exist yet. Empty: no recording",
             ),
             OpaqueFunction(function=_processes),
             failing_with_its_node(),
