@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "chain_dynamics/gravity.hpp"
@@ -17,17 +16,11 @@ inline namespace v2 {
 namespace {
 
 constexpr double kRotationTolerance = 1e-9;  // entries of R'R - 1: what ten printed digits leave
-constexpr double kInertiaTolerance = 1e-9;  // of the greatest moment: published figures are rounded
+constexpr double kInertiaTolerance = 1e-9;  // of the greatest moment: published numbers are rounded
 constexpr double kSymmetryTolerance = 1e-12;  // of the greatest entry: a frame changed by R I R'
 
-// Any printable value, with enough digits to find it in a file.
-template <typename Value>
-std::string text(const Value& value) {
-  std::ostringstream stream;
-  stream.precision(10);
-  stream << value;
-  return stream.str();
-}
+/// With enough digits to find the number in a file.
+std::string text(double value) { return numberText(value, 10); }
 
 std::string text(const Eigen::Vector3d& value) {
   return "[" + text(value.x()) + ", " + text(value.y()) + ", " + text(value.z()) + "]";
@@ -45,7 +38,7 @@ void checkPose(const std::string& where, const std::string& what, const Transfor
   if (!X.R.allFinite() || !X.p.allFinite()) {
     throw ModelError(where, what, "finite numbers", "a NaN or an infinity", "");
   }
-  if (X.p.cwiseAbs().maxCoeff() > kGreatestFigure) {
+  if (X.p.cwiseAbs().maxCoeff() > kLargestNumber) {
     throw ModelError(where, what, "lengths up to 1e50 m", text(Eigen::Vector3d(X.p)), "");
   }
   const double error = (X.R.transpose() * X.R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
@@ -88,7 +81,7 @@ void checkLink(const std::string& where, const LinkParameters& link) {
                      "");
   }
   const double greatest = link.toVector().cwiseAbs().maxCoeff();
-  if (greatest > kGreatestFigure) {
+  if (greatest > kLargestNumber) {
     throw ModelError(where, "inertial parameters", "numbers up to 1e50", text(greatest), "");
   }
   if (link.mass < 0) {

@@ -3,8 +3,6 @@
 /// @file
 /// A proof that the inertia matrix of a chain is positive definite for every q.
 ///
-///     if (!inertiaIsDefinite(chain)) { ... }   // don't invert H
-///
 /// Twice the kinetic energy, `qd' H(q) qd`, is the sum over the links of `V' I V` and over the
 /// rotors of `rotor_inertia qd_i^2`. It is assumed of every link, and checked, that `V' I V` is
 /// never negative. Then the energy vanishes only if each of these terms does.

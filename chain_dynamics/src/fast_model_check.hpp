@@ -2,10 +2,6 @@
 
 /// @file
 /// Whether fast kernels can be trusted on this processor: checked once, when a model is loaded.
-///
-///     const Choice choice = bestEqual("arm", {"portable", "v3"}, [&](std::size_t k) {
-///       return equalsPlain(FastModel(model, names[k]), model);
-///     });
 
 #pragma once
 
@@ -19,10 +15,8 @@
 namespace chain_dynamics {
 inline namespace v2 {
 
-/// Whether the fast kernels give what the functions of model.hpp give, at a few states.
-///
-/// To 1e-9 of what the terms of each entry may amount to, far above rounding, far below a mistake:
-/// that is made of masses and lengths, since entries may cancel. Not for NaN or infinity.
+/// Whether the fast kernels give what the functions of model.hpp give, at a few states: to 1e-8 of
+/// the largest entry. False for NaN and infinity.
 bool equalsPlain(const FastModel& fast, const Model& model);
 
 /// One of several instruction sets.

@@ -3,7 +3,6 @@
 #include "chain_dynamics/friction.hpp"
 
 #include <cassert>
-#include <sstream>
 
 #include "chain_dynamics/error.hpp"
 
@@ -11,21 +10,22 @@ namespace chain_dynamics {
 inline namespace v2 {
 namespace {
 
-bool isIn(FigureRange range, double value) {
-  return std::isfinite(value) && (range != FigureRange::kNotNegative || value >= 0) &&
-         (range != FigureRange::kPositive || value > 0);
+bool isIn(CoefficientRange range, double value) {
+  return std::isfinite(value) && (range != CoefficientRange::kNotNegative || value >= 0) &&
+         (range != CoefficientRange::kPositive || value > 0);
 }
 
-const char* textOf(FigureRange range) {
-  if (range == FigureRange::kNotNegative) return "a finite number >= 0";
-  return range == FigureRange::kPositive ? "a finite number > 0" : "a finite number";
+const char* textOf(CoefficientRange range) {
+  if (range == CoefficientRange::kNotNegative) return "a finite number >= 0";
+  return range == CoefficientRange::kPositive ? "a finite number > 0" : "a finite number";
 }
 
-/// Whether the figure has a meaning: not where the one it is required with is zero.
+/// Whether the coefficient has a meaning: not where the one it is required with is zero.
 template <class Law>
-bool isUsed(const Law& law, const Figure<Law>& figure) {
-  for (const Figure<Law>& other : Law::figures()) {
-    if (figure.required_with != nullptr && std::string(other.name) == figure.required_with) {
+bool isUsed(const Law& law, const Coefficient<Law>& coefficient) {
+  for (const Coefficient<Law>& other : Law::coefficients()) {
+    if (coefficient.required_with != nullptr &&
+        std::string(other.name) == coefficient.required_with) {
       return law.*other.value != 0;
     }
   }
@@ -33,14 +33,12 @@ bool isUsed(const Law& law, const Figure<Law>& figure) {
 }
 
 template <class Law>
-void checkFigures(const Law& law, const std::string& where) {
-  for (const Figure<Law>& figure : Law::figures()) {
-    const double value = law.*figure.value;
-    if (!isUsed(law, figure) || isIn(figure.range, value)) continue;
-    std::ostringstream got;
-    got << value;
-    throw ModelError(where, std::string(Law::kName) + ": " + figure.name, textOf(figure.range),
-                     got.str(), "");
+void checkCoefficients(const Law& law, const std::string& where) {
+  for (const Coefficient<Law>& coefficient : Law::coefficients()) {
+    const double value = law.*coefficient.value;
+    if (!isUsed(law, coefficient) || isIn(coefficient.range, value)) continue;
+    throw ModelError(where, std::string(Law::kName) + ": " + coefficient.name,
+                     textOf(coefficient.range), numberText(value), "");
   }
 }
 
@@ -54,8 +52,8 @@ double loadAt(const Eigen::Ref<const Eigen::VectorXd>& g, Eigen::Index j) {
 FrictionLaw scaled(const FrictionLaw& law, double factor) {
   return std::visit(
       [factor](auto named) -> FrictionLaw {
-        for (const auto& figure : decltype(named)::figures()) {
-          if (figure.is_torque) named.*figure.value *= factor;
+        for (const auto& coefficient : decltype(named)::coefficients()) {
+          if (coefficient.is_torque) named.*coefficient.value *= factor;
         }
         return named;
       },
@@ -63,7 +61,7 @@ FrictionLaw scaled(const FrictionLaw& law, double factor) {
 }
 
 void checkFriction(const FrictionLaw& law, const std::string& where) {
-  std::visit([&](const auto& named) { checkFigures(named, where); }, law);
+  std::visit([&](const auto& named) { checkCoefficients(named, where); }, law);
 }
 
 void frictionVector(const std::vector<FrictionLaw>& laws,

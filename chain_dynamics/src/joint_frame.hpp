@@ -3,9 +3,6 @@
 /// @file
 /// From joint axes of any direction to the z axis that a Chain asks for.
 ///
-///     Matrix3 R_UE = rotationFromZ(axis);  // axes of the engine's frame E in the file's frame U
-///     joint.placement.R = R_PU * R_UE;
-///
 /// U is the link frame of the file (URDF, model file), E that of the Chain: same origin, turned so
 /// that z of E is the joint axis.
 

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -116,11 +115,10 @@ void verifyState(const LocatedValue& value, double tolerance, const Model& model
   tau += f;
   for (Eigen::Index j = 0; j < q.size(); ++j) {
     if (!(std::abs(tau[j] - expected[j]) <= tolerance)) {
-      std::ostringstream difference;
-      difference << "one that is " << tau[j] - expected[j] << " off";
       throw ModelError(value.where(),
                        "torque of joint " + model.chain.joints()[static_cast<std::size_t>(j)].name,
-                       "the model's torque", difference.str(),
+                       "the model's torque",
+                       "one that is " + numberText(tau[j] - expected[j]) + " off",
                        "a number of the model or of this row is wrong");
     }
   }

@@ -2,12 +2,93 @@
 
 #include "model_file_joint.hpp"
 
+#include <cmath>
+#include <cstdint>
 #include <utility>
 #include <variant>
+
+#include "joint_frame.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
 namespace {
+
+// ---------------------------------------------------------------------------------------------
+// Geometry: the file's frame of a link is U, the chain's is E, whose z is the joint's axis
+
+/// Sine and cosine of an angle; exact for angles in quarter turns.
+struct Angle {
+  double sine;
+  double cosine;
+};
+
+/// The key `name` [rad] or `name_quarter_turns` (right angles, without the rounding of pi / 2).
+Angle angle(LocatedMap& map, const std::string& name) {
+  const auto quarter_turns = map.optional(name + "_quarter_turns");
+  if (!quarter_turns) {
+    const double value = map.required(name).number();
+    return {std::sin(value), std::cos(value)};
+  }
+  if (const auto both = map.optional(name)) {
+    both->fail("either this key or " + name + "_quarter_turns");
+  }
+  constexpr double kSine[] = {0, 1, 0, -1};
+  const std::int64_t turns = quarter_turns->integer() & 3;  // modulo 4, negative ones too
+  return {kSine[turns], kSine[(turns + 1) & 3]};
+}
+
+Transform<double> turnAboutX(const Angle& a) {
+  Matrix3<double> R;
+  R << 1, 0, 0, 0, a.cosine, -a.sine, 0, a.sine, a.cosine;
+  return {R, Eigen::Vector3d::Zero()};
+}
+
+Transform<double> turnAboutZ(const Angle& a) {
+  Matrix3<double> R;
+  R << a.cosine, -a.sine, 0, a.sine, a.cosine, 0, 0, 0, 1;
+  return {R, Eigen::Vector3d::Zero()};
+}
+
+Transform<double> shift(double x, double y, double z) {
+  return {Matrix3<double>::Identity(), Eigen::Vector3d(x, y, z)};
+}
+
+/// Where a joint sits.
+struct JointGeometry {
+  Transform<double> placement = Transform<double>::identity();  // E in the previous link's U
+  Transform<double> X_EU = Transform<double>::identity();       // differs from link to link
+};
+
+/// Modified (Craig): U_i = E_i, and U_(i-1) to U_i is RotX(alpha) TransX(a) RotZ(q + offset)
+/// TransZ(d). Standard: U_(i-1) to U_i is RotZ(q + offset) TransZ(d) TransX(a) RotX(alpha): the
+/// joint turns about z of U_(i-1), and E_i stands after the first half.
+JointGeometry readDH(LocatedMap map, Geometry geometry) {
+  const double a = map.required("a").number();
+  const double d = map.required("d").number();
+  const auto X_alpha_a = turnAboutX(angle(map, "alpha")) * shift(a, 0, 0);
+  const auto X_offset_d = turnAboutZ(angle(map, "offset")) * shift(0, 0, d);
+  map.rejectOthers();
+  if (geometry == Geometry::kModifiedDH) {
+    return {X_alpha_a * X_offset_d, Transform<double>::identity()};
+  }
+  return {X_offset_d, X_alpha_a};
+}
+
+/// As in a URDF: U_i in U_(i-1) at q = 0, and the joint's axis in U_i.
+JointGeometry readPlacement(LocatedMap map) {
+  const Transform<double> X = readPose(map);
+  const LocatedValue axis = map.required("axis");
+  map.rejectOthers();
+  const Eigen::Vector3d direction = readVector(axis);
+  if (direction.isZero(0)) {
+    axis.fail("a direction", "the zero vector has none; for example [0, 0, 1]");
+  }
+  const Matrix3<double> R_UE = rotationFromZ(direction.stableNormalized());
+  return {{X.R * R_UE, X.p}, {R_UE.transpose(), Eigen::Vector3d::Zero()}};
+}
+
+// ---------------------------------------------------------------------------------------------
+// Links, limits, friction
 
 LinkParameters link(const LocatedValue& value, Parameters parameters) {
   const std::vector<double> numbers = value.numbers(10);
@@ -39,33 +120,34 @@ JointLimits readLimits(LocatedMap map, JointType type) {
   value.fail(expected + " in schema 1", "write schema: 2 at the top of the file");
 }
 
-double readInRange(const LocatedValue& value, FigureRange range) {
+double readInRange(const LocatedValue& value, CoefficientRange range) {
   const double number = value.number();
-  if (range == FigureRange::kNotNegative && number < 0) value.fail("a number >= 0");
-  if (range == FigureRange::kPositive && number <= 0) value.fail("a number > 0");
+  if (range == CoefficientRange::kNotNegative && number < 0) value.fail("a number >= 0");
+  if (range == CoefficientRange::kPositive && number <= 0) value.fail("a number > 0");
   return number;
 }
 
-/// Whether the figure has a meaning: not where the one it is required with is zero.
+/// Whether the coefficient has a meaning: not where the one it is required with is zero.
 template <class Law>
-bool isUsed(LocatedMap& map, const Figure<Law>& figure) {
-  if (figure.required_with == nullptr) return true;
-  const auto other = map.optional(figure.required_with);
+bool isUsed(LocatedMap& map, const Coefficient<Law>& coefficient) {
+  if (coefficient.required_with == nullptr) return true;
+  const auto other = map.optional(coefficient.required_with);
   return other && other->number() != 0;
 }
 
-/// A law with its figures by name.
+/// A law with its coefficients by name.
 template <class Law>
 Law readLaw(LocatedMap& map) {
   Law law;
-  for (const Figure<Law>& figure : Law::figures()) {
-    const auto value = figure.required ? map.required(figure.name) : map.optional(figure.name);
+  for (const Coefficient<Law>& coefficient : Law::coefficients()) {
+    const auto value =
+        coefficient.required ? map.required(coefficient.name) : map.optional(coefficient.name);
     if (value) {
-      law.*figure.value =
-          readInRange(*value, isUsed(map, figure) ? figure.range : FigureRange::kAny);
-    } else if (figure.required_with != nullptr && map.optional(figure.required_with)) {
-      map.value().refuse(std::string("the key ") + figure.name + " is missing; it belongs to " +
-                         figure.required_with);
+      law.*coefficient.value = readInRange(
+          *value, isUsed(map, coefficient) ? coefficient.range : CoefficientRange::kAny);
+    } else if (coefficient.required_with != nullptr && map.optional(coefficient.required_with)) {
+      map.value().refuse(std::string("the key ") + coefficient.name +
+                         " is missing; it belongs to " + coefficient.required_with);
     }
   }
   return law;
@@ -116,7 +198,7 @@ void readExperience(LocatedMap& map, int schema, JointEntry& entry) {
     if (value && schema < 2) refuseNewer(*value, "no such key");
   }
   if (deviation) {
-    entry.torque_deviation.push_back(readInRange(*deviation, FigureRange::kNotNegative));
+    entry.torque_deviation.push_back(readInRange(*deviation, CoefficientRange::kNotNegative));
   }
   if (seen) {
     LocatedMap ranges = seen->map();
@@ -208,6 +290,15 @@ bool allOrNone(const std::vector<JointEntry>& entries, Member member, const std:
 }
 
 }  // namespace
+
+Eigen::Vector3d readVector(const LocatedValue& value) {
+  return Eigen::Vector3d(value.numbers(3).data());
+}
+
+Transform<double> readPose(LocatedMap& map) {
+  const Eigen::Vector3d xyz = readVector(map.required("xyz"));
+  return {rotationFromRollPitchYaw(readVector(map.required("rpy"))), xyz};
+}
 
 std::vector<JointEntry> readJoints(const LocatedValue& value, const Conventions& conventions) {
   const std::vector<LocatedValue> list = value.entries();

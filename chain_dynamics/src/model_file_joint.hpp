@@ -2,8 +2,6 @@
 
 /// @file
 /// The joints of a model file, each with the link that it moves.
-///
-///     const std::vector<JointEntry> joints = readJoints(file.required("joints"), conventions);
 
 #pragma once
 
@@ -14,11 +12,12 @@
 #include "chain_dynamics/chain.hpp"
 #include "chain_dynamics/located_yaml.hpp"
 #include "chain_dynamics/model.hpp"
-#include "model_file_geometry.hpp"
+#include "chain_dynamics/spatial.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
 
+enum class Geometry { kModifiedDH, kStandardDH, kPlacements };
 enum class Parameters { kAboutOrigin, kAboutCenterOfMass };
 enum class Level { kTorque, kCurrent };
 
@@ -48,6 +47,11 @@ struct JointEntry {
 
 /// The joints from root to tip; what one has of row, friction and so on, all have.
 std::vector<JointEntry> readJoints(const LocatedValue& value, const Conventions& conventions);
+
+Eigen::Vector3d readVector(const LocatedValue& value);
+
+/// The keys `xyz` [m] and `rpy` [rad].
+Transform<double> readPose(LocatedMap& map);
 
 }  // namespace v2
 }  // namespace chain_dynamics

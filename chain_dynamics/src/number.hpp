@@ -3,8 +3,6 @@
 /// @file
 /// Numbers of files, read strictly.
 ///
-///     if (const auto length = finiteNumber("0.1273")) { use(*length); }
-///
 /// The whole text must be one finite number, with a decimal point whatever the locale: strtod and
 /// std::stod would read "0.1273" as 0 where the user's language writes a comma.
 
@@ -27,7 +25,7 @@ std::optional<double> finiteNumber(const std::string& text);
 bool isDecimal(const std::string& text);
 
 /// Masses, squares of lengths and of velocities of this size have products that a double holds.
-constexpr double kGreatestFigure = 1e50;
+constexpr double kLargestNumber = 1e50;
 
 }  // namespace v2
 }  // namespace chain_dynamics

@@ -5,7 +5,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "chain_dynamics/text.hpp"
 
@@ -25,13 +24,7 @@ constexpr double kSamePlace = 1e-3;  // m between axes of one joint
 /// Of a joint's range: a measured position may lie beyond a limit by as much.
 constexpr double kBeyondLimit = 0.1;
 
-template <class Number>
-std::string rounded(const Number& number) {
-  std::ostringstream stream;
-  stream.precision(3);
-  stream << number;
-  return stream.str();
-}
+std::string shortText(double number) { return numberText(number, 3); }
 
 std::string linkText(int line, const std::string& link, const std::string& joint) {
   return "URDF:" + std::to_string(line) + ": link " + link + ", moved by joint " + joint + ": ";
@@ -83,9 +76,9 @@ std::string radiusDoubt(const RobotDescription::Link& link, const std::string& j
   const double half = 0.5 * length;
   if (radius <= std::max(half, kBody) || moment <= kVisible * mass * half * half) return "";
   return linkText(link.inertial->line, link.name, joint) + "a moment of inertia of " +
-         rounded(moment) + " kg m^2 for " + rounded(link.inertial->mass) +
-         " kg is implausible: a radius of gyration of " + rounded(radius) + " m in a chain of " +
-         rounded(length) + " m; check the units of <inertia> (kg m^2) and <mass> (kg)";
+         shortText(moment) + " kg m^2 for " + shortText(link.inertial->mass) +
+         " kg is implausible: a radius of gyration of " + shortText(radius) + " m in a chain of " +
+         shortText(length) + " m; check the units of <inertia> (kg m^2) and <mass> (kg)";
 }
 
 }  // namespace
@@ -118,8 +111,8 @@ std::string positionDoubt(const RobotDescription::Joint& joint, double position)
   if (position >= lower - margin && position <= upper + margin) return "";
   const bool slides = joint.type == RobotDescription::JointType::kPrismatic;
   return printable("URDF:" + std::to_string(joint.line) + ": joint " + joint.name + ": held at " +
-                   rounded(position) + (slides ? " m" : " rad") + ", beyond its limits of " +
-                   rounded(lower) + " to " + rounded(upper) + "; check the unit");
+                   shortText(position) + (slides ? " m" : " rad") + ", beyond its limits of " +
+                   shortText(lower) + " to " + shortText(upper) + "; check the unit");
 }
 
 }  // namespace v2

@@ -3,8 +3,6 @@
 /// @file
 /// Numbers of a robot description that a rigid body can have, but hardly has: wrong units, a digit
 /// too many, a body that was forgotten.
-///
-///     for (const std::string& doubt : inertiaDoubts(robot, chain, parts)) { print(doubt); }
 
 #pragma once
 

@@ -251,8 +251,7 @@ class Reader {
   }
 
   void readLinks(const XMLElement& root) {
-    for (auto* next = root.FirstChildElement("link"); next != nullptr;
-         next = next->NextSiblingElement("link")) {
+    for (const XMLElement* const next : childrenOf(root, "link")) {
       const UrdfElement element = named(*next, links_);
       element.reportUnknown(kLink);
       Link link;
@@ -266,8 +265,7 @@ class Reader {
   }
 
   void readJoints(const XMLElement& root) {
-    for (auto* next = root.FirstChildElement("joint"); next != nullptr;
-         next = next->NextSiblingElement("joint")) {
+    for (const XMLElement* const next : childrenOf(root, "joint")) {
       const UrdfElement element = named(*next, joints_);
       element.reportUnknown(kJoint);
       Joint joint;

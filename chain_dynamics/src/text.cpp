@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cstdint>
 #include <numeric>
+#include <sstream>
 #include <utility>
 
 #include "utf8.hpp"
@@ -115,6 +116,13 @@ std::string printable(const std::string& text, std::size_t longest) {
 }
 
 bool isPrintable(const std::string& text) { return printable(text, text.size()) == text; }
+
+std::string numberText(double value, int digits) {
+  std::ostringstream stream;
+  stream.precision(digits);
+  stream << value;
+  return stream.str();
+}
 
 std::string joined(const std::vector<std::string>& words, const std::string& separator) {
   std::string text;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "chain_dynamics/text.hpp"
 #include "number.hpp"
@@ -149,31 +148,28 @@ void UrdfElement::checkSize(const std::string& what, double value, double greate
   if (std::abs(value) <= greatest) {
     return;
   }
-  std::ostringstream got;
-  got << value << " " << unit;
-  if (!(std::abs(value) <= kGreatestFigure)) {
-    throw error(what, "a figure that can be computed with, up to 1e50", got.str(),
-                "correct it, or its unit");
+  const std::string got = numberText(value) + " " + unit;
+  if (!(std::abs(value) <= kLargestNumber)) {
+    throw error(what, "a number up to 1e50", got, "correct it, or its unit");
   }
-  std::ostringstream limit;
-  limit << greatest << " " << unit;
-  warn(what + ": " + got.str() + " is beyond " + limit.str() + "; is the unit right?");
+  warn(what + ": " + got + " is beyond " + numberText(greatest) + " " + unit +
+       "; is the unit right?");
 }
 
 // ---------------------------------------------------------------------------------------------
 // Children
 
-std::vector<const XMLElement*> UrdfElement::childElements(const char* child_tag) const {
-  std::vector<const XMLElement*> elements;
-  for (auto* next = element_->FirstChildElement(child_tag); next != nullptr;
-       next = next->NextSiblingElement(child_tag)) {
-    elements.push_back(next);
+std::vector<const XMLElement*> childrenOf(const XMLElement& parent, const char* tag) {
+  std::vector<const XMLElement*> children;
+  for (auto* next = parent.FirstChildElement(tag); next != nullptr;
+       next = next->NextSiblingElement(tag)) {
+    children.push_back(next);
   }
-  return elements;
+  return children;
 }
 
 std::optional<UrdfElement> UrdfElement::child(const char* child_tag) const {
-  const auto found = childElements(child_tag);
+  const auto found = childrenOf(*element_, child_tag);
   if (found.empty()) {
     return std::nullopt;
   }
@@ -189,7 +185,7 @@ UrdfElement UrdfElement::requiredChild(const char* child_tag, const std::string&
     return *found;
   }
   std::vector<std::string> given;
-  for (const XMLElement* element : childElements(nullptr)) {
+  for (const XMLElement* element : childrenOf(*element_)) {
     given.emplace_back(element->Name());
   }
   const std::string similar = nearestName(child_tag, given);

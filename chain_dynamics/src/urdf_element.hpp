@@ -51,6 +51,10 @@ class Findings {
   std::map<std::string, std::size_t> once_;  // place in findings_
 };
 
+/// The children of that tag, or all.
+std::vector<const tinyxml2::XMLElement*> childrenOf(const tinyxml2::XMLElement& parent,
+                                                    const char* tag = nullptr);
+
 /// The names that an element may hold.
 struct Vocabulary {
   std::vector<std::string> children;    // read
@@ -82,7 +86,7 @@ class UrdfElement {
   /// Warns of children, attributes and text that nothing reads.
   void reportUnknown(const Vocabulary& known) const;
 
-  /// A figure of a robot's size; beyond that a warning, and an error where products would overflow.
+  /// A number of a robot's size; beyond it a warning, and an error where products would overflow.
   void checkSize(const std::string& what, double value, double greatest,
                  const std::string& unit) const;
 
@@ -99,7 +103,6 @@ class UrdfElement {
   const std::string& item() const { return item_; }
 
  private:
-  std::vector<const tinyxml2::XMLElement*> childElements(const char* child_tag) const;
   void reportAttributes(const Vocabulary& known) const;
   void reportChildren(const Vocabulary& known) const;
   void reportName(const std::string& at, const std::string& name, bool is_element,

@@ -15,15 +15,6 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-std::vector<const XMLElement*> childrenOf(const XMLElement& parent, const char* tag = nullptr) {
-  std::vector<const XMLElement*> children;
-  for (auto* next = parent.FirstChildElement(tag); next != nullptr;
-       next = next->NextSiblingElement(tag)) {
-    children.push_back(next);
-  }
-  return children;
-}
-
 /// One transmission, in which ROS's tags and Drake's may state the same.
 class Transmission {
  public:
@@ -38,7 +29,7 @@ class Transmission {
     const double inertia = stated({"motorInertia", "drake:rotor_inertia"}).value_or(0);
     const double ratio = stated({"mechanicalReduction", "drake:gear_ratio"}).value_or(1);
     const double reflected = inertia * ratio * ratio;
-    if (!(inertia >= 0 && reflected <= kGreatestFigure)) {
+    if (!(inertia >= 0 && reflected <= kLargestNumber)) {
       throw at(element_).error("rotor inertia", "a number >= 0 [kg m^2]",
                                std::to_string(inertia) + ", reduction " + std::to_string(ratio));
     }

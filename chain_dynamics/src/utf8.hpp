@@ -2,12 +2,6 @@
 
 /// @file
 /// Characters of texts in UTF-8.
-///
-///     for (std::size_t i = 0; i < text.size();) {
-///       const Character character = characterAt(text, i);
-///       if (character.size == 0) break;   // no UTF-8
-///       i += character.size;
-///     }
 
 #pragma once
 

@@ -187,7 +187,7 @@ TEST(RobotDescription, OnlyDecimalNumbersAreNumbers) {
   EXPECT_THAT(urdfError(hinge(inertial("${mass}"))), HasSubstr("expand the file with xacro first"));
 }
 
-TEST(RobotDescription, FiguresBeyondARobotsSizeAreAWarningOrAnError) {
+TEST(RobotDescription, NumbersBeyondARobotsSizeAreAWarningOrAnError) {
   const auto far = [](const std::string& x) {
     return hinge(inertial(), "<origin xyz='0 " + x + " 0'/>");
   };
@@ -196,7 +196,7 @@ TEST(RobotDescription, FiguresBeyondARobotsSizeAreAWarningOrAnError) {
               ElementsAre("URDF:5: joint j: <origin> xyz: 2e+06 m is beyond 1e+06 m; is the unit "
                           "right?"));
   EXPECT_EQ(urdfError(far("1e300")),
-            "URDF:5: joint j: <origin> xyz: expected a figure that can be computed with, up to "
+            "URDF:5: joint j: <origin> xyz: expected a number up to "
             "1e50, got 1e+300 m; correct it, or its unit");
   EXPECT_THAT(warnings(hinge(inertial("1e10"))), ElementsAre(HasSubstr("1e+10 kg is beyond")));
   EXPECT_THAT(urdfError(hinge(inertial("1e308"))), HasSubstr("link bob: <mass> value: expected"));
@@ -206,7 +206,7 @@ TEST(RobotDescription, FiguresBeyondARobotsSizeAreAWarningOrAnError) {
   EXPECT_THAT(warnings(hinge(inertial(), "<origin rpy='0 90 0'/>")),
               ElementsAre(AllOf(HasSubstr("joint j: <origin> rpy"), HasSubstr("unit"))));
 
-  // the greatest figures that are taken give finite torques
+  // the greatest numbers that are taken give finite torques
   EXPECT_TRUE(someTorques(hinge(inertial("1e50"), "<origin xyz='1e50 1e50 1e50'/>")).allFinite());
 }
 

@@ -51,7 +51,7 @@ class FastModel {
 
   /// @param model            at most kMaxJoints joints; checkModel() is called.
   /// @param instruction_set  one of instructionSets(); empty: the best of those that give what
-  ///     the functions of model.hpp give, to nine digits, at a few states.
+  ///     the functions of model.hpp give, to eight digits, at a few states.
   /// @throws ModelError  longer chain, unknown instruction set, parts that don't fit together, or
   ///     no instruction set that gives these numbers (because they overflow).
   explicit FastModel(const Model& model, const std::string& instruction_set = "");

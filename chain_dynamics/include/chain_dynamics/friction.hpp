@@ -13,8 +13,11 @@
 /// Friction of a joint depends on its velocity qd and, with laws that have a load coefficient, on
 /// |g|, the gravity torque that the joint carries.
 ///
-/// A new law is a small file in friction_laws/ [friction_laws/figures.hpp says what to write] and
-/// one more name in FrictionLaw.
+/// Real time: all functions but checkFriction(): no allocation, lock, exception or system call.
+/// Threads: safe.
+///
+/// A new law is a small file in friction_laws/ [friction_laws/coefficients.hpp says what to write]
+/// and one more name in FrictionLaw.
 
 #pragma once
 
@@ -75,7 +78,6 @@ inline bool hasStep(const FrictionForm& form) {
 /// for NaN; finite for finite numbers.
 ///
 /// @param g  not used by laws without a load coefficient: dependsOnLoad().
-/// Real time: no allocation, lock, exception or system call. Threads: safe.
 inline double friction(const FrictionForm& law, double qd, double g) {
   const double sign = qd > 0 ? 1.0 : (qd < 0 ? -1.0 : 0.0);
   const double f = law.fv * qd + law.fc * sign + law.fo;  // NaN stays: 0 * NaN is NaN
@@ -93,7 +95,6 @@ inline double friction(const FrictionLaw& law, double qd, double g) {
 /// g [N m]. NaN for NaN.
 ///
 /// A jump (Coulomb friction at rest) has none and counts as nothing.
-/// Real time: no allocation, lock, exception or system call. Threads: safe.
 inline double frictionSlope(const FrictionForm& law, double qd, double g) {
   if (std::isnan(qd)) return qd;
   if (!internal::hasStep(law)) return law.fv;
@@ -110,8 +111,6 @@ inline double frictionSlope(const FrictionLaw& law, double qd, double g) {
 
 /// The derivative `df/dg` [1] of a law at the velocity qd [rad/s] by the gravity torque g [N m]; zero
 /// at g = 0, where |g| has none.
-///
-/// Real time: no allocation, lock, exception or system call. Threads: safe.
 inline double frictionLoadSlope(const FrictionForm& law, double qd, double g) {
   if (law.fl == 0 || g == 0) return 0;
   const double step = sigmoid(law.alpha * (qd + law.shift)) - law.center;
@@ -130,10 +129,10 @@ inline bool dependsOnLoad(const FrictionLaw& law) { return formOf(law).fl != 0; 
 /// [N m/A]. `friction(scaled(law, k), qd, k g) = k friction(law, qd, g)`.
 FrictionLaw scaled(const FrictionLaw& law, double factor);
 
-/// Rejects figures that a law can't have: non-finite ones, a width of zero, negative coefficients.
+/// Rejects a law with a coefficient out of its range, or one that isn't finite.
 ///
 /// @param where  what messages call the law's place.
-/// @throws ModelError  naming law and figure.
+/// @throws ModelError  naming law and coefficient.
 void checkFriction(const FrictionLaw& law, const std::string& where);
 
 /// Friction torques of all joints: `f_j = friction(laws[j], qd_j, g_j)`.
@@ -142,7 +141,6 @@ void checkFriction(const FrictionLaw& law, const std::string& where);
 /// @param qd      n; rad/s (prismatic m/s).
 /// @param g       n; gravity torques, N m (prismatic N); where no law depends on load, may be empty.
 /// @param[out] f  n; N m (prismatic N).
-/// Real time: no allocation, lock, exception or system call. Threads: safe.
 void frictionVector(const std::vector<FrictionLaw>& laws,
                     const Eigen::Ref<const Eigen::VectorXd>& qd,
                     const Eigen::Ref<const Eigen::VectorXd>& g, Eigen::Ref<Eigen::VectorXd> f);
@@ -154,7 +152,6 @@ void frictionVector(const std::vector<FrictionLaw>& laws,
 /// @param g           n; gravity torques, N m (prismatic N); where no law depends on load, may be
 ///                    empty.
 /// @param[out] slope  n; N m s/rad (prismatic N s/m).
-/// Real time: no allocation, lock, exception or system call. Threads: safe.
 void frictionSlopes(const std::vector<FrictionLaw>& laws,
                     const Eigen::Ref<const Eigen::VectorXd>& qd,
                     const Eigen::Ref<const Eigen::VectorXd>& g, Eigen::Ref<Eigen::VectorXd> slope);

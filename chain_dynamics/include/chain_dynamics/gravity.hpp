@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// Which gravity an arm may stand in: far beyond what any vehicle or centrifuge does, and small enough
-/// that no product of a chain's figures overflows.
+/// that no product of the numbers of a chain overflows.
 #pragma once
 
 namespace chain_dynamics {

@@ -8,8 +8,13 @@
 ///     frictionVector(ur10, q, qd, f);                       // what the motors need is tau + f
 ///
 /// An identified robot need not be one system of rigid bodies [parameter_sets.hpp]: rows of the
-/// torque may have parameters of their own, and so may gravity. The functions below have the names
-/// and meanings of those for a Chain and take that into account.
+/// torque may have parameters of their own, and so may gravity. The functions below have the names,
+/// meanings and arguments of those for a Chain [torques.hpp, inertia_matrix.hpp, ...] and take that
+/// into account.
+///
+/// Arguments: q, qd, qdd n each; rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2); order of
+/// model.chain.jointNames(). Real time (up to 64 joints): no allocation, lock, exception or system
+/// call. Threads: safe.
 ///
 /// A model identified in motor currents is kept in torques: its parameters and friction have been
 /// multiplied by the drive gains, so the current of joint j is the torque divided by
@@ -72,7 +77,7 @@ struct Model {
   std::vector<SeenRange> seen = {};
 
   std::string name;           ///< what messages call it
-  std::string source = {};    ///< where the figures come from
+  std::string source = {};    ///< where the numbers come from
   std::string validity = {};  ///< what they are good for
 
   /// Whether H is proved to be symmetric positive definite for every q.
@@ -87,7 +92,7 @@ struct Model {
 };
 
 /// Rejects a model whose parts don't fit together: wrong sizes, non-finite numbers, gains <= 0,
-/// figures that a friction law can't have.
+/// coefficients that a friction law can't have.
 ///
 /// Call it once where a model was made by hand; the functions below only assert sizes.
 ///
@@ -109,25 +114,18 @@ using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
 ///
 /// Recursive Newton-Euler, O(n), or once per row [parameter_sets.hpp], O(n^2).
 ///
-/// @param q,qd,qdd  n each; rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2); order of
-///                  model.chain.jointNames().
 /// @param[out] tau  n; N m (prismatic N).
-/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 void torques(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
              const ConstVectorRef& qdd, VectorRef tau);
 
 /// Joint-space inertia matrix: `H(q)`; with row parameters neither symmetric nor definite.
 ///
-/// @param q       n; rad (prismatic m).
 /// @param[out] H  n x n; kg m^2 (prismatic kg, mixed kg m).
-/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 void inertiaMatrix(const Model& model, const ConstVectorRef& q, MatrixRef H);
 
 /// Coriolis and centrifugal torques: `C(q, qd) qd`.
 ///
-/// @param q,qd    n each; rad, rad/s (prismatic m, m/s).
 /// @param[out] c  n; N m (prismatic N).
-/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 void coriolisVector(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                     VectorRef c);
 
@@ -136,42 +134,28 @@ void coriolisVector(const Model& model, const ConstVectorRef& q, const ConstVect
 /// `C qd` is that of coriolisVector(). `dH/dt = C + C'` without row parameters; with them, H isn't
 /// symmetric either. Recursion over blocks of links [coriolis_matrix.hpp], O(n^2), or once per row.
 ///
-/// @param q,qd    n each; rad, rad/s (prismatic m, m/s).
 /// @param[out] C  n x n; kg m^2/s (prismatic kg/s, mixed kg m/s).
-/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 void coriolisMatrix(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                     MatrixRef C);
 
 /// Gravity torques: `g(q)`.
 ///
-/// @param q       n; rad (prismatic m).
 /// @param[out] g  n; N m (prismatic N).
-/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 void gravityVector(const Model& model, const ConstVectorRef& q, VectorRef g);
 
 /// Inertia matrix, Coriolis and gravity torques in one pass: `H(q)`, `C(q, qd) qd`, `g(q)`.
 ///
-/// @param q,qd    n each; rad, rad/s (prismatic m, m/s).
 /// @param[out] H  n x n; kg m^2 (prismatic kg, mixed kg m).
 /// @param[out] c  n; N m (prismatic N).
 /// @param[out] g  n; N m (prismatic N).
-/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 void dynamicComponents(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                        MatrixRef H, VectorRef c, VectorRef g);
 
-/// Kinetic energy: `T(q, qd) = 1/2 qd' H qd`, rotors included; for models without row parameters.
-///
-/// @param q,qd  n each; rad, rad/s (prismatic m, m/s).
-/// @return      J.
-/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
+/// Kinetic energy [J]: `T(q, qd) = 1/2 qd' H qd`, rotors included; for models without row parameters.
 double kineticEnergy(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd);
 
-/// Potential energy of gravity: `U(q)`, zero where all mass is at the root frame's origin; its
+/// Potential energy of gravity [J]: `U(q)`, zero where all mass is at the root frame's origin; its
 /// gradient is gravityVector(). For models without row parameters, or with some for gravity.
-///
-/// @param q  n; rad (prismatic m).
-/// @return   J.
-/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 double potentialEnergy(const Model& model, const ConstVectorRef& q);
 
 /// Whether friction depends on the gravity torques, and so on q: a law has a load coefficient.
@@ -182,9 +166,7 @@ bool frictionDependsOnLoad(const Model& model);
 /// The load of a joint is its gravityVector(), of the model as it is.
 ///
 /// @param q       n; rad (prismatic m); may be empty where frictionDependsOnLoad() is false.
-/// @param qd      n; rad/s (prismatic m/s).
 /// @param[out] f  n; N m (prismatic N).
-/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 void frictionVector(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                     VectorRef f);
 
@@ -192,9 +174,7 @@ void frictionVector(const Model& model, const ConstVectorRef& q, const ConstVect
 /// has no friction, but NaN for NaN.
 ///
 /// @param q           n; rad (prismatic m); may be empty where frictionDependsOnLoad() is false.
-/// @param qd          n; rad/s (prismatic m/s).
 /// @param[out] slope  n; N m s/rad (prismatic N s/m).
-/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 void frictionSlopes(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                     VectorRef slope);
 
@@ -203,10 +183,8 @@ void frictionSlopes(const Model& model, const ConstVectorRef& q, const ConstVect
 /// `df_j/dq = df_j/dg_j dg_j/dq`; where a gravity torque is zero, |g_j| has no derivative, which
 /// counts as zero.
 ///
-/// @param q,qd             n each; rad, rad/s (prismatic m, m/s).
 /// @param[in,out] dtau_dq  n x n; N m/rad (prismatic N, m).
 /// @param[in,out] dtau_dqd n x n; N m s/rad (prismatic N, m).
-/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                             MatrixRef dtau_dq, MatrixRef dtau_dqd);
 
@@ -215,11 +193,9 @@ void addFrictionDerivatives(const Model& model, const ConstVectorRef& q, const C
 ///
 /// Recursion over blocks of links [torque_derivatives.hpp], O(n^2), or once per row, O(n^3).
 ///
-/// @param q,qd,qdd        n each; rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2).
 /// @param[out] dtau_dq    n x n: entry (i, j) is that of tau_i by q_j; N m/rad (prismatic N, m).
 /// @param[out] dtau_dqd   n x n; N m s/rad (prismatic N, m).
 /// @param[out] dtau_dqdd  n x n; kg m^2 (prismatic kg, mixed kg m).
-/// Real time (up to 64 joints): no allocation, lock, exception or system call. Threads: safe.
 void torqueDerivatives(const Model& model, const ConstVectorRef& q, const ConstVectorRef& qd,
                        const ConstVectorRef& qdd, MatrixRef dtau_dq, MatrixRef dtau_dqd,
                        MatrixRef dtau_dqdd);

@@ -39,7 +39,7 @@ struct ParameterSets {
 
 /// Rejects sets that don't fit a chain: wrong number of sets or links, non-finite numbers.
 ///
-/// Any finite parameters will do, negative masses too: in an identified set a single figure has no
+/// Any finite parameters will do, negative masses too: in an identified set a single number has no
 /// physical meaning. Call it once, when reading; the algorithms only assert the sizes.
 ///
 /// @throws ModelError  naming set and joint.

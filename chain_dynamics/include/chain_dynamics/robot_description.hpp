@@ -110,7 +110,7 @@ struct RobotDescription {
 ///     left in it, none is read: one of `warnings`.
 /// @throws ModelError  `URDF:line: joint or link: what: expected ..., got ...; remedy`: no URDF or
 ///     a broken one, names that aren't unique, links that aren't a tree, unknown joint type, zero
-///     axis, missing, malformed or non-finite number, a figure beyond 1e50, negative mass.
+///     axis, missing, malformed or non-finite number, a number beyond 1e50, negative mass.
 /// Threads: safe.
 RobotDescription robotFromUrdf(const std::string& urdf_xml);
 

@@ -2,9 +2,6 @@
 
 /// @file
 /// A chain in the frames and with the few parameters that robot.hpp describes.
-///
-///     const Frames frames = framesOf(chain);
-///     std::vector<Body> bodies = regrouped(frames, chain.links());
 
 #pragma once
 

@@ -8,7 +8,7 @@
 
 #include <array>
 
-#include "chain_dynamics/friction_laws/figures.hpp"
+#include "chain_dynamics/friction_laws/coefficients.hpp"
 #include "chain_dynamics/friction_laws/sigmoid.hpp"
 
 namespace chain_dynamics {
@@ -25,7 +25,7 @@ struct CenteredSigmoid {
   static constexpr const char* kName = "centered_sigmoid";
   static constexpr int kSchema = 1;
 
-  static constexpr std::array<Figure<CenteredSigmoid>, 3> figures() {
+  static constexpr std::array<Coefficient<CenteredSigmoid>, 3> coefficients() {
     return {{{"A", &CenteredSigmoid::A, true},
              {"alpha", &CenteredSigmoid::alpha, false},
              {"delta", &CenteredSigmoid::delta, false}}};

@@ -8,7 +8,7 @@
 
 #include <array>
 
-#include "chain_dynamics/friction_laws/figures.hpp"
+#include "chain_dynamics/friction_laws/coefficients.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -33,14 +33,14 @@ struct SmoothCoulomb {
   static constexpr const char* kName = "smooth_coulomb";
   static constexpr int kSchema = 2;
 
-  static constexpr std::array<Figure<SmoothCoulomb>, 8> figures() {
-    constexpr auto kNotNegative = FigureRange::kNotNegative;
-    constexpr auto kPositive = FigureRange::kPositive;
+  static constexpr std::array<Coefficient<SmoothCoulomb>, 8> coefficients() {
+    constexpr auto kNotNegative = CoefficientRange::kNotNegative;
+    constexpr auto kPositive = CoefficientRange::kPositive;
     return {{{"fv", &SmoothCoulomb::fv, true, kNotNegative},
              {"fc", &SmoothCoulomb::fc, true, kNotNegative},
              {"width", &SmoothCoulomb::width, false, kPositive},
-             {"shift", &SmoothCoulomb::shift, false, FigureRange::kAny, false},
-             {"fo", &SmoothCoulomb::fo, true, FigureRange::kAny, false},
+             {"shift", &SmoothCoulomb::shift, false, CoefficientRange::kAny, false},
+             {"fo", &SmoothCoulomb::fo, true, CoefficientRange::kAny, false},
              {"fl", &SmoothCoulomb::fl, false, kNotNegative, false},
              {"fs", &SmoothCoulomb::fs, true, kNotNegative, false},
              {"vs", &SmoothCoulomb::vs, false, kPositive, false, "fs"}}};

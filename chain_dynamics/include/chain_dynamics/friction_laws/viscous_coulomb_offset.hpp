@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include "chain_dynamics/friction_laws/figures.hpp"
+#include "chain_dynamics/friction_laws/coefficients.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -21,7 +21,7 @@ struct ViscousCoulombOffset {
   static constexpr const char* kName = "viscous_coulomb_offset";
   static constexpr int kSchema = 1;
 
-  static constexpr std::array<Figure<ViscousCoulombOffset>, 3> figures() {
+  static constexpr std::array<Coefficient<ViscousCoulombOffset>, 3> coefficients() {
     return {{{"fv", &ViscousCoulombOffset::fv, true},
              {"fc", &ViscousCoulombOffset::fc, true},
              {"fo", &ViscousCoulombOffset::fo, true}}};

@@ -8,7 +8,7 @@
 
 #include <array>
 
-#include "chain_dynamics/friction_laws/figures.hpp"
+#include "chain_dynamics/friction_laws/coefficients.hpp"
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -27,7 +27,7 @@ struct ViscousOffsetSigmoid {
   static constexpr const char* kName = "viscous_offset_sigmoid";
   static constexpr int kSchema = 1;
 
-  static constexpr std::array<Figure<ViscousOffsetSigmoid>, 5> figures() {
+  static constexpr std::array<Coefficient<ViscousOffsetSigmoid>, 5> coefficients() {
     return {{{"fv", &ViscousOffsetSigmoid::fv, true},
              {"fo", &ViscousOffsetSigmoid::fo, true},
              {"fc", &ViscousOffsetSigmoid::fc, true},

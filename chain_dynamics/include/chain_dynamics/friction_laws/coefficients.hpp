@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What a friction law is made of: figures with names, and one form that all laws share.
+/// What a friction law is made of: coefficients with names, and one form that all laws share.
 ///
-///     for (const auto& figure : SmoothCoulomb::figures()) law.*figure.value = 0.5;
+///     for (const auto& coefficient : SmoothCoulomb::coefficients()) law.*coefficient.value = 0.5;
 ///
-/// A law is a struct of figures in a file of its own, with
+/// A law is a struct of coefficients in a file of its own, with
 ///
-///     static constexpr const char* kName;             // what a model file calls it
-///     static constexpr int kSchema;                   // since which schema a model file may have it
-///     static constexpr std::array<...> figures();     // the figures by name, and what they may be
-///     FrictionForm form() const;                      // the law in the form below
+///     static constexpr const char* kName;               // its name in model files
+///     static constexpr int kSchema;                     // the first schema of model files with it
+///     static constexpr std::array<...> coefficients();  // by name, and what they may be
+///     FrictionForm form() const;                        // the law in the form below
 ///
 /// and its name in FrictionLaw [friction.hpp]. Reading, checking, scaling, torques, derivatives and
 /// the fast kernels are made of these.
@@ -20,19 +20,19 @@
 namespace chain_dynamics {
 inline namespace v2 {
 
-/// What a figure may be, besides finite.
-enum class FigureRange { kAny, kNotNegative, kPositive };
+/// What a coefficient may be, besides finite.
+enum class CoefficientRange { kAny, kNotNegative, kPositive };
 
-/// One figure of a law.
+/// One coefficient of a law.
 template <class Law>
-struct Figure {
+struct Coefficient {
   const char* name;    ///< its key in a model file
   double Law::*value;  ///< where it is
   bool is_torque;      ///< follows the unit of torque: N m, N m s/rad
-  FigureRange range = FigureRange::kAny;
+  CoefficientRange range = CoefficientRange::kAny;
   bool required = true;
-  /// For an optional one: required where the figure of this name is given; has no meaning, and may
-  /// have any value, where that one is zero.
+  /// Of an optional one: required where the coefficient of this name is given; without meaning, of
+  /// any value, where that one is zero.
   const char* required_with = nullptr;
 };
 
