@@ -98,8 +98,8 @@ void requireAlarms(double per_hour) {
   if (per_hour >= kLeastAlarms) return;
   throw inverse_dynamics_solver::InvalidParameterValueException(inverse_dynamics_solver::errorText(
       "contact thresholds: false_alarms_per_hour", "wrong value",
-      "a number of at least " + number(kLeastAlarms) + " (one in a century) [1/h]",
-      number(per_hour), "state more"));
+      "a number of at least " + numberText(kLeastAlarms) + " (one in a century) [1/h]",
+      numberText(per_hour), "state more"));
 }
 
 void requireSeries(const Eigen::Ref<const Eigen::MatrixXd>& quiet,
@@ -132,11 +132,12 @@ Peaks requirePeaks(const Series& heights, Index correlation, double period, doub
     const double most = std::floor(found / duration * per_hour);
     if (most < 1.0) {
       refuse(joint, "too few samples", "a part without contact that shows a peak of its torque",
-             number(static_cast<double>(heights.size())), "take a longer part");
+             numberText(static_cast<double>(heights.size())), "take a longer part");
     }
-    refuse(joint, "too many false alarms",
-           "at most " + number(most) + " per hour, which is as often as its torque shows a peak",
-           number(stated * per_hour), "state fewer");
+    refuse(
+        joint, "too many false alarms",
+        "at most " + numberText(most) + " per hour, which is as often as its torque shows a peak",
+        numberText(stated * per_hour), "state fewer");
   }
   return peaks;
 }

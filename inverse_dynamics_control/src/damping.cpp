@@ -28,10 +28,10 @@ OwnedVector dampingFor(const InverseDynamicsSolver& solver, const ConstVectorRef
   require(solver.inertiaIsPhysical(), "solver", "a symmetric, positive definite H(q)",
           "inertiaIsPhysical() is false",
           "take a solver made from the robot's URDF, or choose the damping of each joint");
-  require(std::isfinite(rate) && rate > 0, "rate", "a finite number above zero [1/s]", number(rate),
-          "5 1/s brakes an arm within a second");
+  require(std::isfinite(rate) && rate > 0, "rate", "a finite number above zero [1/s]",
+          numberText(rate), "5 1/s brakes an arm within a second");
   require(std::isfinite(period) && period > 0, "period", "a finite number above zero [s]",
-          number(period), "take the period of the control loop");
+          numberText(period), "take the period of the control loop");
   require(q.allFinite(), "q", "finite positions", "NaN or infinity", "take a common posture");
 
   const Eigen::MatrixXd H = solver.getInertiaMatrix(q);
@@ -40,8 +40,8 @@ OwnedVector dampingFor(const InverseDynamicsSolver& solver, const ConstVectorRef
   Eigen::MatrixXd difference = H / period;
   difference.diagonal() -= damping;
   require(difference.llt().info() == Eigen::Success, "rate",
-          "no decay faster than 1 / period, " + number(1.0 / period) + " 1/s", "a faster one",
-          "lower the rate " + number(rate) + " 1/s");
+          "no decay faster than 1 / period, " + numberText(1.0 / period) + " 1/s", "a faster one",
+          "lower the rate " + numberText(rate) + " 1/s");
   return damping;
 }
 

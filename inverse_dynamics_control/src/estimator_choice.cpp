@@ -10,8 +10,10 @@ namespace inverse_dynamics_control {
 inline namespace v2 {
 
 std::unique_ptr<ExternalTorqueEstimator> estimatorFor(
-    std::shared_ptr<const InverseDynamicsSolver> solver, const EstimatorOptions& options) {
-  if (solver != nullptr && solver->inertiaIsPhysical()) {
+    std::shared_ptr<const InverseDynamicsSolver> solver, const EstimatorOptions& options,
+    Estimator choice) {
+  if (choice == Estimator::kMomentum ||
+      (choice == Estimator::kAutomatic && solver != nullptr && solver->inertiaIsPhysical())) {
     return std::make_unique<MomentumObserver>(std::move(solver), options);
   }
   return std::make_unique<AccelerationResidual>(std::move(solver), options);

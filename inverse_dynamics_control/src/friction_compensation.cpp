@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
-#include <sstream>
+
+#include "option_checks.hpp"
 
 namespace inverse_dynamics_control {
 inline namespace v2 {
@@ -13,10 +14,8 @@ namespace {
 void require(bool fulfilled, const std::string& where, const std::string& expected, double got,
              const std::string& remedy) {
   if (fulfilled) return;
-  std::ostringstream number;
-  number << got;
   throw inverse_dynamics_solver::InvalidParameterValueException(
-      inverse_dynamics_solver::errorText(where, "wrong value", expected, number.str(), remedy));
+      inverse_dynamics_solver::errorText(where, "wrong value", expected, numberText(got), remedy));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <inverse_dynamics_solver/exceptions.hpp>
-#include <sstream>
 
 namespace inverse_dynamics_control {
 inline namespace v2 {
@@ -44,12 +43,6 @@ const char* inWords(Range range) {
 
 }  // namespace
 
-std::string number(double value) {
-  std::ostringstream stream;
-  stream << value;
-  return stream.str();
-}
-
 void requireJointNumbers(const std::string& where, const Eigen::Ref<const Eigen::VectorXd>& values,
                          Range range, const std::string& unit,
                          const std::vector<std::string>& joint_names) {
@@ -58,17 +51,17 @@ void requireJointNumbers(const std::string& where, const Eigen::Ref<const Eigen:
 
   const auto n = static_cast<Eigen::Index>(joint_names.size());
   if (values.size() != n) {
-    std::string joints;
-    for (const std::string& name : joint_names) joints += (joints.empty() ? "" : ", ") + name;
     throw InvalidParameterValueException(
         errorText(where, "wrong size", std::to_string(n) + " numbers [" + unit + "]",
-                  std::to_string(values.size()), "give one for each of the joints " + joints));
+                  std::to_string(values.size()),
+                  "give one for each of the joints " + chain_dynamics::joined(joint_names)));
   }
   for (Eigen::Index j = 0; j < n; ++j) {
     if (isWithin(values[j], range)) continue;
-    throw InvalidParameterValueException(errorText(
-        where + ": joint " + joint_names[static_cast<std::size_t>(j)], "wrong value",
-        std::string(inWords(range)) + " [" + unit + "]", number(values[j]), "correct this number"));
+    throw InvalidParameterValueException(
+        errorText(where + ": joint " + joint_names[static_cast<std::size_t>(j)], "wrong value",
+                  std::string(inWords(range)) + " [" + unit + "]", numberText(values[j]),
+                  "correct this number"));
   }
 }
 
@@ -82,7 +75,7 @@ bool areJointNumbers(const Eigen::Ref<const Eigen::VectorXd>& values, Range rang
 void requireNumber(const std::string& where, double value, Range range, const std::string& unit) {
   if (isWithin(value, range)) return;
   throw inverse_dynamics_solver::InvalidParameterValueException(inverse_dynamics_solver::errorText(
-      where, "wrong value", std::string(inWords(range)) + " [" + unit + "]", number(value),
+      where, "wrong value", std::string(inWords(range)) + " [" + unit + "]", numberText(value),
       "correct this number"));
 }
 

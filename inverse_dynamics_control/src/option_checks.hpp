@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "chain_dynamics/text.hpp"
+
 namespace inverse_dynamics_control {
 inline namespace v2 {
 
@@ -48,8 +50,7 @@ bool replaceGains(const PairOfGains& gains, PairOfGains& kept) noexcept {
 /// The same of one number.
 void requireNumber(const std::string& where, double value, Range range, const std::string& unit);
 
-/// As a message has it: six digits.
-std::string number(double value);
+using chain_dynamics::numberText;
 
 }  // namespace v2
 }  // namespace inverse_dynamics_control

@@ -13,7 +13,7 @@ namespace inverse_dynamics_control {
 inline namespace v2 {
 namespace {
 
-// Rounding of whoever computes references up to the limit.
+// Tolerance for references at the limit.
 constexpr double kRounding = 1e-9;
 constexpr double kTurn = 6.283185307179586;  // rad
 

@@ -68,6 +68,9 @@ extern EstimatorOptions options;
 namespace computed_torque_examples {
 extern LawOptions options;
 }
+namespace contact_sensing_examples {
+extern ContactOptions options;
+}
 namespace damping_examples {
 extern LawOptions options;
 }

@@ -13,13 +13,16 @@
 namespace inverse_dynamics_control {
 inline namespace v2 {
 
-/// A MomentumObserver where the solver's `inertiaIsPhysical()`, else an AccelerationResidual.
-///
+/// kAutomatic: a MomentumObserver where the solver's `inertiaIsPhysical()`, else an
+/// AccelerationResidual.
+enum class Estimator { kAutomatic, kMomentum, kAccelerationResidual };
+
 /// @param solver  initialized; it is kept.
 /// Throws inverse_dynamics_solver::InvalidParameterValueException: no solver; options of the wrong
 /// size or value. UninitializedException: the solver isn't initialized. Allocates.
 std::unique_ptr<ExternalTorqueEstimator> estimatorFor(
-    std::shared_ptr<const InverseDynamicsSolver> solver, const EstimatorOptions& options);
+    std::shared_ptr<const InverseDynamicsSolver> solver, const EstimatorOptions& options,
+    Estimator choice = Estimator::kAutomatic);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_control

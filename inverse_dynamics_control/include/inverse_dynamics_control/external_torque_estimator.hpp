@@ -47,7 +47,7 @@ enum class EstimateStatus {
   kWrongSize,        ///< an argument hasn't one number per joint: begins again
 };
 
-/// What happened, as a sentence without a full stop. Real time: no allocation, lock, exception or
+/// Text of a message, without a full stop. Real time: no allocation, lock, exception or
 /// system call. Threads: safe.
 const char* text(EstimateStatus status) noexcept;
 

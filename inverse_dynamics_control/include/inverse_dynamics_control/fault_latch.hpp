@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// When a law's refusals are too many to go on: faults that last are kept until somebody resets.
+/// Latches a fault that lasts, until reset().
 ///
 ///     FaultLatch fault(0.05);                                      // s
 ///     const Status status = fault.latched() ? law.hold(state, period, tau)

@@ -33,7 +33,7 @@ class GravityCompensation : public ControlLaw {
   /// @param[out] tau  n; N m (prismatic N); finite and within the limits whatever the status is.
   Status update(const JointState& state, double period, VectorRef tau) noexcept;
 
-  /// The same beside a guiding velocity.
+  /// The same with a guiding velocity.
   ///
   /// @param qd_reference  n; rad/s (prismatic m/s); of the friction only.
   Status update(const JointState& state, const ConstVectorRef& qd_reference, double period,

@@ -6,6 +6,7 @@
 #include "inverse_dynamics_control/acceleration_residual.hpp"    // IWYU pragma: export
 #include "inverse_dynamics_control/computed_torque.hpp"          // IWYU pragma: export
 #include "inverse_dynamics_control/contact_detector.hpp"         // IWYU pragma: export
+#include "inverse_dynamics_control/contact_sensing.hpp"          // IWYU pragma: export
 #include "inverse_dynamics_control/contact_thresholds.hpp"       // IWYU pragma: export
 #include "inverse_dynamics_control/damping.hpp"                  // IWYU pragma: export
 #include "inverse_dynamics_control/estimator_choice.hpp"         // IWYU pragma: export

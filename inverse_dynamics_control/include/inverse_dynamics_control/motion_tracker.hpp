@@ -9,7 +9,7 @@
 ///
 /// A difference of positions that are multiples of a step has noise of the size step / period: with
 /// 2^19 steps per turn at 1 kHz, 0.012 rad/s. A low-pass removes it, but delays velocities, and a
-/// delayed velocity beside a torque that isn't looks like an external torque whenever the arm
+/// delayed velocity with a torque that isn't looks like an external torque whenever the arm
 /// accelerates. So each joint is tracked by a model of constant acceleration, corrected by the
 /// position error, with three poles at -p (a critically damped g-h-k filter [Brookner, Tracking and
 /// Kalman Filtering Made Easy, 1998, sec. 1.3]):

@@ -44,7 +44,7 @@ enum class StopReason {
   kWrongSize,  ///< it hasn't one number per joint
 };
 
-/// What happened, as a sentence without a full stop. Real time: no allocation, lock, exception or
+/// Text of a message, without a full stop. Real time: no allocation, lock, exception or
 /// system call. Threads: safe.
 const char* text(StopReason reason) noexcept;
 

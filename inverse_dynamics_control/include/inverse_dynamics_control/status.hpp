@@ -9,7 +9,7 @@
 namespace inverse_dynamics_control {
 inline namespace v2 {
 
-/// Result of an update. From kReferenceNotFinite on the wish was refused, and the output is the
+/// Result of an update. From kReferenceNotFinite on the command was refused, and the output is the
 /// safe torque [control_law.hpp].
 enum class Status {
   kOk,                  ///< the law's torque, as it is
@@ -25,7 +25,7 @@ enum class Status {
 /// Whether the law's torque was refused, so that the output is the safe torque.
 constexpr bool isRefusal(Status status) noexcept { return status >= Status::kReferenceNotFinite; }
 
-/// What happened, as a sentence without a full stop. Real time: no allocation, lock, exception or
+/// Text of a message, without a full stop. Real time: no allocation, lock, exception or
 /// system call. Threads: safe.
 const char* text(Status status) noexcept;
 

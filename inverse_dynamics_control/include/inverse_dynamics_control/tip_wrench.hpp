@@ -40,7 +40,7 @@ enum class WrenchStatus {
   kWrongSize,     ///< an argument hasn't one number per joint
 };
 
-/// What happened, as a sentence without a full stop. Real time: no allocation, lock, exception or
+/// Text of a message, without a full stop. Real time: no allocation, lock, exception or
 /// system call. Threads: safe.
 const char* text(WrenchStatus status) noexcept;
 
