@@ -48,10 +48,6 @@ void ChangingConditions::whileUnchanged(const std::function<void()>& compute) co
   compute();
 }
 
-void ChangingConditions::computeParts(bool, const std::function<void()>& compute) const {
-  whileUnchanged(compute);
-}
-
 void ChangingConditions::publishAlone(const std::function<void()>& publish) {
   const std::lock_guard<std::mutex> entrance(entrance_);
   const std::lock_guard<std::shared_mutex> no_batch(batches_);

@@ -47,28 +47,27 @@ void Energies::getKineticEnergyBatch(const ConstStatesRef& q, const ConstStatesR
   const BatchCall call("getKineticEnergyBatch", torqueSolver(), q.count);
   call.states("q", q).states("qd", qd).rows("T", T, 1);
   require(hasEnergiesImpl(), "getKineticEnergyBatch");
-  call.share([this](const auto&... part) { computeKineticEnergyBatch(part...); }, q, qd, T);
+  const auto of_state = [this](const ConstVectorRef& q_k, const ConstVectorRef& qd_k,
+                               VectorRef T_k) { T_k[0] = computeKineticEnergy(q_k, qd_k); };
+  const auto of_part = [&](const ConstStates& q_part, const ConstStates& qd_part,
+                           const States& T_part) {
+    eachState(q_part.count, of_state, StateReader(q_part), StateReader(qd_part),
+              StateWriter(T_part));
+  };
+  call.share(of_part, q, qd, T);
 }
 
 void Energies::getPotentialEnergyBatch(const ConstStatesRef& q, const States& U) const {
   const BatchCall call("getPotentialEnergyBatch", torqueSolver(), q.count);
   call.states("q", q).rows("U", U, 1);
   require(hasEnergiesImpl(), "getPotentialEnergyBatch");
-  call.share([this](const auto&... part) { computePotentialEnergyBatch(part...); }, q, U);
-}
-
-void Energies::computeKineticEnergyBatch(const ConstStates& q, const ConstStates& qd,
-                                         const States& T) const {
-  const auto of_state = [this](const ConstVectorRef& q_k, const ConstVectorRef& qd_k,
-                               VectorRef T_k) { T_k[0] = computeKineticEnergy(q_k, qd_k); };
-  eachState(q.count, of_state, StateReader(q), StateReader(qd), StateWriter(T));
-}
-
-void Energies::computePotentialEnergyBatch(const ConstStates& q, const States& U) const {
   const auto of_state = [this](const ConstVectorRef& q_k, VectorRef U_k) {
     U_k[0] = computePotentialEnergy(q_k);
   };
-  eachState(q.count, of_state, StateReader(q), StateWriter(U));
+  const auto of_part = [&](const ConstStates& q_part, const States& U_part) {
+    eachState(q_part.count, of_state, StateReader(q_part), StateWriter(U_part));
+  };
+  call.share(of_part, q, U);
 }
 
 }  // namespace v2

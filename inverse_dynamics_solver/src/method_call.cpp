@@ -35,10 +35,10 @@ void MethodCall::throwMismatch(const char* argument, const std::string& expected
                                         "the joints are " + chain_dynamics::joined(jointNames())));
 }
 
-void MethodCall::computeParts(bool shared, const std::function<void()>& compute) const {
+void MethodCall::whileUnchanged(const std::function<void()>& compute) const {
   const auto* const changing = dynamic_cast<const ChangingConditions*>(&solver_);
   if (changing == nullptr) return compute();
-  changing->computeParts(shared, compute);
+  changing->whileUnchanged(compute);
 }
 
 void MethodCall::requirePositions() const {

@@ -69,8 +69,8 @@ class MethodCall {
   [[noreturn]] void throwMismatch(const char* argument, Eigen::Index rows, Eigen::Index cols,
                                   Eigen::Index got_rows, Eigen::Index got_cols) const;
   std::int64_t batchThreads() const { return solver_.batch_threads_; }
-  /// Calls compute(), on several threads where `shared`, with a robot that doesn't change meanwhile.
-  void computeParts(bool shared, const std::function<void()>& compute) const;
+  /// Calls compute() with a robot that doesn't change meanwhile.
+  void whileUnchanged(const std::function<void()>& compute) const;
 
  private:
   const std::vector<std::string>& jointNames() const { return solver_.info_.joint_names; }
@@ -123,7 +123,7 @@ class BatchCall : public MethodCall {
           count_, batchThreads(),
           [&](Eigen::Index first, Eigen::Index size) { compute(views.middle(first, size)...); });
     };
-    computeParts(batchThreads() > 1, std::cref(parts));
+    whileUnchanged(std::cref(parts));
   }
 
  private:

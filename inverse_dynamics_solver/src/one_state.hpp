@@ -58,7 +58,7 @@ class StateWriter {
   explicit StateWriter(const States& states)
       : states_(states), copy_(states.joint_step == 1 ? 0 : states.joints) {}
 
-  /// Where to write a state's n numbers: in the batch, or beside it.
+  /// Where to write a state's n numbers: in the batch, or in a copy.
   Eigen::Map<Eigen::VectorXd> operator()(Eigen::Index state) {
     return {states_.joint_step == 1 ? &states_(0, state) : copy_.data(), states_.joints};
   }

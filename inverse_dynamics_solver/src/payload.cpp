@@ -2,7 +2,6 @@
 #include "inverse_dynamics_solver/payload.hpp"
 
 #include <cmath>
-#include <sstream>
 
 #include "chain_dynamics/chain.hpp"
 #include "chain_dynamics/text.hpp"
@@ -20,12 +19,7 @@ using Eigen::Vector3d;
 constexpr double kTolerance = 1e-9;  // of a rotation, of symmetry: what ten printed digits leave
 constexpr double kGreatest = 1e15;   // three multiplied are far below what a chain may have
 
-std::string text(double value) {
-  std::ostringstream stream;
-  stream.precision(10);
-  stream << value;
-  return stream.str();
-}
+std::string text(double value) { return chain_dynamics::numberText(value, 10); }
 
 std::string text(const Vector3d& value) {
   return "[" + text(value.x()) + ", " + text(value.y()) + ", " + text(value.z()) + "]";

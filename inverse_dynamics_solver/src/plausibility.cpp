@@ -3,18 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+
+#include "chain_dynamics/text.hpp"
 
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 namespace {
 
-std::string rounded(double number) {
-  std::ostringstream stream;
-  stream.precision(4);
-  stream << number;
-  return stream.str();
-}
+std::string rounded(double number) { return chain_dynamics::numberText(number, 4); }
 
 }  // namespace
 

@@ -17,7 +17,7 @@ constexpr double kNoLoad = 0.0;
 }  // namespace
 
 auto PooledSolver::configure(const Configuration& configuration) -> JointInfo {
-  // Everything that can fail, aside.
+  // Everything that can fail comes first.
   auto bare = std::make_unique<const chain_dynamics::Model>(chainFromDescription(configuration));
   const chain_dynamics::Chain& chain = bare->chain;
   const std::size_t max_threads = readMaxThreads(configuration);

@@ -17,7 +17,7 @@ class StrictInitialization : public ::testing::Test {
   /// The text of the refusal.
   std::string refusal(const std::string& param_namespace) {
     try {
-      initializeStrictly(*solver, node, param_namespace, "");
+      solver->initialize(Parameters(node).strict(), param_namespace);
     } catch (const InvalidParameterValueException& error) {
       return error.what();
     }
@@ -37,7 +37,7 @@ class StrictInitialization : public ::testing::Test {
 
 TEST_F(StrictInitialization, TakesWhatTheSolverKnows) {
   node->values = {{"ids.mass", 2.0}, {"ids.length", 0.5}, {"mas", 3.0}, {"idsmas", 3.0}};
-  initializeStrictly(*solver, node, "ids", "");
+  solver->initialize(Parameters(node).strict(), "ids");
   EXPECT_NEAR(massTimesLength(), 1.0, 1e-12);
 }
 
@@ -68,7 +68,7 @@ TEST_F(StrictInitialization, LeavesTheSolverAsItWas) {
 /// A node has parameters of its own there.
 TEST_F(StrictInitialization, RefusesWithoutANamespaceWhatIsNearToWhatTheSolverKnows) {
   node->values = {{"mass", 2.0}, {"length", 0.5}, {"use_sim_time", true}, {"rate", 100.0}};
-  initializeStrictly(*solver, node, "", "");
+  solver->initialize(Parameters(node).strict(), "");
   node->values["dampng"] = 0.7;
   EXPECT_NE(refusal("").find("parameter 'dampng': the solver doesn't know it"), std::string::npos);
 }

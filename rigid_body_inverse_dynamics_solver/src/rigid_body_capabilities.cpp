@@ -30,20 +30,6 @@ Eigen::Matrix<double, 6, 1> inRootAxes(const Eigen::Matrix3d& R, const ConstVect
   return turned;
 }
 
-/// One state of a batch at a time, of a chain that FastModel takes.
-class OneState {
- public:
-  explicit OneState(const ConstStates& states) : states_(states), numbers_(states.joints) {}
-  const auto& operator()(Eigen::Index k) {
-    for (Eigen::Index j = 0; j < states_.joints; ++j) numbers_[j] = states_(j, k);
-    return numbers_;
-  }
-
- private:
-  ConstStates states_;
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, FastModel::kMaxJoints, 1> numbers_;
-};
-
 }  // namespace
 
 // ---------------------------------------------------------------- tip
@@ -228,27 +214,6 @@ void InverseDynamicsSolverRigidBody::computeCoriolisMatrixBatch(const ConstState
   const auto robot = currentRobot();
   if (!robot->fast) return CoriolisMatrix::computeCoriolisMatrixBatch(q, qd, C);
   robot->fast->coriolisMatrixBatch(q, qd, C);
-}
-
-void InverseDynamicsSolverRigidBody::computeKineticEnergyBatch(const ConstStates& q,
-                                                               const ConstStates& qd,
-                                                               const States& T) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return Energies::computeKineticEnergyBatch(q, qd, T);
-  OneState q_of(q), qd_of(qd);
-  for (Eigen::Index k = 0; k < q.count; ++k) {
-    T(0, k) = chain_dynamics::kineticEnergy(robot->model, q_of(k), qd_of(k));
-  }
-}
-
-void InverseDynamicsSolverRigidBody::computePotentialEnergyBatch(const ConstStates& q,
-                                                                 const States& U) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return Energies::computePotentialEnergyBatch(q, U);
-  OneState q_of(q);
-  for (Eigen::Index k = 0; k < q.count; ++k) {
-    U(0, k) = chain_dynamics::potentialEnergy(robot->model, q_of(k));
-  }
 }
 
 void InverseDynamicsSolverRigidBody::computeTorqueDerivativesBatch(

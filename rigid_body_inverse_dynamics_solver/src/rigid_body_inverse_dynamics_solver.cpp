@@ -49,7 +49,7 @@ Chain chainOfDescription(const Configuration& configuration) {
   return chainFromDescription(configuration);
 }
 
-/// A sentence for each parameter that only a robot description gives a meaning.
+/// Warnings of parameters that have a meaning for robot descriptions only.
 Sentences unusedParameters(const Configuration& configuration) {
   std::vector<std::string> names = {"allow_massless", "urdf_friction", "rotor_inertia"};
   if (configuration.robot_description.empty()) {
@@ -127,8 +127,7 @@ Sentences otherTip(const Chain& described, const chain_dynamics::Model& model) {
           "model's frames"};
 }
 
-/// A sentence for each way in which a robot description, from which nothing is computed, is that
-/// of another robot than the model.
+/// Warnings where a robot description, from which nothing is computed, differs from the model.
 Sentences differences(const Configuration& configuration, const chain_dynamics::Model& model) {
   if (configuration.robot_description.empty()) return {};
   Sentences sentences;
@@ -153,9 +152,9 @@ Sentences differences(const Configuration& configuration, const chain_dynamics::
   return sentences;
 }
 
-/// What is odd about a model, a sentence each.
+/// Warnings about a model.
 std::vector<std::string> warningsOf(const chain_dynamics::Model& model, bool inertia_is_physical) {
-  // Link by link, the figures of a link of an identified model mean nothing.
+  // Link by link, the numbers of a link of an identified model mean nothing.
   const bool from_file = !model.source.empty();
   std::vector<std::string> warnings;
   if (inertia_is_physical || !from_file) warnings = model.chain.warnings();
@@ -288,16 +287,6 @@ void InverseDynamicsSolverRigidBody::computeTorques(const ConstVectorRef& q,
 }
 
 // ---------------------------------------------------------------- many states
-
-void InverseDynamicsSolverRigidBody::computeParts(bool shared,
-                                                  const std::function<void()>& compute) const {
-  // A fast model computes all states of a part; that is the batch where nobody shares it.
-  if (!shared && initialRobot().fast) {
-    compute();
-  } else {
-    whileUnchanged(compute);
-  }
-}
 
 void InverseDynamicsSolverRigidBody::computeInertiaMatrixBatch(const ConstStates& q,
                                                                const StridedMatrices& H) const {

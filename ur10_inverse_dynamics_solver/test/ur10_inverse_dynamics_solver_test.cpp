@@ -111,7 +111,7 @@ TEST(UR10, CurrentsIntoMemoryOfTheCallerAreThoseByValue) {
   solver.getInertiaCurrents(kQ, H);
   solver.getCoriolisCurrents(kQ, kQd, c);
   solver.getGravityCurrents(kQ, g);
-  solver.getFrictionCurrents(kQd, f);
+  solver.getFrictionCurrents(kQ, kQd, f);
   EXPECT_EQ(i, solver.getCurrents(kQ, kQd, kQdd));
   EXPECT_TRUE((H * kQdd + c + g + f).isApprox(i, 1e-12));
   Eigen::VectorXd five(5);

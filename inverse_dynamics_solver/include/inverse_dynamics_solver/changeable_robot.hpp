@@ -57,10 +57,10 @@ class ChangingConditions : public Payload, public VariableGravity {
   /// Whether the conditions are those of beginUnder().
   bool isAsInitialized(const Conditions& conditions) const;
 
-  /// Calls `compute`, which may read the robot several times: it doesn't change meanwhile. Whoever
-  /// wants to change it waits for all these calls, and those that come later wait for him. For
-  /// batches only: a control loop doesn't wait.
-  void whileUnchanged(const std::function<void()>& compute) const;
+  /// Calls `compute`, which may read the robot several times: it doesn't change meanwhile. A change
+  /// waits for all these calls, and later calls wait for the change. For batches only: a control
+  /// loop doesn't wait.
+  virtual void whileUnchanged(const std::function<void()>& compute) const;
 
   /// Makes another robot the current one, where no call of whileUnchanged() runs.
   void publishAlone(const std::function<void()>& publish);
@@ -68,13 +68,8 @@ class ChangingConditions : public Payload, public VariableGravity {
   /// Computes under these conditions from the next call on, or throws. One thread at a time.
   virtual void changeTo(const Conditions& conditions) = 0;
 
-  /// Calls `compute`, which computes a batch part by part, on several threads where `shared`: by
-  /// default while nothing changes. A solver that reads the robot once per part needs that only where
-  /// there are several.
-  virtual void computeParts(bool shared, const std::function<void()>& compute) const;
-
  private:
-  friend class MethodCall;  // computeParts()
+  friend class MethodCall;  // whileUnchanged()
 
   void changePayloads(const std::function<void(Payloads&)>& change) final;
   Payloads currentPayloads() const final;

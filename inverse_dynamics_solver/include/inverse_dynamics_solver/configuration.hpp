@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What a solver is told when it is initialized: the parameters that mean the same for all of them.
+/// The parameters that all solvers share.
 ///
 ///     JointInfo MySolver::configure(const Configuration& configuration) {
 ///       auto chain = chainFromDescription(configuration);   // URDF, root, tip, gravity, attached
@@ -103,7 +103,7 @@ struct Configuration {
     return parameters.require<T>(fullName(name));
   }
 
-  /// A sentence for each parameter below the namespace that is set, but hasn't been asked for.
+  /// Warnings of the parameters below the namespace that are set, but weren't read.
   ///
   /// Without a namespace, a node's own parameters are beside the solver's: there only a name that
   /// is near to one of the solver's counts.

@@ -63,11 +63,6 @@ class Energies : public Capability {
 
   virtual double computeKineticEnergy(const ConstVectorRef& q, const ConstVectorRef& qd) const = 0;
   virtual double computePotentialEnergy(const ConstVectorRef& q) const = 0;
-
-  /// By default one state after the other.
-  virtual void computeKineticEnergyBatch(const ConstStates& q, const ConstStates& qd,
-                                         const States& T) const;
-  virtual void computePotentialEnergyBatch(const ConstStates& q, const States& U) const;
   /// @}
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// The torques of a robot arm's motion, whichever solver computes them.
+/// The interface of all solvers: the joint torques of a robot arm's motion.
 ///
 ///     auto solver = SolverLoader().load("kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL");
 ///     solver->initialize({{"tip", "tool0"}}, "", urdf);
@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <string>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -85,7 +84,7 @@ class InverseDynamicsSolver {
   /// positions go through `chain_dynamics::unwrap(solver.jointTypes(), reference, q)`.
   const std::vector<chain_dynamics::JointType>& jointTypes() const;
 
-  /// What is odd about the robot but doesn't prevent computing, a sentence each.
+  /// Non-fatal warnings about the robot, one sentence each.
   const std::vector<std::string>& warnings() const;
 
   /// Whether H(q) is symmetric and positive definite by construction, without payloads, which may be
@@ -110,15 +109,11 @@ class InverseDynamicsSolver {
   /// Friction torques `f(qd)`; zero where the solver has no friction model or the parameter
   /// `friction` is false. Throws SizeMismatchException where it depends on q [load_friction.hpp].
   Eigen::VectorXd getFrictionVector(const ConstVectorRef& qd) const {
-    Eigen::VectorXd f = vector("getFrictionVector");
-    getFrictionVector(qd, f);
-    return f;
+    return getFrictionVector(Eigen::VectorXd(), qd);
   }
-  /// Friction torques `f(q, qd)`, of any solver. Not for a qd that may be written: that is the output
-  /// of `getFrictionVector(qd, f)`, so give `std::as_const(qd)`.
-  template <class Velocities,
-            typename = std::enable_if_t<!std::is_convertible_v<Velocities, States>>>
-  Eigen::VectorXd getFrictionVector(const ConstVectorRef& q, Velocities&& qd) const {
+  /// Friction torques `f(q, qd)`, of any solver.
+  [[nodiscard]] Eigen::VectorXd getFrictionVector(const ConstVectorRef& q,
+                                                  const ConstVectorRef& qd) const {
     Eigen::VectorXd f = vector("getFrictionVector");
     getFrictionVector(q, qd, f);
     return f;
@@ -155,9 +150,6 @@ class InverseDynamicsSolver {
   /// @{
   void getInertiaMatrix(const ConstVectorRef& q, MatrixRef H) const;
   void getCoriolisVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef c) const;
-  void getFrictionVector(const ConstVectorRef& qd, VectorRef f) const {
-    getFrictionVector(Eigen::VectorXd(), qd, f);
-  }
   /// q may be empty where friction doesn't depend on it; as in batches.
   void getFrictionVector(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef f) const;
   void getGravityVector(const ConstVectorRef& q, VectorRef g) const;
@@ -179,9 +171,6 @@ class InverseDynamicsSolver {
   void getInertiaMatrixBatch(const ConstStatesRef& q, const StridedMatrices& H) const;
   void getCoriolisVectorBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
                               const States& c) const;
-  void getFrictionVectorBatch(const ConstStatesRef& qd, const States& f) const {
-    getFrictionVectorBatch(ConstStates(qd.data, 0, qd.count, 1, 0), qd, f);
-  }
   void getFrictionVectorBatch(const ConstStatesRef& q, const ConstStatesRef& qd,
                               const States& f) const;
   void getGravityVectorBatch(const ConstStatesRef& q, const States& g) const;
@@ -201,17 +190,12 @@ class InverseDynamicsSolver {
     return c;
   }
   Eigen::MatrixXd getFrictionVectorBatch(const ConstStatesRef& qd) const {
-    Eigen::MatrixXd f(qd.joints, qd.count);
-    getFrictionVectorBatch(qd, f);
-    return f;
+    return getFrictionVectorBatch(ConstStates(qd.data, 0, qd.count, 1, 0), qd);
   }
-  /// Not for a qd that may be written, as getFrictionVector(q, qd).
-  template <class Velocities,
-            typename = std::enable_if_t<!std::is_convertible_v<Velocities, States>>>
-  Eigen::MatrixXd getFrictionVectorBatch(const ConstStatesRef& q, Velocities&& qd) const {
-    const ConstStatesRef velocities(std::forward<Velocities>(qd));
-    Eigen::MatrixXd f(velocities.joints, velocities.count);
-    getFrictionVectorBatch(q, velocities, f);
+  [[nodiscard]] Eigen::MatrixXd getFrictionVectorBatch(const ConstStatesRef& q,
+                                                       const ConstStatesRef& qd) const {
+    Eigen::MatrixXd f(qd.joints, qd.count);
+    getFrictionVectorBatch(q, qd, f);
     return f;
   }
   Eigen::MatrixXd getGravityVectorBatch(const ConstStatesRef& q) const {
@@ -240,7 +224,7 @@ class InverseDynamicsSolver {
   /// What configure() tells the base class.
   struct JointInfo {
     std::vector<std::string> joint_names;  ///< in order along the chain
-    std::vector<std::string> warnings;     ///< a sentence each
+    std::vector<std::string> warnings;     ///< one sentence each
     /// n; empty: no joint is continuous, all count as revolute
     std::vector<chain_dynamics::JointType> joint_types = {};
   };
@@ -290,7 +274,7 @@ class InverseDynamicsSolver {
   virtual void computeTorquesBatch(const ConstStates& q, const ConstStates& qd,
                                    const ConstStates& qdd, const States& tau) const;
 
-  /// Answer of inertiaIsPhysical(). No default: a wrong yes makes robots oscillate.
+  /// Answer of inertiaIsPhysical(). No default: a false positive makes robots oscillate.
   virtual bool inertiaIsPhysicalImpl() const = 0;
   /// @}
 

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <type_traits>
 
 #include "inverse_dynamics_solver/capability.hpp"
 
@@ -57,16 +56,12 @@ class MotorCurrents : public Capability {
 
   /// Currents against friction [A], n: `K^-1 f(qd)`. Throws as the solver's getFrictionVector(qd).
   Eigen::VectorXd getFrictionCurrents(const ConstVectorRef& qd) const {
-    Eigen::VectorXd i(gains("getFrictionCurrents").size());
-    getFrictionCurrents(qd, i);
-    return i;
+    return getFrictionCurrents(Eigen::VectorXd(), qd);
   }
 
-  /// The same of any solver: `K^-1 f(q, qd)`. Not for a qd that may be written, as the solver's
-  /// getFrictionVector(q, qd).
-  template <class Velocities,
-            typename = std::enable_if_t<!std::is_convertible_v<Velocities, States>>>
-  Eigen::VectorXd getFrictionCurrents(const ConstVectorRef& q, Velocities&& qd) const {
+  /// The same of any solver: `K^-1 f(q, qd)`.
+  [[nodiscard]] Eigen::VectorXd getFrictionCurrents(const ConstVectorRef& q,
+                                                    const ConstVectorRef& qd) const {
     Eigen::VectorXd i(gains("getFrictionCurrents").size());
     getFrictionCurrents(q, qd, i);
     return i;
@@ -83,9 +78,6 @@ class MotorCurrents : public Capability {
   void getInertiaCurrents(const ConstVectorRef& q, MatrixRef i) const;
   void getCoriolisCurrents(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef i) const;
   void getGravityCurrents(const ConstVectorRef& q, VectorRef i) const;
-  void getFrictionCurrents(const ConstVectorRef& qd, VectorRef i) const {
-    getFrictionCurrents(Eigen::VectorXd(), qd, i);
-  }
   void getFrictionCurrents(const ConstVectorRef& q, const ConstVectorRef& qd, VectorRef i) const;
   /// @}
 

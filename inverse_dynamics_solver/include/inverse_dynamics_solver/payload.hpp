@@ -110,7 +110,7 @@ class Payload : public Capability {
   /// @{
 
   /// Computes with the bodies that `change` makes of the current ones, from the next call on; all or
-  /// nothing, for one thread after the other.
+  /// nothing, by one thread at a time.
   virtual void changePayloads(const std::function<void(Payloads&)>& change) = 0;
 
   virtual Payloads currentPayloads() const = 0;

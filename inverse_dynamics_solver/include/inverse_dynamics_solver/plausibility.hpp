@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Conditions of a robot that are possible but implausible, most often numbers in other units.
+/// Warnings of bodies and gravity that are implausible, most often numbers in other units.
 ///
-///     const std::string doubt = doubtOf(body);   // empty, or a sentence for whoever gave the body
+///     const std::string doubt = doubtOf(body);   // a warning, or empty
 ///     if (!doubt.empty()) std::cerr << doubt << "\n";
 ///
 /// InverseDynamicsSolver::warnings() holds those of the parameters of initialize().

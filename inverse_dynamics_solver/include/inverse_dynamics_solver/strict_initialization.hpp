@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// No misspelt parameter of a node: one that the solver doesn't know, or that the node doesn't
-/// declare, would leave the default in silence.
+/// Rejects misspelt parameters of a node, which would silently leave the default.
 ///
 ///     const auto parameters = node->get_node_parameters_interface();
 ///     rejectUndeclared(*parameters);
-///     initializeStrictly(*solver, parameters, "ids", urdf);
+///     solver->initialize(Parameters(parameters).strict(), "ids", urdf);
 #pragma once
 
 #include <cstdint>
@@ -16,7 +15,6 @@
 #include <vector>
 
 #include "inverse_dynamics_solver/exceptions.hpp"
-#include "inverse_dynamics_solver/inverse_dynamics_solver.hpp"
 
 namespace inverse_dynamics_solver {
 inline namespace v2 {
@@ -32,25 +30,11 @@ struct HasCallbackBeforeSetting<
 
 }  // namespace detail
 
-/// Initializes the solver, or leaves it as it was.
-///
-/// @param parameters       rclcpp's NodeParametersInterface, or another source that can list its
-///     parameters: see Parameters::strict().
-/// @param param_namespace  the solver must know all parameters below it. Without a namespace, of a
-///     node's parameters those that are near to one of the solver's: a node has others of its own.
-/// Throws as InverseDynamicsSolver::initialize(), and InvalidParameterValueException: a parameter
-/// that the solver doesn't know.
-inline void initializeStrictly(InverseDynamicsSolver& solver, const Parameters& parameters,
-                               const std::string& param_namespace,
-                               const std::string& robot_description) {
-  solver.initialize(parameters.strict(), param_namespace, robot_description);
-}
-
 /// Rejects parameters that a node doesn't declare.
 ///
 /// `qos_overrides.*` are rclcpp's, which declares them together with the topic that they name.
 ///
-/// @param given     names of parameters that somebody sets.
+/// @param given     names of parameters that are set.
 /// @param declared  names of all that the node declares.
 /// Throws InvalidParameterValueException: the first that isn't declared, and the name that is
 /// most like it.
@@ -69,8 +53,7 @@ void rejectUndeclared(const Interface& node) {
   rejectUndeclared(given, node.list_parameters({}, kAllDepths).names);
 }
 
-/// Lets `ros2 param set` of an undeclared parameter say what was probably meant, where rclcpp can:
-/// humble's refuses it in its own words.
+/// Makes `ros2 param set` of an undeclared parameter suggest the nearest name; from jazzy on.
 ///
 /// @tparam NotDeclared  rclcpp::exceptions::ParameterNotDeclaredException, which rclcpp expects.
 /// @param node  outlives what is returned; refuses undeclared parameters (the default of

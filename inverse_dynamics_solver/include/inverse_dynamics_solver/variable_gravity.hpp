@@ -58,7 +58,7 @@ class VariableGravity : public Capability {
   /// @{
 
   /// Computes with what `change` makes of the current ones, from the next call on; all or nothing,
-  /// for one thread after the other.
+  /// by one thread at a time.
   virtual void changeBaseMotion(const std::function<void(BaseMotion&)>& change) = 0;
 
   virtual BaseMotion currentBaseMotion() const = 0;

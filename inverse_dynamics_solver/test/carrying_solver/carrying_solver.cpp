@@ -94,10 +94,11 @@ void CarryingSolver::computeDynamicComponents(const ConstVectorRef& q, const Con
   g[0] = gravityTorque(*pendulum, q[0]);
 }
 
-void CarryingSolver::computeParts(bool shared, const std::function<void()>& compute) const {
-  if (has("states of a batch mix two robots") && !shared) return compute();
-  if (has("threads of a batch mix two robots") && shared) return compute();
-  whileUnchanged(compute);
+void CarryingSolver::whileUnchanged(const std::function<void()>& compute) const {
+  if (has("states of a batch mix two robots") || has("threads of a batch mix two robots")) {
+    return compute();
+  }
+  ChangeableRobot::whileUnchanged(compute);
 }
 
 }  // namespace carrying_solver

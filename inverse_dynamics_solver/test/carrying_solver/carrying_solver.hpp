@@ -34,7 +34,7 @@ class CarryingSolver : public InverseDynamicsSolver, public ChangeableRobot<Pend
                       VectorRef tau) const override;
   void computeDynamicComponents(const ConstVectorRef& q, const ConstVectorRef& qd, MatrixRef H,
                                 VectorRef c, VectorRef g) const override;
-  void computeParts(bool shared, const std::function<void()>& compute) const override;
+  void whileUnchanged(const std::function<void()>& compute) const override;
   bool inertiaIsPhysicalImpl() const override { return true; }
 
   const InverseDynamicsSolver& torqueSolver() const override { return *this; }

@@ -150,9 +150,6 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
                                    const ConstStates& wrenches, const States& tau) const override;
   void computeCoriolisMatrixBatch(const ConstStates& q, const ConstStates& qd,
                                   const StridedMatrices& C) const override;
-  void computeKineticEnergyBatch(const ConstStates& q, const ConstStates& qd,
-                                 const States& T) const override;
-  void computePotentialEnergyBatch(const ConstStates& q, const States& U) const override;
   void computeTorqueDerivativesBatch(const ConstStates& q, const ConstStates& qd,
                                      const ConstStates& qdd, const StridedMatrices& dtau_dq,
                                      const StridedMatrices& dtau_dqd,
@@ -163,7 +160,6 @@ class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDy
                                  const ConstStates& tau, const States& qdd) const override;
   /// @}
 
-  void computeParts(bool shared, const std::function<void()>& compute) const override;
   bool inertiaIsPhysicalImpl() const override { return inertia_is_physical_; }
   bool hasEnergiesImpl() const override { return model().row_parameters.empty(); }
   bool frictionDependsOnPositionImpl() const override {

@@ -25,7 +25,7 @@ using Matrix6d = Eigen::Matrix<double, NUMBER_OF_JOINTS, NUMBER_OF_JOINTS>;
 
 /// The UR10 of Petrone, Ferrentino, Chiacchio, IEEE Transactions on Industrial Informatics, 2025,
 /// doi 10.1109/TII.2025.3534415: the engine with the file ur10_identified.yaml of the package
-/// inverse_dynamics_robots, where the figures stand.
+/// inverse_dynamics_robots, which holds the numbers.
 ///
 /// Each joint was identified by itself, so H is neither symmetric nor positive definite:
 /// inertiaIsPhysical() is false; good for feed-forward torques, unfit for forward dynamics.

@@ -81,8 +81,8 @@ TEST_P(SolverConformance, GravityTorquesAreProportionalToGravity) {
         near(sum->getGravityVector(x.q), 2 * g_a + g_b, kRounding, 2 * sizeOf(g_a) + sizeOf(g_b)));
 
     // Gravity is in no other term, but for friction that depends on it.
-    const Eigen::VectorXd f_a = a->getFrictionVector(x.q, std::as_const(x.qd));
-    const Eigen::VectorXd f_b = b->getFrictionVector(x.q, std::as_const(x.qd));
+    const Eigen::VectorXd f_a = a->getFrictionVector(x.q, x.qd);
+    const Eigen::VectorXd f_b = b->getFrictionVector(x.q, x.qd);
     EXPECT_TRUE(identical(a->getCoriolisVector(x.q, x.qd), b->getCoriolisVector(x.q, x.qd)));
     EXPECT_EQ(identical(f_a, f_b), !frictionDependsOnPosition(*a));
     const Eigen::MatrixXd H_a = a->getInertiaMatrix(x.q);
@@ -170,7 +170,7 @@ TEST_P(SolverConformance, FrictionIsFiniteAtAnyVelocity) {
   for (const double velocity : {0.0, 1.0, 1e3, 1e12, 1e200}) {
     const Eigen::VectorXd q = randomState().q;
     const Eigen::VectorXd qd = Eigen::VectorXd::Constant(q.size(), velocity);
-    EXPECT_TRUE(solver_->getFrictionVector(q, std::as_const(qd)).allFinite()) << velocity;
+    EXPECT_TRUE(solver_->getFrictionVector(q, qd).allFinite()) << velocity;
     EXPECT_TRUE(solver_->getFrictionVector(q, -qd).allFinite()) << -velocity;
   }
 }
@@ -181,7 +181,7 @@ TEST_P(SolverConformance, FrictionDoesNoPositiveWork) {
   for (const State& x : randomStates(kStates)) {
     SCOPED_TRACE(toString(x));
     const Eigen::VectorXd at_rest = s.getFrictionVector(x.q, 0 * x.qd);
-    const Eigen::VectorXd f = s.getFrictionVector(x.q, std::as_const(x.qd));
+    const Eigen::VectorXd f = s.getFrictionVector(x.q, x.qd);
     for (Eigen::Index j = 0; j < f.size(); ++j) {
       if (at_rest[j] != 0.0) continue;
       EXPECT_GE(x.qd[j] * f[j], 0.0) << "joint " << j;
@@ -205,8 +205,7 @@ TEST_P(SolverConformance, MotorCurrentsTimesDriveGainsAreTorques) {
     EXPECT_TRUE(equal(motors->getInertiaCurrents(x.q), s.getInertiaMatrix(x.q)));
     EXPECT_TRUE(equal(motors->getCoriolisCurrents(x.q, x.qd), s.getCoriolisVector(x.q, x.qd)));
     EXPECT_TRUE(equal(motors->getGravityCurrents(x.q), s.getGravityVector(x.q)));
-    EXPECT_TRUE(equal(motors->getFrictionCurrents(x.q, std::as_const(x.qd)),
-                      s.getFrictionVector(x.q, std::as_const(x.qd))));
+    EXPECT_TRUE(equal(motors->getFrictionCurrents(x.q, x.qd), s.getFrictionVector(x.q, x.qd)));
     if (!frictionDependsOnPosition(s)) {
       EXPECT_TRUE(equal(motors->getFrictionCurrents(x.qd), s.getFrictionVector(x.qd)));
     }

@@ -23,7 +23,7 @@
 namespace inverse_dynamics_solver::conformance {
 
 /// [N m, kg m^2; N, kg for slides] Absolute, on torques of some hundred N m: two lumped bodies on the
-/// way are a few dozen products of figures around one.
+/// way are a few dozen products of numbers around one.
 constexpr double kFixedLink = 1e-10;
 
 /// A body without any symmetry, in a frame that is turned and moved.
