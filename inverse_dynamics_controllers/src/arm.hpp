@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// What the controllers have in common when they are configured: solver, joints, limits, options.
-///
-///     ArmSource source(node, ArmSource::Use::kCommand);               // when initialized
-///     const Setup setup = source.setup(robotDescriptionOf(*this), get_update_rate());
-///     LawOptions options = lawOptions(setup, params.friction.source);
 #pragma once
 
 #include <inverse_dynamics_control/control_law.hpp>

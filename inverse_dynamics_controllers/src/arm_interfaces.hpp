@@ -2,11 +2,6 @@
 /// @file
 /// A controller's interfaces to the hardware, one position, velocity and effort per joint.
 ///
-///     ArmInterfaces interfaces(arm.joints);
-///     interfaces.bind(state_interfaces_, command_interfaces_);     // when activated
-///     interfaces.read(state_interfaces_, state);                   // in each cycle
-///     interfaces.write(tau, command_interfaces_);
-///
 /// What measures only takes the efforts as states: statesWithEffort(), bindMeasured(), readEffort().
 #pragma once
 

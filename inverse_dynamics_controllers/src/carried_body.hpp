@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// What the arm carries: a rigid body at its tip that comes and goes while the controller runs.
-///
-///     CarriedBody carried(setup);      // from then on parameters and ~/payload are the solver's
 #pragma once
 
 #include <geometry_msgs/msg/inertia_stamped.hpp>

@@ -2,9 +2,6 @@
 /// @file
 /// Damping of the safe torque and of hand guiding, from the parameters damping.*, which may change
 /// while the loop runs.
-///
-///     options.damping = changingDamping(setup).initial();
-///     if (const auto* changed = damping.changed()) law.setDamping(*changed);    // in each cycle
 #pragma once
 
 #include <Eigen/Core>

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// A law's gains, from parameters that may change while the loop runs.
-///
-///     ChangingGains<PdGains> gains(node, {"gains.p", "gains.d"}, make);
-///     PdGravityCompensation law(solver, gains.initial(), options);
-///     if (const PdGains* changed = gains.changed()) law.setGains(*changed);    // in each cycle
 #pragma once
 
 #include <functional>

@@ -7,7 +7,6 @@
 #include "arm.hpp"
 #include "control_loop.hpp"
 #include "joint_numbers.hpp"
-#include "sensed_wrench.hpp"
 #include "wrench_publisher.hpp"
 #include "wrench_report.hpp"
 
@@ -15,7 +14,9 @@ namespace inverse_dynamics_controllers {
 
 using controller_interface::CallbackReturn;
 using controller_interface::return_type;
+using inverse_dynamics_control::ContactOptions;
 using inverse_dynamics_control::EstimateStatus;
+using inverse_dynamics_control::Estimator;
 using inverse_dynamics_control::VelocitySource;
 using inverse_dynamics_solver::errorText;
 using inverse_dynamics_solver::InvalidParameterValueException;
@@ -26,8 +27,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-SensedWrenchOptions::Estimator estimatorOf(const std::string& name) {
-  using Estimator = SensedWrenchOptions::Estimator;
+Estimator estimatorOf(const std::string& name) {
   if (name == "momentum") return Estimator::kMomentum;
   return name == "automatic" ? Estimator::kAutomatic : Estimator::kAccelerationResidual;
 }
@@ -58,20 +58,21 @@ std::string frameOf(const Setup& setup, const Parameters& params) {
                 "neither it nor 'ids.tip'", "set it to the name of the tip's link"));
 }
 
-SensedWrenchOptions optionsOf(const Setup& setup, const Parameters& params) {
+ContactOptions optionsOf(const Setup& setup, const Parameters& params) {
   const std::vector<std::string>& joints = setup.arm.joints;
   const Eigen::VectorXd none;
   requireNoise(params.noise);
   requireShortPeriod(setup.period(), params.longest_period);
-  SensedWrenchOptions options;
-  options.estimator = estimatorOf(params.estimator);
-  options.torques.gain = jointNumbers("gain", params.gain, joints);
-  options.torques.velocity =
+  ContactOptions options;
+  options.choice = estimatorOf(params.estimator);
+  options.estimator.gain = jointNumbers("gain", params.gain, joints);
+  options.estimator.velocity =
       params.velocity == "measured" ? VelocitySource::kMeasured : VelocitySource::kPositions;
-  options.torques.tracking = params.tracking;
-  options.torques.compensated = compensatedByRobot(setup);
-  options.torques.friction_band = jointNumbers("friction_band", params.friction_band, joints, none);
-  options.torques.longest_period = params.longest_period;
+  options.estimator.tracking = params.tracking;
+  options.estimator.compensated = compensatedByRobot(setup);
+  options.estimator.friction_band =
+      jointNumbers("friction_band", params.friction_band, joints, none);
+  options.estimator.longest_period = params.longest_period;
   options.wrench.noise = jointNumbers("noise", params.noise, joints);
   options.wrench.force = params.expected.force;
   options.wrench.torque = params.expected.torque;
@@ -88,17 +89,17 @@ struct ExternalWrenchBroadcaster::Configured {
       : interfaces(setup.arm.joints),
         state(setup.arm.solver->jointCount()),
         effort(Eigen::VectorXd::Zero(state.q.size())),
-        sensed(setup.arm.solver, optionsOf(setup, params)),
+        sensing(setup.arm.solver, optionsOf(setup, params)),
         tolerated(setup.parameters.tolerated_fault_time),
         report(std::make_shared<WrenchReport>(state.q.size())),
         timer(logEverySecond(setup.node, report)),
         carried(setup),
         publisher(setup.node, setup.arm.joints, frameOf(setup, params),
-                  setup.parameters.state_publish_rate, sensed.contact() != nullptr) {}
+                  setup.parameters.state_publish_rate, sensing.detector() != nullptr) {}
 
   void start(const StateInterfaces& states) {
     interfaces.bindMeasured(states);
-    sensed.reset();
+    sensing.reset();
     faulty = 0.0;
     given_up = false;
   }
@@ -117,7 +118,7 @@ struct ExternalWrenchBroadcaster::Configured {
   ArmInterfaces interfaces;
   inverse_dynamics_control::JointState state;
   Eigen::VectorXd effort;
-  SensedWrench sensed;
+  inverse_dynamics_control::ContactSensing sensing;
   double tolerated, faulty = 0.0;  // s
   bool given_up = false;
   std::shared_ptr<WrenchReport> report;
@@ -183,11 +184,11 @@ return_type ExternalWrenchBroadcaster::measure(const rclcpp::Time& time,
   const double dt = static_cast<double>(period.nanoseconds()) * 1e-9;
   c.interfaces.read(state_interfaces_, c.state);
   c.interfaces.readEffort(state_interfaces_, c.effort);
-  const EstimateStatus status = c.sensed.update(c.state, c.effort, dt);
-  c.report->note(status, c.sensed.unseen());
+  const EstimateStatus status = c.sensing.update(c.state, c.effort, dt);
+  c.report->note(status, c.sensing.tip()->unseen());
   c.noteFault(status, dt);
-  setStates(c.sensed.wrench());
-  if (status == EstimateStatus::kOk) c.publisher.note(time, c.sensed);
+  setStates(sensorWrench(c.sensing));
+  if (status == EstimateStatus::kOk) c.publisher.note(time, c.sensing);
   return c.given_up ? return_type::ERROR : return_type::OK;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// Parameters that hold a number per joint.
-///
-///     Eigen::VectorXd limits = jointNumbers("limits.effort", params.limits.effort, joints);
 #pragma once
 
 #include <Eigen/Core>

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// Parameters that may change while a controller runs.
-///
-///     ParameterWatch watch(node, {"gains.p", "gains.d"},
-///                          [](const ParameterValues& values) { check(values); },
-///                          [](const ParameterValues& values) { use(values); });
 #pragma once
 
 #include <functional>
@@ -22,8 +18,8 @@ using ParameterValues = std::map<std::string, rclcpp::ParameterValue>;
 class ParameterWatch {
  public:
   /// @param names  declared parameters of the node.
-  /// @param check  throws if the values of all these parameters don't fit; its text is the reason
-  ///   that whoever sets them gets.
+  /// @param check  throws if the values of all these parameters don't fit; its text is the
+  ///   reason of the refusal.
   /// @param apply  called by the node's executor, within 50 ms of a change.
   ParameterWatch(const std::shared_ptr<rclcpp_lifecycle::LifecycleNode>& node,
                  const std::vector<std::string>& names,

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// What a chainable controller is asked to do: by the controller before it, or by a topic.
-///
-///     ReferenceInput input(node, layout, arm.joints, guard, timeout);
-///     input.start(state.q, references);                               // when activated
-///     input.advance(references, chained, period, report);             // in each cycle
-///     const Reference& reference = *input.motion();
 #pragma once
 
 #include <algorithm>
@@ -40,9 +35,9 @@ class ReferenceInput {
 
   const ReferenceLayout& layout() const noexcept { return layout_; }
 
-  /// Rest at q until somebody writes a reference; forgets an earlier stop.
+  /// Rest at q until a reference is written; forgets an earlier stop.
   void start(const Eigen::Ref<const Eigen::VectorXd>& q, std::vector<double>& values) noexcept {
-    topic_.read(values);  // an old message isn't a wish for now
+    topic_.read(values);  // discards an old message
     std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
     guard_.start(q);
     motion_written_ = effort_written_ = false;

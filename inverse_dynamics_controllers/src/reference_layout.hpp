@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// What a chainable controller's reference interfaces mean, and the numbers behind them.
-///
-///     ReferenceLayout layout({"position", "velocity", "acceleration"}, joints);
-///     layout.read(reference_interfaces_, reference, effort);       // in each cycle
 #pragma once
 
 #include <Eigen/Core>
@@ -31,7 +28,7 @@ class ReferenceLayout {
   bool hasAcceleration() const noexcept { return acceleration_ >= 0; }
   bool hasEffort() const noexcept { return effort_ >= 0; }
 
-  /// Whether nobody has written a motion, or an effort, since all numbers were NaN.
+  /// Whether no motion, or no effort, has been written since all numbers were NaN.
   /// Real time, as all that follow: no allocation, lock, exception or system call.
   bool motionIsUntouched(const std::vector<double>& values) const noexcept;
   bool effortIsUntouched(const std::vector<double>& values) const noexcept;

@@ -2,9 +2,6 @@
 /// @file
 /// References from a topic, for a chainable controller that nothing precedes.
 ///
-///     ReferenceTopic topic(node, layout, joints);        // subscribes to ~/reference
-///     topic.read(reference_interfaces_);                 // in each cycle: true if there is news
-///
 /// A message is a trajectory_msgs/msg/JointTrajectory with exactly one point: the reference from
 /// now on. What doesn't fit is reported and ignored.
 #pragma once

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// Sentences for the log, written by another thread than the control loop, which may not log.
-///
-///     auto timer = logEverySecond(node, report);      // std::shared_ptr of an UpdateReport
 #pragma once
 
 #include <chrono>

@@ -2,9 +2,6 @@
 /// @file
 /// What a controller does, on its topic ~/controller_state.
 ///
-///     StatePublisher publisher(node, joints, solver->jointTypes(), 50.0);
-///     publisher.note(time, state, &reference, tau);      // in each cycle
-///
 /// The message is a joint_trajectory_controller's, so that the same tools show it: reference,
 /// feedback, error, and efforts as output.
 #pragma once

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What happened in the control loop, told by another thread: a loop may not log.
-///
-///     UpdateReport report(joints);
-///     report.note(status, law.saturated(), law.rateLimited());     // in each cycle
-///     auto timer = logEverySecond(node, report);                   // when configured
+/// Counts what happens in the control loop; another thread logs it.
 #pragma once
 
 #include <array>

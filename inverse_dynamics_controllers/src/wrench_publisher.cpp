@@ -12,6 +12,7 @@
 namespace inverse_dynamics_controllers {
 
 using geometry_msgs::msg::WrenchStamped;
+using inverse_dynamics_control::ContactSensing;
 using sensor_msgs::msg::JointState;
 using std_msgs::msg::Bool;
 
@@ -34,6 +35,11 @@ void write(const std::array<double, 6>& values, geometry_msgs::msg::Wrench& wren
 }
 
 }  // namespace
+
+std::array<double, 6> sensorWrench(const ContactSensing& sensing) noexcept {
+  const auto& [force, torque] = sensing.wrenchInTip();
+  return {-force.x(), -force.y(), -force.z(), -torque.x(), -torque.y(), -torque.z()};
+}
 
 struct WrenchPublisher::Outbox {
   LatestValue<Estimate> newest;
@@ -78,13 +84,13 @@ WrenchPublisher::WrenchPublisher(const std::shared_ptr<rclcpp_lifecycle::Lifecyc
                                    [outbox = outbox_] { outbox->publish(); });
 }
 
-void WrenchPublisher::note(const rclcpp::Time& time, const SensedWrench& sensed) noexcept {
+void WrenchPublisher::note(const rclcpp::Time& time, const ContactSensing& sensing) noexcept {
   if (outbox_ == nullptr) return;
   Estimate& estimate = outbox_->newest.back();
   estimate.nanoseconds = time.nanoseconds();
-  estimate.torques = sensed.torques();
-  estimate.wrench = sensed.wrench();
-  estimate.contact = sensed.contact() != nullptr && sensed.contact()->contact();
+  estimate.torques = sensing.torques();
+  estimate.wrench = sensorWrench(sensing);
+  estimate.contact = sensing.detector() != nullptr && sensing.detector()->contact();
   outbox_->newest.publish();
 }
 

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
 /// Estimates of what touches the robot, on topics.
-///
-///     WrenchPublisher publisher(node, joints, "tool0", 50.0);
-///     publisher.note(time, sensed);                      // in each cycle that has an estimate
 #pragma once
 
+#include <array>
+#include <inverse_dynamics_control/contact_sensing.hpp>
 #include <memory>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 #include <string>
 #include <vector>
 
-#include "sensed_wrench.hpp"
-
 namespace inverse_dynamics_controllers {
+
+/// What the surroundings exert **on the tip**, as sensors of ros2_control have it: force [N], then
+/// torque [N m] about the origin of the tip, in the axes of the tip.
+std::array<double, 6> sensorWrench(
+    const inverse_dynamics_control::ContactSensing& sensing) noexcept;
 
 /// Hands the newest estimate to another thread without a lock, which publishes it.
 ///
@@ -29,7 +31,8 @@ class WrenchPublisher {
                   bool contacts);
 
   /// An estimate. Real time: no allocation, lock, exception or system call.
-  void note(const rclcpp::Time& time, const SensedWrench& sensed) noexcept;
+  void note(const rclcpp::Time& time,
+            const inverse_dynamics_control::ContactSensing& sensing) noexcept;
 
  private:
   struct Outbox;

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// What happened while external wrenches were estimated, told by another thread.
-///
-///     WrenchReport report(6);
-///     report.note(status, sensed.unseen());            // in each cycle
-///     auto timer = logEverySecond(node, report);       // when configured
+/// Counts what happens to the estimates of wrenches; another thread logs it.
 #pragma once
 
 #include <array>

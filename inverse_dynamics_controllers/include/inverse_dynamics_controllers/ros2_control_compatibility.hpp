@@ -56,7 +56,7 @@ constexpr bool kHasSharedStates = decltype(SharedStates::find<SharedStates>(0)):
 
 }  // namespace detail
 
-/// Value of an interface, if it can be read: it has a value, and nobody is writing it. Real time:
+/// Value of an interface, if it can be read: it has a value, which isn't being written. Real time:
 /// no allocation, exception or system call.
 template <class Interface>
 std::optional<double> readable(const Interface& interface) noexcept {
@@ -151,7 +151,7 @@ class ChainableController : public Strict<controller_interface::ChainableControl
   /// Copies what the controller before has written, in the order of referenceNames(). Real time: no
   /// allocation, exception or system call.
   ///
-  /// @param[in,out] values  one that somebody is writing just now stays as it is.
+  /// @param[in,out] values  one that is being written stays as it is.
   void readReferences(std::vector<double>& values) const noexcept {
     for (std::size_t k = 0; k < values.size() && k < size(); ++k) {
       if (shared_.empty()) {
@@ -162,7 +162,7 @@ class ChainableController : public Strict<controller_interface::ChainableControl
     }
   }
 
-  /// Nobody has written a reference: all are NaN.
+  /// Makes all references NaN: not written.
   void forgetReferences() noexcept {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     reference_interfaces_.assign(reference_interfaces_.size(), kNan);
