@@ -131,12 +131,12 @@ def solver_arguments() -> list[DeclareLaunchArgument]:
     return [
         argument(
             "robot",
-            "Run configuration: ur10_real for one, or a YAML file; empty: the other arguments say all",
+            "Run configuration: ur10_real, or a YAML file; empty: the other arguments say all",
         ),
         argument(
             "plugin_name",
             "Solver, package/Class of a plugin: "
-            "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL for one; needed without robot",
+            "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL; needed without robot",
         ),
         argument(
             "robot_description",
@@ -147,7 +147,7 @@ def solver_arguments() -> list[DeclareLaunchArgument]:
         argument("tip", "Last link of the chain; empty: that of robot, else the URDF's leaf"),
         argument(
             "gravity",
-            "Where things fall, in the frame of the root link [m/s^2]: [0, 0, -9.81] for one; empty: "
+            "Where things fall, in the frame of the root link [m/s^2]: [0, 0, -9.81]; empty: "
             "what robot says, else that",
         ),
         argument(
@@ -212,7 +212,7 @@ def numbers(context: LaunchContext, argument: str) -> list[float]:
         return [float(part) for part in value.split(",")] if value else []
     except ValueError:
         raise ValueError(
-            f"argument {argument}: expected numbers, 12.5,12.5 for one, got '{value}'"
+            f"argument {argument}: expected numbers (12.5,12.5), got '{value}'"
         ) from None
 
 

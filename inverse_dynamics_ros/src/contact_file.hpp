@@ -2,9 +2,6 @@
 
 /// @file
 /// Thresholds and noise of external torques that `ids contact` has found: its contacts.json.
-///
-///     const ContactFile file = readContactFile("recording_contacts/contacts.json", solver->jointNames());
-///     ContactDetector detector(file.thresholds, {}, solver->jointNames());
 
 #pragma once
 

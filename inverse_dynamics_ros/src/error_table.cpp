@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
-#include <set>
 
 #include "evaluation.hpp"
 
@@ -11,29 +11,16 @@ namespace inverse_dynamics_ros {
 namespace {
 
 using inverse_dynamics_evaluation::JointMetrics;
-using Row = std::vector<std::string>;
-
-constexpr std::size_t kTextColumns = 2;  // joint, unit: to the left
 
 std::string formatted(const char* format, double number) {
   char text[64];
   std::snprintf(text, sizeof text, format, number);
-  return text;
+  return std::isnan(number) ? "-" : text;
 }
 
-// Three decimals, or three significant digits where that says nothing.
-std::string figure(double value) {
-  return formatted(std::abs(value) >= 0.1 || value == 0 ? "%.3f" : "%.3g", value);
-}
-
-std::string unlessNan(const char* format, double value) {
-  return std::isnan(value) ? "-" : formatted(format, value);
-}
-
-// Characters as they are seen: of UTF-8, bytes that begin one.
-std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
+// Three decimals, or three significant digits of what is smaller.
+std::string value(double number) {
+  return formatted(std::abs(number) >= 0.1 || number == 0 ? "%.3f" : "%.3g", number);
 }
 
 double meanOf(const std::vector<JointMetrics>& errors, double JointMetrics::*field) {
@@ -44,78 +31,55 @@ double meanOf(const std::vector<JointMetrics>& errors, double JointMetrics::*fie
   return sum / static_cast<double>(errors.size());
 }
 
-Row rowOf(const std::string& joint, const std::string& unit, const JointMetrics& error) {
-  return {joint,
-          unit,
-          figure(error.mae),
-          figure(error.rmse),
-          unlessNan("%.2f %%", 100 * error.nrmse),
-          formatted(std::abs(error.bias) < 0.1 ? "%+.3g" : "%+.3f", error.bias),
-          unlessNan("%.4f", error.r2)};
-}
-
-std::string lineOf(const Row& row, const std::vector<std::size_t>& widths) {
-  std::string line;
-  for (std::size_t i = 0; i < widths.size(); ++i) {
-    const std::string cell = i < row.size() ? row[i] : "";
-    const std::string space(widths[i] - width(cell), ' ');
-    line += (i == 0 ? "  " : "   ") + (i < kTextColumns ? cell + space : space + cell);
+// To the left the joint and its unit, to the right numbers; empty ones at the end are left out.
+std::string lineOf(std::size_t width, const std::string& joint, const std::string& unit,
+                   const std::array<std::string, 6>& numbers) {
+  constexpr std::size_t kUnit = 4, kNumber = 9;
+  const auto blanks = [](std::size_t all, const std::string& text) {
+    return std::string(all - std::min(all, text.size()), ' ');
+  };
+  std::string line = "  " + joint + blanks(width, joint) + "  " + unit + blanks(kUnit, unit);
+  for (const std::string& number : numbers) {
+    line += blanks(kNumber, number) + number;
   }
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";
 }
 
-// Heading, a rule, and the rows; an empty row stays empty.
-std::string tableOf(const std::vector<Row>& rows) {
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], width(row[i]));
-    }
-  }
-  std::string rule = " ";
-  for (const std::size_t column : widths) {
-    for (std::size_t i = 0; i < column + 2 + (&column != &widths.back() ? 1 : 0); ++i) {
-      rule += "─";
-    }
-  }
-  std::string text = lineOf(rows.front(), widths) + rule + "\n";
-  for (auto row = rows.begin() + 1; row != rows.end(); ++row) {
-    text += lineOf(*row, widths);
-  }
-  return text;
-}
-
 }  // namespace
 
 std::string errorTable(const Evaluation& evaluation, const std::vector<std::string>& units) {
-  if (evaluation.errors.empty()) {
+  const std::vector<JointMetrics>& errors = evaluation.errors;
+  if (errors.empty()) {
     return "  no efforts are recorded: there is nothing to compare with\n";
   }
   const auto& kept = evaluation.table->kept;
-  const bool some_left_out = !kept.all();
-  std::vector<Row> rows = {{"joint", "unit", "MAE", "RMSE", "NRMSE", "bias", "R²"}};
+  const auto ofKept = [&kept](double rmse) { return kept.all() ? "" : value(rmse); };
+  std::size_t width = std::string("joint").size();
+  for (const std::string& name : evaluation.joint_names) {
+    width = std::max(width, name.size());
+  }
+  std::string text = lineOf(width, "joint", "unit",
+                            {"MAE", "RMSE", "NRMSE", "bias", "R2", kept.all() ? "" : "RMSE*"});
   for (std::size_t j = 0; j < units.size(); ++j) {
-    rows.push_back(rowOf(evaluation.joint_names[j], units[j], evaluation.errors[j]));
+    const JointMetrics& error = errors[j];
+    text += lineOf(width, evaluation.joint_names[j], units[j],
+                   {value(error.mae), value(error.rmse), formatted("%.2f %%", 100 * error.nrmse),
+                    value(error.bias), formatted("%.4f", error.r2),
+                    ofKept(evaluation.errors_of_kept[j].rmse)});
   }
-  if (std::set<std::string>(units.begin(), units.end()).size() == 1 && units.size() > 1) {
-    rows.emplace_back();
-    rows.push_back({"mean", units[0], figure(meanOf(evaluation.errors, &JointMetrics::mae)),
-                    figure(meanOf(evaluation.errors, &JointMetrics::rmse)), "", "", ""});
+  if (units.size() > 1 && std::count(units.begin(), units.end(), units[0]) ==
+                              static_cast<std::ptrdiff_t>(units.size())) {
+    text += lineOf(
+        width, "mean", units[0],
+        {value(meanOf(errors, &JointMetrics::mae)), value(meanOf(errors, &JointMetrics::rmse)), "",
+         "", "", ofKept(meanOf(evaluation.errors_of_kept, &JointMetrics::rmse))});
   }
-  std::string caption;
-  if (some_left_out) {
-    rows[0].emplace_back("RMSE*");
-    for (std::size_t j = 0; j < units.size(); ++j) {
-      rows[j + 1].push_back(figure(evaluation.errors_of_kept[j].rmse));
-    }
-    if (rows.back()[0] == "mean") {
-      rows.back().push_back(figure(meanOf(evaluation.errors_of_kept, &JointMetrics::rmse)));
-    }
-    caption = "* over the " + std::to_string(kept.count()) + " valid samples of " +
-              std::to_string(kept.size()) + "\n";
+  if (kept.all()) {
+    return text;
   }
-  return tableOf(rows) + caption;
+  return text + "* over the " + std::to_string(kept.count()) + " valid samples of " +
+         std::to_string(kept.size()) + "\n";
 }
 
 }  // namespace inverse_dynamics_ros

@@ -29,7 +29,7 @@ Clock clockOf(const std::string& name) {
   return name == "header" ? Clock::kHeader : name == "receive" ? Clock::kReceive : Clock::kAuto;
 }
 
-// Mistakes that can be told before any work.
+// Checks parameters before any work.
 void check(const evaluate_solver::Params& params) {
   if (params.input_bag.empty()) {
     throw UserError("parameter 'input_bag'", "the recording to evaluate", "nothing", "set it");

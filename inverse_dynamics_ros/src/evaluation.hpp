@@ -2,9 +2,6 @@
 
 /// @file
 /// The table of `ids evaluate`.
-///
-///     Evaluation evaluation = evaluate(motion.log, *solver, options);
-///     std::cout << errorTable(evaluation, units);
 
 #pragma once
 

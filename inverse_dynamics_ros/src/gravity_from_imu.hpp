@@ -2,9 +2,6 @@
 
 /// @file
 /// Where things fall, in the axes of the root link, by an IMU that is fixed to it.
-///
-///     GravityFromImu imu(GravityFromImu::Source::kAcceleration, R_root_imu, 0.1, gravity);
-///     if (imu.update(message, stamp) == GravityFromImu::Outcome::kTaken) solver.setGravity(imu.gravity());
 
 #pragma once
 

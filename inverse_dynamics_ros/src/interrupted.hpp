@@ -2,8 +2,6 @@
 
 /// @file
 /// Work that ends, with nothing written, when the user presses Ctrl-C.
-///
-///     for (...) requireNoInterrupt();
 
 #pragma once
 

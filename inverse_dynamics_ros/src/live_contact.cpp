@@ -4,31 +4,15 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <inverse_dynamics_control/estimator_choice.hpp>
-#include <utility>
 
 namespace inverse_dynamics_ros {
 
-using inverse_dynamics_control::WrenchStatus;
-using inverse_dynamics_solver::WrenchFrame;
-
 LiveContact::LiveContact(
-    std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
+    const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver,
     const LiveContactOptions& options)
-    : solver_(std::move(solver)),
-      estimator_(inverse_dynamics_control::estimatorFor(solver_, options.estimator)),
-      state_(solver_->jointCount()) {
-  if (options.thresholds.size() > 0) {
-    detector_.emplace(options.thresholds, inverse_dynamics_control::ReleaseOptions(),
-                      solver_->jointNames());
-  }
-  if (options.wrench.noise.size() > 0) {
-    tip_.emplace(solver_, options.wrench);
-    if (options.wrench_frame == WrenchFrame::kTip) {
-      kinematics_ = dynamic_cast<const inverse_dynamics_solver::Kinematics*>(solver_.get());
-    }
-  }
-}
+    : sensing_(solver, options),
+      in_root_(options.wrench_frame == inverse_dynamics_solver::WrenchFrame::kRoot),
+      state_(solver->jointCount()) {}
 
 bool LiveContact::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
                          const Eigen::VectorXd& effort) {
@@ -46,22 +30,9 @@ bool LiveContact::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eig
   stamp_ = stamp;
   state_.q = q;
   state_.qd = qd;
-  status_ = estimator_->update(state_, mean_effort_, period);
+  status_ = sensing_.update(state_, mean_effort_, period);
   ++counts_[static_cast<std::size_t>(status_)];
-  if (detector_ && period < 0) {
-    detector_->reset();
-  }
-  has_wrench_ = false;
-  if (status_ != Status::kOk) {
-    return false;
-  }
-  if (detector_) {
-    detector_->update(torques(), period);
-  }
-  if (tip_) {
-    updateWrench(q);
-  }
-  return true;
+  return status_ == Status::kOk;
 }
 
 // Stamps jitter, samples are taken at equal distances: the mean of the latest ones, without those of
@@ -84,18 +55,6 @@ double LiveContact::periodOf(std::int64_t distance) {
     }
   }
   return 1e-9 * static_cast<double>(distance);
-}
-
-void LiveContact::updateWrench(const Eigen::VectorXd& q) {
-  has_wrench_ = tip_->update(q, torques()) == WrenchStatus::kOk;
-  force_ = tip_->wrench().force;
-  torque_ = tip_->wrench().torque;
-  if (has_wrench_ && kinematics_ != nullptr) {
-    chain_dynamics::Transform<double> pose;
-    kinematics_->getTipPose(q, pose);
-    force_ = pose.R.transpose() * force_;
-    torque_ = pose.R.transpose() * torque_;
-  }
 }
 
 }  // namespace inverse_dynamics_ros

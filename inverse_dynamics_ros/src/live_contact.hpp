@@ -2,9 +2,6 @@
 
 /// @file
 /// What touches the robot, of joint states as they come: the work of the live node, without topics.
-///
-///     LiveContact contact(solver, options);
-///     if (contact.update(stamp, q, qd, effort)) publish(contact.torques(), contact.wrench());
 
 #pragma once
 
@@ -12,22 +9,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <inverse_dynamics_control/contact_detector.hpp>
-#include <inverse_dynamics_control/external_torque_estimator.hpp>
-#include <inverse_dynamics_control/tip_wrench.hpp>
+#include <inverse_dynamics_control/contact_sensing.hpp>
 #include <inverse_dynamics_solver/external_wrench.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
-#include <inverse_dynamics_solver/kinematics.hpp>
 #include <memory>
-#include <optional>
 
 namespace inverse_dynamics_ros {
 
 /// What LiveContact works with.
-struct LiveContactOptions {
-  inverse_dynamics_control::EstimatorOptions estimator;
-  Eigen::VectorXd thresholds;                      ///< n; N m (prismatic N); empty: no contact flag
-  inverse_dynamics_control::WrenchOptions wrench;  ///< without noise: no wrench
+struct LiveContactOptions : inverse_dynamics_control::ContactOptions {
   inverse_dynamics_solver::WrenchFrame wrench_frame = inverse_dynamics_solver::WrenchFrame::kTip;
 };
 
@@ -42,8 +32,8 @@ class LiveContact {
   using Status = inverse_dynamics_control::EstimateStatus;
   using Counts = std::array<std::int64_t, 8>;  ///< by Status
 
-  /// @throws inverse_dynamics_solver::Exception: what estimators, detector and TipWrench say.
-  LiveContact(std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver,
+  /// @throws inverse_dynamics_solver::Exception: options that ContactSensing refuses.
+  LiveContact(const std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver>& solver,
               const LiveContactOptions& options);
 
   /// Takes a sample; one with the stamp of the last one is left out.
@@ -61,32 +51,30 @@ class LiveContact {
   const Counts& counts() const { return counts_; }
 
   /// n; N m (prismatic N).
-  const chain_dynamics::OwnedVector& torques() const { return estimator_->torques(); }
+  const chain_dynamics::OwnedVector& torques() const { return sensing_.torques(); }
 
-  /// Whether the wrench is that of the last estimate.
-  bool hasWrench() const { return has_wrench_; }
+  /// Whether there is a wrench of the last estimate.
+  bool hasWrench() const { return tip() != nullptr && status_ == Status::kOk; }
 
   /// N, N m about the tip's origin, in the axes of LiveContactOptions::wrench_frame.
-  const Eigen::Vector3d& force() const { return force_; }
-  const Eigen::Vector3d& torque() const { return torque_; }
+  const Eigen::Vector3d& force() const {
+    return in_root_ ? sensing_.wrench().force : sensing_.wrenchInTip().force;
+  }
+  const Eigen::Vector3d& torque() const {
+    return in_root_ ? sensing_.wrench().torque : sensing_.wrenchInTip().torque;
+  }
 
   /// Null: no wrench.
-  const inverse_dynamics_control::TipWrench* tip() const { return tip_ ? &*tip_ : nullptr; }
+  const inverse_dynamics_control::TipWrench* tip() const { return sensing_.tip(); }
 
   /// Null: no contact flag.
-  const inverse_dynamics_control::ContactDetector* detector() const {
-    return detector_ ? &*detector_ : nullptr;
-  }
+  const inverse_dynamics_control::ContactDetector* detector() const { return sensing_.detector(); }
 
  private:
   double periodOf(std::int64_t distance);
-  void updateWrench(const Eigen::VectorXd& q);
 
-  std::shared_ptr<const inverse_dynamics_solver::InverseDynamicsSolver> solver_;
-  std::unique_ptr<inverse_dynamics_control::ExternalTorqueEstimator> estimator_;
-  std::optional<inverse_dynamics_control::ContactDetector> detector_;
-  std::optional<inverse_dynamics_control::TipWrench> tip_;
-  const inverse_dynamics_solver::Kinematics* kinematics_ = nullptr;  // null: wrench in the root
+  inverse_dynamics_control::ContactSensing sensing_;
+  bool in_root_;  // the wrench
   inverse_dynamics_control::JointState state_;
   Eigen::VectorXd effort_, mean_effort_;  // of the last sample; over the period before it
   bool started_ = false;
@@ -95,8 +83,6 @@ class LiveContact {
   std::size_t distance_count_ = 0;            // of all
   Status status_ = Status::kStarting;
   Counts counts_{};
-  bool has_wrench_ = false;
-  Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), torque_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace inverse_dynamics_ros

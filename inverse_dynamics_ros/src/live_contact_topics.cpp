@@ -31,19 +31,6 @@ constexpr std::array<const char*, std::tuple_size_v<LiveContact::Counts>> kCount
     "estimates",          "samples of a start", "gaps",          "states not finite",
     "efforts not finite", "model not finite",   "solver failed", "wrong sizes"};
 
-Eigen::VectorXd vectorOf(const std::vector<double>& numbers) {
-  return Eigen::Map<const Eigen::VectorXd>(numbers.data(),
-                                           static_cast<Eigen::Index>(numbers.size()));
-}
-
-// One number counts for all joints.
-Eigen::VectorXd perJoint(const std::vector<double>& numbers, Eigen::Index n) {
-  if (numbers.size() == 1) {
-    return Eigen::VectorXd::Constant(n, numbers.front());
-  }
-  return vectorOf(numbers);
-}
-
 // Numbers in words: `(0.1 0.2 0.3)`.
 template <class Vector>
 std::string inWords(const Vector& vector) {
@@ -53,33 +40,23 @@ std::string inWords(const Vector& vector) {
   return text.str();
 }
 
-// What the file says, unless the user has set the parameter.
+// The numbers of the file, unless the user has set the parameter.
 void readFile(const ContactFile& file, const Parameters& given,
               live_node::Params::ExternalTorques& parameters) {
-  const auto is_given = [&given](const char* name) {
-    return given.find(kNamespace + name).has_value();
+  const auto set = [&given](const char* name, auto& parameter, const auto& of_file) {
+    if (!given.find(kNamespace + name)) {
+      parameter = of_file;
+    }
   };
-  if (!is_given("gain")) {
-    parameters.gain = file.gain;
-  }
-  if (!is_given("tracking")) {
-    parameters.tracking = file.tracking.value_or(parameters.tracking);
-  }
-  if (!is_given("velocities")) {
-    parameters.velocities = file.measured_velocities ? "measured" : "positions";
-  }
-  if (!is_given("friction_band")) {
-    parameters.friction_band = file.friction_band;
-  }
   const auto numbers = [](const Eigen::VectorXd& vector) {
     return std::vector<double>(vector.data(), vector.data() + vector.size());
   };
-  if (!is_given("thresholds")) {
-    parameters.thresholds = numbers(file.thresholds);
-  }
-  if (!is_given("noise")) {
-    parameters.noise = numbers(file.noise);
-  }
+  set("gain", parameters.gain, file.gain);
+  set("tracking", parameters.tracking, file.tracking.value_or(parameters.tracking));
+  set("velocities", parameters.velocities, file.measured_velocities ? "measured" : "positions");
+  set("friction_band", parameters.friction_band, file.friction_band);
+  set("thresholds", parameters.thresholds, numbers(file.thresholds));
+  set("noise", parameters.noise, numbers(file.noise));
 }
 
 }  // namespace

@@ -2,10 +2,6 @@
 
 /// @file
 /// External torques, wrench and contacts of the live node: parameters, topics, diagnostics.
-///
-///     LiveContactTopics topics(node, params.external_torques, given);
-///     topics.use(topics.make(robot), robot);            // a solver, or another one
-///     topics.take(message.header, stamp, live_torques); // a joint state
 
 #pragma once
 

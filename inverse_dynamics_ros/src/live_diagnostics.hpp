@@ -2,9 +2,6 @@
 
 /// @file
 /// What the live node tells /diagnostics.
-///
-///     LiveDiagnostics diagnostics(node, limits);
-///     diagnostics.counts().received += 1;
 
 #pragma once
 

@@ -2,9 +2,6 @@
 
 /// @file
 /// What loads the robot of the live node and may change while it runs: a body at the tip, gravity.
-///
-///     LiveLoad load(node, listener);
-///     load.use(load.make(robot), robot);     // a solver, or another one
 
 #pragma once
 
@@ -69,8 +66,7 @@ class LiveLoad {
   std::optional<GravityFromImu> imu_;
   LiveRobot robot_;                    // without a solver until there is one
   std::unique_ptr<PayloadRamp> ramp_;  // null until then
-  inverse_dynamics_solver::VariableGravity* variable_ =
-      nullptr;  // the solver; null: its can't change
+  inverse_dynamics_solver::VariableGravity* variable_ = nullptr;  // null if gravity is fixed
   rclcpp::Clock steady_{RCL_STEADY_TIME};
   rclcpp::node_interfaces::OnSetParametersCallbackHandle::SharedPtr checking_;
   rclcpp::Subscription<geometry_msgs::msg::InertiaStamped>::SharedPtr payloads_;

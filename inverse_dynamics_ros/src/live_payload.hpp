@@ -2,10 +2,6 @@
 
 /// @file
 /// What the tip carries, estimated from joint states as they come: without topics.
-///
-///     LivePayload payload(solver, options);
-///     payload.update(stamp, q, qd, effort);                              // each joint state
-///     if (payload.estimate(found) == PayloadStatus::kOk) use(found.body());
 
 #pragma once
 

@@ -72,13 +72,10 @@ LivePayloadOptions LivePayloadServices::options() const {
                     "how far measured torques are from those of the model without a load [N m]",
                     "nothing", "set it: `ids evaluate` of a recording tells");
   }
-  const Eigen::Index n = robot_.solver->jointCount();
   LivePayloadOptions options;
   options.cutoff = params_.cutoff;
   options.longest_gap = params_.longest_gap;
-  options.noise = noise.size() == 1 ? Eigen::VectorXd::Constant(n, noise.front())
-                                    : Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
-                                          noise.data(), static_cast<Eigen::Index>(noise.size())));
+  options.noise = perJoint(noise, robot_.solver->jointCount());
   options.carried = carried_();
   return options;
 }

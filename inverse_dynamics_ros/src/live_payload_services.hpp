@@ -2,10 +2,6 @@
 
 /// @file
 /// Services of the live node that estimate what the tip carries.
-///
-///     LivePayloadServices services(node, params);
-///     services.use(robot);                          // a solver, or another one
-///     services.take(stamp, live_torques);           // a joint state
 
 #pragma once
 

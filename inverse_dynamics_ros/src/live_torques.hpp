@@ -2,10 +2,6 @@
 
 /// @file
 /// Torques of joint states as they come: the work of the live node, without topics.
-///
-///     LiveTorques live(solver, {names, effort, 5.0, 0.5});
-///     if (live.process(message, stamp) == LiveTorques::Outcome::kComputed)
-///       publish(live.computed(), live.residual());
 
 #pragma once
 

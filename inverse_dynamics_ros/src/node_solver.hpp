@@ -2,9 +2,6 @@
 
 /// @file
 /// What the user has given a node of its parameters.
-///
-///     declareSolverParameters(*node);            // ids.root, ids.tip, ids.gravity, ...
-///     const NodeRobot robot(givenParameters(*node));
 
 #pragma once
 

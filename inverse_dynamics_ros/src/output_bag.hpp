@@ -2,10 +2,6 @@
 
 /// @file
 /// A recording that is written whole or not at all, and never over something else.
-///
-///     OutputBag bag("result", "sqlite3");
-///     bag.write(message, "/torques", stamp);
-///     bag.finish();   // only now there is a directory `result`
 
 #pragma once
 

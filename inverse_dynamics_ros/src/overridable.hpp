@@ -2,8 +2,6 @@
 
 /// @file
 /// Publishers and subscriptions whose quality of service users may set by parameters.
-///
-///     node.create_publisher<T>("~/topic", rclcpp::QoS(10), overridable<rclcpp::PublisherOptions>());
 
 #pragma once
 

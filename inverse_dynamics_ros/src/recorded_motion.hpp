@@ -3,9 +3,6 @@
 /// @file
 /// A motion from a rosbag2 recording: joint states or joint trajectories.
 ///
-///     RecordedMotion motion = readMotion("recording", {"", {"joint_1", "joint_2"}});
-///     motion.log.q;   // 2 x N
-///
 /// The rules of joint_log.hpp. Each point of a joint trajectory is a sample; its stamp is that of
 /// its message plus its time_from_start. Several messages are points of one motion, so each must
 /// have one point; those without are left out. Efforts of trajectories may be absent.

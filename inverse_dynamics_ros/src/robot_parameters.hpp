@@ -4,10 +4,6 @@
 /// A robot, as the parameters of a node say it: a run configuration by the parameter `robot`, and
 /// what is given beside it.
 ///
-///     const Parameters given = ...;                       // robot: ur10_real, effort: auto, ids.tip: ...
-///     const NodeRobot robot(given);
-///     const auto solver = robot.makeSolver(robot.description());
-///
 /// What is given replaces what the run configuration says, as the options of `ids evaluate` do.
 
 #pragma once

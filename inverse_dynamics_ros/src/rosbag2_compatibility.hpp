@@ -2,8 +2,6 @@
 
 /// @file
 /// What differs between the releases of rosbag2, found by what there is and not by version.
-///
-///     const std::int64_t stamp = receiveStamp(*reader.read_next());
 
 #pragma once
 

@@ -2,8 +2,6 @@
 
 /// @file
 /// Computed and measured torques as a recording, in messages like those that were read.
-///
-///     writeTorques("result", "sqlite3", "/torques", motion, evaluation);
 
 #pragma once
 

@@ -2,9 +2,6 @@
 
 /// @file
 /// A mistake a user can repair, and the exit codes of this package's programs.
-///
-///     throw UserError("parameter 'input_bag'", "the path of a recording", "nothing", "set it");
-///     // parameter 'input_bag': expected the path of a recording, got nothing; set it
 
 #pragma once
 

@@ -53,11 +53,11 @@ TEST(Evaluation, HasNoErrorsWhereNoEffortsAreRecorded) {
 TEST(Evaluation, IsPrintedAsATable) {
   const Evaluation evaluation = evaluate(log(), *TwoJointSolver::make(), options());
   const std::string table = errorTable(evaluation, {"N m", "N"});
-  EXPECT_NE(table.find("  joint   unit     MAE    RMSE"), std::string::npos) << table;
-  EXPECT_NE(table.find("  a       N m    0.250   0.250"), std::string::npos) << table;
-  EXPECT_NE(table.find("  b       N      0.500   0.500"), std::string::npos) << table;
+  EXPECT_NE(table.find("  joint  unit      MAE     RMSE"), std::string::npos) << table;
+  EXPECT_NE(table.find("  a      N m     0.250    0.250"), std::string::npos) << table;
+  EXPECT_NE(table.find("  b      N       0.500    0.500"), std::string::npos) << table;
   EXPECT_EQ(table.find("mean"), std::string::npos) << "units differ";
-  EXPECT_NE(errorTable(evaluation, {"N m", "N m"}).find("  mean    N m    0.375   0.375\n"),
+  EXPECT_NE(errorTable(evaluation, {"N m", "N m"}).find("  mean   N m     0.375    0.375\n"),
             std::string::npos);
 }
 

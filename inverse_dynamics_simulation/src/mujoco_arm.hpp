@@ -2,10 +2,6 @@
 /// @file
 /// A robot arm in MuJoCo, from its URDF, with exactly the inertia that the URDF states.
 ///
-///     MujocoArm arm(urdf, {"shoulder_pan_joint", "shoulder_lift_joint"});
-///     arm.setPosition(q);
-///     arm.step(tau, 0.002);          // then arm.q(), arm.qd(), arm.qdd()
-///
 /// MuJoCo knows nothing of the solvers: it checks controllers independently. What it would do to a
 /// URDF on its own is undone: inertia that breaks the triangle inequality is balanced while it
 /// compiles and written back; `<dynamics>` isn't taken for damping; no contacts, no forces at
