@@ -22,7 +22,7 @@ from inverse_dynamics import Solver, evaluate, evaluate_many, read_evaluation, w
 from inverse_dynamics.base.workers import outcome_of
 from inverse_dynamics.errors import ArgumentError, BagError, OutputError, UserError
 from inverse_dynamics.results import exports, many_evaluations
-from inverse_dynamics.results.summaries import COLUMNS
+from inverse_dynamics.results.many_evaluations import COLUMNS
 
 ROBOT = ("--robot", "ur10_simulated")
 RAW = ("--accelerations", "backward-difference")

@@ -1,10 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A comparison as a directory of files.
-
-comparison.json             root mean square errors of each joint and run; marks the directory
-comparison.png              measured torque and that of each run, over time; or .svg, .pdf
-report.html                 all runs on one page
-"""
+"""A comparison as a directory of files: `ids compare --help` lists them."""
 
 from __future__ import annotations
 

@@ -4,13 +4,8 @@
 result = run_demo(Path("demo"), recordings=find_recordings())
 print(result.page)
 
-DIR/report.html             all robots on one page; comparison of two models of the real UR10
-DIR/demo.json               mean errors of each robot; marks the directory
-DIR/ur10_simulated_bag, DIR/panda_simulated_bag   recordings of the simulated robots; without MuJoCo the
-                            shorter ones that come with the package are evaluated, and not written
-DIR/ROBOT                   an evaluation of each robot: figures, errors, bag (see evaluations.py)
-DIR/ur10_real_urdf          the real UR10 computed from its URDF alone
-DIR/comparison              that against the identified model
+DIR also holds the recordings of the simulated robots, ROBOT_bag. Without MuJoCo the shorter ones that come
+with the package are evaluated. `ids demo --help` lists the other files.
 """
 
 from __future__ import annotations

@@ -1,14 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An evaluation as a directory of files, and back.
-
-evaluation.json   what was evaluated, how, and what was assumed; marks the directory
-metrics.json      errors of each joint
-series.npz        time, q, qd, qdd, effort as recorded, measured and computed torques, stamps; one row
-                  per sample
-bag/              recording with /torques (computed) and /torques_gt (measured)
-plotjuggler.xml   layout for PlotJuggler that opens it
-torques.png     figure; or .svg, .pdf, where they are asked for
-"""
+"""An evaluation as a directory of files, and back: `ids evaluate --help` lists the files."""
 
 from __future__ import annotations
 

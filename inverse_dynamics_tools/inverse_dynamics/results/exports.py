@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All series of an evaluation as one table, for pandas, MATLAB, spreadsheets and databases.
+"""All series of an evaluation as one table, a row per sample: `ids export --help` lists the columns.
 
 export_series(read_evaluation("result"), Path("series.parquet"))
 

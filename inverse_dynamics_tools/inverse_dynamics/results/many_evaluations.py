@@ -5,15 +5,13 @@ result = evaluate_many(["monday", "tuesday"], "ur10_real", "week", jobs=4)
 for row in result.rows:
     print(row["recording"], row["joint"], row["rmse"])
 
-recordings.json   what was evaluated, and what failed, with its message; marks the directory
-summary.csv       errors, a row per recording and joint: see summaries.py
-report.html       all recordings on one page
-NAME/             an evaluation of each recording: see evaluations.py; with figures, its page too
-NAME/series.parquet   its series, with a column `recording`, where that is asked for
+Files of the result, and columns of summary.csv: docs/many_recordings.md.
 """
 
 from __future__ import annotations
 
+import csv
+import math
 import os
 import shutil
 from contextlib import suppress
@@ -27,7 +25,7 @@ from inverse_dynamics.base.files import Contents, write_text, written_whole
 from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.replacement import restore_interrupted
-from inverse_dynamics.base.wording import counted
+from inverse_dynamics.base.wording import counted, printable
 from inverse_dynamics.base.workers import Failure, cores, in_processes
 from inverse_dynamics.data.several_recordings import named_recordings
 from inverse_dynamics.data.time_window import TimeWindow
@@ -35,7 +33,6 @@ from inverse_dynamics.errors import ArgumentError, OutputError, UserError
 from inverse_dynamics.evaluation.evaluation import check_options, evaluate
 from inverse_dynamics.evaluation.summary import EvaluationSummary, summary_of
 from inverse_dynamics.results import evaluations
-from inverse_dynamics.results.summaries import Row, summary_rows, write_summary_csv
 from inverse_dynamics.robot.robots import Robot, load_robot
 
 if TYPE_CHECKING:
@@ -52,6 +49,15 @@ OWN_FILES = (MARK, "summary.csv", PAGE)
 
 _OF_EACH = (*evaluations.CONTENTS.files, *evaluations.CONTENTS.added)
 CONTENTS = Contents(MARK, (*OWN_FILES, *(f"*/{file}" for file in _OF_EACH)))
+
+Row = dict[str, Any]
+
+COLUMNS = (
+    *("recording", "bag", "robot", "plugin", "joint", "unit"),
+    *("start", "duration", "window_from", "window_to", "samples"),
+    *("mae", "rmse", "nrmse", "bias", "r2", "max_abs", "kept_samples", "kept_rmse"),
+    *("accelerations", "cutoff", "effort"),
+)
 
 _MOST_TOLD = 5  # failures, in a text
 _MOST_ON_A_PAGE = 1_000_000  # samples: the page of a recording holds them in memory
@@ -77,7 +83,7 @@ class ManyEvaluations:
     @property
     def rows(self) -> list[Row]:
         """One per recording and joint, as in summary.csv: for pandas.DataFrame(rows) and the like."""
-        return summary_rows(self.summaries)
+        return _rows(self.summaries)
 
     @property
     def directories(self) -> dict[str, Path]:
@@ -250,7 +256,7 @@ def failures_told(what: str, failures: Sequence[FailedRecording]) -> str:
 def _write(result: ManyEvaluations, target: Path, names: Sequence[str], robot: Robot) -> None:
     from inverse_dynamics.report.recordings import write_recordings_page
 
-    write_summary_csv(target / "summary.csv", result.rows)
+    _write_csv(target / "summary.csv", result.rows)
     recordings = sorted(_recordings(result), key=lambda recording: names.index(recording["name"]))
     about = {"schema": SCHEMA, "robot": robot.name, "recordings": recordings}
     write_text(target / MARK, json_text(about))
@@ -270,3 +276,35 @@ def _with_whole_paths(task: _Task) -> _Task:
     paths = {name: whole(getattr(robot, name)) for name in ("file", "urdf", "model")}
     bag, target = task.bag.absolute(), task.target.absolute()
     return replace(task, bag=bag, target=target, robot=replace(robot, **paths), options=options)
+
+
+def _rows(summaries: Iterable[EvaluationSummary]) -> list[Row]:
+    """The table, row by row; None where a value is undefined."""
+    rows = []
+    for summary in summaries:
+        of_all = {
+            **vars(summary),
+            "recording": summary.name,
+            "bag": str(summary.bag),
+            "window_from": summary.window.start,
+            "window_to": summary.window.end,
+            "accelerations": summary.accelerations.method,
+            "cutoff": summary.accelerations.cutoff,
+        }
+        for error, kept in zip(summary.errors, summary.errors_of_kept, strict=True):
+            row = {**of_all, **vars(error), "kept_rmse": kept.rmse}
+            rows.append({name: _defined(row[name]) for name in COLUMNS})
+    return rows
+
+
+def _write_csv(file: Path, rows: Iterable[Row]) -> None:
+    """Every digit is kept; an undefined value is empty; names that aren't UTF-8 become escapes."""
+    with file.open("w", encoding="utf-8", newline="") as sink:
+        writer = csv.DictWriter(sink, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        for row in rows:
+            writer.writerow({k: printable(v) if isinstance(v, str) else v for k, v in row.items()})
+
+
+def _defined(value: object) -> object:
+    return None if isinstance(value, float) and math.isnan(value) else value

@@ -151,133 +151,121 @@ def _meanings(choices: dict[str, str]) -> str:
     return "; ".join(f"{name}: {text}" for name, text in choices.items())
 
 
-# Usage, help, type and what else option() takes; by name.
-_SHARED: dict[str, tuple[str, str, Any, dict[str, Any]]] = {
-    re.split("[| ]", usage)[0]: (usage, help, type, more)
-    for usage, help, type, more in (
-        ("--json", "print one JSON object instead of tables (docs/command_line.md)", None, {}),
-        (
+def _entry(usage: str, help: str, type: Any = None, **more: Any) -> tuple[str, tuple[Any, ...]]:
+    return re.split(r"[ |]", usage)[0], (usage, help, type, more)
+
+
+# What Options.add() takes, by name; the name of the value is evaluate()'s argument.
+_SHARED = dict(
+    [
+        _entry("--json", "print one JSON object instead of tables (docs/command_line.md)"),
+        _entry(
             "--urdf|--dh FILE",
             "robot description, with or without --robot: .urdf; .xacro, which needs xacro; or .yaml, "
             "Denavit-Hartenberg parameters for `ids identify` (docs/identification.md#without-a-urdf)",
             Path,
-            {},
         ),
-        ("--root LINK", "first link of the chain", None, {}),
-        ("--tip LINK", "last link of the chain", None, {}),
-        (
+        _entry("--root LINK", "first link of the chain"),
+        _entry("--tip LINK", "last link of the chain"),
+        _entry(
             "--gravity X,Y,Z",
             "gravitational acceleration [m/s^2] in the frame of the root link (usually 0,0,-9.81)",
             three_numbers,
-            {},
         ),
-        (
+        _entry(
             "--joints A,B,...",
             "names of the joints in the recording, in the order of the chain",
             names,
-            {},
         ),
-        (
+        _entry(
             "--parameter NAME=VALUE",
             "a parameter of the solver, as under `parameters:` (docs/add_a_robot.md): "
             "locked_joints.finger=0.02; may be given several times",
             parameter,
-            {"dest": "parameters", "action": "append"},
+            dest="parameters",
+            action="append",
         ),
-        ("--plugin PACKAGE/CLASS", "solver (`ids robots --plugins`)", None, {}),
-        (
+        _entry("--plugin PACKAGE/CLASS", "solver (`ids robots --plugins`)"),
+        _entry(
             "--no-friction",
             "leave out the solver's friction: for a robot whose controller compensates it",
-            None,
-            {"dest": "friction", "action": "store_false", "default": None},
+            dest="friction",
+            action="store_false",
+            default=None,
         ),
-        (
+        _entry(
             "--payload BODY",
             "a rigid body at the tip: MASS[,x,y,z[,Ixx,Ixy,Ixz,Iyy,Iyz,Izz]]: mass [kg], center of "
             "mass in the tip frame [m], moments of inertia about it [kg m^2]; or a YAML file with "
             "mass, center_of_mass, inertia and frame (docs/add_a_robot.md)",
             payload,
-            {},
         ),
-        ("--topic NAME", "topic of the joint states, or of the trajectory", None, {}),
-        (
+        _entry("--topic NAME", "topic of the joint states, or of the trajectory"),
+        _entry(
             "--effort-is MEANING",
             f"meaning of the recorded efforts. {_meanings(EFFORT_CHOICES)}",
-            None,
-            {"choices": tuple(EFFORT_CHOICES)},
+            choices=tuple(EFFORT_CHOICES),
         ),
-        (
+        _entry(
             "--drive-gains A,B,...",
             "torque per motor current of each joint [N m/A], for efforts that are currents",
             numbers,
-            {},
         ),
-        (
+        _entry(
             "--columns KEY=PATTERN,...",
             "of a table: which column is what: time=t, q=q*, qd=dq*, effort=tau* (or current=i*); * is "
             "the joint's name or number; or numbers of columns: time=1, q=2-7 (docs/tables.md)",
-            None,
-            {},
         ),
-        (
+        _entry(
             "--scale KEY=FACTOR",
             "of a table: what a quantity's numbers are multiplied by, a number or a unit, or one for "
             "each joint: effort=1e-3, q=deg, time=ms; may be given several times",
-            None,
-            {"action": "append"},
+            action="append",
         ),
-        (
+        _entry(
             "--sign S,S,...",
             "of a table: 1 or -1 for each joint; -1 turns its positions, velocities and efforts around",
             numbers,
-            {},
         ),
-        (
-            "--rate HZ",
-            "of a table without time: samples per second",
-            positive_number,
-            {},
-        ),
-        ("--accelerations METHOD", _meanings(METHODS), None, {"choices": tuple(METHODS)}),
-        ("--cutoff HZ", "cut-off frequency of the low-pass filter", positive_number, {}),
-        (
+        _entry("--rate HZ", "of a table without time: samples per second", positive_number),
+        _entry("--accelerations METHOD", _meanings(METHODS), choices=tuple(METHODS)),
+        _entry("--cutoff HZ", "cut-off frequency of the low-pass filter", positive_number),
+        _entry(
             "--from SECONDS",
             "leave out samples before this time, counted from the first sample of each recording",
             number,
-            {"dest": "start"},
+            dest="start",
         ),
-        ("--to SECONDS", "leave out samples after this time", number, {"dest": "end"}),
-        (
+        _entry("--to SECONDS", "leave out samples after this time", number, dest="end"),
+        _entry(
             "--clock",
             "time stamps that are used: the header's, those of reception, or the header's if there "
             "are any (auto)",
-            None,
-            {"choices": CLOCKS, "default": "auto"},
+            choices=CLOCKS,
+            default="auto",
         ),
-        (
+        _entry(
             "--without-rule RULE",
             "report what this rule finds, but do not act on it; may be given several times. "
             + _meanings(RULES),
-            None,
-            {
-                "dest": "without_rules",
-                "choices": tuple(RULES),
-                "action": "append",
-                "default": [],
-            },
+            dest="without_rules",
+            choices=tuple(RULES),
+            action="append",
+            default=[],
         ),
-        (
+        _entry(
             "--figures FORMATS",
             "formats of the figure: some of png,svg,pdf, or none, which is faster (default: png; "
             "without matplotlib: none)",
             figure_formats,
-            {"default": ("png",) if is_installed("matplotlib") else ()},
+            default=("png",) if is_installed("matplotlib") else (),
         ),
-        (
+        _entry(
             "--no-figures",
             "short for --figures none",
-            None,
-            {"dest": "figures", "action": "store_const", "const": ()},
+            dest="figures",
+            action="store_const",
+            const=(),
         ),
-    )
-}
+    ]
+)
