@@ -12,7 +12,6 @@ from inverse_dynamics.base.files import (
     check_output_directory,
     check_output_file,
     files_written_whole,
-    is_plain_name,
     write_text_whole,
     written_whole,
 )
@@ -297,14 +296,6 @@ def test_names_that_no_text_can_hold_are_refused(tmp_path, name):
             OutputError, match="expected a name in UTF-8 without control characters"
         ):
             check(tmp_path / os.fsdecode(name))
-
-
-@pytest.mark.parametrize(
-    "text", ["", ".", "..", "a/b", "../x", "/etc/x", "a\nb", "\x1b[2J", "a\0b"]
-)
-def test_a_path_is_not_a_plain_name(text):
-    assert not is_plain_name(text)
-    assert is_plain_name(f"ü {len(text)}.b")
 
 
 # ---- runs at the same time, and killed ones --------------------------------------------------------------------------

@@ -217,11 +217,6 @@ def outcome() -> str:
     return text + (f"; as it was before: {', '.join(kept)}" if kept else "")
 
 
-def is_plain_name(text: str) -> bool:
-    """Whether a text can be the name of a file, and nothing but that: no path, no control character."""
-    return text not in ("", ".", "..") and "/" not in text and text.isprintable()
-
-
 def move_up(directory: Path) -> None:
     """Move the files of a directory into the one above, which may share their names, and remove it."""
     directory = directory.rename(directory.with_name(".moved"))
@@ -258,29 +253,27 @@ def _output(target: Path, remedy: str) -> Iterator[None]:
 @contextmanager
 def _work(target: Path, remedy: str, *, link: bool = True) -> Iterator[tuple[WorkFolder, Path]]:
     """A work folder, removed at the end, and the place that is meant."""
-    work: WorkFolder | None = None
-    _note([target])
-    try:
+    works: list[WorkFolder] = []
+    with _output(target, remedy):
         place = _file_meant(target) if link else target.absolute()
-        with signals_deferred():
-            place.parent.mkdir(parents=True, exist_ok=True)
-            work = WorkFolder(place)
-            _at_work.append(work)
-        yield work, place
-    except OSError as error:
-        raise _cannot_write(target, error, remedy) from error
-    except UserError as error:
-        text = " ".join(map(str, error.args))  # str() of it may be shortened
-        if work is None or str(work.path) not in text:
-            raise
-        # Texts name what is being made; its reader knows only where it was to be.
-        made = str(work.new if not link else work.new / place.name)
-        raise type(error)(text.replace(made, str(target))) from error
-    finally:
-        if work is not None:
-            _at_work.remove(work)
+        try:
             with signals_deferred():
-                work.remove()
+                place.parent.mkdir(parents=True, exist_ok=True)
+                works.append(WorkFolder(place))
+                _at_work.extend(works)
+            yield works[0], place
+        except UserError as error:
+            # Texts name what is being made; its reader knows only where it was to be.
+            made = [str(work.new / place.name if link else work.new) for work in works]
+            text = " ".join(map(str, error.args))  # str() of it may be shortened
+            if not made or made[0] not in text:
+                raise
+            raise type(error)(text.replace(made[0], str(target))) from error
+        finally:
+            with signals_deferred():
+                for work in works:
+                    _at_work.remove(work)
+                    work.remove()
 
 
 def _check_existing_directory(target: Path, *, overwrite: bool, contents: Contents) -> None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Public recordings of real robots: which there are, fetching and checking them.
 
-fetch_recordings(default_data_directory())
+fetch_recordings(data_directory())
 
 DIR/bags/NAME/   one directory each, as rosbag2 has it, with the license; DIR is what IDS_DATA_DIR names
 
@@ -88,17 +88,13 @@ class PublicRecordings:
         )
 
 
-def default_data_directory() -> Path:
-    """Where `ids data` puts recordings and `ids demo` looks for them, if IDS_DATA_DIR isn't set."""
-    data = os.environ.get("XDG_DATA_HOME", "")
-    # The XDG specification has relative paths ignored.
-    base = Path(data) if Path(data).is_absolute() else Path.home() / ".local" / "share"
-    return base / "inverse_dynamics"
-
-
 def data_directory() -> Path:
-    """IDS_DATA_DIR, or else default_data_directory()."""
-    return Path(os.environ.get("IDS_DATA_DIR") or default_data_directory())
+    """Where `ids data` puts recordings and `ids demo` looks for them: IDS_DATA_DIR, else that of XDG."""
+    if named := os.environ.get("IDS_DATA_DIR"):
+        return Path(named)
+    data = Path(os.environ.get("XDG_DATA_HOME", ""))
+    # The XDG specification has relative paths ignored.
+    return (data if data.is_absolute() else Path.home() / ".local" / "share") / "inverse_dynamics"
 
 
 def public_recordings() -> PublicRecordings:

@@ -12,7 +12,6 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.base.files import is_plain_name
 from inverse_dynamics.base.wording import listed, shown
 from inverse_dynamics.errors import BagError
 
@@ -38,7 +37,7 @@ def named_recordings(paths: Iterable[Path | str], *, taken: Sequence[str] = ()) 
     _check_once(found)
     names = _names(found, taken)
     for name, path in zip(names, found, strict=True):
-        if not is_plain_name(name):
+        if not name or not name.isprintable():
             raise BagError(
                 f"{path}: expected a name in UTF-8 without control characters, after which its result "
                 "can be called; rename it"

@@ -22,11 +22,6 @@ examples:
       --false-alarms 0.1
       thresholds from another recording; one false alarm in ten hours
 
-  ids contact recording --robot my_robot.yaml --quiet 0,60 \\
-      --friction-band 1,1,1,0.3,0.3,0.3
-      error of the friction model per joint [N m] in addition to that of the quiet part, for a quiet part
-      in which the robot hardly moves
-
   ids contact recording --robot arm.yaml
       thresholds from the errors that `ids identify` has found on held-out data
 

@@ -27,30 +27,14 @@ if TYPE_CHECKING:
 SUMMARY = "compute the torques of a recorded motion and compare them with the measured ones"
 EPILOG = """\
 examples:
-  ids evaluate recording --robot ur10_real
+  ids evaluate recording --robot ur10_real --out result
       computed against measured torques, with the run configuration ur10_real
-
-  ids evaluate recording --robot my_robot.yaml --out result
-      a robot of your own, results into the directory result
 
   ids evaluate recording --urdf my_arm.urdf --tip flange
       no run configuration yet: the description alone, without friction
 
-  ids evaluate recording --robot ur10_real \\
-      --plugin kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL
-      another solver on the same robot
-
-  ids evaluate recording --robot panda_real --accelerations low-pass --cutoff 5
-      another filter; backward-difference uses none
-
-  ids evaluate recording --robot ur10_real --from 10 --to 20
-      ten seconds of the recording
-
-  ids evaluate recording --robot ur10_real --gravity 0,-9.81,0
-      mounted on a wall: the direction of gravity in the frame of the root link
-
-  ids evaluate recording --robot ur10_real --effort-is auto
-      find out whether efforts are torques, motor currents or torques without gravity
+  ids evaluate recording --robot ur10_real --gravity 0,-9.81,0 --effort-is auto
+      mounted on a wall; find out what the recorded efforts mean
 
   ids evaluate motion.csv --urdf my_arm.urdf
       a table with columns such as time, q0, dq0, tau0 or JOINT_position, JOINT_effort
@@ -60,12 +44,11 @@ examples:
 
   ids evaluate monday tuesday wednesday --robot ur10_real --out week
   ids evaluate recordings_of_a_week --robot ur10_real --jobs 4
-      many recordings at the same time: one table, one page, and a result for each (docs/many_recordings.md)
+      many recordings in parallel: one table, one page, and a result for each (docs/many_recordings.md)
 
 results, written whole or not at all:
   metrics.json            errors of each joint
-  torques.png             measured and computed torques and the error, over time; with --figures
-                          also torques.svg, torques.pdf
+  torques.png             measured and computed torques and the error, over time
   bag/                    recording with /torques (computed) and /torques_gt (measured)
   plotjuggler.xml         layout for PlotJuggler: `plotjuggler --layout plotjuggler.xml`
   series.npz              time, q, qd, qdd, effort (as recorded), measured, computed, for numpy.load()
@@ -77,10 +60,7 @@ results of several recordings:
   recordings.json         the recordings, and why some failed
   NAME/                   the files listed above, for each recording; with --parquet also series.parquet
 
-A recording that fails is named, and the others are finished; the exit status is then 3.
-
-A piece of a compressed recording may unpack to 256 MB, or to 50 times its size; the environment
-variable IDS_UNPACK_LIMIT_MB sets another limit.
+If a recording fails, the others are finished; the exit status is 3. docs/outputs.md: limits on what is read.
 """
 
 

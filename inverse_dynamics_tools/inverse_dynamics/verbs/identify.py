@@ -52,7 +52,7 @@ results, all of them or none:
   arm_model.yaml          the model: links, friction, rotor inertia, 95 % band of the torques, range of the data
   arm_model.json          what the model may be wrong by, for `ids payload` and `contact`
   arm.html                page: the robot in motion, measured and predicted torques, influence of data and prior
-  arm.json                all figures
+  arm.json                all numbers
 """
 
 _OF_RECORDINGS = ("effort_is", "topic", "start", "end")  # arguments of identify()

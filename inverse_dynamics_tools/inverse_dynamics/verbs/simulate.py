@@ -36,22 +36,15 @@ examples:
       the arm that `ids identify` found, with what its model leaves unexplained as noise, and torques
       that are 8 ms late: a test whether `ids identify` finds it again
 
-  ids simulate --robot ur10_simulated --out recording \\
+  ids simulate --robot ur10_simulated --out recording --trajectory other.yaml \\
       --payload 5,0,0,0.1 --mount ceiling
-      5 kg, 0.1 m in front of the tip; base mounted upside down
-
-  ids simulate --robot my_robot.yaml --out recording --optimise --seed 1
-      search for a new exciting trajectory first (about a minute), and store it in the recording
-
-  ids simulate --robot ur10_simulated --out recording --trajectory other.yaml
-      a motion of your own: waypoints or a Fourier series
+      a motion of your own, with 5 kg 0.1 m in front of the tip; base mounted upside down
 
 results, written whole or not at all:
   metadata.yaml, .db3 or .mcap   recording of sensor_msgs/JointState, as rosbag2 writes it
   simulation.yaml                all settings of the simulation
   trajectory.yaml                the desired motion
-  truth.npz                      per message, without the sensors' errors: time, q, qd, effort, and the simulator's qdd
-                                 and friction
+  truth.npz                      per message, without sensor errors: time, q, qd, effort, qdd, friction
 """
 
 
