@@ -243,7 +243,7 @@ def _run(given: list[str]) -> int:
 
 
 class _Stopped(BaseException):
-    """A signal that asks the program to end. Not an Exception: nobody may take it for a fault."""
+    """A signal that asks the program to end. Not an Exception, so that no handler of faults catches it."""
 
     def __init__(self, number: int) -> None:
         super().__init__(f"ended by {signal.Signals(number).name}")

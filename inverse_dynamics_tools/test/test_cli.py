@@ -14,7 +14,7 @@ from inverse_dynamics import Solver, cli, evaluate, read_evaluation
 from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.verbs.screen import _ProgressLines, progress_bar
-from inverse_dynamics.verbs.tables import figure
+from inverse_dynamics.verbs.tables import rounded
 
 RAW = ("--accelerations", "backward-difference")
 NO_FIGURE = ("--figures", "none")
@@ -36,7 +36,7 @@ def test_evaluate_prints_errors_and_writes_results(ids, bag, tmp_path):
     assert "cut-off" in out
     assert re.search(r"figure +result/torques.png\n", out)
     result = read_evaluation(tmp_path / "result")
-    assert re.search(rf"mean +N m .*{re.escape(figure(result.mean_rmse))}", out)
+    assert re.search(rf"mean +N m .*{re.escape(rounded(result.mean_rmse))}", out)
     remedy = "it has no metadata.yaml; a recording is in it: give result/bag\n"
     fails(ids("evaluate", "result", "--robot", "ur10_simulated"), remedy)
     metrics = json.loads((tmp_path / "result/metrics.json").read_text())

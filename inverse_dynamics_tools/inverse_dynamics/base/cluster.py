@@ -43,10 +43,7 @@ def on_cluster(
     paths: Sequence[object],
     done: Callable[[int, Any], None],
 ) -> None:
-    """As in_processes(), on workers that see the paths. Raises UserError.
-
-    An exception here, Ctrl-C too, stops calls where they call check_stopped(), and waits for that.
-    """
+    """As in_processes(), on workers that see the paths; an exception here stops calls at check_stopped()."""
     require(f"--scheduler {address}", "distributed")
     from distributed import Client, Event, as_completed
 

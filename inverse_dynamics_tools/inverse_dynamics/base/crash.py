@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-_PACKAGES = ("numpy", "matplotlib", "mujoco", "pyarrow", "pyyaml", "rich", "rosbags")
+_PACKAGES = ("numpy", "matplotlib", "mujoco", "pyarrow", "rich", "rosbags")
 
 
 def crash_report(error: Exception, arguments: Sequence[str]) -> str:

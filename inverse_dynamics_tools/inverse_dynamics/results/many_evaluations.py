@@ -231,7 +231,7 @@ def _sorted_out(
         what = "none of the recordings could be evaluated"
         if len({failure.error for failure in failures}) == 1:  # of the robot, say
             raise UserError(f"{what}: {failures[0].error}")
-        raise UserError(failures_told(what, failures))
+        raise UserError(failures_text(what, failures))
     return ManyEvaluations(out, tuple(summaries), tuple(failures))
 
 
@@ -245,7 +245,7 @@ def _recordings(result: ManyEvaluations) -> list[dict[str, Any]]:
     return [*done, *map(vars, result.failures)]
 
 
-def failures_told(what: str, failures: Sequence[FailedRecording]) -> str:
+def failures_text(what: str, failures: Sequence[FailedRecording]) -> str:
     """Failures as a text of a few lines."""
     lines = [f"  {failure.name}: {failure.error}" for failure in failures[:_MOST_TOLD]]
     if len(failures) > _MOST_TOLD:

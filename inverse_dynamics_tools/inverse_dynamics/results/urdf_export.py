@@ -175,8 +175,8 @@ def _damping_and_friction(found: Identification) -> list[tuple[float, float]]:
     gravity = engine.regressor(q, still, still) @ found.model.parameters.ravel()
     load = np.abs(gravity).mean(axis=0)
     return [
-        (float(figures["fv"]), float(figures["fc"] + figures.get("fl", 0.0) * load[j]))
-        for j, figures in enumerate(found.model.friction)
+        (float(law["fv"]), float(law["fc"] + law.get("fl", 0.0) * load[j]))
+        for j, law in enumerate(found.model.friction)
     ]
 
 
@@ -189,11 +189,11 @@ def _comment(found: Identification, lumped: Mapping[str, Sequence[str]]) -> str:
             ("the shift of the step", bool(np.any(found.shifts))),
             (
                 "that friction grows with load (the step is that of the mean load)",
-                any(figures.get("fl") for figures in found.model.friction),
+                any(law.get("fl") for law in found.model.friction),
             ),
             (
                 "that friction falls with velocity (Stribeck)",
-                any(figures.get("fs") for figures in found.model.friction),
+                any(law.get("fs") for law in found.model.friction),
             ),
         )
         if there

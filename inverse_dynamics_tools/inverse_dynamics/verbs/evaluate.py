@@ -156,7 +156,7 @@ def _run_one(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any
 
 def _run_many(arguments: argparse.Namespace, robot: Robot, options: dict[str, Any]) -> None:
     from inverse_dynamics.errors import PartialError
-    from inverse_dynamics.results.many_evaluations import evaluate_many, failures_told, summary
+    from inverse_dynamics.results.many_evaluations import evaluate_many, failures_text, summary
     from inverse_dynamics.verbs.screen import progress_bar, show, title
     from inverse_dynamics.verbs.tables import recordings_table
 
@@ -183,4 +183,4 @@ def _run_many(arguments: argparse.Namespace, robot: Robot, options: dict[str, An
     if result.failures:
         failed = len(result.failures)
         what = f"{failed} of {failed + len(result.summaries)} recordings failed"
-        raise PartialError(failures_told(what, result.failures))
+        raise PartialError(failures_text(what, result.failures))

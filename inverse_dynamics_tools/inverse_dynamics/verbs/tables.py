@@ -63,22 +63,22 @@ def error_table(evaluation: Evaluation) -> Table:
         table.add_row(
             error.joint,
             error.unit,
-            figure(error.mae),
-            figure(error.rmse),
+            rounded(error.mae),
+            rounded(error.rmse),
             _percent(error.nrmse),
             f"{error.bias:+.3g}" if abs(error.bias) < 0.1 else f"{error.bias:+.3f}",
             _number(error.r2),
-            *(figure(of_kept.rmse) for _ in last),
+            *(rounded(of_kept.rmse) for _ in last),
         )
     if _have_one_unit(evaluation.units):
         mae, rmse = fmean(e.mae for e in errors), evaluation.mean_rmse
-        means = [figure(mae), figure(rmse), "", "", ""]
+        means = [rounded(mae), rounded(rmse), "", "", ""]
         table.add_section()
         table.add_row(
             "mean",
             evaluation.units[0],
             *means,
-            *(figure(fmean(e.rmse for e in kept)) for _ in last),
+            *(rounded(fmean(e.rmse for e in kept)) for _ in last),
         )
     return table
 
@@ -90,7 +90,7 @@ def identification_table(found: Identification, rows: Sequence[HeldOutRow], titl
     for row in rows:
         if row.joint == "mean":
             table.add_section()
-        values = ("-" if math.isnan(value) else figure(value) for value in row.rmse)
+        values = ("-" if math.isnan(value) else rounded(value) for value in row.rmse)
         table.add_row(row.joint, row.unit, *values, f"{100 * row.coverage:.1f} %")
     return table
 
@@ -101,7 +101,7 @@ def threshold_table(contacts: Contacts) -> Table:
     table = _table("noise", "threshold", "peaks")
     for j, (joint, unit) in enumerate(zip(evaluation.joint_names, evaluation.units, strict=True)):
         noise, threshold = float(thresholds.noise[j]), float(thresholds.torques[j])
-        table.add_row(joint, unit, figure(noise), figure(threshold), f"{thresholds.peaks[j]:.0f}")
+        table.add_row(joint, unit, rounded(noise), rounded(threshold), f"{thresholds.peaks[j]:.0f}")
     rate = thresholds.false_alarms_per_hour
     table.caption = f"thresholds for {rate:g} false alarm{'' if rate == 1 else 's'} per hour"
     return table
@@ -161,7 +161,7 @@ def residual_table(payload: Payload) -> Table:
     """Measured minus computed torques without and with the load, one joint per row."""
     table = _table("RMSE without load", "RMSE with load", "offset")
     for j, name in enumerate(payload.joint_names):
-        before, after = figure(payload.rmse_before[j]), figure(payload.rmse_after[j])
+        before, after = rounded(payload.rmse_before[j]), rounded(payload.rmse_after[j])
         offset = f"{payload.estimate.offset[j]:+.3f}"
         table.add_row(name, payload.evaluation.units[j], before, after, offset)
     return table
@@ -172,7 +172,7 @@ def mean_table(evaluations: Mapping[str, Evaluation]) -> Table:
     table = _table("samples", "mean RMSE", "mean NRMSE", text=("robot", "solver"))
     for title, evaluation in evaluations.items():
         units = set(evaluation.units)
-        mean = f"{figure(evaluation.mean_rmse)} {units.pop()}" if len(units) == 1 else "-"
+        mean = f"{rounded(evaluation.mean_rmse)} {units.pop()}" if len(units) == 1 else "-"
         shares = [e.nrmse for e in evaluation.errors if not math.isnan(e.nrmse)]
         share = _percent(fmean(shares)) if shares else "-"
         solver = solver_name(evaluation.robot.plugin)
@@ -190,8 +190,8 @@ def recordings_table(summaries: Sequence[EvaluationSummary]) -> Table:
         columns.append(f"mean\n{first[0].unit}")
     table = _table(*columns, text=("recording",), title="RMSE")
     for summary in summaries:
-        mean = [figure(summary.mean_rmse)] if one_unit else []
-        table.add_row(summary.name, *(figure(error.rmse) for error in summary.errors), *mean)
+        mean = [rounded(summary.mean_rmse)] if one_unit else []
+        table.add_row(summary.name, *(rounded(error.rmse) for error in summary.errors), *mean)
     return table
 
 
@@ -200,10 +200,10 @@ def comparison_table(comparison: Comparison) -> Table:
     table = _table(*comparison.labels, title="RMSE")
     units = comparison.evaluations[0].units
     for joint, unit, row in zip(comparison.joint_names, units, comparison.rmse.T, strict=True):
-        table.add_row(joint, unit, *map(figure, row))
+        table.add_row(joint, unit, *map(rounded, row))
     if _have_one_unit(units):
         table.add_section()
-        table.add_row("mean", units[0], *map(figure, comparison.rmse.mean(axis=1)))
+        table.add_row("mean", units[0], *map(rounded, comparison.rmse.mean(axis=1)))
     return table
 
 
@@ -243,7 +243,7 @@ def excitation_table(result: ExcitationResult) -> Table:
             joint,
             *(f"{position:.2f}" for position in result.travel[j]),
             *(f"{100 * share:.0f} %" for share in result.greatest[:, j]),
-            *(figure(float(values[j])) for values in result.deviation.values()),
+            *(rounded(float(values[j])) for values in result.deviation.values()),
             unit,
         )
     table.caption = (
@@ -260,7 +260,7 @@ def _moment(time: float, trajectory: int | None, several: bool) -> str:
     return f"{time:.3f} s" + (f" of trajectory {trajectory}" if several else "")
 
 
-def figure(value: float) -> str:
+def rounded(value: float) -> str:
     """Three decimals, or three significant digits where that says nothing."""
     return f"{value:.3f}" if abs(value) >= 0.1 or value == 0 else f"{value:.3g}"
 
