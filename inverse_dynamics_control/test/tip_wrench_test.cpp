@@ -42,7 +42,11 @@ class GivenJacobian : public InverseDynamicsSolver, public Kinematics {
   bool inertiaIsPhysicalImpl() const override { return true; }
 
   const InverseDynamicsSolver& torqueSolver() const override { return *this; }
-  void computeTipPose(const ConstVectorRef&, chain_dynamics::Transform<double>&) const override {}
+  void computeTipPose(const ConstVectorRef&,
+                      chain_dynamics::Transform<double>& pose) const override {
+    pose.R << 0, -1, 0, 1, 0, 0, 0, 0, 1;  // a quarter turn about z
+    pose.p.setZero();
+  }
   void computeTipJacobian(const ConstVectorRef&, MatrixRef result) const override {
     if (throws) throw std::runtime_error("a plugin's fault");
     result = J;
@@ -194,6 +198,46 @@ TEST(TipWrench, BadOptionsAreRefused) {
             "correct this number");
   EXPECT_THROW(TipWrench(std::make_shared<GivenJacobian>(), options(6, 1.0)),
                inverse_dynamics_solver::UninitializedException);
+}
+
+TEST(ContactSensing, GivesTorquesWrenchAndContact) {
+  const auto arm = GivenJacobian::make(Eigen::MatrixXd::Identity(6, 6));
+  ContactOptions wanted;
+  wanted.choice = Estimator::kMomentum;
+  wanted.estimator.gain.setConstant(6, 50.0);
+  wanted.thresholds.setConstant(6, 0.5);
+  wanted.wrench = options(6, 1e-6);
+  ContactSensing sensing(arm, wanted);
+  const JointState state(6);
+  const Eigen::VectorXd effort = vec({1, 2, 3, 0.1, 0.2, 0.3});
+  const auto update = [&] { return sensing.update(state, effort, 1e-3); };
+  for (int k = 0; k < 1000; ++k) update();
+  ASSERT_EQ(update(), EstimateStatus::kOk);
+  EXPECT_LT((sensing.torques() - effort).norm(), 1e-4);
+  EXPECT_LT((sensing.wrench().force - Eigen::Vector3d(1, 2, 3)).norm(), 1e-4);
+  EXPECT_LT((sensing.wrenchInTip().force - Eigen::Vector3d(2, -1, 3)).norm(), 1e-4);
+  EXPECT_LT((sensing.wrenchInTip().torque - Eigen::Vector3d(0.2, -0.1, 0.3)).norm(), 1e-4);
+  EXPECT_TRUE(sensing.detector()->contact());
+
+  // Without an estimate: zeros, and the contact neither begins nor ends.
+  arm->throws = true;
+  EXPECT_EQ(update(), EstimateStatus::kSolverFailed);
+  EXPECT_EQ(sensing.torques(), Eigen::VectorXd::Zero(6));
+  EXPECT_EQ(sensing.wrenchInTip().force, Eigen::Vector3d::Zero());
+  EXPECT_TRUE(sensing.detector()->contact());
+  arm->throws = false;
+  EXPECT_EQ(update(), EstimateStatus::kStarting);
+  sensing.update(state, effort, -1.0);
+  EXPECT_FALSE(sensing.detector()->contact());
+}
+
+TEST(ContactSensing, LeavesOutWhatIsNotAskedFor) {
+  ContactOptions wanted;
+  wanted.choice = Estimator::kMomentum;
+  wanted.estimator.gain.setConstant(6, 50.0);
+  const ContactSensing sensing(GivenJacobian::make(Eigen::MatrixXd::Identity(6, 6)), wanted);
+  EXPECT_EQ(sensing.detector(), nullptr);
+  EXPECT_EQ(sensing.tip(), nullptr);
 }
 
 }  // namespace inverse_dynamics_control::tip_wrench_test

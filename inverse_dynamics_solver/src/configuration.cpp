@@ -33,10 +33,9 @@ void readGravity(Configuration& configuration) {
     valid = valid && std::abs(component) <= chain_dynamics::kGreatestGravity;  // false for a NaN
   }
   if (!valid) {
-    throw InvalidParameterValueException(
-        errorText("parameter '" + configuration.fullName("gravity") + "'", "wrong value",
-                  "3 finite numbers up to 1e6 [m/s^2] in the frame of the root link",
-                  describe(*gravity), "for a robot that stands upright: [0.0, 0.0, -9.81]"));
+    configuration.refuse("gravity",
+                         "3 finite numbers up to 1e6 [m/s^2] in the frame of the root link",
+                         describe(*gravity), "for a robot that stands upright: [0.0, 0.0, -9.81]");
   }
   configuration.gravity = Eigen::Vector3d((*gravity)[0], (*gravity)[1], (*gravity)[2]);
   configuration.gravity_given = true;
@@ -45,10 +44,9 @@ void readGravity(Configuration& configuration) {
 void readAttached(Configuration& configuration) {
   const std::string attached = configuration.get<std::string>("attached").value_or("lump");
   if (attached != "lump" && attached != "ignore") {
-    throw InvalidParameterValueException(errorText(
-        "parameter '" + configuration.fullName("attached") + "'", "wrong value",
-        R"("lump" or "ignore")", "\"" + attached + "\"",
-        "lump: bodies attached beside or beyond the chain are included; ignore: they aren't"));
+    configuration.refuse(
+        "attached", R"("lump" or "ignore")", "\"" + attached + "\"",
+        "lump: bodies attached beside or beyond the chain are included; ignore: they aren't");
   }
   configuration.lump_attached = attached == "lump";
 }
@@ -57,10 +55,8 @@ void readBatchThreads(Configuration& configuration) {
   constexpr std::int64_t kMost = 4096;
   const std::int64_t threads = configuration.get<std::int64_t>("batch_threads").value_or(1);
   if (threads < 1 || threads > kMost) {
-    throw InvalidParameterValueException(
-        errorText("parameter '" + configuration.fullName("batch_threads") + "'", "wrong value",
-                  "1 to " + std::to_string(kMost), std::to_string(threads),
-                  "give how many threads may share a batch; 1: the library starts none"));
+    configuration.refuse("batch_threads", "1 to " + std::to_string(kMost), std::to_string(threads),
+                         "give how many threads may share a batch; 1: the library starts none");
   }
   configuration.batch_threads = threads;
 }
@@ -93,10 +89,9 @@ class RotorInertia {
     const std::string name = kRotorInertia + "." + joint.name;
     if (const auto given = configuration_.get<double>(name)) {
       if (*given >= 0.0 && std::isfinite(*given)) return *given;
-      throw InvalidParameterValueException(
-          errorText("parameter '" + configuration_.fullName(name) + "'", "wrong value",
-                    "a finite number >= 0 [kg m^2; prismatic kg]", std::to_string(*given),
-                    "give the inertia of the rotor times the square of the gear ratio"));
+      configuration_.refuse(name, "a finite number >= 0 [kg m^2; prismatic kg]",
+                            std::to_string(*given),
+                            "give the inertia of the rotor times the square of the gear ratio");
     }
     if (joint.rotor_inertia > 0.0) stated_.push_back(joint.name);
     return use_stated_ ? joint.rotor_inertia : 0.0;
@@ -124,6 +119,12 @@ class RotorInertia {
 };
 
 }  // namespace
+
+void Configuration::refuse(const std::string& name, const std::string& expected,
+                           const std::string& got, const std::string& remedy) const {
+  throw InvalidParameterValueException(
+      errorText("parameter '" + fullName(name) + "'", "wrong value", expected, got, remedy));
+}
 
 Configuration readConfiguration(const Parameters& parameters, const std::string& param_namespace,
                                 const std::string& robot_description) {

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "chain_dynamics/text.hpp"
-#include "inverse_dynamics_solver/exceptions.hpp"
 #include "inverse_dynamics_solver/payload.hpp"
 
 namespace inverse_dynamics_solver {
@@ -17,20 +16,13 @@ using Numbers = std::vector<double>;
 
 const std::string kPayload = "payload";
 
-[[noreturn]] void refuse(const Configuration& configuration, const std::string& name,
-                         const std::string& expected, const std::string& got,
-                         const std::string& remedy) {
-  throw InvalidParameterValueException(errorText("parameter '" + configuration.fullName(name) + "'",
-                                                 "wrong value", expected, got, remedy));
-}
-
 /// So many numbers, or none.
 std::optional<Numbers> read(const Configuration& configuration, const std::string& name,
                             std::size_t count, const char* meaning) {
   auto numbers = configuration.get<Numbers>(name);
   if (numbers && numbers->size() != count) {
-    refuse(configuration, name, std::to_string(count) + " numbers: " + meaning,
-           std::to_string(numbers->size()), "");
+    configuration.refuse(name, std::to_string(count) + " numbers: " + meaning,
+                         std::to_string(numbers->size()), "");
   }
   return numbers;
 }
@@ -72,11 +64,10 @@ std::optional<RigidBody> readBody(const Configuration& configuration, const std:
   body.frame = {rotationOf(angles), vectorOf(xyz)};
   if (const auto defect = defectOf(body)) {
     const bool turned = defect->field == "frame" && !angles.allFinite();
-    refuse(configuration,
-           prefix + (defect->field != "frame" ? defect->field
-                     : turned                 ? "frame.rpy"
-                                              : "frame.xyz"),
-           defect->expected, defect->got, defect->remedy);
+    configuration.refuse(prefix + (defect->field != "frame" ? defect->field
+                                   : turned                 ? "frame.rpy"
+                                                            : "frame.xyz"),
+                         defect->expected, defect->got, defect->remedy);
   }
   return body;
 }
@@ -105,8 +96,8 @@ Payloads readPayloads(const Configuration& configuration) {
     const auto body = readBody(configuration, prefix);
     if (!body) continue;
     if (name.empty() || !chain_dynamics::isPrintable(name) || bodies.count(name) > 0) {
-      refuse(configuration, prefix + "mass", "a name of its own for each body", "'" + name + "'",
-             "the body without a name is called '" + kPayload + "'");
+      configuration.refuse(prefix + "mass", "a name of its own for each body", "'" + name + "'",
+                           "the body without a name is called '" + kPayload + "'");
     }
     bodies[name] = *body;
   }

@@ -49,8 +49,7 @@ auto PooledSolver::robotOf(const chain_dynamics::Chain& chain, std::size_t max_t
     throw Exception(errorText(
         "chain " + chain.name(), "no memory left", "room for a workspace for each of max_threads",
         std::to_string(chain.jointCount()) + " joints, max_threads " + std::to_string(max_threads),
-        "set max_threads to what is used at the same time, or take the solver "
-        "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody, which has none"));
+        "set max_threads to what is used at the same time"));
   }
 }
 

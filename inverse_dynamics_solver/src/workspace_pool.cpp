@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <string>
 
-#include "inverse_dynamics_solver/exceptions.hpp"
-
 namespace inverse_dynamics_solver {
 inline namespace v2 {
 
@@ -16,10 +14,8 @@ std::size_t readMaxThreads(const Configuration& configuration) {
   const std::int64_t standard = std::max<std::int64_t>(16, std::thread::hardware_concurrency());
   const auto threads = configuration.get<std::int64_t>("max_threads").value_or(standard);
   if (threads < 1 || threads > kMost) {
-    throw InvalidParameterValueException(
-        errorText("parameter '" + configuration.fullName("max_threads") + "'", "wrong value",
-                  "1 to " + std::to_string(kMost), std::to_string(threads),
-                  "give the number of threads that compute at the same time"));
+    configuration.refuse("max_threads", "1 to " + std::to_string(kMost), std::to_string(threads),
+                         "give the number of threads that compute at the same time");
   }
   return static_cast<std::size_t>(threads);
 }

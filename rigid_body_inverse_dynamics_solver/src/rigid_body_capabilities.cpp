@@ -6,11 +6,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "chain_dynamics/coriolis_matrix.hpp"
-#include "chain_dynamics/forward_dynamics.hpp"
-#include "chain_dynamics/gravity_vector.hpp"
-#include "chain_dynamics/regressor.hpp"
-#include "chain_dynamics/tip_kinematics.hpp"
 #include "rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp"
 
 namespace rigid_body_inverse_dynamics_solver {
@@ -19,9 +14,6 @@ namespace {
 
 using chain_dynamics::FastModel;
 using chain_dynamics::Transform;
-
-/// 6 x n; on the stack for chains that FastModel takes.
-using StackJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, FastModel::kMaxJoints>;
 
 /// The six numbers of a wrench in the axes of the root frame.
 Eigen::Matrix<double, 6, 1> inRootAxes(const Eigen::Matrix3d& R, const ConstVectorRef& wrench) {
@@ -37,27 +29,18 @@ Eigen::Matrix<double, 6, 1> inRootAxes(const Eigen::Matrix3d& R, const ConstVect
 void InverseDynamicsSolverRigidBody::computeTipPose(const ConstVectorRef& q,
                                                     Transform<double>& pose) const {
   // (Payload and gravity change nothing about it: any robot will do.)
-  const auto& fast = initialRobot().fast;
-  if (!fast) {
-    pose = chain_dynamics::tipPose(model().chain, q);
-  } else {
-    fast->tipPose(q.data(), pose.R.data(), pose.p.data());
-  }
+  initialRobot().fast.tipPose(q.data(), pose.R.data(), pose.p.data());
 }
 
 void InverseDynamicsSolverRigidBody::computeTipJacobian(const ConstVectorRef& q,
                                                         MatrixRef J) const {
-  const auto& fast = initialRobot().fast;
-  if (!fast) return chain_dynamics::tipJacobian(model().chain, q, J);
-  fast->tipJacobian(q.data(), J.data(), J.outerStride());
+  initialRobot().fast.tipJacobian(q.data(), J.data(), J.outerStride());
 }
 
 void InverseDynamicsSolverRigidBody::computeTipJacobianDerivative(const ConstVectorRef& q,
                                                                   const ConstVectorRef& qd,
                                                                   MatrixRef dJ) const {
-  const auto& fast = initialRobot().fast;
-  if (!fast) return chain_dynamics::tipJacobianDerivative(model().chain, q, qd, dJ);
-  fast->tipJacobianDerivative(q.data(), qd.data(), dJ.data(), dJ.outerStride());
+  initialRobot().fast.tipJacobianDerivative(q.data(), qd.data(), dJ.data(), dJ.outerStride());
 }
 
 void InverseDynamicsSolverRigidBody::computeExternalTorques(const ConstVectorRef& q,
@@ -70,15 +53,9 @@ void InverseDynamicsSolverRigidBody::computeExternalTorques(const ConstVectorRef
     computeTipPose(q, pose);
     w = inRootAxes(pose.R, wrench);
   }
-  const auto transposed_times = [&](auto J) {
-    computeTipJacobian(q, J);
-    tau.noalias() = J.transpose().lazyProduct(w);
-  };
-  if (q.size() <= FastModel::kMaxJoints) {
-    transposed_times(StackJacobian(6, q.size()));
-  } else {
-    transposed_times(Eigen::MatrixXd(6, q.size()));
-  }
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, FastModel::kMaxJoints> J(6, q.size());
+  computeTipJacobian(q, J);
+  tau.noalias() = J.transpose().lazyProduct(w);
 }
 
 // ---------------------------------------------------------------- dynamics
@@ -86,20 +63,16 @@ void InverseDynamicsSolverRigidBody::computeExternalTorques(const ConstVectorRef
 void InverseDynamicsSolverRigidBody::computeCoriolisMatrix(const ConstVectorRef& q,
                                                            const ConstVectorRef& qd,
                                                            MatrixRef C) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return chain_dynamics::coriolisMatrix(robot->model, q, qd, C);
-  robot->fast->coriolisMatrix(q.data(), qd.data(), C.data(), C.outerStride());
+  currentRobot()->fast.coriolisMatrix(q.data(), qd.data(), C.data(), C.outerStride());
 }
 
 double InverseDynamicsSolverRigidBody::computeKineticEnergy(const ConstVectorRef& q,
                                                             const ConstVectorRef& qd) const {
-  const auto robot = currentRobot();
-  return chain_dynamics::kineticEnergy(robot->model, q, qd);
+  return chain_dynamics::kineticEnergy(currentRobot()->model, q, qd);
 }
 
 double InverseDynamicsSolverRigidBody::computePotentialEnergy(const ConstVectorRef& q) const {
-  const auto robot = currentRobot();
-  return chain_dynamics::potentialEnergy(robot->model, q);
+  return chain_dynamics::potentialEnergy(currentRobot()->model, q);
 }
 
 void InverseDynamicsSolverRigidBody::computeTorqueDerivatives(const ConstVectorRef& q,
@@ -110,9 +83,9 @@ void InverseDynamicsSolverRigidBody::computeTorqueDerivatives(const ConstVectorR
   const auto robot = currentRobot();
   const Eigen::Index step = dtau_dq.outerStride();
   const bool same_steps = dtau_dqd.outerStride() == step && dtau_dqdd.outerStride() == step;
-  if (robot->fast && same_steps) {
-    robot->fast->torqueDerivatives(q.data(), qd.data(), qdd.data(), dtau_dq.data(), dtau_dqd.data(),
-                                   dtau_dqdd.data(), step);
+  if (same_steps) {
+    robot->fast.torqueDerivatives(q.data(), qd.data(), qdd.data(), dtau_dq.data(), dtau_dqd.data(),
+                                  dtau_dqdd.data(), step);
     return;
   }
   chain_dynamics::torqueDerivatives(robot->model, q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
@@ -123,33 +96,14 @@ void InverseDynamicsSolverRigidBody::computeRegressor(const ConstVectorRef& q,
                                                       const ConstVectorRef& qd,
                                                       const ConstVectorRef& qdd,
                                                       MatrixRef Y) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) {
-    return chain_dynamics::regressor(robot->model.chain, q, qd, qdd, Y);
-  }
-  robot->fast->regressor(q.data(), qd.data(), qdd.data(), Y.data(), Y.outerStride());
+  currentRobot()->fast.regressor(q.data(), qd.data(), qdd.data(), Y.data(), Y.outerStride());
 }
 
 void InverseDynamicsSolverRigidBody::computeAccelerations(const ConstVectorRef& q,
                                                           const ConstVectorRef& qd,
                                                           const ConstVectorRef& tau,
                                                           VectorRef qdd) const {
-  const auto robot = currentRobot();
-  if (robot->fast) {
-    return robot->fast->forwardDynamics(q.data(), qd.data(), tau.data(), qdd.data());
-  }
-  // What the chain's own bodies are accelerated by.
-  const chain_dynamics::Model& own = robot->model;
-  Eigen::VectorXd rest = tau, term(q.size());
-  chain_dynamics::frictionVector(own, q, qd, term);
-  rest -= term;
-  if (!own.gravity_parameters.empty()) {
-    chain_dynamics::gravityVector(own, q, term);
-    rest -= term;
-    chain_dynamics::gravityVector(own.chain, q, term);
-    rest += term;
-  }
-  chain_dynamics::forwardDynamics(own.chain, q, qd, rest, qdd);
+  currentRobot()->fast.forwardDynamics(q.data(), qd.data(), tau.data(), qdd.data());
 }
 
 // ---------------------------------------------------------------- many states
@@ -157,23 +111,17 @@ void InverseDynamicsSolverRigidBody::computeAccelerations(const ConstVectorRef& 
 void InverseDynamicsSolverRigidBody::computeTipPoseBatch(const ConstStates& q,
                                                          const StridedMatrices& R,
                                                          const States& p) const {
-  const auto& fast = initialRobot().fast;
-  if (!fast) return Kinematics::computeTipPoseBatch(q, R, p);
-  fast->tipPoseBatch(q, R, p);
+  initialRobot().fast.tipPoseBatch(q, R, p);
 }
 
 void InverseDynamicsSolverRigidBody::computeTipJacobianBatch(const ConstStates& q,
                                                              const StridedMatrices& J) const {
-  const auto& fast = initialRobot().fast;
-  if (!fast) return Kinematics::computeTipJacobianBatch(q, J);
-  fast->tipJacobianBatch(q, J);
+  initialRobot().fast.tipJacobianBatch(q, J);
 }
 
 void InverseDynamicsSolverRigidBody::computeTipJacobianDerivativeBatch(
     const ConstStates& q, const ConstStates& qd, const StridedMatrices& dJ) const {
-  const auto& fast = initialRobot().fast;
-  if (!fast) return Kinematics::computeTipJacobianDerivativeBatch(q, qd, dJ);
-  fast->tipJacobianDerivativeBatch(q, qd, dJ);
+  initialRobot().fast.tipJacobianDerivativeBatch(q, qd, dJ);
 }
 
 void InverseDynamicsSolverRigidBody::computeExternalTorquesBatch(const ConstStates& q,
@@ -181,17 +129,14 @@ void InverseDynamicsSolverRigidBody::computeExternalTorquesBatch(const ConstStat
                                                                  const ConstStates& wrenches,
                                                                  const States& tau) const {
   const auto& fast = initialRobot().fast;
-  if (!fast) {
-    return ExternalWrench::computeExternalTorquesBatch(q, frame, wrenches, tau);
-  }
   constexpr Eigen::Index kBlock = 8;  // states: their Jacobians take 24 kB at most
   const Eigen::Index n = q.joints;
   double J[kBlock * 6 * FastModel::kMaxJoints], R[kBlock * 9], p[kBlock * 3];
   for (Eigen::Index first = 0; first < q.count; first += kBlock) {
     const Eigen::Index size = std::min(kBlock, q.count - first);
-    fast->tipJacobianBatch(q.middle(first, size), {J, 6, n, size, 1, 6, 6 * n});
+    fast.tipJacobianBatch(q.middle(first, size), {J, 6, n, size, 1, 6, 6 * n});
     if (frame == WrenchFrame::kTip) {
-      fast->tipPoseBatch(q.middle(first, size), {R, 3, size, 1, 3, 9}, {p, 3, size, 1, 3});
+      fast.tipPoseBatch(q.middle(first, size), {R, 3, size, 1, 3, 9}, {p, 3, size, 1, 3});
     }
     for (Eigen::Index k = 0; k < size; ++k) {
       Eigen::Matrix<double, 6, 1> w;
@@ -211,21 +156,14 @@ void InverseDynamicsSolverRigidBody::computeExternalTorquesBatch(const ConstStat
 void InverseDynamicsSolverRigidBody::computeCoriolisMatrixBatch(const ConstStates& q,
                                                                 const ConstStates& qd,
                                                                 const StridedMatrices& C) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return CoriolisMatrix::computeCoriolisMatrixBatch(q, qd, C);
-  robot->fast->coriolisMatrixBatch(q, qd, C);
+  currentRobot()->fast.coriolisMatrixBatch(q, qd, C);
 }
 
 void InverseDynamicsSolverRigidBody::computeTorqueDerivativesBatch(
     const ConstStates& q, const ConstStates& qd, const ConstStates& qdd,
     const StridedMatrices& dtau_dq, const StridedMatrices& dtau_dqd,
     const StridedMatrices& dtau_dqdd) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) {
-    return TorqueDerivatives::computeTorqueDerivativesBatch(q, qd, qdd, dtau_dq, dtau_dqd,
-                                                            dtau_dqdd);
-  }
-  robot->fast->torqueDerivativesBatch(q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
+  currentRobot()->fast.torqueDerivativesBatch(q, qd, qdd, dtau_dq, dtau_dqd, dtau_dqdd);
 }
 
 void InverseDynamicsSolverRigidBody::computeRegressorBatch(const ConstStates& q,
@@ -233,8 +171,7 @@ void InverseDynamicsSolverRigidBody::computeRegressorBatch(const ConstStates& q,
                                                            const ConstStates& qdd,
                                                            const StridedMatrices& Y) const {
   const auto robot = currentRobot();
-  if (!robot->fast) return Regressor::computeRegressorBatch(q, qd, qdd, Y);
-  if (Y.row_step == 1 && q.joints > 1) return robot->fast->regressorBatch(q, qd, qdd, Y);
+  if (Y.row_step == 1 && q.joints > 1) return robot->fast.regressorBatch(q, qd, qdd, Y);
 
   // The kernels round otherwise where rows don't stand side by side. A layout mustn't change the bits:
   // through memory where they do.
@@ -243,8 +180,8 @@ void InverseDynamicsSolverRigidBody::computeRegressorBatch(const ConstStates& q,
   for (Eigen::Index first = 0; first < q.count; first += most) {
     const Eigen::Index size = std::min(most, q.count - first);
     const StridedMatrices columns(numbers.data(), n, 10 * n, size, 1, n, 10 * n * n);
-    robot->fast->regressorBatch(q.middle(first, size), qd.middle(first, size),
-                                qdd.middle(first, size), columns);
+    robot->fast.regressorBatch(q.middle(first, size), qd.middle(first, size),
+                               qdd.middle(first, size), columns);
     for (Eigen::Index k = 0; k < size; ++k) {
       for (Eigen::Index i = 0; i < n; ++i) {
         for (Eigen::Index j = 0; j < 10 * n; ++j) Y(i, j, first + k) = columns(i, j, k);
@@ -257,11 +194,7 @@ void InverseDynamicsSolverRigidBody::computeAccelerationsBatch(const ConstStates
                                                                const ConstStates& qd,
                                                                const ConstStates& tau,
                                                                const States& qdd) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) {
-    return ForwardDynamics::computeAccelerationsBatch(q, qd, tau, qdd);
-  }
-  robot->fast->forwardDynamicsBatch(q, qd, tau, qdd);
+  currentRobot()->fast.forwardDynamicsBatch(q, qd, tau, qdd);
 }
 
 }  // namespace v2

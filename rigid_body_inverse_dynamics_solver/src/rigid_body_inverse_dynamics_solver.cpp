@@ -166,13 +166,12 @@ std::vector<std::string> warningsOf(const chain_dynamics::Model& model, bool ine
   return warnings;
 }
 
-/// tau = H qdd + C qd + g + f; allocates.
-void torquesOf(const chain_dynamics::Model& model, const ConstVectorRef& q,
-               const ConstVectorRef& qd, const ConstVectorRef& qdd, VectorRef tau) {
-  Eigen::VectorXd f(q.size());
-  chain_dynamics::torques(model, q, qd, qdd, tau);
-  chain_dynamics::frictionVector(model, q, qd, f);
-  tau += f;
+void requireFewEnough(const Chain& chain) {
+  if (chain.jointCount() <= FastModel::kMaxJoints) return;
+  throw inverse_dynamics_solver::InvalidRobotDescriptionException(
+      errorText("robot", "too many joints", "at most " + std::to_string(FastModel::kMaxJoints),
+                std::to_string(chain.jointCount()),
+                "name root and tip of a shorter chain, or use the solver of Pinocchio or KDL"));
 }
 
 }  // namespace
@@ -201,17 +200,15 @@ auto InverseDynamicsSolverRigidBody::use(chain_dynamics::Model model,
 auto InverseDynamicsSolverRigidBody::keep(chain_dynamics::Model model,
                                           const Configuration& configuration, Sentences warnings)
     -> JointInfo {
+  requireFewEnough(model.chain);
   const bool inertia_is_physical = model.inertiaIsPhysical();
   JointInfo info{model.chain.jointNames(), warningsOf(model, inertia_is_physical),
                  model.chain.jointTypes()};
   for (std::string& warning : warnings) info.warnings.push_back(std::move(warning));
   auto conditions = readConditions(configuration, model.chain.gravity());
   auto robot = std::make_unique<ReadyModel>(conditions->appliedTo(model));
-  if (model.chain.jointCount() <= FastModel::kMaxJoints) {
-    robot->fast.emplace(robot->model);
-    const Sentences& more = robot->fast->warnings();
-    info.warnings.insert(info.warnings.end(), more.begin(), more.end());
-  }
+  const Sentences& more = robot->fast.warnings();
+  info.warnings.insert(info.warnings.end(), more.begin(), more.end());
   auto bare = std::make_unique<const chain_dynamics::Model>(std::move(model));
   configuration.rejectOthers();
 
@@ -224,11 +221,7 @@ auto InverseDynamicsSolverRigidBody::keep(chain_dynamics::Model model,
 
 auto InverseDynamicsSolverRigidBody::robotUnder(const Conditions& conditions) const
     -> std::unique_ptr<const ReadyModel> {
-  auto robot = std::make_unique<ReadyModel>(conditions.appliedTo(model()));
-  if (initialRobot().fast) {
-    robot->fast.emplace(robot->model, *initialRobot().fast);
-  }
-  return robot;
+  return std::make_unique<ReadyModel>(conditions.appliedTo(model()), initialRobot());
 }
 
 // ---------------------------------------------------------------- one state
@@ -236,43 +229,34 @@ auto InverseDynamicsSolverRigidBody::robotUnder(const Conditions& conditions) co
 void InverseDynamicsSolverRigidBody::computeInertiaMatrix(const ConstVectorRef& q,
                                                           MatrixRef H) const {
   withCurrentRobot([&](const ReadyModel& robot) {
-    if (!robot.fast) return chain_dynamics::inertiaMatrix(robot.model, q, H);
-    robot.fast->inertiaMatrix(q.data(), H.data(), H.outerStride());
+    robot.fast.inertiaMatrix(q.data(), H.data(), H.outerStride());
   });
 }
 
 void InverseDynamicsSolverRigidBody::computeCoriolisVector(const ConstVectorRef& q,
                                                            const ConstVectorRef& qd,
                                                            VectorRef c) const {
-  withCurrentRobot([&](const ReadyModel& robot) {
-    if (!robot.fast) return chain_dynamics::coriolisVector(robot.model, q, qd, c);
-    robot.fast->coriolisVector(q.data(), qd.data(), c.data());
-  });
+  withCurrentRobot(
+      [&](const ReadyModel& robot) { robot.fast.coriolisVector(q.data(), qd.data(), c.data()); });
 }
 
 void InverseDynamicsSolverRigidBody::computeGravityVector(const ConstVectorRef& q,
                                                           VectorRef g) const {
-  withCurrentRobot([&](const ReadyModel& robot) {
-    if (!robot.fast) return chain_dynamics::gravityVector(robot.model, q, g);
-    robot.fast->gravityVector(q.data(), g.data());
-  });
+  withCurrentRobot([&](const ReadyModel& robot) { robot.fast.gravityVector(q.data(), g.data()); });
 }
 
 void InverseDynamicsSolverRigidBody::computeFriction(const ConstVectorRef& q,
                                                      const ConstVectorRef& qd, VectorRef f) const {
-  withCurrentRobot([&](const ReadyModel& robot) {
-    if (!robot.fast) return chain_dynamics::frictionVector(robot.model, q, qd, f);
-    robot.fast->frictionVector(q.data(), qd.data(), f.data());
-  });
+  withCurrentRobot(
+      [&](const ReadyModel& robot) { robot.fast.frictionVector(q.data(), qd.data(), f.data()); });
 }
 
 void InverseDynamicsSolverRigidBody::computeDynamicComponents(const ConstVectorRef& q,
                                                               const ConstVectorRef& qd, MatrixRef H,
                                                               VectorRef c, VectorRef g) const {
   withCurrentRobot([&](const ReadyModel& robot) {
-    if (!robot.fast) return chain_dynamics::dynamicComponents(robot.model, q, qd, H, c, g);
-    robot.fast->dynamicComponents(q.data(), qd.data(), H.data(), H.outerStride(), c.data(),
-                                  g.data());
+    robot.fast.dynamicComponents(q.data(), qd.data(), H.data(), H.outerStride(), c.data(),
+                                 g.data());
   });
 }
 
@@ -281,8 +265,7 @@ void InverseDynamicsSolverRigidBody::computeTorques(const ConstVectorRef& q,
                                                     const ConstVectorRef& qdd,
                                                     VectorRef tau) const {
   withCurrentRobot([&](const ReadyModel& robot) {
-    if (!robot.fast) return torquesOf(robot.model, q, qd, qdd, tau);
-    robot.fast->torques(q.data(), qd.data(), qdd.data(), tau.data());
+    robot.fast.torques(q.data(), qd.data(), qdd.data(), tau.data());
   });
 }
 
@@ -290,32 +273,24 @@ void InverseDynamicsSolverRigidBody::computeTorques(const ConstVectorRef& q,
 
 void InverseDynamicsSolverRigidBody::computeInertiaMatrixBatch(const ConstStates& q,
                                                                const StridedMatrices& H) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return InverseDynamicsSolver::computeInertiaMatrixBatch(q, H);
-  robot->fast->inertiaMatrixBatch(q, H);
+  currentRobot()->fast.inertiaMatrixBatch(q, H);
 }
 
 void InverseDynamicsSolverRigidBody::computeCoriolisVectorBatch(const ConstStates& q,
                                                                 const ConstStates& qd,
                                                                 const States& c) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return InverseDynamicsSolver::computeCoriolisVectorBatch(q, qd, c);
-  robot->fast->coriolisVectorBatch(q, qd, c);
+  currentRobot()->fast.coriolisVectorBatch(q, qd, c);
 }
 
 void InverseDynamicsSolverRigidBody::computeFrictionBatch(const ConstStates& q,
                                                           const ConstStates& qd,
                                                           const States& f) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return InverseDynamicsSolver::computeFrictionBatch(q, qd, f);
-  robot->fast->frictionVectorBatch(q, qd, f);
+  currentRobot()->fast.frictionVectorBatch(q, qd, f);
 }
 
 void InverseDynamicsSolverRigidBody::computeGravityVectorBatch(const ConstStates& q,
                                                                const States& g) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return InverseDynamicsSolver::computeGravityVectorBatch(q, g);
-  robot->fast->gravityVectorBatch(q, g);
+  currentRobot()->fast.gravityVectorBatch(q, g);
 }
 
 void InverseDynamicsSolverRigidBody::computeDynamicComponentsBatch(const ConstStates& q,
@@ -323,18 +298,14 @@ void InverseDynamicsSolverRigidBody::computeDynamicComponentsBatch(const ConstSt
                                                                    const StridedMatrices& H,
                                                                    const States& c,
                                                                    const States& g) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return InverseDynamicsSolver::computeDynamicComponentsBatch(q, qd, H, c, g);
-  robot->fast->dynamicComponentsBatch(q, qd, H, c, g);
+  currentRobot()->fast.dynamicComponentsBatch(q, qd, H, c, g);
 }
 
 void InverseDynamicsSolverRigidBody::computeTorquesBatch(const ConstStates& q,
                                                          const ConstStates& qd,
                                                          const ConstStates& qdd,
                                                          const States& tau) const {
-  const auto robot = currentRobot();
-  if (!robot->fast) return InverseDynamicsSolver::computeTorquesBatch(q, qd, qdd, tau);
-  robot->fast->torquesBatch(q, qd, qdd, tau);
+  currentRobot()->fast.torquesBatch(q, qd, qdd, tau);
 }
 
 }  // namespace v2

@@ -440,6 +440,26 @@ TEST(RigidBody, DescriptionMistakesKeepTheirText) {
   expectContains(error, {"robot description", "hand"});
 }
 
+TEST(RigidBody, ChainOfMoreThan64JointsIsRefused) {
+  const auto snake = [](int joints) {
+    std::string urdf = "<robot name='snake'><link name='l0'/>";
+    for (int i = 1; i <= joints; ++i) {
+      const std::string child = "l" + std::to_string(i), parent = "l" + std::to_string(i - 1);
+      urdf += "<link name='" + child +
+              "'><inertial><mass value='0.3'/><inertia ixx='0.01' iyy='0.01' izz='0.01' ixy='0' "
+              "ixz='0' iyz='0'/></inertial></link><joint name='j" +
+              std::to_string(i) + "' type='continuous'><parent link='" + parent +
+              "'/><child link='" + child + "'/><origin xyz='0 0 0.1'/><axis xyz='1 0 0'/></joint>";
+    }
+    return urdf + "</robot>";
+  };
+  InverseDynamicsSolverRigidBody solver;
+  EXPECT_NO_THROW(solver.initialize({}, "", snake(64)));
+  const std::string error = errorOf<inverse_dynamics_solver::InvalidRobotDescriptionException>(
+      [&] { solver.initialize({}, "", snake(65)); });
+  expectContains(error, {"joints", "64", "65", "Pinocchio"});
+}
+
 TEST(ModelFiles, InstalledModelsAreTheThreeOfTheProject) {
   EXPECT_EQ(installedModels(),
             (std::vector<std::string>{kFeasible, "franka_inria_identified", kUr10}));

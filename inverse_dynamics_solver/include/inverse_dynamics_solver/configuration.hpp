@@ -103,6 +103,11 @@ struct Configuration {
     return parameters.require<T>(fullName(name));
   }
 
+  /// @throws InvalidParameterValueException  always: a parameter below the namespace has a value that
+  ///         can't be used.
+  [[noreturn]] void refuse(const std::string& name, const std::string& expected,
+                           const std::string& got, const std::string& remedy) const;
+
   /// Warnings of the parameters below the namespace that are set, but weren't read.
   ///
   /// Without a namespace, a node's own parameters are beside the solver's: there only a name that

@@ -10,7 +10,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,10 +42,14 @@ using inverse_dynamics_solver::WrenchFrame;
 
 /// A model made ready to compute with.
 struct ReadyModel {
-  explicit ReadyModel(chain_dynamics::Model of) : model(std::move(of)) {}
+  explicit ReadyModel(chain_dynamics::Model of) : model(std::move(of)), fast(model) {}
+
+  /// With the kernels of another one, without comparing them again.
+  ReadyModel(chain_dynamics::Model of, const ReadyModel& original)
+      : model(std::move(of)), fast(model, original.fast) {}
 
   chain_dynamics::Model model;
-  std::optional<const chain_dynamics::FastModel> fast;  ///< unless the chain is too long for it
+  chain_dynamics::FastModel fast;
 };
 
 /// The engine as a solver.
@@ -65,10 +68,12 @@ struct ReadyModel {
 /// Without a model file, friction is that of the description where `urdf_friction` is true, else
 /// zero.
 ///
+/// Chains of up to 64 joints.
+///
 /// Capabilities: all of rigid bodies; accelerations are refused where the inertia isn't physical,
 /// energies where rows have parameters of their own. TorqueDeviation: of a model file that states it.
 ///
-/// Real time and threads: as the base class promises, for up to 64 joints.
+/// Real time and threads: as the base class promises.
 class InverseDynamicsSolverRigidBody : public inverse_dynamics_solver::InverseDynamicsSolver,
                                        public inverse_dynamics_solver::ChangeableRobot<ReadyModel>,
                                        public inverse_dynamics_solver::Kinematics,
