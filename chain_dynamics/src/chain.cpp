@@ -84,9 +84,7 @@ void checkLink(const std::string& where, const LinkParameters& link) {
   if (greatest > kLargestNumber) {
     throw ModelError(where, "inertial parameters", "numbers up to 1e50", text(greatest), "");
   }
-  if (link.mass < 0) {
-    throw ModelError(where, "mass", "a number >= 0 [kg]", text(link.mass), "");
-  }
+  if (link.mass < 0) throw ModelError(where, "mass", "a number >= 0 [kg]", text(link.mass), "");
   const double asymmetry = (link.inertia - link.inertia.transpose()).cwiseAbs().maxCoeff();
   if (asymmetry > kSymmetryTolerance * link.inertia.cwiseAbs().maxCoeff()) {
     throw ModelError(where, "moment of inertia", "a symmetric matrix",
@@ -148,9 +146,7 @@ Chain::Chain(std::string name, std::vector<Joint> joints, std::vector<LinkParame
     links_[i].inertia = (0.5 * (links_[i].inertia + links_[i].inertia.transpose())).eval();
 
     const std::string defect = inertiaDefect(links_[i]);
-    if (!defect.empty()) {
-      warnings_.push_back(printable(link + ": " + defect));
-    }
+    if (!defect.empty()) warnings_.push_back(printable(link + ": " + defect));
   }
 }
 
@@ -170,9 +166,7 @@ Chain Chain::withWarnings(std::vector<std::string> warnings) const {
 std::vector<std::string> Chain::jointNames() const {
   std::vector<std::string> names;
   names.reserve(joints_.size());
-  for (const Joint& joint : joints_) {
-    names.push_back(joint.name);
-  }
+  for (const Joint& joint : joints_) names.push_back(joint.name);
   return names;
 }
 
@@ -190,9 +184,7 @@ Matrix3<double> inertiaAboutCenter(const LinkParameters& link) {
 }
 
 std::string inertiaDefect(const LinkParameters& link) {
-  if (link.mass < 0) {
-    return "negative mass " + text(link.mass);
-  }
+  if (link.mass < 0) return "negative mass " + text(link.mass);
   if (link.mass == 0) {
     const bool empty = link.first_moment.isZero(0) && link.inertia.isZero(0);
     return empty ? "" : "inertia without mass";

@@ -25,9 +25,7 @@ bool isOneOf(const std::string& word, const std::vector<std::string>& words) {
 }
 
 std::optional<bool> truthOf(const std::string& word) {
-  if (isOneOf(word, {"true", "True", "TRUE"})) {
-    return true;
-  }
+  if (isOneOf(word, {"true", "True", "TRUE"})) return true;
   return isOneOf(word, {"false", "False", "FALSE"}) ? std::optional<bool>(false) : std::nullopt;
 }
 
@@ -58,9 +56,7 @@ std::string meant(const std::string& word, const std::vector<std::string>& known
 std::optional<std::string> contentOf(const std::string& path, std::size_t most) {
   errno = 0;
   std::FILE* const file = std::fopen(path.c_str(), "rb");
-  if (file == nullptr) {
-    return std::nullopt;
-  }
+  if (file == nullptr) return std::nullopt;
   std::string content(most, '\0');
   content.resize(std::fread(content.data(), 1, content.size(), file));
   const int error = std::ferror(file) != 0 ? errno : 0;
@@ -128,21 +124,15 @@ std::string LocatedValue::where() const {
 }
 
 std::string LocatedValue::shown() const {
-  if (isMap()) {
-    return "keys with values";
-  }
-  if (isList()) {
-    return "a list of " + std::to_string(node_->parts.size());
-  }
+  if (isMap()) return "keys with values";
+  if (isList()) return "a list of " + std::to_string(node_->parts.size());
   if (key_.empty()) {
     return "a text";  // of a whole file, perhaps a wrong one: it may be anyone's secret
   }
   constexpr std::size_t kLongest = 60;
   const std::string& text = node_->text;
   std::size_t end = std::min(text.size(), kLongest);
-  while (end > 0 && end < text.size() && isContinuation(byteAt(text, end))) {
-    --end;
-  }
+  while (end > 0 && end < text.size() && isContinuation(byteAt(text, end))) --end;
   const std::string quoted = "'" + printable(text.substr(0, end)) + "'";
   return text.empty() ? "nothing" : end < text.size() ? quoted + "..." : quoted;
 }
@@ -158,26 +148,16 @@ void LocatedValue::refuse(const std::string& text) const {
 }
 
 LocatedValue::Scalar LocatedValue::scalar() const {
-  if (node_->kind != Content::Kind::kScalar || isNull()) {
-    fail("a text, a number, true or false");
-  }
-  if (plain() == nullptr) {
-    return node_->text;
-  }
+  if (node_->kind != Content::Kind::kScalar || isNull()) fail("a text, a number, true or false");
+  if (plain() == nullptr) return node_->text;
   const std::string& word = *plain();
-  if (const auto truth = truthOf(word)) {
-    return *truth;
-  }
-  if (isInteger(word)) {
-    return integer();
-  }
+  if (const auto truth = truthOf(word)) return *truth;
+  if (isInteger(word)) return integer();
   return isNumber(word) ? Scalar(number()) : Scalar(word);
 }
 
 std::string LocatedValue::text(const std::vector<std::string>& one_of) const {
-  if (node_->kind != Content::Kind::kScalar) {
-    fail("a text");
-  }
+  if (node_->kind != Content::Kind::kScalar) fail("a text");
   const std::string& value = node_->text;
   if (!one_of.empty() && !isOneOf(value, one_of)) {
     fail("one of " + joined(one_of), meant(value, one_of));
@@ -194,35 +174,25 @@ std::size_t LocatedValue::choice(const std::vector<std::string>& words) const {
 }
 
 double LocatedValue::number() const {
-  if (plain() == nullptr || !isNumber(*plain())) {
-    fail("a number");
-  }
+  if (plain() == nullptr || !isNumber(*plain())) fail("a number");
   const auto value = finiteNumber(*plain());
-  if (!value) {
-    fail("a finite number");
-  }
+  if (!value) fail("a finite number");
   return *value;
 }
 
 std::int64_t LocatedValue::integer() const {
-  if (plain() == nullptr || !isInteger(*plain())) {
-    fail("an integer");
-  }
+  if (plain() == nullptr || !isInteger(*plain())) fail("an integer");
   const std::string& word = *plain();
   std::int64_t value = 0;
   const auto result =
       std::from_chars(word.data() + (word[0] == '+' ? 1 : 0), word.data() + word.size(), value);
-  if (result.ec != std::errc()) {
-    fail("an integer of at most 64 bits");
-  }
+  if (result.ec != std::errc()) fail("an integer of at most 64 bits");
   return value;
 }
 
 bool LocatedValue::truth() const {
   const auto value = plain() == nullptr ? std::nullopt : truthOf(*plain());
-  if (!value) {
-    fail("true or false");
-  }
+  if (!value) fail("true or false");
   return *value;
 }
 
@@ -239,13 +209,9 @@ std::vector<LocatedValue> LocatedValue::entries(std::optional<std::size_t> lengt
 }
 
 std::vector<double> LocatedValue::numbers(std::size_t count) const {
-  if (!isList() || node_->parts.size() != count) {
-    fail(std::to_string(count) + " numbers");
-  }
+  if (!isList() || node_->parts.size() != count) fail(std::to_string(count) + " numbers");
   std::vector<double> values;
-  for (const LocatedValue& entry : entries()) {
-    values.push_back(entry.number());
-  }
+  for (const LocatedValue& entry : entries()) values.push_back(entry.number());
   return values;
 }
 
@@ -256,9 +222,7 @@ LocatedMap LocatedValue::map() const { return LocatedMap(*this); }
 
 LocatedMap::LocatedMap(const LocatedValue& value) : value_(value) {
   using Content = LocatedValue::Content;
-  if (!value.isMap()) {
-    value.fail("keys with values");
-  }
+  if (!value.isMap()) value.fail("keys with values");
   std::set<std::string> names;
   const std::vector<Content>& parts = value.node_->parts;
   for (std::size_t i = 0; i + 1 < parts.size(); i += 2) {
@@ -267,22 +231,16 @@ LocatedMap::LocatedMap(const LocatedValue& value) : value_(value) {
     }
     const std::string& name = parts[i].text;
     const std::string key = value.key_.empty() ? name : value.key_ + "." + name;
-    if (!names.insert(name).second) {
-      value.inner(parts[i], key).refuse(kSecondTime);
-    }
+    if (!names.insert(name).second) value.inner(parts[i], key).refuse(kSecondTime);
     entries_.emplace_back(name, value.inner(parts[i + 1], key));
   }
 }
 
 LocatedValue LocatedMap::required(const std::string& key) {
-  if (const auto found = optional(key)) {
-    return *found;
-  }
+  if (const auto found = optional(key)) return *found;
   std::vector<std::string> keys;
   for (const auto& [other, value] : entries_) {
-    if (other == key) {
-      value.fail("a value");
-    }
+    if (other == key) value.fail("a value");
     keys.push_back(other);
   }
   value_.refuse("the key " + key + " is missing; keys: " + (keys.empty() ? "none" : joined(keys)));
@@ -292,27 +250,19 @@ LocatedMap::Entries LocatedMap::leaves() const {
   Entries leaves;
   std::set<std::string> names;
   for (const auto& [key, value] : entries_) {
-    if (value.isNull()) {
-      continue;
-    }
+    if (value.isNull()) continue;
     Entries found{{"", value}};
-    if (value.isMap()) {
-      found = value.map().leaves();
-    }
+    if (value.isMap()) found = value.map().leaves();
     for (const auto& [name, leaf] : found) {
       leaves.emplace_back(name.empty() ? key : key + "." + name, leaf);
-      if (!names.insert(leaves.back().first).second) {
-        leaf.refuse(kSecondTime);
-      }
+      if (!names.insert(leaves.back().first).second) leaf.refuse(kSecondTime);
     }
   }
   return leaves;
 }
 
 std::optional<LocatedValue> LocatedMap::optional(const std::string& key) {
-  if (!isOneOf(key, asked_)) {
-    asked_.push_back(key);
-  }
+  if (!isOneOf(key, asked_)) asked_.push_back(key);
   const auto found = std::find_if(entries_.begin(), entries_.end(),
                                   [&key](const auto& entry) { return entry.first == key; });
   return found == entries_.end() || found->second.isNull() ? std::nullopt

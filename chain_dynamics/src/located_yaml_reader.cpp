@@ -42,9 +42,7 @@ std::size_t firstNotUtf8(const std::string& text) {
   std::size_t i = 0;
   while (i < text.size()) {
     const Character character = characterAt(text, i);
-    if (character.size == 0) {
-      break;
-    }
+    if (character.size == 0) break;
     i += character.size;
   }
   return i;
@@ -96,9 +94,7 @@ class LocatedValue::Builder : public YAML::EventHandler {
   }
 
   std::string lineOf(const YAML::Mark& mark) const {
-    if (mark.is_null() || at(mark) >= text_.size()) {
-      return "";
-    }
+    if (mark.is_null() || at(mark) >= text_.size()) return "";
     const std::size_t begin = text_.rfind('\n', at(mark)) + 1;  // npos + 1 is 0
     return text_.substr(begin, text_.find('\n', begin) - begin);
   }
@@ -156,9 +152,7 @@ class LocatedValue::Builder : public YAML::EventHandler {
   // What stands for null there, as a key is a text.
   std::string nullWordAt(std::size_t begin) const {
     for (const char* const word : {"null", "Null", "NULL", "~"}) {
-      if (text_.compare(begin, std::strlen(word), word) == 0) {
-        return word;
-      }
+      if (text_.compare(begin, std::strlen(word), word) == 0) return word;
     }
     return "";
   }
@@ -276,14 +270,10 @@ void LocatedValue::Document::read(const std::string& text) {
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& error) {
-    if (builder.isAlias(error.mark)) {
-      builder.refuseAlias(error.mark);
-    }
+    if (builder.isAlias(error.mark)) builder.refuseAlias(error.mark);
     builder.refuse(error.mark, problemOf(error, builder.lineOf(error.mark)));
   }
-  if (builder.isEmpty()) {
-    refuse(0, "is empty; expected keys with values");
-  }
+  if (builder.isEmpty()) refuse(0, "is empty; expected keys with values");
 }
 
 }  // namespace v2

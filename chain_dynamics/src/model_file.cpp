@@ -54,9 +54,7 @@ void addIdentified(const std::vector<JointEntry>& entries, const Conventions& co
     const JointEntry& entry = entries[j];
     const double gain = conventions.gains ? entry.drive_gain[0] : 1.0;
     const auto factor = [gain](Level level) { return level == Level::kCurrent ? gain : 1.0; };
-    if (conventions.gains) {
-      model.drive_gains[static_cast<Eigen::Index>(j)] = gain;
-    }
+    if (conventions.gains) model.drive_gains[static_cast<Eigen::Index>(j)] = gain;
     if (has_deviation) {
       model.torque_deviation[static_cast<Eigen::Index>(j)] = entry.torque_deviation[0];
     }
@@ -126,9 +124,7 @@ void verifyState(const LocatedValue& value, double tolerance, const Model& model
 
 void verifyChecks(LocatedMap map, const Model& model) {
   const LocatedValue tolerance = map.required("tolerance");
-  if (tolerance.number() <= 0) {
-    tolerance.fail("a number > 0 [N m]");
-  }
+  if (tolerance.number() <= 0) tolerance.fail("a number > 0 [N m]");
   for (const LocatedValue& state : map.required("states").entries()) {
     verifyState(state, tolerance.number(), model);
   }
@@ -184,9 +180,7 @@ Model readModel(const LocatedValue& document) {
   Model model = makeModel(document.file(), name, entries, conventions, gravity, X_U_tip);
   model.source = source;
   model.validity = validity;
-  if (checks) {
-    verifyChecks(checks->map(), model);
-  }
+  if (checks) verifyChecks(checks->map(), model);
   return model;
 }
 

@@ -101,9 +101,7 @@ LinkParameters link(const LocatedValue& value, Parameters parameters) {
 JointLimits readLimits(LocatedMap map, JointType type) {
   JointLimits limits;
   const auto read = [&map](const std::string& key, double& limit) {
-    if (const auto value = map.optional(key)) {
-      limit = value->number();
-    }
+    if (const auto value = map.optional(key)) limit = value->number();
   };
   if (type != JointType::kContinuous) {
     read("lower", limits.lower);
@@ -215,9 +213,7 @@ void readParameters(LocatedMap& map, const Conventions& conventions, std::size_t
     for (const LocatedValue& value : row->entries(joints)) {
       entry.row.push_back(link(value, conventions.parameters));
     }
-    if (const auto both = map.optional("link")) {
-      both->fail("either this key or row");
-    }
+    if (const auto both = map.optional("link")) both->fail("either this key or row");
     return;
   }
   const LocatedValue own = map.required("link");
@@ -302,9 +298,7 @@ Transform<double> readPose(LocatedMap& map) {
 
 std::vector<JointEntry> readJoints(const LocatedValue& value, const Conventions& conventions) {
   const std::vector<LocatedValue> list = value.entries();
-  if (list.empty()) {
-    value.fail("at least one joint");
-  }
+  if (list.empty()) value.fail("at least one joint");
   std::vector<JointEntry> entries;
   for (const LocatedValue& joint : list) {
     entries.push_back(readJoint(joint, conventions, list.size()));

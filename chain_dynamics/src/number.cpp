@@ -12,9 +12,7 @@ inline namespace v2 {
 namespace {
 
 const char* skipDigits(const char* at, const char* end) {
-  while (at != end && *at >= '0' && *at <= '9') {
-    ++at;
-  }
+  while (at != end && *at >= '0' && *at <= '9') ++at;
   return at;
 }
 
@@ -58,20 +56,14 @@ bool isDecimal(const std::string& text) {
 std::optional<double> finiteNumber(const std::string& text) {
   constexpr const char* kBlanks = " \t\r\n";
   const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string::npos) {
-    return std::nullopt;
-  }
+  if (first == std::string::npos) return std::nullopt;
   const char* begin = text.data() + first;
   const char* const end = text.data() + text.find_last_not_of(kBlanks) + 1;
-  if (!isDecimal(begin, end)) {
-    return std::nullopt;
-  }
+  if (!isDecimal(begin, end)) return std::nullopt;
   begin += *begin == '+' ? 1 : 0;  // which from_chars doesn't know
   double value = 0;
   const auto result = std::from_chars(begin, end, value);
-  if (result.ec == std::errc::result_out_of_range) {
-    return outOfRange(std::string(begin, end));
-  }
+  if (result.ec == std::errc::result_out_of_range) return outOfRange(std::string(begin, end));
   return std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
 }
 

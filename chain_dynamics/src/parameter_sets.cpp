@@ -36,9 +36,7 @@ void checkParameterSets(const Chain& chain, const ParameterSets& sets) {
   for (std::size_t j = 0; j < sets.rows.size(); ++j) {
     checkSet(chain, where + ": parameter set of joint " + chain.joints()[j].name, sets.rows[j]);
   }
-  if (!sets.gravity.empty()) {
-    checkSet(chain, where + ": parameter set of gravity", sets.gravity);
-  }
+  if (!sets.gravity.empty()) checkSet(chain, where + ": parameter set of gravity", sets.gravity);
 }
 
 }  // namespace v2

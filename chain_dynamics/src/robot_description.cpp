@@ -73,9 +73,7 @@ Matrix3<double> rotation(const UrdfElement& origin) {
     origin.checkSize("<origin> rpy", rpy.cwiseAbs().maxCoeff(), kTwoTurns, "rad");
     return rotationFromRollPitchYaw(rpy);
   }
-  if (origin.has("rpy")) {
-    throw origin.error("<origin>", "either rpy or quat_xyzw", "both");
-  }
+  if (origin.has("rpy")) throw origin.error("<origin>", "either rpy or quat_xyzw", "both");
   const std::vector<double> xyzw = origin.numbers("quat_xyzw", 4);
   const Eigen::Vector4d quaternion =
       Eigen::Vector4d(xyzw.data()).stableNormalized();  // in the order of Eigen's coefficients
@@ -121,9 +119,7 @@ Inertial inertial(const UrdfElement& element) {
   const UrdfElement mass = element.requiredChild("mass", "leave out <inertial> for no mass");
   mass.reportUnknown(kMass);
   result.mass = mass.number("value");
-  if (result.mass < 0) {
-    throw mass.error("mass", "a number >= 0 [kg]", mass.text("value"));
-  }
+  if (result.mass < 0) throw mass.error("mass", "a number >= 0 [kg]", mass.text("value"));
   mass.checkSize("<mass> value", result.mass, kHeaviest, "kg");
   result.inertia =
       momentOfInertia(element.requiredChild("inertia", "leave out <inertial> for no mass"));
@@ -158,9 +154,7 @@ void readLimits(const UrdfElement& element, Joint& joint) {
   const auto limit =
       needed ? element.requiredChild("limit", "a joint without limits is of type continuous")
              : element.child("limit");
-  if (!limit) {
-    return;
-  }
+  if (!limit) return;
   limit->reportUnknown(kLimit);
   joint.limits.effort = limit->number("effort");
   joint.limits.velocity = limit->number("velocity");
@@ -225,9 +219,7 @@ class Reader {
   }
 
   static void checkVersion(const UrdfElement& robot) {
-    if (!robot.has("version")) {
-      return;
-    }
+    if (!robot.has("version")) return;
     const std::string version = robot.text("version");
     const auto number = finiteNumber(version);
     if (number != 1.0 && number != 1.1 && number != 1.2) {
@@ -257,9 +249,7 @@ class Reader {
       Link link;
       link.name = next->Attribute("name");
       link.line = element.line();
-      if (const auto body = element.child("inertial")) {
-        link.inertial = inertial(*body);
-      }
+      if (const auto body = element.child("inertial")) link.inertial = inertial(*body);
       robot_.links.push_back(std::move(link));
     }
   }
@@ -295,13 +285,9 @@ class Reader {
   static std::size_t find(const UrdfElement& element, const std::string& what,
                           const std::string& name, const Names& names, const std::string& kind) {
     const auto found = names.find(name);
-    if (found != names.end()) {
-      return found->second;
-    }
+    if (found != names.end()) return found->second;
     std::vector<std::string> known;
-    for (const auto& entry : names) {
-      known.push_back(entry.first);
-    }
+    for (const auto& entry : names) known.push_back(entry.first);
     const std::string similar = nearestName(name, known);
     throw element.error(
         what, "a " + kind + " of the robot", "'" + name + "'",
@@ -323,9 +309,7 @@ class Reader {
                                  "a robot is a tree of links");
       }
       child.parent_joint = j;
-      if (isMovable(robot_.joints[j])) {
-        readMimic(j);
-      }
+      if (isMovable(robot_.joints[j])) readMimic(j);
     }
   }
 
@@ -359,9 +343,7 @@ class Reader {
   /// With one parent each, a link that isn't below the root is in a loop, or below one.
   void checkNoLoop() const {
     std::vector<bool> below(robot_.links.size(), false);
-    for (const std::size_t link : robot_.linksBelow(robot_.root)) {
-      below[link] = true;
-    }
+    for (const std::size_t link : robot_.linksBelow(robot_.root)) below[link] = true;
     for (const auto& [name, index] : links_) {
       if (!below[index]) {
         throw ModelError("URDF:" + std::to_string(robot_.links[index].line) + ": link " + name,

@@ -46,15 +46,11 @@ std::string escaped(std::uint32_t code) {
 
 /// The text without its middle, cut between characters.
 std::string shortened(const std::string& text, std::size_t longest) {
-  if (text.size() <= longest) {
-    return text;
-  }
+  if (text.size() <= longest) return text;
   constexpr std::size_t kLongestCharacter = 4;
   const auto boundary = [&text](std::size_t i) {
     for (std::size_t k = i; k > 0 && i - k < kLongestCharacter; --k) {
-      if (!isContinuation(byteAt(text, k))) {
-        return k;
-      }
+      if (!isContinuation(byteAt(text, k))) return k;
     }
     return i;
   };
@@ -87,9 +83,7 @@ std::string errorText(const std::string& where, const std::string& what,
   constexpr std::size_t kLongestList = 2000;  // remedies list the known names
   std::string text = printable(where);
   const auto append = [&text](const char* separator, const char* word, const std::string& part) {
-    if (!part.empty()) {
-      text += (text.empty() ? "" : separator) + std::string(word) + part;
-    }
+    if (!part.empty()) text += (text.empty() ? "" : separator) + std::string(word) + part;
   };
   append(": ", "", printable(what));
   append(": ", "expected ", printable(expected, kLongestList));
@@ -126,9 +120,7 @@ std::string numberText(double value, int digits) {
 
 std::string joined(const std::vector<std::string>& words, const std::string& separator) {
   std::string text;
-  for (const std::string& word : words) {
-    text += (&word == words.data() ? "" : separator) + word;
-  }
+  for (const std::string& word : words) text += (&word == words.data() ? "" : separator) + word;
   return text;
 }
 

@@ -45,9 +45,7 @@ double rounded(double value) { return std::round(value * 1e4) / 1e4 + 0.0; }
 
 /// Parameters of a link in its frame, without attached bodies.
 LinkParameters parameters(const Link& link) {
-  if (!link.inertial) {
-    return LinkParameters::zero();
-  }
+  if (!link.inertial) return LinkParameters::zero();
   // the given axes are those of <origin>, whose origin is the center of mass
   return link.inertial->placement * LinkParameters::fromCenterOfMass(link.inertial->mass,
                                                                      Eigen::Vector3d::Zero(),
@@ -65,9 +63,7 @@ std::string where(const RobotDescription::Joint& joint) { return "URDF: joint " 
 std::size_t linkNamed(const RobotDescription& robot, const std::string& name,
                       const std::string& role) {
   const std::size_t link = robot.linkIndex(name);
-  if (link != kNone) {
-    return link;
-  }
+  if (link != kNone) return link;
   constexpr std::size_t kShown = 8;
   std::vector<std::pair<std::size_t, std::string>> known;
   for (const Link& other : robot.links) {
@@ -130,9 +126,7 @@ std::vector<Reach> leavesBelow(const RobotDescription& robot, std::size_t root) 
                                       reach[link].joints + 1,
                                       movable ? j : reach[link].last_movable};
     }
-    if (robot.links[link].child_joints.empty()) {
-      leaves.push_back(reach[link]);
-    }
+    if (robot.links[link].child_joints.empty()) leaves.push_back(reach[link]);
   }
   return leaves;
 }
@@ -147,17 +141,13 @@ std::size_t leafBelow(const RobotDescription& robot, std::size_t root) {
 
   // leaves moved by joints that don't lead to this tip
   std::vector<bool> on_path(robot.joints.size(), false);
-  for (const std::size_t j : jointsAbove(robot, tip.link)) {
-    on_path[j] = true;
-  }
+  for (const std::size_t j : jointsAbove(robot, tip.link)) on_path[j] = true;
   const auto described = [&robot](const Reach& leaf) {
     return robot.links[leaf.link].name + " (moved by " + robot.joints[leaf.last_movable].name + ")";
   };
   std::string others;
   for (const Reach& leaf : leaves) {
-    if (leaf.last_movable != kNone && !on_path[leaf.last_movable]) {
-      others += ", " + described(leaf);
-    }
+    if (leaf.last_movable != kNone && !on_path[leaf.last_movable]) others += ", " + described(leaf);
   }
   if (!others.empty()) {
     throw ModelError(where(robot), "tip", "one leaf below '" + robot.links[root].name + "'",
@@ -174,9 +164,7 @@ class LockedJoints {
  public:
   LockedJoints(const RobotDescription& robot, const UrdfOptions& options, const Path& path)
       : robot_(robot), on_path_(robot.joints.size(), false), used_(on_path_) {
-    for (const Step& step : path) {
-      on_path_[step.joint] = true;
-    }
+    for (const Step& step : path) on_path_[step.joint] = true;
     given_.resize(robot.joints.size());
     for (std::size_t j = 0; j < given_.size() && options.locked_position; ++j) {
       given_[j] = options.locked_position(robot.joints[j].name);
@@ -190,9 +178,7 @@ class LockedJoints {
   Transform<double> motion(std::size_t j) {
     const RobotDescription::Joint& joint = robot_.joints[j];
     auto X = Transform<double>::identity();
-    if (!isMovable(joint)) {
-      return X;
-    }
+    if (!isMovable(joint)) return X;
     if (joint.type == Type::kPlanar || joint.type == Type::kFloating) {
       throw ModelError(where(joint), "type", "an attached joint that can be held at one position",
                        joint.type == Type::kPlanar ? "planar" : "floating",
@@ -247,9 +233,7 @@ class LockedJoints {
                          "ignore attached bodies, or make it fixed");
       }
     }
-    if (!position_[source]) {
-      position_[source] = givenPosition(source);
-    }
+    if (!position_[source]) position_[source] = givenPosition(source);
     while (!followers.empty()) {
       const RobotDescription::Mimic& mimic = *robot_.joints[followers.back()].mimic;
       position_[followers.back()] = mimic.multiplier * *position_[source] + mimic.offset;
@@ -260,9 +244,7 @@ class LockedJoints {
   }
 
   double givenPosition(std::size_t j) {
-    if (!given_[j] || !isMovable(robot_.joints[j])) {
-      return 0;
-    }
+    if (!given_[j] || !isMovable(robot_.joints[j])) return 0;
     used_[j] = true;
     if (!std::isfinite(*given_[j])) {
       throw ModelError(where(robot_.joints[j]), "locked position", "a finite number",
@@ -296,15 +278,9 @@ class Builder {
   Chain chain() {
     for (const Step& step : path_) {
       const RobotDescription::Joint& joint = robot_.joints[step.joint];
-      if (!step.up) {
-        X_EU_ = X_EU_ * joint.placement;
-      }
-      if (isMovable(joint)) {
-        addJoint(joint, step.up);
-      }
-      if (step.up) {
-        X_EU_ = X_EU_ * joint.placement.inverse();
-      }
+      if (!step.up) X_EU_ = X_EU_ * joint.placement;
+      if (isMovable(joint)) addJoint(joint, step.up);
+      if (step.up) X_EU_ = X_EU_ * joint.placement.inverse();
       if (!links_.empty()) {
         const std::size_t link = step.up ? joint.parent : joint.child;
         links_.back() += X_EU_ * parameters(robot_.links[link]);
@@ -313,9 +289,7 @@ class Builder {
       }
     }
     checkMovable();
-    for (LinkParameters& parameters : links_) {
-      parameters = symmetric(parameters);
-    }
+    for (LinkParameters& parameters : links_) parameters = symmetric(parameters);
     const Chain chain(robot_.name, joints_, links_, options_.gravity.value_or(kDown), X_EU_);
     if (!options_.allow_massless) checkMassless(chain);
     return chain.withWarnings(warnings(chain));
@@ -346,9 +320,7 @@ class Builder {
     result.limits = joint.limits;
     result.damping = joint.damping;
     result.friction = joint.friction;
-    if (options_.rotor_inertia) {
-      result.rotor_inertia = options_.rotor_inertia(joint);
-    }
+    if (options_.rotor_inertia) result.rotor_inertia = options_.rotor_inertia(joint);
     joints_.push_back(result);
     links_.push_back(LinkParameters::zero());
     parts_.emplace_back();
@@ -357,13 +329,9 @@ class Builder {
 
   /// Adds bodies attached to a link of the path, beside the path or beyond its end.
   void lumpBranches(const Link& link) {
-    if (!options_.lump_attached) {
-      return;
-    }
+    if (!options_.lump_attached) return;
     for (const std::size_t j : link.child_joints) {
-      if (!locked_.onPath(j)) {
-        links_.back() += X_EU_ * branch(j);
-      }
+      if (!locked_.onPath(j)) links_.back() += X_EU_ * branch(j);
     }
     if (link.parent_joint != kNone && !locked_.onPath(link.parent_joint)) {
       links_.back() += X_EU_ * trunk(link);
@@ -377,9 +345,7 @@ class Builder {
     parts_.back().insert(parts_.back().end(), links.begin(), links.end());
     for (auto link = links.rbegin(); link != links.rend(); ++link) {  // children before parents
       LinkParameters body = parameters(robot_.links[*link]);
-      for (const std::size_t child : robot_.links[*link].child_joints) {
-        body += body_[child];
-      }
+      for (const std::size_t child : robot_.links[*link].child_joints) body += body_[child];
       const std::size_t j = robot_.links[*link].parent_joint;
       body_[j] = robot_.joints[j].placement * (locked_.motion(j) * body);
     }
@@ -400,9 +366,7 @@ class Builder {
       body += parameters(robot_.links[joint.parent]);
       parts_.back().push_back(joint.parent);
       for (const std::size_t child : robot_.links[joint.parent].child_joints) {
-        if (child != *j) {
-          body += branch(child);
-        }
+        if (child != *j) body += branch(child);
       }
       body = (joint.placement * locked_.motion(*j)).inverse() * body;
     }
@@ -460,9 +424,7 @@ class Builder {
       R_DR = robot_.joints[j].placement.R * R_DR;
     }
     const Eigen::Vector3d down = R_DR.transpose() * kDown;
-    if (options_.gravity || (down - kDown).norm() < kUpright * kDown.norm()) {
-      return;
-    }
+    if (options_.gravity || (down - kDown).norm() < kUpright * kDown.norm()) return;
     const Link& root = robot_.links[root_];
     std::ostringstream text;
     text << "URDF:" << root.line << ": link " << root.name
@@ -479,9 +441,7 @@ class Builder {
     const auto down = [this](const Step& step) {
       return !step.up && isMovable(robot_.joints[step.joint]);
     };
-    if (std::any_of(path_.begin(), path_.end(), down)) {
-      return;
-    }
+    if (std::any_of(path_.begin(), path_.end(), down)) return;
     const Link& root = robot_.links[root_];
     texts.push_back(printable("URDF:" + std::to_string(root.line) + ": link " + root.name +
                               ": as the root of the chain it is held, and tip " +

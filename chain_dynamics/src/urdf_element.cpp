@@ -67,9 +67,7 @@ std::vector<std::string> Findings::texts() const {
   std::vector<std::string> texts;
   for (const Finding& finding : findings_) {
     texts.push_back(finding.text);
-    if (finding.more > 0) {
-      texts.back() += " (and " + std::to_string(finding.more) + " more)";
-    }
+    if (finding.more > 0) texts.back() += " (and " + std::to_string(finding.more) + " more)";
   }
   if (left_out_ > 0) {
     texts.push_back("URDF: " + std::to_string(left_out_) + " more warnings aren't listed");
@@ -91,9 +89,7 @@ ModelError UrdfElement::error(const std::string& what, const std::string& expect
 // Attributes
 
 std::string UrdfElement::text(const char* key) const {
-  if (const char* value = element_->Attribute(key)) {
-    return value;
-  }
+  if (const char* value = element_->Attribute(key)) return value;
   std::vector<std::string> given;
   for (auto* other = element_->FirstAttribute(); other != nullptr; other = other->Next()) {
     given.emplace_back(other->Name());
@@ -145,9 +141,7 @@ Eigen::Vector3d UrdfElement::vector(const char* key) const {
 
 void UrdfElement::checkSize(const std::string& what, double value, double greatest,
                             const std::string& unit) const {
-  if (std::abs(value) <= greatest) {
-    return;
-  }
+  if (std::abs(value) <= greatest) return;
   const std::string got = numberText(value) + " " + unit;
   if (!(std::abs(value) <= kLargestNumber)) {
     throw error(what, "a number up to 1e50", got, "correct it, or its unit");
@@ -170,9 +164,7 @@ std::vector<const XMLElement*> childrenOf(const XMLElement& parent, const char* 
 
 std::optional<UrdfElement> UrdfElement::child(const char* child_tag) const {
   const auto found = childrenOf(*element_, child_tag);
-  if (found.empty()) {
-    return std::nullopt;
-  }
+  if (found.empty()) return std::nullopt;
   if (found.size() > 1) {
     throw UrdfElement(*found[1], item_, *findings_)
         .error("<" + std::string(child_tag) + ">", "at most one", std::to_string(found.size()));
@@ -181,13 +173,9 @@ std::optional<UrdfElement> UrdfElement::child(const char* child_tag) const {
 }
 
 UrdfElement UrdfElement::requiredChild(const char* child_tag, const std::string& remedy) const {
-  if (const auto found = child(child_tag)) {
-    return *found;
-  }
+  if (const auto found = child(child_tag)) return *found;
   std::vector<std::string> given;
-  for (const XMLElement* element : childrenOf(*element_)) {
-    given.emplace_back(element->Name());
-  }
+  for (const XMLElement* element : childrenOf(*element_)) given.emplace_back(element->Name());
   const std::string similar = nearestName(child_tag, given);
   throw error(tag(), "<" + std::string(child_tag) + ">", "none",
               similar.empty() ? remedy : "is it misspelt as <" + similar + ">?");
@@ -229,9 +217,7 @@ void UrdfElement::reportName(const std::string& at, const std::string& name, boo
                                              " isn't read; expand the file with xacro first");
     return;
   }
-  if (contains(read, name) || contains(others, name) || isOfNamespace(name)) {
-    return;
-  }
+  if (contains(read, name) || contains(others, name) || isOfNamespace(name)) return;
   if (findings_->isFull()) {  // hostile: don't compare with each known name any more
     findings_->add(name);
     return;
@@ -246,9 +232,7 @@ void UrdfElement::reportName(const std::string& at, const std::string& name, boo
   } else {
     std::vector<std::string> list;
     list.reserve(read.size());
-    for (const std::string& one : read) {
-      list.push_back(quoted(one, is_element));
-    }
+    for (const std::string& one : read) list.push_back(quoted(one, is_element));
     const std::string in_tag = is_element ? " in " + tag() : "";
     findings_->addOnce(tag() + quoted(name, is_element),
                        unread + (list.empty() ? "" : "; read" + in_tag + ": " + joined(list)));

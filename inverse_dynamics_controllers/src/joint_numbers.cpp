@@ -12,9 +12,7 @@ Eigen::VectorXd jointNumbers(const std::string& name, const std::vector<double>&
                              const std::vector<std::string>& joints) {
   const auto n = static_cast<Eigen::Index>(joints.size());
   if (values.size() == 1) return Eigen::VectorXd::Constant(n, values.front());
-  if (values.size() == joints.size()) {
-    return Eigen::Map<const Eigen::VectorXd>(values.data(), n);
-  }
+  if (values.size() == joints.size()) return Eigen::Map<const Eigen::VectorXd>(values.data(), n);
   throw inverse_dynamics_solver::InvalidParameterValueException(inverse_dynamics_solver::errorText(
       "parameter '" + name + "'", "wrong size", std::to_string(n) + " numbers, or one for all",
       std::to_string(values.size()), "give one for each of the joints " + joined(joints)));

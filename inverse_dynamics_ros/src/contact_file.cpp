@@ -25,16 +25,12 @@ double positive(const LocatedValue& value) {
 
 void readEstimator(LocatedMap& map, ContactFile& file) {
   file.gain = positive(map.required("gain"));
-  if (const auto tracking = map.optional("tracking")) {
-    file.tracking = positive(*tracking);
-  }
+  if (const auto tracking = map.optional("tracking")) file.tracking = positive(*tracking);
   if (const auto measured = map.optional("measured_velocities")) {
     file.measured_velocities = measured->truth();
   }
   if (const auto band = map.optional("friction_band")) {
-    for (const LocatedValue& entry : band->entries()) {
-      file.friction_band.push_back(entry.number());
-    }
+    for (const LocatedValue& entry : band->entries()) file.friction_band.push_back(entry.number());
   }
 }
 

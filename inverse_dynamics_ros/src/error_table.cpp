@@ -25,9 +25,7 @@ std::string value(double number) {
 
 double meanOf(const std::vector<JointMetrics>& errors, double JointMetrics::*field) {
   double sum = 0;
-  for (const JointMetrics& joint : errors) {
-    sum += joint.*field;
-  }
+  for (const JointMetrics& joint : errors) sum += joint.*field;
   return sum / static_cast<double>(errors.size());
 }
 
@@ -39,9 +37,7 @@ std::string lineOf(std::size_t width, const std::string& joint, const std::strin
     return std::string(all - std::min(all, text.size()), ' ');
   };
   std::string line = "  " + joint + blanks(width, joint) + "  " + unit + blanks(kUnit, unit);
-  for (const std::string& number : numbers) {
-    line += blanks(kNumber, number) + number;
-  }
+  for (const std::string& number : numbers) line += blanks(kNumber, number) + number;
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";
 }
@@ -50,15 +46,11 @@ std::string lineOf(std::size_t width, const std::string& joint, const std::strin
 
 std::string errorTable(const Evaluation& evaluation, const std::vector<std::string>& units) {
   const std::vector<JointMetrics>& errors = evaluation.errors;
-  if (errors.empty()) {
-    return "  no efforts are recorded: there is nothing to compare with\n";
-  }
+  if (errors.empty()) return "  no efforts are recorded: there is nothing to compare with\n";
   const auto& kept = evaluation.table->kept;
   const auto ofKept = [&kept](double rmse) { return kept.all() ? "" : value(rmse); };
   std::size_t width = std::string("joint").size();
-  for (const std::string& name : evaluation.joint_names) {
-    width = std::max(width, name.size());
-  }
+  for (const std::string& name : evaluation.joint_names) width = std::max(width, name.size());
   std::string text = lineOf(width, "joint", "unit",
                             {"MAE", "RMSE", "NRMSE", "bias", "R2", kept.all() ? "" : "RMSE*"});
   for (std::size_t j = 0; j < units.size(); ++j) {
@@ -75,9 +67,7 @@ std::string errorTable(const Evaluation& evaluation, const std::vector<std::stri
         {value(meanOf(errors, &JointMetrics::mae)), value(meanOf(errors, &JointMetrics::rmse)), "",
          "", "", ofKept(meanOf(evaluation.errors_of_kept, &JointMetrics::rmse))});
   }
-  if (kept.all()) {
-    return text;
-  }
+  if (kept.all()) return text;
   return text + "* over the " + std::to_string(kept.count()) + " valid samples of " +
          std::to_string(kept.size()) + "\n";
 }

@@ -60,9 +60,7 @@ void say(const rclcpp::Logger& logger, const std::string& line) {
 
 void sayAll(const rclcpp::Logger& logger, const std::vector<std::string>& notes,
             std::size_t first = 0) {
-  for (std::size_t k = first; k < notes.size(); ++k) {
-    RCLCPP_WARN(logger, "%s", notes[k].c_str());
-  }
+  for (std::size_t k = first; k < notes.size(); ++k) RCLCPP_WARN(logger, "%s", notes[k].c_str());
 }
 
 // The run configuration, if there is one, and where its description is from.

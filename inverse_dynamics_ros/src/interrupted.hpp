@@ -18,9 +18,7 @@ class Interrupted : public std::exception {
 
 /// @throws Interrupted: rclcpp was shut down, by Ctrl-C for one.
 inline void requireNoInterrupt() {
-  if (!rclcpp::ok()) {
-    throw Interrupted();
-  }
+  if (!rclcpp::ok()) throw Interrupted();
 }
 
 }  // namespace inverse_dynamics_ros

@@ -16,9 +16,7 @@ LiveContact::LiveContact(
 
 bool LiveContact::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
                          const Eigen::VectorXd& effort) {
-  if (started_ && stamp == stamp_) {
-    return false;
-  }
+  if (started_ && stamp == stamp_) return false;
   const double period = started_ ? periodOf(stamp - stamp_) : 0.0;
   // Efforts are samples as positions are; the estimator takes their mean since the sample before.
   mean_effort_ = effort;

@@ -44,9 +44,7 @@ std::string inWords(const Vector& vector) {
 void readFile(const ContactFile& file, const Parameters& given,
               live_node::Params::ExternalTorques& parameters) {
   const auto set = [&given](const char* name, auto& parameter, const auto& of_file) {
-    if (!given.find(kNamespace + name)) {
-      parameter = of_file;
-    }
+    if (!given.find(kNamespace + name)) parameter = of_file;
   };
   const auto numbers = [](const Eigen::VectorXd& vector) {
     return std::vector<double>(vector.data(), vector.data() + vector.size());
@@ -173,18 +171,14 @@ void LiveContactTopics::report(DiagnosticStatusWrapper& status) {
     status.mergeSummary(DiagnosticStatus::WARN, text(contact_->status()));
   }
   status.add("estimator", estimator_);
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    status.add(kCounted[k], counts[k]);
-  }
+  for (std::size_t k = 0; k < counts.size(); ++k) status.add(kCounted[k], counts[k]);
   reportWrench(status);
   reportContact(status);
   reported_ = estimates;
 }
 
 void LiveContactTopics::reportWrench(DiagnosticStatusWrapper& status) const {
-  if (contact_->tip() == nullptr || !contact_->hasWrench()) {
-    return;
-  }
+  if (contact_->tip() == nullptr || !contact_->hasWrench()) return;
   const inverse_dynamics_control::TipWrench& tip = *contact_->tip();
   const Eigen::Index unseen = tip.unseen();
   if (unseen > std::max<Eigen::Index>(0, 6 - tip.jointCount())) {
@@ -201,13 +195,9 @@ void LiveContactTopics::reportWrench(DiagnosticStatusWrapper& status) const {
 }
 
 void LiveContactTopics::reportContact(DiagnosticStatusWrapper& status) const {
-  if (contact_->detector() == nullptr) {
-    return;
-  }
+  if (contact_->detector() == nullptr) return;
   const inverse_dynamics_control::ContactDetector& detector = *contact_->detector();
-  if (detector.contact()) {
-    status.mergeSummary(DiagnosticStatus::OK, "contact");
-  }
+  if (detector.contact()) status.mergeSummary(DiagnosticStatus::OK, "contact");
   const auto joint = static_cast<std::size_t>(std::max<Eigen::Index>(0, detector.joint()));
   status.add("contact", detector.contact() ? joints_[joint] : "none");
   status.add("greatest torque by threshold", detector.excess());

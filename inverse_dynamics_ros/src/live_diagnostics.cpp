@@ -63,9 +63,7 @@ void LiveDiagnostics::summarize(Status& status, double age, double rate) const {
   if (counts_.clock_jumps > reported_.clock_jumps) {
     status.mergeSummary(DiagnosticStatus::WARN, "the clock jumped back");
   }
-  if (rate < limits_.min_rate) {
-    status.mergeSummary(DiagnosticStatus::WARN, "slower than min_rate");
-  }
+  if (rate < limits_.min_rate) status.mergeSummary(DiagnosticStatus::WARN, "slower than min_rate");
   if (counts_.not_finite > reported_.not_finite) {
     status.mergeSummary(DiagnosticStatus::WARN, "positions or velocities that aren't finite");
   }

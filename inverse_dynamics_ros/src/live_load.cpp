@@ -75,12 +75,8 @@ void LiveLoad::use(std::unique_ptr<PayloadRamp> ramp, const LiveRobot& robot) {
   ramp_ = std::move(ramp);
   robot_ = robot;
   variable_ = dynamic_cast<VariableGravity*>(robot_.solver.get());
-  if (variable_ != nullptr && gravity_) {
-    variable_->setGravity(*gravity_);
-  }
-  if (imus_ != nullptr) {
-    openImu();
-  }
+  if (variable_ != nullptr && gravity_) variable_->setGravity(*gravity_);
+  if (imus_ != nullptr) openImu();
 }
 
 // Begins with the solver's gravity.
@@ -95,9 +91,7 @@ void LiveLoad::openImu() {
 RigidBody LiveLoad::bodyOfParameters(const std::vector<rclcpp::Parameter>& wanted) const {
   const auto value = [&](const std::string& name) {
     for (const rclcpp::Parameter& parameter : wanted) {
-      if (parameter.get_name() == name) {
-        return parameter;
-      }
+      if (parameter.get_name() == name) return parameter;
     }
     return node_.get_parameter(name);
   };
@@ -112,9 +106,7 @@ rcl_interfaces::msg::SetParametersResult LiveLoad::check(
   result.successful = true;
   try {
     const RigidBody body = bodyOfParameters(wanted);
-    if (ramp_ != nullptr) {
-      ramp_->requireCarrier(body);
-    }
+    if (ramp_ != nullptr) ramp_->requireCarrier(body);
   } catch (const std::exception& error) {
     result.successful = false;
     result.reason = error.what();
@@ -138,9 +130,7 @@ void LiveLoad::takeGravity(const Vector3Stamped& message) {
           errorText("gravity", "of another source", "nothing", "a message",
                     "gravity comes from the IMU: set gravity_from_imu.use to nothing"));
     }
-    if (variable_ == nullptr) {
-      throwUnchangeable(robot_.plugin);
-    }
+    if (variable_ == nullptr) throwUnchangeable(robot_.plugin);
     const Eigen::Vector3d gravity(message.vector.x, message.vector.y, message.vector.z);
     variable_->setGravity(gravity);
     gravity_ = gravity;
@@ -150,13 +140,9 @@ void LiveLoad::takeGravity(const Vector3Stamped& message) {
 }
 
 void LiveLoad::takeImu(const Imu& message) {
-  if (!imu_) {
-    return;
-  }
+  if (!imu_) return;
   std::int64_t stamp = rclcpp::Time(message.header.stamp).nanoseconds();
-  if (stamp == 0) {
-    stamp = node_.now().nanoseconds();
-  }
+  if (stamp == 0) stamp = node_.now().nanoseconds();
   const GravityFromImu::Outcome outcome = imu_->update(message, stamp);
   if (outcome == GravityFromImu::Outcome::kTaken) {
     gravity_ = imu_->gravity();
@@ -171,9 +157,7 @@ void LiveLoad::takeImu(const Imu& message) {
 }
 
 void LiveLoad::aimAt(const RigidBody& body) {
-  if (ramp_ != nullptr) {
-    ramp_->aimAt(body);
-  }
+  if (ramp_ != nullptr) ramp_->aimAt(body);
   body_ = body;
 }
 
@@ -187,12 +171,8 @@ void LiveLoad::step() {
       RCLCPP_ERROR(node_.get_logger(), "payload: ignored: %s", error.what());
     }
   }
-  if (ramp_ != nullptr) {
-    ramp_->advance(std::chrono::duration<double>(kStep).count());
-  }
-  if (imu_ && gravity_ && *gravity_ != variable_->gravity()) {
-    variable_->setGravity(*gravity_);
-  }
+  if (ramp_ != nullptr) ramp_->advance(std::chrono::duration<double>(kStep).count());
+  if (imu_ && gravity_ && *gravity_ != variable_->gravity()) variable_->setGravity(*gravity_);
 }
 
 void LiveLoad::report(diagnostic_updater::DiagnosticStatusWrapper& status) const {

@@ -91,9 +91,7 @@ class LiveNode::Implementation {
     try {
       useSolver(description);
     } catch (const inverse_dynamics_solver::ParameterUninitializedException& error) {
-      if (!description.empty()) {
-        throw;
-      }
+      if (!description.empty()) throw;
       description_ = node_.create_subscription<String>(
           "robot_description", rclcpp::QoS(1).transient_local(),
           [this](const String& message) { takeDescription(message.data); });
@@ -149,15 +147,11 @@ class LiveNode::Implementation {
     auto contact = contact_ == nullptr ? nullptr : contact_->make(robot);
     load_.use(load_.make(robot), robot);
     payload_.use(robot);
-    if (contact_ != nullptr) {
-      contact_->use(std::move(contact), robot);
-    }
+    if (contact_ != nullptr) contact_->use(std::move(contact), robot);
   }
 
   void take(const JointState& message) {
-    if (live_ == nullptr) {
-      return;
-    }
+    if (live_ == nullptr) return;
     const rclcpp::Time now = node_.now();
     std::int64_t stamp = rclcpp::Time(message.header.stamp).nanoseconds();
     if (stamp == 0) {
@@ -170,18 +164,12 @@ class LiveNode::Implementation {
       return;
     }
     diagnostics_.arrived(1e-9 * static_cast<double>(now.nanoseconds() - stamp));
-    if (outcome != LiveTorques::Outcome::kMissing) {
-      diagnostics_.setMissing("");
-    }
-    if (outcome == LiveTorques::Outcome::kComputed) {
-      publish(message);
-    }
+    if (outcome != LiveTorques::Outcome::kMissing) diagnostics_.setMissing("");
+    if (outcome == LiveTorques::Outcome::kComputed) publish(message);
     if (outcome != LiveTorques::Outcome::kMissing &&
         outcome != LiveTorques::Outcome::kNoVelocities) {
       payload_.take(stamp, *live_);
-      if (contact_ != nullptr) {
-        contact_->take(message.header, stamp, *live_);
-      }
+      if (contact_ != nullptr) contact_->take(message.header, stamp, *live_);
     }
     report(outcome);
     previous_stamp_ = stamp;

@@ -32,9 +32,7 @@ LivePayload::LivePayload(
 
 void LivePayload::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eigen::VectorXd& qd,
                          const Eigen::VectorXd& effort) {
-  if (!q.allFinite() || !qd.allFinite() || !effort.allFinite()) {
-    return;
-  }
+  if (!q.allFinite() || !qd.allFinite() || !effort.allFinite()) return;
   // A continuous joint goes on where it is reported within one turn.
   for (Eigen::Index j = 0; j < n_; ++j) {
     samples_[j] = chain_dynamics::unwrapped(types_[static_cast<std::size_t>(j)], q[j], samples_[j]);
@@ -42,12 +40,8 @@ void LivePayload::update(std::int64_t stamp, const Eigen::VectorXd& q, const Eig
   samples_.segment(n_, n_) = qd;
   samples_.tail(n_) = effort;
   const OnlineDerivative::Step step = filter_.update(stamp, samples_);
-  if (step == OnlineDerivative::Step::kWentBack) {
-    estimator_.restart();
-  }
-  if (step == OnlineDerivative::Step::kRepeated || !filter_.settled()) {
-    return;
-  }
+  if (step == OnlineDerivative::Step::kWentBack) estimator_.restart();
+  if (step == OnlineDerivative::Step::kRepeated || !filter_.settled()) return;
   const auto& late = filter_.value();
   estimator_.update(1e-9 * static_cast<double>(stamp), late.head(n_), late.segment(n_, n_),
                     filter_.derivative().segment(n_, n_), late.tail(n_));

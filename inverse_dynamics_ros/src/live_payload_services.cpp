@@ -101,9 +101,7 @@ void LivePayloadServices::stop(Trigger::Response& response) {
   PayloadEstimate found(robot_.solver->jointCount());
   const PayloadStatus status = payload_->estimate(found);
   payload_.reset();
-  if (status != PayloadStatus::kOk) {
-    throw UserError(std::string("no estimate: ") + text(status));
-  }
+  if (status != PayloadStatus::kOk) throw UserError(std::string("no estimate: ") + text(status));
   response.message = inWords(found);
   response.success = found.mass_half_width < found.mass;
   if (!response.success) {

@@ -26,9 +26,7 @@ struct LiveRobot {
 
 /// A number per joint; a single number stands for all n.
 inline Eigen::VectorXd perJoint(const std::vector<double>& numbers, Eigen::Index n) {
-  if (numbers.size() == 1) {
-    return Eigen::VectorXd::Constant(n, numbers.front());
-  }
+  if (numbers.size() == 1) return Eigen::VectorXd::Constant(n, numbers.front());
   return Eigen::Map<const Eigen::VectorXd>(numbers.data(),
                                            static_cast<Eigen::Index>(numbers.size()));
 }

@@ -33,36 +33,24 @@ LiveTorques::Outcome LiveTorques::process(const sensor_msgs::msg::JointState& me
                                           std::int64_t stamp) {
   has_residual_ = false;
   const JointMatching::Found found = matching_.match(message.name);
-  if (found == JointMatching::Found::kNone) {
-    return Outcome::kOtherJoints;
-  }
-  if (found != JointMatching::Found::kAll) {
-    return Outcome::kMissing;
-  }
+  if (found == JointMatching::Found::kNone) return Outcome::kOtherJoints;
+  if (found != JointMatching::Found::kAll) return Outcome::kMissing;
   if (!pick(message.position, message.name.size(), q_) ||
       !pick(message.velocity, message.name.size(), qd_)) {
     return Outcome::kNoVelocities;
   }
   pickMeasured(message);
-  if (!q_.allFinite() || !qd_.allFinite()) {
-    return Outcome::kNotFinite;
-  }
+  if (!q_.allFinite() || !qd_.allFinite()) return Outcome::kNotFinite;
   step_ = accelerations_.update(stamp, qd_);
-  if (step_ == OnlineDerivative::Step::kRepeated) {
-    return Outcome::kRepeated;
-  }
-  if (!accelerations_.settled()) {
-    return Outcome::kSettling;
-  }
+  if (step_ == OnlineDerivative::Step::kRepeated) return Outcome::kRepeated;
+  if (!accelerations_.settled()) return Outcome::kSettling;
   solver_->getTorques(q_, qd_, accelerations_.derivative(), computed_);
   if (without_gravity_) {
     solver_->getGravityVector(q_, gravity_);
     computed_ -= gravity_;
   }
   has_residual_ = measured_.allFinite();
-  if (has_residual_) {
-    residual_ = measured_ - computed_;
-  }
+  if (has_residual_) residual_ = measured_ - computed_;
   return Outcome::kComputed;
 }
 
@@ -78,9 +66,7 @@ void LiveTorques::pickMeasured(const sensor_msgs::msg::JointState& message) {
 // The numbers of the joints; false if there isn't one per name.
 bool LiveTorques::pick(const std::vector<double>& numbers, std::size_t names,
                        Eigen::VectorXd& picked) const {
-  if (numbers.size() != names) {
-    return false;
-  }
+  if (numbers.size() != names) return false;
   for (std::size_t j = 0; j < matching_.columns().size(); ++j) {
     picked[static_cast<Eigen::Index>(j)] = numbers[matching_.columns()[j]];
   }

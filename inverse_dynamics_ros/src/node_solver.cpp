@@ -7,9 +7,7 @@ namespace inverse_dynamics_ros {
 void declareSolverParameters(rclcpp::Node& node) {
   const auto& overrides = node.get_node_parameters_interface()->get_parameter_overrides();
   for (const auto& [name, value] : overrides) {
-    if (name.rfind(kSolverNamespace + ".", 0) != 0) {
-      continue;
-    }
+    if (name.rfind(kSolverNamespace + ".", 0) != 0) continue;
     rcl_interfaces::msg::ParameterDescriptor descriptor;
     descriptor.read_only = true;
     descriptor.dynamic_typing = true;  // the solver checks types
@@ -23,9 +21,7 @@ inverse_dynamics_solver::Parameters givenParameters(rclcpp::Node& node) {
   for (const auto& [name, value] : overrides) {
     const auto found =
         inverse_dynamics_solver::detail::valueOf(name, rclcpp::Parameter(name, value));
-    if (found) {
-      given.emplace(name, *found);
-    }
+    if (found) given.emplace(name, *found);
   }
   return given;
 }

@@ -49,9 +49,7 @@ Parameters solverParametersOf(const RunConfiguration& robot, const Parameters& g
     all[prefix + name] = value;
   }
   for (const std::string& name : given.names()) {
-    if (name.rfind(prefix, 0) == 0) {
-      all[name] = *given.find(name);
-    }
+    if (name.rfind(prefix, 0) == 0) all[name] = *given.find(name);
   }
   return all;
 }
@@ -78,9 +76,7 @@ NodeRobot::NodeRobot(const Parameters& given)
 }
 
 std::string NodeRobot::description() const {
-  if (configuration_.urdf.empty()) {
-    return description_;
-  }
+  if (configuration_.urdf.empty()) return description_;
   std::ifstream file(configuration_.urdf);
   std::ostringstream text;
   if (!file || !(text << file.rdbuf())) {
@@ -116,18 +112,12 @@ std::string NodeRobot::rootLink(const std::string& description) const {
 std::string NodeRobot::tipLink(const std::string& description) const {
   const std::string stated = statedLink("tip");
   const auto robot = stated.empty() ? described(description) : std::nullopt;
-  if (!robot) {
-    return stated;
-  }
+  if (!robot) return stated;
   const std::size_t root = robot->linkIndex(rootLink(description));
-  if (root == chain_dynamics::RobotDescription::kNone) {
-    return "";
-  }
+  if (root == chain_dynamics::RobotDescription::kNone) return "";
   std::vector<std::string> leaves;
   for (const std::size_t link : robot->linksBelow(root)) {
-    if (robot->links[link].child_joints.empty()) {
-      leaves.push_back(robot->links[link].name);
-    }
+    if (robot->links[link].child_joints.empty()) leaves.push_back(robot->links[link].name);
   }
   return leaves.size() == 1 ? leaves.front() : "";
 }

@@ -100,9 +100,7 @@ CallbackReturn SimulatedArm::initialize(const hardware_interface::HardwareInfo& 
   }
   tau_.setZero(static_cast<Eigen::Index>(joints_.size()));
   Eigen::VectorXd q(tau_.size());
-  for (Eigen::Index j = 0; j < q.size(); ++j) {
-    q[j] = joints_[static_cast<std::size_t>(j)].position;
-  }
+  for (Eigen::Index j = 0; j < q.size(); ++j) q[j] = joints_[static_cast<std::size_t>(j)].position;
   arm_->setPosition(q);
   return CallbackReturn::SUCCESS;
 }

@@ -231,9 +231,7 @@ class ExportingBroadcaster : public ChainableController {
 
   /// What others read from now on: force, then torque. Real time: no allocation, exception or system call.
   void setStates(const std::array<double, 6>& values) noexcept {
-    for (std::size_t k = 0; k < states_.size(); ++k) {
-      setValue(*states_[k], values[k]);
-    }
+    for (std::size_t k = 0; k < states_.size(); ++k) setValue(*states_[k], values[k]);
   }
 
   // NOLINTBEGIN(readability-identifier-naming)

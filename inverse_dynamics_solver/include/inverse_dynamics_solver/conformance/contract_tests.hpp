@@ -196,9 +196,7 @@ TEST_P(SolverConformance, ManyThreadsGetTheNumbersOfOne) {
   // What one thread computes.
   std::vector<Eigen::VectorXd> expected;
   for (const State& x : states) {
-    for (const Quantity& quantity : all) {
-      expected.push_back(quantity.value(*solver_, x));
-    }
+    for (const Quantity& quantity : all) expected.push_back(quantity.value(*solver_, x));
   }
 
   // Each thread begins at another state, so that different states are computed at the same time.
