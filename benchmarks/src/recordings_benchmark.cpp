@@ -78,9 +78,9 @@ void write(const fs::path& path, Storage storage, std::size_t topic_count, std::
 
 void read(const fs::path& path, std::size_t messages) {
   const auto source = Recording(path).jointStates();
-  inverse_dynamics_evaluation::JointStateBlock block;
+  inverse_dynamics_evaluation::JointSample sample;
   std::size_t count = 0;
-  while (source->next(block)) count += block.size();
+  while (source->next(sample)) ++count;
   if (count != messages) throw std::runtime_error("not all messages were read");
 }
 

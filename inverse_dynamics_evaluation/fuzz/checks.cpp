@@ -12,9 +12,6 @@
 namespace inverse_dynamics_evaluation::fuzz {
 namespace {
 
-using inverse_dynamics_evaluation::JointStateBlock;
-using inverse_dynamics_evaluation::JointStateNumbers;
-
 // NaN too.
 bool isSame(const JointStateNumbers& a, const JointStateNumbers& b) {
   const std::size_t count = a.values.size();
@@ -41,15 +38,8 @@ void requireText(const std::string& text, const std::string& where) {
   require(fit, "control characters in an error", text);
 }
 
-void requireShape(const JointStateBlock& block) {
-  require(block.header_stamps.size() == block.size(), "stamps of a block");
-  for (const auto* field : {&block.position, &block.velocity, &block.effort}) {
-    require(field->values.size() == block.size() * field->columns, "numbers of a block");
-  }
-}
-
 bool isSame(const JointStateBlock& a, const JointStateBlock& b) {
-  return a.first == b.first && a.joint_names == b.joint_names && a.frame_id == b.frame_id &&
+  return a.joint_names == b.joint_names && a.frame_id == b.frame_id &&
          a.header_stamps == b.header_stamps && a.receive_stamps == b.receive_stamps &&
          isSame(a.position, b.position) && isSame(a.velocity, b.velocity) &&
          isSame(a.effort, b.effort);

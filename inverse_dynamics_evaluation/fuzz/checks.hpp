@@ -6,9 +6,10 @@
 #pragma once
 
 #include <cstdint>
-#include <inverse_dynamics_evaluation/joint_state_source.hpp>
 #include <string>
 #include <vector>
+
+#include "../test/joint_state_block.hpp"
 
 namespace inverse_dynamics_evaluation::fuzz {
 
@@ -18,12 +19,8 @@ void require(bool condition, const char* what, const std::string& detail = "");
 /// The text of an error names `where` at its beginning, is short and fit for a terminal.
 void requireText(const std::string& text, const std::string& where);
 
-/// Each field of a block has as many numbers as its messages and columns say.
-void requireShape(const inverse_dynamics_evaluation::JointStateBlock& block);
-
 /// Whether all that two blocks hold is the same, to the bit.
-bool isSame(const inverse_dynamics_evaluation::JointStateBlock& a,
-            const inverse_dynamics_evaluation::JointStateBlock& b);
+bool isSame(const JointStateBlock& a, const JointStateBlock& b);
 
 /// Inputs to begin with.
 using Seeds = std::vector<std::vector<std::uint8_t>>;

@@ -12,12 +12,11 @@
 #include <optional>
 
 #include "checks.hpp"
-#include "joint_state_cdr.hpp"
+#include "joint_state_encoder.hpp"
+#include "joint_states.hpp"
 
 namespace inverse_dynamics_evaluation::fuzz {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 // Memory of just its size, so that reading beyond it is seen.
 std::vector<Bytes> messagesOf(const std::uint8_t* data, std::size_t size) {
@@ -36,19 +35,16 @@ std::vector<Bytes> messagesOf(const std::uint8_t* data, std::size_t size) {
 std::optional<JointStateBlock> read(JointStateDecoder& decoder, const Bytes& message) {
   JointStateBlock block;
   try {
-    require(decoder.add(message.data(), message.size(), 7, block),
-            "an empty block takes a message");
+    block.add(decoder.decode(message.data(), message.size()));
   } catch (const DamageError& error) {
     requireText(error.what(), "");
     require(*error.what() != '\0', "an error without a text");
     return std::nullopt;
   }
-  require(block.size() == 1, "a message in a block");
-  requireShape(block);
   return block;
 }
 
-const double* numbersOf(const inverse_dynamics_evaluation::JointStateNumbers& field) {
+const double* numbersOf(const JointStateNumbers& field) {
   return field.columns == 0 ? nullptr : field.values.data();
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "checks.hpp"
-#include "inverse_dynamics_evaluation/low_pass.hpp"
+#include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "spectrum.hpp"
 
 namespace inverse_dynamics_evaluation {

@@ -8,17 +8,17 @@
 #include <memory>
 #include <utility>
 
+#include "checks.hpp"
 #include "examination.hpp"
 #include "figures.hpp"
+#include "filtering.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
-#include "table_accelerations.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using inverse_dynamics_solver::InverseDynamicsSolver;
 
 // Samples that a solver gets at once: whole groups of those that it computes in parallel, and few
@@ -56,113 +56,103 @@ auto named(const EvaluationOptions& options, Call call) {
   }
 }
 
-// Evaluates a table that has what was recorded.
-class Evaluator {
- public:
-  Evaluator(SampleTable& table, const InverseDynamicsSolver& solver,
-            const EvaluationOptions& options)
-      : table_(table), solver_(solver), options_(options) {}
+// Refuses columns of different lengths, fewer than two samples, and numbers that aren't finite.
+void check(const RecordedColumns& columns) {
+  const auto& [header_stamps, receive_stamps, clock, q, qd, effort, qdd] = columns;
+  requireSamples("samples", "qd", qd, 2);
+  requireStampPerSample("samples", header_stamps.cast<double>(), qd);
+  checkSamples(receive_stamps.cast<double>(), q, qd, effort);
+  if (qdd.size() > 0) requireSameSize("samples", "qdd", qdd, "qd", qd);
+}
 
-  /// Adds all that comes of it to what is known: what efforts are stated to mean, the recording.
-  void evaluate(Evaluation& result) {
-    result.joint_names = solver_.jointNames();
-    Stopwatch watch;
-    const std::vector<std::string> jumps =
-        unwrapPositions(table_, solver_.jointTypes(), result.joint_names);
-    AccelerationOptions accelerations;
-    accelerations.method = options_.method;
-    accelerations.cutoff = options_.cutoff;
-    accelerations.rules = options_.rules;
-    result.accelerations =
-        named(options_, [&] { return findAccelerations(table_, accelerations); });
-    result.acceleration_seconds = watch.lap();
-    computeTorques();
-    const bool recorded = table_.effort.size() > 0;
-    if (result.effort.meaning == kAutomatic) {
-      result.effort = effortOfData(
-          options_.ask && recorded ? options_.ask(result) : EffortVerdict(), options_.effort);
+// Calls `visit` with number and count of some samples at a time, and tells the progress to `share`.
+template <class Visit>
+void forEachBlock(Index samples, const EvaluationOptions& options, double share, double end_share,
+                  Visit visit) {
+  for (Index first = 0; first < samples; first += kSamplesAtOnce) {
+    if (options.progress) {
+      options.progress(share + (end_share - share) * static_cast<double>(first) /
+                                   static_cast<double>(samples));
     }
-    if (result.effort.meaning == kTorqueWithoutGravity) {
-      forEachBlock(kComputed, kComputed, [&](Index first, Index count) {
-        table_.computed.middleCols(first, count) -= gravity(first, count);
-      });
-    }
-    if (recorded) {
-      compare(result);
-    }
-    result.torque_seconds = watch.lap();
-    addNotes(result, jumps);
-    tell(1.0);
+    visit(first, std::min(kSamplesAtOnce, samples - first));
   }
+}
 
- private:
-  void tell(double share) const {
-    if (options_.progress) {
-      options_.progress(share);
-    }
+void computeTorques(SampleTable& table, const InverseDynamicsSolver& solver,
+                    const EvaluationOptions& options) {
+  forEachBlock(table.size(), options, kAccelerated, kComputed, [&](Index first, Index count) {
+    auto computed = table.computed.middleCols(first, count);
+    solver.getTorquesBatch(table.q.middleCols(first, count), table.qd.middleCols(first, count),
+                           table.qdd.middleCols(first, count), computed);
+    requirePossibleTorques(options.recording, solver.jointNames(), options.units, computed, first);
+  });
+}
+
+// What efforts mean, as stated or as the data tell; computed torques then are without gravity where
+// efforts are.
+void settleEffort(Evaluation& result, const InverseDynamicsSolver& solver,
+                  const EvaluationOptions& options) {
+  SampleTable& table = *result.table;
+  if (result.effort.meaning == kAutomatic) {
+    const bool asked = options.ask && table.effort.size() > 0;
+    result.effort = effortOfData(asked ? options.ask(result) : EffortVerdict(), options.effort);
   }
+  if (result.effort.meaning != kTorqueWithoutGravity) return;
+  forEachBlock(table.size(), options, kComputed, kComputed, [&](Index first, Index count) {
+    table.computed.middleCols(first, count) -=
+        solver.getGravityVectorBatch(table.q.middleCols(first, count));
+  });
+}
 
-  // Calls `visit` with number and count of some samples at a time, until all were visited.
-  template <class Visit>
-  void forEachBlock(double share, double end_share, Visit visit) const {
-    const Index all = table_.size();
-    for (Index first = 0; first < all; first += kSamplesAtOnce) {
-      tell(share + (end_share - share) * static_cast<double>(first) / static_cast<double>(all));
-      visit(first, std::min(kSamplesAtOnce, all - first));
-    }
+// Measured torques, and errors of the computed ones.
+void compare(Evaluation& result, const EvaluationOptions& options) {
+  SampleTable& table = *result.table;
+  forEachBlock(table.size(), options, kComputed, kMeasured, [&](Index first, Index count) {
+    table.measured.middleCols(first, count) =
+        result.effort.torques(table.effort.middleCols(first, count));
+  });
+  result.errors = metrics(table.computed, table.measured);
+  result.errors_of_kept = metrics(table.computed, table.measured, Mask(table.kept));
+}
+
+// Evaluates a table that has what was recorded, and efforts whose stated meaning is known.
+void evaluateTable(Evaluation& result, const InverseDynamicsSolver& solver,
+                   const EvaluationOptions& options) {
+  SampleTable& table = *result.table;
+  result.joint_names = solver.jointNames();
+  Stopwatch watch;
+  const std::vector<std::string> jumps =
+      unwrapPositions(table, solver.jointTypes(), result.joint_names);
+  LowPassOptions filter;
+  filter.cutoff = options.cutoff;
+  filter.rules = options.rules;
+  result.accelerations =
+      named(options, [&] { return findAccelerations(table, options.method, filter); });
+  result.acceleration_seconds = watch.lap();
+  computeTorques(table, solver, options);
+  settleEffort(result, solver, options);
+  const bool recorded = table.effort.size() > 0;
+  if (recorded) compare(result, options);
+  result.torque_seconds = watch.lap();
+  for (const std::vector<std::string>& notes :
+       {solver.warnings(), options.notes, table.notes,
+        effortNotes(result.effort, options.effort, recorded && table.effort.isZero(0),
+                    driveGainsOf(solver)),
+        result.accelerations.findings, jumps}) {
+    result.notes.insert(result.notes.end(), notes.begin(), notes.end());
   }
-
-  MatrixXd gravity(Index first, Index count) const {
-    return solver_.getGravityVectorBatch(table_.q.middleCols(first, count));
-  }
-
-  void computeTorques() {
-    forEachBlock(kAccelerated, kComputed, [&](Index first, Index count) {
-      auto computed = table_.computed.middleCols(first, count);
-      solver_.getTorquesBatch(table_.q.middleCols(first, count), table_.qd.middleCols(first, count),
-                              table_.qdd.middleCols(first, count), computed);
-      requirePossibleTorques(options_.recording, solver_.jointNames(), options_.units, computed,
-                             first);
-    });
-  }
-
-  // Measured torques, once it is known what efforts mean, and errors.
-  void compare(Evaluation& result) const {
-    forEachBlock(kComputed, kMeasured, [&](Index first, Index count) {
-      table_.measured.middleCols(first, count) =
-          result.effort.torques(table_.effort.middleCols(first, count));
-    });
-    result.errors = metrics(table_.computed, table_.measured);
-    result.errors_of_kept = metrics(table_.computed, table_.measured, Mask(table_.kept));
-  }
-
-  void addNotes(Evaluation& result, const std::vector<std::string>& jumps) const {
-    const auto add = [&](const std::vector<std::string>& more) {
-      result.notes.insert(result.notes.end(), more.begin(), more.end());
-    };
-    add(solver_.warnings());
-    add(options_.notes);
-    add(result.recording.notes);
-    const bool all_zero = table_.effort.size() > 0 && table_.effort.isZero(0);
-    add(effortNotes(result.effort, options_.effort, all_zero, driveGainsOf(solver_)));
-    add(result.accelerations.findings);
-    add(jumps);
-  }
-
-  SampleTable& table_;
-  const InverseDynamicsSolver& solver_;
-  const EvaluationOptions& options_;
-};
+  if (options.progress) options.progress(1.0);
+}
 
 }  // namespace
 
-Evaluation evaluate(const JointLogView& log, const InverseDynamicsSolver& solver,
+Evaluation evaluate(const RecordedColumns& columns, const InverseDynamicsSolver& solver,
                     const EvaluationOptions& options) {
-  named(options, [&] { checkLog(log); });
+  named(options, [&] { check(columns); });
   Evaluation result;
   result.effort = statedEffort(options.effort);
-  result.table = tableOf(log);
-  Evaluator(*result.table, solver, options).evaluate(result);
+  result.table = tableOf(columns);
+  evaluateTable(result, solver, options);
   return result;
 }
 
@@ -176,9 +166,9 @@ Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
   if (options.progress) {
     progress = [&](double share) { options.progress(kRead * share); };
   }
-  result.recording = readTable(source, recording, *result.table, progress);
+  readTable(source, recording, *result.table, progress);
   result.reading_seconds = watch.lap();
-  Evaluator(*result.table, solver, options).evaluate(result);
+  evaluateTable(result, solver, options);
   return result;
 }
 

@@ -60,9 +60,6 @@ std::unique_ptr<SampleTable> tableOf(const Eigen::Ref<const Eigen::VectorXd>& ti
                                      const Eigen::Ref<const Eigen::MatrixXd>& qd,
                                      const Eigen::Ref<const Eigen::MatrixXd>& effort);
 
-/// A log as a table.
-std::unique_ptr<SampleTable> tableOf(const JointLogView& log);
-
 /// Copies the table's flags and instants into a report.
 void addSeries(const SampleTable& table, SampleReport& report);
 

@@ -3,36 +3,11 @@
 #include "inverse_dynamics_evaluation/joint_matching.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <chain_dynamics/text.hpp>
 #include <utility>
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
-namespace {
-
-// The beginning of a name, and nothing that a terminal acts upon.
-std::string harmless(const std::string& name) {
-  constexpr std::size_t kLongest = 60;
-  std::size_t end = std::min(name.size(), kLongest);
-  while (end > 0 && end < name.size() && (static_cast<unsigned char>(name[end]) & 0xc0U) == 0x80U) {
-    --end;  // no part of a character in UTF-8
-  }
-  std::string text;
-  for (const char letter : name.substr(0, end)) {
-    const auto code = static_cast<unsigned char>(letter);
-    if (code < 0x20 || code == 0x7f) {
-      char escape[5];
-      std::snprintf(escape, sizeof escape, "\\x%02x", static_cast<unsigned>(code));
-      text += escape;
-    } else {
-      text += letter;
-    }
-  }
-  return end < name.size() ? text + "..." : text;
-}
-
-}  // namespace
-
 JointMatching::JointMatching(std::vector<std::string> joints)
     : joints_(std::move(joints)), columns_(joints_.size()) {}
 
@@ -65,10 +40,10 @@ JointMatching::Found JointMatching::match(const std::vector<std::string>& names)
 }
 
 std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 20;
+  constexpr std::size_t kMost = 20, kLongest = 60;
   std::string text;
   for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
-    text += (i == 0 ? "" : ", ") + harmless(names[i]);
+    text += (i == 0 ? "" : ", ") + chain_dynamics::printable(names[i], kLongest);
   }
   if (names.size() > kMost) {
     text += " and " + std::to_string(names.size() - kMost) + " others";

@@ -13,24 +13,25 @@ inline namespace v2 {
 namespace {
 
 using Eigen::ArrayXd;
+using Eigen::ArrayXXd;
 using Eigen::Index;
 using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
-using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
 
-// Sums over samples of n joints, whose rounding errors are kept: of 256 samples at once, short enough
-// to be exact to some roundings, then of these [Neumaier 1974, doi 10.1002/zamm.19740540106].
+// Sums over samples, whose rounding errors are kept: of 256 samples at once, short enough to be exact
+// to some roundings, then of these [Neumaier 1974, doi 10.1002/zamm.19740540106].
 class Sums {
  public:
-  explicit Sums(Index joints) : part_(ArrayXd::Zero(joints)), sum_(part_), lost_(part_) {}
+  Sums(Index joints, Index quantities)
+      : part_(ArrayXXd::Zero(joints, quantities)), sum_(part_), lost_(part_) {}
 
   /// The next sample.
-  template <class Numbers>
-  void add(const Eigen::ArrayBase<Numbers>& numbers) {
+  void add(const Eigen::Ref<const ArrayXXd>& numbers) {
     part_ += numbers;
     if (++added_ % 256 == 0) join();
   }
 
-  ArrayXd total() const {
+  /// joints x quantities
+  ArrayXXd total() const {
     Sums all = *this;
     all.join();
     return all.sum_ + all.lost_;
@@ -38,13 +39,13 @@ class Sums {
 
  private:
   void join() {
-    const ArrayXd total = sum_ + part_;
+    const ArrayXXd total = sum_ + part_;
     lost_ += (sum_.abs() >= part_.abs()).select((sum_ - total) + part_, (part_ - total) + sum_);
     sum_ = total;
     part_.setZero();
   }
 
-  ArrayXd part_, sum_, lost_;
+  ArrayXXd part_, sum_, lost_;
   Index added_ = 0;
 };
 
@@ -59,7 +60,7 @@ class Sums {
 
 // Mean of the measured torques that count, and refuses what isn't finite.
 ArrayXd meanOf(const ConstMatrix& computed, const ConstMatrix& measured, const Mask& mask) {
-  Sums sums(measured.rows());
+  Sums sums(measured.rows(), 1);
   for (Index k = 0; k < mask.size(); ++k) {
     if (!mask[k]) continue;
     for (Index j = 0; j < measured.rows(); ++j) {
@@ -72,62 +73,53 @@ ArrayXd meanOf(const ConstMatrix& computed, const ConstMatrix& measured, const M
   return sums.total() / static_cast<double>(mask.count());
 }
 
-// What metrics are made of.
-class Errors {
- public:
-  /// @param mean  of the measured torques.
-  explicit Errors(const ArrayXd& mean)
-      : mean_(mean),
-        error_(mean.size()),
-        sum_(mean.size()),
-        absolute_(mean.size()),
-        square_(mean.size()),
-        deviation_(mean.size()),
-        least_(ArrayXd::Constant(mean.size(), std::numeric_limits<double>::infinity())),
-        greatest_(-least_),
-        metrics_(static_cast<std::size_t>(mean.size())) {}
+// What sums of |e|, e, e^2, and squared differences of measured torques to their mean, say.
+void finish(JointMetrics& joint, const Eigen::Array4d& sums) {
+  const auto count = static_cast<double>(joint.count);
+  joint.mae = sums[0] / count;
+  joint.bias = sums[1] / count;
+  joint.rmse = std::sqrt(sums[2] / count);
+  // a constant signal has no range: its mean may still be off by rounding, so ask the range
+  const bool constant = joint.measured_range == 0;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  joint.nrmse = constant ? nan : joint.rmse / joint.measured_range;
+  joint.r2 = constant ? nan : 1.0 - sums[2] / sums[3];
+}
 
-  void add(const ConstVector& computed, const ConstVector& measured, Index k) {
-    error_ = computed.array() - measured.array();
-    sum_.add(error_);
-    absolute_.add(error_.abs());
-    square_.add(error_.square());
-    deviation_.add((measured.array() - mean_).square());
-    least_ = least_.min(measured.array());
-    greatest_ = greatest_.max(measured.array());
-    for (Index j = 0; j < error_.size(); ++j) {
-      JointMetrics& joint = metrics_[static_cast<std::size_t>(j)];
-      if (joint.count++ == 0 || std::abs(error_[j]) > joint.max_abs) {
-        joint.max_abs = std::abs(error_[j]);
-        joint.max_at = k;
-      }
-    }
-  }
-
-  std::vector<JointMetrics> metrics() const {
-    std::vector<JointMetrics> result = metrics_;
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (Index j = 0; j < error_.size(); ++j) {
+std::vector<JointMetrics> errorsOf(const ConstMatrix& computed, const ConstMatrix& measured,
+                                   const Mask& mask) {
+  const ArrayXd mean = meanOf(computed, measured, mask);
+  const Index joints = measured.rows();
+  std::vector<JointMetrics> result(static_cast<std::size_t>(joints));
+  ArrayXXd terms(joints, 4);
+  Sums sums(joints, 4);
+  ArrayXd least = ArrayXd::Constant(joints, std::numeric_limits<double>::infinity());
+  ArrayXd greatest = -least;
+  for (Index k = 0; k < mask.size(); ++k) {
+    if (!mask[k]) continue;
+    const auto torque = measured.col(k).array();
+    terms.col(1) = computed.col(k).array() - torque;
+    terms.col(0) = terms.col(1).abs();
+    terms.col(2) = terms.col(1).square();
+    terms.col(3) = (torque - mean).square();
+    sums.add(terms);
+    least = least.min(torque);
+    greatest = greatest.max(torque);
+    for (Index j = 0; j < joints; ++j) {
       JointMetrics& joint = result[static_cast<std::size_t>(j)];
-      const auto count = static_cast<double>(joint.count);
-      joint.mae = absolute_.total()[j] / count;
-      joint.rmse = std::sqrt(square_.total()[j] / count);
-      joint.bias = sum_.total()[j] / count;
-      // a constant signal has no range: its mean may still be off by rounding, so ask the range
-      joint.measured_range = greatest_[j] - least_[j];
-      const bool constant = joint.measured_range == 0;
-      joint.nrmse = constant ? nan : joint.rmse / joint.measured_range;
-      joint.r2 = constant ? nan : 1.0 - square_.total()[j] / deviation_.total()[j];
+      if (joint.count++ > 0 && terms(j, 0) <= joint.max_abs) continue;
+      joint.max_abs = terms(j, 0);
+      joint.max_at = k;
     }
-    return result;
   }
-
- private:
-  ArrayXd mean_, error_;
-  Sums sum_, absolute_, square_, deviation_;  // of e, |e|, e^2; squared differences to the mean
-  ArrayXd least_, greatest_;                  // measured
-  std::vector<JointMetrics> metrics_;
-};
+  const ArrayXXd totals = sums.total();
+  for (Index j = 0; j < joints; ++j) {
+    JointMetrics& joint = result[static_cast<std::size_t>(j)];
+    joint.measured_range = greatest[j] - least[j];
+    finish(joint, totals.row(j).transpose());
+  }
+  return result;
+}
 
 }  // namespace
 
@@ -139,11 +131,7 @@ std::vector<JointMetrics> metrics(const ConstMatrix& computed, const ConstMatrix
     throw EvaluationError("metrics", "samples", "one or more to compare",
                           "none of " + std::to_string(mask.size()), "select some");
   }
-  Errors errors(meanOf(computed, measured, mask));
-  for (Index k = 0; k < mask.size(); ++k) {
-    if (mask[k]) errors.add(computed.col(k), measured.col(k), k);
-  }
-  return errors.metrics();
+  return errorsOf(computed, measured, mask);
 }
 
 std::vector<JointMetrics> metrics(const ConstMatrix& computed, const ConstMatrix& measured) {

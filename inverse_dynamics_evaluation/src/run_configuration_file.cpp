@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
-#include "inverse_dynamics_evaluation/log_accelerations.hpp"
 #include "inverse_dynamics_evaluation/package_share.hpp"
 #include "inverse_dynamics_evaluation/run_configuration.hpp"
 
@@ -250,12 +250,7 @@ RunConfiguration readRunConfiguration(const std::string& name_or_file) {
   const bool is_file =
       path.extension() == ".yaml" || path.extension() == ".yml" || path.filename() != path;
   if (is_file) {
-    std::string file = name_or_file;
-    try {
-      file = resolvedPath(name_or_file, "");
-    } catch (const ConfigurationError&) {
-      // of a user that isn't there: nor is the file
-    }
+    const std::string file = resolvedPath(name_or_file, "");
     if (!isFile(file)) {
       throwConfigurationError(name_or_file +
                               ": no such file; expected a run configuration, or one of the names " +

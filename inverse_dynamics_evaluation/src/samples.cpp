@@ -27,6 +27,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kNanosecond = 1e-9;
+constexpr double kJust = 1 + 1e-9;  // times a limit: rounding doesn't take a distance beyond it
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kGapPeriods = 20.0;    // a gap is longer than this many sampling periods
 constexpr double kClearlyBetter = 0.8;  // of the stamps' disagreement: then another time base
@@ -57,81 +58,6 @@ void markFaults(SampleTable& table) {
   }
 }
 
-// Between which samples distances are.
-enum class Neighbours {
-  kAll,    // ns
-  kFresh,  // in samples; repeats that are left out aside
-  kUsed,   // ns; of fresh ones, those with a stamp of their own
-};
-
-// Distances of neighbours in a table.
-class Distances {
- public:
-  Distances(SampleTable& table, const SampleRules& rules, Neighbours neighbours)
-      : table_(table), rules_(rules), neighbours_(neighbours) {}
-
-  /// Mean of those that are at most `limit` in size; 0 if there are none.
-  double mean(double limit) const {
-    double sum = 0, count = 0;
-    forEach(limit, [&](double distance) { sum += distance, ++count; });
-    return count > 0 ? sum / count : 0;
-  }
-
-  /// Root mean square of their deviation from it.
-  double deviation(double limit) const {
-    const double middle = mean(limit);
-    double squares = 0, count = 0;
-    forEach(limit, [&](double distance) { squares += std::pow(distance - middle, 2), ++count; });
-    return count > 0 ? std::sqrt(squares / count) : 0;
-  }
-
-  /// Their median; 0 if there are none.
-  double median(double limit) const {
-    auto all = table_.scratch(1, table_.size());
-    Index count = 0;
-    forEach(limit, [&](double distance) { all(0, count++) = distance; });
-    double* const middle = all.data() + (count > 0 ? (count - 1) / 2 : 0);
-    if (count > 0) std::nth_element(all.data(), middle, all.data() + count);
-    return count > 0 ? *middle : 0;
-  }
-
-  /// Mean, gaps aside [s]. @param unit  s; of the distances.
-  double meanPeriod(double unit, double longest_gap) const {
-    double period = unit * mean(kInfinity);
-    for (bool changed = true; changed;) {
-      const double nearer = unit * mean(gapFrom(longest_gap, period) / unit);
-      changed = nearer < period;  // some distance is at most the mean
-      period = std::min(period, nearer);
-    }
-    return period;
-  }
-
- private:
-  template <class Visit>
-  void forEach(double limit, Visit visit) const {
-    Index last = -1;
-    for (Index k = 0; k < table_.size(); ++k) {
-      const bool fresh = !(rules_.repeated && table_.repeated[k]);
-      if (neighbours_ != Neighbours::kAll &&
-          !(fresh && (neighbours_ == Neighbours::kFresh || !table_.non_increasing[k]))) {
-        continue;
-      }
-      if (last >= 0) {
-        const double distance =
-            neighbours_ == Neighbours::kFresh
-                ? static_cast<double>(k - last)
-                : std::round((table_.time[k] - table_.time[last]) / kNanosecond);
-        if (std::abs(distance) <= limit) visit(distance);
-      }
-      last = k;
-    }
-  }
-
-  SampleTable& table_;
-  const SampleRules& rules_;
-  Neighbours neighbours_;
-};
-
 // When each sample was taken, under a time base.
 struct Timing {
   // s; of sample `k`, which is fresh sample number `i`.
@@ -146,15 +72,15 @@ struct Timing {
   }
 
   // Whether a fresh sample has an instant of its own.
-  bool uses(bool non_increasing) const { return base != TimeBase::kStamps || !non_increasing; }
-
-  // s; between neighbours at equal distances.
-  double step() const {
-    const Index samples = base == TimeBase::kRegularFresh ? fresh : count;
-    return samples > 1 ? duration / static_cast<double>(samples - 1) : 0.0;
+  bool uses(bool non_increasing) const {
+    return every || base != TimeBase::kStamps || !non_increasing;
   }
 
+  // s; of distances: stamps are whole nanoseconds, which sums then keep exactly.
+  double unit() const { return base == TimeBase::kStamps ? kNanosecond : 1.0; }
+
   TimeBase base = TimeBase::kStamps;
+  bool every = false;   // as stamped, also where stamps don't increase
   Index count = 0;      // N; samples
   Index fresh = 0;      // of them, without repeats that are left out
   double begin = 0;     // s; first stamp
@@ -189,34 +115,77 @@ Census takeCensus(const SampleTable& table, const SampleRules& rules) {
   return census;
 }
 
-// Distances that say how far apart samples are under a time base.
-class Periods {
- public:
-  Periods(SampleTable& table, const Census& census, const SampleRules& rules, TimeBase base)
-      : base_(base),
-        longest_gap_(rules.longest_gap),
-        distances_(table, rules,
-                   base == TimeBase::kStamps ? Neighbours::kUsed : Neighbours::kFresh) {
-    Timing timing = census.timing;
-    timing.base = base;
-    unit_ = base == TimeBase::kStamps ? kNanosecond : timing.step();
+// Calls `visit(k, time)` with the samples that have an instant of their own under a time base.
+template <class Visit>
+void forEachOwn(const SampleTable& table, const SampleRules& rules, const Timing& timing,
+                Visit visit) {
+  Index fresh = 0;  // samples before that are
+  for (Index k = 0; k < table.size(); ++k) {
+    if (rules.repeated && table.repeated[k]) continue;
+    const double time = timing(k, fresh++, table.time[k]);
+    if (timing.uses(table.non_increasing[k])) visit(k, time);
   }
+}
 
-  /// s; mean, gaps aside.
-  double mean() const {
-    return base_ == TimeBase::kRegularFresh ? unit_ : distances_.meanPeriod(unit_, longest_gap_);
-  }
-  /// s; median of those that aren't gaps: a sample that was lost doesn't change it.
-  double median(double gap) const {
-    return base_ == TimeBase::kRegularFresh ? unit_ : unit_ * distances_.median(gap / unit_);
-  }
+// Calls `visit` with the distances [timing.unit()] of neighbours among those samples.
+template <class Visit>
+void forEachDistance(const SampleTable& table, const SampleRules& rules, const Timing& timing,
+                     Visit visit) {
+  double before = std::numeric_limits<double>::quiet_NaN();
+  forEachOwn(table, rules, timing, [&](Index /*k*/, double time) {
+    const double distance = time - std::exchange(before, time);
+    if (std::isnan(distance)) return;
+    visit(timing.base == TimeBase::kStamps ? std::round(distance / kNanosecond) : distance);
+  });
+}
 
- private:
-  TimeBase base_;
-  double longest_gap_;
-  Distances distances_;
-  double unit_;  // s
-};
+// Mean of the distances that are at most `limit` [s]; 0 if there are none.
+double meanDistance(const SampleTable& table, const SampleRules& rules, const Timing& timing,
+                    double limit) {
+  double sum = 0, count = 0;
+  forEachDistance(table, rules, timing, [&](double distance) {
+    if (std::abs(distance) <= limit / timing.unit()) sum += distance, ++count;
+  });
+  return count > 0 ? timing.unit() * (sum / count) : 0;
+}
+
+// Mean distance of the samples, gaps aside [s].
+double meanPeriod(const SampleTable& table, const SampleRules& rules, const Timing& timing) {
+  double period = meanDistance(table, rules, timing, kInfinity);
+  for (bool changed = true; changed;) {
+    const double nearer =
+        meanDistance(table, rules, timing, kJust * gapFrom(rules.longest_gap, period));
+    changed = nearer < period;  // some distance is at most the mean
+    period = std::min(period, nearer);
+  }
+  return period;
+}
+
+// Median of the distances that are at most `limit` [s]: a sample that was lost doesn't change it.
+double medianDistance(SampleTable& table, const SampleRules& rules, const Timing& timing,
+                      double limit) {
+  auto all = table.scratch(1, table.size());
+  Index count = 0;
+  forEachDistance(table, rules, timing, [&](double distance) {
+    if (std::abs(distance) <= limit / timing.unit()) all(0, count++) = distance;
+  });
+  double* const middle = all.data() + (count > 0 ? (count - 1) / 2 : 0);
+  if (count > 0) std::nth_element(all.data(), middle, all.data() + count);
+  return count > 0 ? timing.unit() * *middle : 0;
+}
+
+// Root mean square by which the distances that are at most `limit` [s] deviate from their mean.
+double deviation(const SampleTable& table, const SampleRules& rules, const Timing& timing,
+                 double limit) {
+  const double middle = meanDistance(table, rules, timing, limit) / timing.unit();
+  double squares = 0, count = 0;
+  forEachDistance(table, rules, timing, [&](double distance) {
+    if (std::abs(distance) > limit / timing.unit()) return;
+    squares += std::pow(distance - middle, 2);
+    ++count;
+  });
+  return count > 0 ? timing.unit() * std::sqrt(squares / count) : 0;
+}
 
 // What is left to be done about stamps that don't increase.
 void checkStamps(const Census& census, const SampleRules& rules, TimeBase base) {
@@ -297,12 +266,8 @@ Base tryTimeBase(const SampleTable& table, const Timing& timing, double gap, Ind
   Disagreement many(std::clamp<Index>(used - 1, 1, kLongIntervals), table.q.rows());
   ArrayXd error(table.q.rows());
   Piece piece;
-  Index fresh = 0;    // samples before that are
   Index before = -1;  // the sample before that has an instant
-  for (Index k = 0; k < table.size(); ++k) {
-    if (rules.repeated && table.repeated[k]) continue;
-    const double time = timing(k, fresh++, table.time[k]);
-    if (!timing.uses(table.non_increasing[k])) continue;
+  forEachOwn(table, rules, timing, [&](Index k, double time) {
     const double distance = time - piece.end;
     const bool begins = before < 0 || distance > gap;
     if (begins) {
@@ -323,7 +288,7 @@ Base tryTimeBase(const SampleTable& table, const Timing& timing, double gap, Ind
     ++piece.used;
     piece.end = time;
     before = k;
-  }
+  });
   base.end(piece, table.size(), rules.shortest_piece);  // repeats at the end and all
   base.disagreement = one.rms();
   base.long_disagreement = many.rms();
@@ -331,15 +296,15 @@ Base tryTimeBase(const SampleTable& table, const Timing& timing, double gap, Ind
 }
 
 // The time bases, in the order of TimeBase.
-std::vector<Base> tryTimeBases(SampleTable& table, const Census& census, const SampleRules& rules) {
+std::vector<Base> tryTimeBases(const SampleTable& table, const Census& census,
+                               const SampleRules& rules) {
   std::vector<Base> bases;
   for (const TimeBase base : {TimeBase::kStamps, TimeBase::kRegular, TimeBase::kRegularFresh}) {
     Timing timing = census.timing;
     timing.base = base;
-    const double period = Periods(table, census, rules, base).mean();
-    bases.push_back(tryTimeBase(table, timing, gapFrom(rules.longest_gap, period),
-                                base == TimeBase::kStamps ? census.used : census.timing.fresh,
-                                rules));
+    const double gap = gapFrom(rules.longest_gap, meanPeriod(table, rules, timing));
+    bases.push_back(tryTimeBase(
+        table, timing, gap, base == TimeBase::kStamps ? census.used : census.timing.fresh, rules));
   }
   return bases;
 }
@@ -516,14 +481,17 @@ Examination examine(SampleTable& table, const SampleRules& rules) {
   }
   report.gaps = base.gaps;
   report.longest_gap = base.longest_gap;
-  const Periods periods(table, census, rules, report.time_base);
-  report.period = periods.mean();
-  const double gap = gapFrom(rules.longest_gap, report.period);
+  report.period = meanPeriod(table, rules, base.timing);
+  const double gap = kJust * gapFrom(rules.longest_gap, report.period);
   // at least half of the mean distance, as most samples of a recording may come in bursts
-  found.usual_period = std::max(periods.median(gap), 0.5 * report.period);
-  const Distances stamps(table, rules, Neighbours::kAll);
-  report.stamped_period = kNanosecond * stamps.median(kInfinity);
-  report.jitter = kNanosecond * stamps.deviation(gap / kNanosecond);
+  found.usual_period =
+      std::max(medianDistance(table, rules, base.timing, gap), 0.5 * report.period);
+  Timing all;
+  all.every = true;
+  SampleRules none = rules;
+  none.repeated = false;
+  report.stamped_period = medianDistance(table, none, all, kInfinity);
+  report.jitter = deviation(table, none, all, gap);
 
   setInstants(table, base.timing, found.pieces, rules);
   report.counts = census.counts;
@@ -536,16 +504,10 @@ std::unique_ptr<SampleTable> tableOf(const Eigen::Ref<const VectorXd>& time,
                                      const Eigen::Ref<const MatrixXd>& q,
                                      const Eigen::Ref<const MatrixXd>& qd,
                                      const Eigen::Ref<const MatrixXd>& effort) {
-  const Stamps stamps = (time * 1e9).array().round().cast<std::int64_t>();  // for texts
+  const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> stamps =
+      (time * 1e9).array().round().cast<std::int64_t>();  // for texts
   auto table = tableOf({stamps, stamps, Clock::kHeader, q, qd, effort, MatrixXd()});
   table->time = time;
-  return table;
-}
-
-std::unique_ptr<SampleTable> tableOf(const JointLogView& log) {
-  auto table = std::make_unique<SampleTable>();
-  table->append(log);
-  table->complete(log.clock);
   return table;
 }
 

@@ -10,7 +10,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
+#include <complex>
+#include <unsupported/Eigen/FFT>
+#include <vector>
 
 #include "inverse_dynamics_evaluation/cutoff.hpp"
 
@@ -35,16 +37,13 @@ struct VelocitySpectra {
 
 /// Sums over segments of samples, gathered stretch by stretch.
 ///
-/// Hann window times activity(), half overlap. A segment has a power of two of samples, 30 to 60 s;
+/// Hann window times the weight of motion (rests are left out), half overlap. A segment has a power of two of samples, 30 to 60 s;
 /// a shorter stretch is one segment, padded with zeros.
 class SpectrumSums {
  public:
   /// @param joints   n.
   /// @param longest  samples of the longest stretch that will be added.
   SpectrumSums(Eigen::Index joints, Eigen::Index longest, double sampling_frequency);
-  ~SpectrumSums();
-  SpectrumSums(const SpectrumSums&) = delete;
-  SpectrumSums& operator=(const SpectrumSums&) = delete;
 
   /// A stretch of fewer than kLeastStretch samples is left out.
   void add(const Stretch& stretch);
@@ -52,12 +51,18 @@ class SpectrumSums {
   VelocitySpectra spectra() const;
 
  private:
-  class Sums;
+  using Complex = std::complex<double>;
+
+  void divideIntoBands(Eigen::Index half, double step);
+  void add(const Eigen::ArrayXd& velocity, const Eigen::ArrayXd& rate, Eigen::Index j);
+
   double sampling_frequency_;
   Eigen::Index length_;  // of a segment
   double samples_ = 0, moving_ = 0;
   VelocitySpectra spectra_;
-  std::unique_ptr<Sums> sums_;
+  Eigen::FFT<double> fft_;
+  std::vector<Eigen::Index> bands_;  // of each frequency
+  std::vector<Complex> signal_, transform_;
 };
 
 /// @throws EvaluationError: fewer than kLeastStretch samples.

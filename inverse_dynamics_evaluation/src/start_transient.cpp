@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-
-#include "quantile.hpp"
+#include <vector>
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -18,6 +17,13 @@ using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
 constexpr double kTransientQuantile = 0.9;  // of the roughness of the efforts,
 constexpr double kTransientFactor = 5.0;    // and how far a transient exceeds it
 constexpr Index kLeastForTransient = 50;    // samples without which that quantile says nothing
+
+// A quantile of numbers; `share` is 0.5 for the median.
+double quantile(std::vector<double> values, double share) {
+  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<std::size_t>(rank)];
+}
 
 // Second difference of three samples, as if they lay `period` apart: a sample that was missed
 // beside them makes none of it. (Distances far below the period are those of stamps that jitter.)

@@ -11,6 +11,7 @@
 #include <inverse_dynamics_evaluation/error.hpp>
 
 #include "error_of.hpp"
+#include "joint_state_block.hpp"
 
 namespace inverse_dynamics_evaluation::joint_state_writer_test {
 
@@ -61,9 +62,9 @@ TEST_P(JointStateWriterTest, RefusesStampsThatMessagesCantHold) {
     made.write({rowsAt(header, kOne)});
     made.finish();
     const auto source = Recording(bag_).jointStates();
-    inverse_dynamics_evaluation::JointStateBlock block;
-    source->next(block);
-    EXPECT_EQ(block.header_stamps.at(0), header);
+    JointSample sample;
+    source->next(sample);
+    EXPECT_EQ(sample.header_stamp, header);
     fs::remove_all(bag_);
   }
 }
@@ -110,14 +111,10 @@ TEST_P(JointStateWriterTest, WritesComputedTorquesAndMeasuredOnesWhereThereAreAn
     ASSERT_EQ(recording.topics().size(), efforts == nullptr ? 1U : 2U);
     for (const Topic& written : recording.topics()) {
       const double* next = written.name == "/tau" ? computed.data() : efforts;
-      inverse_dynamics_evaluation::JointStateBlock block;
-      std::size_t count = 0;
-      for (const auto source = recording.jointStates(written.name); source->next(block);) {
-        EXPECT_EQ(block.frame_id, "base");
-        count += block.size();
-        for (const double effort : block.effort.values) ASSERT_EQ(effort, *next++);
-      }
-      EXPECT_EQ(count, kCount) << written.name;
+      const JointStateBlock all = rest(*recording.jointStates(written.name));
+      EXPECT_EQ(all.frame_id, "base");
+      for (const double effort : all.effort.values) ASSERT_EQ(effort, *next++);
+      EXPECT_EQ(all.size(), kCount) << written.name;
     }
     fs::remove_all(bag_);
   }

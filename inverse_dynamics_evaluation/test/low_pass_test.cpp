@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "inverse_dynamics_evaluation/low_pass.hpp"
-
 #include <gmock/gmock.h>
 
 #include <array>
 #include <limits>
 
 #include "error_of.hpp"
+#include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "motion.hpp"
 

@@ -96,11 +96,11 @@ void run(rclcpp::Node& node) {
       params.input_bag,
       {params.input_topic, robot.file.empty() ? "" : robot.topic, joints, clockOf(params.clock)});
   say(logger, "recording: " + params.input_bag + ", " + motion.topic + ": " +
-                  std::to_string(motion.log.q.cols()) + " samples");
+                  std::to_string(motion.log->size()) + " samples");
 
   options.topic = motion.topic;
-  options.notes = motion.log.notes;
-  const Evaluation evaluation = evaluate(motion.log, *solver, options);
+  options.notes = motion.log->notes;
+  const Evaluation evaluation = evaluate(motion.log->recorded(), *solver, options);
   say(logger, "accelerations: " + evaluation.accelerations.summary);
   say(logger, "effort means: " + evaluation.effort.summary());
   sayAll(logger, evaluation.notes, warnings.size());  // the solver's come first

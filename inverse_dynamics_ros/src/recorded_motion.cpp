@@ -21,14 +21,16 @@ namespace inverse_dynamics_ros {
 namespace {
 
 using inverse_dynamics_evaluation::Clock;
-using inverse_dynamics_evaluation::JointLogBuilder;
 using inverse_dynamics_evaluation::JointSample;
+using inverse_dynamics_evaluation::RecordingOptions;
+using inverse_dynamics_evaluation::SampleTable;
+using inverse_dynamics_evaluation::TableBuilder;
 using sensor_msgs::msg::JointState;
 using trajectory_msgs::msg::JointTrajectory;
 using trajectory_msgs::msg::JointTrajectoryPoint;
 
 JointSample::Numbers numbers(const std::vector<double>& values) {
-  return {values.data(), static_cast<Eigen::Index>(values.size())};
+  return {values.data(), values.size()};
 }
 
 std::int64_t nanoseconds(const builtin_interfaces::msg::Time& stamp) {
@@ -136,7 +138,7 @@ class OpenRecording {
         next = reader_.read_next();
         const rclcpp::SerializedMessage serialized(*next->serialized_data);
         serialization.deserialize_message(&serialized, &message);
-        take(message, receiveStamp(*next), static_cast<Eigen::Index>(number));
+        take(message, receiveStamp(*next), number);
       }
     } catch (const inverse_dynamics_evaluation::RecordingError&) {
       throw;
@@ -176,30 +178,41 @@ class OpenRecording {
 };
 
 void readJointStates(OpenRecording& recording, const rosbag2_storage::TopicInformation& topic,
-                     JointLogBuilder& builder, RecordedMotion& motion) {
+                     TableBuilder& builder, RecordedMotion& motion) {
   recording.forEach<JointState>(
-      topic, [&](const JointState& state, std::int64_t received, Eigen::Index number) {
-        builder.add({state.name, numbers(state.position), numbers(state.velocity),
-                     numbers(state.effort), numbers({}), nanoseconds(state.header.stamp), received,
-                     number});
-        if (motion.frame_id.empty()) {
-          motion.frame_id = state.header.frame_id;
-        }
+      topic, [&](const JointState& state, std::int64_t received, std::size_t number) {
+        JointSample sample;
+        sample.names = &state.name;
+        sample.position = numbers(state.position);
+        sample.velocity = numbers(state.velocity);
+        sample.effort = numbers(state.effort);
+        sample.header_stamp = nanoseconds(state.header.stamp);
+        sample.receive_stamp = received;
+        sample.message = static_cast<std::int64_t>(number);
+        sample.frame_id = state.header.frame_id;
+        if (builder.add(sample)) motion.message.push_back(number);
       });
 }
 
 void readTrajectories(OpenRecording& recording, const rosbag2_storage::TopicInformation& topic,
-                      JointLogBuilder& builder, RecordedMotion& motion) {
+                      TableBuilder& builder, RecordedMotion& motion) {
   std::size_t most = 0;  // points in a message
   recording.forEach<JointTrajectory>(
-      topic, [&](const JointTrajectory& trajectory, std::int64_t received, Eigen::Index number) {
-        Eigen::Index k = 0;
+      topic, [&](const JointTrajectory& trajectory, std::int64_t received, std::size_t number) {
+        JointSample sample;
+        sample.names = &trajectory.joint_names;
+        sample.frame_id = trajectory.header.frame_id;
+        sample.message = static_cast<std::int64_t>(number);
         for (const JointTrajectoryPoint& point : trajectory.points) {
           const std::int64_t from_start = nanoseconds(point.time_from_start);
-          builder.add({trajectory.joint_names, numbers(point.positions), numbers(point.velocities),
-                       numbers(point.effort), numbers(point.accelerations),
-                       nanoseconds(trajectory.header.stamp) + from_start, received + from_start,
-                       number, k++});
+          sample.position = numbers(point.positions);
+          sample.velocity = numbers(point.velocities);
+          sample.effort = numbers(point.effort);
+          sample.acceleration = numbers(point.accelerations);
+          sample.header_stamp = nanoseconds(trajectory.header.stamp) + from_start;
+          sample.receive_stamp = received + from_start;
+          ++sample.point;
+          if (builder.add(sample)) motion.message.push_back(number);
         }
         most = std::max(most, trajectory.points.size());
         motion.headers.push_back(trajectory.header);
@@ -230,7 +243,7 @@ Clock clockOf(const RecordedMotion& motion, Clock asked, std::vector<std::string
 void countEmpty(const RecordedMotion& motion, std::vector<std::string>& notes) {
   const std::size_t all = motion.headers.size();
   const std::size_t filled =
-      std::set<Eigen::Index>(motion.log.message.begin(), motion.log.message.end()).size();
+      std::set<std::size_t>(motion.message.begin(), motion.message.end()).size();
   if (filled < all) {
     notes.push_back(std::to_string(all - filled) + " of " + std::to_string(all) +
                     " messages left out: no points of the joints");
@@ -247,17 +260,21 @@ RecordedMotion readMotion(const std::string& path, const MotionQuery& query) {
   motion.topic = topic.topic_metadata.name;
   motion.type = topic.topic_metadata.type;
   motion.storage = recording.storage();
-  JointLogBuilder builder(path + ": " + motion.topic, query.joints,
-                          {motion.type == kJointState, "the parameter 'joints'"});
+  motion.log = std::make_shared<SampleTable>();
+  RecordingOptions options;
+  options.joints = query.joints;
+  options.effort_required = motion.type == kJointState;
+  options.joints_option = "the parameter 'joints'";
+  TableBuilder builder(path + ": " + motion.topic, options, *motion.log);
   if (motion.type == kJointState) {
     readJointStates(recording, topic, builder, motion);
-    motion.log = builder.finish(query.clock);
+    builder.finish(query.clock);
   } else {
     readTrajectories(recording, topic, builder, motion);
     std::vector<std::string> notes;
-    motion.log = builder.finish(clockOf(motion, query.clock, notes));
+    builder.finish(clockOf(motion, query.clock, notes));
     countEmpty(motion, notes);
-    motion.log.notes.insert(motion.log.notes.end(), notes.begin(), notes.end());
+    motion.log->notes.insert(motion.log->notes.end(), notes.begin(), notes.end());
   }
   return motion;
 }

@@ -3,13 +3,14 @@
 /// @file
 /// A motion from a rosbag2 recording: joint states or joint trajectories.
 ///
-/// The rules of joint_log.hpp. Each point of a joint trajectory is a sample; its stamp is that of
+/// The rules of sample_table.hpp. Each point of a joint trajectory is a sample; its stamp is that of
 /// its message plus its time_from_start. Several messages are points of one motion, so each must
 /// have one point; those without are left out. Efforts of trajectories may be absent.
 
 #pragma once
 
-#include <inverse_dynamics_evaluation/joint_log.hpp>
+#include <inverse_dynamics_evaluation/sample_table.hpp>
+#include <memory>
 #include <std_msgs/msg/header.hpp>
 #include <string>
 #include <trajectory_msgs/msg/joint_trajectory.hpp>
@@ -31,11 +32,12 @@ struct MotionQuery {
 
 /// Samples, and what is needed to write messages like theirs.
 struct RecordedMotion {
-  inverse_dynamics_evaluation::JointLog log;
+  std::shared_ptr<inverse_dynamics_evaluation::SampleTable> log;
   std::string topic;
-  std::string type;      ///< kJointState or kJointTrajectory
-  std::string storage;   ///< sqlite3 or mcap
-  std::string frame_id;  ///< the first that isn't empty
+  std::string type;     ///< kJointState or kJointTrajectory
+  std::string storage;  ///< sqlite3 or mcap
+
+  std::vector<std::size_t> message;  ///< number of each sample's message
 
   // Of trajectories, by message; empty for joint states.
   std::vector<std_msgs::msg::Header> headers;
@@ -45,7 +47,7 @@ struct RecordedMotion {
 /// Reads a recording: a directory with metadata.yaml, or a .db3 or .mcap file.
 ///
 /// @throws UserError, inverse_dynamics_evaluation::RecordingError: no such recording, one that
-///         can't be read, no such topic, another type, what JointLogBuilder says; interrupted.
+///         can't be read, no such topic, another type, what TableBuilder says; interrupted.
 RecordedMotion readMotion(const std::string& path, const MotionQuery& query);
 
 }  // namespace inverse_dynamics_ros

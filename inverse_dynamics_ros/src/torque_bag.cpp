@@ -12,7 +12,6 @@ namespace inverse_dynamics_ros {
 namespace {
 
 using Eigen::Index;
-using inverse_dynamics_evaluation::JointLog;
 using inverse_dynamics_evaluation::SampleTable;
 using trajectory_msgs::msg::JointTrajectory;
 using trajectory_msgs::msg::JointTrajectoryPoint;
@@ -26,19 +25,19 @@ std::vector<double> numbers(const Eigen::Ref<const Eigen::MatrixXd>& matrix, Ind
 JointTrajectory trajectory(const RecordedMotion& motion,
                            const Eigen::Ref<const Eigen::MatrixXd>& qdd,
                            const Eigen::Ref<const Eigen::MatrixXd>& effort, Index& k) {
-  const JointLog& log = motion.log;
-  const Index message = log.message[static_cast<std::size_t>(k)];
+  const SampleTable& log = *motion.log;
+  const std::size_t message = motion.message[static_cast<std::size_t>(k)];
   JointTrajectory result;
-  result.header = motion.headers[static_cast<std::size_t>(message)];
+  result.header = motion.headers[message];
   result.joint_names = log.joint_names;
-  for (; k < log.q.cols() && log.message[static_cast<std::size_t>(k)] == message; ++k) {
+  for (; k < log.size() && motion.message[static_cast<std::size_t>(k)] == message; ++k) {
     JointTrajectoryPoint point;
     point.positions = numbers(log.q, k);
     point.velocities = numbers(log.qd, k);
     point.accelerations = numbers(qdd, k);
     point.effort = numbers(effort, k);
-    point.time_from_start = rclcpp::Duration::from_nanoseconds(
-        log.receive_stamps[k] - motion.receive_stamps[static_cast<std::size_t>(message)]);
+    point.time_from_start =
+        rclcpp::Duration::from_nanoseconds(log.receive_stamps[k] - motion.receive_stamps[message]);
     result.points.push_back(point);
   }
   return result;
@@ -53,7 +52,7 @@ void writeJointStates(const std::string& target, const std::string& storage,
   recordings::writeTorques(
       bag.path().string(),
       storage == "mcap" ? recordings::Storage::kMcap : recordings::Storage::kSqlite3,
-      {topic, motion.log.joint_names, motion.frame_id},
+      {topic, motion.log->joint_names, motion.log->frame_id},
       {static_cast<std::size_t>(table.size()), table.header_stamps.data(),
        table.receive_stamps.data(), table.q.data(), table.qd.data(), table.computed.data()},
       table.measured.data(), [](double) { requireNoInterrupt(); });
@@ -66,7 +65,7 @@ void writeTrajectories(const std::string& target, const std::string& storage,
   OutputBag bag(target, storage);
   for (Index k = 0; k < table.size();) {
     requireNoInterrupt();
-    const auto message = static_cast<std::size_t>(motion.log.message[static_cast<std::size_t>(k)]);
+    const std::size_t message = motion.message[static_cast<std::size_t>(k)];
     const std::int64_t received = motion.receive_stamps[message];
     Index next = k;
     if (table.measured.size() > 0) {

@@ -3,7 +3,6 @@
 #include "user_error.hpp"
 
 #include <inverse_dynamics_evaluation/error.hpp>
-#include <inverse_dynamics_evaluation/joint_log.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <rclcpp/exceptions.hpp>
 #include <rclcpp/parameter_value.hpp>

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "two_joint_solver.hpp"
 #include "user_error.hpp"
@@ -12,25 +13,25 @@
 namespace inverse_dynamics_ros {
 namespace {
 
-using inverse_dynamics_evaluation::JointLog;
-using inverse_dynamics_evaluation::Stamps;
+using inverse_dynamics_evaluation::SampleTable;
 
 // Efforts as the motion needs them with recorded accelerations, and 0.25 and -0.5 N m more.
-JointLog log(Eigen::Index count = 50) {
-  JointLog log;
-  log.joint_names = {"a", "b"};
-  log.header_stamps = Stamps::LinSpaced(count, 0, 10'000'000 * (count - 1));
-  log.receive_stamps = log.header_stamps;
-  const Eigen::RowVectorXd t = log.time().transpose();
-  log.q.resize(2, count);
-  log.q << t.array().sin().matrix(), t.array().cos().matrix();
-  log.qd.resize(2, count);
-  log.qd << t.array().cos().matrix(), -t.array().sin().matrix();
-  log.qdd = -log.q;
-  log.effort.resize(2, count);
-  log.effort.row(0) = (2 * log.qdd.row(0)).array() + 10 + 0.25;
-  log.effort.row(1) = (3 * log.qdd.row(1)).array() + 20 - 0.5;
-  return log;
+std::unique_ptr<SampleTable> log(bool efforts = true) {
+  constexpr Eigen::Index kCount = 50;
+  auto table = std::make_unique<SampleTable>();
+  table->resize(2, kCount, {efforts, true});
+  table->header_stamps.setLinSpaced(0, 10'000'000 * (kCount - 1));
+  table->receive_stamps = table->header_stamps;
+  const Eigen::RowVectorXd t = Eigen::RowVectorXd::LinSpaced(kCount, 0, 0.01 * (kCount - 1));
+  table->q << t.array().sin().matrix(), t.array().cos().matrix();
+  table->qd << t.array().cos().matrix(), -t.array().sin().matrix();
+  table->qdd = -table->q;
+  if (efforts) {
+    table->effort.row(0) = (2 * table->qdd.row(0)).array() + 10 + 0.25;
+    table->effort.row(1) = (3 * table->qdd.row(1)).array() + 20 - 0.5;
+  }
+  table->complete(inverse_dynamics_evaluation::Clock::kHeader);
+  return table;
 }
 
 EvaluationOptions options() {
@@ -41,9 +42,8 @@ EvaluationOptions options() {
 }
 
 TEST(Evaluation, HasNoErrorsWhereNoEffortsAreRecorded) {
-  JointLog without = log();
-  without.effort.resize(0, 0);
-  const Evaluation evaluation = evaluate(without, *TwoJointSolver::make(), options());
+  const Evaluation evaluation =
+      evaluate(log(false)->recorded(), *TwoJointSolver::make(), options());
   EXPECT_TRUE(evaluation.errors.empty());
   EXPECT_EQ(evaluation.table->computed.cols(), 50);
   EXPECT_EQ(errorTable(evaluation, {"N m", "N m"}),
@@ -51,7 +51,7 @@ TEST(Evaluation, HasNoErrorsWhereNoEffortsAreRecorded) {
 }
 
 TEST(Evaluation, IsPrintedAsATable) {
-  const Evaluation evaluation = evaluate(log(), *TwoJointSolver::make(), options());
+  const Evaluation evaluation = evaluate(log()->recorded(), *TwoJointSolver::make(), options());
   const std::string table = errorTable(evaluation, {"N m", "N"});
   EXPECT_NE(table.find("  joint  unit      MAE     RMSE"), std::string::npos) << table;
   EXPECT_NE(table.find("  a      N m     0.250    0.250"), std::string::npos) << table;
@@ -62,7 +62,7 @@ TEST(Evaluation, IsPrintedAsATable) {
 }
 
 TEST(Evaluation, TheTableHasTheErrorsOfTheValidSamplesToo) {
-  Evaluation evaluation = evaluate(log(), *TwoJointSolver::make(), options());
+  Evaluation evaluation = evaluate(log()->recorded(), *TwoJointSolver::make(), options());
   evaluation.table->kept.head(3).setConstant(false);
   evaluation.errors_of_kept = evaluation.errors;
   evaluation.errors_of_kept[0].rmse = 0.125;

@@ -85,14 +85,15 @@ TEST_F(TorqueBag, RefusesAStorageThatIsNotInstalled) {
 TEST_F(TorqueBag, IsLeftOutWhenTheUserInterrupts) {
   RecordedMotion motion;
   motion.type = kJointState;
-  motion.log.joint_names = {"a"};
-  motion.log.header_stamps = motion.log.receive_stamps =
-      inverse_dynamics_evaluation::Stamps::LinSpaced(3, 0, 2);
-  motion.log.q = motion.log.qd = motion.log.effort = Eigen::MatrixXd::Zero(1, 3);
+  motion.log = std::make_shared<inverse_dynamics_evaluation::SampleTable>();
+  motion.log->joint_names = {"a"};
+  motion.log->resize(1, 3, {});
+  motion.log->header_stamps.setLinSpaced(0, 2);
+  motion.log->receive_stamps = motion.log->header_stamps;
+  for (auto* columns : {&motion.log->q, &motion.log->qd, &motion.log->effort}) columns->setZero();
+  motion.log->complete(inverse_dynamics_evaluation::Clock::kHeader);
   Evaluation evaluation;
-  evaluation.table = std::make_shared<inverse_dynamics_evaluation::SampleTable>();
-  evaluation.table->append(motion.log);
-  evaluation.table->complete(motion.log.clock);
+  evaluation.table = motion.log;
 
   ASSERT_FALSE(rclcpp::ok());  // as after Ctrl-C
   EXPECT_THROW(

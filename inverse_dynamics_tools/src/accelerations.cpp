@@ -4,14 +4,10 @@
 #include <pybind11/stl.h>
 
 #include <inverse_dynamics_evaluation/accelerations.hpp>
-#include <inverse_dynamics_evaluation/log_accelerations.hpp>
-#include <inverse_dynamics_evaluation/low_pass.hpp>
 #include <inverse_dynamics_evaluation/samples.hpp>
-#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "arrays.hpp"
 #include "initialized.hpp"
@@ -83,21 +79,6 @@ Array lowPass(const Array& samples, double sampling_frequency, double cutoff, in
   return rowsOf(std::move(result));
 }
 
-Array lowPassDerivative(const Array& samples, double sampling_frequency, double cutoff, int order) {
-  const ConstMap in = states(samples, "samples");
-  chain_dynamics::OwnedMatrix result;
-  {
-    const py::gil_scoped_release release;
-    result = evaluation::lowPassDerivative(in, sampling_frequency, cutoff, order);
-  }
-  return rowsOf(std::move(result));
-}
-
-std::vector<std::string> sampleFindings(const std::string& clock, const SampleReport& samples,
-                                        const std::optional<FilterChoice>& filter) {
-  return evaluation::sampleFindings(clock, samples, filter ? &*filter : nullptr);
-}
-
 void bindSampleReport(py::module_& module) {
   py::class_<SampleRules>(module, "SampleRules",
                           "Which rules on faults of samples are acted upon: see\n"
@@ -164,12 +145,6 @@ void bindAccelerations(py::module_& module) {
   module.def("low_pass", &lowPass, py::arg("samples"), py::arg("sampling_frequency"),
              py::arg("cutoff"), py::arg("order") = 2, py::arg("padding") = -1,
              "Zero-phase Butterworth low-pass of equidistant samples (N, n).");
-  module.def("low_pass_derivative", &lowPassDerivative, py::arg("samples"),
-             py::arg("sampling_frequency"), py::arg("cutoff"), py::arg("order") = 2,
-             "Derivative of low_pass() of equidistant samples (N, n), good at both ends too.");
-  module.def("sample_findings", &sampleFindings, py::arg("clock"), py::arg("samples"),
-             py::arg("filter") = std::nullopt,
-             "Findings about the samples and their consequences, one sentence each.");
   module.def("low_pass_gain", &evaluation::lowPassGain, py::arg("frequency"), py::arg("cutoff"),
              py::arg("sampling_frequency"), py::arg("order") = 2,
              "Gain of low_pass() at a frequency.");

@@ -18,7 +18,6 @@
 #include "evaluator.hpp"
 #include "fast_model.hpp"
 #include "identification.hpp"
-#include "joint_log.hpp"
 #include "metrics.hpp"
 #include "payload.hpp"
 #include "recordings.hpp"
@@ -32,7 +31,6 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindFastModel(module);
   inverse_dynamics_tools::bindAccelerations(module);
   inverse_dynamics_tools::bindRecordings(module);
-  inverse_dynamics_tools::bindJointLog(module);
   inverse_dynamics_tools::bindMetrics(module);
   inverse_dynamics_tools::bindEvaluator(module);
   inverse_dynamics_tools::bindYaml(module);

@@ -7,7 +7,6 @@
 #include <cstring>
 #include <exception>
 #include <inverse_dynamics_evaluation/error.hpp>
-#include <inverse_dynamics_evaluation/joint_log.hpp>
 #include <inverse_dynamics_evaluation/package_share.hpp>
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <string>

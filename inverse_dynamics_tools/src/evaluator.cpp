@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,8 +16,7 @@
 #include "arrays.hpp"
 #include "description.hpp"
 #include "initialized.hpp"
-#include "joint_log.hpp"
-#include "joint_states.hpp"
+#include "recordings.hpp"
 #include "run_configuration.hpp"
 #include "solver.hpp"
 
@@ -60,7 +58,7 @@ struct Log {
     if (!log.attr("qdd").is_none()) qdd = log.attr("qdd").cast<Array>();
   }
 
-  evaluation::JointLogView view() const {
+  evaluation::RecordedColumns view() const {
     using Stamps = Eigen::Map<const Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>>;
     const ConstMap none(nullptr, 0, 0);
     return {Stamps(header_stamps.data(), header_stamps.size()),
@@ -97,48 +95,20 @@ evaluation::Evaluation evaluate(const SolverObject& solver, const py::object& mo
     const py::gil_scoped_acquire acquire;
     return ask(py::cast(found)).cast<EffortVerdict>();
   };
-  if (py::isinstance<JointStates>(motion)) {
-    auto& states = motion.cast<JointStates&>();
-    const InUse reader(states);
+  if (py::isinstance<evaluation::Recording>(motion)) {
+    const auto& recording = motion.cast<const evaluation::Recording&>();
     const py::gil_scoped_release release;
-    return evaluation::evaluate(*states.source, given.source, *shared, options);
+    return evaluation::evaluate(*recording.jointStates(options.topic), given.source, *shared,
+                                options);
   }
   const Log log(motion);
   if (log.effort.size() == 0) {
     throw evaluation::EvaluationError(options.recording, "effort", "one row per sample", "none",
                                       "torques without efforts: trajectory_torques()");
   }
-  const evaluation::JointLogView view = log.view();
+  const evaluation::RecordedColumns view = log.view();
   const py::gil_scoped_release release;
   return evaluation::evaluate(view, *shared, options);
-}
-
-/// Columns of the samples by the names that files of results have for them: (N, n), or (N,) of a
-/// vector; memory of the table, which arrays keep alive.
-py::dict seriesOf(const py::object& self) {
-  const auto& table = *self.cast<const Evaluated&>().table;
-  py::dict series;
-  const auto put = [&](const char* name, const auto& columns) {
-    using Scalar = typename std::decay_t<decltype(columns)>::Scalar;
-    std::vector<py::ssize_t> shape = {columns.cols(), columns.rows()};
-    if (std::decay_t<decltype(columns)>::ColsAtCompileTime == 1) shape = {columns.rows()};
-    series[name] = py::array_t<Scalar>(shape, columns.data(), self);
-  };
-  put("time", table.time);
-  put("header_stamps", table.header_stamps);
-  put("receive_stamps", table.receive_stamps);
-  put("q", table.q);
-  put("qd", table.qd);
-  put("qdd", table.qdd);
-  put("effort", table.effort);
-  put("measured", table.measured);
-  put("computed", table.computed);
-  put("repeated", table.repeated);
-  put("non_increasing", table.non_increasing);
-  put("start_transient", table.start_transient);
-  put("isolated", table.isolated);
-  put("kept", table.kept);
-  return series;
 }
 
 void bindReading(py::class_<Options>& options) {
@@ -171,7 +141,7 @@ void bindOptions(py::module_& module) {
   options
       .def(py::init([](const py::kwargs& given) {
         auto made = std::make_unique<Options>();
-        made->source.log.joints_option = "--joints";
+        made->source.joints_option = "--joints";
         const py::object self = py::cast(made.get(), py::return_value_policy::reference);
         for (const auto& [name, value] : given) py::setattr(self, name, value);
         return made;
@@ -189,7 +159,7 @@ void bindOptions(py::module_& module) {
           "rules not to be acted upon")
       .def_readwrite("effort", &Options::effort)
       .def_readwrite("recording", &Options::recording, "for errors' texts")
-      .def_readwrite("topic", &Options::topic, "for errors' texts")
+      .def_readwrite("topic", &Options::topic, "of the recording")
       .def_readwrite("units", &Options::units)
       .def_readwrite("notes", &Options::notes, "of reading");
   bindReading(options);
@@ -227,9 +197,7 @@ void bindEvaluator(py::module_& module) {
                              [](const Evaluated& e) { return e.accelerations.samples.period; })
       .def_property_readonly("jitter",
                              [](const Evaluated& e) { return e.accelerations.samples.jitter; })
-      .def_property_readonly(
-          "recording", [](const Evaluated& e) { return e.recording; },
-          "Names, clock and notes of a recording that was read.")
+      .def_property_readonly("table", [](const Evaluated& e) { return e.table; })
       .def_property_readonly("meaning", [](const Evaluated& e) { return e.effort.meaning; })
       .def_property_readonly("stated_by", [](const Evaluated& e) { return e.effort.stated_by; })
       .def_property_readonly("drive_gains", [](const Evaluated& e) { return e.effort.drive_gains; })
@@ -241,14 +209,12 @@ void bindEvaluator(py::module_& module) {
       .def_property_readonly("acceleration_seconds",
                              [](const Evaluated& e) { return e.acceleration_seconds; })
       .def_property_readonly("torque_seconds", [](const Evaluated& e) { return e.torque_seconds; })
-      .def_property_readonly("notes", [](const Evaluated& e) { return e.notes; })
-      .def_property_readonly("series", &seriesOf,
-                             "Arrays of all samples by name, as series.npz has them: views.");
+      .def_property_readonly("notes", [](const Evaluated& e) { return e.notes; });
   module.def(
       "evaluate", &evaluate, py::arg("solver"), py::arg("motion"), py::arg("options"),
       py::arg("ask"), py::arg("progress"),
       "Computed torques of recorded joint states and their errors.\n\n"
-      "motion: a JointLog, or JointStates, which are read once. ask: called with what is known\n"
+      "motion: a JointLog, or a Recording, whose topic is read. ask: called with what is known\n"
       "before efforts are, if they are `auto`; returns an EffortVerdict. progress: called with\n"
       "the share that is done.");
   module.def(

@@ -4,13 +4,14 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <inverse_dynamics_evaluation/joint_state_writer.hpp>
 #include <inverse_dynamics_evaluation/recording.hpp>
 #include <memory>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,7 +19,6 @@
 #include "arrays.hpp"
 #include "description.hpp"
 #include "initialized.hpp"
-#include "joint_states.hpp"
 
 namespace inverse_dynamics_tools {
 
@@ -27,6 +27,13 @@ namespace recordings = inverse_dynamics_evaluation;
 /// Messages, thousands at a time.
 struct Messages {
   std::unique_ptr<recordings::MessageSource> source;
+};
+
+/// Joint states of a recording, and one of them that was read too early for a block.
+struct JointStates {
+  std::unique_ptr<recordings::JointStateSource> source;
+  recordings::JointSample sample = {};
+  bool waiting = false;
 };
 
 /// A recording that is being written, and how many joints each of its topics has.
@@ -53,8 +60,7 @@ struct Writer {
 
 }  // namespace inverse_dynamics_tools
 
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::Recording)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::Connection)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::JointStates)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::Messages)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::Writer)
 
@@ -62,9 +68,9 @@ namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
-using recordings::Connection;
 using recordings::JointStateRows;
 using recordings::Recording;
+using recordings::SampleTable;
 
 /// A text of a file as a Python string: bytes that aren't UTF-8 become lone surrogates.
 py::str textOf(const std::string& text) {
@@ -81,52 +87,123 @@ recordings::Storage storageOf(const std::string& name) {
   throw py::value_error("storage: expected sqlite3 or mcap, got '" + name + "'");
 }
 
-std::tuple<std::vector<std::size_t>, std::vector<std::int64_t>, std::vector<py::bytes>> nextBlock(
+std::tuple<std::vector<py::str>, std::vector<std::int64_t>, std::vector<py::bytes>> nextBlock(
     Messages& messages) {
   constexpr std::size_t kMessages = 4096, kBytes = 1 << 26;
-  std::vector<std::size_t> connections;
+  std::vector<py::str> topics;
   std::vector<std::int64_t> received;
   std::vector<py::bytes> data;
   recordings::Message message;
-  for (std::size_t bytes = 0; connections.size() < kMessages && bytes < kBytes;) {
+  for (std::size_t bytes = 0; topics.size() < kMessages && bytes < kBytes;) {
     if (!messages.source->next(message)) break;
-    connections.push_back(message.connection);
+    topics.push_back(textOf(*message.topic));
     received.push_back(message.received);
     data.emplace_back(reinterpret_cast<const char*>(message.data), message.size);
     bytes += message.size;
   }
-  if (connections.empty()) throw py::stop_iteration();
-  return {std::move(connections), std::move(received), std::move(data)};
+  if (topics.empty()) throw py::stop_iteration();
+  return {std::move(topics), std::move(received), std::move(data)};
 }
 
-Array rowsOf(const inverse_dynamics_evaluation::JointStateNumbers& numbers, std::size_t count) {
-  Array array(std::vector<py::ssize_t>{static_cast<py::ssize_t>(count),
-                                       static_cast<py::ssize_t>(numbers.columns)});
-  std::copy(numbers.values.begin(), numbers.values.end(), array.mutable_data());
-  return array;
-}
+/// Joint states of the same names, frame and lengths, thousands at a time.
+struct Block {
+  explicit Block(const recordings::JointSample& first)
+      : names(*first.names),
+        frame_id(first.frame_id),
+        columns{first.position.size, first.velocity.size, first.effort.size} {}
+
+  bool takes(const recordings::JointSample& sample) const {
+    constexpr std::size_t kMessages = 4096, kNumbers = 1 << 18;
+    return stamps[0].size() < kMessages && numbers[0].size() < kNumbers && *sample.names == names &&
+           sample.frame_id == frame_id && sample.position.size == columns[0] &&
+           sample.velocity.size == columns[1] && sample.effort.size == columns[2];
+  }
+
+  void add(const recordings::JointSample& sample) {
+    stamps[0].push_back(sample.header_stamp);
+    stamps[1].push_back(sample.receive_stamp);
+    const recordings::JointSample::Numbers fields[] = {sample.position, sample.velocity,
+                                                       sample.effort};
+    for (std::size_t i = 0; i < 3; ++i) {
+      numbers[i].insert(numbers[i].end(), fields[i].data, fields[i].data + fields[i].size);
+    }
+  }
+
+  Integers stampsOf(std::size_t i) const {
+    return Integers(static_cast<py::ssize_t>(stamps[i].size()), stamps[i].data());
+  }
+  Array rowsOf(std::size_t i) const {
+    const std::vector<std::size_t> shape = {stamps[0].size(), columns[i]};
+    return Array(shape, numbers[i].data());
+  }
+
+  std::vector<std::string> names;
+  std::string frame_id;
+  std::array<std::size_t, 3> columns;
+  std::array<std::vector<std::int64_t>, 2> stamps;
+  std::array<std::vector<double>, 3> numbers;
+};
 
 std::tuple<NameTuple, py::str, Integers, Integers, Array, Array, Array> nextStates(
     JointStates& states) {
-  const InUse reader(states);
-  auto& block = states.block;
-  {
-    const py::gil_scoped_release release;
-    if (!states.source->next(block)) throw py::stop_iteration();
-  }
-  py::list names;
-  for (const std::string& name : block.joint_names) names.append(textOf(name));
-  const auto stamps = [](const std::vector<std::int64_t>& given) {
-    return Integers(static_cast<py::ssize_t>(given.size()), given.data());
+  const auto take = [&] {
+    states.waiting = false;
+    return states.waiting = states.source->next(states.sample);
   };
-  const std::size_t count = block.size();
-  return {py::tuple(names),
-          textOf(block.frame_id),
-          stamps(block.header_stamps),
-          stamps(block.receive_stamps),
-          rowsOf(block.position, count),
-          rowsOf(block.velocity, count),
-          rowsOf(block.effort, count)};
+  if (!states.waiting && !take()) throw py::stop_iteration();
+  Block block(states.sample);
+  do block.add(states.sample);
+  while (take() && block.takes(states.sample));
+  py::list names;
+  for (const std::string& name : block.names) names.append(textOf(name));
+  return {py::tuple(names), textOf(block.frame_id), block.stampsOf(0), block.stampsOf(1),
+          block.rowsOf(0),  block.rowsOf(1),        block.rowsOf(2)};
+}
+
+std::shared_ptr<SampleTable> readSamples(const Recording& recording, const PathText& topic,
+                                         const std::vector<std::string>& joints,
+                                         const std::string& clock, const py::function& progress) {
+  recordings::RecordingOptions options;
+  options.joints = joints;
+  options.clock = clockOf(clock);
+  options.joints_option = "--joints";
+  const auto tell = [&](double share) {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    progress(share);
+  };
+  const py::gil_scoped_release release;
+  auto table = std::make_shared<SampleTable>();
+  recordings::readTable(*recording.jointStates(topic.bytes), options, *table, tell);
+  return table;
+}
+
+/// Columns of the samples by the names that files of results have for them: (N, n), or (N,) of a
+/// vector; memory of the table, which arrays keep alive.
+py::dict seriesOf(const py::object& self) {
+  const auto& table = *self.cast<const SampleTable*>();
+  py::dict series;
+  const auto put = [&](const char* name, const auto& columns) {
+    using Scalar = typename std::decay_t<decltype(columns)>::Scalar;
+    std::vector<py::ssize_t> shape = {columns.cols(), columns.rows()};
+    if (std::decay_t<decltype(columns)>::ColsAtCompileTime == 1) shape = {columns.rows()};
+    series[name] = py::array_t<Scalar>(shape, columns.data(), self);
+  };
+  put("time", table.time);
+  put("header_stamps", table.header_stamps);
+  put("receive_stamps", table.receive_stamps);
+  put("q", table.q);
+  put("qd", table.qd);
+  put("qdd", table.qdd);
+  put("effort", table.effort);
+  put("measured", table.measured);
+  put("computed", table.computed);
+  put("repeated", table.repeated);
+  put("non_increasing", table.non_increasing);
+  put("start_transient", table.start_transient);
+  put("isolated", table.isolated);
+  put("kept", table.kept);
+  return series;
 }
 
 /// Of a topic: header and receive stamps, position, velocity, effort.
@@ -179,37 +256,20 @@ void writeTorques(const PathText& path, const std::string& storage_name, const W
                            tell);
 }
 
-void bindConnection(py::module_& module) {
-  py::class_<Connection>(module, "Connection",
-                         "What a recording states about the messages of a publisher.")
-      .def_property_readonly("topic", [](const Connection& c) { return textOf(c.topic); })
-      .def_property_readonly("message_type", [](const Connection& c) { return textOf(c.type); })
-      .def_readonly("message_count", &Connection::messages)
-      .def_readonly("serialization", &Connection::serialization)
-      .def_property_readonly("qos_profiles",
-                             [](const Connection& c) { return textOf(c.qos_profiles); })
-      .def_property_readonly("definition", [](const Connection& c) { return textOf(c.definition); })
-      .def_property_readonly("definition_hash",
-                             [](const Connection& c) { return textOf(c.definition_hash); });
-}
-
 void bindSources(py::module_& module) {
-  py::class_<Messages>(module, "Messages", "Serialized messages, thousands at a time.")
+  py::class_<Messages>(
+      module, "Messages",
+      "Serialized messages, thousands at a time: topics, stamps of reception, messages.")
       .def("__iter__", [](py::object self) { return self; })
       .def("__next__", &nextBlock);
   py::class_<JointStates>(module, "JointStates",
-                          "Joint states of a topic: JointStateSource of "
-                          "inverse_dynamics_evaluation.")
-      .def_property_readonly(
-          "expected_messages",
-          [](const JointStates& states) { return states.source->expectedMessages(); },
-          "How many messages there are by the recording's own account.")
+                          "Joint states of a topic, thousands at a time: names, frame, header and\n"
+                          "receive stamps, positions, velocities, efforts.")
       .def("__iter__", [](py::object self) { return self; })
       .def("__next__", &nextStates);
 }
 
 void bindRecording(py::module_& module) {
-  const auto release = py::call_guard<py::gil_scoped_release>();
   py::class_<Recording>(module, "Recording",
                         "A rosbag2 recording: inverse_dynamics_evaluation/recording.hpp.")
       .def(py::init([](const PathText& path) {
@@ -241,7 +301,6 @@ void bindRecording(py::module_& module) {
             return recording.expectedMessages(topic.bytes);
           },
           py::arg("topic"))
-      .def("connections", &Recording::definitions, release)
       .def(
           "messages",
           [](const Recording& recording, const PathText& topic) {
@@ -253,15 +312,39 @@ void bindRecording(py::module_& module) {
       .def(
           "joint_states",
           [](const Recording& recording, const PathText& topic) {
-            return std::make_unique<JointStates>(recording.jointStates(topic.bytes));
+            return JointStates{recording.jointStates(topic.bytes)};
           },
-          py::arg("topic") = "");
+          py::arg("topic") = "")
+      .def("read_samples", &readSamples, py::arg("topic"), py::arg("joints"), py::arg("clock"),
+           py::arg("progress"),
+           "Joint states as a table. progress: called with the share that is read.");
+}
+
+void bindSampleTable(py::module_& module) {
+  py::class_<SampleTable, std::shared_ptr<SampleTable>>(
+      module, "SampleTable", "Samples of a recording: SampleTable of inverse_dynamics_evaluation.")
+      .def_readonly("joint_names", &SampleTable::joint_names, "Those of the recording.")
+      .def_readonly("frame_id", &SampleTable::frame_id)
+      .def_property_readonly("clock",
+                             [](const SampleTable& table) -> ClockName {
+                               return py::str(recordings::name(table.clock()));
+                             })
+      .def_readonly("notes", &SampleTable::notes, "What was left out or assumed in reading.")
+      .def_property_readonly("series", &seriesOf,
+                             "Arrays of all samples by name, as series.npz has them: views.");
 }
 
 }  // namespace
 
+recordings::Clock clockOf(const std::string& clock) {
+  for (const auto known : {recordings::Clock::kHeader, recordings::Clock::kReceive}) {
+    if (clock == recordings::name(known)) return known;
+  }
+  return recordings::Clock::kAuto;
+}
+
 void bindRecordings(py::module_& module) {
-  bindConnection(module);
+  bindSampleTable(module);
   bindSources(module);
   bindRecording(module);
   py::class_<Writer>(module, "JointStateWriter",

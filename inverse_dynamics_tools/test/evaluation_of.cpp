@@ -54,8 +54,7 @@ void run(const std::string& path, const std::string& name, const std::string& ou
   }
   const evaluation::SampleTable& table = *result.table;
   recordings::writeTorques(
-      out, recording.storage(),
-      {"/torques", result.recording.joint_names, result.recording.frame_id},
+      out, recording.storage(), {"/torques", table.joint_names, table.frame_id},
       {static_cast<std::size_t>(table.size()), table.header_stamps.data(),
        table.receive_stamps.data(), table.q.data(), table.qd.data(), table.computed.data()},
       table.measured.data());

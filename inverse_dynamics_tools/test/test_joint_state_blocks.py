@@ -5,14 +5,11 @@ import numpy as np
 import pytest
 from conftest import JOINT_STATE, STORE, joint_state
 from rosbags.rosbag2 import Reader, StoragePlugin, Writer
-from test_evaluation import RIGID_BODY, URDF, recording
 
-from inverse_dynamics import Solver, _core, evaluate, write_joint_logs
+from inverse_dynamics import write_joint_logs
 from inverse_dynamics.data.bags import open_recording
 from inverse_dynamics.data.joint_log import JointLog
-from inverse_dynamics.data.recordings import open_motion
 from inverse_dynamics.errors import BagError
-from inverse_dynamics.evaluation import evaluation
 
 STORAGES = pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
 
@@ -66,34 +63,6 @@ def test_messages_of_any_shape_are_read_as_rosbags_does(tmp_path, storage, littl
     messages = random_messages(np.random.default_rng(3), 500)
     raw = [serialized(m, little_endian=little_endian) for m in messages]
     check_blocks(record(tmp_path / "bag", raw, storage), messages)
-
-
-def test_joint_states_have_one_reader_at_a_time(tmp_path, monkeypatch):
-    """A callback of their evaluation is refused, and so doesn't take messages away from it."""
-    solver = Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0")
-    recording(tmp_path / "bag", solver)
-    whole = evaluate(tmp_path / "bag", "ur10_simulated")
-    opened = []
-    monkeypatch.setattr(evaluation, "open_motion", lambda *a, **k: opened.append(
-        open_motion(*a, **k)) or opened[-1])  # fmt: skip
-    intruders = (
-        lambda states: next(states),
-        lambda states: _core.JointLogBuilder(states, []).add_next(states),
-    )
-    for intrude in intruders:
-        refused = []
-
-        def look(*_, intrude=intrude, refused=refused):
-            with pytest.raises(
-                BagError, match=r"bag: /joint_states: expected one reader at a time"
-            ):
-                intrude(opened[-1].states)
-            refused.append(True)
-
-        result = evaluate(tmp_path / "bag", "ur10_simulated", progress=look)
-        assert refused
-        assert result.errors == whole.errors
-        assert next(opened[-1].states, None) is None  # at its end, and free again
 
 
 def test_a_damaged_message_is_accepted_or_refused_as_by_rosbags(tmp_path):

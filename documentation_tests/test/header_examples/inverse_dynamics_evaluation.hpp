@@ -23,15 +23,13 @@ namespace given {
 extern const std::shared_ptr<InverseDynamicsSolver> solver;
 extern const std::string robot_description;
 extern const Recording recording;
-extern const JointLog log;
+extern const RecordedColumns log;
 extern const Eigen::VectorXd time;
 extern Eigen::MatrixXd q, qd, effort;
 extern const Eigen::MatrixXd gravity, computed, measured;
 extern const SampleReport samples;
 
-// Samples of a recording, block after block.
-extern JointStateBlock block;
-extern JointLogBuilder builder;
+// Samples of a recording.
 extern JointStateSource& source;
 
 // What a program does with results.
@@ -46,9 +44,6 @@ extern const EffortVerdict verdict;
 namespace evaluator_examples {
 extern const EvaluationOptions options;
 }  // namespace evaluator_examples
-namespace joint_log_examples {
-extern const std::vector<JointSample> messages;
-}
 namespace joint_matching_examples {
 struct Message {
   std::vector<std::string> name;

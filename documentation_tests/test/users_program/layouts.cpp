@@ -3,9 +3,8 @@
 
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
 #include <inverse_dynamics_evaluation/accelerations.hpp>
-#include <inverse_dynamics_evaluation/joint_log.hpp>
-#include <inverse_dynamics_evaluation/log_accelerations.hpp>
 #include <inverse_dynamics_evaluation/online_derivative.hpp>
+#include <inverse_dynamics_evaluation/sample_table.hpp>
 #include <inverse_dynamics_solver/motor_currents.hpp>
 #include <inverse_dynamics_solver/pooled_solver.hpp>
 #include <inverse_dynamics_solver/torque_deviation.hpp>
@@ -47,14 +46,13 @@ std::vector<Layout> LAYOUTS() {
           LAYOUT(inverse_dynamics_control::ReferenceGuard),
           LAYOUT(inverse_dynamics_control::SafeStop),
           LAYOUT(inverse_dynamics_evaluation::AccelerationEstimate),
-          LAYOUT(inverse_dynamics_evaluation::JointLog),
-          LAYOUT(inverse_dynamics_evaluation::JointLogBuilder),
           LAYOUT(inverse_dynamics_evaluation::JointMetrics),
           LAYOUT(inverse_dynamics_evaluation::JointSample),
-          LAYOUT(inverse_dynamics_evaluation::LogAccelerations),
           LAYOUT(inverse_dynamics_evaluation::OnlineDerivative),
           LAYOUT(inverse_dynamics_evaluation::SampleReport),
+          LAYOUT(inverse_dynamics_evaluation::SampleTable),
           LAYOUT(inverse_dynamics_evaluation::Stretch),
+          LAYOUT(inverse_dynamics_evaluation::TableBuilder),
           LAYOUT(inverse_dynamics_solver::Configuration),
           LAYOUT(inverse_dynamics_solver::ConstStatesRef),
           LAYOUT(inverse_dynamics_solver::ConstVectorRef),

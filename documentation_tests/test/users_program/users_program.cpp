@@ -7,9 +7,8 @@
 
 #include <Eigen/Core>
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
-#include <inverse_dynamics_evaluation/joint_log.hpp>
-#include <inverse_dynamics_evaluation/log_accelerations.hpp>
 #include <inverse_dynamics_evaluation/online_derivative.hpp>
+#include <inverse_dynamics_evaluation/sample_table.hpp>
 #include <inverse_dynamics_solver/conformance/reference_values.hpp>
 #include <inverse_dynamics_solver/external_wrench.hpp>
 #include <inverse_dynamics_solver/kinematics.hpp>
@@ -261,35 +260,34 @@ TEST(UsersProgram, EvaluatesALogOfItsOwn) {
   using namespace inverse_dynamics_evaluation;
   constexpr Eigen::Index kSamples = 400;
   const VectorXd time = VectorXd::LinSpaced(kSamples, 0.0, 3.99);
-  JointLogBuilder builder("mine", {"a"});
+  SampleTable table;
+  TableBuilder builder("mine", {{"a"}}, table);
   for (Eigen::Index i = 0; i < kSamples; ++i) {
     const std::vector<std::string> names = {"a"};
     const double q = std::sin(time[i]), qd = std::cos(time[i]), effort = -q;
-    JointSample sample{names, JointSample::Numbers(&q, 1), JointSample::Numbers(&qd, 1),
-                       JointSample::Numbers(&effort, 1)};
+    JointSample sample;
+    sample.names = &names;
+    sample.position = {&q, 1};
+    sample.velocity = {&qd, 1};
+    sample.effort = {&effort, 1};
     sample.header_stamp = 10'000'000 * (i + 1);
     builder.add(sample);
   }
-  const JointLog finished = builder.finish();
-  JointLog log = finished;
-  log.q = 1.0 * log.q;
-  const VectorXd seconds = log.time();
-  EXPECT_LT((seconds - time).cwiseAbs().maxCoeff(), 1e-9);
+  builder.finish(Clock::kAuto);
+  EXPECT_LT((table.time - time).cwiseAbs().maxCoeff(), 1e-9);
 
   // qdd = -sin t, which the efforts are; the ends of a filter aside
-  LogAccelerations found = logAccelerations(log, AccelerationMethod::kLowPass, 20.0);
-  found.samples.kept.head(40) = false;
-  found.samples.kept.tail(40) = false;
-  EXPECT_LT(metrics(found.qdd, log.effort, found.samples.kept)[0].rmse, 1e-3);
-  found.qdd = backwardDifference(seconds, log.qd);
-  found = logAccelerations(log, AccelerationMethod::kBackwardDifference);
   LowPassOptions options;
   options.cutoff = 20.0;
-  const AccelerationEstimate estimate =
-      lowPassAccelerations(seconds, log.q, log.qd, log.effort, options);
-  EXPECT_EQ(estimate.qdd.cols(), kSamples);
-  MatrixXd smooth = lowPass(log.qd, 100.0, 10.0);
-  smooth = lowPassDerivative(log.qd, 100.0, 10.0);
+  AccelerationEstimate found =
+      lowPassAccelerations(table.time, table.q, table.qd, table.effort, options);
+  found.samples.kept.head(40) = false;
+  found.samples.kept.tail(40) = false;
+  EXPECT_LT(metrics(found.qdd, table.effort, found.samples.kept)[0].rmse, 1e-3);
+  found.qdd = backwardDifference(table.time, table.qd);
+  EXPECT_EQ(found.qdd.cols(), kSamples);
+  MatrixXd smooth = lowPass(table.qd, 100.0, 10.0);
+  smooth = lowPassDerivative(table.qd, 100.0, 10.0);
 
   OnlineDerivative online(1, 5.0);
   OnlineDerivative copy = online;

@@ -8,18 +8,29 @@
 ///     std::cout << good.filter.cutoff << " Hz, mean torque error "
 ///               << metrics(solver->getTorquesBatch(q, qd, good.qdd), effort)[0].rmse << " N m\n";
 ///
-/// Backward differences are what the reference implementation takes: unbiased but for half a
-/// sample, and as noisy as velocity noise times sqrt(2) over the sampling period. At 1 kHz that is
+/// The reference implementation takes backward differences: unbiased but for half a sample, and as
+/// noisy as velocity noise times sqrt(2) over the sampling period. At 1 kHz that is
 /// worse than no acceleration at all. lowPassAccelerations() filters before it differentiates, with
 /// a cut-off from the data. Only accelerations come from the filter; q and qd stay as measured.
+///
+/// The filter is a Butterworth filter of order m, over equidistant samples. It passes a sine of
+/// frequency f with the power
+///
+///     |B(f)|^2 = 1 / (1 + (w / w_c)^(2 m)),   w = tan(pi f / f_s),   w_c = tan(pi f_c / f_s),
+///
+/// (f_s sampling frequency, f_c cut-off; the tangent is what the bilinear transformation does to
+/// frequencies) and delays it. Run once more over the result backwards in time, it takes the delay
+/// back and attenuates again. What remains is the real gain |B(f)|^2, one half at the cut-off, with
+/// no delay at any frequency (zero phase). That needs the future: it is for recordings only.
 
 #pragma once
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "inverse_dynamics_evaluation/cutoff.hpp"
-#include "inverse_dynamics_evaluation/low_pass.hpp"
+#include "inverse_dynamics_evaluation/metrics.hpp"
 #include "inverse_dynamics_evaluation/samples.hpp"
 
 namespace inverse_dynamics_evaluation {
@@ -37,7 +48,33 @@ inline namespace v2 {
 OwnedMatrix backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time,
                                const Eigen::Ref<const Eigen::MatrixXd>& qd);
 
-/// Derivative of equidistant samples after the zero-phase low-pass of low_pass.hpp.
+/// Gain of the zero-phase low-pass, forwards and backwards, at a frequency: `|B(f)|^2`.
+///
+/// @param frequency,cutoff,sampling_frequency  Hz; 0 < cutoff < sampling_frequency / 2.
+double lowPassGain(double frequency, double cutoff, double sampling_frequency, int order = 2);
+
+/// Samples by which lowPass() continues each end if it isn't told: one and a half periods of the
+/// cut-off, at least 3 (order + 1) samples, at most what there is.
+Eigen::Index defaultPadding(Eigen::Index samples, double sampling_frequency, double cutoff,
+                            int order = 2);
+
+/// Each row of `samples`, zero-phase low-passed. O(n N).
+///
+/// The samples are continued beyond both ends by their point reflection, 2 x_0 - x_k. The filter
+/// starts in the steady state of the first value, so a constant passes unchanged. The result is
+/// that of scipy.signal.sosfiltfilt with the same `padlen`.
+///
+/// @param samples             n x N, one sample per column, at equal distances in time.
+/// @param sampling_frequency  Hz.
+/// @param cutoff              Hz, below half the sampling frequency; gain one half there.
+/// @param order               of the Butterworth filter that runs twice; 1 to 12.
+/// @param padding             samples by which each end is continued, below N; negative: default.
+/// @throws EvaluationError: cut-off, order or padding out of range; fewer than 3 (order + 1) + 1
+///         samples; a number that isn't finite (joint and sample are named).
+OwnedMatrix lowPass(const Eigen::Ref<const Eigen::MatrixXd>& samples, double sampling_frequency,
+                    double cutoff, int order = 2, Eigen::Index padding = -1);
+
+/// Derivative of equidistant samples after the zero-phase low-pass.
 ///
 /// Before the filter both ends are continued by cubics through the last 1.2 periods of the cut-off,
 /// so the derivative at the ends is about as good as samples of one side allow: better than with
@@ -52,14 +89,14 @@ OwnedMatrix backwardDifference(const Eigen::Ref<const Eigen::VectorXd>& time,
 OwnedMatrix lowPassDerivative(const Eigen::Ref<const Eigen::MatrixXd>& samples,
                               double sampling_frequency, double cutoff, int order = 2);
 
-/// How lowPassAccelerations() is to work.
+/// Options of lowPassAccelerations().
 struct LowPassOptions {
   double cutoff = 0;  ///< Hz; 0: chosen from the data
   int order = 2;      ///< of the Butterworth filter that runs forwards and backwards
-  SampleRules rules;  ///< which faults of the samples are acted upon
+  SampleRules rules;  ///< faults of the samples to act on
 };
 
-/// What a filter did: to be printed and stored beside its result.
+/// Facts about a filter, to be printed and stored beside its result.
 struct FilterChoice {
   std::string method;                      ///< in words
   double cutoff = 0;                       ///< Hz; gain one half there
@@ -74,8 +111,8 @@ struct FilterChoice {
 /// Accelerations, how they came about, and what was found in the samples.
 struct AccelerationEstimate {
   OwnedMatrix qdd;       ///< n x N; rad/s^2 (prismatic m/s^2)
-  FilterChoice filter;   ///< what the filter did
-  SampleReport samples;  ///< what was found; `samples.kept` is for the second metrics
+  FilterChoice filter;   ///< facts about the filter
+  SampleReport samples;  ///< findings; `samples.kept` is for the second metrics
 };
 
 /// Accelerations by a zero-phase low-pass of the velocities, then their derivative. O(N log N).
@@ -98,6 +135,34 @@ AccelerationEstimate lowPassAccelerations(const Eigen::Ref<const Eigen::VectorXd
                                           const Eigen::Ref<const Eigen::MatrixXd>& qd,
                                           const Eigen::Ref<const Eigen::MatrixXd>& effort,
                                           const LowPassOptions& options = {});
+
+/// Where accelerations come from.
+enum class AccelerationMethod {
+  kAuto,                ///< those recorded, if there are any; else kLowPass
+  kLowPass,             ///< zero-phase low-pass of the velocities, then their derivative
+  kBackwardDifference,  ///< backward differences; no filter
+  kGiven,               ///< those recorded
+};
+
+/// `auto`, `low-pass`, `backward-difference` or `given`.
+std::string name(AccelerationMethod method);
+
+/// The method of that name. @throws EvaluationError: another text.
+AccelerationMethod accelerationMethod(const std::string& name);
+
+/// Origin of accelerations, and findings about the samples.
+struct AccelerationReport {
+  AccelerationMethod method = AccelerationMethod::kLowPass;  ///< the one taken; not kAuto
+  FilterChoice filter;                ///< what the low-pass did; all zero where there was none
+  std::string summary;                ///< their origin, in words
+  SampleReport samples;               ///< what was found
+  std::vector<std::string> findings;  ///< about the samples, a sentence each
+};
+
+/// Origin of accelerations in words, for titles and tables.
+///
+/// @param cutoff  Hz; of the low-pass. @param chosen  whether it was chosen from the data.
+std::string accelerationSummary(AccelerationMethod method, double cutoff, bool chosen);
 
 }  // namespace v2
 }  // namespace inverse_dynamics_evaluation

@@ -6,36 +6,36 @@
 ///     CutoffChoice choice = chooseCutoff({{q, qd}}, 1000.0);
 ///     std::cout << choice.cutoff << " Hz\n";
 ///
-/// What is sought. A measured velocity is motion plus noise, with spectra S(f) and N(f). A low-pass
+/// Criterion. A measured velocity is motion plus noise, with spectra S(f) and N(f). A low-pass
 /// of gain h(f) before differentiation makes, on average, the squared acceleration error
 ///
 ///     E(f_c) = sum over f of (2 pi f)^2 [ (1 - h)^2 S + h^2 N ],
 ///
-/// motion lost plus noise let through. The best cut-off is where E is least (Wiener's criterion).
-/// Noise is weighed by f^2, so a cut-off ten times too high costs thirty times the error.
+/// motion lost plus noise let through. The best cut-off minimizes E (Wiener's criterion). Noise is
+/// weighted by f^2, so a cut-off ten times too high costs thirty times the error.
 ///
-/// The method is ordinary cross-validation of one measurement by another: the derivative of q is a
+/// Method. Cross-validation of one measurement by another: the derivative of q is a
 /// second measurement of the same velocity. Three spectra are measured: T of qd, R of the derivative
 /// of q, and the real part C of their cross-spectrum. With s for the true velocity,
 ///
 ///     E(f_c) = sum (2 pi f)^2 [ h^2 T - 2 h C_s ] + constant,
 ///
 /// where C_s is the cross-spectrum of qd and s. C estimates C_s without bias, whatever the colour of
-/// the noise of qd, as long as q has other noise. Since T and C hold all of the recording, so does
-/// E: a stop, an impact or a joint that slips has the weight that it has in the error.
+/// the noise of qd, as long as q has other noise. T, C and so E cover the whole recording: a stop, an
+/// impact or a slipping joint has the weight that it has in the error.
 ///
 /// Drivers often make qd from q; then both share the noise of q. That noise, often the counts of an
 /// encoder, is white in q: its power in R is its level times f^2, and the level is what R has in the
 /// upper half of the frequencies. Up to the last frequency f_q at which noise is less than a fifth
-/// of R, q says what is motion. If qd is coherent with q in the octave above f_q, it has the noise of
-/// q: its share in R is taken away from C, and nothing is motion above f_q. Otherwise C is motion up
-/// to an octave above f_q, and nothing beyond, where it is mostly the product of two noises.
+/// of R, q tells motion from noise. If qd is coherent with q in the octave above f_q, it has the noise of
+/// q: its share in R is subtracted from C, and nothing above f_q is motion. Otherwise C is motion up
+/// to an octave above f_q; beyond, it is mostly the product of two noises.
 ///
-/// Where q jumps and qd doesn't (a seam of 2 pi, a driver that starts anew), the jump is left out.
+/// Where q jumps and qd doesn't (a seam of 2 pi, a driver that restarts), the jump is left out.
 ///
 /// Rests are left out. In 20 minutes with one motion of half a second, noise of all 20 minutes
-/// would outweigh what the filter takes from the motion. So the spectra see the samples in motion
-/// and half a second around them: those where q changes steadily, by more than steps of an encoder,
+/// would outweigh what the filter takes from the motion. So the spectra are those of the samples in
+/// motion and half a second around them: where q changes steadily, by more than steps of an encoder,
 /// and qd agrees.
 ///
 /// One cut-off serves all joints: E is added over them. All of this is sums over segments of at most
@@ -54,11 +54,11 @@
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
-/// What was chosen, and between which bounds; Hz.
+/// The chosen cut-off and its bounds; Hz.
 struct CutoffChoice {
-  double cutoff = 0;   ///< where E is least
-  double lowest = 0;   ///< least that could be chosen: two periods in the recording, or 0.25 Hz
-  double highest = 0;  ///< greatest that could be chosen: 0.4 of the sampling frequency
+  double cutoff = 0;   ///< minimizes E
+  double lowest = 0;   ///< lower bound: two periods in the recording, or 0.25 Hz
+  double highest = 0;  ///< upper bound: 0.4 of the sampling frequency
   double moving = 0;   ///< share of the samples in motion, 0 to 1; the cut-off is chosen from them
 };
 

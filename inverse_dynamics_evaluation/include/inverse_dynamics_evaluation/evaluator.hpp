@@ -17,7 +17,7 @@
 /// The steps, in the order in which they are taken; docs/evaluation.md has the formulas:
 ///
 /// 1. What efforts mean, as it is stated (effort.hpp).
-/// 2. Faults of the samples (samples.hpp), and accelerations (log_accelerations.hpp).
+/// 2. Faults of the samples (samples.hpp), and accelerations (accelerations.hpp).
 /// 3. Torques by the solver.
 /// 4. What efforts mean, by the caller's comparison with the data where it is stated as `auto`.
 /// 5. Errors of the computed against the measured torques (metrics.hpp): over all samples, and over
@@ -32,10 +32,9 @@
 #include <string>
 #include <vector>
 
+#include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "inverse_dynamics_evaluation/effort.hpp"
-#include "inverse_dynamics_evaluation/joint_log.hpp"
 #include "inverse_dynamics_evaluation/joint_state_source.hpp"
-#include "inverse_dynamics_evaluation/log_accelerations.hpp"
 #include "inverse_dynamics_evaluation/metrics.hpp"
 #include "inverse_dynamics_evaluation/sample_table.hpp"
 
@@ -44,57 +43,56 @@ inline namespace v2 {
 
 struct Evaluation;
 
-/// Which meaning of efforts fits the computed torques, with gravity, of an evaluation's table.
+/// Callback: which meaning of efforts fits the computed torques (with gravity) of an evaluation.
 using AskData = std::function<EffortVerdict(const Evaluation&)>;
 
-/// How a recording is to be evaluated, and how texts name it.
+/// Options of an evaluation, and names for its texts.
 struct EvaluationOptions {
   AccelerationMethod method = AccelerationMethod::kAuto;
   double cutoff = 0;               ///< Hz; of the low-pass; 0: chosen from the data
-  SampleRules rules;               ///< which faults of samples are acted upon
-  EffortOptions effort;            ///< what is stated of efforts
+  SampleRules rules;               ///< faults of samples to act on
+  EffortOptions effort;            ///< stated meaning of efforts
   std::string recording;           ///< its file or directory
   std::string topic;               ///< in it; empty: it has none
   std::vector<std::string> units;  ///< n; of the torques: N m or N; empty: texts leave them out
-  std::vector<std::string> notes;  ///< what was left out or assumed in reading: JointLog::notes
+  std::vector<std::string> notes;  ///< what was left out or assumed in reading: SampleTable::notes
   TellProgress progress;
-  AskData ask;  ///< called where efforts are `auto`; none: what is stated without the data counts
+  AskData ask;  ///< called where efforts are `auto`; without it, the stated meaning counts
 };
 
-/// What came of an evaluation. Copies share the table.
+/// Result of an evaluation. Copies share the table.
 struct Evaluation {
   std::vector<std::string> joint_names;  ///< n; those of the solver
   /// Samples, accelerations, what the rules say of each sample; computed torques, without gravity
   /// where the efforts are, and measured ones: what efforts mean.
   std::shared_ptr<SampleTable> table;
-  LogAccelerations accelerations;  ///< and what was found; the table has what is of each sample
+  AccelerationReport accelerations;  ///< and what was found; the table has what is of each sample
   Effort effort;
   std::vector<JointMetrics> errors;          ///< n; over all samples; empty without efforts
   std::vector<JointMetrics> errors_of_kept;  ///< n; over those that were kept
-  std::vector<std::string> notes;  ///< of solver and recording, on efforts, on the samples
-  JointLog recording;              ///< names, clock, frame, notes of a recording that was read here
-  double reading_seconds = 0;      ///< how long reading took
-  double acceleration_seconds = 0;  ///< how long step 2 took
-  double torque_seconds = 0;        ///< how long steps 3 to 5 took
+  std::vector<std::string> notes;   ///< of solver and recording, on efforts, on the samples
+  double reading_seconds = 0;       ///< duration of reading
+  double acceleration_seconds = 0;  ///< duration of step 2
+  double torque_seconds = 0;        ///< duration of steps 3 to 5
 };
 
 /// Torques of a recorded motion against the measured ones.
 ///
-/// @param log  without efforts there are computed torques, but no errors.
+/// @param columns  without efforts there are computed torques, but no errors.
 /// @throws EvaluationError: samples that can't be evaluated; torques that no robot has.
 /// @throws ConfigurationError: currents without drive gains.
-Evaluation evaluate(const JointLogView& log,
+Evaluation evaluate(const RecordedColumns& columns,
                     const inverse_dynamics_solver::InverseDynamicsSolver& solver,
                     const EvaluationOptions& options);
 
-/// The same of a recording, which is read once.
+/// The same for a recording, which is read once.
 ///
 /// @throws RecordingError: as readTable() does.
 Evaluation evaluate(JointStateSource& source, const RecordingOptions& recording,
                     const inverse_dynamics_solver::InverseDynamicsSolver& solver,
                     const EvaluationOptions& options);
 
-/// What is wrong with options whatever the recording is.
+/// Refuses options that fit no recording.
 ///
 /// @throws EvaluationError: a cut-off that no filter has, or for a method that has none; no such
 ///         meaning of efforts. @throws ConfigurationError: currents without drive gains.

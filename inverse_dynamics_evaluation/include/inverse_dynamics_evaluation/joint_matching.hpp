@@ -51,7 +51,7 @@ class JointMatching {
   Found found_ = Found::kNone;
 };
 
-/// `a, b, c`: names as texts list them, no more than 20 and none longer than 60 bytes.
+/// `a, b, c`: names as texts list them, no more than 20; the middle of long ones is left out.
 std::string listed(const std::vector<std::string>& names);
 
 }  // namespace v2

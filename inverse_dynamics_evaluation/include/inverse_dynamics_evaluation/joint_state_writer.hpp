@@ -10,8 +10,8 @@
 /// The format is rosbag2's current one: metadata.yaml of version 9, messages with an index by time,
 /// definitions of the type. MCAP files hold chunks of about 1 MB with checksums, not compressed.
 ///
-/// Whatever can't be written is an inverse_dynamics_evaluation::RecordingError. A recording is
-/// complete after finish(); before, an error or the end of the writer removes it.
+/// Failures to write are RecordingErrors. A recording is complete after finish(); before, an error or
+/// the writer's destructor removes it.
 
 #pragma once
 
@@ -27,7 +27,7 @@
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
-/// A topic of joint states: what all of its messages share.
+/// A topic of joint states, and the fields that its messages share.
 struct JointStateTopic {
   std::string name;
   std::vector<std::string> joint_names;  ///< n
@@ -36,7 +36,7 @@ struct JointStateTopic {
   bool with_efforts = true;     ///< likewise
 };
 
-/// Consecutive messages of a topic, looked at where they lie; numbers are N x n, row-major.
+/// Views of consecutive messages of a topic; numbers are N x n, row-major.
 struct JointStateRows {
   std::size_t count = 0;                         ///< N
   const std::int64_t* header_stamps = nullptr;   ///< N; ns, of the years 1901 to 2038
@@ -46,7 +46,7 @@ struct JointStateRows {
   const double* effort = nullptr;                ///< N m (prismatic N), or as the topic has it
 };
 
-/// A recording that is being written.
+/// Writes a recording.
 class JointStateWriter {
  public:
   /// Makes the directory `path`, with those above it, and a file in it of the same name.
@@ -71,12 +71,11 @@ class JointStateWriter {
   std::unique_ptr<Content> content_;
 };
 
-/// Writes a recording of torques: computed ones as `topic`, measured ones as `topic` with `_gt`
-/// behind its name.
+/// Writes a recording of torques: computed ones as `topic`, measured ones as `topic_gt`.
 ///
 /// @param computed  all messages of the topic; N m (prismatic N).
 /// @param measured  N x n, row-major; N m (prismatic N); null: there are none.
-/// @param progress  called with the share that is written, 0 to 1; throwing leaves no recording.
+/// @param progress  callback with the share that is written, 0 to 1; throwing leaves no recording.
 /// @throws RecordingError
 void writeTorques(const std::string& path, Storage storage, const JointStateTopic& topic,
                   const JointStateRows& computed, const double* measured,

@@ -7,9 +7,8 @@
 ///     std::vector<JointMetrics> kept = metrics(computed, measured, samples.kept);
 ///     std::cout << all[0].rmse << " N m, " << 100 * all[0].nrmse << " %\n";
 ///
-/// The formulas are those of docs/notation.md. Sums are compensated: nothing is lost in long
-/// recordings. Metrics over a selection are to be shown beside
-/// those over all samples, never instead of them.
+/// The formulas are those of docs/notation.md. Sums are compensated, so long recordings lose no
+/// digits. Show metrics over a selection beside those over all samples, never instead of them.
 
 #pragma once
 
@@ -28,7 +27,7 @@ using chain_dynamics::OwnedVector;
 /// One truth value per sample.
 using Mask = chain_dynamics::Owned<Eigen::Array<bool, Eigen::Dynamic, 1>>;
 
-/// How far the computed torques of one joint are from the measured ones, over `count` samples.
+/// Errors of one joint's computed torques over `count` samples.
 ///
 /// With the error `e = computed - measured`; in N m (prismatic N) but for nrmse and r2.
 struct JointMetrics {
@@ -55,7 +54,7 @@ std::vector<JointMetrics> metrics(const Eigen::Ref<const Eigen::MatrixXd>& compu
 
 /// The same over the samples where `mask` is true.
 ///
-/// @param mask  N; at least one sample must count. What it leaves out may be anything, NaN too.
+/// @param mask  N; at least one sample must count. Other samples may be anything, NaN too.
 std::vector<JointMetrics> metrics(const Eigen::Ref<const Eigen::MatrixXd>& computed,
                                   const Eigen::Ref<const Eigen::MatrixXd>& measured,
                                   const Mask& mask);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// Derivative of samples as they come: without the future, at any distances in time.
+/// Causal derivative of samples at any distances in time.
 ///
 ///     OnlineDerivative accelerations(6, 5.0);                  // 6 joints, cut-off 5 Hz
 ///     accelerations.update(stamp, qd);
@@ -13,10 +13,10 @@
 ///     y'' = w^2 (u - y) - 2 w y',   w = 2 pi f_c,   derivative = y'
 ///
 /// Its gain at a frequency f is that of a derivative, 2 pi f, times 1 / (1 + (f / f_c)^2): one half
-/// at the cut-off f_c, as of lowPass(). What a recording's filter needs no delay for costs one
-/// here: 2 / w = 1 / (pi f_c), at 5 Hz 64 ms. A higher cut-off means less delay and more noise.
+/// at the cut-off f_c, as of lowPass(). Unlike the filter of recordings, this one delays its input
+/// by 2 / w = 1 / (pi f_c), at 5 Hz by 64 ms. A higher cut-off means less delay and more noise.
 ///
-/// Between two samples u is taken to run straight, and the equation is solved exactly: right for
+/// Between two samples u is taken as a straight line, and the equation is solved exactly: right for
 /// any distance of samples, stable for any cut-off, without overshoot.
 
 #pragma once
@@ -34,29 +34,29 @@ inline namespace v2 {
 /// Real time: update() allocates nothing, takes no lock, throws nothing for n numbers.
 class OnlineDerivative {
  public:
-  /// What a sample did.
+  /// Effect of a sample.
   enum class Step {
-    kStarted,    ///< it is the first one
-    kContinued,  ///< it was filtered
-    kRepeated,   ///< its stamp is that of the sample before: left out
-    kWentBack,   ///< its stamp is earlier: the filter restarts with it
-    kGap,        ///< it comes too late to go on: the filter restarts with it
+    kStarted,    ///< the first sample
+    kContinued,  ///< filtered
+    kRepeated,   ///< same stamp as the sample before: ignored
+    kWentBack,   ///< earlier stamp: the filter restarts
+    kGap,        ///< after a gap: the filter restarts
   };
 
   /// @param size         n.
   /// @param cutoff       f_c [Hz], above 0.
-  /// @param longest_gap  what may lie between two samples [s], above 0.
+  /// @param longest_gap  longest distance of two samples [s] without a restart, above 0.
   /// @throws EvaluationError: out of range.
   OnlineDerivative(Eigen::Index size, double cutoff, double longest_gap = 0.5);
 
-  /// Filters a sample. @param stamp  ns. @param u  n, finite; positions of continuous joints go on
-  /// beyond a seam: chain_dynamics::unwrap().
+  /// Filters a sample. @param stamp  ns. @param u  n, finite; positions of continuous joints must be
+  /// unwrapped: chain_dynamics::unwrap().
   Step update(std::int64_t stamp, const Eigen::Ref<const Eigen::VectorXd>& u);
 
   /// The next sample is the first one.
   void reset() { started_ = false; }
 
-  /// Whether the beginning has died away, by 99 %: 1.05 / f_c after the start.
+  /// Whether the transient has decayed to 1 %: 1.05 / f_c after the start.
   bool settled() const;
 
   /// n; in units of u per second.
@@ -65,7 +65,7 @@ class OnlineDerivative {
   /// n; the low-passed samples themselves, as late as the derivative.
   const OwnedVector& value() const { return value_; }
 
-  /// By how much slow changes come late [s]: `1 / (pi f_c)`.
+  /// Delay of slow changes [s]: `1 / (pi f_c)`.
   double delay() const { return 2.0 / w_; }
 
  private:

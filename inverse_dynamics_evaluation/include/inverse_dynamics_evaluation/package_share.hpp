@@ -28,9 +28,9 @@ std::string packageShare(const std::string& package);
 /// File that a path in a configuration names.
 ///
 /// @param path       `package://PACKAGE/FILE`: below the share directory of an installed package;
-///     absolute, `~` and `~user` too; else relative.
+///     absolute, `~/FILE` too; else relative.
 /// @param directory  that relative paths begin in: the configuration's.
-/// @throws PackageNotFoundError. @throws ConfigurationError: `~user` of nobody.
+/// @throws PackageNotFoundError
 std::string resolvedPath(const std::string& path, const std::string& directory);
 
 }  // namespace v2

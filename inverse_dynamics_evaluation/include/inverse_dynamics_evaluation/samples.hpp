@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What is wrong with recorded joint states, and when they were really taken.
+/// Faults of recorded joint states, and the time at which each sample was really taken.
 ///
 ///     SampleReport samples = examineSamples(time, q, qd, effort);
-///     samples.repeated.count();                      // messages that say nothing new
+///     samples.repeated.count();                      // messages without news
 ///     metrics(computed, measured, samples.kept);     // in addition to metrics(computed, measured)
 ///
-/// Recordings of real robots have faults that a derivative doesn't forgive. Each is found by a rule
-/// that uses the data only, is reported always, and is acted upon unless it is switched off:
+/// Recordings of real robots have faults that spoil a derivative. A rule for each finds it from the
+/// data alone, always reports it, and acts on it unless switched off:
 ///
 /// 1. **Repeated samples.** q, qd and effort are, bit for bit, those of the sample before: the
 ///    recorder was faster than the robot, or a state was late. The velocity didn't stand still, so
@@ -50,7 +50,7 @@
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
-/// Which rules are acted upon. What they find is reported in any case.
+/// Rules to act on. All of them report what they find.
 struct SampleRules {
   bool repeated = true;         ///< leave repeated samples out of the differentiation
   bool non_increasing = true;   ///< leave out stamps that don't increase; else an error
@@ -71,7 +71,7 @@ enum class TimeBase {
 /// `stamps`, `regular` or `regular_fresh`.
 std::string name(TimeBase time_base);
 
-/// How many samples the rules have found.
+/// Numbers of samples that the rules found.
 struct SampleCounts {
   Eigen::Index all = 0;              ///< N
   Eigen::Index repeated = 0;         ///< rule 1
@@ -97,9 +97,9 @@ struct LongestGap {
   std::int64_t stamp_before = 0;  ///< ns; of the sample before that one
 };
 
-/// What was found in N samples, and what follows from it.
+/// What the rules found in N samples, and what follows.
 ///
-/// What has a number for each sample is left empty by an evaluation that isn't of samples in memory.
+/// An evaluation leaves the columns (one entry per sample) empty: its table has them.
 struct SampleReport {
   SampleCounts counts;
   Mask repeated;         ///< N; rule 1
@@ -127,7 +127,7 @@ struct SampleReport {
   Eigen::Vector3d long_disagreement;  ///< the same over 50 intervals
 };
 
-/// Looks at recorded joint states by the rules above. O(N).
+/// Applies the rules above to recorded joint states. O(N).
 ///
 /// @param time    N; s; stamps.
 /// @param q       n x N, one sample per column; rad (prismatic m).

@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "joint_state_cdr.hpp"
+#include "joint_state_encoder.hpp"
 #include "metadata.hpp"
 #include "output_file.hpp"
 #include "storage_writer.hpp"
@@ -21,18 +21,6 @@ namespace fs = std::filesystem;
 using inverse_dynamics_evaluation::RecordingError;
 
 namespace {
-
-// As `ros2 interface show` has it, without comments: a part per type.
-const char* definitionOfJointState() {
-  return "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\n"
-         "float64[] effort\n"
-         "================================================================================\n"
-         "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
-         "================================================================================\n"
-         "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
-}
-
-constexpr char kHash[] = "RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e";
 
 // Calls a function; what can't be written is an error with the path.
 template <class Function>
@@ -67,20 +55,20 @@ class JointStateWriter::Content {
     summary_.storage = storage;
     summary_.file = directory_.filename().string() + (storage == Storage::kMcap ? ".mcap" : ".db3");
     summary_.start = std::numeric_limits<std::int64_t>::max();
+    std::vector<std::string> names;
     for (const JointStateTopic& topic : topics) {
       const std::size_t n = topic.joint_names.size();
       encoders_.emplace_back(
           topic.joint_names, topic.frame_id,
           std::array<std::size_t, 3>{n, topic.with_velocities ? n : 0, topic.with_efforts ? n : 0});
       columns_.push_back(n);
-      summary_.connections.push_back(
-          {topic.name, kJointState, 0, "cdr", "", definitionOfJointState(), kHash});
+      summary_.topics.emplace_back(topic.name, 0);
+      names.push_back(topic.name);
     }
     makeDirectory(path_);
     const std::string file = directory_ / summary_.file;
     try {
-      storage_ = storage == Storage::kMcap ? createMcap(file, summary_.connections)
-                                           : createSqlite(file, summary_.connections);
+      storage_ = storage == Storage::kMcap ? createMcap(file, names) : createSqlite(file, names);
     } catch (...) {
       remove();
       throw;
@@ -153,7 +141,7 @@ class JointStateWriter::Content {
   }
 
   std::string place(std::size_t topic) const {
-    return path_ + ": " + chain_dynamics::printable(summary_.connections[topic].topic, 60) + ": ";
+    return path_ + ": " + chain_dynamics::printable(summary_.topics[topic].first, 60) + ": ";
   }
 
   // A stamp of a message has seconds of 32 bits; what is read was received within kLatestReception.
@@ -180,7 +168,7 @@ class JointStateWriter::Content {
     storage_->write(topic, received, message_.data(), message_.size());
     summary_.start = std::min(summary_.start, received);
     summary_.end = std::max(summary_.end, received);
-    ++summary_.connections[topic].messages;
+    ++summary_.topics[topic].second;
   }
 
   std::string path_;

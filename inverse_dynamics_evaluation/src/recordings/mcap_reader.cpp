@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// MCAP files [https://mcap.dev/spec], as far as rosbag2 writes them: messages in chunks with an
-/// index, in chunks without one, or one after another.
+/// MCAP files [https://mcap.dev/spec], as far as rosbag2 writes them: messages in chunks, or one
+/// after another.
 ///
-/// With an index, chunks are opened when their time has come, and chunks that overlap in time are
-/// merged. Without one, messages must be stored in the order of reception.
+/// Chunks are opened when their time has come, and chunks that overlap in time are merged. A file
+/// without an index of its chunks is read once for it; messages outside of chunks are taken by the
+/// megabyte, as if these were chunks.
 
 #include <algorithm>
 #include <limits>
-#include <map>
-#include <optional>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -25,10 +25,14 @@ inline namespace v2 {
 namespace {
 
 constexpr std::uint64_t kLatest = std::numeric_limits<std::int64_t>::max();
+constexpr std::uint64_t kPlain = 1 << 20;  // bytes of records outside of chunks taken together
 
+// Where a chunk is, or records outside of chunks, and what messages they hold.
 struct ChunkIndex {
-  std::uint64_t begin_time, end_time, offset, length;
-  std::map<std::uint16_t, std::uint64_t> messages;  // of channels; empty: not known
+  std::uint64_t offset = 0, length = 0;  // bytes
+  std::uint64_t begin_time = kLatest, end_time = 0;
+  std::set<std::uint16_t> channels;  // empty: not known
+  bool is_chunk = true;
 };
 
 // A record within a chunk.
@@ -83,12 +87,13 @@ class McapReader : public StorageReader {
     readHeader();
     readFooter();
     if (summary_ != 0) readSummary();
-    if (schemas_.empty() || connections_.empty() || (!counted_ && chunks_.empty())) scan();
+    const bool has_index = !chunks_.empty() || (counted_ && counts_.empty());
+    if (schemas_.empty() || connections_.empty() || !counted_ || !has_index) scan();
+    std::stable_sort(chunks_.begin(), chunks_.end(),
+                     [](const auto& a, const auto& b) { return a.begin_time < b.begin_time; });
   }
 
-  void countMessages() override {
-    for (const auto& [channel, i] : connection_of_) connections_[i].messages = countOf(channel);
-  }
+  void countMessages() override;
   void select(const std::vector<bool>& wanted) override;
   bool next(Message& message) override;
 
@@ -103,11 +108,11 @@ class McapReader : public StorageReader {
   void readStatistics(Fields fields);
   void checkChunks();
   void scan();
-  void scanRecord(std::uint8_t kind, Fields fields);
-  std::int64_t countOf(std::uint16_t channel) const;
+  void scanRecord(const Record& record, ChunkIndex& index);
 
   std::uint64_t readRecord(std::uint64_t offset, std::uint64_t end, std::uint8_t& kind);
   Fields unpackChunk(Bytes& memory);
+  Fields readChunk(const ChunkIndex& index, Bytes& memory);
   void openChunk(const ChunkIndex& index);
   void requireMemory() const;
   bool isWanted(std::uint16_t channel) const {
@@ -115,28 +120,21 @@ class McapReader : public StorageReader {
     return at != connection_of_.end() && wanted_[at->second];
   }
   bool isWanted(const ChunkIndex& chunk) const;
-  bool nextInOrder(Message& message);
-  bool nextInMerge(Message& message);
-  bool give(const Entry& entry, Message& message) const;
 
   InputFile file_;
   Bytes head_, record_;  // head and content of the record that was read last
   std::uint64_t data_ = 0, data_end_ = 0, summary_ = 0;
-  std::unordered_map<std::uint16_t, std::pair<std::string, std::string>> schemas_;  // name, text
-  std::unordered_map<std::uint16_t, std::size_t> connection_of_;                    // of a channel
-  std::unordered_map<std::uint16_t, std::uint64_t> counts_;  // of messages of a channel
-  bool counted_ = false;                                     // whether counts_ is known
-  std::vector<ChunkIndex> chunks_;                           // by time, then by place
+  std::unordered_map<std::uint16_t, std::string> schemas_;        // names
+  std::unordered_map<std::uint16_t, std::size_t> connection_of_;  // of a channel
+  std::unordered_map<std::uint16_t, std::uint64_t> counts_;       // of messages of a channel
+  bool counted_ = false;                                          // whether counts_ is known
+  std::vector<ChunkIndex> chunks_;                                // by time, then by place
   ZstdUnpacker zstd_;
 
   std::vector<bool> wanted_;
   std::size_t next_chunk_ = 0;
   std::vector<std::unique_ptr<Chunk>> open_;  // a heap: the next message is in the first
   std::unique_ptr<Chunk> spent_;              // holds the message given last, then memory
-  // Without an index:
-  std::uint64_t at_ = 0, previous_ = 0;
-  std::optional<Fields> in_chunk_;
-  Bytes chunk_;
 };
 
 void McapReader::readHeader() {
@@ -203,10 +201,7 @@ void McapReader::readSummaryRecord(std::uint8_t kind, Fields fields) {
 
 void McapReader::readSchema(Fields fields) {
   const auto id = fields.number<std::uint16_t>();
-  std::string name = fields.string();
-  const bool is_message = fields.string() == "ros2msg";
-  std::string definition = fields.string();
-  schemas_[id] = {std::move(name), is_message ? std::move(definition) : ""};
+  schemas_[id] = fields.string();
 }
 
 void McapReader::readChannel(Fields fields) {
@@ -215,16 +210,7 @@ void McapReader::readChannel(Fields fields) {
   Connection connection;
   connection.topic = fields.string();
   connection.serialization = fields.string();
-  connection.type = schema == schemas_.end() ? "__schemaless__" : schema->second.first;
-  if (schema != schemas_.end()) connection.definition = schema->second.second;
-  Fields metadata(nullptr, 0);
-  const auto size = fields.number<std::uint32_t>();
-  for (metadata = Fields(fields.take(size), size); metadata.left() > 0;) {
-    const std::string key = metadata.string();
-    const std::string value = metadata.string();
-    if (key == "offered_qos_profiles") connection.qos_profiles = value;
-    if (key == "topic_type_hash") connection.definition_hash = value;
-  }
+  connection.type = schema == schemas_.end() ? "__schemaless__" : schema->second;
   requireUtf8(connection.topic, "name of a topic");
   requireUtf8(connection.type, "type of a topic");
   if (connection_of_.emplace(id, connections_.size()).second) {
@@ -233,23 +219,14 @@ void McapReader::readChannel(Fields fields) {
 }
 
 void McapReader::readChunkIndex(Fields fields) {
-  ChunkIndex chunk{};
+  ChunkIndex chunk;
   chunk.begin_time = fields.number<std::uint64_t>();
   chunk.end_time = fields.number<std::uint64_t>();
   chunk.offset = fields.number<std::uint64_t>();
   chunk.length = fields.number<std::uint64_t>();
   const auto size = fields.number<std::uint32_t>();
-  std::map<std::uint64_t, std::uint16_t> indexes;  // place and channel
-  for (Fields pairs(fields.take(size), size); pairs.left() > 0;) {
-    const auto channel = pairs.number<std::uint16_t>();
-    indexes.emplace(pairs.number<std::uint64_t>(), channel);
-  }
-  // Records of 15 bytes and 16 bytes for each message, one after another behind the chunk.
-  std::uint64_t end = chunk.offset + chunk.length + fields.number<std::uint64_t>();
-  for (auto at = indexes.rbegin(); at != indexes.rend(); ++at) {
-    if (end < at->first + 15) throw DamageError("places in the index of a chunk don't fit");
-    chunk.messages[at->second] = (end - at->first - 15) / 16;
-    end = at->first;
+  for (Fields pairs(fields.take(size), size); pairs.left() > 0; pairs.take(8)) {
+    chunk.channels.insert(pairs.number<std::uint16_t>());
   }
   chunks_.push_back(std::move(chunk));
 }
@@ -275,54 +252,56 @@ void McapReader::checkChunks() {
     }
     end = chunk.offset + chunk.length;
   }
-  std::stable_sort(chunks_.begin(), chunks_.end(),
-                   [](const auto& a, const auto& b) { return a.begin_time < b.begin_time; });
 }
 
-// Reads all records for their definitions and numbers of messages.
+// Reads all records for definitions, numbers of messages, and an index.
 void McapReader::scan() {
   schemas_.clear();
   connections_.clear();
   connection_of_.clear();
   counts_.clear();
-  counted_ = true;
+  chunks_.clear();
   std::uint8_t kind = 0;
-  for (std::uint64_t at = data_; at < data_end_;) {
-    at = readRecord(at, data_end_, kind);
-    if (kind == kMcapChunk) {
-      for (Fields records = unpackChunk(chunk_); records.left() > 0;) {
-        const Record record = nextRecord(records);
-        scanRecord(record.kind, record.content);
-      }
+  Bytes memory;
+  for (std::uint64_t at = data_, end = 0; at < data_end_; at = end) {
+    end = readRecord(at, data_end_, kind);
+    const bool is_chunk = kind == kMcapChunk;
+    if (is_chunk || chunks_.empty() || chunks_.back().is_chunk || chunks_.back().length > kPlain) {
+      chunks_.emplace_back().offset = at;
+      chunks_.back().is_chunk = is_chunk;
+    }
+    ChunkIndex& index = chunks_.back();
+    index.length = end - index.offset;
+    if (is_chunk) {
+      Fields records = unpackChunk(memory);
+      while (records.left() > 0) scanRecord(nextRecord(records), index);
     } else {
-      scanRecord(kind, Fields(record_.data(), record_.size()));
+      scanRecord({kind, {record_.data(), record_.size()}}, index);
     }
   }
 }
 
-void McapReader::scanRecord(std::uint8_t kind, Fields fields) {
-  if (kind == kMcapSchema) readSchema(fields);
-  if (kind == kMcapChannel) readChannel(fields);
-  if (kind == kMcapMessage) ++counts_[fields.number<std::uint16_t>()];
-  if (kind == kMcapChunk) throw DamageError("a chunk within a chunk");
+void McapReader::scanRecord(const Record& record, ChunkIndex& index) {
+  if (record.kind == kMcapSchema) readSchema(record.content);
+  if (record.kind == kMcapChannel) readChannel(record.content);
+  if (record.kind == kMcapChunk) throw DamageError("a chunk within a chunk");
+  if (record.kind != kMcapMessage) return;
+  const Entry entry = entryOf(record.content);
+  ++counts_[entry.channel];
+  index.begin_time = std::min(index.begin_time, entry.time);
+  index.end_time = std::max(index.end_time, entry.time);
+  index.channels.insert(entry.channel);
 }
 
-std::int64_t McapReader::countOf(std::uint16_t channel) const {
-  std::uint64_t count = 0;
-  if (counted_) {
-    const auto at = counts_.find(channel);
-    count = at == counts_.end() ? 0 : at->second;
-  } else {
-    for (const ChunkIndex& chunk : chunks_) {
-      const auto messages = chunk.messages.find(channel);
-      if (messages != chunk.messages.end()) count += messages->second;
+void McapReader::countMessages() {
+  for (const auto& [channel, i] : connection_of_) {
+    const std::uint64_t count = counts_[channel];
+    if (count > file_.size()) {  // of a byte each
+      throw DamageError("a topic of " + std::to_string(count) +
+                        " messages doesn't fit into the file");
     }
+    connections_[i].messages = static_cast<std::int64_t>(count);
   }
-  if (count > file_.size()) {  // of a byte each
-    throw DamageError("a topic of " + std::to_string(count) +
-                      " messages doesn't fit into the file");
-  }
-  return static_cast<std::int64_t>(count);
 }
 
 // The records of the chunk in record_; memory: what they will lie in.
@@ -361,32 +340,34 @@ void McapReader::select(const std::vector<bool>& wanted) {
   wanted_ = wanted;
   next_chunk_ = 0;
   open_.clear();
-  at_ = data_;
-  previous_ = 0;
-  in_chunk_.reset();
-}
-
-bool McapReader::next(Message& message) {
-  return chunks_.empty() ? nextInOrder(message) : nextInMerge(message);
 }
 
 bool McapReader::isWanted(const ChunkIndex& chunk) const {
-  return chunk.messages.empty() ||
-         std::any_of(chunk.messages.begin(), chunk.messages.end(),
-                     [&](const auto& item) { return item.second > 0 && isWanted(item.first); });
+  return chunk.channels.empty() ||
+         std::any_of(chunk.channels.begin(), chunk.channels.end(),
+                     [&](std::uint16_t channel) { return isWanted(channel); });
 }
 
-void McapReader::openChunk(const ChunkIndex& index) {
-  auto chunk = spent_ ? std::move(spent_) : std::make_unique<Chunk>();
+// The records of a chunk; memory: what they will lie in.
+Fields McapReader::readChunk(const ChunkIndex& index, Bytes& memory) {
+  if (!index.is_chunk) {
+    file_.read(index.offset, index.length, memory);
+    return {memory.data(), memory.size()};
+  }
   std::uint8_t kind = 0;
   const std::uint64_t end = readRecord(index.offset, data_end_, kind);
   if (kind != kMcapChunk || end != index.offset + index.length) {
     throw DamageError("a chunk isn't where the index says");
   }
+  return unpackChunk(memory);
+}
+
+void McapReader::openChunk(const ChunkIndex& index) {
+  auto chunk = spent_ ? std::move(spent_) : std::make_unique<Chunk>();
   chunk->entries.clear();
   chunk->next = 0;
   chunk->place = index.offset;
-  for (Fields records = unpackChunk(chunk->memory); records.left() > 0;) {
+  for (Fields records = readChunk(index, chunk->memory); records.left() > 0;) {
     const Record record = nextRecord(records);
     if (record.kind != kMcapMessage) continue;
     const Entry entry = entryOf(record.content);
@@ -415,7 +396,7 @@ void McapReader::requireMemory() const {
   if (bytes > most) throw beyondLimit("an MCAP file", file_.size(), most);
 }
 
-bool McapReader::nextInMerge(Message& message) {
+bool McapReader::next(Message& message) {
   while (next_chunk_ < chunks_.size() &&
          (open_.empty() || chunks_[next_chunk_].begin_time <= open_.front()->time())) {
     const ChunkIndex& chunk = chunks_[next_chunk_++];
@@ -432,39 +413,10 @@ bool McapReader::nextInMerge(Message& message) {
   } else if (open_.size() > 1) {
     std::push_heap(open_.begin(), open_.end(), isLater);
   }
-  return give(entry, message);
-}
-
-bool McapReader::nextInOrder(Message& message) {
-  std::uint8_t kind = 0;
-  while (true) {
-    if (in_chunk_ && in_chunk_->left() == 0) in_chunk_.reset();
-    if (!in_chunk_ && at_ >= data_end_) return false;
-    if (!in_chunk_) at_ = readRecord(at_, data_end_, kind);
-    const Record record =
-        in_chunk_ ? nextRecord(*in_chunk_) : Record{kind, {record_.data(), record_.size()}};
-    if (record.kind == kMcapChunk) {
-      if (in_chunk_) throw DamageError("a chunk within a chunk");
-      in_chunk_ = unpackChunk(chunk_);
-    } else if (record.kind == kMcapMessage) {
-      const Entry entry = entryOf(record.content);
-      if (!isWanted(entry.channel)) continue;
-      if (entry.time < previous_) {
-        throw DamageError(
-            "messages without an index that aren't in the order of reception; `mcap recover` makes "
-            "a file with an index of it");
-      }
-      previous_ = entry.time;
-      return give(entry, message);
-    }
-  }
-}
-
-bool McapReader::give(const Entry& entry, Message& message) const {
   if (entry.time > kLatest) {
     throw DamageError("a time of reception of " + std::to_string(entry.time) + " ns");
   }
-  message.connection = connection_of_.at(entry.channel);
+  message.topic = &connections_[connection_of_.at(entry.channel)].topic;
   message.received = static_cast<std::int64_t>(entry.time);
   message.data = entry.data;
   message.size = entry.size;

@@ -37,8 +37,8 @@ struct Times {
 
 class McapWriter : public StorageWriter {
  public:
-  McapWriter(const std::string& path, const std::vector<Connection>& connections)
-      : file_(path), connections_(connections), indexes_(connections.size()) {
+  McapWriter(const std::string& path, const std::vector<std::string>& topics)
+      : file_(path), topics_(topics), indexes_(topics.size()) {
     file_.write(kMcapMagic, sizeof kMcapMagic);
     Bytes header;
     putString(header, "ros2");
@@ -47,7 +47,7 @@ class McapWriter : public StorageWriter {
     writeDefinitions(chunk_);
   }
 
-  void write(std::size_t connection, std::int64_t received, const std::uint8_t* data,
+  void write(std::size_t topic, std::int64_t received, const std::uint8_t* data,
              std::size_t size) override;
   void finish(const std::string& metadata) override;
 
@@ -60,35 +60,34 @@ class McapWriter : public StorageWriter {
   }
   void writeDefinitions(Bytes& out) const;
   void writeChunk();
-  void writeMetadata(const std::string& metadata);
   void writeSummary(std::uint64_t metadata_begin, std::uint64_t metadata_size);
   Bytes statistics() const;
 
   OutputFile file_;
-  std::vector<Connection> connections_;
+  std::vector<std::string> topics_;
   Times times_;
 
   Bytes chunk_;                       // records of the current one
   Times chunk_times_;                 // of it
-  std::vector<Bytes> indexes_;        // of it: time and place of the messages of each connection
-  std::vector<std::size_t> indexed_;  // of it: connections in the order of their first messages
+  std::vector<Bytes> indexes_;        // of it: time and place of the messages of each topic
+  std::vector<std::size_t> indexed_;  // of it: topics in the order of their first messages
   std::vector<Bytes> chunk_indexes_;  // of all
-  std::vector<std::uint64_t> counts_ = std::vector<std::uint64_t>(connections_.size());
+  std::vector<std::uint64_t> counts_ = std::vector<std::uint64_t>(topics_.size());
 };
 
-void McapWriter::write(std::size_t connection, std::int64_t received, const std::uint8_t* data,
+void McapWriter::write(std::size_t topic, std::int64_t received, const std::uint8_t* data,
                        std::size_t size) {
   const auto time = static_cast<std::uint64_t>(received);
   times_.add(time);
   chunk_times_.add(time);
-  ++counts_[connection];
-  Bytes& index = indexes_[connection];
-  if (index.empty()) indexed_.push_back(connection);
+  ++counts_[topic];
+  Bytes& index = indexes_[topic];
+  if (index.empty()) indexed_.push_back(topic);
   putNumber(index, time);
   putNumber(index, std::uint64_t{chunk_.size()});
   chunk_.push_back(kMcapMessage);
   putNumber(chunk_, std::uint64_t{kMcapMessageHead + size});
-  putNumber(chunk_, static_cast<std::uint16_t>(connection + 1));
+  putNumber(chunk_, static_cast<std::uint16_t>(topic + 1));
   putNumber(chunk_, std::uint32_t{0});  // sequence number: none
   putNumber(chunk_, time);
   putNumber(chunk_, time);  // of publication: rosbag2 writes that of reception
@@ -97,19 +96,19 @@ void McapWriter::write(std::size_t connection, std::int64_t received, const std:
 }
 
 void McapWriter::writeDefinitions(Bytes& out) const {
-  if (connections_.empty()) return;
+  if (topics_.empty()) return;
   Bytes schema;
   putNumber(schema, kSchemaId);
-  putString(schema, connections_.front().type);
+  putString(schema, kJointState);
   putString(schema, "ros2msg");
-  putString(schema, connections_.front().definition);
+  putString(schema, kJointStateDefinition);
   putRecord(out, kMcapSchema, schema);
-  for (std::size_t i = 0; i < connections_.size(); ++i) {
+  for (std::size_t i = 0; i < topics_.size(); ++i) {
     Bytes channel, metadata;
     putNumber(channel, static_cast<std::uint16_t>(i + 1));
     putNumber(channel, kSchemaId);
-    putString(channel, connections_[i].topic);
-    putString(channel, connections_[i].serialization);
+    putString(channel, topics_[i]);
+    putString(channel, "cdr");
     putString(metadata, "offered_qos_profiles");
     putString(metadata, "[]");
     putString(channel, {metadata.begin(), metadata.end()});
@@ -134,16 +133,16 @@ void McapWriter::writeChunk() {
   const std::uint64_t end = file_.size();
 
   Bytes places;
-  for (const std::size_t connection : indexed_) {
-    const auto channel = static_cast<std::uint16_t>(connection + 1);
+  for (const std::size_t topic : indexed_) {
+    const auto channel = static_cast<std::uint16_t>(topic + 1);
     putNumber(places, channel);
     putNumber(places, file_.size());
     Bytes index;
     putNumber(index, channel);
-    putNumber(index, static_cast<std::uint32_t>(indexes_[connection].size()));
-    index.insert(index.end(), indexes_[connection].begin(), indexes_[connection].end());
+    putNumber(index, static_cast<std::uint32_t>(indexes_[topic].size()));
+    index.insert(index.end(), indexes_[topic].begin(), indexes_[topic].end());
     put(kMcapMessageIndex, index);
-    indexes_[connection].clear();
+    indexes_[topic].clear();
   }
   Bytes summary;
   chunk_times_.put(summary);
@@ -178,42 +177,17 @@ void McapWriter::finish(const std::string& metadata) {
 
 void McapWriter::writeSummary(std::uint64_t metadata_begin, std::uint64_t metadata_size) {
   const std::uint64_t begin = file_.size();
-  Bytes summary, offsets;
-  std::size_t done = 0;
-  // Where the records of a kind are that were put last.
-  const auto end_group = [&](McapRecord kind) {
-    if (summary.size() == done) return;
-    Bytes offset = {kind};
-    putNumber(offset, begin + done);
-    putNumber(offset, std::uint64_t{summary.size() - done});
-    putRecord(offsets, kMcapSummaryOffset, offset);
-    done = summary.size();
-  };
-  Bytes definitions;
-  writeDefinitions(definitions);
-  if (!definitions.empty()) {
-    const std::size_t schema = kMcapRecordHead + littleEndian<std::uint64_t>(&definitions[1]);
-    summary.assign(definitions.begin(), definitions.begin() + static_cast<std::ptrdiff_t>(schema));
-    end_group(kMcapSchema);
-    summary = std::move(definitions);
-    end_group(kMcapChannel);
-  }
-  for (const Bytes& index : chunk_indexes_) putRecord(summary, kMcapChunkIndex, index);
-  end_group(kMcapChunkIndex);
-  Bytes index;
+  Bytes summary, index, footer;
+  writeDefinitions(summary);
+  for (const Bytes& chunk : chunk_indexes_) putRecord(summary, kMcapChunkIndex, chunk);
   putNumber(index, metadata_begin);
   putNumber(index, metadata_size);
   putString(index, "rosbag2");
   putRecord(summary, kMcapMetadataIndex, index);
-  end_group(kMcapMetadataIndex);
   putRecord(summary, kMcapStatistics, statistics());
-  end_group(kMcapStatistics);
   file_.write(summary.data(), summary.size());
-  const std::uint64_t offsets_begin = file_.size();
-  file_.write(offsets.data(), offsets.size());
-  Bytes footer;
   putNumber(footer, begin);
-  putNumber(footer, offsets_begin);
+  putNumber(footer, std::uint64_t{0});  // offsets of the summary's groups: none
   putNumber(footer, std::uint32_t{0});  // checksum: none
   put(kMcapFooter, footer);
 }
@@ -221,8 +195,8 @@ void McapWriter::writeSummary(std::uint64_t metadata_begin, std::uint64_t metada
 Bytes McapWriter::statistics() const {
   Bytes content;
   putNumber(content, times_.count);
-  putNumber(content, static_cast<std::uint16_t>(connections_.empty() ? 0 : 1));  // schemas
-  putNumber(content, static_cast<std::uint32_t>(connections_.size()));
+  putNumber(content, static_cast<std::uint16_t>(topics_.empty() ? 0 : 1));  // schemas
+  putNumber(content, static_cast<std::uint32_t>(topics_.size()));
   putNumber(content, std::uint32_t{0});  // attachments
   putNumber(content, std::uint32_t{1});  // metadata
   putNumber(content, static_cast<std::uint32_t>(chunk_indexes_.size()));
@@ -239,8 +213,8 @@ Bytes McapWriter::statistics() const {
 }  // namespace
 
 std::unique_ptr<StorageWriter> createMcap(const std::string& path,
-                                          const std::vector<Connection>& connections) {
-  return std::make_unique<McapWriter>(path, connections);
+                                          const std::vector<std::string>& topics) {
+  return std::make_unique<McapWriter>(path, topics);
 }
 
 }  // namespace v2

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "bytes.hpp"
+#include "storage_writer.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -91,17 +92,10 @@ Connection connectionOf(const YAML::Node& node) {
   connection.topic = text(required(about, "name"), "name");
   connection.type = text(required(about, "type"), "type");
   connection.serialization = text(required(about, "serialization_format"), "serialization_format");
-  connection.definition_hash = optionalText(about, "type_description_hash");
   connection.messages = integer(node, "message_count");
   if (connection.messages < 0) {
     throw DamageError("metadata.yaml: message_count: expected a number of messages, got " +
                       std::to_string(connection.messages));
-  }
-  const YAML::Node profiles = about["offered_qos_profiles"];
-  if (profiles && profiles.IsScalar()) {
-    connection.qos_profiles = profiles.Scalar();
-  } else if (profiles && profiles.size() > 0) {
-    connection.qos_profiles = YAML::Dump(profiles);
   }
   return connection;
 }
@@ -170,23 +164,19 @@ Metadata readMetadata(const std::string& path) {
     metadata.files.push_back(whole.substr(whole.find_last_of('/') + 1));  // npos + 1 is 0
   }
   for (const auto& topic : topics) metadata.connections.push_back(connectionOf(topic));
-  integer(about, "message_count");
-  integer(required(about, "duration"), "nanoseconds");
-  integer(required(about, "starting_time"), "nanoseconds_since_epoch");
   return metadata;
 }
 
 std::string metadataText(const MetadataSummary& summary, bool nested) {
   std::int64_t messages = 0;
   std::string topics;
-  for (const Connection& connection : summary.connections) {
-    messages += connection.messages;
+  for (const auto& [topic, count] : summary.topics) {
+    messages += count;
     topics +=
-        "\n- message_count: " + std::to_string(connection.messages) +
-        "\n  topic_metadata:\n    name: " + scalar(connection.topic) +
-        "\n    offered_qos_profiles: []\n    serialization_format: " + connection.serialization +
-        "\n    type: " + connection.type +
-        "\n    type_description_hash: " + connection.definition_hash;
+        "\n- message_count: " + std::to_string(count) +
+        "\n  topic_metadata:\n    name: " + scalar(topic) +
+        "\n    offered_qos_profiles: []\n    serialization_format: cdr\n    type: " + kJointState +
+        "\n    type_description_hash: " + kJointStateHash;
   }
   const std::string count = std::to_string(messages);
   const std::string file = scalar(summary.file);

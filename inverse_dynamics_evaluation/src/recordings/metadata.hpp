@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "inverse_dynamics_evaluation/recording.hpp"
+#include "storage_reader.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -26,12 +28,12 @@ struct Metadata {
 /// @throws DamageError, ReadingError, and YAML::Exception where it isn't YAML.
 Metadata readMetadata(const std::string& path);
 
-/// Times and numbers of a recording of one file.
+/// Times and numbers of a recording of joint states in one file.
 struct MetadataSummary {
   Storage storage = Storage::kSqlite3;
   std::string file;                 ///< its name
   std::int64_t start = 0, end = 0;  ///< ns; first and last time of reception
-  std::vector<Connection> connections;
+  std::vector<std::pair<std::string, std::int64_t>> topics;  ///< names and numbers of messages
 };
 
 /// The text of metadata.yaml; nested: without the outermost key, as stored in the files themselves.

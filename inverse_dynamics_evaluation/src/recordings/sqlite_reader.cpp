@@ -56,9 +56,7 @@ class SqliteReader : public StorageReader {
  private:
   void requireAllPages();
   void requireTables();
-  bool hasColumn(const std::string& table, const std::string& column);
   void readTopics();
-  void readDefinitions();
   bool isOrdered();
   // A file can't hold more rows than bytes, unless its pages refer to each other in circles.
   void countRow() {
@@ -98,12 +96,12 @@ void SqliteReader::requireAllPages() {
 void SqliteReader::requireTables() {
   Statement names(database_,
                   "SELECT name, iif(type = 'table' AND rootpage = 0, 'virtual table', type) FROM "
-                  "sqlite_master WHERE name IN ('messages', 'topics', 'message_definitions')");
+                  "sqlite_master WHERE name IN ('messages', 'topics')");
   int tables = 0;
   while (names.step()) {
     const std::string kind = names.text(1);
     if (kind == "table") {
-      tables += names.text(0) != "message_definitions" ? 1 : 0;
+      ++tables;
     } else if (kind != "index") {
       throw DamageError("expected the table " + names.text(0) + ", got a " + kind);
     }
@@ -111,21 +109,9 @@ void SqliteReader::requireTables() {
   if (tables != 2) throw DamageError("expected the tables messages and topics, got others");
 }
 
-bool SqliteReader::hasColumn(const std::string& table, const std::string& column) {
-  Statement columns(database_, "SELECT name FROM pragma_table_info('" + table + "')");
-  while (columns.step()) {
-    if (columns.text(0) == column) return true;
-  }
-  return false;
-}
-
 void SqliteReader::readTopics() {
-  const bool with_qos = hasColumn("topics", "offered_qos_profiles");
-  const bool with_hash = hasColumn("topics", "type_description_hash");
-  Statement topics(database_, std::string("SELECT id, name, type, serialization_format, ") +
-                                  (with_qos ? "offered_qos_profiles, " : "'', ") +
-                                  (with_hash ? "type_description_hash " : "'' ") +
-                                  "FROM topics ORDER BY id");
+  Statement topics(database_,
+                   "SELECT id, name, type, serialization_format FROM topics ORDER BY id");
   for (; topics.step(); countRow()) {
     for (const int column : {1, 2, 3}) {
       if (!topics.isType(column, SQLITE_TEXT)) {
@@ -137,22 +123,10 @@ void SqliteReader::readTopics() {
       throw DamageError("ids of topics: expected each once");
     }
     ids_.push_back(topics.integer(0));
-    connections_.push_back(
-        {topics.text(1), topics.text(2), 0, topics.text(3), topics.text(4), "", topics.text(5)});
+    connections_.push_back({topics.text(1), topics.text(2), topics.text(3), 0});
     requireUtf8(connections_.back().topic, "name of a topic");
     requireUtf8(connections_.back().type, "type of a topic");
   }
-  readDefinitions();
-}
-
-void SqliteReader::readDefinitions() {
-  if (!hasColumn("message_definitions", "encoded_message_definition")) return;
-  Statement rows(database_,
-                 "SELECT topic_type, encoded_message_definition FROM message_definitions "
-                 "WHERE encoding = 'ros2msg' ORDER BY id");
-  std::unordered_map<std::string, std::string> definitions;  // the first of each type
-  for (; rows.step(); countRow()) definitions.emplace(rows.text(0), rows.text(1));
-  for (Connection& connection : connections_) connection.definition = definitions[connection.type];
 }
 
 void SqliteReader::countMessages() {
@@ -203,7 +177,7 @@ bool SqliteReader::next(Message& message) {
       throw DamageError("a time of reception: expected a whole number, got " +
                         quoted(messages_->text(1)));
     }
-    message.connection = connection_;
+    message.topic = &connections_[connection_].topic;
     message.received = messages_->integer(1);
     if (message.received < previous_) {
       throw DamageError(

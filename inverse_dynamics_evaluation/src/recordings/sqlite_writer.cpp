@@ -10,7 +10,7 @@ inline namespace v2 {
 namespace {
 
 // rosbag2's tables, version 4. The index is made when all messages are there.
-constexpr char kSchema[] = R"(
+constexpr char kTables[] = R"(
 CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL);
 CREATE TABLE metadata(
   id INTEGER PRIMARY KEY, metadata_version INTEGER NOT NULL, metadata TEXT NOT NULL);
@@ -29,7 +29,7 @@ INSERT INTO schema VALUES (4, 'unknown');
 
 class SqliteWriter : public StorageWriter {
  public:
-  SqliteWriter(const std::string& path, const std::vector<Connection>& connections)
+  SqliteWriter(const std::string& path, const std::vector<std::string>& topics)
       : database_(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) {
     // The file is new, and of no use until it is complete. Large pages take half the time of SQLite's
     // usual 4 kB.
@@ -37,14 +37,14 @@ class SqliteWriter : public StorageWriter {
     database_.run(
         "PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA locking_mode=EXCLUSIVE;");
     database_.run("BEGIN");
-    database_.run(kSchema);
-    writeTopics(connections);
+    database_.run(kTables);
+    writeTopics(topics);
     insert_.emplace(database_, "INSERT INTO messages (topic_id, timestamp, data) VALUES (?, ?, ?)");
   }
 
-  void write(std::size_t connection, std::int64_t received, const std::uint8_t* data,
+  void write(std::size_t topic, std::int64_t received, const std::uint8_t* data,
              std::size_t size) override {
-    insert_->bind(1, static_cast<std::int64_t>(connection + 1));
+    insert_->bind(1, static_cast<std::int64_t>(topic + 1));
     insert_->bind(2, received);
     insert_->bind(3, data, size);
     insert_->runOnce();
@@ -64,22 +64,21 @@ class SqliteWriter : public StorageWriter {
   }
 
  private:
-  void writeTopics(const std::vector<Connection>& connections) {
-    Statement topic(database_, "INSERT INTO topics VALUES (?, ?, ?, ?, '[]', ?)");
-    for (std::size_t i = 0; i < connections.size(); ++i) {
+  void writeTopics(const std::vector<std::string>& topics) {
+    Statement topic(database_, "INSERT INTO topics VALUES (?, ?, ?, 'cdr', '[]', ?)");
+    for (std::size_t i = 0; i < topics.size(); ++i) {
       topic.bind(1, static_cast<std::int64_t>(i + 1));
-      topic.bind(2, connections[i].topic);
-      topic.bind(3, connections[i].type);
-      topic.bind(4, connections[i].serialization);
-      topic.bind(5, connections[i].definition_hash);
+      topic.bind(2, topics[i]);
+      topic.bind(3, kJointState);
+      topic.bind(4, kJointStateHash);
       topic.runOnce();
     }
-    if (connections.empty()) return;
+    if (topics.empty()) return;
     Statement definition(database_,
                          "INSERT INTO message_definitions VALUES (1, ?, 'ros2msg', ?, ?)");
-    definition.bind(1, connections.front().type);
-    definition.bind(2, connections.front().definition);
-    definition.bind(3, connections.front().definition_hash);
+    definition.bind(1, kJointState);
+    definition.bind(2, kJointStateDefinition);
+    definition.bind(3, kJointStateHash);
     definition.step();
   }
 
@@ -90,8 +89,8 @@ class SqliteWriter : public StorageWriter {
 }  // namespace
 
 std::unique_ptr<StorageWriter> createSqlite(const std::string& path,
-                                            const std::vector<Connection>& connections) {
-  return std::make_unique<SqliteWriter>(path, connections);
+                                            const std::vector<std::string>& topics) {
+  return std::make_unique<SqliteWriter>(path, topics);
 }
 
 }  // namespace v2

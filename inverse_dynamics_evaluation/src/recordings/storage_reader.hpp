@@ -13,6 +13,14 @@
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 
+/// What a file states about the messages of one publisher.
+struct Connection {
+  std::string topic;
+  std::string type;           ///< such as `sensor_msgs/msg/JointState`
+  std::string serialization;  ///< `cdr`
+  std::int64_t messages = 0;  ///< how many
+};
+
 /// A file that is open. Its errors are DamageError, ReadingError and SqliteError.
 class StorageReader {
  public:

@@ -4,7 +4,7 @@
     log = read_joint_log("recording", ["joint_1", "joint_2"])
     write_joint_logs("copy", {"/joint_states": log})
 
-Which messages and joints are taken, and which time: inverse_dynamics_evaluation/joint_log.hpp.
+Which messages and joints are taken, and which time: inverse_dynamics_evaluation/sample_table.hpp.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from __future__ import annotations
 import os
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 from urllib.parse import quote
 
 from inverse_dynamics import _core
-from inverse_dynamics._core import JointLogBuilder, JointStateWriter, Recording
+from inverse_dynamics._core import JointStateWriter, Recording
 from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import harmless
@@ -26,10 +26,9 @@ from inverse_dynamics.errors import BagError
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    import numpy as np
     from rosbags.rosbag2 import Writer
 
-    from inverse_dynamics._core import JointStates, RecordedJoints
+    from inverse_dynamics._core import SampleTable
     from inverse_dynamics.base.arrays import Floats, Integers
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Clock, Storage
@@ -75,7 +74,7 @@ def read_joint_log(
     clock: Clock = "auto",
     progress: Progress = no_progress,
 ) -> JointLog:
-    """Joint states of one topic, by the rules of inverse_dynamics_evaluation/joint_log.hpp.
+    """Joint states of one topic, by the rules of inverse_dynamics_evaluation/sample_table.hpp.
 
     path: directory with metadata.yaml, or a .db3 or .mcap file. joints: names, in the order wanted;
     none: those of the first message. topic: none: the only one with joint states. clock: which
@@ -85,41 +84,40 @@ def read_joint_log(
     """
     check_clock(clock)
     opened = open_joint_states(path, topic)
-    builder = JointLogBuilder(opened.states, joints)
-    while builder.add_next(opened.states):
-        progress("reading", builder.messages, opened.states.expected_messages)
-    recorded = builder.finish(clock)
+    expected = opened.recording.expected_messages(opened.topic)
     return opened.log(
-        recorded,
-        {
-            name: getattr(recorded, name)
-            for name in ("header_stamps", "receive_stamps", "q", "qd", "effort")
-        },
+        opened.recording.read_samples(
+            opened.topic,
+            joints,
+            clock,
+            lambda share: progress("reading", round(share * expected), expected),
+        )
     )
 
 
 class JointStateTopic(NamedTuple):
     """Joint states of a recording that haven't been read."""
 
-    states: JointStates
+    recording: Recording
     topic: str
     storage: Storage
     effort_is: str = ""  # the format states no meaning
 
-    def log(self, recorded: RecordedJoints, arrays: Mapping[str, np.ndarray[Any, Any]]) -> JointLog:
-        """What was read: facts, and arrays by name."""
+    def log(self, table: SampleTable) -> JointLog:
+        """What was read, as views of the table."""
+        series = table.series
         return JointLog(
-            joint_names=tuple(recorded.joint_names),
-            header_stamps=arrays["header_stamps"],
-            receive_stamps=arrays["receive_stamps"],
-            q=arrays["q"],
-            qd=arrays["qd"],
-            effort=arrays["effort"],
-            frame_id=recorded.frame_id,
-            clock=recorded.clock,
+            joint_names=tuple(table.joint_names),
+            header_stamps=series["header_stamps"],
+            receive_stamps=series["receive_stamps"],
+            q=series["q"],
+            qd=series["qd"],
+            effort=series["effort"],
+            frame_id=table.frame_id,
+            clock=table.clock,
             topic=self.topic,
             storage=self.storage,
-            notes=tuple(recorded.notes),
+            notes=tuple(table.notes),
         )
 
 
@@ -127,7 +125,7 @@ def open_joint_states(path: Path | str, topic: str = "") -> JointStateTopic:
     """Joint states of a topic; none given: of the only one with any. Raises BagError."""
     recording = open_recording(path)
     topic = topic_of_type(recording, MESSAGE_TYPE, topic)
-    return JointStateTopic(recording.joint_states(topic), topic, recording.storage)
+    return JointStateTopic(recording, topic, recording.storage)
 
 
 def write_joint_logs(

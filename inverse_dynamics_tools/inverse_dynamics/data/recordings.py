@@ -162,7 +162,9 @@ def _positions(
         progress=no_progress,
     )
     messages, published = 0, False
-    for block in () if isinstance(motion, JointLog) else motion.states:
+    if isinstance(motion, JointLog):
+        return
+    for block in motion.recording.joint_states(motion.topic):
         names, positions = block[0], block[4]
         if positions.shape[1:] == (len(names),):
             yield names, positions

@@ -291,11 +291,13 @@ def _compare(
     if isinstance(motion, JointLog):
         expected, notes = len(motion), motion.notes
     else:
-        expected, notes = motion.states.expected_messages, ()
+        expected, notes = motion.recording.expected_messages(motion.topic), ()
     effort = _core.effort_options(robot, arm.solver, effort_is, motion.effort_is)
 
     def ask(found: Evaluated) -> EffortVerdict:
-        columns = (found.series[name] for name in ("time", "q", "qd", "qdd", "effort", "kept"))
+        columns = (
+            found.table.series[name] for name in ("time", "q", "qd", "qdd", "effort", "kept")
+        )
         samples = pieces_of(arm.joint_names, *columns)
         model = arm_model(robot, arm.solver, arm.description)
         return _core.EffortVerdict(**asdict(meaning_of_efforts(samples, model, effort.drive_gains)))
@@ -316,16 +318,16 @@ def _compare(
     )
     found = _core.evaluate(
         arm.solver,
-        motion if isinstance(motion, JointLog) else motion.states,
+        motion if isinstance(motion, JointLog) else motion.recording,
         options,
         ask,
         lambda share: progress("evaluating", round(share * expected), expected),
     )
-    arrays = found.series
+    arrays = found.table.series
     if isinstance(motion, JointLog):
         log = replace(motion, q=arrays["q"])  # continuous joints go on beyond a driver's seam
     else:
-        log = motion.log(found.recording, arrays)
+        log = motion.log(found.table)
     return Evaluation(
         robot=replace(robot, joints=arm.recorded_names, topic=log.topic, effort=found.meaning),
         bag=bag,

@@ -19,7 +19,7 @@ from inverse_dynamics.base.files import (
 )
 from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.data.bags import new_recording, open_recording, unwritable
+from inverse_dynamics.data.bags import new_recording, open_recording, topics_of, unwritable
 from inverse_dynamics.data.csv_table import CsvTable, is_csv
 from inverse_dynamics.data.joint_trajectories import MESSAGE_TYPE, typestore
 from inverse_dynamics.errors import BagError, OutputError
@@ -27,10 +27,9 @@ from inverse_dynamics.errors import BagError, OutputError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rosbags.interfaces import Connection as Written
+    from rosbags.interfaces import Connection
     from rosbags.rosbag2 import Writer
 
-    from inverse_dynamics._core import Connection
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.trajectory_torques import TrajectoryTorques
@@ -104,19 +103,22 @@ def summary(result: TrajectoryTorques) -> dict[str, Any]:
 
 
 def _write_bag(result: TrajectoryTorques, path: Path, progress: Progress) -> tuple[str, ...]:
+    from rosbags.rosbag2 import Reader
+
     filled = iter(zip(result.trajectories, result.torques, strict=True))
     recording = open_recording(result.path)
-    connections = recording.connections()
-    total = sum(c.message_count for c in connections)
+    total = sum(topic.message_count for topic in topics_of(recording))
     done = 0
-    with new_recording(path, recording.storage) as writer:
-        copies = [_copied(writer, c) for c in connections]
-        for indices, stamps, messages in recording.all_messages():
-            for index, received, raw in zip(indices, stamps, messages, strict=True):
-                copy = copies[index]
+    with Reader(result.path) as reader, new_recording(path, recording.storage) as writer:
+        # the reader knows definitions and qualities of service; open_recording() checks messages
+        types = {c.topic: c.msgtype for c in reader.connections}
+        copies = {c.topic: _copied(writer, c) for c in reader.connections}
+        for topics, stamps, messages in recording.all_messages():
+            for topic, received, raw in zip(topics, stamps, messages, strict=True):
+                copy = copies[topic]
                 if copy is None:
                     continue
-                if copy.topic == result.topic:
+                if topic == result.topic:
                     trajectory, torques = next(filled)
                     columns = [result.joint_names.index(n) for n in trajectory.joint_names]
                     writer.write(
@@ -127,28 +129,28 @@ def _write_bag(result: TrajectoryTorques, path: Path, progress: Progress) -> tup
             done += len(messages)
             progress("writing", done, total)
     return tuple(
-        f"topic {c.topic} left out: the recording doesn't define its type, {c.message_type}"
-        for c, copy in zip(connections, copies, strict=True)
+        f"topic {topic} left out: the recording doesn't define its type, {types[topic]}"
+        for topic, copy in copies.items()
         if copy is None
     )
 
 
-def _copied(writer: Writer, connection: Connection) -> Written | None:
+def _copied(writer: Writer, connection: Connection) -> Connection | None:
     """The same topic in the new recording; None if its type isn't known."""
-    from rosbags.rosbag2.metadata import parse_qos
+    from rosbags.interfaces import MessageDefinitionFormat
 
-    known = connection.message_type in typestore().types
-    defined = bool(connection.definition and connection.definition_hash)
+    known = connection.msgtype in typestore().types
+    defined = connection.msgdef.format == MessageDefinitionFormat.MSG and bool(connection.digest)
     if not known and not defined:
         return None
     return writer.add_connection(
         connection.topic,
-        connection.message_type,
+        connection.msgtype,
         typestore=None if defined else typestore(),
-        msgdef=connection.definition if defined else None,
-        rihs01=connection.definition_hash if defined else None,
-        serialization_format=connection.serialization,
-        offered_qos_profiles=parse_qos(connection.qos_profiles),
+        msgdef=connection.msgdef.data if defined else None,
+        rihs01=connection.digest if defined else None,
+        serialization_format=connection.ext.serialization_format,
+        offered_qos_profiles=connection.ext.offered_qos_profiles,
     )
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "joint_state_cdr.hpp"
+#include "joint_states.hpp"
 
 #include <gmock/gmock.h>
 
@@ -8,8 +8,10 @@
 #include <random>
 
 #include "error_of.hpp"
+#include "joint_state_block.hpp"
+#include "joint_state_encoder.hpp"
 
-namespace inverse_dynamics_evaluation::joint_state_cdr_test {
+namespace inverse_dynamics_evaluation::joint_states_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -39,7 +41,9 @@ JointStateBlock blockOf(const std::vector<Bytes>& messages) {
   JointStateDecoder decoder;
   JointStateBlock block;
   for (const Bytes& message : messages) {
-    EXPECT_TRUE(decoder.add(message.data(), message.size(), 7, block));
+    JointSample sample = decoder.decode(message.data(), message.size());
+    sample.receive_stamp = 7;
+    block.add(sample);
   }
   return block;
 }
@@ -108,28 +112,15 @@ TEST(JointStateDecoder, TakesMessagesThatDifferInPaddingOnlyForTheSame) {
   EXPECT_THAT(block.effort.values, ElementsAre(-1, 0.5, -1, 0.5, -1, 0.5));
 }
 
-TEST(JointStateDecoder, EndsABlockWhereNamesFrameOrLengthsChange) {
+TEST(JointStateDecoder, TellsMessagesOfOtherNamesFramesAndLengthsApart) {
   const Bytes others[] = {encoded({"a", "bcd"}, 1, {1, 2}), encoded({"a", "b"}, 1, {1, 2})};
   JointStateDecoder decoder;
-  JointStateBlock block;
-  EXPECT_TRUE(decoder.add(kMessage.data(), kMessage.size(), 7, block));
   for (const Bytes& other : others) {
-    EXPECT_FALSE(decoder.add(other.data(), other.size(), 8, block));
-  }
-  EXPECT_TRUE(decoder.add(kMessage.data(), kMessage.size(), 9, block));
-  EXPECT_EQ(block.size(), 2U);
-}
-
-TEST(JointStateDecoder, BoundsABlockInMessagesAndInNumbers) {
-  for (const std::size_t joints : {1U, 1000U}) {
-    const Bytes message = encoded(Strings(joints, "j"), 1, std::vector<double>(joints));
-    JointStateDecoder decoder;
-    JointStateBlock block;
-    while (decoder.add(message.data(), message.size(), 0, block)) {
-      ASSERT_LE(block.size(), 4096U);
-    }
-    EXPECT_LE(block.position.values.size(), std::size_t{1} << 18U);
-    EXPECT_GE(block.size(), 200U);
+    EXPECT_EQ(decoder.decode(kMessage.data(), kMessage.size()).frame_id, "xyzw");
+    const JointSample sample = decoder.decode(other.data(), other.size());
+    EXPECT_EQ(sample.frame_id, "base");
+    EXPECT_EQ(sample.names->size(), 2U);
+    EXPECT_EQ(sample.velocity.size, 2U);
   }
 }
 
@@ -188,11 +179,11 @@ TEST(JointStateDecoder, ReadsOrRefusesAnyBytes) {
       message[random() % message.size()] = static_cast<std::uint8_t>(random());
     }
     JointStateDecoder decoder;
-    JointStateBlock block;
     try {
-      decoder.add(kMessage.data(), kMessage.size(), 0, block);
-      decoder.add(message.data(), message.size(), 0, block);
-      ASSERT_EQ(block.position.values.size(), block.size() * block.position.columns);
+      decoder.decode(kMessage.data(), kMessage.size());
+      const JointSample sample = decoder.decode(message.data(), message.size());
+      const double* const end = sample.position.data + sample.position.size;
+      ASSERT_EQ(end, sample.velocity.data);
       ++read;
     } catch (const DamageError&) {
     }
@@ -211,4 +202,4 @@ TEST(Utf8, IsWhatTheStandardSays) {
   }
 }
 
-}  // namespace inverse_dynamics_evaluation::joint_state_cdr_test
+}  // namespace inverse_dynamics_evaluation::joint_states_test

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "inverse_dynamics_evaluation/log_accelerations.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -10,8 +8,9 @@
 #include "error_of.hpp"
 #include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
+#include "joint_log.hpp"
 
-namespace inverse_dynamics_evaluation::log_accelerations_test {
+namespace inverse_dynamics_evaluation::acceleration_texts_test {
 
 using ::testing::Contains;
 using ::testing::ContainsRegex;
@@ -23,7 +22,6 @@ JointLog sine() {
   constexpr Eigen::Index kCount = 1000;
   const double w = 3.14159265358979323846;
   JointLog log;
-  log.joint_names = {"a"};
   log.header_stamps = Stamps::LinSpaced(kCount, 0, 10'000'000 * (kCount - 1));
   log.receive_stamps = log.header_stamps;
   const Eigen::RowVectorXd t = log.time().transpose();
@@ -75,7 +73,7 @@ TEST(LogAccelerations, AreThoseRecordedIfThereAreAny) {
 
 TEST(LogAccelerations, SayWhatIsOddAboutTheSamples) {
   JointLog log = sine();
-  for (OwnedMatrix* numbers : {&log.q, &log.qd, &log.effort}) {
+  for (Eigen::MatrixXd* numbers : {&log.q, &log.qd, &log.effort}) {
     numbers->col(500) = numbers->col(499);
   }
   log.header_stamps[700] = log.header_stamps[699] - 1'000'000;
@@ -139,4 +137,4 @@ TEST(LogAccelerations, RefuseAnUnknownMethodAndACutOffWithoutAFilter) {
               HasSubstr("backward-difference has no cut-off, got 5 Hz"));
 }
 
-}  // namespace inverse_dynamics_evaluation::log_accelerations_test
+}  // namespace inverse_dynamics_evaluation::acceleration_texts_test

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "inverse_dynamics_evaluation/log_accelerations.hpp"
+// Accelerations in words.
 
-#include <utility>
-
-#include "examination.hpp"
 #include "figures.hpp"
+#include "filtering.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
-#include "table_accelerations.hpp"
+#include "inverse_dynamics_evaluation/joint_matching.hpp"
 
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
@@ -125,20 +123,6 @@ std::string accelerationSummary(AccelerationMethod method, double cutoff, bool c
   }
   return "zero-phase low-pass, cut-off " + formatted("%.3g", cutoff) + " Hz (" +
          (chosen ? "chosen from the data" : "given") + "), then derivative";
-}
-
-LogAccelerations logAccelerations(const JointLogView& log, AccelerationMethod method, double cutoff,
-                                  const SampleRules& rules) {
-  checkLog(log);
-  const auto table = tableOf(log);
-  AccelerationOptions options;
-  options.method = method;
-  options.cutoff = cutoff;
-  options.rules = rules;
-  LogAccelerations result = findAccelerations(*table, options);
-  addSeries(*table, result.samples);
-  result.qdd = table->qdd;
-  return result;
 }
 
 }  // namespace v2

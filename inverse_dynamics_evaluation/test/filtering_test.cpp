@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "zero_phase.hpp"
+#include "filtering.hpp"
 
 #include <gmock/gmock.h>
 
 #include <random>
 
-#include "ends.hpp"
-#include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "motion.hpp"
 
-namespace inverse_dynamics_evaluation::zero_phase_test {
+namespace inverse_dynamics_evaluation::filtering_test {
 
 using Eigen::Index;
 
@@ -59,4 +57,4 @@ TEST(DerivativeRoom, GivesInPlaceWhatTheFilterGivesOfTheWhole) {
   }
 }
 
-}  // namespace inverse_dynamics_evaluation::zero_phase_test
+}  // namespace inverse_dynamics_evaluation::filtering_test
