@@ -211,17 +211,6 @@ Columns DerivativeRoom::differentiate(Columns room) const {
   return room.middleCols(first - 2, count);
 }
 
-OwnedMatrix lowPassDerivative(const ConstColumns& samples, double sampling_frequency, double cutoff,
-                              int order) {
-  requireSamples("low-pass derivative", "samples", samples, 3 * (order + 1) + 1);
-  requireFinite("low-pass derivative", "samples", samples);
-  requireFilter(sampling_frequency, cutoff, order);
-  const DerivativeRoom room(samples.cols(), sampling_frequency, cutoff, order);
-  MatrixXd columns(samples.rows(), room.size());
-  columns.middleCols(room.begin(), samples.cols()) = samples;
-  return room.differentiate(columns);
-}
-
 // ---------------------------------------------------------------------------------------------
 // Accelerations of a table
 

@@ -46,24 +46,6 @@ inline void requireStampPerSample(const std::string& where,
   }
 }
 
-/// One truth value per column of the samples.
-inline void requireMask(const std::string& where, Eigen::Index size,
-                        const Eigen::Ref<const Eigen::MatrixXd>& samples) {
-  if (size != samples.cols()) {
-    throw EvaluationError(where, "mask",
-                          std::to_string(samples.cols()) + " truth values, one per sample",
-                          std::to_string(size), "take the mask of the same recording");
-  }
-}
-
-/// No gains, or one per joint.
-inline void requireGains(const std::string& where, std::size_t gains, Eigen::Index joints) {
-  if (gains > 0 && static_cast<Eigen::Index>(gains) != joints) {
-    throw EvaluationError(where, "drive gains", std::to_string(joints) + " numbers, one per joint",
-                          std::to_string(gains), "take those of the same robot");
-  }
-}
-
 /// At least `least` columns and one row.
 inline void requireSamples(const std::string& where, const std::string& what,
                            const Eigen::Ref<const Eigen::MatrixXd>& samples, Eigen::Index least) {

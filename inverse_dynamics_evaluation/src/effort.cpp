@@ -7,7 +7,6 @@
 #include <inverse_dynamics_solver/motor_currents.hpp>
 #include <utility>
 
-#include "checks.hpp"
 #include "figures.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "inverse_dynamics_evaluation/joint_matching.hpp"
@@ -66,11 +65,13 @@ OwnedMatrix Effort::torques(const Eigen::Ref<const Eigen::MatrixXd>& effort) con
   if (meaning != kCurrent) {
     return effort;
   }
-  requireGains("torques of recorded efforts", drive_gains.size(), effort.rows());
-  return Eigen::Map<const Eigen::VectorXd>(drive_gains.data(),
-                                           static_cast<Eigen::Index>(drive_gains.size()))
-             .asDiagonal() *
-         effort;
+  const auto gains = static_cast<Eigen::Index>(drive_gains.size());
+  if (gains != effort.rows()) {
+    throw EvaluationError("torques of recorded efforts", "drive gains",
+                          std::to_string(effort.rows()) + " numbers, one per joint",
+                          std::to_string(gains), "take those of the same robot");
+  }
+  return Eigen::Map<const Eigen::VectorXd>(drive_gains.data(), gains).asDiagonal() * effort;
 }
 
 std::vector<double> driveGainsOf(const InverseDynamicsSolver& solver) {

@@ -60,7 +60,7 @@ struct DerivativeRoom {
   /// Number of the first sample's column.
   Eigen::Index begin() const { return mirror + beyond; }
 
-  /// Derivatives [1/s] of the samples, zero-phase low-passed: lowPassDerivative().
+  /// Derivatives [1/s] of the samples, zero-phase low-passed.
   ///
   /// @param room  n x size(), samples in their columns; lost afterwards.
   /// @return n x count columns of the room.

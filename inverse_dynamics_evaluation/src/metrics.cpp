@@ -126,7 +126,11 @@ std::vector<JointMetrics> errorsOf(const ConstMatrix& computed, const ConstMatri
 std::vector<JointMetrics> metrics(const ConstMatrix& computed, const ConstMatrix& measured,
                                   const Mask& mask) {
   requireSameSize("metrics", "computed", computed, "measured", measured);
-  requireMask("metrics", mask.size(), measured);
+  if (mask.size() != measured.cols()) {
+    throw EvaluationError("metrics", "mask",
+                          std::to_string(measured.cols()) + " truth values, one per sample",
+                          std::to_string(mask.size()), "take the mask of the same recording");
+  }
   if (!mask.any()) {
     throw EvaluationError("metrics", "samples", "one or more to compare",
                           "none of " + std::to_string(mask.size()), "select some");

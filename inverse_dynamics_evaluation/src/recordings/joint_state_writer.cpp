@@ -9,9 +9,9 @@
 #include <limits>
 #include <utility>
 
+#include "bytes.hpp"
 #include "joint_state_encoder.hpp"
 #include "metadata.hpp"
-#include "output_file.hpp"
 #include "storage_writer.hpp"
 
 namespace inverse_dynamics_evaluation {

@@ -375,7 +375,7 @@ TableBuilder::TableBuilder(std::string where, const RecordingOptions& options, S
 bool TableBuilder::add(const JointSample& sample) {
   ++samples_;
   if (!matches(sample)) return false;
-  if (kept_ == 0) begin(sample);
+  if (kept_ == 0) recorded_ = {sample.effort.size > 0, sample.acceleration.size > 0};
   if (kept_ == table_.size()) {
     table_.resize(static_cast<Index>(matching_.joints().size()), kept_ + kAtOnce, recorded_);
   }
@@ -413,12 +413,6 @@ void TableBuilder::finish(Clock clock) {
   }
   table_.resize(table_.q.rows(), kept_, recorded_);
   table_.complete(clock);
-}
-
-// Which columns are recorded: the first sample says it for all.
-void TableBuilder::begin(const JointSample& sample) {
-  recorded_.efforts = sample.effort.size > 0;
-  recorded_.accelerations = sample.acceleration.size > 0;
 }
 
 void TableBuilder::requireSamples() const {

@@ -9,7 +9,6 @@
 #include "bytes.hpp"
 #include "crc32.hpp"
 #include "mcap_format.hpp"
-#include "output_file.hpp"
 #include "storage_writer.hpp"
 
 namespace inverse_dynamics_evaluation {

@@ -164,6 +164,9 @@ Metadata readMetadata(const std::string& path) {
     metadata.files.push_back(whole.substr(whole.find_last_of('/') + 1));  // npos + 1 is 0
   }
   for (const auto& topic : topics) metadata.connections.push_back(connectionOf(topic));
+  integer(about, "message_count");
+  integer(required(about, "duration"), "nanoseconds");
+  integer(required(about, "starting_time"), "nanoseconds_since_epoch");
   return metadata;
 }
 

@@ -21,7 +21,7 @@ enum class Compression { kNone, kFiles, kMessages };
 struct Metadata {
   Storage storage = Storage::kSqlite3;
   Compression compression = Compression::kNone;
-  std::vector<std::string> files;  ///< names within the directory
+  std::vector<std::string> files;  ///< names in the directory
   std::vector<Connection> connections;
 };
 

@@ -7,7 +7,6 @@
 #include <memory>
 #include <new>
 #include <string>
-#include <vector>
 
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "inverse_dynamics_evaluation/recording.hpp"
@@ -37,17 +36,14 @@ auto readable(const std::string& path, Function function) -> decltype(function()
   }
 }
 
-struct RecordingContent {
+/// Its metadata, with paths of files.
+struct RecordingContent : Metadata {
   explicit RecordingContent(std::string given_path);
 
   /// Opens one of the files.
   std::unique_ptr<StorageReader> open(const std::string& file) const;
 
   std::string path;
-  Storage storage = Storage::kSqlite3;
-  Compression compression = Compression::kNone;
-  std::vector<std::string> files;
-  std::vector<Connection> connections;
 
  private:
   void read();

@@ -17,8 +17,6 @@
 #include <tuple>
 #include <utility>
 
-#include "output_file.hpp"
-
 namespace inverse_dynamics_evaluation {
 inline namespace v2 {
 namespace {
