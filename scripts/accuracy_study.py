@@ -103,7 +103,7 @@ def points(rate: float, duration: float, frequency: float, random: Random) -> Mo
 
 def white(motion: Motion, random: Random) -> tuple[Floats, Floats]:
     """Positions of an encoder of 12 to 22 bits, velocities with white noise of their own."""
-    return encoded(motion, random.integers(12, 23)), motion.qd + noise(motion, random)
+    return encoded(motion, int(random.integers(12, 23))), motion.qd + noise(motion, random)
 
 
 def low_passed(motion: Motion, random: Random) -> tuple[Floats, Floats]:
@@ -111,7 +111,7 @@ def low_passed(motion: Motion, random: Random) -> tuple[Floats, Floats]:
     values = 3 * noise(motion, random)
     if motion.rate > 100:
         values = _core.low_pass(values, motion.rate, 40.0, 1)
-    return encoded(motion, random.integers(12, 23)), motion.qd + values
+    return encoded(motion, int(random.integers(12, 23))), motion.qd + values
 
 
 def quantised(motion: Motion, random: Random) -> tuple[Floats, Floats]:
@@ -124,7 +124,7 @@ def differences(motion: Motion, random: Random) -> tuple[Floats, Floats]:
 
     The driver runs when the recording begins: its first difference is like the second.
     """
-    bits = random.integers(14, 21)
+    bits = int(random.integers(14, 21))
     tremor = 0.3 * 2 * np.pi / 2**bits * random.standard_normal(motion.q.shape)
     q = encoded(replace(motion, q=motion.q + tremor), bits)
     qd = np.diff(q, axis=0, prepend=2 * q[:1] - q[1:2]) * motion.rate
@@ -143,7 +143,8 @@ def encoded(motion: Motion, bits: int) -> Floats:
 
 def noise(motion: Motion, random: Random) -> Floats:
     """White, of 3e-4 to 3e-2 rad/s."""
-    return 10 ** random.uniform(-3.5, -1.5) * random.standard_normal(motion.qd.shape)
+    deviation = float(10 ** random.uniform(-3.5, -1.5))
+    return deviation * random.standard_normal(motion.qd.shape)
 
 
 # ---- recordings with one event -------------------------------------------------------------------

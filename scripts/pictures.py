@@ -45,8 +45,9 @@ def make_report() -> None:
         frames = list(_frames(html, Path(scratch) / "profile"))
     colours = frames[len(frames) // 2].quantize(96)
     frames = [frame.quantize(palette=colours, dither=Image.Dither.NONE) for frame in frames]
-    shown = {"append_images": frames[1:], "duration": FRAME_TIME, "loop": 0}
-    frames[0].save(PICTURES / "report.gif", save_all=True, optimize=True, **shown)
+    first, *rest = frames
+    file, time = PICTURES / "report.gif", FRAME_TIME
+    first.save(file, save_all=True, append_images=rest, duration=time, loop=0, optimize=True)
 
 
 def _frames(html: Path, profile: Path) -> Iterator[Image]:
@@ -76,7 +77,7 @@ def _browser(profile: Path) -> Chrome:
     from selenium import webdriver
 
     options = webdriver.ChromeOptions()
-    options.binary_location = shutil.which("chromium")
+    options.binary_location = shutil.which("chromium") or "chromium"
     for flag in (*FLAGS, f"--window-size={WIDTH},{HEIGHT}", f"--user-data-dir={profile}"):
         options.add_argument(flag)
     service = webdriver.ChromeService(executable_path=shutil.which("chromedriver"))
