@@ -125,7 +125,7 @@ def differences(motion: Motion, random: Random) -> tuple[Floats, Floats]:
     The driver runs when the recording begins: its first difference is like the second.
     """
     bits = int(random.integers(14, 21))
-    tremor = 0.3 * 2 * np.pi / 2**bits * random.standard_normal(motion.q.shape)
+    tremor = 0.3 * 2 * np.pi / 2.0**bits * random.standard_normal(motion.q.shape)
     q = encoded(replace(motion, q=motion.q + tremor), bits)
     qd = np.diff(q, axis=0, prepend=2 * q[:1] - q[1:2]) * motion.rate
     if random.integers(2):
@@ -137,7 +137,7 @@ def differences(motion: Motion, random: Random) -> tuple[Floats, Floats]:
 
 def encoded(motion: Motion, bits: int) -> Floats:
     """Positions of an encoder."""
-    step = 2 * np.pi / 2**bits
+    step = 2 * np.pi / 2.0**bits
     return step * np.round(motion.q / step)
 
 
