@@ -39,7 +39,7 @@
 /// and qd agrees.
 ///
 /// One cut-off serves all joints: E is added over them. All of this is sums over segments of at most
-/// 60 s, gathered in one pass. docs/accuracy.md has the comparison with the best fixed cut-off.
+/// 60 s, gathered in one pass. docs/accuracy.md compares it with the best cut-off.
 ///
 /// [Wiener 1949, Extrapolation, interpolation, and smoothing of stationary time series; Stone 1974,
 /// doi 10.1111/j.2517-6161.1974.tb00994.x; Bendat and Piersol, Random data, on cross-spectra]

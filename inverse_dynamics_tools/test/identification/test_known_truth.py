@@ -19,7 +19,7 @@ LEAST_INSIDE, MOST_INSIDE = 0.85, 0.99  # of intervals that mean 95 %
 
 @pytest.mark.parametrize("name", MOST_ERROR)
 @pytest.mark.parametrize(
-    "seeds",  # ./scripts/identification_results takes ten
+    "seeds",  # `./scripts/study identification` takes ten
     [
         pytest.param([0], id="one seed"),
         pytest.param(range(3), id="three seeds", marks=pytest.mark.nightly),
