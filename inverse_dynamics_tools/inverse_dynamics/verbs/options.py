@@ -82,7 +82,21 @@ class Options:
 
     def figures(self) -> None:
         """--figures and --no-figures."""
-        self.one_of().shared("--figures", "--no-figures")
+        figures = self.one_of()
+        figures.add(
+            "--figures FORMATS",
+            "formats of the figure: some of png,svg,pdf, or none, which is faster (default: png; "
+            "without matplotlib: none)",
+            figure_formats,
+            default=("png",) if is_installed("matplotlib") else (),
+        )
+        figures.add(
+            "--no-figures",
+            "short for --figures none",
+            dest="figures",
+            action="store_const",
+            const=(),
+        )
 
     def output(self, usage: str, help: str, *, replaces: bool = False, **more: Any) -> None:
         """--out and --overwrite. replaces: an older result of the verb is replaced without it."""
@@ -252,20 +266,6 @@ _SHARED = dict(
             choices=tuple(RULES),
             action="append",
             default=[],
-        ),
-        _entry(
-            "--figures FORMATS",
-            "formats of the figure: some of png,svg,pdf, or none, which is faster (default: png; "
-            "without matplotlib: none)",
-            figure_formats,
-            default=("png",) if is_installed("matplotlib") else (),
-        ),
-        _entry(
-            "--no-figures",
-            "short for --figures none",
-            dest="figures",
-            action="store_const",
-            const=(),
         ),
     ]
 )
