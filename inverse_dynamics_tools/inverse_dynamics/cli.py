@@ -109,7 +109,7 @@ class _Parser(argparse.ArgumentParser):
         self._negative_number_matcher = _NUMBERS
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """What is given; an unknown option is an error of the verb, whose help lists the known ones."""
+        """Parse; an unknown option is an error of the verb, whose help lists the known ones."""
         first = "" if not args else args[0].partition("=")[0]
         if first.startswith("-") and not any(
             o.startswith(first) for o in self._option_string_actions
@@ -303,6 +303,6 @@ def _write_any_character() -> None:
 
 
 def _drop_output() -> None:
-    """What is still to be printed goes nowhere: Python would fail again at its end."""
+    """Discard what is still to be printed: Python would fail again at exit."""
     with suppress(AttributeError, OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

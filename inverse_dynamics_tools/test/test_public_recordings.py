@@ -221,7 +221,7 @@ def test_a_recording_that_is_not_as_published_is_replaced_only_on_demand(ids, tm
     one.write_bytes(b"mine")
     code, _, err = ids()
     assert code == 2
-    assert "is there, but not as published" in err
+    assert "checksum mismatch, or files are missing" in err
     assert one.read_bytes() == b"mine"
     assert ids("--overwrite")[0] == 0
     assert one.read_bytes() == ONE

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What every layer uses: packages' data, files, numbers in text, types of arrays, wording."""
+"""For every layer: data of packages, files, numbers in text, types of arrays, wording."""

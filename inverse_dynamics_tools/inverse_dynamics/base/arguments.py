@@ -73,7 +73,7 @@ def _mistake(
     positional: Sequence[object],
     named: Mapping[str, object],
 ) -> str | None:
-    """What is wrong with the arguments; None where each of them is of its type."""
+    """The first mistake in the arguments; None if there is none."""
     own = [p for p in parameters if p.kind is not Parameter.VAR_KEYWORD]
     places = [p.name for p in own if p.kind is not Parameter.KEYWORD_ONLY]
     known = [p.name for p in own if p.name != "self"]
@@ -162,7 +162,7 @@ def _is_path(value: object) -> bool:
 
 
 def _are_paths(value: Any) -> bool:
-    """Whether these are paths; an iterator would be used up, so what it gives isn't looked at."""
+    """Whether these are paths. Doesn't look into an iterator, which that would exhaust."""
     if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
         return False
     return not hasattr(value, "__len__") or all(map(_is_path, value))
@@ -198,7 +198,7 @@ _KINDS: tuple[tuple[str, str, Callable[[Any], bool]], ...] = (
 
 
 def _expectation(annotation: str) -> tuple[str, Callable[[object], bool]]:
-    """A type in words, and whether a value is of it; of types that aren't known here any value is."""
+    """A type in words, and a test of values, which all pass if the type isn't known here."""
     kinds = [
         _kind_of(alternative)
         for alternative in _alternatives(ast.parse(annotation, mode="eval").body)
@@ -228,7 +228,7 @@ def _kind_of(alternative: str) -> tuple[str, Callable[[Any], bool]]:
 
 
 def _kind(value: object, *, of: bool = False) -> str:
-    """What a value is, in a few words; of: with how many entries."""
+    """A value in a few words; of: with the number of its entries."""
     if of and isinstance(value, (list, tuple)):
         return f"a {type(value).__name__} of {len(value)}"
     if value is None or isinstance(value, (bool, int, float, str)):

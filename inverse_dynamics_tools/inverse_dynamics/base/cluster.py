@@ -31,7 +31,7 @@ def check_stopped() -> None:
 
 
 def unseen(paths: list[str]) -> str:
-    """Those that this process doesn't see."""
+    """Paths that don't exist for this process."""
     return ", ".join(f"no {path}" for path in paths if not os.path.exists(path))
 
 

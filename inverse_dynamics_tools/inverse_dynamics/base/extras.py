@@ -33,7 +33,7 @@ EXTRAS = {
 
 
 class MissingPackageError(UserError):
-    """A Python package that isn't installed, and that not everything needs."""
+    """An optional Python package isn't installed."""
 
 
 def is_installed(module: str) -> bool:
@@ -64,7 +64,7 @@ def how_to_install(*modules: str) -> str:
 
 
 def installed_by_pip() -> bool:
-    """Whether this is a wheel, which holds what other builds install elsewhere."""
+    """Whether this is a wheel, which contains solvers and data."""
     return (Path(__file__).parents[1] / "share" / "ament_index").is_dir()
 
 

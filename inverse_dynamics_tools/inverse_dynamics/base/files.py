@@ -44,7 +44,7 @@ _at_work: list[WorkFolder] = []
 
 @dataclass(frozen=True)
 class Contents:
-    """What a command puts into its directory.
+    """Files that a command writes into its directory.
 
     mark: a file that shows the directory to be its result. files: all of them, as paths in it; names
     with * and ?; {name}: that of the directory. added: what other commands put in. A directory that
@@ -75,7 +75,7 @@ class Contents:
 
 
 NOTHING = Contents("", ())
-"""Of a directory that is never overwritten."""
+"""For a directory that is never overwritten."""
 
 
 def check_output_directory(
@@ -211,7 +211,7 @@ def written_before() -> str:
 
 
 def outcome() -> str:
-    """What there is now of all that was to be written, in words."""
+    """State of the outputs, in words: written, or as before."""
     kept = [str(path) for path, done in _outputs.items() if not done and os.path.lexists(path)]
     text = written_before().replace("written before", "written") or "nothing was written"
     return text + (f"; as it was before: {', '.join(kept)}" if kept else "")
@@ -236,7 +236,7 @@ def _note(targets: Iterable[Path], *, written: bool = False) -> None:
 
 @contextmanager
 def _output(target: Path, remedy: str) -> Iterator[None]:
-    """An output that is going to be written, of a name that texts, which have lines, can hold."""
+    """Check the name of an output, note it for outcome(), and turn OSError into OutputError."""
     try:
         if not target.absolute().name or not target.absolute().name.isprintable():
             raise OutputError(
@@ -252,7 +252,7 @@ def _output(target: Path, remedy: str) -> Iterator[None]:
 
 @contextmanager
 def _work(target: Path, remedy: str, *, link: bool = True) -> Iterator[tuple[WorkFolder, Path]]:
-    """A work folder, removed at the end, and the place that is meant."""
+    """A work folder, removed at the end, and the place of the output."""
     works: list[WorkFolder] = []
     with _output(target, remedy):
         place = _file_meant(target) if link else target.absolute()
@@ -303,7 +303,7 @@ def _check_existing_directory(target: Path, *, overwrite: bool, contents: Conten
 
 
 def _check_regular(target: Path, remedy: str) -> None:
-    """A device, FIFO or socket of that name must stay."""
+    """Refuse to replace a directory, device, FIFO or socket."""
     if target.is_dir():
         raise OutputError(f"{target}: is a directory; expected the name of a file to write")
     with suppress(FileNotFoundError, NotADirectoryError):
@@ -314,7 +314,7 @@ def _check_regular(target: Path, remedy: str) -> None:
 def _check_apart(
     target: Path, inputs: Iterable[Path | None], remedy: str, results: Contents | None = None
 ) -> None:
-    """What is written must not replace what is read, nor be put among its files."""
+    """Refuse an output that replaces an input or lies in it."""
     place = Path(os.path.realpath(target))
     for source in inputs:
         if source is None or not os.path.exists(source):
@@ -338,7 +338,7 @@ def _check_parent(target: Path, remedy: str) -> None:
 
 
 def _file_meant(target: Path) -> Path:
-    """What a symbolic link points to, if it is one."""
+    """The target of a symbolic link; else the path itself."""
     return Path(os.path.realpath(target)) if target.is_symlink() else target.absolute()
 
 

@@ -9,7 +9,7 @@ from inverse_dynamics.errors import UserError
 
 
 class _NoVersionError(UserError, AttributeError):
-    """Of `inverse_dynamics.__version__`."""
+    """The package isn't installed."""
 
 
 def version() -> str:

@@ -49,7 +49,7 @@ def declared_prefixes() -> list[str]:
 
 
 def _directories_of(module: str) -> list[str]:
-    """Where a package's modules are; none where it isn't there any more. Nothing of it is imported."""
+    """Directories of a module, found without importing it; none if its package is gone."""
     package, *inner = module.split(".")
     try:
         spec = find_spec(package)

@@ -20,7 +20,7 @@ def counted(count: int, noun: str) -> str:
 
 
 def solver_name(plugin: str) -> str:
-    """A solver's short name for tables: its package's, without the ending that all have.
+    """A solver's short name for tables: its package's name without the common ending.
 
     `kdl` for kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL.
     """
@@ -29,7 +29,7 @@ def solver_name(plugin: str) -> str:
 
 
 def shown(text: object, longest: int = 60) -> str:
-    """A text from a file for an error message: in quotes, short, nothing that a terminal acts upon."""
+    """A text from a file, for an error message: quoted, short, without control characters."""
     return f"'{harmless(text, longest)}'"
 
 

@@ -46,12 +46,12 @@ class Failure:
 
 
 def cores() -> int:
-    """How many cores this process may use."""
+    """Number of cores that this process may use."""
     return len(os.sched_getaffinity(0))
 
 
 def outcome_of(function: Callable[[_Argument], Any], argument: _Argument) -> Any:
-    """What the function returns, or the Failure that its exception says."""
+    """The function's result, or a Failure with the text of its exception."""
     try:
         return function(argument)
     except UserError as error:
@@ -98,7 +98,7 @@ def in_processes(
 
 
 def serve(descriptor: int, parent: int, scratch: str) -> None:
-    """What a worker does: take the function, then arguments, until there are no more.
+    """Run in a worker: receive the function, then arguments until there are no more.
 
     scratch: directory for temporary files, which a worker that is killed can't remove.
     """
@@ -141,7 +141,7 @@ class _Worker:
         self._send(argument)
 
     def outcome(self) -> Any:
-        """What became of the argument; waits for it."""
+        """Wait for the result of the argument."""
         try:
             return self._connection.recv()
         except (EOFError, OSError):
@@ -149,7 +149,7 @@ class _Worker:
             return Failure(_how_it_ended(self._process.wait()))
 
     def end(self) -> None:
-        """There is nothing more to do."""
+        """End it after its last argument."""
         self._connection.close()
         self._process.wait()
 

@@ -110,7 +110,7 @@ def read_joint_trajectories(
 
 
 def decode(raw: bytes, where: str, topic: str, received: int) -> JointTrajectory:
-    """A serialised message; one that can't be decoded is a BagError."""
+    """Decode a message. Raises BagError."""
     try:
         message: Any = typestore().deserialize_cdr(raw, MESSAGE_TYPE)
     except Exception as error:  # whatever a decoder makes of a damaged message

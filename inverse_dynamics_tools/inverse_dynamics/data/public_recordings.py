@@ -89,7 +89,7 @@ class PublicRecordings:
 
 
 def data_directory() -> Path:
-    """Where `ids data` puts recordings and `ids demo` looks for them: IDS_DATA_DIR, else that of XDG."""
+    """Directory of `ids data` and `ids demo`: IDS_DATA_DIR, else that of XDG."""
     if named := os.environ.get("IDS_DATA_DIR"):
         return Path(named)
     data = Path(os.environ.get("XDG_DATA_HOME", ""))
@@ -169,8 +169,8 @@ def fetch_recordings(
             continue
         if place.exists() and not overwrite:
             raise OutputError(
-                f"{place}: is there, but not as published (its SHA-256 are others, or files are missing); "
-                "remove it, replace it with --overwrite, or name another directory with --out"
+                f"{place}: checksum mismatch, or files are missing; remove it, replace it with "
+                "--overwrite, or name another directory with --out"
             )
         missing.append(recording)
     base = _base_url(source or table.url)
@@ -225,7 +225,7 @@ def _fetch(
 
 
 def _blocks(url: str, table: PublicRecordings) -> Iterator[bytes]:
-    """What a URL (http, https, file) gives. Raises RecordingsError."""
+    """Content of a URL (http, https, file). Raises RecordingsError."""
     try:
         with urllib.request.urlopen(url, timeout=_SECONDS) as answer:
             while block := answer.read(_BLOCK):

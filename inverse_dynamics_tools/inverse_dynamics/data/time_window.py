@@ -77,7 +77,7 @@ class TimeWindow:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What a result of such samples says."""
+        """Notes for a result of these samples."""
         if not self:
             return ()
         return (

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is written for the user and read again: evaluations, comparisons, tables, the demonstration."""
+"""Results in files, written and read back: evaluations, comparisons, tables, the demonstration."""

@@ -59,7 +59,7 @@ _QUICK_SECONDS = 4.0  # of simulated motion
 
 @dataclass(frozen=True)
 class Demo:
-    """What a demonstration has made. Keys are names of robots."""
+    """A finished demonstration. Keys are names of robots."""
 
     directory: Path
     evaluations: dict[str, Evaluation]
@@ -160,7 +160,7 @@ def summary(evaluations: Mapping[str, Evaluation], notes: Sequence[str]) -> dict
 
 
 def _contents() -> Contents:
-    """What a demonstration may have written."""
+    """All files of a demonstration."""
     from inverse_dynamics.simulation import writer
 
     parts = {"comparison": comparisons.CONTENTS, "ur10_real_urdf": CONTENTS}
@@ -187,7 +187,7 @@ def _recordings_in(directory: Path | None) -> dict[str, Path]:
 
 
 def _simulated(name: str, target: Path, final: Path, quick: bool, progress: Progress) -> Evaluation:
-    """Of a simulated motion, whose recording is kept. final: where `target` will be."""
+    """Evaluate a simulated motion and keep its recording. final: where `target` will be."""
     from inverse_dynamics.simulation import simulate, write_run
     from inverse_dynamics.simulation.match import greatest_differences
 
@@ -205,7 +205,7 @@ def _simulated(name: str, target: Path, final: Path, quick: bool, progress: Prog
 
 
 def _stored(name: str) -> Evaluation:
-    """Of the simulated recording that comes with the package."""
+    """Evaluate the simulated recording that comes with the package."""
     evaluation = evaluate(stored_recording(name), name)
     note = (
         "a recording that comes with this package: with MuJoCo the demo simulates the robots: "

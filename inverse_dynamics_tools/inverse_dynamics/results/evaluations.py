@@ -46,7 +46,7 @@ CONTENTS = Contents(
     ),
     added=("series.csv", "series.parquet", "report.html"),
 )
-"""Of a directory of results: `ids export` and `ids report` may have added theirs."""
+"""Files of a result; `ids export` and `ids report` add theirs."""
 
 COMPUTED_TOPIC = "/torques"
 MEASURED_TOPIC = "/torques_gt"
@@ -226,7 +226,7 @@ _PER_JOINT = ("q", "qd", "effort", "qdd", "measured", "computed")
 
 
 def _series(evaluation: Evaluation) -> dict[str, Any]:
-    """What series.npz holds: the arrays of the evaluation, no copies."""
+    """Arrays of series.npz, not copied."""
     computed = ("time", "qdd", "measured", "computed")
     return {
         **{name: getattr(evaluation.log, name) for name in _RECORDED},
@@ -257,7 +257,7 @@ def metrics(evaluation: Evaluation) -> dict[str, Any]:
 
 
 def _about(evaluation: Evaluation) -> dict[str, Any]:
-    """What _read_back() needs besides metrics and series."""
+    """Content of evaluation.json: all that metrics.json and series.npz lack."""
     names = ("robot", "bag", "joint_names", "units", "accelerations", "effort", "notes")
     recording = ("joint_names", "frame_id", "clock", "topic", "storage", "effort_is", "notes")
     samples = evaluation.samples

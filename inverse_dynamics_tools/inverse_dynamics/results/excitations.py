@@ -174,12 +174,12 @@ def check_output(out: Path, robot: Robot, given: Sequence[Path], *, overwrite: b
 
 
 def sending_file(out: Path) -> Path:
-    """Where the trajectory to send goes: motion_joint_trajectory.yaml beside motion.yaml."""
+    """File of the trajectory to send: motion_joint_trajectory.yaml beside motion.yaml."""
     return out.with_name(f"{out.stem}_joint_trajectory.yaml")
 
 
 def summary(result: ExcitationResult) -> dict[str, Any]:
-    """How each joint moves, and what the motion tells, for JSON."""
+    """Motion of each joint and uncertainty after it, for JSON."""
     names = ("velocity_share", "acceleration_share", "torque_share")
     return {
         "robot": result.robot.name,

@@ -94,7 +94,7 @@ def _metadata(**texts: str) -> dict[str, str]:
 
 @contextmanager
 def _writer(file: Path, schema: Any, file_format: str) -> Iterator[Any]:
-    """What has write_batch()."""
+    """A writer of batches, of CSV or Parquet."""
     if file_format == "parquet":
         from pyarrow.parquet import ParquetWriter
 

@@ -65,7 +65,7 @@ _MOST_ON_A_PAGE = 1_000_000  # samples: the page of a recording holds them in me
 
 @dataclass(frozen=True)
 class FailedRecording:
-    """A recording that wasn't evaluated, and why, in one line."""
+    """A recording that failed; `error` is one line."""
 
     name: str
     bag: Path
@@ -74,7 +74,7 @@ class FailedRecording:
 
 @dataclass(frozen=True)
 class ManyEvaluations:
-    """What evaluate_many() has written. In the order of the recordings."""
+    """Results of evaluate_many(), in the order of the recordings."""
 
     directory: Path
     summaries: tuple[EvaluationSummary, ...]
@@ -87,7 +87,7 @@ class ManyEvaluations:
 
     @property
     def directories(self) -> dict[str, Path]:
-        """Where the result of each recording is, by its name."""
+        """Directories of the results, by name of the recording."""
         return {summary.name: self.directory / summary.name for summary in self.summaries}
 
     def evaluation(self, name: str) -> Evaluation:
@@ -165,7 +165,7 @@ def evaluate_many(
 def _outcomes(
     tasks: Sequence[_Task], jobs: int | None, scheduler: str | None, progress: Progress
 ) -> list[EvaluationSummary | Failure]:
-    """What became of each task."""
+    """Run the tasks; gives a summary or a Failure for each."""
     found: dict[int, EvaluationSummary | Failure] = {}
 
     def done(index: int, outcome: EvaluationSummary | Failure) -> None:
@@ -186,7 +186,7 @@ def _outcomes(
 
 
 def _evaluate_one(task: _Task) -> EvaluationSummary:
-    """What a worker does. Raises UserError."""
+    """Evaluate one recording, in a worker. Raises UserError."""
 
     def progress(_what: str, _done: int, _total: int) -> None:
         check_stopped()
@@ -210,7 +210,7 @@ def _evaluate_one(task: _Task) -> EvaluationSummary:
 
 
 def _remove_remains(target: Path) -> None:
-    """What a failed task has left."""
+    """Remove files of a failed task."""
     with suppress(OSError, OutputError):
         restore_interrupted(target)
     shutil.rmtree(target, ignore_errors=True)

@@ -69,7 +69,7 @@ def write_payload(
 
 
 def yaml_text(payload: Payload) -> str:
-    """What --payload takes, with the intervals as comments."""
+    """The body as --payload reads it, with the intervals as comments."""
     found, evaluation = payload.estimate, payload.evaluation
     center = payload.center_of_mass_half_width
     lines = [

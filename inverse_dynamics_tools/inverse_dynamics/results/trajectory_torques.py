@@ -88,7 +88,7 @@ def write_trajectory_torques(
 
 
 def summary(result: TrajectoryTorques) -> dict[str, Any]:
-    """How torques were computed, and each joint's load, for JSON; no limit is null."""
+    """Solver, and load of each joint, for JSON; a missing limit is null."""
     robot = result.robot
     return {
         "schema": 1,

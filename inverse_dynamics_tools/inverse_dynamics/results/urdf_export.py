@@ -78,7 +78,7 @@ def mjcf_text(found: Identification) -> str:
 
 
 def _around_root(text: str) -> tuple[str, str, str]:
-    """What is before the root element, that element, and what is after it."""
+    """The text before the root element, the element, and the text after it."""
     prolog = re.match(r"(\s|<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>]*>)*", text, re.DOTALL)
     begin = prolog.end() if prolog else 0
     end = text.rindex("</robot>") + len("</robot>")

@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _plan(found: dict[str, Any]) -> Iterator[Line]:
-    """What would be fetched."""
+    """The recordings, and the size of the missing ones."""
     yield f"{found['repository']}, commit {found['commit']}, license {found['license']}"
     for recording in found["recordings"]:
         state = "already there and intact" if recording["intact"] else "to be fetched"

@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _files(arguments: argparse.Namespace) -> list[Path]:
-    """Where the tables go."""
+    """The tables to write."""
     from inverse_dynamics.errors import UserError
 
     out: Path | None = arguments.out

@@ -44,7 +44,7 @@ FILTER = ("--accelerations", "--clock", "--without-rule")
 
 
 class Options:
-    """Where a verb declares its arguments: its parser, or a group of options in it."""
+    """Declares the arguments of a verb: in its parser, or in a group of options."""
 
     def __init__(self, place: argparse._ActionsContainer) -> None:
         self._place = place
@@ -123,7 +123,7 @@ class Options:
 
 
 def _robots(prefix: str, **_: object) -> list[str]:
-    """What may stand for NAME|FILE, as argcomplete asks for it."""
+    """Completions of NAME|FILE, for argcomplete."""
     from argcomplete.completers import FilesCompleter
 
     from inverse_dynamics.robot.robots import robot_names

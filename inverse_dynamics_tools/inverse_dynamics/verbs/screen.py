@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What verbs print: results, as text or JSON, on standard output; progress on standard error."""
+"""Verbs print results on standard output, as text or JSON, and progress on standard error."""
 
 from __future__ import annotations
 

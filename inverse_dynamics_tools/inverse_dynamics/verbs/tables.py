@@ -44,7 +44,7 @@ def _table(*values: str, text: Sequence[str] = ("joint", "unit"), title: str = "
 
 
 def _have_one_unit(units: Sequence[str]) -> bool:
-    """Whether a mean over several joints means something."""
+    """Whether the mean over the joints is defined."""
     return len(set(units)) == 1 and len(units) > 1
 
 
@@ -231,7 +231,7 @@ _AFTER = {"description": "before", "given": "given", "stored": "stored", "motion
 
 
 def excitation_table(result: ExcitationResult) -> Table:
-    """How each joint moves, and how uncertain its predicted torque is before and after."""
+    """Motion of each joint, and uncertainty of its predicted torque before and after."""
     after = [_AFTER[name] for name in result.deviation]
     columns = ("from", "to", "speed", "accel.", "torque", *after)
     table = _table(*columns, text=("joint",))

@@ -152,7 +152,7 @@ def parameter(text: str) -> tuple[str, Parameter]:
 
 
 def payload(text: str) -> dict[str, Parameter]:
-    """A body at the tip: all parameters that describe it, so that none of another body remains."""
+    """A body at the tip: all of its parameters, so that they replace those of another body."""
     return {"payload.center_of_mass": [0.0, 0.0, 0.0], **stated_payload(text)}
 
 
