@@ -20,13 +20,13 @@ from inverse_dynamics import (
     read_joint_log,
     write_joint_logs,
 )
+from inverse_dynamics.evaluation.causes.arm import arm_model
 from inverse_dynamics.evaluation.causes.compare import (
     Cause,
     compare,
     meaning_of_efforts,
     residual_causes,
 )
-from inverse_dynamics.evaluation.causes.evaluated import arm_model
 from inverse_dynamics.evaluation.causes.rival import PAGE
 from inverse_dynamics.evaluation.causes.samples import Samples, pieces_of
 from inverse_dynamics.identification.payload import PayloadError, _require_plausible

@@ -25,8 +25,8 @@ from inverse_dynamics.evaluation.accelerations import (
     accelerations_of,
     samples_of,
 )
+from inverse_dynamics.evaluation.causes.arm import arm_model
 from inverse_dynamics.evaluation.causes.compare import Cause, compare, meaning_of_efforts
-from inverse_dynamics.evaluation.causes.evaluated import arm_model
 from inverse_dynamics.evaluation.causes.samples import pieces_of
 from inverse_dynamics.evaluation.effort import Effort, effort_of
 from inverse_dynamics.evaluation.posture import posture_of

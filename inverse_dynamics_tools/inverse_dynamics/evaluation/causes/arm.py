@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What rivals need of an arm: its torques in motions that a mistake changes, and their parts.
+"""The arm of an evaluation as rivals need it: its torques in motions that a mistake changes, and their parts.
 
 A solver that can't do something excludes fewer rivals.
 """
@@ -7,19 +7,28 @@ A solver that can't do something excludes fewer rivals.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics._core import FastModel
+from inverse_dynamics.errors import RobotError, SolverError
+from inverse_dynamics.robot.chain_geometry import chain_geometry
+from inverse_dynamics.robot.solvers import open_solver
+
 if TYPE_CHECKING:
+    from inverse_dynamics._core import Solver
     from inverse_dynamics.base.arrays import Floats, Mask
-    from inverse_dynamics.evaluation.causes.samples import Samples
+    from inverse_dynamics.robot.robots import Robot
 
 Compute = Callable[["Floats", "Floats", "Floats"], "Floats"]
 
-_INFORMATIVE = 0.02  # of the greatest torque: less is lost in friction and noise
+_STANDARD = 9.81  # m/s^2
+_BODY = "cause"  # among the solver's payloads
+_REACH = 0.1  # m: a body's torques are linear in mass and first moment, but for a small moment of inertia
 
 
 @dataclass(frozen=True)
@@ -56,67 +65,82 @@ class ArmModel:
         return torques - self.gravity(q) if self.compared_without_gravity else torques
 
 
-@dataclass(frozen=True)
-class View:
-    """Samples and arm, and what several rivals need. Arrays: (N, n)."""
+def arm_model(
+    robot: Robot, solver: Solver, description: str, *, without_gravity: bool = False
+) -> ArmModel:
+    """What rivals need. description: URDF text, or none; without_gravity: what efforts are."""
+    ones = np.ones(len(solver.joint_names))
+    rubs = bool(np.any(solver.friction_vector(ones, q=ones)))
 
-    samples: Samples
-    arm: ArmModel
-    motion: tuple[Floats, Floats, Floats] = field(init=False)
+    @cache
+    def other() -> Solver:  # one that may be changed, of rigid bodies alone
+        return open_solver(replace(robot, friction=False), description)
 
-    def __post_init__(self) -> None:
-        s = self.samples
-        object.__setattr__(self, "motion", (s.flat(s.q), s.flat(s.qd), s.flat(s.qdd)))
+    def pulled(q: Floats) -> Floats:
+        before, parts = other().gravity, []
+        try:
+            for axis in np.eye(3):
+                other().set_gravity(_STANDARD * axis)  # 1 m/s^2 would give a warning
+                parts.append(other().gravity_vector(q) / _STANDARD)
+        finally:
+            other().set_gravity(before)
+        return np.array(parts)
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Of the joints."""
-        return self.samples.joints
+    def loaded(q: Floats, qd: Floats, qdd: Floats) -> Floats:
+        without, parts = other().torques(q, qd, qdd), []
+        try:
+            for center in (np.zeros(3), *(_REACH * np.eye(3))):
+                other().set_payload(_BODY, 1.0, center)
+                parts.append(other().torques(q, qd, qdd) - without)
+        finally:
+            other().remove_payload(_BODY)
+        return np.array([parts[0], *((part - parts[0]) / _REACH for part in parts[1:])])
 
-    @cached_property
-    def qd(self) -> Floats:
-        """Velocities."""
-        return self.motion[1]
+    model = ArmModel(
+        solver.torques,
+        solver.gravity_vector,
+        (lambda q, qd: solver.friction_vector(qd, q=q)) if rubs else None,
+        compared_without_gravity=without_gravity,
+        joint_types=tuple(solver.joint_types),
+    )
+    with suppress(SolverError):  # solvers needn't be able to
+        model = replace(model, gravity_direction=solver.gravity, pulled=pulled)
+    with suppress(SolverError):
+        _ = solver.payloads
+        model = replace(model, loaded=loaded)
+    with suppress(SolverError, RobotError):
+        if description:
+            model = _with_description(model, robot, solver, description)
+    return model
 
-    @cached_property
-    def computed(self) -> Floats:
-        """What measured torques are compared with if nothing is wrong."""
-        return self.arm.compared(*self.motion)
 
-    @cached_property
-    def gravity(self) -> Floats:
-        """Torques of gravity."""
-        return self.arm.gravity(self.motion[0])
+def _with_description(model: ArmModel, robot: Robot, solver: Solver, description: str) -> ArmModel:
+    """With limits and, where the solver computes from it, the links of a description."""
+    chain = chain_geometry(description, robot.root, solver.joint_names)
+    names = ("lower", "upper", "effort")
+    limits = np.array([[joint.limits.get(name, np.inf) for joint in chain] for name in names])
+    model = replace(model, position_limits=limits[:2], effort_limits=limits[2])
+    gravity = None if robot.gravity is None else list(robot.gravity)
+    engine = FastModel.from_urdf(description, root=robot.root, tip=robot.tip, gravity=gravity)
+    held = any(name.startswith(("attached", "locked_joints.")) for name in robot.parameters)
+    if held or robot.model is not None or engine.joint_names != solver.joint_names:
+        return model  # the engine's links have other bodies
+    own = _mass_parts(engine.parameters.reshape(-1, 10))
 
-    @cached_property
-    def friction(self) -> Floats | None:
-        """Of the model."""
-        return None if self.arm.friction is None else self.arm.friction(*self.motion[:2])
+    def links(q: Floats, qd: Floats, qdd: Floats) -> Floats:
+        columns = engine.regressor(q, qd, qdd).reshape(*q.shape, -1, 10)
+        return np.concatenate([np.einsum("njkc,kc->knj", columns, p) for p in own])
 
-    @cached_property
-    def loaded(self) -> Floats | None:
-        """(4, N, n) of a body at the tip."""
-        return None if self.arm.loaded is None else self.arm.loaded(*self.motion)
+    link_names, mass = tuple(joint.link for joint in chain), float(own[1][:, 0].sum())
+    return replace(model, links=links, link_names=link_names, mass=mass)
 
-    @cached_property
-    def prismatic(self) -> Mask:
-        """(n,)."""
-        return self.arm.of_type("prismatic", len(self.names))
 
-    @cached_property
-    def continuous(self) -> Mask:
-        """(n,)."""
-        return self.arm.of_type("continuous", len(self.names))
-
-    @cached_property
-    def informative(self) -> Mask:
-        """(n,) joints that move, and whose torque shows beside that of the others."""
-        travel = np.ptp(self.motion[0], axis=0)
-        size = np.quantile(np.abs(self.computed - np.median(self.computed, axis=0)), 0.95, axis=0)
-        size = np.maximum(size, 0.2 * np.quantile(np.abs(self.computed), 0.95, axis=0))
-        return np.asarray((size >= _INFORMATIVE * size.max()) & (travel > 1e-3 * travel.max()))
-
-    def moving(self, q: Floats, qd: Floats, qdd: Floats) -> View:
-        """The same efforts, of another motion."""
-        q, qd, qdd = (values.reshape(self.samples.q.shape) for values in (q, qd, qdd))
-        return View(replace(self.samples, q=q, qd=qd, qdd=qdd), self.arm)
+def _mass_parts(links: Floats) -> tuple[Floats, Floats]:
+    """(n, 10) what is proportional to the masses, if inertias about centers of mass are kept; and if they aren't."""
+    points = np.zeros_like(links)
+    for link, point in zip(links, points, strict=True):
+        if (mass := link[0]) > 0:
+            center = link[1:4] / mass
+            inertia = mass * (center @ center * np.eye(3) - np.outer(center, center))
+            point[:] = [*link[:4], *inertia[np.triu_indices(3)]]
+    return points, links

@@ -21,20 +21,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics.base.wording import listed
-from inverse_dynamics.evaluation.causes import (
-    columns,
-    efforts,
-    frictions,
-    gravity,
-    loads,
-    masses,
-    motions,
-    pairs,
-    residuals,
-)
-from inverse_dynamics.evaluation.causes.arm import ArmModel, View
+from inverse_dynamics.evaluation.causes import bodies, columns, efforts, motions, pairs, residuals
+from inverse_dynamics.evaluation.causes.arm import ArmModel
 from inverse_dynamics.evaluation.causes.fit import Fitting
 from inverse_dynamics.evaluation.causes.rival import PAGE, Rival
+from inverse_dynamics.evaluation.causes.samples import View
 from inverse_dynamics.evaluation.effort import Verdict
 
 if TYPE_CHECKING:
@@ -45,34 +36,25 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.causes.samples import Samples
     from inverse_dynamics.evaluation.effort import Effort
 
-_MISMATCH = 0.02  # error of the joints, as a share of their ranges, up to which a model fits
-_RUBS = 0.08  # the same, from which a model is told that it lacks friction
-_FITS = 0.1  # the same, that a remedy may leave
-_FAR, _MOST_LEFT = (
-    6.0,
-    0.2,
-)  # or this part of the error, where models are far from their arms; up to this share
-_PAIR_FITS = 0.06  # the same, of two remedies
-_EXPLAINED = 0.02  # the same, of which no second mistake is looked for
+# Errors: mean over the joints, as shares of their measured ranges.
+_MISMATCH = 0.02  # up to which a model fits
+_RUBS = 0.08  # from which a model is said to lack friction
+_FITS = 0.1  # that a remedy may leave
+_FAR, _MOST_LEFT = 6.0, 0.2  # or this part of a greater error, up to this one
+_PAIR_FITS = 0.06  # that two remedies may leave
+_EXPLAINED = 0.02  # up to which no second mistake is looked for
 _GAIN = 2.0  # least ratio of the errors before and after
-_MARGIN, _FLAT = 1.15, 0.004  # a rival is worse by this ratio, and by this share of the range
+_MARGIN, _FLAT = 1.15, 0.004  # a rival is worse by this ratio, and by this error
 _ROUGH_MARGIN = 1.6  # masses that are inexact: centers of mass and inertias are so, too
 _SURE = 0.95  # of the resampled recordings
 _RESAMPLED = 400
 _MOST_NAMED = 3
-_AT_REST = ("gravity", "no_gravity", "payload", "tool", "mass")
-_OF_EFFORTS = (
-    "currents",
-    "effort_scale",
-    "effort_sign",
-    "effort_direction",
-    "no_gravity",
-    "gravity",
-)
-_SCALES = ("currents", "effort_scale")
-_LIKE_COUPLING = (*_SCALES, "mass")  # of one joint, where the other's torque is like its own
+_AT_REST = {"gravity", "no_gravity", "payload", "tool", "mass"}
+_SCALES = {"currents", "effort_scale"}
+_OF_EFFORTS = {*_SCALES, "effort_sign", "effort_direction", "no_gravity", "gravity"}
+_LIKE_COUPLING = {*_SCALES, "mass"}  # of one joint, where the other's torque is like its own
 
-KINDS = (efforts, gravity, loads, masses, columns, motions, frictions, residuals)
+KINDS = (efforts, bodies, columns, motions, residuals)
 
 
 @dataclass(frozen=True)
@@ -107,25 +89,11 @@ class Cause:
         return f"{PAGE}#{kept.replace(' ', '-')}"
 
 
-def residual_causes(samples: Samples, computed: Floats) -> tuple[Cause, ...]:
-    """What no model of an arm can have: saturation, coupled joints, drift. computed: (K M, n) N m."""
-    view = View(samples, ArmModel(lambda *_: computed, np.zeros_like))
-    contest = _Contest(view)
-    contest.add(frictions.nothing(view))
-    for rival in (*residuals.rivals(view, contest.fit), *residuals.couplings(view)):
-        contest.add(rival)
-    before = float(contest.fit.mean(contest.squares[0]))
-    if before > _MISMATCH and (named := contest.best(before)):
-        return _causes(named, contest.as_is)
-    told = residuals.of_joints(view, contest.fit, contest.squares[0])
-    return () if told is None else (_cause(told, before, None),)
-
-
 @dataclass(frozen=True)
 class Comparison:
-    """Causes: all of them, but one of those that are rivals."""
+    """The causes of a mismatch."""
 
-    causes: tuple[Cause, ...] = ()
+    causes: tuple[Cause, ...] = ()  # all are right, but of rivals only one
     excluded: tuple[str, ...] = ()  # kinds, where nothing explains an error
 
     @property
@@ -143,27 +111,37 @@ class Comparison:
 
     def doubting(self, effort: Effort) -> Effort:
         """What efforts mean; not sure where a cause, or nothing that was compared, contradicts it."""
-        contradicts = {c.kind for c in self.causes} & set(_OF_EFFORTS) or set(self.excluded)
+        contradicts = {c.kind for c in self.causes} & _OF_EFFORTS or set(self.excluded)
         if effort.verdict is None or not effort.verdict.sure or not contradicts:
             return effort
-        reason = (
-            self.text
-            if self.excluded
-            else f"{listed(sorted(contradicts))} may explain them as well"
-        )
+        reason = f"{listed(sorted(contradicts))} may explain them as well"
+        reason = self.text if self.excluded else reason
         return replace(effort, verdict=replace(effort.verdict, sure=False, reason=reason))
 
     @property
     def _experiment(self) -> str:
         """The motion that tells rivals apart."""
         kinds = {cause.kind for cause in self.causes if cause.rival}
-        if kinds & set(_AT_REST) and kinds - set(_AT_REST):
+        if kinds <= _AT_REST:
+            return "record a motion in which all joints of the wrist turn round"
+        if kinds & _AT_REST:
             return (
                 "record the same motion twice as fast: torques of loads and gravity stay the same"
             )
-        if kinds <= set(_AT_REST):
-            return "record a motion in which all joints of the wrist turn round"
         return "record a motion in which the joints move one after the other"
+
+
+def residual_causes(samples: Samples, computed: Floats) -> tuple[Cause, ...]:
+    """What no model of an arm can have: saturation, coupled joints, drift. computed: (K M, n) N m."""
+    view = View(samples, ArmModel(lambda *_: computed, np.zeros_like))
+    contest = _Contest(view)
+    contest.add(view.rival("friction", residuals.FRICTION))
+    contest.add(*residuals.limits(view, contest.fit), *residuals.couplings(view))
+    before = float(contest.fit.mean(contest.squares[0]))
+    if before > _MISMATCH and (named := contest.best(before)):
+        return _causes(named, contest.as_is)
+    told = residuals.of_joints(view, contest.fit, contest.squares[0])
+    return () if told is None else _causes([(told, None)], before)
 
 
 def meaning_of_efforts(
@@ -180,22 +158,23 @@ def meaning_of_efforts(
     if len(drive_gains):
         predicted["current"] = view.computed / drive_gains
     contest = _Contest(view)
-    for meaning, base in predicted.items():
-        contest.add(Rival(meaning, base, view.qd))
+    contest.add(*(view.rival(meaning, base=base) for meaning, base in predicted.items()))
     best, *others = sorted(range(len(contest.rivals)), key=contest.score)
-    names = [contest.rivals[i].kind for i in (best, *others)]
-    errors = [f"{100 * contest.score(i):.2g} %" for i in (best, *others)]
-    summary = ", ".join(f"{n} is {e} of the range off" for n, e in zip(names, errors, strict=True))
-    if "current" not in names:
+    name = contest.rivals[best].kind
+    summary = ", ".join(
+        f"{contest.rivals[i].kind} is {100 * contest.score(i):.2g} % of the range off"
+        for i in (best, *others)
+    )
+    if "current" not in predicted:
         summary += "; current wasn't considered, as no drive gains are known"
     alike = [contest.rivals[i].kind for i in others if contest.alike(i, best, _MARGIN)]
-    reason = f"{names[0]} and {listed(alike)} can't be told apart" if alike else ""
-    if not reason and names[0] != "torque":
-        causes = compare(samples, arm) if names[0] == "torque_without_gravity" else Comparison()
+    reason = f"{name} and {listed(alike)} can't be told apart" if alike else ""
+    if not reason and name != "torque":
+        causes = compare(samples, arm) if name == "torque_without_gravity" else Comparison()
         alone = all(cause.kind == "no_gravity" for cause in causes.causes) and not causes.excluded
         if contest.score(best) > _FITS or not alone:
             reason = causes.text or "no meaning fits"
-    return Verdict(names[0], not reason, summary, reason)
+    return Verdict(name, not reason, summary, reason)
 
 
 def compare(samples: Samples | None, arm: ArmModel) -> Comparison:
@@ -210,11 +189,10 @@ def compare(samples: Samples | None, arm: ArmModel) -> Comparison:
     rest = contest.decide()
     known = [cause.error_after for cause in rest.causes if cause.error_after is not None]
     after = min(known, default=contest.score(0))  # of friction alone
-    first = _cause(told, _Contest(View(samples, arm)).as_is, after)
+    first = _causes([(told, after)], _Contest(View(samples, arm)).as_is)
     others = [c for c in rest.causes if c.kind != "friction"]
-    return replace(
-        rest, causes=(first, *(replace(c, rival=len(others) > 1 and c.rival) for c in others))
-    )
+    rivals = (replace(c, rival=len(others) > 1 and c.rival) for c in others)
+    return replace(rest, causes=(*first, *rivals))
 
 
 class _Contest:
@@ -232,57 +210,48 @@ class _Contest:
     def decide(self) -> Comparison:
         """The outcome."""
         view, fit = self.view, self.fit
-        nothing = frictions.nothing(view)
-        self.add(nothing)
+        self.add(view.rival("friction", residuals.FRICTION))
         before = self.score(0)
         if before > _MISMATCH:
-            self.add(masses.rough(view))
+            self.add(bodies.rough(view))
             for kind in KINDS:
-                for rival in kind.rivals(view, fit):
-                    self.add(rival)
+                self.add(*kind.rivals(view, fit))
             named = self.best(before)
             if not named or named[0][0].kind in _LIKE_COUPLING:
-                for rival in residuals.couplings(view):
-                    self.add(rival)
+                self.add(*residuals.couplings(view))
                 named = self.best(before)
-            if both := self._pair(named, before):
-                return Comparison(both)
-            if named:
-                return Comparison(_causes(named, self.as_is))
+            if causes := self._pair(named, before) or _causes(named, self.as_is):
+                return Comparison(causes)
         return self._unnamed(before)
 
     def _pair(self, named: list[tuple[Told, float]], before: float) -> tuple[Cause, ...]:
         """Two mistakes, if they leave half of what the best single one leaves, and no other pair does."""
-        least = min(after for _, after in named) if named else before
+        least = min((after for _, after in named), default=before)
         each = bool(named) and named[0][0].own is not None
         if not each and least < (_EXPLAINED if named else _FITS):
             return ()
         contest = _Contest(self.view)
-        for rival in pairs.rivals(self.view, self.fit):
-            contest.add(rival)
+        contest.add(*pairs.rivals(self.view, self.fit))
         # scales of all joints have more numbers than a pair: it needn't be better than they
         found = contest.best(_GAIN * (_MARGIN * least + _FLAT) if each else min(before, least))
         if len(found) != 1 or found[0][1] > _PAIR_FITS:
             return ()
-        first, after = found[0]
-        return tuple(_cause(told, self.as_is, after) for told in (first, first.also) if told)
+        told, after = found[0]
+        both = [(one, after) for one in (told, told.also) if one]
+        return tuple(replace(cause, rival=False) for cause in _causes(both, self.as_is))
 
     def _unnamed(self, before: float) -> Comparison:
         """What is said where no rival wins."""
-        told: tuple[Told, ...] = ()
-        if own := residuals.of_joints(self.view, self.fit, self.squares[0]):
-            told = (own,)
-        elif before > _FITS:
+        own = residuals.of_joints(self.view, self.fit, self.squares[0])
+        told = () if own is None else (own,)
+        if not told and before > _FITS:
             told = motions.beyond_reach(self.view) or efforts.too_small(self.view)
         if told:
-            causes = _causes([(one, None) for one in told], self.as_is)
-            return Comparison(causes)
+            return Comparison(_causes([(one, None) for one in told], self.as_is))
+        if before > _FITS:
+            return Comparison(excluded=tuple(sorted({r.kind for r in self.rivals} - {"rough"})))
         lacks = self.fit.friction is None and self.as_is >= max(_GAIN * before, _RUBS)
-        if before <= _FITS:
-            causes = (_cause(frictions.FRICTION, self.as_is, before),) if lacks else ()
-            return Comparison(causes)
-        excluded = tuple(sorted({r.kind for r in self.rivals} - {"rough"}))
-        return Comparison(excluded=excluded)
+        return Comparison(_causes([(residuals.FRICTION, before)] if lacks else [], self.as_is))
 
     @property
     def as_is(self) -> float:
@@ -295,19 +264,20 @@ class _Contest:
         """Error that a rival leaves on pieces that were held out."""
         return float(self.fit.mean(self.squares[i]))
 
-    def add(self, rival: Rival, squares: Floats | None = None) -> None:
-        """One more, unless it can't be."""
-        squares = self.fit.errors(rival) if squares is None else squares
-        if np.isfinite(squares).all():
-            self.rivals.append(rival)
-            self.squares.append(squares)
+    def add(self, *rivals: Rival) -> None:
+        """More of them, unless they can't be."""
+        for rival in rivals:
+            squares = self.fit.errors(rival)
+            if np.isfinite(squares).all():
+                self.rivals.append(rival)
+                self.squares.append(squares)
 
     def best(self, before: float) -> list[tuple[Told, float]]:
         """What is named: one, or those that can't be told apart; with the errors that remedies leave.
 
         before: the error without any.
         """
-        still = Rival("", 0.0 * self.view.computed, self.view.qd)
+        still = self.view.rival("", base=np.zeros_like(self.view.computed))
         least = {True: min(before, float(self.fit.mean(self.fit.errors(still)))), False: before}
         scores = [self.score(i) for i in range(len(self.rivals))]
         tied: list[int] = []
@@ -316,7 +286,7 @@ class _Contest:
             rival = self.rivals[i]
             if tied and not self.alike(i, tied[0], _MARGIN):
                 break
-            told = rival.tell(*self.fit.numbers(rival))
+            told = rival.told(*self.fit.numbers(rival))
             if told is None:
                 continue
             of = least[told.kind in _SCALES]  # a scale of zero is no explanation
@@ -342,12 +312,11 @@ class _Contest:
     ) -> list[tuple[Told, float]]:
         """Without those that include another one; nothing if too many are left."""
         kinds = {self.rivals[i].kind for i in tied}
-        kept: list[tuple[Told, float]] = []
-        for i, found in zip(tied, result, strict=True):
-            same = any(k[0].kind == found[0].kind and k[0].joints == found[0].joints for k in kept)
-            if not same and not kinds & set(self.rivals[i].includes):
-                kept.append(found)
-        return kept if len(kept) <= _MOST_NAMED else []
+        kept: dict[tuple[str, tuple[str, ...]], tuple[Told, float]] = {}
+        for i, (told, after) in zip(tied, result, strict=True):
+            if not kinds & set(self.rivals[i].includes):
+                kept.setdefault((told.kind, told.joints), (told, after))
+        return list(kept.values()) if len(kept) <= _MOST_NAMED else []
 
 
 def _small(after: float, before: float, told: Told) -> bool:
@@ -357,19 +326,18 @@ def _small(after: float, before: float, told: Told) -> bool:
 
 
 def _causes(named: Sequence[tuple[Told, float | None]], before: float) -> tuple[Cause, ...]:
-    """One, or rivals."""
-    causes = (_cause(told, before, after) for told, after in named)
-    return tuple(replace(cause, rival=len(named) > 1) for cause in causes)
-
-
-def _cause(told: Told, before: float, after: float | None) -> Cause:
-    return Cause(
-        told.kind,
-        told.joints,
-        told.value,
-        before,
-        after,
-        told.reason,
-        told.remedy,
-        told.mistake,
+    """One, or rivals. named: with the errors that remedies leave."""
+    return tuple(
+        Cause(
+            kind=told.kind,
+            joints=told.joints,
+            value=told.value,
+            error_before=before,
+            error_after=after,
+            reason=told.reason,
+            remedy=told.remedy,
+            mistake=told.mistake,
+            rival=len(named) > 1,
+        )
+        for told, after in named
     )

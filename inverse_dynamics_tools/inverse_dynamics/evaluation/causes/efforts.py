@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,8 +15,8 @@ from inverse_dynamics.evaluation.causes.rival import Rival, Told, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Mask
-    from inverse_dynamics.evaluation.causes.arm import View
     from inverse_dynamics.evaluation.causes.fit import Fitting
+    from inverse_dynamics.evaluation.causes.samples import View
 
 _SAME = 1.15  # ratio of scales that masses which a maker has rounded may give
 _NAMED = 0.06  # relative distance from a unit's scale that they may give
@@ -33,46 +34,39 @@ _UNITS = {  # per N m
     0.001: "kN m",
 }
 _SHARES = {1.0: "shares", 100.0: "per cent", 1000.0: "per mille"}
+_CURRENT = Told(
+    "currents",
+    "Efforts are motor currents",
+    "",
+    "give --effort-is current, and drive_gains unless the solver knows them",
+)
 
 
 def rivals(view: View, fitting: Fitting) -> Iterator[Rival]:
     """Signs, a common scale, a scale of each joint, and gravity taken off."""
     yield from _signs(view, fitting)
     yield common(view)
-    none, zero = np.zeros_like(view.computed), np.zeros(len(view.names))
-    yield Rival(
-        "scales",
-        none,
-        view.qd,
-        lambda _, own: _each(view, own[0]),
-        own=(view.computed,),
-        own_low=(zero,),
-        own_high=(zero + np.inf,),
-        includes=("effort_scale",),
-    )
+    nothing, own = np.zeros_like(view.computed), (view.computed,)
+    tell, includes = partial(_each, view), ("effort_scale",)
+    yield view.rival("scales", tell, base=nothing, own=own, own_low=0.0, includes=includes)
     sign = 1.0 if view.arm.compared_without_gravity else -1.0
-    yield Rival(
-        "no_gravity", view.computed + sign * view.gravity, view.qd, lambda *_: _no_gravity(sign)
-    )
+    yield view.rival("no_gravity", _no_gravity(sign), base=view.computed + sign * view.gravity)
 
 
 def _no_gravity(sign: float) -> Told:
-    meaning = "torque" if sign > 0 else "torque_without_gravity"
+    why = "efforts include it" if sign > 0 else "the robot's driver subtracts it from its efforts"
     return Told(
         "no_gravity",
         "Gravity is subtracted from the efforts",
-        "the error is the gravity torque: "
-        + (
-            "efforts include it" if sign > 0 else "the robot's driver subtracts it from its efforts"
-        ),
-        f"give --effort-is {meaning}",
+        f"the error is the gravity torque: {why}",
+        f"give --effort-is {'torque' if sign > 0 else 'torque_without_gravity'}",
     )
 
 
 def _signs(view: View, fitting: Fitting) -> Iterator[Rival]:
     """All efforts reversed, or those of the joints that fit better so."""
-    as_is, turned = Rival("", view.computed, view.qd), Rival("", -view.computed, -view.qd)
-    errors = [np.sqrt(fitting.errors(rival).mean(axis=0)) for rival in (as_is, turned)]
+    both = [view.rival("", base=sign * view.computed, qd=sign * view.qd) for sign in (1.0, -1.0)]
+    errors = [np.sqrt(fitting.errors(rival).mean(axis=0)) for rival in both]
     decided = view.informative & (np.abs(np.log(errors[1] / errors[0])) > np.log(_SAME))
     flipped = decided & (errors[1] < errors[0])
     if flipped.any():
@@ -90,42 +84,32 @@ def each_reversed(view: View) -> Iterator[Rival]:
 def _turned(view: View, flipped: Mask, *, everything: bool) -> Rival:
     sign = np.where(flipped | everything, -1.0, 1.0)
     names = () if everything else view.samples.named(flipped)
-    whose = listed(names) + (" are" if len(names) > 1 else " is")
+    if everything:
+        whose, which = "efforts of all joints are", "all efforts"
+    elif len(names) == 1:
+        whose, which = f"effort of {names[0]} is", "this effort"
+    else:
+        whose, which = f"effort of {listed(names)} are", "these efforts"
     told = Told(
         "effort_sign" if everything else "effort_direction",
         "A joint is reversed",
-        "torques match if the efforts of all joints are reversed"
-        if everything
-        else f"torques match if the effort of {whose} reversed",
-        "change the sign of "
-        + ("all efforts" if everything else "this effort" if len(names) == 1 else "these efforts")
-        + " where the recording is made",
+        f"torques match if the {whose} reversed",
+        f"change the sign of {which} where the recording is made",
         names,
         value=-1.0,
     )
-    return Rival(
-        told.kind,
-        sign * view.computed,
-        sign * view.qd,
-        lambda *_: told,
-        effort=lambda computed: sign * computed,
-    )
+    base, qd = sign * view.computed, sign * view.qd
+    return view.rival(told.kind, told, base=base, qd=qd, effort=lambda computed: sign * computed)
 
 
 def common(view: View) -> Rival:
     """One scale of all efforts."""
-    return Rival(
-        "effort_scale",
-        np.zeros_like(view.computed),
-        view.qd,
-        lambda shared, _: _common(shared[0]),
-        columns=(view.computed,),
-        low=(0.0,),
-        high=(np.inf,),
-    )
+    nothing, columns = np.zeros_like(view.computed), (view.computed,)
+    return view.rival("effort_scale", _common, base=nothing, columns=columns, low=0.0)
 
 
-def _common(scale: float) -> Told | None:
+def _common(shared: Floats, _: Floats) -> Told | None:
+    scale = float(shared[0])
     if scale <= 0 or abs(np.log(scale)) < np.log(_SAME):
         return None
     unit, scale = _unit(scale)
@@ -148,21 +132,16 @@ def too_small(view: View) -> tuple[Told, ...]:
     share = measured[heavy] / torque[heavy]
     if heavy.sum() < 2 or not 0 < np.max(share) <= _TOO_SMALL or view.arm.compared_without_gravity:
         return ()
+    least, most = 1 / np.max(share), 1 / np.maximum(np.min(share), 1e-6)
     reason = (
-        f"efforts are {1 / np.max(share):.2g} to {1 / np.maximum(np.min(share), 1e-6):.2g} times smaller than torques "
-        "where those are large: "
+        f"efforts are {least:.2g} to {most:.2g} times smaller than torques where those are large: "
     )
-    currents = Told(
-        "currents",
-        "Efforts are motor currents",
-        f"{reason}they may be motor currents",
-        "give --effort-is current, and drive_gains unless the solver knows them",
-    )
-    no_gravity = _no_gravity(-1.0)
+    currents = replace(_CURRENT, reason=f"{reason}they may be motor currents")
     moving = np.quantile(np.abs(view.computed - view.gravity), 0.95, axis=0)
     if (measured < _TOO_SMALL * moving)[heavy].any():
         return (currents,)
-    return currents, replace(no_gravity, reason=f"{reason}the robot's driver may subtract gravity")
+    reason += "the robot's driver may subtract gravity"
+    return currents, replace(_no_gravity(-1.0), reason=reason)
 
 
 def _unit(scale: float) -> tuple[str, float]:
@@ -173,9 +152,9 @@ def _unit(scale: float) -> tuple[str, float]:
     return "", printed(scale)
 
 
-def _each(view: View, scales: Floats) -> Told | None:
+def _each(view: View, _: Floats, own: Floats) -> Told | None:
     """Scales of their own: of currents, of limits, of a unit of the joints that turn."""
-    tell = view.informative
+    scales, tell = own[0], view.informative
     if not (scales[tell] > 0).all():
         return None
     off = tell & (np.abs(np.log(np.maximum(scales, 1e-12))) > np.log(1.5))
@@ -187,31 +166,26 @@ def _each(view: View, scales: Floats) -> Told | None:
         shares = scales * limits
         for exact, what in _SHARES.items():
             if (np.abs(shares[tell] / exact - 1) < 2 * _NAMED).all():
-                own = np.where(np.isfinite(limits), exact / limits, rounded)
-                return _scales(view, tell, own, f"{what} of the effort limits")
-    if ((scales[tell] > _CURRENTS[0]) & (scales[tell] < _CURRENTS[1])).all():
-        return _currents(rounded, tell)
+                stated = np.where(np.isfinite(limits), exact / limits, rounded)
+                return _scales(view, tell, stated, f"{what} of the effort limits")
+    if _are_currents(scales[tell]):
+        numbers = listed([f"{s:.3g}" for s in rounded[tell]])
+        reason = (
+            f"measured efforts have the shape of the torques at another scale in every joint ({numbers}): "
+            "they may be motor currents"
+        )
+        return replace(_CURRENT, reason=reason, value=rounded.tolist(), own=rounded[None])
     turning = tell & ~view.prismatic
     if view.prismatic.any() and turning.any():
         unit, exact = _unit(float(np.median(scales[turning])))
         if unit and (np.abs(scales[turning] / exact - 1) < _NAMED).all():
-            own = np.where(view.prismatic, rounded, exact)
-            return _scales(view, off, own, f"in {unit}")
-    milli = scales[tell] / 1000
-    in_ma = bool(((milli > _CURRENTS[0]) & (milli < _CURRENTS[1])).all())
-    return _scales(view, off, rounded, "motor currents in mA" if in_ma else "")
+            return _scales(view, off, np.where(view.prismatic, rounded, exact), f"in {unit}")
+    milli = "motor currents in mA" if _are_currents(scales[tell] / 1000) else ""
+    return _scales(view, off, rounded, milli)
 
 
-def _currents(scales: Floats, tell: Mask) -> Told:
-    return Told(
-        "currents",
-        "Efforts are motor currents",
-        "measured efforts have the shape of the torques at another scale in every joint "
-        f"({listed([f'{s:.3g}' for s in scales[tell]])}): they may be motor currents",
-        "give --effort-is current, and drive_gains unless the solver knows them",
-        value=[float(s) for s in scales],
-        own=scales[None],
-    )
+def _are_currents(scales: Floats) -> bool:
+    return bool(((scales > _CURRENTS[0]) & (scales < _CURRENTS[1])).all())
 
 
 def _scales(view: View, off: Mask, scales: Floats, what: str) -> Told:
@@ -224,6 +198,6 @@ def _scales(view: View, off: Mask, scales: Floats, what: str) -> Told:
         + (f": they are {what}" if what else ""),
         f"divide them by {numbers} where the recording is made",
         () if off[view.informative].all() else names,
-        value=[float(s) for s in scales],
+        value=scales.tolist(),
         own=scales[None],
     )

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits rivals to some pieces of a recording and judges them on the others.
 
-    fit = Fitting(samples, has_friction=False)
-    errors = fit.errors(rival)      # (K, n) squares, of pieces that were held out
+    fit = Fitting(samples, friction=None)
+    errors = fit.errors(rival)      # (K, n) mean squares, of pieces that were held out
 
-Friction and offset are free in every rival, within what is physical: friction is against the motion and takes up
+Friction and offset are free in every rival, within what is physical: friction opposes the motion and takes up
 at most a stated share of the measured range, offsets are small. No rival wins by them alone.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -38,8 +38,7 @@ class Fitting:
     def __init__(self, samples: Samples, friction: Floats | None = None) -> None:
         """friction: (N, n) of the model, in what rivals predict; its size is free, too."""
         self.samples = samples
-        pieces, length, joints = samples.q.shape
-        self.shape = (pieces, length, joints)
+        self.shape = samples.q.shape
         measured = samples.flat(samples.measured)
         self.range = _range(measured)
         self.size = np.maximum(self.range, _LEAST_RANGE * max(float(self.range.max()), 1e-12))
@@ -50,7 +49,7 @@ class Fitting:
             speed > _STILL * max(float(speed.max()), 1e-12)
         )
         self.friction = friction
-        self.even = np.arange(pieces) % 2 == 0
+        self.even = np.arange(len(samples.q)) % 2 == 0
         small = self.range < _SMALL_JOINT * self.range.max()
         self.most_friction = np.where(small, _SMALL_FRICTION, _FRICTION) * self.range
 
@@ -66,15 +65,18 @@ class Fitting:
 
     def numbers(self, rival: Rival) -> tuple[Floats, Floats]:
         """(p,) shared and (m, n) own numbers, fitted to all pieces; friction's are left out."""
-        low, high = self._bounds(rival)
-        shared, own = _solve(self._gram(rival).sum(axis=0), len(rival.columns), low, high)
+        shared, own = self._fitted(rival)
         return shared, own[: len(rival.own)]
 
     def friction_of(self, rival: Rival) -> Floats:
         """(N, n) friction and offset, fitted to all pieces."""
-        gram, columns = self._gram(rival).sum(axis=0), self._friction_columns(rival)
-        _, own = _solve(gram, len(rival.columns), *self._bounds(rival))
-        return np.asarray(np.einsum("cj,cnj->nj", own[len(rival.own) :], np.array(columns)))
+        _, own = self._fitted(rival)
+        columns = np.array(self._friction_columns(rival))
+        return np.asarray(np.einsum("cj,cnj->nj", own[len(rival.own) :], columns))
+
+    def _fitted(self, rival: Rival) -> tuple[Floats, Floats]:
+        gram = self._gram(rival).sum(axis=0)
+        return _solve(gram, len(rival.columns), *self._bounds(rival))
 
     def mean(self, squares: Floats, weights: Floats | None = None) -> Floats:
         """Root mean square over the joints of errors beyond noise, as shares of ranges. weights: (B, K) of pieces."""
@@ -84,10 +86,8 @@ class Fitting:
 
     def applied(self, rival: Rival, told: Told) -> Rival:
         """The rival with the numbers that its remedy states."""
-        own = rival.own_low if told.own is None else tuple(told.own)
-        high = rival.own_high if told.own is None else tuple(told.own)
-        numbers = tuple(map(float, told.shared))
-        return replace(rival, low=numbers, high=numbers, own_low=own, own_high=high)
+        rival = replace(rival, low=told.shared, high=told.shared)
+        return rival if told.own is None else replace(rival, own_low=told.own, own_high=told.own)
 
     def _friction_columns(self, rival: Rival) -> list[Floats]:
         width = 0.05 * np.sqrt(np.mean(rival.qd**2, axis=0))
@@ -105,11 +105,13 @@ class Fitting:
         if self.friction is not None:
             low.append(zero - _MODEL_FRICTION)
             high.append(zero + _MODEL_FRICTION)
-        own_low, own_high = np.array([*rival.own_low, *low]), np.array([*rival.own_high, *high])
-        return (
-            np.concatenate([rival.low, own_low.T.ravel()]),
-            np.concatenate([rival.high, own_high.T.ravel()]),
-        )
+        shared, own = len(rival.columns), (len(rival.own), len(zero))
+
+        def joined(of_shared: Any, of_own: Any, of_friction: list[Floats]) -> Floats:
+            each = np.vstack([np.broadcast_to(of_own, own), of_friction])
+            return np.concatenate([np.broadcast_to(of_shared, shared), each.T.ravel()])
+
+        return joined(rival.low, rival.own_low, low), joined(rival.high, rival.own_high, high)
 
     def _gram(self, rival: Rival) -> Floats:
         """(K, n, c, c) of [target, shared columns, own columns] of each piece and joint, over its size."""

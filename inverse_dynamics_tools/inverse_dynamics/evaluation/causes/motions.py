@@ -38,35 +38,32 @@ _BEYOND = 1.2  # times the limit
 _CLOCK = 1.12  # least factor of time that efforts tell from wrong inertias
 
 
-# ---- velocities against positions --------------------------------------------------------------------------------
-
-
 def contradiction(samples: Samples, arm: ArmModel) -> tuple[Told, Samples] | None:
     """What is wrong with velocities, positions or time, and the samples without it."""
     way, integral, moves = _ways(samples)
     power = np.maximum((integral**2).sum(axis=0), 1e-300)
-    product = (way * integral).sum(axis=0)
-    rate = product / power  # positions change so many times as fast as velocities say
+    rate = (way * integral).sum(axis=0) / power  # positions change so many times as fast
     total = np.maximum((way**2).sum(axis=0), 1e-300)
-    follows = ((way - rate * integral) ** 2).sum(axis=0) < _FOLLOWS * total
+    follows = moves & (((way - rate * integral) ** 2).sum(axis=0) < _FOLLOWS * total)
     silent = moves & (power < 1e-6 * total)
-    wrong = silent | (moves & follows & (np.abs(rate - 1) > _AGREE))
-    if not wrong.any():
-        return None
     if silent.any():
         return _velocity(samples, silent, 0.0, "zero"), _with_slopes(samples, silent)
-    turning = moves & follows & ~arm.of_type("prismatic", len(moves))
-    usable = turning if turning.any() else moves & follows
+    wrong = follows & (np.abs(rate - 1) > _AGREE)
+    if not wrong.any():
+        return None
+    turning = follows & ~arm.of_type("prismatic", len(moves))
+    usable = turning if turning.any() else follows
     middle = float(np.median(rate[usable]))
-    common = bool((np.abs(rate[usable] / middle - 1) < _SAME).all())
-    if common and (
-        units := _common(samples, usable, middle, bool((wrong == (moves & follows)).all()))
-    ):
-        return units
+    if (np.abs(rate[usable] / middle - 1) < _SAME).all():
+        everywhere = bool((wrong == follows).all())
+        found = _in_degrees(samples, usable, middle) or _by_clock(
+            samples, usable, middle, everywhere
+        )
+        if found:
+            return found
     factor = float(np.median(1 / rate[wrong]))
-    text = (
-        "reversed" if (np.abs(rate[wrong] + 1) < _AGREE).all() else f"{factor:.3g} times too fast"
-    )
+    reverse = (np.abs(rate[wrong] + 1) < _AGREE).all()
+    text = "reversed" if reverse else f"{factor:.3g} times too fast"
     text = next((f"in {u}" for f, u in _RATES.items() if abs(factor / f - 1) < _SAME), text)
     return _velocity(samples, wrong, factor, text), _with_slopes(samples, wrong)
 
@@ -75,41 +72,38 @@ def _ways(samples: Samples) -> tuple[Floats, Floats, Mask]:
     """(K, n) by how much positions change in each piece, by how much velocities say; joints that move."""
     step = np.diff(samples.time, axis=1)[..., None]
     whole = (step[..., 0] > 0).all(axis=1) & (step.max(axis=(1, 2)) < 20 * np.median(step))
-    integral = (0.5 * (samples.qd[:, 1:] + samples.qd[:, :-1]) * step).sum(axis=1)
-    way = samples.q[:, -1] - samples.q[:, 0]
-    # drivers repeat values: the least change that positions show
+    integral = (0.5 * (samples.qd[:, 1:] + samples.qd[:, :-1]) * step).sum(axis=1)[whole]
+    way = (samples.q[:, -1] - samples.q[:, 0])[whole]
+    if not len(way):
+        return way, integral, np.zeros(way.shape[1], bool)
+    # drivers repeat values: the least change that positions show; infinite where none changes
     steps = np.abs(np.diff(samples.q, axis=1))
     resolution = np.where(steps > 0, steps, np.inf).min(axis=(0, 1))
-    travel = np.abs(way[whole])
-    moves = (
-        (
-            np.quantile(travel, 0.9, axis=0)
-            > np.where(np.isfinite(resolution), 5 * resolution, np.inf)
-        )
-        if len(travel)
-        else np.zeros(way.shape[1], bool)
+    return way, integral, np.quantile(np.abs(way), 0.9, axis=0) > 5 * resolution
+
+
+def _in_degrees(samples: Samples, usable: Mask, rate: float) -> tuple[Told, Samples] | None:
+    """Positions or velocities of all joints that turn."""
+    if min(abs(rate / _DEGREE - 1), abs(rate * _DEGREE - 1)) >= _SAME:
+        return None
+    scale = np.where(usable, 1 / _DEGREE, 1.0)
+    if rate > 1:
+        which, other, unit = "positions", "velocities", "rad"
+        right = replace(samples, q=samples.q * scale)
+    else:
+        which, other, unit = "velocities", "positions", "rad/s"
+        right = replace(samples, qd=samples.qd * scale, qdd=samples.qdd * scale)
+    reason = (
+        f"positions change {rate:.3g} times as fast as velocities say: {which} are in degrees, "
+        f"{other} in rad"
     )
-    return way[whole], integral[whole], np.asarray(moves)
+    return _degrees(reason, f"convert {which} to {unit}"), right
 
 
-def _common(
+def _by_clock(
     samples: Samples, usable: Mask, rate: float, everywhere: bool
 ) -> tuple[Told, Samples] | None:
-    """A unit or a clock that is the same for all joints."""
-    if abs(rate / _DEGREE - 1) < _SAME or abs(rate * _DEGREE - 1) < _SAME:
-        which = "positions" if rate > 1 else "velocities"
-        other = "velocities" if rate > 1 else "positions"
-        scale = np.where(usable, 1 / _DEGREE, 1.0)
-        right = (
-            replace(samples, q=samples.q * scale)
-            if rate > 1
-            else replace(samples, qd=samples.qd * scale, qdd=samples.qdd * scale)
-        )
-        return _degrees(
-            f"positions change {rate:.3g} times as fast as velocities say: {which} are in degrees, "
-            f"{other} in rad",
-            f"convert {which} to rad" + ("/s" if which == "velocities" else ""),
-        ), right
+    """Time that runs at another speed for all joints, which no unit of velocities explains."""
     known = any(abs(1 / rate / factor - 1) < _SAME for factor in _RATES if factor < 100)
     if rate <= 0 or known or not everywhere or usable.sum() < 2:
         return None
@@ -156,9 +150,6 @@ def _with_slopes(samples: Samples, wrong: Mask) -> Samples:
     return replace(samples, qd=qd, qdd=qdd)
 
 
-# ---- positions and time against limits and efforts ---------------------------------------------------------------
-
-
 def beyond_limits(view: View) -> Mask:
     """(n,) joints that turn and are far beyond their limits, or beyond two turns without any."""
     greatest = np.abs(view.motion[0]).max(axis=0)
@@ -178,22 +169,18 @@ def rivals(view: View, _: Fitting) -> Iterator[Rival]:
             "positions are beyond the joints' limits, and torques match if they are degrees",
             "convert positions and velocities to rad",
         )
-        yield Rival("degrees", view.arm.compared(q, qd, qdd), qd, lambda *_: told)
-    friction = 0.0 if view.friction is None else view.friction
-    still = 0.0 if view.arm.compared_without_gravity else view.gravity
-    yield Rival(
-        "clock",
-        still + friction + np.zeros_like(view.computed),
-        view.qd,
-        lambda square, _: _clock(float(square[0])),
-        columns=(view.computed - still - friction,),
-        low=(1e-6,),
-        high=(1e6,),
-    )
+        yield view.rival("degrees", told, base=view.arm.compared(q, qd, qdd), qd=qd)
+    still = np.zeros_like(view.computed)
+    if view.friction is not None:
+        still = still + view.friction
+    if not view.arm.compared_without_gravity:
+        still = still + view.gravity
+    columns = (view.computed - still,)
+    yield view.rival("clock", _clock, base=still, columns=columns, low=1e-6, high=1e6)
 
 
-def _clock(square: float) -> Told | None:
-    rate = printed(np.sqrt(square))
+def _clock(square: Floats, _: Floats) -> Told | None:
+    rate = printed(np.sqrt(square[0]))
     if max(rate, 1 / rate) < _CLOCK:
         return None
     return Told(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What no model of an arm can have: efforts at a limit, coupled joints, friction that drifts."""
+"""What no model of rigid bodies has: friction, a guiding hand, efforts at a limit, coupled joints, drift."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from inverse_dynamics.evaluation.causes.rival import Rival, Told, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Mask
-    from inverse_dynamics.evaluation.causes.arm import View
     from inverse_dynamics.evaluation.causes.fit import Fitting
+    from inverse_dynamics.evaluation.causes.samples import View
 
 _FLAT = 2e-3  # of a joint's range: efforts within it of the greatest one are at the limit
 _SHARE = (0.02, 0.9)  # of the samples, at a limit
@@ -27,7 +27,29 @@ _CLEARER = 1.5  # ratio of errors: wrong masses leave so many times what drift l
 _NOTICED = 0.03  # least error of a joint that is looked at, as a share of its range
 
 
+FRICTION = Told(
+    "friction",
+    "Friction",
+    "the error is mostly friction and offset, which the model lacks",
+    "take a model with friction, or make one: ids identify RECORDING --robot NAME --out arm.yaml, or "
+    "with --urdf FILE instead of --robot NAME",
+)
+_GUIDED = Told(
+    "guided",
+    "Somebody guides the arm",
+    "measured minus computed torques are against the motion in every joint: somebody guides the arm by hand",
+    "record a motion in which nobody touches the arm",
+    gain=1.3,  # hands don't push evenly
+)
+
+
 def rivals(view: View, fitting: Fitting) -> Iterator[Rival]:
+    """Torques that act with the motion in all joints, as friction of the wrong sign would; limits."""
+    yield view.rival("guided", _GUIDED, qd=-view.qd)
+    yield from limits(view, fitting)
+
+
+def limits(view: View, fitting: Fitting) -> Iterator[Rival]:
     """Efforts that stay at their greatest value while the model, with friction, asks for more."""
     at_limit, _ = _at_limit(view, fitting)
     if at_limit.any():
@@ -77,21 +99,18 @@ def _band(fitting: Fitting) -> Floats:
 def _limited(view: View, at_limit: Mask) -> Rival:
     """What the model asks for at a limit is missing; a limit has no friction, so that the fit's is taken off."""
     missing = view.samples.flat(view.samples.measured) - view.computed
-    none, free = np.zeros(at_limit.shape[1]), np.full(at_limit.shape[1], np.inf)
-    return Rival(
+    columns = (missing, view.qd, np.sign(view.qd), np.ones_like(missing))
+    free = [[np.inf]] * 3
+    return view.rival(
         "saturation",
-        view.computed,
-        view.qd,
-        lambda _, own: _saturated(view, at_limit, own),
-        own=tuple(
-            at_limit * c for c in (missing, view.qd, np.sign(view.qd), np.ones_like(missing))
-        ),
-        own_low=(none, -free, -free, -free),
-        own_high=(none + 1.0, free, free, free),
+        partial(_saturated, view, at_limit),
+        own=tuple(at_limit * column for column in columns),
+        own_low=-np.array([[0.0], *free]),
+        own_high=np.array([[1.0], *free]),
     )
 
 
-def _saturated(view: View, at_limit: Mask, own: Floats) -> Told | None:
+def _saturated(view: View, at_limit: Mask, _: Floats, own: Floats) -> Told | None:
     found = at_limit.any(axis=0) & (own[0] > _CUT)
     if not found.any():
         return None
@@ -117,7 +136,7 @@ def couplings(view: View) -> Iterator[Rival]:
             column = np.zeros_like(measured)
             column[:, j] = measured[:, k]
             tell = partial(_coupled, (view.names[j], view.names[k]))
-            yield Rival("coupling", view.computed, view.qd, tell, (column,), (-np.inf,), (np.inf,))
+            yield view.rival("coupling", tell, columns=(column,))
 
 
 def _coupled(pair: tuple[str, str], ratio: Floats, _: Floats) -> Told:
@@ -143,7 +162,7 @@ def of_joints(view: View, fitting: Fitting, plain: Floats) -> Told | None:
         rival = _limited(view, at_limit)
         found = shown | _better(fitting, plain, fitting.errors(rival), _NOTICED / 2)
         numbers = np.where(found, fitting.numbers(rival)[1], 0.0)
-        if told := rival.tell(np.zeros(0), numbers):
+        if told := rival.told(np.zeros(0), numbers):
             return told
     return _drift(view, fitting, plain)
 
@@ -167,11 +186,9 @@ def _drift(view: View, fitting: Fitting, plain: Floats) -> Told | None:
     share, base = (time - time.mean()) / np.ptp(time), view.computed
     parts = [share * c for c in (view.qd, np.sign(view.qd), np.ones_like(view.qd))]
     others = [np.tile(base[:, k : k + 1], (1, base.shape[1])) for k in range(base.shape[1])]
-    drifting, masses = (fitting.errors(_free(view, own)) for own in (parts, others))
-    found = _better(fitting, plain, drifting, _NOTICED) & (
-        _CLEARER**2 * drifting.mean(axis=0) < masses.mean(axis=0)
-    )
-    names = view.samples.named(found)
+    drifting, masses = (fitting.errors(view.rival("", own=tuple(own))) for own in (parts, others))
+    clearer = _CLEARER**2 * drifting.mean(axis=0) < masses.mean(axis=0)
+    names = view.samples.named(_better(fitting, plain, drifting, _NOTICED) & clearer)
     if not names:
         return None
     return Told(
@@ -181,9 +198,3 @@ def _drift(view: View, fitting: Fitting, plain: Floats) -> Told | None:
         "move the robot for half an hour before recording, or leave out the beginning with --from",
         names,
     )
-
-
-def _free(view: View, own: list[Floats]) -> Rival:
-    most = (np.full(len(view.names), np.inf),) * len(own)
-    low = tuple(-x for x in most)
-    return Rival("", view.computed, view.qd, own=tuple(own), own_low=low, own_high=most)

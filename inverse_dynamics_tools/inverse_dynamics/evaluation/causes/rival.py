@@ -3,19 +3,18 @@
 
     recorded effort = base + shared numbers * columns + each joint's own numbers * columns + friction + offset
 
-A file of a kind of mistake makes its rivals; fit.py fits and compare.py compares them.
+Each kind of mistake has a file that makes its rivals; fit.py fits them, and compare.py compares them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from inverse_dynamics.base.arrays import Floats
 
 PAGE = "docs/why_dont_my_torques_match.md"
@@ -45,13 +44,17 @@ class Told:
     also: Told | None = None  # a second mistake, of a pair
 
 
+Tell = Callable[["Floats", "Floats"], Told | None] | Told | None
+
+
 @dataclass(frozen=True)
 class Rival:
-    """A mistake. N samples, n joints, p numbers that all joints share, m that each has of its own.
+    """A mistake. N samples, n joints, p numbers that all joints share, m that each joint has of its own.
 
-    base: (N, n). columns: (p, N, n) with low, high (p,). own: (m, N, n) with own_low, own_high (m, n).
-    qd: (N, n) velocities that friction is against, as recorded efforts have it.
-    tell: shared numbers (p,), own ones (m, n) to words; None where no robot can have them, or for comparison alone.
+    base: (N, n). columns: (p, N, n); low, high: bounds of their numbers. own: (m, N, n), likewise.
+    qd: (N, n) velocities that friction opposes, as recorded efforts have it.
+    tell: the words, or what finds them from shared numbers (p,) and own ones (m, n): None where no robot can have
+    these numbers. None: for comparison alone.
     includes: kinds that are special cases of it. motion, effort: q, qd, qdd that it changes, and computed
     efforts to recorded ones: for pairs.
     """
@@ -59,13 +62,17 @@ class Rival:
     kind: str
     base: Floats
     qd: Floats
-    tell: Callable[[Floats, Floats], Told | None] = lambda *_: None
+    tell: Tell = None
     columns: tuple[Floats, ...] = ()
-    low: tuple[float, ...] = ()
-    high: tuple[float, ...] = ()
+    low: Any = -np.inf
+    high: Any = np.inf
     own: tuple[Floats, ...] = ()
-    own_low: tuple[Floats, ...] = ()
-    own_high: tuple[Floats, ...] = ()
+    own_low: Any = -np.inf
+    own_high: Any = np.inf
     includes: tuple[str, ...] = ()
-    motion: tuple[Floats, Floats, Floats] | None = None
+    motion: tuple[Floats, ...] | None = None
     effort: Callable[[Floats], Floats] = field(default=lambda efforts: efforts)
+
+    def told(self, shared: Floats, own: Floats) -> Told | None:
+        """The words for these numbers."""
+        return self.tell(shared, own) if callable(self.tell) else self.tell
