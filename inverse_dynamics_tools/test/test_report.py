@@ -196,7 +196,7 @@ def test_comparison_is_a_table_and_a_figure(page, comparison):
     section = re.search(r'<section class="comparison".*?</section>', page.read_text(), re.DOTALL)[0]
     assert "as it is" in section
     assert "one N m off" in section
-    cells = re.findall(r"<(?:td|th scope=\"row\")>([^<]*)</t[dh]>", section)
+    cells = re.findall(r"<(?:td|th scope=\"row\")>([^<]*)</t[dh]>", section.replace("<wbr>", ""))
     row = cells[cells.index("elbow_joint") :][:4]
     assert [float(c) for c in row[1:3]] == pytest.approx(comparison.rmse[:, 2], rel=0.01)
     assert row[3] == "N m"

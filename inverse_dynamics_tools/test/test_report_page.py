@@ -43,12 +43,18 @@ def pages(tmp_path_factory):
         other_table_title="The same without the 300 samples that are left out (shaded)",
         figures=[Figure(WIDE, "What it shows.")],
     )
-    rmse = np.array([[1.5] * 6, [0.12] * 6])
     names = [row.joint for row in run.table]
+    errors = ReportTable(
+        "Root mean square error",
+        ("joint", "rigid bodies", "identified", "unit"),
+        [(name, 1.5, 0.12, "N m") for name in names],
+    )
     comparison = ReportComparison(
-        "What identification brings", "The same recording.", ("rigid bodies", "identified"), names,
-        ["N m"] * 6, rmse, Figure(WIDE, "Left and right."),
-    )  # fmt: skip
+        "What identification brings",
+        "The same recording.",
+        errors,
+        Figure(WIDE, "Left and right."),
+    )
     headings = (
         "joint",
         "unit",
@@ -416,13 +422,11 @@ def test_the_robot_fills_its_panel(show):
         const points = pointsOf(run.links, motion);
         const [azimuth, elevation, aspect] = [-0.9, 0.38, 1.1];
         const {target, distance} = fitted(points, azimuth, elevation, aspect);
-        const flat = distance * Math.cos(elevation);
-        const eye = [target[0] + flat * Math.cos(azimuth), target[1] + flat * Math.sin(azimuth),
-                     target[2] + distance * Math.sin(elevation)];
-        const all = multiply(perspective(kFieldOfView, aspect, 0.1, 50), lookAt(eye, target));
-        return points.map(([x, y, z]) => {
-          const w = all[3] * x + all[7] * y + all[11] * z + all[15];
-          return [0, 1].map((row) => (all[row] * x + all[4 + row] * y + all[8 + row] * z + all[12 + row]) / w);
+        const eye = backwards(azimuth, elevation).map((share, i) => target[i] + distance * share);
+        const all = perspective(kFieldOfView, aspect, 0.1, 50).multiply(lookAt(eye, target));
+        return points.map((point) => {
+          const {x, y, w} = all.transformPoint(new DOMPoint(...point));
+          return [x / w, y / w];
         });
         """
     )

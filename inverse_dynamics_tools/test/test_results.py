@@ -19,7 +19,6 @@ FILES = {
     "bag",
     "evaluation.json",
     "metrics.json",
-    "plotjuggler.xml",
     "series.npz",
     "torques.png",
 }

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The robot as it is drawn: shapes, meshes, skeletons."""
 
+import base64
+
 import numpy as np
 import pytest
 
@@ -17,7 +19,6 @@ from inverse_dynamics.figures.meshes import (
 )
 from inverse_dynamics.figures.scene import (
     MOST_TRIANGLES,
-    decoded_mesh,
     encoded_mesh,
     read_scene,
     scene_from_urdf,
@@ -52,6 +53,13 @@ def write_stl(file, part):
     record = np.zeros(len(triangles), dtype=[("n", "<f4", 3), ("v", "<f4", (3, 3)), ("a", "<u2")])
     record["v"] = triangles
     file.write_bytes(bytes(80) + len(triangles).to_bytes(4, "little") + record.tobytes())
+
+
+def decoded_mesh(shape):
+    """Vertices (V, 3) m and triangles (T, 3) of a shape of kind mesh."""
+    steps = np.frombuffer(base64.b64decode(shape["vertices"]), dtype="<i2").reshape(-1, 3)
+    triangles = np.frombuffer(base64.b64decode(shape["triangles"]), dtype="<u2").reshape(-1, 3)
+    return np.array(shape["middle"]) + shape["step"] * steps, triangles
 
 
 def kinds(link):

@@ -116,7 +116,9 @@ def test_limits_are_those_of_the_description(tmp_path):
     assert effort_limits(file, text.format("5"), ("b", "a")).tolist() == [np.inf, 5]
     assert effort_limits(file, text.format("0"), ("a",)).tolist() == [np.inf]
     assert effort_limits(None, "", ("a",)).tolist() == [np.inf]
-    with pytest.raises(RobotError, match="joint a: limit: expected a number as effort, got 'much'"):
+    with pytest.raises(
+        RobotError, match=r"joint a: <limit effort=...>: expected a finite number, got 'much'"
+    ):
         effort_limits(file, text.format("much"), ("a",))
 
 

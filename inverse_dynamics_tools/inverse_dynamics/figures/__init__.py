@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures: plots, layouts for PlotJuggler, the robot's shape."""
+"""Pictures: plots, and the robot's shape."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Figure of external torques, their thresholds and the contacts."""
+"""Figures of torques beyond the model's: contacts with their thresholds, and what a load explains."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics.base.wording import counted
 from inverse_dynamics.figures import palette
-from inverse_dynamics.figures.plots import save_figure
+from inverse_dynamics.figures.plots import save_figure, shade, write_heading, write_legend
 from inverse_dynamics.figures.thinning import peaks
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.evaluation.contacts import Contacts
+    from inverse_dynamics.identification.payload import Payload
 
 _MOST_POINTS = 6000
 _LINE: dict[str, Any] = {"color": palette.ERROR, "linewidth": 0.8}
@@ -66,8 +68,7 @@ def contact_figure(contacts: Contacts) -> Figure:
             "force at the tip, if nothing else is touched [N]", loc="left", fontsize=9, pad=3
         )
     axes[-1].set_xlabel("time [s]", color=_MUTED)
-    axes[-1].set_xlim(contacts.time[0], contacts.time[-1])
-    _write_heading(figure, contacts, height)
+    _write_heading(figure, contacts)
     return figure
 
 
@@ -75,31 +76,24 @@ def _draw(axis: Axes, contacts: Contacts, values: Floats) -> None:
     shown = peaks(values, _MOST_POINTS)
     known = np.where(contacts.valid, values, np.nan)  # else zeros were drawn
     axis.plot(contacts.time[shown], known[shown], **_LINE)
+    axis.set_xlim(contacts.time[0], contacts.time[-1])
     if contacts.quiet_part is not None:
         axis.axvspan(*contacts.quiet_part, **_QUIET)
-    for begin, end in contacts.interruptions:
-        axis.axvspan(begin, end, **_UNKNOWN)
-    least = _MARK * (contacts.time[-1] - contacts.time[0])
-    for contact in contacts.contacts:
-        axis.axvspan(contact.begin, max(contact.end, contact.begin + least), **_CONTACT)
+    shade(axis, contacts.interruptions, 0.0, _UNKNOWN)
+    shade(axis, [(contact.begin, contact.end) for contact in contacts.contacts], _MARK, _CONTACT)
 
 
-def _write_heading(figure: Figure, contacts: Contacts, height: float) -> None:
+def _write_heading(figure: Figure, contacts: Contacts) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    evaluation = contacts.evaluation
-    robot, count = evaluation.robot, len(contacts.contacts)
-    title = f"{robot.description or robot.name}: {count} contact{'' if count == 1 else 's'}"
-    size = min(13.0, 13.0 * 100 / len(title))
-    figure.text(0.012, 1 - 0.3 / height, title, fontsize=size, fontweight="bold")
-    rate = contacts.thresholds.false_alarms_per_hour
-    figure.text(
-        0.012,
-        1 - 0.52 / height,
+    evaluation, rate = contacts.evaluation, contacts.thresholds.false_alarms_per_hour
+    robot = evaluation.robot
+    write_heading(
+        figure,
+        f"{robot.description or robot.name}: {counted(len(contacts.contacts), 'contact')}",
         f"{evaluation.bag.name}   ·   {contacts.estimator}, {contacts.gain:g} 1/s   ·   thresholds for "
         f"{rate:g} false alarm{'' if rate == 1 else 's'} per hour",
-        color=_MUTED,
     )
     handles: list[Line2D | Patch] = [
         Line2D([], [], label="external torque", **_LINE),
@@ -110,13 +104,32 @@ def _write_heading(figure: Figure, contacts: Contacts, height: float) -> None:
         handles.append(Patch(label="part used for the thresholds", **_QUIET))
     if contacts.interruptions:
         handles.append(Patch(label="no estimate", **_UNKNOWN))
-    figure.legend(
-        handles=handles,
-        loc="upper left",
-        bbox_to_anchor=(0.012, 1 - 0.66 / height),
-        borderaxespad=0,
-        borderpad=0,
-        ncols=len(handles),
-        frameon=False,
-        fontsize=9,
+    write_legend(figure, handles, 0.012, 0.66)
+
+
+def save_payload_figure(payload: Payload, *files: Path) -> None:
+    """Save payload_figure(); formats are those of the suffixes."""
+    save_figure(lambda: payload_figure(payload), *files)
+
+
+def payload_figure(payload: Payload) -> Figure:
+    """Residual torques over time, one joint per row."""
+    from matplotlib.figure import Figure
+
+    names, units = payload.joint_names, payload.evaluation.units
+    figure = Figure(figsize=(11.0, 1.15 * len(names) + 1.2), layout="constrained")
+    axes = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
+    for j, axis in enumerate(axes):
+        for values, color in (
+            (payload.before[:, j], palette.BEFORE),
+            (payload.after[:, j], palette.ERROR),
+        ):
+            shown = peaks(values, _MOST_POINTS)
+            axis.plot(payload.time[shown], values[shown], color=color, linewidth=0.8)
+        axis.axhline(0.0, color=_MUTED, linewidth=0.5)
+        axis.set_ylabel(f"{names[j]}\n[{units[j]}]", color=_MUTED)
+    axes[-1].set_xlabel("time [s]", color=_MUTED)
+    figure.suptitle(
+        "Measured minus computed torques: without the load (orange), with it and the offsets (blue)"
     )
+    return figure

@@ -2,9 +2,8 @@
 """The colours of all figures and pages: one quantity, one colour.
 
 Computed and error are of Okabe and Ito's palette, other models of Tol's: colour-blind readers can tell them apart.
-Measured torques are a wide
-grey line below the computed ones, so that both are visible where many samples share a pixel; in black
-and white the widths differ.
+Measured torques are a wide grey line below the computed ones, so that both are visible where many samples share a
+pixel; in black and white the widths differ.
 """
 
 from __future__ import annotations

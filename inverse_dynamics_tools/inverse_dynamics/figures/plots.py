@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+from io import StringIO
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,10 +16,11 @@ from inverse_dynamics.figures import palette
 from inverse_dynamics.figures.thinning import error_limit, line
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
     from typing import Any
 
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
@@ -81,14 +84,28 @@ def save_figure(make: Callable[[], Figure], *files: Path) -> None:
     """Save what `make` draws, in the common style. The same figure, the same bytes."""
     if not files:
         return
-    import matplotlib as mpl
-
-    with mpl.rc_context({**STYLE, "svg.hashsalt": "inverse_dynamics"}):
-        figure = make()
-        make_printable(figure)
+    with _styled(make) as figure:
         for file in files:
             metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(file.suffix)
             figure.savefig(file, dpi=160, metadata=metadata)
+
+
+def svg_of(make: Callable[[], Figure], **style: Any) -> str:
+    """What `make` draws as SVG, in the common style with these changes. The same figure, the same text."""
+    text = StringIO()
+    with _styled(make, **style) as figure:
+        figure.savefig(text, format="svg", metadata={"Date": None})
+    return text.getvalue()
+
+
+@contextmanager
+def _styled(make: Callable[[], Figure], **style: Any) -> Iterator[Figure]:
+    import matplotlib as mpl
+
+    with mpl.rc_context({**STYLE, "svg.hashsalt": "inverse_dynamics", **style}):
+        figure = make()
+        make_printable(figure)
+        yield figure
 
 
 def make_printable(figure: Figure) -> None:
@@ -113,47 +130,68 @@ def torque_figure(evaluation: Evaluation) -> Figure:
     from matplotlib.patches import Patch
 
     n = len(evaluation.joint_names)
-    height = 1.25 * n + 1.7
-    figure = Figure(figsize=(11.0, height))
+    figure = Figure(figsize=(11.0, 1.25 * n + 1.7))
     axes = _panels(figure, n, top=1.32, bottom=0.5)
     left_out = evaluation.samples.left_out_spans(evaluation.log)
     for j, (left, right) in enumerate(axes):
         _draw_torques(left, evaluation, j)
         _draw_error(right, evaluation, j)
         for axis in (left, right):
-            _shade(axis, left_out)
+            shade(axis, left_out, 0.001, LEFT_OUT)
     for axis in axes[-1]:
         axis.set_xlabel("time [s]", color=_MUTED)
         axis.set_xlim(evaluation.time[0], evaluation.time[-1])
-
-    def at(inches_from_top: float) -> float:
-        return 1 - inches_from_top / height
-
     robot = evaluation.robot
-    title = robot.description or robot.name
-    size = min(13.0, 13.0 * 100 / len(title))  # long ones on one line too
-    figure.text(0.012, at(0.3), title, fontsize=size, fontweight="bold")
-    figure.text(0.012, at(0.52), _subtitle(evaluation), color=_MUTED)
-    figure.text(0.012, at(0.7), _assumptions(evaluation), color=_MUTED)
-    columns: tuple[dict[str, Any], ...] = (
-        {"measured torque": MEASURED, "computed torque": COMPUTED},
-        {"error: computed - measured": ERROR},
+    friction = "" if robot.friction else ", friction left out"
+    write_heading(
+        figure,
+        robot.description or robot.name,
+        f"{robot.name}   ·   solver {robot.plugin}{friction}",
+        f"{evaluation.bag.name}, {len(evaluation.log)} samples, {evaluation.log.duration:.1f} s   ·   "
+        f"accelerations: {evaluation.accelerations.summary}",
     )
-    for axis, column in zip(axes[0], columns, strict=True):
-        handles: list[Line2D | Patch] = [Line2D([], [], label=k, **v) for k, v in column.items()]
-        if left_out and axis is axes[0][0]:
-            handles.append(Patch(label="samples left out", **LEFT_OUT))
-        figure.legend(
-            handles=handles,
-            loc="upper left",
-            bbox_to_anchor=(axis.get_position().x0, at(0.87)),
-            borderaxespad=0,
-            borderpad=0,
-            ncols=3,
-            frameon=False,
-            fontsize=9,
-        )
+    torques: list[Line2D | Patch] = [
+        Line2D([], [], label="measured torque", **MEASURED),
+        Line2D([], [], label="computed torque", **COMPUTED),
+    ]
+    if left_out:
+        torques.append(Patch(label="samples left out", **LEFT_OUT))
+    error = Line2D([], [], label="error: computed - measured", **ERROR)
+    for axis, handles in zip(axes[0], (torques, [error]), strict=True):
+        write_legend(figure, handles, axis.get_position().x0, 0.87)
     return figure
+
+
+def write_heading(figure: Figure, title: str, *lines: str) -> None:
+    """A title, and lines below it."""
+    height = figure.get_figheight()
+    size = min(13.0, 13.0 * 100 / len(title))  # long ones on one line too
+    figure.text(0.012, 1 - 0.3 / height, title, fontsize=size, fontweight="bold")
+    for k, text in enumerate(lines):
+        figure.text(0.012, 1 - (0.52 + 0.18 * k) / height, text, color=_MUTED)
+
+
+def write_legend(figure: Figure, handles: Sequence[Artist], left: float, inches: float) -> None:
+    """A legend in one row, so many inches from the top."""
+    figure.legend(
+        handles=handles,
+        loc="upper left",
+        bbox_to_anchor=(left, 1 - inches / figure.get_figheight()),
+        borderaxespad=0,
+        borderpad=0,
+        ncols=len(handles),
+        frameon=False,
+        fontsize=9,
+    )
+
+
+def shade(
+    axes: Axes, spans: Sequence[tuple[float, float]], least: float, style: dict[str, Any]
+) -> None:
+    """Spans of time [s], each as wide as that part of the axis at least, so that it can be seen."""
+    low, high = axes.get_xlim()
+    for begin, end in spans:
+        axes.axvspan(begin, max(end, begin + least * (high - low)), **style)
 
 
 def comparison_figure(comparison: Comparison) -> Figure:
@@ -239,24 +277,4 @@ def _draw_error(axes: Axes, evaluation: Evaluation, j: int) -> None:
     share = "" if np.isnan(error.nrmse) else f", {100 * error.nrmse:.2g} % of measured range"
     axes.set_title(
         f"RMSE {error.rmse:.3g} {error.unit}{share}", loc="left", fontsize=9, pad=3, color=_MUTED
-    )
-
-
-def _shade(axes: Axes, spans: Sequence[tuple[float, float]]) -> None:
-    """Behind the samples of some spans of time [s], each at least as wide as can be seen."""
-    low, high = axes.get_xlim()
-    least = 0.001 * (high - low)
-    for begin, end in spans:
-        axes.axvspan(begin, max(end, begin + least), **LEFT_OUT)
-
-
-def _subtitle(evaluation: Evaluation) -> str:
-    friction = "" if evaluation.robot.friction else ", friction left out"
-    return f"{evaluation.robot.name}   ·   solver {evaluation.robot.plugin}{friction}"
-
-
-def _assumptions(evaluation: Evaluation) -> str:
-    return (
-        f"{evaluation.bag.name}, {len(evaluation.log)} samples, {evaluation.log.duration:.1f} s   ·   "
-        f"accelerations: {evaluation.accelerations.summary}"
     )

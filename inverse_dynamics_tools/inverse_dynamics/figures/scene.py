@@ -25,16 +25,17 @@ from inverse_dynamics.base.extras import MissingPackageError
 from inverse_dynamics.base.wording import counted, harmless
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.figures.meshes import MeshError, MeshPart, find_mesh, read_mesh
+from inverse_dynamics.robot.chain_geometry import origin_pose
 from inverse_dynamics.robot.descriptions import (
+    link_of,
     numbers_of,
+    numbers_or,
     parse_description,
     read_description,
 )
 
 Matrix = NDArray[np.float64]
 DEFAULT_COLOR = (0.72, 0.75, 0.79)
-
-
 BONE_COLOR = (0.62, 0.66, 0.71)
 JOINT_COLOR = (0.36, 0.45, 0.56)
 MOST_MESHES = 500  # of a robot
@@ -73,8 +74,8 @@ def _scene(urdf: str, joints: Sequence[str], directory: Path) -> Scene:
     by_parent: dict[str, list[ElementTree.Element]] = {}
     children = set()
     for joint in robot.findall("joint"):
-        by_parent.setdefault(_link_of(joint, "parent"), []).append(joint)
-        children.add(_link_of(joint, "child"))
+        by_parent.setdefault(link_of(joint, "parent"), []).append(joint)
+        children.add(link_of(joint, "child"))
     index = {name: i for i, name in enumerate(joints)}
     links: list[dict[str, Any]] = []
     bare: list[bool] = []  # of each link: whether something of it isn't drawn
@@ -88,7 +89,7 @@ def _scene(urdf: str, joints: Sequence[str], directory: Path) -> Scene:
         links.append(_link(parent, above, index, reader.by_link.get(name, [])))
         bare.append(name in reader.missing)
         here = len(links) - 1
-        waiting.extend((_link_of(child, "child"), here, child) for child in by_parent.get(name, []))
+        waiting.extend((link_of(child, "child"), here, child) for child in by_parent.get(name, []))
     if not any(link["shapes"] for link in links):
         bare = [True] * len(links)
     _add_skeleton(links, bare)
@@ -147,20 +148,8 @@ def encoded_mesh(vertices: Matrix, triangles: NDArray[np.int64]) -> dict[str, An
     }
 
 
-def decoded_mesh(shape: dict[str, Any]) -> tuple[Matrix, NDArray[np.int64]]:
-    """Vertices (V, 3) m and triangles (T, 3) of a shape of kind mesh."""
-    steps = np.frombuffer(base64.b64decode(shape["vertices"]), dtype="<i2").reshape(-1, 3)
-    triangles = np.frombuffer(base64.b64decode(shape["triangles"]), dtype="<u2").reshape(-1, 3)
-    return np.array(shape["middle"]) + shape["step"] * steps, triangles.astype(np.int64)
-
-
 def _base64(array: NDArray[Any]) -> str:
     return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii")
-
-
-def _link_of(joint: ElementTree.Element, role: str) -> str:
-    element = joint.find(role)
-    return "" if element is None else element.get("link", "")
 
 
 def _link(
@@ -169,18 +158,16 @@ def _link(
     index: dict[str, int],
     shapes: list[dict[str, Any]],
 ) -> dict[str, Any]:
-    axis = [0.0, 0.0, 1.0]
+    link = {"parent": parent, "joint": -1, "kind": "fixed", "axis": [0.0, 0.0, 1.0]}
+    pose = np.eye(4)
     if joint is not None:
-        axis = _numbers(joint.find("axis"), "xyz", 3, (1.0, 0.0, 0.0))
-    length = math.hypot(*axis) or 1.0
-    return {
-        "parent": parent,
-        "joint": -1 if joint is None else index.get(joint.get("name", ""), -1),
-        "kind": "fixed" if joint is None else joint.get("type", "fixed"),
-        "axis": [component / length for component in axis],
-        "pose": _columns(_pose(None if joint is None else joint.find("origin"))),
-        "shapes": shapes,
-    }
+        axis = numbers_or(joint.find("axis"), "xyz", (1.0, 0.0, 0.0))
+        length = math.hypot(*axis) or 1.0
+        link["joint"] = index.get(joint.get("name", ""), -1)
+        link["kind"] = joint.get("type", "fixed")
+        link["axis"] = [component / length for component in axis]
+        pose = origin_pose(joint)
+    return {**link, "pose": _columns(pose), "shapes": shapes}
 
 
 class _Shapes:
@@ -215,7 +202,7 @@ class _Shapes:
         geometry = visual.find("geometry")
         if geometry is None or len(geometry) == 0:
             return []
-        element, pose, color = geometry[0], _pose(visual.find("origin")), self._color_of(visual)
+        element, pose, color = geometry[0], origin_pose(visual), self._color_of(visual)
         if element.tag == "mesh":
             try:
                 return self._meshes(element, pose, color)
@@ -226,7 +213,7 @@ class _Shapes:
         size = [
             number
             for key, count in _SIZES[element.tag].items()
-            for number in numbers_of(element, key, count, RobotError)
+            for number in numbers_of(element, key, count)
         ]
         shape = {"kind": element.tag, "size": size}
         return [{**shape, "pose": _columns(pose), "color": color or list(DEFAULT_COLOR)}]
@@ -234,7 +221,7 @@ class _Shapes:
     def _meshes(
         self, element: ElementTree.Element, pose: Matrix, color: list[float] | None
     ) -> list[dict[str, Any]]:
-        scale = np.array(_numbers(element, "scale", 3, (1.0, 1.0, 1.0)))
+        scale = np.array(numbers_or(element, "scale", (1.0, 1.0, 1.0)))
         if self._mesh_count > MOST_MESHES:
             raise MeshError(f"expected at most {MOST_MESHES} meshes, got {self._mesh_count}")
         file = find_mesh(element.get("filename", ""), self._directory)
@@ -267,31 +254,7 @@ _SIZES = {
 
 def _color(material: ElementTree.Element) -> list[float] | None:
     element = material.find("color")
-    return None if element is None else _numbers(element, "rgba", 4, (*DEFAULT_COLOR, 1.0))[:3]
-
-
-def _numbers(
-    element: ElementTree.Element | None, key: str, count: int, default: Sequence[float]
-) -> list[float]:
-    if element is None or element.get(key) is None:
-        return list(default)
-    return numbers_of(element, key, count, RobotError)
-
-
-def _pose(origin: ElementTree.Element | None) -> Matrix:
-    """X: the pose of an <origin>: fixed-axis roll, pitch, yaw."""
-    roll, pitch, yaw = _numbers(origin, "rpy", 3, (0.0, 0.0, 0.0))
-    cr, sr, cp, sp, cy, sy = (
-        function(angle) for angle in (roll, pitch, yaw) for function in (math.cos, math.sin)
-    )
-    pose = np.eye(4)
-    pose[:3, :3] = [
-        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-        [-sp, cp * sr, cp * cr],
-    ]
-    pose[:3, 3] = _numbers(origin, "xyz", 3, (0.0, 0.0, 0.0))
-    return pose
+    return None if element is None else numbers_or(element, "rgba", (*DEFAULT_COLOR, 1.0))[:3]
 
 
 def _columns(pose: Matrix) -> list[float]:

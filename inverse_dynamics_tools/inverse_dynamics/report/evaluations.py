@@ -4,16 +4,15 @@
 from __future__ import annotations
 
 import re
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.base.extras import is_installed
 from inverse_dynamics.evaluation.evaluation import CAUSE
 from inverse_dynamics.figures import palette
+from inverse_dynamics.figures.plots import comparison_figure, svg_of
 from inverse_dynamics.figures.scene import Scene, read_scene
 from inverse_dynamics.report.figures import error_figure, not_drawn
-from inverse_dynamics.report.page import Figure, ReportComparison, ReportRun
+from inverse_dynamics.report.page import Figure, ReportComparison, ReportRun, ReportTable
 
 if TYPE_CHECKING:
     from inverse_dynamics.evaluation.comparison import Comparison
@@ -62,27 +61,32 @@ def report_comparison(
     comparison: Comparison, title: str = "", description: str = ""
 ) -> ReportComparison:
     """What the page shows of a comparison; empty texts: the recording's name and the labels."""
-    from inverse_dynamics.figures.plots import save_comparison_figure
-
     first = comparison.evaluations[0]
     svg = not_drawn()
     if is_installed("matplotlib"):
-        with tempfile.TemporaryDirectory() as directory:
-            file = Path(directory) / "comparison.svg"
-            save_comparison_figure(comparison, file)
-            svg = file.read_text(encoding="utf-8")
+        svg = svg_of(lambda: comparison_figure(comparison))
     return ReportComparison(
         title=title or " against ".join(comparison.labels),
         description=description or f"The same recording, {first.bag.name}, computed in more ways.",
-        labels=comparison.labels,
-        joints=comparison.joint_names,
-        units=first.units,
-        rmse=comparison.rmse,
+        table=_rmse_table(comparison),
         figure=Figure(
             _inline(svg),
             "Left: measured torque (wide, grey) and what each run computes. Right: computed - measured.",
         ),
     )
+
+
+def _rmse_table(comparison: Comparison) -> ReportTable:
+    units, rmse = comparison.evaluations[0].units, comparison.rmse
+    rows = [
+        (joint, *values, unit)
+        for joint, unit, values in zip(comparison.joint_names, units, rmse.T.tolist(), strict=True)
+    ]
+    total = len(set(units)) == 1 and len(units) > 1
+    if total:
+        rows.append(("mean", *rmse.mean(axis=1).tolist(), units[0]))
+    headings = ("joint", *comparison.labels, "unit")
+    return ReportTable("Root mean square error", headings, rows, total=total)
 
 
 def _assumptions(evaluation: Evaluation) -> list[tuple[str, str]]:

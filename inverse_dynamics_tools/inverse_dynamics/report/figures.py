@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from io import StringIO
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,10 +10,11 @@ import numpy as np
 from inverse_dynamics.base.extras import how_to_install, is_installed
 from inverse_dynamics.base.wording import printable
 from inverse_dynamics.figures import palette
-from inverse_dynamics.figures.plots import make_printable
+from inverse_dynamics.figures.plots import svg_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.evaluation.evaluation import Evaluation
@@ -26,28 +26,18 @@ def error_figure(evaluation: Evaluation) -> str:
     """Distribution and spectrum of the errors, as SVG text. The same evaluation, the same text."""
     if not is_installed("matplotlib"):
         return not_drawn()
-    import matplotlib as mpl
+    return svg_of(lambda: _error_figure(evaluation), **{"font.size": 9, "axes.grid": False})
+
+
+def _error_figure(evaluation: Evaluation) -> Figure:
     from matplotlib.figure import Figure
 
-    style = {
-        "text.parse_math": False,  # a name may hold $
-        "font.size": 9,
-        "axes.spines.top": False,
-        "axes.spines.right": False,
-        "axes.titley": 1.0,
-        "svg.fonttype": "none",
-        "svg.hashsalt": printable(evaluation.robot.name),
-    }
-    with mpl.rc_context(style):  # type: ignore[arg-type]
-        figure = Figure(figsize=(11, 2.9), layout="constrained")
-        left, right = figure.subplots(1, 2)
-        measured, error = _shares(evaluation)
-        _draw_distribution(left, tuple(map(printable, evaluation.joint_names)), error)
-        _draw_spectra(right, evaluation, measured, error)
-        make_printable(figure)
-        text = StringIO()
-        figure.savefig(text, format="svg", metadata={"Date": None})
-    return text.getvalue()
+    figure = Figure(figsize=(11, 2.9), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    measured, error = _shares(evaluation)
+    _draw_distribution(left, tuple(map(printable, evaluation.joint_names)), error)
+    _draw_spectra(right, evaluation, measured, error)
+    return figure
 
 
 def not_drawn() -> str:
@@ -106,14 +96,10 @@ def _draw_spectra(axes: Axes, evaluation: Evaluation, measured: Floats, error: F
 
 def _spectrum(values: Floats, period: float) -> tuple[Floats, Floats]:
     """Amplitude spectral density of (N, n) samples, mean over the columns, by Welch's method (Hann, half overlap)."""
+    from matplotlib.mlab import detrend_mean, psd
+
     length = max(2, min(len(values), 2 ** int(np.log2(max(4, len(values) / 4)))))
-    window = np.hanning(length + 1)[:-1] if length > 2 else np.ones(length)
-    starts = range(0, len(values) - length + 1, max(1, length // 2))
-    power = np.zeros(length // 2 + 1)
-    for start in starts:
-        piece = values[start : start + length]
-        piece = (piece - piece.mean(axis=0)) * window[:, None]
-        power += (np.abs(np.fft.rfft(piece, axis=0)) ** 2).mean(axis=1)
-    density: Floats = np.sqrt(2 * period * power / (len(starts) * np.sum(window**2)))
-    frequency: Floats = np.arange(length // 2 + 1) / (length * period)
-    return frequency[1:], density[1:]
+    window, overlap = np.hanning(length + 1)[:-1], length // 2
+    spectra = [psd(c, length, 1 / period, detrend_mean, window, overlap) for c in values.T]
+    density: Floats = np.sqrt(np.mean([power for power, _ in spectra], axis=0))
+    return spectra[0][1][1:], density[1:]

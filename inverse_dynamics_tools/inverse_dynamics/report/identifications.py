@@ -109,21 +109,18 @@ def error_table(
 
 
 def _friction(found: Identification) -> ReportTable:
-    keys = list(dict.fromkeys(key for figures in found.model.friction for key in figures))
-    keys = [key for key in keys if key != "law"]
+    keys = dict.fromkeys(key for law in found.model.friction for key in law if key != "law")
     return ReportTable(
         title="Friction, rotor inertia and 95 % band of each joint",
         headings=("joint", *keys, "rotor inertia", "band"),
         rows=[
             (
                 joint,
-                *(figures.get(key, math.nan) for key in keys),
+                *(law.get(key, math.nan) for key in keys),
                 float(found.model.rotor_inertia[j]),
                 float(found.model.torque_deviation[j]),
             )
-            for j, (joint, figures) in enumerate(
-                zip(found.joints, found.model.friction, strict=True)
-            )
+            for j, (joint, law) in enumerate(zip(found.joints, found.model.friction, strict=True))
         ],
         note="fv qd + fo + (fc + fl |g(q)| + fs exp(-(qd / vs)²)) tanh((qd + shift) / width); SI units. "
         "fo and shift may do work, and differ between recordings.",

@@ -108,15 +108,18 @@ class ReportSummary:
 
 @dataclass(frozen=True)
 class ReportComparison:
-    """Runs of one recording side by side: root mean square errors, (runs, n), and a figure."""
+    """Runs of one recording side by side: their errors, and a figure."""
 
     title: str
     description: str
-    labels: Sequence[str]
-    joints: Sequence[str]
-    units: Sequence[str]
-    rmse: Floats
+    table: ReportTable
     figure: Figure
+
+
+def _joint_table(title: str, errors: Sequence[JointError]) -> ReportTable:
+    """Errors of each joint."""
+    rows = [(e.joint, e.mae, e.rmse, e.bias, e.unit, 100 * e.nrmse, e.r2) for e in errors]
+    return ReportTable(title, ("joint", "MAE", "RMSE", "bias", "unit", "NRMSE [%]", "R²"), rows)
 
 
 def write_page(
@@ -147,7 +150,7 @@ def render_page(
         script=script,
         data=_json_for_html([_data(run, i) for i, run in enumerate(runs)]),
         runs=[_view(run, i) for i, run in enumerate(runs)],
-        comparisons=[_comparison_view(comparison, i) for i, comparison in enumerate(comparisons)],
+        comparisons=comparisons,
         notes=notes,
         summary=summary,
     )
@@ -188,6 +191,8 @@ def _breakable(text: str) -> Markup:
     """Text whose long names may break between their parts; units, as in N m/A, may not."""
     from markupsafe import Markup, escape
 
+    if isinstance(text, Markup):
+        return text
     return Markup(re.sub(r"(?<=\w\w)(::|[/_])(?=\w\w)", r"\1<wbr>", str(escape(printable(text)))))
 
 
@@ -195,63 +200,28 @@ def _asset(name: str) -> str:
     return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
-def _identifier(index: int) -> str:
-    return f"run-{index + 1}"
-
-
 def _view(run: ReportRun, index: int) -> dict[str, Any]:
     """What the template prints."""
     rows = list(run.table)
-    worst = max(rows, key=lambda row: row.nrmse if math.isfinite(row.nrmse) else -1.0)
-    shares = [row.nrmse for row in rows if math.isfinite(row.nrmse)]
+    shares = {row.joint: row.nrmse for row in rows if math.isfinite(row.nrmse)}
+    worst = max(shares, key=lambda joint: shares[joint], default=rows[0].joint)
     units = {row.unit for row in rows}
     return {
-        "id": _identifier(index),
-        "title": run.title,
-        "description": run.description,
+        **vars(run),
+        "id": f"run-{index + 1}",
         "solver": solver_name(run.solver),
         "plugin": run.solver,
         "samples": f"{len(run.time):,}",
         "duration": f"{run.time[-1] - run.time[0]:.1f} s",
         "unit": units.pop() if len(units) == 1 else "",
         "mean_rmse": float(np.mean([row.rmse for row in rows])),
-        "mean_nrmse": float(np.mean(shares)) if shares else math.nan,
-        "worst_joint": worst.joint,
-        "worst_nrmse": worst.nrmse,
-        "has_scene": bool(run.links),
-        "scene_notes": run.scene_notes,
-        "table": rows,
-        "other_table": run.other_table,
-        "other_table_title": run.other_table_title,
-        "assumptions": run.assumptions,
-        "cause": run.cause,
-        "notes": run.notes,
+        "mean_nrmse": float(np.mean([*shares.values()])) if shares else math.nan,
+        "worst_joint": worst,
+        "worst_nrmse": shares.get(worst, math.nan),
+        "table": _joint_table("Errors of each joint", rows),
+        "other_table": _joint_table(run.other_table_title, run.other_table),
         "joints": [row.joint for row in rows],
-        "figures": run.figures,
-        "others": list(run.others),
-        "has_band": bool(run.bands),
-        "has_left_out": bool(run.left_out),
         "thinned": f"{MAX_SAMPLES:,}" if len(run.time) > MAX_SAMPLES else "",
-    }
-
-
-def _comparison_view(comparison: ReportComparison, index: int) -> dict[str, Any]:
-    units = set(comparison.units)
-    names, row_units, rmse = [*comparison.joints], [*comparison.units], comparison.rmse
-    total = len(units) == 1 and len(names) > 1
-    if total:
-        names.append("mean")
-        row_units.append(units.pop())
-        rmse = np.column_stack([rmse, rmse.mean(axis=1)])
-    columns = [aligned(column) for column in rmse]
-    return {
-        "id": f"comparison-{index + 1}",
-        "title": comparison.title,
-        "description": comparison.description,
-        "labels": comparison.labels,
-        "rows": list(zip(names, row_units, zip(*columns, strict=True), strict=True)),
-        "total": total,
-        "figure": comparison.figure,
     }
 
 
@@ -263,7 +233,7 @@ def _data(run: ReportRun, index: int) -> dict[str, Any]:
     time = run.time - run.time[0]
     error = run.computed - run.measured
     return {
-        "id": _identifier(index),
+        "id": f"run-{index + 1}",
         "joints": [
             {
                 "name": row.joint,

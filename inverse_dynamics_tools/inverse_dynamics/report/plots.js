@@ -65,13 +65,7 @@ function spikeLimit(all_series) {
 }
 
 function range(all_series, {error = all_series.every((series) => series.style === "error"), band} = {}) {
-  let low = Infinity, high = -Infinity;
-  for (const series of all_series) {
-    for (const value of series.values) {
-      if (value < low) low = value;
-      if (value > high) high = value;
-    }
-  }
+  let [low, high] = extremes(all_series);
   if (error) {
     const limit = Math.max(spikeLimit(all_series), ...(band || []).map((part) => part.half));
     low = Math.max(low, -limit);
@@ -92,16 +86,41 @@ function makeCanvas(parent, name) {
   return canvas;
 }
 
-// Sizes a canvas to its element, in device pixels or finer; drawing then goes in CSS pixels.
-function prepare(canvas, least_ratio) {
+// Sizes a canvas to its element, in device pixels or finer.
+function sized(canvas, least_ratio) {
   const ratio = Math.max(window.devicePixelRatio || 1, least_ratio);
   const width = canvas.clientWidth, height = canvas.clientHeight;
   if (canvas.width !== Math.round(width * ratio)) canvas.width = Math.round(width * ratio);
   if (canvas.height !== Math.round(height * ratio)) canvas.height = Math.round(height * ratio);
+  return {ratio, width, height};
+}
+
+// The same; drawing then goes in CSS pixels.
+function prepare(canvas, least_ratio) {
+  const {ratio, width, height} = sized(canvas, least_ratio);
   const context = canvas.getContext("2d");
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, width, height);
   return {context, width, height};
+}
+
+function strokeLine(context, x0, y0, x1, y1) {
+  context.beginPath();
+  context.moveTo(x0, y0);
+  context.lineTo(x1, y1);
+  context.stroke();
+}
+
+// The least and the greatest of the values of some series.
+function extremes(all_series) {
+  let low = Infinity, high = -Infinity;
+  for (const {values} of all_series) {
+    for (const value of values) {
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+  }
+  return [low, high];
 }
 
 class Plot {
@@ -125,13 +144,9 @@ class Plot {
 
   // The plot in words, for those who don't see it.
   describe() {
-    const texts = this.shown().map(({name, values}) => {
-      let low = Infinity, high = -Infinity;
-      for (const value of values) {
-        low = Math.min(low, value);
-        high = Math.max(high, value);
-      }
-      return `${name} from ${low.toPrecision(3)} to ${high.toPrecision(3)} ${this.options.unit}`;
+    const texts = this.shown().map((series) => {
+      const [low, high] = extremes([series]);
+      return `${series.name} from ${low.toPrecision(3)} to ${high.toPrecision(3)} ${this.options.unit}`;
     });
     this.overlay.setAttribute("aria-label", `${this.options.label} over time: ${texts.join(", ")}`);
   }
@@ -167,7 +182,7 @@ class Plot {
     context.beginPath();
     context.rect(kMargin.left, kMargin.top, width - kMargin.left - kMargin.right, height - kMargin.top - kMargin.bottom);
     context.clip();
-    this.drawLeftOut(context, height, view);
+    for (const span of this.options.left_out || []) this.fillSpan(context, span, view, "measured", 0.28, 1);
     this.drawBand(context, view);
     for (const series of this.shown()) this.drawSeries(context, series, width, view);
     context.restore();
@@ -183,10 +198,7 @@ class Plot {
     context.textBaseline = "middle";
     for (const value of vertical.values) {
       const y = Math.round(this.y(value)) + 0.5;
-      context.beginPath();
-      context.moveTo(kMargin.left, y);
-      context.lineTo(width - kMargin.right, y);
-      context.stroke();
+      strokeLine(context, kMargin.left, y, width - kMargin.right, y);
       context.fillText(short(value, vertical.digits), kMargin.left - 5, y);
     }
     const horizontal = ticks(view.low, view.high, width / 80);
@@ -194,10 +206,7 @@ class Plot {
     context.textBaseline = "top";
     for (const value of horizontal.values) {
       const x = Math.round(this.x(value, view)) + 0.5;
-      context.beginPath();
-      context.moveTo(x, kMargin.top);
-      context.lineTo(x, height - kMargin.bottom);
-      context.stroke();
+      strokeLine(context, x, kMargin.top, x, height - kMargin.bottom);
       context.fillText(`${value.toFixed(horizontal.digits)} s`, x, height - kMargin.bottom + 4);
     }
     context.textAlign = "left";
@@ -209,30 +218,30 @@ class Plot {
     this.title_end = kMargin.left + context.measureText(title).width;
   }
 
-  // Samples that the second metrics leave out: at least a pixel wide.
-  drawLeftOut(context, height, view) {
-    context.fillStyle = themeColor("measured");
-    context.globalAlpha = 0.28;
-    for (const [from, to] of this.options.left_out || []) {
-      if (to < view.low || from > view.high) continue;
-      const x = this.x(from, view);
-      context.fillRect(x, kMargin.top, Math.max(1, this.x(to, view) - x), height - kMargin.top - kMargin.bottom);
-    }
+  // Between some times, from top to bottom; at least so many pixels wide.
+  fillSpan(context, [from, to], view, name, alpha, least = 0) {
+    const x = this.x(from, view), height = this.height - kMargin.top - kMargin.bottom;
+    context.fillStyle = themeColor(name);
+    context.globalAlpha = alpha;
+    context.fillRect(x, kMargin.top, Math.max(least, this.x(to, view) - x), height);
     context.globalAlpha = 1;
   }
 
   drawBand(context, view) {
+    const about = this.options.series.find((series) => series.name === "computed");
     context.fillStyle = themeColor("computed");
     context.globalAlpha = 0.18;
-    const about = this.options.series.find((series) => series.name === "computed");
     for (const {from, to, half} of this.options.band || []) {
       if (to < view.low || from > view.high) continue;
-      const first = this.options.error ? 0 : indexAt(about.time, Math.max(from, view.low));
-      const last = this.options.error ? 1 : Math.min(about.time.length - 1, indexAt(about.time, Math.min(to, view.high)) + 1);
-      const point = this.options.error ? (i) => [[from, to][i], 0] : (i) => [about.time[i], about.values[i]];
+      const edge = [[from, 0], [to, 0]];  // of errors; else about the computed curve
+      if (!this.options.error) {
+        const first = indexAt(about.time, Math.max(from, view.low));
+        const last = indexAt(about.time, Math.min(to, view.high)) + 1;
+        edge.splice(0, 2, ...Array.from(about.time.slice(first, last + 1), (t, i) => [t, about.values[first + i]]));
+      }
       context.beginPath();
-      for (let i = first; i <= last; ++i) context.lineTo(this.x(point(i)[0], view), this.y(point(i)[1] + half));
-      for (let i = last; i >= first; --i) context.lineTo(this.x(point(i)[0], view), this.y(point(i)[1] - half));
+      for (const [t, value] of edge) context.lineTo(this.x(t, view), this.y(value + half));
+      for (const [t, value] of edge.reverse()) context.lineTo(this.x(t, view), this.y(value - half));
       context.fill();
     }
     context.globalAlpha = 1;
@@ -274,21 +283,12 @@ class Plot {
     const {context, width, height} = prepare(this.overlay, 1);
     if (width === 0) return;
     this.measure();
-    if (selection) {
-      context.fillStyle = themeColor("error");
-      context.globalAlpha = 0.15;
-      const [low, high] = selection.map((t) => this.x(t, view));
-      context.fillRect(low, kMargin.top, high - low, height - kMargin.top - kMargin.bottom);
-      context.globalAlpha = 1;
-    }
+    if (selection) this.fillSpan(context, selection, view, "error", 0.15);
     const x = this.x(cursor, view);
     if (x >= kMargin.left && x <= width - kMargin.right) {
       context.strokeStyle = themeColor("cursor");
       context.lineWidth = 1.5;
-      context.beginPath();
-      context.moveTo(x, kMargin.top);
-      context.lineTo(x, height - kMargin.bottom);
-      context.stroke();
+      strokeLine(context, x, kMargin.top, x, height - kMargin.bottom);
     }
     this.drawReadout(context, width, cursor);
   }

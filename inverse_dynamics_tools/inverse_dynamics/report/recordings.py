@@ -7,7 +7,6 @@ write_recordings_page(Path("report.html"), "UR10", summaries, {"tuesday": "no su
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from datetime import datetime, timezone
 from statistics import median
 from typing import TYPE_CHECKING, Any
@@ -25,14 +24,6 @@ if TYPE_CHECKING:
 
 _MOST_SHADED = 3.0  # times the median
 _EARLIEST = 1e9  # s, September 2001: an earlier stamp is no date
-
-
-@dataclass(frozen=True)
-class _Cell:
-    """A number of the table, and how dark it is: 0 to 1."""
-
-    text: str
-    shade: float
 
 
 def write_recordings_page(
@@ -57,26 +48,31 @@ def render_recordings_page(
     links: Mapping[str, str],
 ) -> str:
     """The page as text."""
-    middle = [median(column) for column in _columns(summaries)]
+    columns = list(zip(*([e.rmse for e in s.errors] for s in summaries), strict=True))  # of joints
+    middle = [median(column) for column in columns]
+    texts = [aligned([*column, m]) for column, m in zip(columns, middle, strict=True)]
     means = [summary.mean_rmse for summary in summaries]
-    columns = [aligned([*c, m]) for c, m in zip(_columns(summaries), middle, strict=True)]
     mean_texts = aligned([*means, median(means)])
     cutoffs = aligned([summary.accelerations.cutoff or math.nan for summary in summaries])
     return template("recordings.html").render(
         title=title,
         facts=_facts(summaries, failures),
         failures=failures.items(),
-        joints=_joints(summaries, middle),
+        joints=[
+            {"name": error.joint, "unit": error.unit, "bars": _bars(column)}
+            for error, column in zip(summaries[0].errors, columns, strict=True)
+        ],
         rows=[
             {
-                **_row(summary, middle, [column[k] for column in columns]),
+                **_row(summary, middle),
+                "texts": [column[k] for column in texts],
                 "link": f"{quote(summary.name)}/{links.get(summary.name, '')}",
                 "mean": mean_texts[k],
                 "cutoff": cutoffs[k],
             }
             for k, summary in enumerate(summaries)
         ],
-        median=[column[-1] for column in columns],
+        median=[column[-1] for column in texts],
         median_mean=mean_texts[-1],
         dated=any(summary.start > _EARLIEST for summary in summaries),
         filtered=any(summary.accelerations.cutoff for summary in summaries),
@@ -84,11 +80,6 @@ def render_recordings_page(
         most_shaded=f"{_MOST_SHADED:g}",
         notes=_notes(summaries),
     )
-
-
-def _columns(summaries: Sequence[EvaluationSummary]) -> list[list[float]]:
-    """Root mean square errors of each joint, in the order of the recordings."""
-    return [list(c) for c in zip(*([e.rmse for e in s.errors] for s in summaries), strict=True)]
 
 
 def _facts(
@@ -111,31 +102,20 @@ def _facts(
 
 def _accelerations(summaries: Sequence[EvaluationSummary]) -> str:
     cutoffs = [s.accelerations.cutoff for s in summaries if s.accelerations.cutoff]
-    methods = sorted({summary.accelerations.method for summary in summaries})
-    text = ", ".join(methods)
+    text = ", ".join(sorted({summary.accelerations.method for summary in summaries}))
     if cutoffs:
         least, most = min(cutoffs), max(cutoffs)
         text += f", cut-off {least:.3g}" + (f" to {most:.3g} Hz" if most > least else " Hz")
     return text
 
 
-def _joints(
-    summaries: Sequence[EvaluationSummary], middle: Sequence[float]
-) -> list[dict[str, Any]]:
-    """What stands above each column: the joint, and its errors as bars."""
-    joints = []
-    for error, column, typical in zip(
-        summaries[0].errors, _columns(summaries), middle, strict=True
-    ):
-        highest = max([*column, typical]) or 1.0
-        bars = "".join(f"M{k + 0.5} 1V{1 - value / highest:.3f}" for k, value in enumerate(column))
-        joints.append({"name": error.joint, "unit": error.unit, "bars": bars})
-    return joints
+def _bars(column: Sequence[float]) -> str:
+    """The errors of a joint, as a path in the SVG above its column."""
+    highest = max(column) or 1.0
+    return "".join(f"M{k + 0.5} 1V{1 - value / highest:.3f}" for k, value in enumerate(column))
 
 
-def _row(
-    summary: EvaluationSummary, middle: Sequence[float], texts: Sequence[str]
-) -> dict[str, Any]:
+def _row(summary: EvaluationSummary, middle: Sequence[float]) -> dict[str, Any]:
     ratios = [e.rmse / m if m else 1.0 for e, m in zip(summary.errors, middle, strict=True)]
     start = datetime.fromtimestamp(max(summary.start, 0.0), timezone.utc)
     return {
@@ -144,7 +124,7 @@ def _row(
         "seconds": summary.start,
         "duration": _duration(summary.duration),
         "samples": f"{summary.samples:,}",
-        "cells": [_Cell(text, _shade(ratio)) for text, ratio in zip(texts, ratios, strict=True)],
+        "shades": [_shade(ratio) for ratio in ratios],
         "badness": f"{sum(ratios) / len(ratios):.6g}",
     }
 
@@ -162,11 +142,9 @@ def _notes(summaries: Sequence[EvaluationSummary]) -> list[tuple[str, str]]:
     for summary in summaries:
         for note in summary.notes:
             found.setdefault(note, []).append(summary.name)
+    everywhere = counted(len(summaries), "recording") if len(summaries) > 1 else ""
     return [
-        (
-            note,
-            counted(len(names), "recording") if len(names) == len(summaries) > 1 else listed(names),
-        )
+        (note, (everywhere if len(names) == len(summaries) else "") or listed(names))
         for note, names in found.items()
     ]
 

@@ -11,39 +11,9 @@
 // {middle, step, vertices, triangles} (figures/scene.py). Poses are 4 x 4, column by column. The z axis points up, lengths in m.
 "use strict";
 
-// ---- 4 x 4 matrices, column by column ---------------------------------------------------------
-
-function multiply(a, b) {
-  const c = new Float32Array(16);
-  for (let column = 0; column < 4; ++column) {
-    for (let row = 0; row < 4; ++row) {
-      let sum = 0;
-      for (let k = 0; k < 4; ++k) sum += a[4 * k + row] * b[4 * column + k];
-      c[4 * column + row] = sum;
-    }
-  }
-  return c;
-}
-
-function translation(x, y, z) {
-  return new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1]);
-}
-
-function rotation(axis, angle) {
-  // Rodrigues' formula.
-  const [x, y, z] = axis;
-  const c = Math.cos(angle), s = Math.sin(angle), v = 1 - c;
-  return new Float32Array([
-    c + x * x * v, y * x * v + z * s, z * x * v - y * s, 0,
-    x * y * v - z * s, c + y * y * v, z * y * v + x * s, 0,
-    x * z * v + y * s, y * z * v - x * s, c + z * z * v, 0,
-    0, 0, 0, 1]);
-}
-
 function perspective(fovy, aspect, near, far) {
   const f = 1 / Math.tan(fovy / 2), d = near - far;
-  return new Float32Array(
-      [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / d, -1, 0, 0, 2 * far * near / d, 0]);
+  return new DOMMatrix([f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / d, -1, 0, 0, 2 * far * near / d, 0]);
 }
 
 function cross(a, b) {
@@ -55,14 +25,19 @@ function normalised(a) {
   return a.map((value) => value / length);
 }
 
-function lookAt(eye, target) {
-  const back = normalised(eye.map((value, i) => value - target[i]));
+function dot(a, b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// Unit vectors of a camera that looks along -back, its y axis towards the sky.
+function cameraAxes(back) {
   const right = normalised(cross([0, 0, 1], back));
-  const up = cross(back, right);
-  const dot = (a) => -(a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2]);
-  return new Float32Array([
-    right[0], up[0], back[0], 0, right[1], up[1], back[1], 0, right[2], up[2], back[2], 0,
-    dot(right), dot(up), dot(back), 1]);
+  return {right, up: cross(back, right), back};
+}
+
+function lookAt(eye, target) {
+  const {right, up, back} = cameraAxes(normalised(eye.map((value, i) => value - target[i])));
+  return new DOMMatrix([...right, 0, ...up, 0, ...back, 0, ...eye, 1]).inverse();
 }
 
 // ---- unit shapes: positions and normals of triangles ------------------------------------------
@@ -134,7 +109,6 @@ function meshTriangles({middle, step, vertices, triangles}) {
     for (let k = 0; k < 3; ++k) around[corners[f + k]].push(f / 3);
   }
   const directions = normals.map(normalised);
-  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const result = [];
   corners.forEach((corner, i) => {
     const own = directions[Math.floor(i / 3)], sum = [0, 0, 0];
@@ -214,12 +188,11 @@ function upload(gl, vertices) {
 function linkPoses(links, q) {
   const poses = [];
   for (const link of links) {
-    let pose = link.parent < 0 ? link.pose : multiply(poses[link.parent], link.pose);
+    const pose = (poses[link.parent] || new DOMMatrix()).multiply(new DOMMatrix(link.pose));
     if (link.joint >= 0) {
       const value = q[link.joint];
-      pose = multiply(pose, link.kind === "prismatic"
-          ? translation(...link.axis.map((component) => component * value))
-          : rotation(link.axis, value));
+      if (link.kind === "prismatic") pose.translateSelf(...link.axis.map((component) => component * value));
+      else pose.rotateAxisAngleSelf(...link.axis, value * 180 / Math.PI);
     }
     poses.push(pose);
   }
@@ -241,14 +214,15 @@ function cornersOf(link) {
     else half = [0.6, 0.6, 0.6].map((share) => share * shape.size[0]);
     for (let k = 0; k < 8; ++k) {
       const corner = half.map((size, axis) => middle[axis] + (k >> axis & 1 ? size : -size));
-      corners.push(transformed(shape.pose, corner));
+      corners.push(transformed(new DOMMatrix(shape.pose), corner));
     }
   }
   return corners;
 }
 
-function transformed(m, [x, y, z]) {
-  return [0, 1, 2].map((row) => m[row] * x + m[4 + row] * y + m[8 + row] * z + m[12 + row]);
+function transformed(pose, corner) {
+  const {x, y, z} = pose.transformPoint(new DOMPoint(...corner));
+  return [x, y, z];
 }
 
 // What the robot fills in some positions: points, m.
@@ -257,12 +231,14 @@ function pointsOf(links, motion) {
   return motion.flatMap((q) => linkPoses(links, q).flatMap((pose, i) => corners[i].map((corner) => transformed(pose, corner))));
 }
 
+// From the target to a camera, of length 1.
+function backwards(azimuth, elevation) {
+  return [Math.cos(elevation) * Math.cos(azimuth), Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation)];
+}
+
 // Where a camera looking that way sees all the points as large as they fit: its target, and its distance from there.
 function fitted(points, azimuth, elevation, aspect) {
-  const back = [
-    Math.cos(elevation) * Math.cos(azimuth), Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation)];
-  const right = normalised(cross([0, 0, 1], back)), up = cross(back, right);
-  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const {right, up, back} = cameraAxes(backwards(azimuth, elevation));
   const slope = 0.94 * Math.tan(kFieldOfView / 2);
   // |x - centre| <= slope (distance - depth) for each point, and so for y: the tightest of these.
   const extent = (axis, tangent) => {
@@ -289,8 +265,8 @@ function floorLines() {
   const lines = [];
   for (let i = -6; i <= 6; ++i) {
     const width = i === 0 ? 0.012 : 0.007;
-    lines.push({pose: translation(0.2 * i, 0, 0), scale: [width, 2.4, 0.0005]});
-    lines.push({pose: translation(0, 0.2 * i, 0), scale: [2.4, width, 0.0005]});
+    lines.push({pose: new DOMMatrix().translate(0.2 * i, 0), scale: [width, 2.4, 0.0005]});
+    lines.push({pose: new DOMMatrix().translate(0, 0.2 * i), scale: [2.4, width, 0.0005]});
   }
   return lines;
 }
@@ -331,7 +307,7 @@ function createScene(canvas, links, motion) {
 
   function drawMesh(mesh, pose, scale, color) {
     bind(mesh);
-    gl.uniformMatrix4fv(locations.pose, false, pose);
+    gl.uniformMatrix4fv(locations.pose, false, pose.toFloat32Array());
     gl.uniform3fv(locations.scale, scale);
     gl.uniform3fv(locations.color, color);
     gl.drawArrays(gl.TRIANGLES, 0, mesh.count);
@@ -340,7 +316,8 @@ function createScene(canvas, links, motion) {
   function drawRobot(poses) {
     links.forEach((link, i) => {
       for (const shape of link.shapes) {
-        drawMesh(shape.mesh || meshes[shape.kind], multiply(poses[i], shape.pose), shapeScale(shape), shape.color);
+        const pose = poses[i].multiply(new DOMMatrix(shape.pose));
+        drawMesh(shape.mesh || meshes[shape.kind], pose, shapeScale(shape), shape.color);
       }
     });
   }
@@ -363,27 +340,19 @@ function createScene(canvas, links, motion) {
 
   function draw(q) {
     last_q = q;
-    const ratio = window.devicePixelRatio || 1;
-    const width = Math.round(canvas.clientWidth * ratio), height = Math.round(canvas.clientHeight * ratio);
+    const {width, height} = sized(canvas, 1);
     if (width === 0 || height === 0) return;
-    if (canvas.width !== width || canvas.height !== height) {
-      canvas.width = width;
-      canvas.height = height;
-    }
     const aspect = width / height;
     if (fit.aspect !== aspect) fit = {aspect, ...fitted(points, home.azimuth, home.elevation, aspect)};
     const target = fit.target, distance = view.zoom * fit.distance;
-    const horizontal = distance * Math.cos(view.elevation);
-    const eye = [
-      target[0] + horizontal * Math.cos(view.azimuth), target[1] + horizontal * Math.sin(view.azimuth),
-      target[2] + distance * Math.sin(view.elevation)];
-    gl.viewport(0, 0, width, height);
+    const eye = backwards(view.azimuth, view.elevation).map((share, i) => target[i] + distance * share);
+    gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(...rgb(themeColor("scene")), 1);
     gl.enable(gl.DEPTH_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
     gl.useProgram(program);
-    gl.uniformMatrix4fv(locations.view_projection, false,
-        multiply(perspective(kFieldOfView, aspect, 0.02 * distance, 20 * distance), lookAt(eye, target)));
+    const projection = perspective(kFieldOfView, aspect, 0.02 * distance, 20 * distance);
+    gl.uniformMatrix4fv(locations.view_projection, false, projection.multiply(lookAt(eye, target)).toFloat32Array());
     gl.uniform3fv(locations.eye, eye);
     gl.uniform1f(locations.shadow, 0);
     const floor = rgb(themeColor("floor"));

@@ -38,7 +38,6 @@ CONTENTS = Contents(
         MARK,
         "metrics.json",
         "series.npz",
-        "plotjuggler.xml",
         *(f"torques.{suffix}" for suffix in FORMATS),
         "bag/metadata.yaml",
         "bag/bag.db3*",
@@ -135,7 +134,6 @@ def _write(
     torques = (evaluation.computed, evaluation.measured)
     write_torques(target / "bag", storage, COMPUTED_TOPIC, evaluation.log, torques, progress)
     np.savez(target / "series.npz", **_series(evaluation))
-    write_text(target / "plotjuggler.xml", _layout(evaluation, target / "bag", storage))
     write_text(target / "metrics.json", json_text(metrics(evaluation)))
     write_text(target / MARK, json_text(_about(evaluation)))
     if figures:
@@ -209,16 +207,6 @@ def _check_marked(directory: Path) -> None:
     if not (directory / MARK).is_file():
         found = f"holds no {MARK}" if directory.is_dir() else "no such directory"
         raise OutputError(f"{directory}: {found}; expected one written by `ids evaluate`")
-
-
-def _layout(evaluation: Evaluation, bag: Path, storage: Storage) -> str:
-    """For PlotJuggler, beside the bag."""
-    from inverse_dynamics.figures.plotjuggler import torque_layout
-
-    opened = next(bag.glob("*.mcap")) if storage == "mcap" else bag / "metadata.yaml"
-    recording = f"{bag.name}/{opened.name}"
-    topics = (MEASURED_TOPIC, COMPUTED_TOPIC)
-    return torque_layout(evaluation.log, evaluation.units, topics, recording, storage)
 
 
 _RECORDED = ("header_stamps", "receive_stamps", "q", "qd", "effort")

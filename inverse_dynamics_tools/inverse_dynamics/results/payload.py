@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from inverse_dynamics.base.files import check_output_file, files_written_whole, write_text
 from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.figures.payload import save_payload_figure
+from inverse_dynamics.figures.contacts import save_payload_figure
 from inverse_dynamics.figures.plots import check_formats
 from inverse_dynamics.results.yaml_text import yaml_list, yaml_number
 

@@ -21,6 +21,7 @@ from inverse_dynamics.robot.descriptions import (
     fixed_above,
     link_of,
     numbers_of,
+    numbers_or,
     parse_description,
     root_link,
 )
@@ -126,7 +127,7 @@ def _path(
 
 
 def _placement(up: Sequence[Element], down: Sequence[Element]) -> tuple[Floats, Floats]:
-    if len(down) == 1 and not up:
+    if len(down) == 1 and not up:  # the numbers of the description, not rounded
         return _origin(down[0])
     to_start, to_joint = (_product(joints) for joints in (up, down))
     pose: Floats = np.array(np.linalg.solve(to_start, to_joint), dtype=np.float64)
@@ -136,18 +137,22 @@ def _placement(up: Sequence[Element], down: Sequence[Element]) -> tuple[Floats, 
 def _product(joints: Sequence[Element]) -> Floats:
     pose = np.eye(4)
     for joint in joints:
-        pose = pose @ _pose(*_origin(joint))
+        pose = pose @ origin_pose(joint)
     return pose
 
 
-def _origin(joint: Element) -> tuple[Floats, Floats]:
-    origin = joint.find("origin")
-    xyz, rpy = (_vector(origin, name, (0.0, 0.0, 0.0)) for name in ("xyz", "rpy"))
-    return xyz, rpy
+def origin_pose(element: Element) -> Floats:
+    """(4, 4) of the <origin> of a joint or a shape."""
+    return _pose(*_origin(element))
+
+
+def _origin(element: Element) -> tuple[Floats, Floats]:
+    origin, zero = element.find("origin"), (0.0, 0.0, 0.0)
+    return np.array(numbers_or(origin, "xyz", zero)), np.array(numbers_or(origin, "rpy", zero))
 
 
 def _axis(joint: Element) -> Floats:
-    axis = _vector(joint.find("axis"), "xyz", (1.0, 0.0, 0.0))
+    axis = np.array(numbers_or(joint.find("axis"), "xyz", (1.0, 0.0, 0.0)))
     return axis / np.linalg.norm(axis)
 
 
@@ -156,17 +161,10 @@ def _limits(joint: Element) -> dict[str, float]:
     limit = joint.find("limit")
     if limit is None:
         return {}
-    names = ["velocity", "effort"]
-    if joint.get("type") != "continuous":
-        names = ["lower", "upper", *names]
-    found = {n: numbers_of(limit, n, 1, RobotError)[0] for n in names if limit.get(n) is not None}
-    return {name: value for name, value in found.items() if name in ("lower", "upper") or value > 0}
-
-
-def _vector(element: Element | None, attribute: str, absent: Sequence[float]) -> Floats:
-    if element is None or element.get(attribute) is None:
-        return np.array(absent)
-    return np.array(numbers_of(element, attribute, 3, RobotError))
+    bounds = () if joint.get("type") == "continuous" else ("lower", "upper")
+    names = [name for name in (*bounds, "velocity", "effort") if limit.get(name) is not None]
+    found = {name: numbers_of(limit, name, 1)[0] for name in names}
+    return {name: value for name, value in found.items() if name in bounds or value > 0}
 
 
 def _pose(xyz: Floats, rpy: Floats) -> Floats:

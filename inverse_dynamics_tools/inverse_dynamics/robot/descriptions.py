@@ -88,7 +88,11 @@ def parse_description(
 
 
 def numbers_of(
-    element: Element, attribute: str, length: int, raised: type[UserError]
+    element: Element,
+    attribute: str,
+    length: int,
+    raised: type[UserError] = RobotError,
+    where: str = "robot description",
 ) -> list[float]:
     """Finite numbers of an attribute that is there."""
     text = element.get(attribute, "")
@@ -99,9 +103,22 @@ def numbers_of(
     if len(numbers) != length or not all(map(math.isfinite, numbers)):
         what = "a finite number" if length == 1 else f"{length} finite numbers"
         raise raised(
-            f"robot description: <{element.tag} {attribute}=...>: expected {what}, got {shown(text)}"
+            f"{where}: <{element.tag} {attribute}=...>: expected {what}, got {shown(text)}"
         )
     return numbers
+
+
+def numbers_or(
+    element: Element | None,
+    attribute: str,
+    absent: Sequence[float],
+    raised: type[UserError] = RobotError,
+    where: str = "robot description",
+) -> list[float]:
+    """Finite numbers of an attribute, as many as `absent`, which stands for one that isn't there."""
+    if element is None or element.get(attribute) is None:
+        return list(absent)
+    return numbers_of(element, attribute, len(absent), raised, where)
 
 
 def link_of(joint: Element, role: str) -> str:
@@ -137,27 +154,17 @@ def joint_units(
 
 
 def effort_limits(file: Path | None, description: str, joint_names: Sequence[str]) -> Floats:
-    """(n,) N m (prismatic N) of the URDF; infinite for a joint without one.
+    """(n,) N m (prismatic N) of the URDF; infinite for a joint without one, or with zero.
 
     file: where the description is from, for errors. Raises RobotError if it isn't XML, or if a
     limit isn't a number.
     """
-    limits = np.full(len(joint_names), np.inf)
-    for joint in _joints(file, description):
-        limit = joint.find("limit")
-        text = None if limit is None else limit.get("effort")
-        if joint.get("name") not in joint_names or text is None:
-            continue
-        try:
-            number = decimal(text)
-        except ValueError:
-            raise RobotError(
-                f"{file}: joint {joint.get('name')}: limit: expected a number as effort, got "
-                f"{shown(text)}"
-            ) from None
-        if number > 0:  # zero states none
-            limits[list(joint_names).index(joint.get("name", ""))] = number
-    return limits
+    found = {j.get("name"): j.find("limit") for j in _joints(file, description)}
+    limits = [
+        numbers_or(found.get(name), "effort", (np.inf,), where=f"{file}: joint {name}")[0]
+        for name in joint_names
+    ]
+    return np.where(np.array(limits) > 0, limits, np.inf)
 
 
 def carried_joints(description: str, chain: Sequence[str], root: str = "") -> dict[str, str]:
@@ -188,11 +195,18 @@ def tip_link(file: Path | None, chain: Sequence[str]) -> str:
 
     Raises RobotError.
     """
+    return (
+        "" if file is None else tip_of(parse_description(read_description(file), file), chain[-1])
+    )
+
+
+def tip_of(robot: Element, joint_name: str) -> str:
+    """The link farthest behind a joint, by fixed joints; "": there is no such joint."""
     fixed: dict[str, list[str]] = {}
     last = ""
-    for joint in _joints(file, "" if file is None else read_description(file)):
+    for joint in robot.iter("joint"):
         child = link_of(joint, "child")
-        if joint.get("name") == chain[-1]:
+        if joint.get("name") == joint_name:
             last = child
         elif joint.get("type") == "fixed":
             fixed.setdefault(link_of(joint, "parent"), []).append(child)

@@ -18,13 +18,12 @@ from typing import TYPE_CHECKING, Any
 from inverse_dynamics.errors import RobotError
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
     from pathlib import Path
 
 SCHEMA = 2
 _KEYS = ("schema", "model_sha256", "friction", "deviations", "held_out")
-_FIGURES = {"fv", "fc", "width"}  # of smooth_coulomb
-_OPTIONAL_FIGURES = {"shift", "fo", "fl", "fs", "vs"}
+_NUMBERS = {"fv", "fc", "width"}  # of smooth_coulomb
+_OPTIONAL_NUMBERS = {"shift", "fo", "fl", "fs", "vs"}
 
 
 def model_errors_file(model: Path) -> Path:
@@ -54,38 +53,34 @@ def _content(file: Path) -> dict[str, Any]:
         raise _error(file, "JSON of `ids identify`", str(error)) from error
     if not isinstance(content, dict) or set(content) != set(_KEYS) or content["schema"] != SCHEMA:
         raise _error(file, f"schema {SCHEMA} with the keys {', '.join(_KEYS)}", "others")
-    rows, laws, held_out = content["deviations"], content["friction"], content["held_out"]
-    if not _is_table(rows):
+    laws, held_out = content["friction"], content["held_out"]
+    if not _columns(content["deviations"]):
         raise _error(file, "deviations: rows of as many finite numbers each", "others")
-    if not (_is_list_of(dict, laws) and all(map(_is_law, laws))):
-        raise _error(file, "friction: figures of each joint", "others")
+    if not (isinstance(laws, list) and laws and all(map(_is_law, laws))):
+        raise _error(file, "friction: numbers of each joint", "others")
     if not (
         isinstance(held_out, dict)
         and held_out.keys() == {"gain", "period", "torques"}
-        and all(_is_row([held_out[name]]) and held_out[name] > 0 for name in ("gain", "period"))
-        and _is_table(held_out["torques"])
-        and len(held_out["torques"][0]) == len(laws)
+        and all(_columns([[held_out[key]]]) and held_out[key] > 0 for key in ("gain", "period"))
+        and _columns(held_out["torques"]) == len(laws)
     ):
         raise _error(file, "held_out: gain, period, and rows of torques of each joint", "others")
     return content
 
 
-def _is_table(rows: Any) -> bool:
-    return (
-        _is_list_of(list, rows) and len({len(row) for row in rows}) == 1 and all(map(_is_row, rows))
-    )
+def _columns(rows: Any) -> int:
+    """How many finite numbers each row of a table has; 0: it is none."""
+    if not (isinstance(rows, list) and rows and all(isinstance(row, list) for row in rows)):
+        return 0
+    lengths = {len(row) for row in rows}
+    finite = all(isinstance(x, float) and math.isfinite(x) for row in rows for x in row)
+    return lengths.pop() if len(lengths) == 1 and finite else 0
 
 
-def _is_list_of(kind: type, values: Any) -> bool:
-    return isinstance(values, list) and all(isinstance(value, kind) for value in values)
-
-
-def _is_row(row: Collection[object]) -> bool:
-    return len(row) > 0 and all(isinstance(x, float) and math.isfinite(x) for x in row)
-
-
-def _is_law(law: Mapping[str, object]) -> bool:
-    return _FIGURES <= law.keys() <= _FIGURES | _OPTIONAL_FIGURES and _is_row(law.values())
+def _is_law(law: Any) -> bool:
+    if not isinstance(law, dict) or not _NUMBERS <= law.keys() <= _NUMBERS | _OPTIONAL_NUMBERS:
+        return False
+    return bool(_columns([list(law.values())]))
 
 
 def _error(file: Path, expected: str, got: str) -> RobotError:
