@@ -39,11 +39,6 @@ def chain_joints(urdf: Path, root: str, tip: str) -> list[str]:
     return names[::-1]
 
 
-def test_the_four_robots_are_there() -> None:
-    names = [file.stem for file in FILES]
-    assert names == ["panda_real", "panda_simulated", "ur10_real", "ur10_simulated"]
-
-
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_keys_are_complete_and_known(file: Path) -> None:
     robot = read(file)
