@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
-import os
 import re
 from pathlib import Path
 
@@ -66,13 +65,6 @@ needs_benchmarks = pytest.mark.skipif(
     not benchmarks_installed(),
     reason="without the benchmarks (./scripts/build; Debian: libbenchmark-dev)",
 )
-
-
-def test_help_teaches_by_examples(ids):
-    code, out, _ = ids("bench", "--help")
-    assert code == 0
-    assert "  ids bench --only ur10/torques " in out
-    assert "  bench " in ids("--help")[1]
 
 
 @needs_benchmarks
@@ -176,18 +168,6 @@ def test_options_that_make_no_sense_are_told_before_anything_is_measured(
 
 
 @pytest.mark.parametrize(
-    ("arguments", "calls"),
-    [((), 0), (("--latency",), 1_000_000), (("--latency", "--calls", "9"), 9)],
-)
-def test_single_calls_are_timed_if_told(ids, speed_json, monkeypatch, arguments, calls):
-    told = {}
-    result = read_measurement(speed_json)
-    monkeypatch.setattr("inverse_dynamics_benchmarks.measure", lambda **k: told.update(k) or result)
-    assert ids("bench", *arguments)[0] == 0
-    assert told["latency_calls"] == calls
-
-
-@pytest.mark.parametrize(
     ("text", "expected"),
     [
         ("{", "expected JSON of `ids bench --json`: Expecting"),
@@ -264,9 +244,3 @@ def test_a_figure_is_the_same_for_the_same_figures(ids, speed_json, tmp_path):
     assert svg == (tmp_path / "b.svg").read_bytes()
     assert b"this library" in svg
     assert b"900" in svg
-
-
-def test_the_measurement_names_neither_machine_nor_date():
-    text = (DOCS / "speed.json").read_text(encoding="utf-8")
-    assert not {"date", "host_name", "executable"} & set(json.loads(text)["context"])
-    assert os.path.expanduser("~") + "/" not in text

@@ -76,25 +76,5 @@ TEST(Evaluation, TheTableHasTheErrorsOfTheValidSamplesToo) {
   EXPECT_EQ(table.substr(table.size() - caption.size()), caption);
 }
 
-TEST(EffortOptions, AskForDriveGainsOfCurrents) {
-  const auto error = [](const std::string& effort, const std::vector<double>& gains) {
-    try {
-      inverse_dynamics_evaluation::statedEffort(effortsOfTwoJoints(effort, gains));
-    } catch (const std::exception& refused) {
-      EXPECT_EQ(failureOf(refused).code, kExitUserError);
-      return std::string(refused.what());
-    }
-    return std::string("no error");
-  };
-  EXPECT_EQ(error("current", {2, 3}), "no error");
-  EXPECT_EQ(error("torque", {}), "no error");
-  EXPECT_NE(error("current", {}).find("got none from parameter 'drive_gains' nor from package/Two"),
-            std::string::npos);
-  EXPECT_NE(error("current", {2}).find("parameter 'drive_gains': expected 2 numbers"),
-            std::string::npos);
-  EXPECT_NE(error("current", {2, -3}).find("got 2 -3"), std::string::npos);
-  EXPECT_NE(error("volts", {}).find("got 'volts'"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace inverse_dynamics_ros

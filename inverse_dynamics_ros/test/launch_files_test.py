@@ -172,34 +172,6 @@ class TestLaunchFiles(unittest.TestCase):
                 self.assertEqual(topics["/tau"][0][0].name, JOINTS[arm])
                 self.assertEqual(set(topics), {"/tau", "/tau_gt"})
 
-    def test_explain_their_arguments(self):
-        arguments = {
-            "evaluate_solver": [
-                "robot",
-                "plugin_name",
-                "robot_description",
-                "root",
-                "tip",
-                "gravity",
-            ],
-            "live": [
-                "robot",
-                "plugin_name",
-                "cutoff",
-                "external_torques",
-                "contacts_file",
-                "container",
-            ],
-            **{name: ["input_bag", "output_bag", "topic"] for name in ROBOTS},
-        }
-        for name, expected in arguments.items():
-            with self.subTest(name):
-                run = launch(f"{name}.launch.py", "--show-args")
-                self.assertEqual(run.returncode, 0, run.stdout)
-                self.assertNotIn("no description given", run.stdout)
-                for argument in expected:
-                    self.assertIn(f"'{argument}':", run.stdout)
-
     def test_run_the_live_node(self):
         command = ["ros2", "launch", "inverse_dynamics_ros", "live.launch.py"]
         command += [

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -13,8 +14,35 @@ import pytest
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
-from inverse_dynamics import Identification, cli, identify
+from inverse_dynamics import Identification, Solver, cli, identify, write_joint_logs
+from inverse_dynamics.base.ament import package_share
 from inverse_dynamics.data.joint_log import JointLog
+
+UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
+RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
+KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
+PINOCCHIO = "pinocchio_inverse_dynamics_solver/InverseDynamicsSolverPinocchio"
+FRANKA = "franka_inria_inverse_dynamics_solver/InverseDynamicsSolverFrankaInria"
+URDF = package_share("inverse_dynamics_robots") / "urdf" / "ur10.urdf"
+
+JOINTS = (
+    "shoulder_pan_joint",
+    "shoulder_lift_joint",
+    "elbow_joint",
+    "wrist_1_joint",
+    "wrist_2_joint",
+    "wrist_3_joint",
+)
+
+# 2 kg whose center of mass is 0.5 m below a horizontal axis.
+PENDULUM = """
+<robot name="pendulum">
+  <link name="base"/>
+  <link name="arm"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
+    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
+  <joint name="swing" type="continuous"><parent link="base"/><child link="arm"/>
+    <axis xyz="0 1 0"/></joint>
+</robot>"""
 
 STORE = get_typestore(Stores.ROS2_HUMBLE)
 JOINT_STATE = "sensor_msgs/msg/JointState"
@@ -85,6 +113,23 @@ def damaged(content: bytes, count: int, seed: int = 0) -> Iterator[bytes]:
         yield bytes(changed)
 
 
+def motion(samples: int = 1500, rate: float = 250.0) -> tuple[np.ndarray, ...]:
+    """Smooth q, qd, qdd (N, 6) and stamps [ns] of a UR10."""
+    stamps = np.round(1e9 / rate * np.arange(1, samples + 1)).astype(np.int64)
+    speed = 2 * np.pi * np.array([0.20, 0.15, 0.25, 0.30, 0.35, 0.40])
+    phase = stamps[:, None] * 1e-9 * speed + np.arange(6)
+    return np.sin(phase), speed * np.cos(phase), -(speed**2) * np.sin(phase), stamps
+
+
+def recording(path: Path, solver: Solver, **changes: object) -> JointLog:
+    """Record the motion with the efforts that a solver computes for it."""
+    q, qd, qdd, stamps = motion()
+    log = JointLog(JOINTS, stamps, stamps, q, qd, solver.torques(q, qd, qdd))
+    log = replace(log, **changes)
+    write_joint_logs(path, {log.topic: log})
+    return log
+
+
 @pytest.fixture(scope="session")
 def recordings() -> Path:
     """Directory with recordings of real robots; skips where there is none."""
@@ -100,6 +145,20 @@ def identified(recordings: Path) -> Callable[[str], Identification]:
     return cache(
         lambda name: identify([recordings / f"{name}_exciting_trajectory"], f"{name}_real")
     )
+
+
+@pytest.fixture(scope="session")
+def solver() -> Solver:
+    """Of the description of a UR10."""
+    return Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0")
+
+
+@pytest.fixture(scope="session")
+def bag(tmp_path_factory: pytest.TempPathFactory, solver: Solver) -> Path:
+    """A recording of a UR10 that is what its description says."""
+    path = tmp_path_factory.mktemp("recording") / "motion"
+    recording(path, solver)
+    return path
 
 
 @pytest.fixture(autouse=True)

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Protocol
 import mujoco
 import numpy as np
 import yaml
+from conftest import RIGID_BODY
 from simulation_arms import CHAINS, robots_package, simulated, urdf_of
 
 from inverse_dynamics import Solver
@@ -39,7 +40,6 @@ IDENTIFIED = {
     "ur10": "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10",
     "panda": "franka_inria_inverse_dynamics_solver/InverseDynamicsSolverFrankaInria",
 }
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 HOME = {
     "ur10": np.array([0, -1.6, 1.4, -1.2, -1.4, 0.3]),
     "panda": np.array([0, -0.5, 0.2, -2.0, 0.1, 1.8, 0.6]),
@@ -180,19 +180,6 @@ def write_model(name: str, file: Path) -> Path:
     }
     file.write_text(yaml.safe_dump(model, sort_keys=False))
     return file
-
-
-def bodies_of(name: str) -> list[list[float]]:
-    """Of each joint and the tip: R (row after row), p, axis, mass, center, inertia about it (xx xy xz yy yz zz)."""
-    rows = []
-    links = [*inertial_parameters(simulated(name)).reshape(-1, 10), np.zeros(10)]
-    for (R, p, axis), (m, *rest) in zip(_placements(name), links, strict=True):
-        mc, (xx, xy, xz, yy, yz, zz) = np.array(rest[:3]), rest[3:]
-        c = mc / m if m > 0 else mc
-        about_origin = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        about_center = about_origin - m * (c @ c * np.eye(3) - np.outer(c, c))
-        rows.append([*R.flat, *p, *axis, m, *c, *about_center[np.triu_indices(3)]])
-    return rows
 
 
 def _placements(name: str) -> list[tuple[Floats, Floats, Floats]]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from test_evaluation import JOINTS, URDF, motion
+from conftest import JOINTS, URDF, motion
 
 from inverse_dynamics import FastModel, load_robot
 from inverse_dynamics.identification.result import (

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from conftest import UR10
 
 from inverse_dynamics import Solver, UserError, _core, evaluate
 from inverse_dynamics.base.arguments import checked, refused
@@ -14,7 +15,6 @@ from inverse_dynamics.contact import ContactDetector, EstimatorOptions
 from inverse_dynamics.control import Gains
 from inverse_dynamics.errors import ArgumentError, InvalidParameterError
 
-UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
 Q = np.zeros(6)
 
 

@@ -7,8 +7,8 @@ import json
 
 import numpy as np
 import pytest
+from conftest import JOINTS, motion
 from identified_arms import engine, identification
-from test_evaluation import JOINTS, motion
 
 from inverse_dynamics import Solver, write_joint_logs
 from inverse_dynamics._core import ArmUncertainty

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import STORE, joint_log, joint_state, write_messages
-from rosbags.rosbag2 import Reader, StoragePlugin
+from rosbags.rosbag2 import Reader
 
 from inverse_dynamics.data.bags import (
     TopicSummary,
@@ -81,33 +80,6 @@ def test_two_topics_are_interleaved_and_told_apart(tmp_path, storage):
     assert topics == ["/torques", "/torques_gt"] * 10
 
 
-@STORAGES
-def test_a_recording_by_rosbags_alone_is_read(tmp_path, storage):
-    messages = [
-        joint_state(["b", "a"], [k, -k], [2 * k, 0], [3 * k, 1], (k + 1) * 10**7) for k in range(5)
-    ]
-    plugin = StoragePlugin.MCAP if storage == "mcap" else StoragePlugin.SQLITE3
-    write_messages(tmp_path / "bag", messages, storage=plugin)
-    log = read_joint_log(tmp_path / "bag", ["a", "b"])
-    np.testing.assert_array_equal(log.q[:, 0], -np.arange(5))
-    np.testing.assert_array_equal(log.q[:, 1], np.arange(5))
-    np.testing.assert_array_equal(log.effort[:, 1], 3 * np.arange(5))
-    np.testing.assert_allclose(log.time, 0.01 * np.arange(5), atol=1e-15)
-    np.testing.assert_array_equal(log.receive_stamps, 10**6 * np.arange(1, 6))
-
-
-def test_a_recording_without_message_definitions_is_read(bag):
-    import sqlite3
-
-    with sqlite3.connect(storage_file(bag)) as database:
-        database.execute("DELETE FROM message_definitions")
-    assert len(read_joint_log(bag)) == 50
-
-
-def test_no_topic_given_means_the_only_one_with_joint_states(bag):
-    assert read_joint_log(bag).topic == TOPIC
-
-
 def test_progress_counts_messages_to_the_end(bag):
     calls = []
     read_joint_log(bag, progress=lambda *call: calls.append(call))
@@ -115,15 +87,6 @@ def test_progress_counts_messages_to_the_end(bag):
 
 
 # Which joints, which messages.
-
-
-def test_missing_joint_is_named_and_found_ones_are_listed(bag):
-    fails(
-        bag,
-        f"{TOPIC}, message 1: expected the joints joint_1, elbow, got joint_1, joint_2, joint_3",
-        "missing: elbow; give the recording's names with --joints",
-        joints=["joint_1", "elbow"],
-    )
 
 
 def test_joints_that_arrive_in_several_messages_are_not_called_misnamed(tmp_path):
@@ -195,20 +158,6 @@ def test_missing_storage_file_is_an_error(bag):
     fails(bag, "can't be read as a rosbag2 recording", "missing")
 
 
-def test_topic_without_messages_is_an_error(tmp_path):
-    write_joint_logs(tmp_path / "bag", {TOPIC: joint_log(0)})
-    fails(tmp_path / "bag", f"{TOPIC}: expected joint states, got no message")
-
-
-def test_missing_topic_lists_what_there_is(bag):
-    fails(
-        bag,
-        "has no topic /robot/joint_states; name one it has with --topic",
-        f"  {TOPIC}  sensor_msgs/msg/JointState  50 messages",
-        topic="/robot/joint_states",
-    )
-
-
 def test_topic_of_another_type_is_an_error(tmp_path):
     kind = "std_msgs/msg/String"
     text = STORE.types[kind]("hello")
@@ -220,11 +169,6 @@ def test_topic_of_another_type_is_an_error(tmp_path):
         topic="/chatter",
     )
     fails(tmp_path / "bag", "expected one topic of type sensor_msgs/msg/JointState, got 0")
-
-
-def test_several_topics_of_joint_states_must_be_told_apart(tmp_path):
-    write_joint_logs(tmp_path / "bag", {"/left": joint_log(), "/right": joint_log()})
-    fails(tmp_path / "bag", "got 2; name it with --topic", "/left", "/right")
 
 
 # What can't be written.
@@ -240,8 +184,3 @@ def test_unknown_storage_is_an_error(tmp_path):
     with pytest.raises(BagError, match="expected one of sqlite3, mcap, got 'csv'"):
         write_joint_logs(tmp_path / "bag", {TOPIC: joint_log()}, storage="csv")
     assert not (tmp_path / "bag").exists()
-
-
-def test_storage_file_alone_is_a_recording(bag, tmp_path):
-    copy = shutil.copy(storage_file(bag), tmp_path / "alone.db3")
-    assert len(read_joint_log(copy)) == 50

@@ -11,6 +11,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from conftest import RIGID_BODY
 from simulation_arms import CHAINS, robots_package, urdf_of
 
 from inverse_dynamics import (
@@ -33,7 +34,6 @@ from inverse_dynamics.identification.payload import PayloadError, _require_plaus
 from inverse_dynamics.robot.choices import EFFORT_MEANINGS
 from inverse_dynamics.robot.robots import robot_of_description
 
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 NOISE = 0.005  # of each joint's range
 GAINS = np.array([13.5841, 14.2959, 11.3716, 11.2408, 11.7681, 11.7682, 11.0])
 GEARS = np.array([32.0, 32.0, 45.0, -48.0, 45.0, 32.0, 50.0])

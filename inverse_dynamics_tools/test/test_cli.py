@@ -7,8 +7,7 @@ import subprocess
 from dataclasses import replace
 
 import pytest
-from conftest import fails, joint_log
-from test_evaluation import RIGID_BODY, UR10, URDF, recording
+from conftest import RIGID_BODY, UR10, URDF, fails, joint_log, recording
 
 from inverse_dynamics import Solver, cli, evaluate, read_evaluation
 from inverse_dynamics.data.bags import write_joint_logs
@@ -18,13 +17,6 @@ from inverse_dynamics.verbs.tables import rounded
 
 RAW = ("--accelerations", "backward-difference")
 NO_FIGURE = ("--figures", "none")
-
-
-@pytest.fixture(scope="module")
-def bag(tmp_path_factory):
-    path = tmp_path_factory.mktemp("recording") / "motion"
-    recording(path, Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0"))
-    return path
 
 
 def test_evaluate_prints_errors_and_writes_results(ids, bag, tmp_path):

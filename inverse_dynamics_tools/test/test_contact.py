@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import fails
+from conftest import KDL, fails
 from simulation_arms import pendulum
 
 from inverse_dynamics import Solver, load_robot
@@ -30,7 +30,6 @@ from inverse_dynamics.identification.identify import identify
 from inverse_dynamics.results.identifications import write_identification
 from inverse_dynamics.robot.robots import robot_of_description
 
-KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
 PERIOD = 1e-3
 PUSH = (25.0, 26.0, 5.0)  # from, to [s], N m
 

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from conftest import RIGID_BODY, UR10
 from simulation_arms import CHAINS, urdf_of
 
 from inverse_dynamics import Solver
@@ -24,8 +25,6 @@ from inverse_dynamics.control import (
 )
 from inverse_dynamics.errors import InvalidParameterError
 
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
-UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
 PERIOD = 1e-3
 N = 6
 

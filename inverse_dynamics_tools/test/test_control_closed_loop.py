@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from conftest import RIGID_BODY
 from simulation_arms import CHAINS, pendulum, simulated, urdf_of
 
 from inverse_dynamics import Solver
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.base.arrays import Floats
 
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 RATE = 1000
 PERIOD = 1 / RATE
 

@@ -7,12 +7,11 @@ import pickle
 
 import numpy as np
 import pytest
+from conftest import RIGID_BODY
 from simulation_arms import pendulum
 
 from inverse_dynamics import FastModel, Solver
 from inverse_dynamics.errors import ArgumentError, RobotError
-
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_evaluation import RIGID_BODY, UR10, URDF, motion, recording
+from conftest import RIGID_BODY, UR10, URDF, motion, recording
 
 from inverse_dynamics import Solver, evaluate, load_robot
 from inverse_dynamics.errors import RobotError
@@ -14,11 +14,6 @@ from inverse_dynamics.evaluation import evaluation
 from inverse_dynamics.robot.choices import EFFORT_MEANINGS
 
 GAINS = (13.0, 14.0, 11.0, 10.0, 9.0, 8.0)
-
-
-@pytest.fixture(scope="module")
-def solver():
-    return Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0")
 
 
 @pytest.fixture(scope="module")

@@ -5,11 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import joint_log
+from conftest import JOINTS, RIGID_BODY, UR10, URDF, joint_log, motion, recording
 
 from inverse_dynamics import Solver, evaluate, load_robot, read_recording
 from inverse_dynamics.base import extras
-from inverse_dynamics.base.ament import package_share
 from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import (
@@ -21,48 +20,6 @@ from inverse_dynamics.errors import (
 from inverse_dynamics.evaluation import evaluation
 from inverse_dynamics.results.evaluations import evaluate_into, write_evaluation
 from inverse_dynamics.robot.descriptions import read_description
-
-UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
-URDF = package_share("inverse_dynamics_robots") / "urdf" / "ur10.urdf"
-
-JOINTS = (
-    "shoulder_pan_joint",
-    "shoulder_lift_joint",
-    "elbow_joint",
-    "wrist_1_joint",
-    "wrist_2_joint",
-    "wrist_3_joint",
-)
-
-
-def motion(samples: int = 1500, rate: float = 250.0) -> tuple[np.ndarray, ...]:
-    """Smooth q, qd, qdd (N, 6) and stamps [ns] of a UR10."""
-    stamps = np.round(1e9 / rate * np.arange(1, samples + 1)).astype(np.int64)
-    speed = 2 * np.pi * np.array([0.20, 0.15, 0.25, 0.30, 0.35, 0.40])
-    phase = stamps[:, None] * 1e-9 * speed + np.arange(6)
-    return np.sin(phase), speed * np.cos(phase), -(speed**2) * np.sin(phase), stamps
-
-
-def recording(path: Path, solver: Solver, **changes: object) -> JointLog:
-    """Record the motion with the efforts that a solver computes for it."""
-    q, qd, qdd, stamps = motion()
-    log = JointLog(JOINTS, stamps, stamps, q, qd, solver.torques(q, qd, qdd))
-    log = replace(log, **changes)
-    write_joint_logs(path, {log.topic: log})
-    return log
-
-
-@pytest.fixture(scope="module")
-def solver():
-    return Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0")
-
-
-@pytest.fixture(scope="module")
-def bag(tmp_path_factory, solver):
-    path = tmp_path_factory.mktemp("recording") / "bag"
-    recording(path, solver)
-    return path
 
 
 @pytest.fixture(scope="module")
@@ -167,13 +124,6 @@ def test_a_description_that_a_solver_has_no_use_for_is_said_to_be_drawn_only(bag
     assert said in " ".join(evaluate(bag, robot, plugin=UR10, urdf=URDF).notes)
     assert said not in " ".join(evaluate(bag, robot, plugin=UR10).notes)
     assert evaluate(bag, robot, urdf=URDF).notes == ()
-
-
-def test_a_given_cutoff_is_used_and_said(bag, robot):
-    result = evaluate(bag, robot, accelerations="low-pass", cutoff=10.0)
-    assert (result.accelerations.cutoff, result.accelerations.chosen) == (10.0, False)
-    assert "10 Hz (given)" in result.accelerations.summary
-    assert result.robot.cutoff == 10.0
 
 
 def test_a_configurations_cutoff_goes_with_its_own_method_only(bag, robot):

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from test_evaluation import JOINTS, UR10, motion
+from conftest import JOINTS, UR10, motion
 from test_results import make_evaluation
 
 from inverse_dynamics import Solver, cli, evaluate, write_evaluation

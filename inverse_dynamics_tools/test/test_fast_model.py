@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from conftest import RIGID_BODY
 
 from inverse_dynamics import FastModel, Solver, UserError, load_robot
 
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 N = 40
 
 

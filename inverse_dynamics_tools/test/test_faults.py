@@ -12,23 +12,15 @@ import time
 from dataclasses import replace
 
 import pytest
-from conftest import fails
-from test_evaluation import RIGID_BODY, URDF, recording
+from conftest import URDF, fails
 from test_results import make_evaluation
 
-from inverse_dynamics import Solver, read_topics, write_evaluation
+from inverse_dynamics import read_topics, write_evaluation
 from inverse_dynamics.results.evaluations import CONTENTS
 from inverse_dynamics.verbs import robots
 
 RAW = ("--accelerations", "backward-difference")
 IDS = [sys.executable, "-c", "import sys; from inverse_dynamics.cli import main; sys.exit(main())"]
-
-
-@pytest.fixture(scope="module")
-def bag(tmp_path_factory):
-    path = tmp_path_factory.mktemp("recording") / "motion"
-    recording(path, Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0"))
-    return path
 
 
 def evaluation_of_no_file():

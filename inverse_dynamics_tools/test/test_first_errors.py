@@ -11,15 +11,10 @@ import subprocess
 import sys
 
 import pytest
+from conftest import FRANKA, KDL, PINOCCHIO, RIGID_BODY, UR10
 
 from inverse_dynamics import available_solvers
 from inverse_dynamics.base.ament import package_share
-
-KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
-PINOCCHIO = "pinocchio_inverse_dynamics_solver/InverseDynamicsSolverPinocchio"
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
-UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
-PANDA = "franka_inria_inverse_dynamics_solver/InverseDynamicsSolverFrankaInria"
 
 ROBOTS = package_share("inverse_dynamics_robots")
 URDF = (ROBOTS / "urdf" / "ur10.urdf").read_text()
@@ -67,7 +62,7 @@ def cases():
         own = OF_POOLS if plugin != RIGID_BODY else OF_MODELS
         for name, (changed, text) in {**OF_ALL, **OF_DESCRIPTIONS, **own}.items():
             yield plugin, name, {"urdf": URDF, **changed}, text
-    for plugin in (UR10, PANDA):
+    for plugin in (UR10, FRANKA):
         for name, (changed, text) in OF_ALL.items():
             yield plugin, name, changed, text
         yield plugin, "a model", {"model": "ur10_identified"}, "parameter 'model'"

@@ -12,10 +12,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import joint_state, write_messages
-from rosbags.rosbag2 import StoragePlugin
+from conftest import RIGID_BODY, joint_state, write_messages
 from simulation_arms import pendulum, write_robot
-from test_evaluation import RIGID_BODY
 
 from inverse_dynamics import Robot, evaluate, load_robot, write_joint_logs
 from inverse_dynamics.data.bags import read_joint_log
@@ -41,12 +39,6 @@ def states(**changes: Callable[[int], object]) -> list[object]:
 @pytest.fixture(scope="module")
 def good(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write_messages(tmp_path_factory.mktemp("good") / "bag", states())
-
-
-@pytest.fixture(scope="module")
-def good_mcap(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("good") / "bag"
-    return write_messages(path, states(), storage=StoragePlugin.MCAP)
 
 
 @pytest.fixture(scope="module")
@@ -165,39 +157,16 @@ SQL = {
         "UPDATE messages SET timestamp = -9223372036854775808 WHERE id = 7",
         "message 1: time of reception: expected 0 to 4.6e+18 ns, got -9223372036854775808",
     ),
-    "data of words": (
-        "UPDATE messages SET data = 'hello' WHERE id = 7",
-        "message 7: can't be decoded",
-    ),
     "data of numbers": (
         "UPDATE messages SET data = 7 WHERE id = 7",
-        "message 7: can't be decoded",
-    ),
-    "empty data": ("UPDATE messages SET data = x'' WHERE id = 7", "message 7: can't be decoded"),
-    "noise": (
-        "UPDATE messages SET data = randomblob(200) WHERE id = 7",
-        "message 7: can't be decoded",
-    ),
-    "cut data": (
-        "UPDATE messages SET data = substr(data, 1, 60) WHERE id = 7",
         "message 7: can't be decoded",
     ),
     "data of a gigabyte": (
         "UPDATE messages SET data = CAST(substr(data, 1, 16) || x'ffffff3f' || substr(data, 21) AS BLOB) WHERE id = 7",
         "message 7: can't be decoded",
     ),
-    "more names than bytes": (
-        "UPDATE messages SET data = CAST(substr(data, 1, 20) || x'ffffffff' || substr(data, 25) AS BLOB) WHERE id = 7",
-        "message 7: can't be decoded",
-    ),
     "another serialization": ("UPDATE topics SET serialization_format = 'xml'", ""),
     "another type": ("UPDATE topics SET type = 'std_msgs/msg/String'", ""),
-    "an endless view": (
-        "ALTER TABLE messages RENAME TO m; CREATE VIEW messages AS WITH RECURSIVE r(id, topic_id, "
-        "timestamp, data) AS (SELECT 1, 1, 1, x'00' UNION ALL SELECT id, 1, 1, data FROM r) "
-        "SELECT * FROM r",
-        "expected the table messages, got a view",
-    ),
 }
 
 
@@ -215,16 +184,6 @@ def test_edited_database_is_refused(tmp_path, good, robot, name, whole):
         "metadata" not in expected and ", as its" not in expected
     ):  # the file alone says how many it has
         refused(bag / "bag.db3", robot, expected)
-
-
-@pytest.mark.parametrize("share", [0.001, 0.1, 0.5, 0.9, 0.999])
-@pytest.mark.parametrize("storage", ["good", "good_mcap"])
-def test_a_file_that_is_cut_off_is_refused(tmp_path, robot, share, storage, request):
-    bag = Path(shutil.copytree(request.getfixturevalue(storage), tmp_path / "bag"))
-    (file,) = (f for f in bag.iterdir() if f.suffix in {".db3", ".mcap"})
-    file.write_bytes(file.read_bytes()[: int(share * file.stat().st_size)])
-    refused(bag, robot)
-    refused(file, robot)
 
 
 def test_a_topic_without_messages_does_not_count(tmp_path, good, robot):

@@ -10,10 +10,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import JOINTS, URDF, motion
 from identified_arms import arm, engine, identification, simulated_torques
-from test_evaluation import JOINTS, URDF, motion
 
-from inverse_dynamics import Solver, evaluate, write_joint_logs
+from inverse_dynamics import FastModel, Solver, evaluate, write_joint_logs
 from inverse_dynamics.base.plain import plain
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import OutputError, RobotError, SolverError
@@ -26,7 +26,7 @@ from inverse_dynamics.results.identifications import write_identification
 from inverse_dynamics.results.model_files import model_file_text, predicted_torques
 from inverse_dynamics.robot.chain_geometry import chain_geometry, roll_pitch_yaw
 from inverse_dynamics.robot.link_parameters import turned
-from inverse_dynamics.robot.robots import RIGID_BODY
+from inverse_dynamics.robot.robots import RIGID_BODY, Robot
 
 
 @pytest.fixture(scope="module")
@@ -97,6 +97,13 @@ def test_roll_pitch_yaw_gives_the_rotation_back():
         np.testing.assert_allclose(again, rotation, atol=2e-15)
 
 
+def inertial(link: str, mass: float) -> str:
+    return (
+        f'<link name="{link}"><inertial><origin xyz="0.1 0.2 -0.1" rpy="0.1 0.2 0.3"/><mass value="{mass}"/>'
+        '<inertia ixx="0.2" ixy="0.01" ixz="0.02" iyy="0.3" iyz="-0.01" izz="0.25"/></inertial></link>'
+    )
+
+
 OBLIQUE = """<robot name="oblique">
 <link name="world"/><link name="base"/><link name="a"/><link name="mid"/><link name="b"/><link name="tool"/>
 <joint name="stand" type="fixed"><parent link="world"/><child link="base"/>
@@ -108,26 +115,15 @@ OBLIQUE = """<robot name="oblique">
 <limit lower="-1" upper="1" velocity="2" effort="0"/></joint>
 <joint name="flange" type="fixed"><parent link="b"/><child link="tool"/><origin xyz="0 0 0.2" rpy="0 1 0"/></joint>
 </robot>"""
-
-
-def inertial(link: str, mass: float) -> str:
-    return (
-        f'<link name="{link}"><inertial><origin xyz="0.1 0.2 -0.1" rpy="0.1 0.2 0.3"/><mass value="{mass}"/>'
-        '<inertia ixx="0.2" ixy="0.01" ixz="0.02" iyy="0.3" iyz="-0.01" izz="0.25"/></inertial></link>'
-    )
+for _link, _mass in (("a", 2.0), ("mid", 0.5), ("b", 1.5), ("tool", 0.3)):
+    OBLIQUE = OBLIQUE.replace(f'<link name="{_link}"/>', inertial(_link, _mass))
 
 
 def test_oblique_axes_and_fixed_joints_are_those_of_the_engine(found, tmp_path):
     """A model with the description's own figures computes the description's torques, tip and all."""
-    from inverse_dynamics import FastModel
-    from inverse_dynamics.robot.robots import RIGID_BODY, Robot
-
-    text = OBLIQUE
-    for link, mass in (("a", 2.0), ("mid", 0.5), ("b", 1.5), ("tool", 0.3)):
-        text = text.replace(f'<link name="{link}"/>', inertial(link, mass))
     urdf = tmp_path / "oblique.urdf"
-    urdf.write_text(text)
-    chain = FastModel.from_urdf(text)
+    urdf.write_text(OBLIQUE)
+    chain = FastModel.from_urdf(OBLIQUE)
     two = slice(0, 2)
     model = replace(
         found.model,
@@ -149,7 +145,7 @@ def test_oblique_axes_and_fixed_joints_are_those_of_the_engine(found, tmp_path):
     file = tmp_path / "oblique_model.yaml"
     file.write_text(model_file_text(oblique, "oblique"))
     solver = Solver(RIGID_BODY, model=str(file))
-    described = Solver(RIGID_BODY, urdf=text, gravity=(1.0, 2.0, -9.0))
+    described = Solver(RIGID_BODY, urdf=OBLIQUE, gravity=(1.0, 2.0, -9.0))
     q = np.random.default_rng(1).uniform(-1, 1, size=(20, 2))
     np.testing.assert_allclose(solver.gravity_vector(q), described.gravity_vector(q), atol=1e-12)
     for one, other in zip(solver.tip_pose(q), described.tip_pose(q), strict=True):

@@ -9,9 +9,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from conftest import fails
+from conftest import JOINTS, fails, motion
 from identified_arms import identification, simulated_torques
-from test_evaluation import JOINTS, motion
 
 from inverse_dynamics import Solver, evaluate, load_robot, write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog

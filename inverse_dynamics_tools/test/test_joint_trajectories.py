@@ -3,9 +3,8 @@ import re
 
 import numpy as np
 import pytest
-from conftest import STORE, joint_state, write_messages
+from conftest import JOINTS, RIGID_BODY, STORE, URDF, joint_state, motion, write_messages
 from rosbags.rosbag2 import StoragePlugin, Writer
-from test_evaluation import JOINTS, RIGID_BODY, URDF, motion
 
 from inverse_dynamics import Solver, evaluate, read_recording
 from inverse_dynamics.errors import BagError

@@ -9,11 +9,10 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from conftest import fails
+from conftest import RIGID_BODY, fails
 from simulation_arms import pendulum, two_links, write_robot
-from test_evaluation import RIGID_BODY, URDF, recording
 
-from inverse_dynamics import Solver, cli
+from inverse_dynamics import cli
 from inverse_dynamics.results import excitations
 from inverse_dynamics.simulation.excitation import ExcitationOptions
 
@@ -22,13 +21,6 @@ DOCUMENTED = dict(
     re.findall(r"^\| `(\w+[^|]*?) *\| (.*) \|$", PAGE.read_text().partition("## JSON")[2], re.M)
 )
 RAW = ("--accelerations", "backward-difference", "--no-figures")
-
-
-@pytest.fixture(scope="module")
-def bag(tmp_path_factory):
-    path = tmp_path_factory.mktemp("recording") / "motion"
-    recording(path, Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0"))
-    return path
 
 
 @pytest.fixture

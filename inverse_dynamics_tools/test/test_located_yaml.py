@@ -44,29 +44,19 @@ def bomb() -> str:
 
 
 HOSTILE = {
-    "a tag": (b"a: !!float abc\n", ":1: isn't YAML: the tag 'tag:yaml.org,2002:float' isn't"),
     "a tag of its own": (b"a: 1\nb: !robot {c: 1}\n", ":2: isn't YAML: the tag '!robot' isn't"),
     "a tag of Python": (b"a: !!python/object/apply:os.system [x]\n", ":1: isn't YAML: the tag"),
-    "the tag of no tag": (b"a: ! 12\n", ":1: isn't YAML: the tag '!' isn't supported"),
-    "an alias": (b"a: &x 1\nb: *x\n", ":2: isn't YAML: the alias *x isn't supported; write out"),
     "an alias of itself": (b"a: &x [*x]\n", ":1: isn't YAML: the alias *x isn't supported"),
     "an alias of nothing": (b"a: *x\n", ":1: isn't YAML: the alias *x isn't supported"),
     "many aliases": (bomb().encode(), ":2: isn't YAML: the alias *a0 isn't supported"),
-    "deep lists": (b"a: " + b"[" * 100_000, ":1: isn't YAML: expected at most 50 levels, got more"),
     "deep mappings": (b"a: " + b"{a: " * 100_000, ":1: isn't YAML: expected at most 50 levels"),
     "deep blocks": (
         "".join(f"{' ' * i}a:\n" for i in range(2000)).encode(),
         ":50: isn't YAML: expected at most 50 levels, got more",
     ),
-    "deep dashes": (b"a:\n" + b"- " * 100_000, ":2: isn't YAML: expected at most 50 levels"),
-    "a key twice": (b"a: 1\nb: 2\na: 3\n", ":3: a: stands here for a second time"),
     "a list as a key": (b"[a, b]: 1\n", ":1: expected a text as a key, got a list of 2"),
     "a mapping as a key": (b"? {a: 1}\n: 1\n", ":1: expected a text as a key, got keys with"),
     "a merge": (b"<<: {a: 1}\n", ":1: <<: unknown key"),
-    "two documents": (
-        b"a: 1\n---\nb: 2\n",
-        ":2: isn't YAML: expected one document, got another one",
-    ),
     "a NUL": (b"a: 1\nb: \0\n", ":2: isn't YAML: the character '\\x00' isn't allowed"),
     "a control character": (b"a: \x1b[31m\n", ":1: isn't YAML: the character '\\x1b' isn't"),
     "an escape beyond Unicode": (
@@ -94,12 +84,9 @@ HOSTILE = {
     "noise": (bytes(range(256)) * 100, ":2: isn't text in UTF-8"),
     "a tab": (b"a:\n\tb: 1\n", ":2: isn't YAML: a tab is before the text; indent with spaces"),
     "an open bracket": (b"a: [1, 2\n", ":2: isn't YAML: expected ',' or ']'"),
-    "a text": (b"hello", ":1: expected keys with values, got a text"),
     "a long text": (b"x" * 1_000_000, ":1: expected keys with values, got a text"),
-    "nothing": (b"", ": is empty; expected keys with values"),
     "a byte order mark alone": (b"\xef\xbb\xbf", ": is empty; expected keys with values"),
     "too long a file": (b"#" * (5 * 2**20), ": expected YAML of at most 4 MiB, got a longer file"),
-    "many values": (b"a: [" + b"1," * 500_000 + b"]", ":1: isn't YAML: expected at most 200000 va"),
     "a directive": (b"%YAML 3.0\n---\na: 1\n", ":1: isn't YAML: expected version 1"),
 }
 

@@ -14,8 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from conftest import fails
-from test_evaluation import RIGID_BODY, URDF, recording
+from conftest import RIGID_BODY, URDF, fails, recording
 
 import inverse_dynamics
 from inverse_dynamics import Solver, evaluate, evaluate_many, read_evaluation, write_joint_logs

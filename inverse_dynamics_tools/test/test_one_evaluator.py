@@ -10,7 +10,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from test_evaluation import recording
+from conftest import recording
 
 from inverse_dynamics import Solver, evaluate, load_robot
 

@@ -7,17 +7,12 @@ import threading
 
 import numpy as np
 import pytest
-from conftest import fails
+from conftest import FRANKA, KDL, RIGID_BODY, UR10, fails
 from simulation_arms import joint, link, robot
 from test_solver_parameters import efforts, planned, write
 
 from inverse_dynamics import Solver, errors
 from inverse_dynamics.verbs.values import payload
-
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
-KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
-UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
-FRANKA = "franka_inria_inverse_dynamics_solver/InverseDynamicsSolverFrankaInria"
 
 # One joint about y; the tip is 1 m out along x.
 ARM = robot(

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_evaluation import JOINTS, RIGID_BODY, URDF, motion, recording
+from conftest import JOINTS, RIGID_BODY, URDF, motion, recording
 from test_joint_trajectories import points_of_motion, trajectory, write_trajectories
 from test_table_logs import table_of, write_table
 

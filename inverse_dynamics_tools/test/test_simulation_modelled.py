@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from conftest import RIGID_BODY
 from identified_arms import arm, identification
 from simulation_arms import pendulum, robots_package, write_robot
 
@@ -20,7 +21,6 @@ from inverse_dynamics.simulation import Payload, SimulationError, simulate
 from inverse_dynamics.simulation.modelled import ModelFriction
 from inverse_dynamics.simulation.trajectory_file import read_trajectory
 
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
 LOAD = Payload(4.0, (0.02, 0.0, 0.1))
 # of the torques, up to 300 N m: moments about principal axes are rounded
 ROUNDING = 1e-8

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import UR10
 
 from inverse_dynamics import Solver, errors
 
-UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
 STATES = 601
 
 ARGUMENTS = {

@@ -9,15 +9,11 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 import pytest
+from conftest import FRANKA, KDL, PINOCCHIO, RIGID_BODY, UR10
 from simulation_arms import simulated, urdf_of
 
 from inverse_dynamics import Solver, available_solvers, errors
 
-KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
-PINOCCHIO = "pinocchio_inverse_dynamics_solver/InverseDynamicsSolverPinocchio"
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
-UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
-FRANKA = "franka_inria_inverse_dynamics_solver/InverseDynamicsSolverFrankaInria"
 TIPS = {"ur10": "tool0", "panda": "fer_link8", "oblique_arm": "tool"}
 N = 20
 # Two programs do the same operations in another order; forward dynamics divides by small inertias.

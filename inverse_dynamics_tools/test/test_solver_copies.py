@@ -7,21 +7,10 @@ import pickle
 
 import numpy as np
 import pytest
+from conftest import PENDULUM, RIGID_BODY, UR10
 
 from inverse_dynamics import Solver, errors, load_robot
 from inverse_dynamics.robot.solvers import open_solver
-
-UR10 = "ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10"
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
-
-PENDULUM = """
-<robot name="pendulum">
-  <link name="base"/>
-  <link name="arm"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
-    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
-  <joint name="swing" type="continuous"><parent link="base"/><child link="arm"/>
-    <axis xyz="0 1 0"/></joint>
-</robot>"""
 
 COPIES = {
     "pickle": lambda solver: pickle.loads(pickle.dumps(solver)),

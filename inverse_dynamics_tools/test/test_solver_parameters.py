@@ -14,9 +14,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import fails
+from conftest import RIGID_BODY, fails
 from simulation_arms import joint, link, pendulum, robot, two_links
-from test_evaluation import RIGID_BODY
 
 from inverse_dynamics import Solver, load_robot, read_evaluation
 from inverse_dynamics.errors import ArgumentError, InvalidParameterError, ParameterMissingError

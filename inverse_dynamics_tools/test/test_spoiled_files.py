@@ -170,7 +170,7 @@ def changes(line: str) -> Iterator[str]:
             yield f"{line}\n{' ' * len(before)}{key}:{value}"
     content = line.split("  #")[0]
     if number := NUMBER.search(content, content.find(":") + 1):
-        for text in (*NOT_NUMBERS, "1:30", "0b11"):  # the last are numbers of YAML 1.1
+        for text in (*NOT_NUMBERS, "'3'", "1:30", "0b11", "0o17"):  # or not in every YAML
             written = text.format(number[0], number[0])
             quoted = written if written.strip() else f'"{written}"'  # nothing would be no value
             yield line[: number.start()] + quoted + line[number.end() :]

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_evaluation import JOINTS, RIGID_BODY, URDF, motion
+from conftest import JOINTS, motion
 
 from inverse_dynamics import Solver, evaluate, load_robot, read_recording
 from inverse_dynamics.data.table_logs import LogFormat, parts_joined
@@ -12,11 +12,6 @@ from inverse_dynamics.errors import BagError, EvaluationError
 
 HEADER = "time,position.a,velocity.a,effort.a\n"
 ROWS = "0,1,2,3\n0.01,1.5,2.5,3.5\n"
-
-
-@pytest.fixture(scope="module")
-def solver():
-    return Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0")
 
 
 @pytest.fixture

@@ -4,19 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import fails
-from test_evaluation import RIGID_BODY, URDF, recording
+from conftest import fails, recording
 from test_table_logs import table_of, write_table
 
-from inverse_dynamics import Solver, evaluate, read_evaluation, write_joint_logs
+from inverse_dynamics import evaluate, read_evaluation, write_joint_logs
 from inverse_dynamics.errors import ArgumentError, BagError
 
 # The recordings have samples at 0, 0.004, ... 5.996 s after the first.
-
-
-@pytest.fixture(scope="module")
-def solver():
-    return Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0")
 
 
 @pytest.fixture(scope="module")

@@ -7,11 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import STORE, joint_state, write_messages
+from conftest import JOINTS, RIGID_BODY, STORE, URDF, joint_state, motion, write_messages
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, Reader, StoragePlugin, Writer
 from rosbags.rosbag2.writer import zstd
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-from test_evaluation import JOINTS, RIGID_BODY, URDF, motion
 from test_joint_trajectories import (
     TOPIC,
     TRAJECTORY,

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import KDL, RIGID_BODY
 from simulation_arms import joint, link, robot
 
 from inverse_dynamics import Solver, evaluate, identify
@@ -20,8 +21,6 @@ from inverse_dynamics.results.excitations import default_options, excite
 from inverse_dynamics.robot.robots import load_robot, robot_of_description
 from inverse_dynamics.simulation import simulate, write_run
 
-RIGID_BODY = "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody"
-KDL = "kdl_inverse_dynamics_solver/InverseDynamicsSolverKDL"
 JOINTS = ("yaw", "pitch", "roll")
 TURN = 2 * np.pi
 SAME = 1e-9  # rounding of a few dozen turns, in what is compared

@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import JOINTS, URDF
 from identified_arms import arm, engine, identification
-from test_evaluation import JOINTS, URDF
-from test_identification_files import OBLIQUE, inertial
+from test_identification_files import OBLIQUE
 
 from inverse_dynamics import FastModel, Solver
 from inverse_dynamics.results.urdf_export import mjcf_text, urdf_text
@@ -78,12 +78,9 @@ def test_friction_that_grows_with_load_is_that_of_the_mean_load(found):
 
 
 def test_what_is_fixed_to_a_link_is_part_of_it(found, tmp_path):
-    text = OBLIQUE
-    for link, mass in (("a", 2.0), ("mid", 0.5), ("b", 1.5), ("tool", 0.3)):
-        text = text.replace(f'<link name="{link}"/>', inertial(link, mass))
     urdf = tmp_path / "oblique.urdf"
-    urdf.write_text(text)
-    chain = FastModel.from_urdf(text)
+    urdf.write_text(OBLIQUE)
+    chain = FastModel.from_urdf(OBLIQUE)
     two = slice(0, 2)
     model = replace(
         found.model,

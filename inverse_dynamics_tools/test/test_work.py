@@ -11,9 +11,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from test_evaluation import RIGID_BODY, URDF, recording
-
-from inverse_dynamics import Solver
 
 # Imports of tens of milliseconds and more, each.
 HEAVY = (
@@ -50,13 +47,6 @@ def imported(*command: object, cwd: Path) -> set[str]:
     arguments = [sys.executable, "-c", RUN, ",".join(HEAVY), *map(str, command)]
     finished = subprocess.run(arguments, cwd=cwd, capture_output=True, text=True, check=True)
     return set(finished.stderr.splitlines()[-1].split())
-
-
-@pytest.fixture(scope="module")
-def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("recording") / "motion"
-    recording(path, Solver(RIGID_BODY, urdf=URDF.read_text(), root="base_link", tip="tool0"))
-    return path
 
 
 @pytest.mark.parametrize("command", ["--help", "evaluate --help", "simulate --help", "evaluate"])
