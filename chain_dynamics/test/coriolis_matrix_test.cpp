@@ -145,23 +145,5 @@ TEST(CoriolisMatrix, GrowsWithTheVelocity) {
   });
 }
 
-TEST(CoriolisMatrix, IsNanWhereItDependsOnANan) {
-  const Chain chain = randomChain(6);
-  const State<double> state = randomState(chain, 0);
-  const State<Dual<double, 1>> constants = state.cast<Dual<double, 1>>();
-  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
-    VectorX<double> nan = VectorX<double>::Zero(6);
-    nan[i] = std::numeric_limits<double>::quiet_NaN();
-    const auto by_q = coriolisMatrixOf(chain, variable(state.q, i), constants.qd);
-    const auto by_qd = coriolisMatrixOf(chain, constants.q, variable(state.qd, i));
-    const MatrixX<double> with_q = coriolisMatrixOf<double>(chain, state.q + nan, state.qd);
-    const MatrixX<double> with_qd = coriolisMatrixOf<double>(chain, state.q, state.qd + nan);
-    for (Eigen::Index k = 0; k < with_q.size(); ++k) {
-      EXPECT_TRUE(by_q(k).derivative[0] == 0 || std::isnan(with_q(k))) << k << " by q " << i;
-      EXPECT_TRUE(by_qd(k).derivative[0] == 0 || std::isnan(with_qd(k))) << k << " by qd " << i;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace chain_dynamics

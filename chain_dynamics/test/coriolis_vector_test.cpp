@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "chain_dynamics/dual.hpp"
 #include "chain_dynamics/inertia_matrix.hpp"
@@ -94,24 +93,6 @@ TEST(CoriolisVector, IsZeroAtRestAndIgnoresGravity) {
   EXPECT_EQ(coriolisOf<double>(chain, state.q, VectorX<double>::Zero(6)).norm(), 0);
   EXPECT_EQ(coriolisOf(chain.withGravity({0, 0, 0}), state.q, state.qd),
             coriolisOf(chain, state.q, state.qd));
-}
-
-TEST(CoriolisVector, IsNanWhereItDependsOnANan) {
-  const Chain chain = randomChain(6);
-  const State<double> state = randomState(chain, 0);
-  const State<Dual<double, 1>> constants = state.cast<Dual<double, 1>>();
-  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
-    VectorX<double> nan = VectorX<double>::Zero(6);
-    nan[i] = std::numeric_limits<double>::quiet_NaN();
-    const auto by_q = coriolisOf<Dual<double, 1>>(chain, variable(state.q, i), constants.qd);
-    const auto by_qd = coriolisOf<Dual<double, 1>>(chain, constants.q, variable(state.qd, i));
-    const VectorX<double> with_q = coriolisOf<double>(chain, state.q + nan, state.qd);
-    const VectorX<double> with_qd = coriolisOf<double>(chain, state.q, state.qd + nan);
-    for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
-      EXPECT_TRUE(by_q[j].derivative[0] == 0 || std::isnan(with_q[j])) << j << " by q " << i;
-      EXPECT_TRUE(by_qd[j].derivative[0] == 0 || std::isnan(with_qd[j])) << j << " by qd " << i;
-    }
-  }
 }
 
 }  // namespace

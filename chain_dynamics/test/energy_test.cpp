@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "chain_dynamics/inertia_matrix.hpp"
 #include "example_robots.hpp"
@@ -50,16 +49,6 @@ TEST(Energy, IsHalfOfVelocityTimesInertiaTimesVelocity) {
     EXPECT_NEAR(kineticEnergy(chain, state.q, state.qd), 0.5 * state.qd.dot(H * state.qd),
                 rounding(chain) * terms);
   });
-}
-
-TEST(Energy, IsNanWithANan) {
-  const Chain chain = randomChain(3);
-  const State<double> state = randomState(chain, 0);
-  VectorX<double> nan = VectorX<double>::Zero(3);
-  nan[1] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(std::isnan(kineticEnergy(chain, (state.q + nan).eval(), state.qd)));
-  EXPECT_TRUE(std::isnan(kineticEnergy(chain, state.q, (state.qd + nan).eval())));
-  EXPECT_TRUE(std::isnan(potentialEnergy(chain, (state.q + nan).eval())));
 }
 
 }  // namespace

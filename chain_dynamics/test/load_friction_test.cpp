@@ -138,7 +138,7 @@ TEST(LoadFriction, HasNoDerivativeByPositionWhereTheLoadIsZero) {
 }
 
 TEST(LoadFriction, AllocatesNothing) {
-  if (!CHAIN_DYNAMICS_COUNTS_ALLOCATIONS) {
+  if (!kAllocationGuardWorks) {
     GTEST_SKIP() << "allocations are counted with the GNU C library, without sanitizers";
   }
   for (const auto& [name, model] : loadedModels()) {

@@ -158,25 +158,6 @@ TEST(RobotDescription, VersionsOfUrdf1AreRead) {
 
 // --- numbers ---
 
-TEST(RobotDescription, WhiteSpaceAroundNumbersLosesNothing) {
-  // each of these lost a mass, an inertia or an origin in another reader
-  const std::vector<std::pair<std::string, std::string>> spellings{
-      {"mass value='0.5'", "mass value='0.5 '"},
-      {"mass value='2'", "mass value='\n 2\t'"},
-      {"ixx='0.1'", "ixx=' 0.1\r\n'"},
-      {"iyz='0.03'", "iyz='+0.03 '"},
-      {"xyz='0.1 0.2 0.3'", "xyz='\n  0.1\n  0.2\t0.3\n'"},
-      {"rpy='1 2 3'", "rpy=' 1\n2 3'"},
-      {"xyz='0.6 0 -0.8'", "xyz='  0.6 0\n -0.8 '"},
-      {"lower=\"-1\"", "lower=\" -1 \""}};
-  const Eigen::VectorXd tau = someTorques(arm());
-  for (const auto& [plain, spaced] : spellings) {
-    const std::string urdf = replaced(arm(), plain, spaced);
-    EXPECT_EQ(someTorques(urdf), tau) << spaced;
-    EXPECT_THAT(warnings(urdf), IsEmpty()) << spaced;
-  }
-}
-
 TEST(RobotDescription, OnlyDecimalNumbersAreNumbers) {
   for (const std::string bad : {"0x10", "1e400", "1_0", "1:30", "1.5f", "1e", "--1", "infinity",
                                 "1\xC2\xA0", "\xEF\xBC\x91", "1 2"}) {
@@ -185,6 +166,8 @@ TEST(RobotDescription, OnlyDecimalNumbersAreNumbers) {
         << bad;
   }
   EXPECT_THAT(urdfError(hinge(inertial("${mass}"))), HasSubstr("expand the file with xacro first"));
+  EXPECT_THAT(urdfError(hinge(inertial(), "<origin xyz='1 2 3 4'/>")),
+              HasSubstr("expected three finite numbers, got 4 in '1 2 3 4'"));
 }
 
 TEST(RobotDescription, NumbersBeyondARobotsSizeAreAWarningOrAnError) {
@@ -410,8 +393,6 @@ TEST(RobotDescriptionError, OtherXml) {
   EXPECT_THAT(urdfError("<robot name='r'/>"), HasSubstr("expected at least one <link>, got none"));
   EXPECT_THAT(urdfError("<robot><link name='a'/></robot>"),
               HasSubstr("robot: <robot>: expected attribute 'name', got none"));
-  EXPECT_THAT(urdfError("<robot name='r' version='7'><link name='a'/></robot>"),
-              HasSubstr("URDF:1: robot: <robot> version: expected 1.0, 1.1 or 1.2, got '7'"));
 }
 
 TEST(RobotDescriptionError, XacroMustBeExpandedFirst) {
@@ -456,28 +437,6 @@ TEST(RobotDescriptionError, NegativeMassNamesTheLink) {
   EXPECT_THAT(urdfError(robot(link("base") + link("a", inertial("-1.5")) +
                               joint("j", "continuous", "base", "a", ""))),
               HasSubstr("URDF:4: link a: mass: expected a number >= 0 [kg], got -1.5"));
-}
-
-TEST(RobotDescriptionError, NumbersMustBeFinite) {
-  const auto with = [](const std::string& body, const std::string& joint_content) {
-    return urdfError(
-        robot(link("base") + link("a", body) + joint("j", "revolute", "base", "a", joint_content)));
-  };
-  for (const std::string bad : {"nan", "inf", "-inf", "1e999", "heavy", "1,5", "1.5kg", ""}) {
-    EXPECT_THAT(with(inertial(bad), kLimit),
-                HasSubstr("link a: <mass> value: expected a finite number, got '" + bad + "'"));
-    EXPECT_THAT(with(inertial("1", bad), kLimit), HasSubstr("link a: <inertia> ixx: expected"));
-    EXPECT_THAT(with(inertial("1", "1", "<origin xyz='0 0 " + bad + "'/>"), kLimit),
-                HasSubstr("link a: <origin> xyz: expected three finite numbers"));
-    EXPECT_THAT(with(inertial(), kLimit + ("<origin rpy='0 " + bad + " 0 '/>")),
-                HasSubstr("joint j: <origin> rpy: expected three finite numbers"));
-    EXPECT_THAT(with(inertial(), kLimit + ("<axis xyz='" + bad + " 0 1'/>")),
-                HasSubstr("joint j: <axis> xyz: expected three finite numbers"));
-    EXPECT_THAT(with(inertial(), "<limit lower='" + bad + "' upper='1' effort='1' velocity='1'/>"),
-                HasSubstr("joint j: <limit> lower: expected a finite number"));
-  }
-  EXPECT_THAT(with(inertial(), kLimit + std::string("<origin xyz='1 2 3 4'/>")),
-              HasSubstr("expected three finite numbers, got 4 in '1 2 3 4'"));
 }
 
 TEST(RobotDescriptionError, NumbersMustNotBeMissing) {

@@ -9,20 +9,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
-#include "chain_dynamics/coriolis_matrix.hpp"
-#include "chain_dynamics/dynamic_components.hpp"
 #include "chain_dynamics/energy.hpp"
-#include "chain_dynamics/fast_model.hpp"
 #include "chain_dynamics/forward_dynamics.hpp"
-#include "chain_dynamics/parameter_sets.hpp"
-#include "chain_dynamics/regressor.hpp"
-#include "chain_dynamics/tip_kinematics.hpp"
-#include "chain_dynamics/torque_derivatives.hpp"
-#include "example_models.hpp"
+#include "quantities.hpp"
 
 namespace chain_dynamics {
 namespace {
@@ -73,8 +65,6 @@ std::size_t stackOf(const std::function<void()>& call) {
   return touched(call) - touched([] {});
 }
 
-using Calls = std::map<std::string, std::function<void()>>;
-
 void expectWithin(std::size_t bound, const std::string& who, const Calls& calls) {
   std::size_t most = 0;
   for (const auto& [name, call] : calls) {
@@ -102,30 +92,8 @@ TEST_P(Stack, OfOneStateIsBounded) {
   if (!kMeasurable) GTEST_SKIP() << kWhyNot;
   for (const Model& model : largest()) {
     const FastModel fast(model, GetParam());
-    const State<double> x = randomState(model.chain, 1);
-    const Index n = x.q.size();
-    const double* const q = x.q.data();
-    const double* const qd = x.qd.data();
-    const double* const qdd = x.qdd.data();
-    MatrixXd H(n, n), by_q(n, n), by_qd(n, n), J(6, n), Y(n, 10 * n);
-    VectorXd c(n), g(n);
-    double R[9], p[3];
-    expectWithin(
-        kOneStateBound, GetParam(),
-        {{"torques", [&] { fast.torques(q, qd, qdd, c.data()); }},
-         {"H", [&] { fast.inertiaMatrix(q, H.data(), n); }},
-         {"c", [&] { fast.coriolisVector(q, qd, c.data()); }},
-         {"g", [&] { fast.gravityVector(q, g.data()); }},
-         {"f", [&] { fast.frictionVector(q, qd, c.data()); }},
-         {"components", [&] { fast.dynamicComponents(q, qd, H.data(), n, c.data(), g.data()); }},
-         {"forward dynamics", [&] { fast.forwardDynamics(q, qd, qdd, c.data()); }},
-         {"regressor", [&] { fast.regressor(q, qd, qdd, Y.data(), n); }},
-         {"C", [&] { fast.coriolisMatrix(q, qd, H.data(), n); }},
-         {"tip", [&] { fast.tipPose(q, R, p); }},
-         {"J", [&] { fast.tipJacobian(q, J.data(), 6); }},
-         {"dJ", [&] { fast.tipJacobianDerivative(q, qd, J.data(), 6); }},
-         {"derivatives",
-          [&] { fast.torqueDerivatives(q, qd, qdd, by_q.data(), by_qd.data(), H.data(), n); }}});
+    OneState state(randomState(model.chain, 1));
+    expectWithin(kOneStateBound, GetParam(), state.callsOf(fast));
   }
 }
 
@@ -134,44 +102,27 @@ TEST_P(Stack, OfManyStatesIsBounded) {
   for (const Model& model : largest()) {
     const FastModel fast(model, GetParam());
     const Index n = model.chain.jointCount();
-    constexpr Index kStates = 20;
-    const MatrixXd q = MatrixXd::Constant(n, kStates, 0.3);
-    MatrixXd H(n, n * kStates), Y(n, 10 * n * kStates), c = q, g = q;
-    MatrixXd R(3, 3 * kStates), p(3, kStates), J(6, n * kStates);
+    const State<double> x = randomState(model.chain, 1);
+    ManyStates states(std::vector<State<double>>(20, x), n, layouts()[0]);
+    Calls calls = states.callsOf(fast);
+    calls.erase("derivatives");  // up to sixteen joints: those of longer chains are of one state
+    const MatrixXd q = x.q.replicate(1, 20);
     RegressorGram gram(n, 1);
-    expectWithin(kManyStatesBound, GetParam(),
-                 {{"torques", [&] { fast.torquesBatch(q, q, q, c); }},
-                  {"H", [&] { fast.inertiaMatrixBatch(q, H); }},
-                  {"c", [&] { fast.coriolisVectorBatch(q, q, c); }},
-                  {"g", [&] { fast.gravityVectorBatch(q, g); }},
-                  {"f", [&] { fast.frictionVectorBatch(q, q, c); }},
-                  {"components", [&] { fast.dynamicComponentsBatch(q, q, H, c, g); }},
-                  {"forward dynamics", [&] { fast.forwardDynamicsBatch(q, q, q, c); }},
-                  {"regressor", [&] { fast.regressorBatch(q, q, q, Y); }},
-                  {"C", [&] { fast.coriolisMatrixBatch(q, q, H); }},
-                  {"tip", [&] { fast.tipPoseBatch(q, R, p); }},
-                  {"J", [&] { fast.tipJacobianBatch(q, J); }},
-                  {"dJ", [&] { fast.tipJacobianDerivativeBatch(q, q, J); }},
-                  {"Gram matrices", [&] {
-                     fast.addToGram({q, q, q, q, {q}}, gram);
-                   }}});
+    calls["Gram matrices"] = [&] { fast.addToGram({q, q, q, q, {q}}, gram); };
+    expectWithin(kManyStatesBound, GetParam(), calls);
   }
 }
 
-// Up to sixteen joints: derivatives of longer chains are those of one state.
 TEST_P(Stack, OfDerivativesOfManyStatesIsBounded) {
   if (!kMeasurable) GTEST_SKIP() << kWhyNot;
   constexpr Index kJoints = 16;
-  constexpr Index kStates = 20;
   const Chain chain = randomChain(kJoints);
   for (const Model& model : {Model(chain), identified(chain, true, true, 3),
                              withChangingSteps(identified(chain, true, false, 3), 5)}) {
     const FastModel fast(model, GetParam());
-    const MatrixXd q = MatrixXd::Constant(kJoints, kStates, 0.3);
-    MatrixXd by_q(kJoints, kJoints * kStates), by_qd = by_q, H = by_q;
-    expectWithin(kManyStatesBound, GetParam(),
-                 {{"derivatives", [&] { fast.torqueDerivativesBatch(q, q, q, by_q, by_qd, H); }},
-                  {"C", [&] { fast.coriolisMatrixBatch(q, q, H); }}});
+    const std::vector<State<double>> all(20, randomState(chain, 1));
+    ManyStates states(all, kJoints, layouts()[0]);
+    expectWithin(kManyStatesBound, GetParam(), states.callsOf(fast));
   }
 }
 
@@ -185,29 +136,17 @@ TEST(StackOfPlainFunctions, IsBounded) {
   GTEST_SKIP() << "without optimisation every temporary has a place of its own";
 #endif
   const Chain chain = randomChain(kStackJoints);
-  const std::vector<std::vector<LinkParameters>> rows(kStackJoints, chain.links());
-  const ParameterSets sets{rows, rows[0]};
   Model model(chain);
+  model.row_parameters.assign(kStackJoints, chain.links());
+  model.gravity_parameters = chain.links();
   model.friction.resize(kStackJoints, SmoothCoulomb{1, 2, 0.1, 0.01, 0.3, 0.1, 0.5, 0.2});
   const State<double> x = randomState(chain, 1);
-  const VectorXd &q = x.q, &qd = x.qd, &qdd = x.qdd;
-  const Index n = q.size();
-  MatrixXd H(n, n), by_q(n, n), by_qd(n, n), J(6, n), Y(n, 10 * n);
-  VectorXd c(n), g(n);
-  expectWithin(
-      kPlainBound, "plain",
-      {{"torques", [&] { torques(chain, sets, q, qd, qdd, c); }},
-       {"components", [&] { dynamicComponents(chain, sets, q, qd, H, c, g); }},
-       {"C", [&] { coriolisMatrix(chain, sets, q, qd, H); }},
-       {"tip", [&] { c.head(3) = tipPose(chain, q).p; }},
-       {"J", [&] { tipJacobian(chain, q, J); }},
-       {"dJ", [&] { tipJacobianDerivative(chain, q, qd, J); }},
-       {"forward dynamics", [&] { forwardDynamics(chain, q, qd, qdd, c); }},
-       {"regressor", [&] { regressor(chain, q, qd, qdd, Y); }},
-       {"derivatives", [&] { torqueDerivatives(chain, sets, q, qd, qdd, by_q, by_qd, H); }},
-       {"friction", [&] { frictionVector(model, q, qd, c); }},
-       {"friction's derivatives", [&] { addFrictionDerivatives(model, q, qd, by_q, by_qd); }},
-       {"energy", [&] { c[0] = kineticEnergy(chain, q, qd) + potentialEnergy(chain, q); }}});
+  OneState state(x);
+  Calls calls = state.callsOf(model);
+  VectorXd qdd(chain.jointCount());
+  calls["forward dynamics"] = [&] { forwardDynamics(chain, x.q, x.qd, x.qdd, qdd); };
+  calls["energy"] = [&] { qdd[0] = kineticEnergy(chain, x.q, x.qd) + potentialEnergy(chain, x.q); };
+  expectWithin(kPlainBound, "plain", calls);
 }
 
 }  // namespace

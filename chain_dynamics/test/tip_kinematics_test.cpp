@@ -159,30 +159,5 @@ TEST(TipKinematics, TheJacobianGoesIntoABlockOfAMatrix) {
   EXPECT_EQ(batch.leftCols(4).norm() + batch.rightCols(4).norm(), 0);
 }
 
-TEST(TipKinematics, AreNanWhereTheyDependOnANan) {
-  const Chain chain = withTip(randomChain(6));
-  const State<double> state = randomState(chain, 0);
-  const State<Dual<double, 1>> constants = state.cast<Dual<double, 1>>();
-  for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
-    VectorX<double> nan = VectorX<double>::Zero(6);
-    nan[i] = std::numeric_limits<double>::quiet_NaN();
-    const auto expect_nans = [&](const auto& varied, const auto& with_nan) {
-      for (Eigen::Index k = 0; k < varied.size(); ++k) {
-        EXPECT_TRUE(varied(k).derivative[0] == 0 || std::isnan(with_nan(k))) << k << " by " << i;
-      }
-    };
-    const VectorX<double> q = state.q + nan;
-    const VectorX<double> qd = state.qd + nan;
-    const auto varied = variable(state.q, i);
-    expect_nans(tipPose(chain, varied).R, tipPose(chain, q).R);
-    expect_nans(tipPose(chain, varied).p, tipPose(chain, q).p);
-    expect_nans(jacobianOf(chain, varied), jacobianOf(chain, q));
-    expect_nans(jacobianDerivativeOf(chain, varied, constants.qd),
-                jacobianDerivativeOf(chain, q, state.qd));
-    expect_nans(jacobianDerivativeOf(chain, constants.q, variable(state.qd, i)),
-                jacobianDerivativeOf(chain, state.q, qd));
-  }
-}
-
 }  // namespace
 }  // namespace chain_dynamics

@@ -137,22 +137,5 @@ TEST(TorqueDerivatives, OfParameterSetsAreThoseOfDualNumbers) {
   });
 }
 
-// Entry (i, j) depends on everything here but for what symmetry takes away: with one joint's
-// number unknown, no entry that depends on it may look known.
-TEST(TorqueDerivatives, AreNanWhereTheyDependOnANan) {
-  const Chain chain = randomChain(4);
-  const State<double> known = randomState(chain, 0);
-  State<double> x = known;
-  x.q[3] = std::numeric_limits<double>::quiet_NaN();
-  Derivatives d = derivativesOf(chain, x);
-  EXPECT_TRUE(d.q.array().isNaN().all()) << d.q;
-  EXPECT_TRUE(d.qd.topLeftCorner(3, 3).array().isNaN().all()) << d.qd;
-  x = known;
-  x.qd[0] = std::numeric_limits<double>::quiet_NaN();
-  d = derivativesOf(chain, x);
-  EXPECT_TRUE(d.q.rightCols(3).array().isNaN().all()) << d.q;
-  EXPECT_TRUE(d.qdd.allFinite());
-}
-
 }  // namespace
 }  // namespace chain_dynamics

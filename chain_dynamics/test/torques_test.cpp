@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "chain_dynamics/dual.hpp"
 #include "chain_dynamics/dynamic_components.hpp"
@@ -181,31 +180,6 @@ TEST(Torques, AreTheSameAfterManyTurns) {
     EXPECT_TRUE(agree(torquesOf(chain, turned), torquesOf(chain, state),
                       sensitivityToAngles(chain, state), kAngleRounding));
   });
-}
-
-// An entry depends on an input where its derivative isn't zero.
-TEST(Torques, AreNanWhereTheyDependOnANan) {
-  const Chain chain = randomChain(6);
-  const State<double> state = randomState(chain, 0);
-  for (VectorX<double> State<double>::*input :
-       {&State<double>::q, &State<double>::qd, &State<double>::qdd}) {
-    for (Eigen::Index i = 0; i < chain.jointCount(); ++i) {
-      State<Dual<double, 1>> varied = state.cast<Dual<double, 1>>();
-      State<double> spoilt = state;
-      spoilt.*input = state.*input;
-      (spoilt.*input)[i] = std::numeric_limits<double>::quiet_NaN();
-      VectorX<Dual<double, 1>>& varied_input = input == &State<double>::q    ? varied.q
-                                               : input == &State<double>::qd ? varied.qd
-                                                                             : varied.qdd;
-      varied_input[i].derivative[0] = 1;
-
-      const VectorX<Dual<double, 1>> derivative = torquesOf(chain, varied);
-      const VectorX<double> tau = torquesOf(chain, spoilt);
-      for (Eigen::Index j = 0; j < chain.jointCount(); ++j) {
-        EXPECT_TRUE(derivative[j].derivative[0] == 0 || std::isnan(tau[j])) << j << " by " << i;
-      }
-    }
-  }
 }
 
 TEST(Torques, MayOverwriteAnInput) {
