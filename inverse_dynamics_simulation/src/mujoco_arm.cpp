@@ -83,6 +83,14 @@ void writeTrueInertia(const std::string& urdf, mjModel& model) {
   }
 }
 
+Eigen::VectorXd numbersAt(const std::vector<int>& addresses, const mjtNum* all) {
+  Eigen::VectorXd numbers(static_cast<Eigen::Index>(addresses.size()));
+  for (std::size_t j = 0; j < addresses.size(); ++j) {
+    numbers[static_cast<Eigen::Index>(j)] = all[addresses[j]];
+  }
+  return numbers;
+}
+
 }  // namespace
 
 MujocoArm::MujocoArm(const std::string& urdf, const std::vector<std::string>& joints,
@@ -121,28 +129,8 @@ void MujocoArm::step(const Eigen::VectorXd& tau, double period) {
   for (int k = 0; k < steps; ++k) mj_step(model_.get(), data_.get());
 }
 
-Eigen::VectorXd MujocoArm::q() const {
-  Eigen::VectorXd q(static_cast<Eigen::Index>(positions_.size()));
-  for (Eigen::Index j = 0; j < q.size(); ++j) {
-    q[j] = data_->qpos[positions_[static_cast<std::size_t>(j)]];
-  }
-  return q;
-}
-
-Eigen::VectorXd MujocoArm::qd() const {
-  Eigen::VectorXd qd(static_cast<Eigen::Index>(velocities_.size()));
-  for (Eigen::Index j = 0; j < qd.size(); ++j) {
-    qd[j] = data_->qvel[velocities_[static_cast<std::size_t>(j)]];
-  }
-  return qd;
-}
-
-Eigen::VectorXd MujocoArm::qdd() const {
-  Eigen::VectorXd qdd(static_cast<Eigen::Index>(velocities_.size()));
-  for (Eigen::Index j = 0; j < qdd.size(); ++j) {
-    qdd[j] = data_->qacc[velocities_[static_cast<std::size_t>(j)]];
-  }
-  return qdd;
-}
+Eigen::VectorXd MujocoArm::q() const { return numbersAt(positions_, data_->qpos); }
+Eigen::VectorXd MujocoArm::qd() const { return numbersAt(velocities_, data_->qvel); }
+Eigen::VectorXd MujocoArm::qdd() const { return numbersAt(velocities_, data_->qacc); }
 
 }  // namespace inverse_dynamics_simulation
