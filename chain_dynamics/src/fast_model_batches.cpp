@@ -165,6 +165,10 @@ void FastModel::addToGram(const GramSamples& given, RegressorGram& gram) const {
   requireStates("qd", given.qd, n, count);
   requireStates("qdd", given.qdd, n, count);
   requireStates("tau", given.tau, n, count);
+  if (given.rows != nullptr && given.rows->samples_ != count) {
+    throw ModelError("Gram matrix of the regressor", "rows", std::to_string(count) + " samples",
+                     std::to_string(given.rows->samples_), "give those of the same samples");
+  }
   std::vector<fast::Samples> columns;
   for (const ConstStates& column : given.own_columns) {
     requireStates("own column", column, n, count);
@@ -175,11 +179,22 @@ void FastModel::addToGram(const GramSamples& given, RegressorGram& gram) const {
     requireStates("weights", *given.weights, n, count);
     weights = samples(*given.weights);
   }
-  many_->gram(
-      robot(), count,
-      {samples(given.q), samples(given.qd), samples(given.qdd), samples(given.tau), columns.data(),
-       static_cast<int>(columns.size()), given.weights ? &weights : nullptr},
-      gram.rows_.data(), gram.sums_.data());
+  const Index parts =
+      given.keep != nullptr ? (count + fast::kGramStates - 1) / fast::kGramStates : 1;
+  const auto size =
+      static_cast<std::size_t>(parts * fast::kGramStates * fast::linksRows(static_cast<int>(n)));
+  RegressorRows here;
+  RegressorRows& made = given.keep != nullptr ? *given.keep : here;
+  if (given.rows == nullptr) made.numbers_.assign(size, 0.0);
+  made.samples_ = count;
+  const auto own_columns = static_cast<int>(columns.size());
+  std::vector<double> own(
+      static_cast<std::size_t>(n * fast::kGramStates * fast::ownRow(own_columns)));
+  many_->gram(robot(), count,
+              {samples(given.q), samples(given.qd), samples(given.qdd), samples(given.tau),
+               columns.data(), own_columns, given.weights ? &weights : nullptr, given.links,
+               given.rows != nullptr ? given.rows->numbers_.data() : nullptr},
+              {made.numbers_.data(), given.keep != nullptr, own.data(), gram.sums_.data()});
   gram.samples_ += count;
 }
 

@@ -39,15 +39,7 @@ RegressorGram::RegressorGram(Index joints, Index own_columns)
     throw ModelError("Gram matrix of the regressor", "own columns", "0 or more",
                      std::to_string(own_columns), "");
   }
-  std::size_t numbers = 0;
-  std::size_t squares = 0;
-  for (Index j = 0; j < joints; ++j) {
-    const auto row = static_cast<std::size_t>(storedRow(j));
-    numbers += row;
-    squares += row * row;
-  }
-  sums_.resize(squares, 0.0);
-  rows_.resize(numbers * fast::kGramStates, 0.0);
+  sums_.resize(static_cast<std::size_t>(firstSum(joints)), 0.0);
 }
 
 void RegressorGram::add(const RegressorGram& other) {
@@ -56,15 +48,31 @@ void RegressorGram::add(const RegressorGram& other) {
   samples_ += other.samples_;
 }
 
-const double* RegressorGram::sumsOf(Index joint) const {
-  const double* first = sums_.data();
+void RegressorGram::addLinks(const RegressorGram& other) {
+  requireSize("joints", joints_, 1, other.joints_, 1);
+  for (Index j = 0; j < joints_; ++j) {
+    const double* from = other.sums_.data() + other.firstLinks(j);
+    double* to = sums_.data() + firstLinks(j);
+    const Index links = kParameters * (joints_ - j);
+    for (Index a = 0; a < links; ++a, from += other.storedRow(j), to += storedRow(j)) {
+      for (Index b = a; b < links; ++b) to[b] += from[b];
+    }
+  }
+}
+
+std::ptrdiff_t RegressorGram::storedRow(Index joint) const {
+  return fast::ownRow(static_cast<int>(own_columns_)) +
+         fast::linksRow(static_cast<int>(joints_), static_cast<int>(joint));
+}
+
+std::ptrdiff_t RegressorGram::firstSum(Index joint) const {
+  std::ptrdiff_t first = 0;
   for (Index j = 0; j < joint; ++j) first += storedRow(j) * storedRow(j);
   return first;
 }
 
-std::ptrdiff_t RegressorGram::storedRow(Index joint) const {
-  return fast::gramRow(static_cast<int>(joints_), static_cast<int>(joint),
-                       static_cast<int>(own_columns_));
+std::ptrdiff_t RegressorGram::firstLinks(Index joint) const {
+  return firstSum(joint) + fast::ownRow(static_cast<int>(own_columns_)) * (storedRow(joint) + 1);
 }
 
 void RegressorGram::rowGram(Index joint, Eigen::Ref<Eigen::MatrixXd> G) const {
@@ -73,11 +81,18 @@ void RegressorGram::rowGram(Index joint, Eigen::Ref<Eigen::MatrixXd> G) const {
                      std::to_string(joint), "");
   }
   requireSize("matrix", rowSize(), rowSize(), G.rows(), G.cols());
-  const Index before = kParameters * joint;
   G.setZero();
-  const double* row = sumsOf(joint) - before;
-  for (Index a = before; a < rowSize(); ++a, row += storedRow(joint)) {
-    for (Index b = a; b < rowSize(); ++b) G(a, b) = G(b, a) = row[b];
+  const Index rigid = kParameters * joints_, before = kParameters * joint;
+  const std::ptrdiff_t step = storedRow(joint);
+  const double* row = sums_.data() + firstSum(joint);
+  for (Index a = rigid; a < rowSize(); ++a, row += step) {
+    for (Index b = a; b < rowSize(); ++b) G(a, b) = G(b, a) = row[b - rigid];
+    const double* links = row + fast::ownRow(static_cast<int>(own_columns_));
+    for (Index b = before; b < rigid; ++b) G(a, b) = G(b, a) = links[b - before];
+  }
+  row = sums_.data() + firstLinks(joint);
+  for (Index a = before; a < rigid; ++a, row += step) {
+    for (Index b = a; b < rigid; ++b) G(a, b) = G(b, a) = row[b - before];
   }
 }
 

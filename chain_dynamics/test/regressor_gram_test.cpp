@@ -105,6 +105,17 @@ TEST_P(RegressorGramOn, IsThatOfSingleRegressors) {
       EXPECT_EQ(gram.samples(), count);
       expectEqual(gram, sumsOfSingleCalls(fast, in, own, MatrixXd::Ones(n, count)));
       expectEqual(weighted, sumsOfSingleCalls(fast, in, own, weights));
+      RegressorRows kept;
+      RegressorGram links(n);
+      fast.addToGram({q, in.qd, in.qdd, tau, {}, samples.weights, true, &kept}, links);
+      samples.links = false;
+      for (const RegressorRows* rows : {&kept, static_cast<RegressorRows*>(nullptr)}) {
+        RegressorGram apart(n, columns);
+        samples.rows = rows;
+        fast.addToGram(samples, apart);
+        apart.addLinks(links);
+        expectEqual(apart, sumsOfSingleCalls(fast, in, own, weights));
+      }
       if (HasFailure()) return;
     }
   }

@@ -29,6 +29,13 @@
 namespace chain_dynamics {
 inline namespace v2 {
 
+/// Rows Y_j of samples, which takes them 8 bytes for each of about 5 n (n + 1) numbers.
+class RegressorRows {
+  friend class FastModel;
+  Eigen::Index samples_ = 0;
+  std::vector<double> numbers_;
+};
+
 /// N samples of n joints. Views: what they look at must live as long.
 struct GramSamples {
   ConstStates q, qd, qdd;  ///< rad, rad/s, rad/s^2 (prismatic m, m/s, m/s^2)
@@ -38,6 +45,12 @@ struct GramSamples {
   std::vector<ConstStates> own_columns = {};
   /// Of each joint and sample, none negative; all one where there are none.
   std::optional<ConstStates> weights = {};
+  /// Whether products of two numbers of Y_j are summed: addLinks() has them from other sums.
+  bool links = true;
+  /// Where the rows Y_j, times their weights' roots, are to be kept; and those that were kept of the same
+  /// samples, and needn't be made again.
+  RegressorRows* keep = nullptr;
+  const RegressorRows* rows = nullptr;
 };
 
 /// Gram matrices of the rows of all joints, which FastModel::addToGram() adds samples to.
@@ -65,6 +78,11 @@ class RegressorGram {
   /// @throws ModelError  other numbers of joints or columns.
   void add(const RegressorGram& other);
 
+  /// Adds the products of two numbers of Y_j of another one, whose own columns don't matter.
+  ///
+  /// @throws ModelError  another number of joints.
+  void addLinks(const RegressorGram& other);
+
   /// G_j, symmetric; the columns of links before joint j are zero.
   ///
   /// @param joint   0 .. n - 1.
@@ -86,14 +104,14 @@ class RegressorGram {
  private:
   friend class FastModel;
 
-  /// Of a joint: the upper triangle of G_j from its own link on, row by row.
-  const double* sumsOf(Eigen::Index joint) const;
+  /// Where the matrix of a joint begins: own columns and torque, then links from the joint's own on.
+  std::ptrdiff_t firstSum(Eigen::Index joint) const;
+  std::ptrdiff_t firstLinks(Eigen::Index joint) const;
   /// Numbers of a row there.
   std::ptrdiff_t storedRow(Eigen::Index joint) const;
 
   Eigen::Index joints_, own_columns_, samples_ = 0;
   std::vector<double> sums_;  // one matrix after the other: src/fast/gram.hpp
-  std::vector<double> rows_;  // of a few states
 };
 
 }  // namespace v2

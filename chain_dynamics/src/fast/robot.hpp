@@ -106,15 +106,34 @@ struct GramInputs {
   const Samples* columns;  ///< a joint's own, beside those of the regressor
   int column_count;
   const Samples* weights;  ///< null: all one
+  bool links;              ///< whether products of two numbers of links are wanted
+  const double* rows;      ///< of links, for each kGramStates states; null: not made yet
 };
 
 /// States whose rows stand in memory at the same time.
 constexpr int kGramStates = 32;
 
-/// Numbers of a row of joint j of so many: those of its link and all after it, its own columns, its
-/// torque, and zeros to the end of a pack of any instruction set.
-constexpr std::ptrdiff_t gramRow(int joints, int j, int column_count) {
-  return (std::ptrdiff_t{10} * (joints - j) + column_count + 1 + 7) / 8 * 8;
+/// For each joint, one after the other: kGramStates rows, or sums of their products.
+struct GramMemory {
+  double* links;  ///< linksRow() numbers each; of no meaning where the rows are known
+  bool keep;      ///< whether the rows of the next states go after these, not in their place
+  double* own;    ///< ownRow() numbers each
+  double* sums;   ///< matrices of ownRow() + linksRow(), of which the upper triangle is written
+};
+
+/// Numbers of a row with zeros to the end of a pack of any instruction set: those of the link of joint j
+/// of so many and all after it; a joint's own columns and its torque.
+constexpr std::ptrdiff_t linksRow(int joints, int j) {
+  return (std::ptrdiff_t{10} * (joints - j) + 7) / 8 * 8;
+}
+constexpr std::ptrdiff_t ownRow(int column_count) {
+  return std::ptrdiff_t{column_count + 1 + 7} / 8 * 8;
+}
+/// Numbers of the rows of links of all joints.
+constexpr std::ptrdiff_t linksRows(int joints) {
+  std::ptrdiff_t numbers = 0;
+  for (int j = 0; j < joints; ++j) numbers += linksRow(joints, j);
+  return numbers;
 }
 
 /// What one instruction set computes of one state. Vectors are written where nothing is read any
@@ -181,8 +200,7 @@ struct ManyKernels {
   void (*tip_jacobian)(const Robot&, int structure, std::ptrdiff_t states, Samples q, Matrices J);
   void (*tip_jacobian_derivative)(const Robot&, int structure, std::ptrdiff_t states, Samples q,
                                   Samples qd, Matrices dJ);
-  void (*gram)(const Robot&, std::ptrdiff_t states, const GramInputs& inputs, double* memory,
-               double* sums);
+  void (*gram)(const Robot&, std::ptrdiff_t states, const GramInputs& inputs, const GramMemory& to);
 
   /// For tests: sine and cosine of count angles plus quarter turns.
   void (*sine_cosine)(int count, const double* angle, const double* quarter_turns, double* sine,
