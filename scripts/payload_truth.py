@@ -117,7 +117,8 @@ def _model(
         law, strength, delay, fit = chosen.law, chosen.prior_strength, chosen.delay, chosen.fit
     later = [block.later(delay) for block in rest]
     if not nested:
-        fit = fitter.fit(together(later), law=law, prior_strength=strength)
+        options = _core.ArmFitOptions(law, prior_strength=strength)
+        fit = fitter.fit(fitter.data(together(later)), options)
     known = knowledge(fitter, fit, later, law=law, prior_strength=strength, worth=1.0)
     factor = factor_of(fitter, fit, later, known, law=law)
     model = replace(

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chain_dynamics/error.hpp>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -23,10 +25,22 @@ using Eigen::VectorXd;
 constexpr double kSettledStep = 0.02;  // Gauss-Newton step, relative to the width, that ends it
 const double kGainDeviation = std::log(kDriveGainFactor);
 constexpr double kSettledGain = 1e-3;  // the same, of the logarithm of a drive gain
-constexpr double kFixed = 1e-9;        // deviation of a column that is switched off
 constexpr int kNoiseIterations = 4;
 
 double logRatio(double to, double from) { return std::log(to / from); }
+
+OwnColumn drawnTo(double center, double deviation) {
+  return {false, std::numeric_limits<double>::infinity(), center, deviation};
+}
+
+/// The own columns of a fit whose shift, width, vs and drive gains are held.
+std::vector<Index> heldColumns(FrictionTerms terms) {
+  using namespace own_column;
+  std::vector<Index> columns = {kAcceleration, kVelocity, kOne, kStep};
+  if (terms != FrictionTerms::kStep) columns.push_back(kLoad);
+  if (terms == FrictionTerms::kStribeck) columns.push_back(kStribeck);
+  return columns;
+}
 
 /// What width, shift and vs are drawn to, and their bounds, of one joint.
 class StepPrior {
@@ -41,8 +55,8 @@ class StepPrior {
     return law;
   }
 
-  /// Of the columns, with the step of width, shift and vs free or held.
-  std::vector<OwnColumn> columns(const StepFriction& law, FrictionTerms terms, bool free) const {
+  /// Of all columns.
+  std::vector<OwnColumn> columns(const StepFriction& law, FrictionTerms terms) const {
     const double infinity = std::numeric_limits<double>::infinity();
     std::vector<OwnColumn> columns(static_cast<std::size_t>(ownColumns(terms)));
     for (const Index c : {own_column::kAcceleration, own_column::kVelocity, own_column::kStep}) {
@@ -50,15 +64,15 @@ class StepPrior {
     }
     columns[at(own_column::kOne)] = {false, infinity, 0, 1e4};  // for a joint that stands still
     const double factor = std::log(prior_.width_factor);
-    columns[at(own_column::kShift)] = step(-law.shift, prior_.shift * greatest_, free);
+    columns[at(own_column::kShift)] = drawnTo(-law.shift, prior_.shift * greatest_);
     columns[at(own_column::kWidth)] =
-        step(logRatio(prior_.width * greatest_, law.width), factor, free);
+        drawnTo(logRatio(prior_.width * greatest_, law.width), factor);
     if (terms == FrictionTerms::kStep) return columns;
     columns[at(own_column::kLoad)] = {true, prior_.most_load, 0, prior_.load};
     if (terms == FrictionTerms::kLoad) return columns;
     columns[at(own_column::kStribeck)] = OwnColumn::positive();
     columns[at(own_column::kStribeckVelocity)] =
-        step(logRatio(prior_.stribeck_velocity * greatest_, law.vs), factor, free);
+        drawnTo(logRatio(prior_.stribeck_velocity * greatest_, law.vs), factor);
     return columns;
   }
 
@@ -83,13 +97,6 @@ class StepPrior {
     return law;
   }
 
-  /// Of a step whose coefficient is drawn to the center, or held.
-  static OwnColumn step(double center, double deviation, bool free) {
-    const double infinity = std::numeric_limits<double>::infinity();
-    return free ? OwnColumn{false, infinity, center, deviation}
-                : OwnColumn{false, infinity, 0, kFixed * deviation};
-  }
-
  private:
   static std::size_t at(Index column) { return static_cast<std::size_t>(column); }
 
@@ -97,33 +104,10 @@ class StepPrior {
   double greatest_;
 };
 
-VectorXd greatestVelocities(Index joints, const std::vector<ArmSamples>& blocks) {
-  VectorXd greatest = VectorXd::Zero(joints);
-  for (const ArmSamples& block : blocks) {
-    for (Index k = 0; k < block.qd.count; ++k) {
-      for (Index j = 0; j < joints; ++j) {
-        greatest[j] = std::max(greatest[j], std::abs(block.qd(j, k)));
-      }
-    }
+void addGreatest(const ConstStates& qd, VectorXd& greatest) {
+  for (Index k = 0; k < qd.count; ++k) {
+    for (Index j = 0; j < qd.joints; ++j) greatest[j] = std::max(greatest[j], std::abs(qd(j, k)));
   }
-  return greatest;
-}
-
-void checkSamples(Index joints, const std::vector<ArmSamples>& blocks) {
-  Index samples = 0;
-  for (const ArmSamples& block : blocks) {
-    for (const ConstStates& states : {block.q, block.qd, block.qdd, block.tau}) {
-      if (states.joints != joints || states.count != block.q.count) {
-        throw ModelError(
-            "ArmFitter: samples", "q, qd, qdd, tau",
-            std::to_string(joints) + " joints and as many samples each",
-            std::to_string(states.joints) + " joints, " + std::to_string(states.count) + " samples",
-            "pair each torque with its state");
-      }
-    }
-    samples += block.q.count;
-  }
-  if (samples == 0) throw ModelError("ArmFitter: expected samples, got none");
 }
 
 bool areGains(Index joints, const OwnedVector& gains) {
@@ -164,57 +148,65 @@ Fit linearPart(const ArmFit& arm, FrictionTerms terms) {
 /// The fits that take turns with passes over the samples.
 class Rounds {
  public:
-  Rounds(const ArmFitter& fitter, const std::vector<ArmSamples>& blocks,
+  using GramAt = std::function<RegressorGram(const ArmFit&)>;
+
+  Rounds(const std::vector<LinkPrior>& links, const VectorXd& greatest_velocities,
          const ArmFitOptions& options)
-      : fitter_(fitter), blocks_(blocks), options_(options) {
-    const Index n = fitter.description().jointCount();
-    const VectorXd greatest = greatestVelocities(n, blocks);
-    for (Index j = 0; j < n; ++j) steps_.emplace_back(options.friction, greatest[j]);
-    gains_ = options.drive_gains.size() > 0;
+      : links_(links), options_(options), gains_(options.drive_gains.size() > 0) {
+    for (const double greatest : greatest_velocities) {
+      steps_.emplace_back(options.friction, greatest);
+    }
   }
 
-  /// Of all unknowns at a fit; free: with steps of shift, width and vs.
-  Prior prior(const ArmFit& fit, bool free) const {
+  /// Of all unknowns at a fit, or of those that it is linear in.
+  Prior prior(const ArmFit& fit, bool linear) const {
     Prior prior;
-    for (const LinkPrior& link : fitter_.prior()) prior.links.push_back(link.link);
+    for (const LinkPrior& link : links_) prior.links.push_back(link.link);
+    if (linear) prior.columns = heldColumns(options_.terms);
     for (std::size_t j = 0; j < steps_.size(); ++j) {
-      const auto columns = steps_[j].columns(fit.friction[j], options_.terms, free);
-      prior.own.insert(prior.own.end(), columns.begin(), columns.end());
-      if (gains_) prior.own.push_back(StepPrior::step(-gainRatio(fit, j), kGainDeviation, free));
+      std::vector<OwnColumn> all = steps_[j].columns(fit.friction[j], options_.terms);
+      if (gains_) all.push_back(drawnTo(-gainRatio(fit, j), kGainDeviation));
+      if (!linear) prior.own.insert(prior.own.end(), all.begin(), all.end());
+      for (const Index c : prior.columns) prior.own.push_back(all[static_cast<std::size_t>(c)]);
     }
     return prior;
   }
 
-  /// The best fit of all passes.
-  ArmFit run(const ArmFit* start) {
+  /// The best fit of all passes. gram_at: sums of the samples at a fit.
+  ArmFit run(const ArmFit* start, const GramAt& gram_at) {
     ArmFit tried = start != nullptr ? *start : beginning();
     if (!gains_ || tried.drive_gains.size() != joints()) tried.drive_gains = options_.drive_gains;
     if (options_.terms != FrictionTerms::kStribeck) withoutStribeck(tried);
-    if (start != nullptr) last_ = linearPart(tried, options_.terms);
+    int pass = 1;
+    if (start != nullptr) {
+      last_ = linearPart(tried, options_.terms);
+    } else if (options_.most_passes > 1) {  // no step without heights and loads
+      last_ = linearFit(tried, gram_at(tried));
+      tried = with(tried, last_);
+      ++pass;
+    }
     ArmFit best, current;
     best.cost = current.cost = std::numeric_limits<double>::infinity();
-    std::vector<Eigen::Vector4d> by;
-    int pass = 1;
+    Steps by;
+    int shrunk = 0;
     for (; pass <= options_.most_passes; ++pass) {
-      RegressorGram gram(joints(), ownColumns(options_.terms) + (gains_ ? 1 : 0));
-      for (const ArmSamples& block : blocks_) fitter_.addToGram(tried, block, gram);
-      const Fit held = consistentFit(gram, prior(tried, false), fitOptions(), last());
-      ArmFit next = with(tried, held);
-      next.cost = cost(held, next, gram.samples());
-      const bool known = pass > 1 || start != nullptr;  // the columns' heights and loads
+      const RegressorGram gram = gram_at(tried);
+      const Fit fit = linearFit(tried, gram);
+      ArmFit next = with(tried, fit);
+      next.cost = cost(fit, next, gram.samples());
       const double gain = current.cost - next.cost;
-      // the way to a better fit may begin with a worse one
-      if (!(gain > 0) && pass > 2) {
-        if (!shrink(by)) break;
+      if (pass > kFirstPasses && !(gain > 0)) {
+        if (++shrunk > kMostShrunk) break;
+        for (Eigen::Vector4d& step : by) step *= 0.3;
         tried = moved(current, by);
         continue;
       }
       current = next;
-      last_ = held;
+      last_ = fit;
       if (next.cost < best.cost) best = next;
-      by = known ? stepOf(gram, next, held) : std::vector<Eigen::Vector4d>(steps_.size(), zero());
-      if (known && (settled(by, next) || (pass > 2 && gain < kGain))) break;
-      if (!known && options_.most_passes > 1) best.cost = std::numeric_limits<double>::infinity();
+      if (pass == options_.most_passes) break;
+      by = stepOf(gram, next);
+      if (settled(by, next) || (pass > kFirstPasses && gain < kGain)) break;
       tried = moved(next, by);
     }
     best.passes = std::min(pass, options_.most_passes);
@@ -222,15 +214,18 @@ class Rounds {
   }
 
  private:
-  static constexpr double kGain = 1e-1;  // of the cost, that is worth another pass
-  static Eigen::Vector4d zero() { return Eigen::Vector4d::Zero(); }
+  using Steps = std::vector<Eigen::Vector4d>;  // of shift, log width, log vs, log gain
+  static constexpr double kGain = 1e-1;        // of the cost, that is worth another pass
+  static constexpr int kFirstPasses = 2;       // the way to a better fit may begin with a worse one
+  static constexpr int kMostShrunk = 2;        // steps that are tried again
+
   Index joints() const { return static_cast<Index>(steps_.size()); }
 
   ArmFit beginning() const {
     ArmFit fit;
     fit.parameters.resize(10, joints());
     for (Index j = 0; j < joints(); ++j) {
-      fit.parameters.col(j) = fitter_.prior()[static_cast<std::size_t>(j)].link.toVector();
+      fit.parameters.col(j) = links_[static_cast<std::size_t>(j)].link.toVector();
     }
     fit.rotor_inertia.setZero(joints());
     for (const StepPrior& step : steps_) fit.friction.push_back(step.start());
@@ -249,8 +244,11 @@ class Rounds {
     return options;
   }
 
-  /// The fit of the last pass, or what to start from.
-  const Fit* last() const { return last_.own.size() > 0 ? &last_ : nullptr; }
+  /// With shift, width, vs and gains of an arm, from the last fit on.
+  Fit linearFit(const ArmFit& arm, const RegressorGram& gram) const {
+    return consistentFit(gram, prior(arm, true), fitOptions(),
+                         last_.own.size() > 0 ? &last_ : nullptr);
+  }
 
   ArmFit with(const ArmFit& tried, const Fit& fit) const {
     ArmFit next = tried;
@@ -289,15 +287,14 @@ class Rounds {
     return sum;
   }
 
-  std::vector<Eigen::Vector4d> stepOf(const RegressorGram& gram, const ArmFit& arm,
-                                      const Fit& held) const {
+  /// From the last fit.
+  Steps stepOf(const RegressorGram& gram, const ArmFit& arm) const {
     FitOptions options = fitOptions();
-    options.noise = held.noise;
     options.noise_iterations = 1;
-    const Fit fit = consistentFit(gram, prior(arm, true), options, &held);
-    std::vector<Eigen::Vector4d> by;
+    const Fit fit = consistentFit(gram, prior(arm, false), options, &last_);
+    const bool stribeck = options_.terms == FrictionTerms::kStribeck;
+    Steps by;
     for (Index j = 0; j < joints(); ++j) {
-      const bool stribeck = options_.terms == FrictionTerms::kStribeck;
       by.emplace_back(fit.own(own_column::kShift, j), fit.own(own_column::kWidth, j),
                       stribeck ? fit.own(own_column::kStribeckVelocity, j) : 0.0,
                       gains_ ? fit.own(fit.own.rows() - 1, j) : 0.0);
@@ -305,7 +302,7 @@ class Rounds {
     return by;
   }
 
-  ArmFit moved(const ArmFit& fit, const std::vector<Eigen::Vector4d>& by) const {
+  ArmFit moved(const ArmFit& fit, const Steps& by) const {
     ArmFit result = fit;
     for (std::size_t j = 0; j < steps_.size(); ++j) {
       result.friction[j] = steps_[j].moved(fit.friction[j], by[j]);
@@ -316,13 +313,7 @@ class Rounds {
     return result;
   }
 
-  /// Whether a smaller step is worth another try.
-  bool shrink(std::vector<Eigen::Vector4d>& by) {
-    for (Eigen::Vector4d& step : by) step *= 0.3;
-    return ++shrunk_ <= 2;
-  }
-
-  static bool settled(const std::vector<Eigen::Vector4d>& by, const ArmFit& fit) {
+  static bool settled(const Steps& by, const ArmFit& fit) {
     for (std::size_t j = 0; j < by.size(); ++j) {
       const Eigen::Vector4d step(by[j][0] / fit.friction[j].width, by[j][1], by[j][2],
                                  by[j][3] * kSettledStep / kSettledGain);
@@ -331,13 +322,11 @@ class Rounds {
     return true;
   }
 
-  const ArmFitter& fitter_;
-  const std::vector<ArmSamples>& blocks_;
+  const std::vector<LinkPrior>& links_;
   const ArmFitOptions& options_;
+  bool gains_;  // whether they are fitted
   std::vector<StepPrior> steps_;
-  bool gains_ = false;  // whether they are fitted
-  Fit last_;
-  int shrunk_ = 0;
+  Fit last_;  // of the last pass that was no worse, or what to start from
 };
 
 /// Links without motor or friction: the regressor's, and its gravity.
@@ -379,17 +368,26 @@ void ArmFitter::check(const ArmFit& fit) const {
   }
 }
 
-ArmFit ArmFitter::fit(const std::vector<ArmSamples>& blocks, const ArmFitOptions& options,
+ArmFit ArmFitter::fit(const ArmData& data, const ArmFitOptions& options,
                       const ArmFit* start) const {
-  checkSamples(chain_.jointCount(), blocks);
   if (start != nullptr) check(*start);
   checkOptions(chain_.jointCount(), options);
-  return Rounds(*this, blocks, options).run(start);
+  std::vector<const ArmData::Block*> blocks;
+  RegressorGram links(chain_.jointCount());
+  VectorXd greatest = VectorXd::Zero(chain_.jointCount());
+  for (std::size_t b = 0; b < data.blocks_.size(); ++b) {
+    if (static_cast<int>(b) == options.without) continue;
+    blocks.push_back(&data.blocks_[b]);
+    links.add(data.blocks_[b].links);
+    addGreatest(data.blocks_[b].samples.qd, greatest);
+  }
+  if (links.samples() == 0) throw ModelError("ArmFitter: expected samples, got none");
+  const auto gram_at = [&](const ArmFit& fit) { return gramOf(fit, options.terms, blocks, links); };
+  return Rounds(prior_, greatest, options).run(start, gram_at);
 }
 
-ArmInformation ArmFitter::information(const ArmFit& fit, const std::vector<ArmSamples>& blocks,
+ArmInformation ArmFitter::information(const ArmFit& fit, const ArmData& data,
                                       const ArmFitOptions& options) const {
-  checkSamples(chain_.jointCount(), blocks);
   check(fit);
   ArmFitOptions of = options;
   of.drive_gains = fit.drive_gains;  // a step begins at the fit
@@ -404,12 +402,14 @@ ArmInformation ArmFitter::information(const ArmFit& fit, const std::vector<ArmSa
       Eigen::Map<const VectorXd>(linear.own.data(), linear.own.size());
   const VectorXd weights = fit.noise.array().square().inverse();
   ArmInformation result;
-  result.scores.resize(x.size(), static_cast<Index>(blocks.size()));
+  result.scores.resize(x.size(), static_cast<Index>(data.blocks_.size()));
   MatrixXd A(x.size(), x.size());
   VectorXd b(x.size());
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    RegressorGram gram(chain_.jointCount(), linear.own.rows());
-    addToGram(fit, blocks[k], gram);
+  VectorXd greatest = VectorXd::Zero(chain_.jointCount());
+  for (std::size_t k = 0; k < data.blocks_.size(); ++k) {
+    const ArmData::Block& block = data.blocks_[k];
+    addGreatest(block.samples.qd, greatest);
+    const RegressorGram gram = gramOf(fit, options.terms, {&block}, block.links);
     gram.normalEquations(weights, A, b);
     result.scores.col(static_cast<Index>(k)) = b - A * x;
     all.add(gram);
@@ -417,7 +417,7 @@ ArmInformation ArmFitter::information(const ArmFit& fit, const std::vector<ArmSa
   FitOptions how;
   how.prior_strength = options.prior_strength;
   Information found = ::inverse_dynamics_identification::information(
-      all, Rounds(*this, blocks, of).prior(fit, true), how, linear);
+      all, Rounds(prior_, greatest, of).prior(fit, false), how, linear);
   result.data = std::move(found.data);
   result.prior = std::move(found.prior);
   return result;

@@ -41,15 +41,12 @@ struct WhitenedRows {
 }  // namespace
 
 OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms terms,
-                                           const std::vector<ArmSamples>& blocks,
-                                           const std::vector<OwnedVector>& times,
-                                           const ResidualNoise& noise) const {
+                                           const ArmData& data, const ResidualNoise& noise) const {
   check(fit);
   const Index n = chain_.jointCount(), own = ownColumns(terms), links = 10 * n;
-  if (times.size() != blocks.size() || noise.white.size() != n || noise.correlated.size() != n) {
-    throw chain_dynamics::ModelError("ArmFitter.whitenedInformation", "times, noise",
-                                     "times of each block, noise of each joint", "others",
-                                     "take those of the samples");
+  if (noise.white.size() != n || noise.correlated.size() != n) {
+    throw chain_dynamics::ModelError("ArmFitter.whitenedInformation", "noise",
+                                     "numbers of each joint", "others", "take that of the samples");
   }
   std::vector<WhitenedRows> joints;
   for (Index j = 0; j < n; ++j) {
@@ -59,13 +56,12 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
                                         fast_);
   MatrixXd Y(n, links);
   VectorXd gravity(n), q(n), qd(n), qdd(n);
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const ArmSamples& block = blocks[b];
-    if (times[b].size() != block.q.count) {
+  for (const ArmData::Block& of : data.blocks_) {
+    const ArmSamples& block = of.samples;
+    if (block.time.size() != block.q.count) {
       throw chain_dynamics::ModelError(
-          "ArmFitter.whitenedInformation", "times",
-          std::to_string(block.q.count) + " of block " + std::to_string(b),
-          std::to_string(times[b].size()), "pair each sample with its time");
+          "ArmFitter.whitenedInformation", "time", std::to_string(block.q.count) + " numbers",
+          std::to_string(block.time.size()), "pair each sample with its time");
     }
     for (WhitenedRows& joint : joints) joint.filter.restart();
     for (Index k = 0; k < block.q.count; ++k) {
@@ -81,7 +77,7 @@ OwnedMatrix ArmFitter::whitenedInformation(const ArmFit& fit, FrictionTerms term
         joint.row.head(links) = Y.row(j);
         ownColumnsAt(fit.friction[static_cast<std::size_t>(j)], qd[j], qdd[j], std::abs(gravity[j]),
                      joint.row.tail(own));
-        joint.add(k > 0 ? times[b][k] - times[b][k - 1] : 0.0);
+        joint.add(k > 0 ? block.time[k] - block.time[k - 1] : 0.0);
       }
     }
   }

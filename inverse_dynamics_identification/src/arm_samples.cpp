@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// @file
-/// What ArmFitter does with samples: rows for Gram matrices, and torques.
+/// What ArmFitter does with samples: sums of their rows, and torques.
 
 #include <algorithm>
 #include <chain_dynamics/error.hpp>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "friction_columns.hpp"
 #include "inverse_dynamics_identification/arm_fit.hpp"
 
 namespace inverse_dynamics_identification {
@@ -27,40 +30,87 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kBatch = 512;  // samples whose columns are held
-
-/// Of a gram, without that of the drive gain.
-Index frictionColumns(const ArmFit& fit, const RegressorGram& gram) {
-  const Index n = fit.rotor_inertia.size(), gain = fit.drive_gains.size() > 0 ? 1 : 0;
-  const Index columns = gram.ownColumns() - gain;
-  for (const FrictionTerms terms :
-       {FrictionTerms::kStep, FrictionTerms::kLoad, FrictionTerms::kStribeck}) {
-    if (gram.joints() == n && columns == ownColumns(terms)) return columns;
-  }
-  throw ModelError("ArmFitter.addToGram", "gram",
-                   std::to_string(n) + " joints and " + std::to_string(6 + gain) + ", " +
-                       std::to_string(7 + gain) + " or " + std::to_string(9 + gain) +
-                       " own columns",
-                   std::to_string(gram.joints()) + " joints and " +
-                       std::to_string(gram.ownColumns()) + " columns",
-                   "make it with ownColumns(terms)" +
-                       std::string(gain > 0 ? " and one more for the drive gain" : ""));
-}
+constexpr Index kBatch = 512;        // samples whose columns are held
+constexpr Index kMostKept = 20'000;  // samples whose rows are kept: 50 MB of an arm of seven joints
 
 bool isSomething(const LinkParameters& body) { return !body.toVector().isZero(0); }
 
-/// A batch of samples, and what is computed of it. Columns: samples.
-struct Batch {
-  Batch(Index n, Index own_columns)
-      : gravity(n, kBatch),
-        loaded(n, kBatch),
-        alone(n, kBatch),
-        tau(n, kBatch),
-        own(static_cast<std::size_t>(own_columns), MatrixXd(n, kBatch)) {}
+void checkSamples(Index joints, const ArmSamples& block) {
+  for (const ConstStates& states : {block.q, block.qd, block.qdd, block.tau}) {
+    if (states.joints == joints && states.count == block.q.count) continue;
+    throw ModelError(
+        "ArmFitter: samples", "q, qd, qdd, tau",
+        std::to_string(joints) + " joints and as many samples each",
+        std::to_string(states.joints) + " joints, " + std::to_string(states.count) + " samples",
+        "pair each torque with its state");
+  }
+}
 
-  MatrixXd gravity, loaded, alone, tau;
-  std::vector<MatrixXd> own;
+/// Own columns and torques of a few samples at a fit.
+class Batch {
+ public:
+  Batch(const ArmFit& fit, FrictionTerms terms)
+      : fit_(fit),
+        has_gains_(fit.drive_gains.size() > 0),
+        columns_(ownColumns(terms)),
+        gravity_(fit.rotor_inertia.size(), kBatch),
+        tau_(gravity_.rows(), kBatch) {
+    loaded_.resizeLike(gravity_);
+    alone_.resizeLike(gravity_);
+    own_.resize(static_cast<std::size_t>(columns_ + (has_gains_ ? 1 : 0)));
+    for (Rows& column : own_) column.resizeLike(gravity_);
+  }
+
+  /// Rows of samples, whose torques are what was measured; loaded: the links with what they carry.
+  GramSamples rows(const FastModel& alone, const FastModel& loaded, GramSamples samples) {
+    const Index size = samples.q.count;
+    const bool carries = &loaded != &alone;
+    const ConstStates q = samples.q, qd = samples.qd, qdd = samples.qdd;
+    loaded.gravityVectorBatch(q, gravity_.leftCols(size));
+    if (has_gains_ || carries) loaded.torquesBatch(q, qd, qdd, loaded_.leftCols(size));
+    if (carries) alone.torquesBatch(q, qd, qdd, alone_.leftCols(size));
+    for (Index j = 0; j < q.joints; ++j) {
+      const StepFriction& law = fit_.friction[static_cast<std::size_t>(j)];
+      const auto part = [&](auto& of) { return of.row(j).head(size).array(); };
+      const Values load = part(gravity_).abs();
+      const Values velocity = valuesOf(qd, j), acceleration = valuesOf(qdd, j);
+      frictionColumns(law, velocity, acceleration, load, columns_,
+                      [&](Index c) { return part(own_[static_cast<std::size_t>(c)]); });
+      part(tau_) = (has_gains_ ? fit_.drive_gains[j] : 1.0) * valuesOf(samples.tau, j);
+      if (carries) part(tau_) -= part(loaded_) - part(alone_);
+      if (!has_gains_) continue;
+      part(own_.back()) = -part(loaded_) - fit_.rotor_inertia[j] * acceleration;
+      for (Index k = 0; k < size; ++k) own_.back()(j, k) -= friction(law, velocity[k], load[k]);
+    }
+    samples.tau = tau_.leftCols(size);
+    for (const Rows& column : own_) samples.own_columns.emplace_back(column.leftCols(size));
+    samples.links = false;
+    return samples;
+  }
+
+ private:
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  using Values = Eigen::Array<double, 1, Eigen::Dynamic>;
+
+  static Values valuesOf(const ConstStates& states, Index joint) {
+    Values values(states.count);
+    for (Index k = 0; k < states.count; ++k) values[k] = states(joint, k);
+    return values;
+  }
+
+  const ArmFit& fit_;
+  bool has_gains_;
+  Index columns_;
+  Rows gravity_, tau_, loaded_, alone_;  // of each joint
+  std::vector<Rows> own_;
 };
+
+/// Samples from `first` on, at most kBatch.
+GramSamples batchOf(const ArmSamples& block, Index first) {
+  const Index size = std::min(kBatch, block.q.count - first);
+  return {block.q.middle(first, size), block.qd.middle(first, size), block.qdd.middle(first, size),
+          block.tau.middle(first, size)};
+}
 
 }  // namespace
 
@@ -77,40 +127,46 @@ Chain ArmFitter::withLinks(const OwnedMatrix& parameters, const OwnedVector* rot
   return Chain(chain_.name(), std::move(joints), std::move(links), chain_.gravity(), chain_.tip());
 }
 
-void ArmFitter::addToGram(const ArmFit& fit, const ArmSamples& samples, RegressorGram& gram) const {
-  check(fit);
-  const Index n = chain_.jointCount(), columns = frictionColumns(fit, gram);
-  const bool has_gains = fit.drive_gains.size() > 0, carries = isSomething(samples.carried);
-  const FastModel alone(Model(withLinks(fit.parameters, nullptr)), fast_);
-  const FastModel loaded(Model(withLinks(fit.parameters, nullptr, samples.carried)), fast_);
-  Batch of(n, gram.ownColumns());
-  VectorXd row(columns);
-  for (Index first = 0; first < samples.q.count; first += kBatch) {
-    const Index size = std::min(kBatch, samples.q.count - first);
-    const ConstStates q = samples.q.middle(first, size), qd = samples.qd.middle(first, size),
-                      qdd = samples.qdd.middle(first, size),
-                      measured = samples.tau.middle(first, size);
-    loaded.gravityVectorBatch(q, of.gravity.leftCols(size));
-    if (has_gains || carries) loaded.torquesBatch(q, qd, qdd, of.loaded.leftCols(size));
-    if (carries) alone.torquesBatch(q, qd, qdd, of.alone.leftCols(size));
-    for (Index k = 0; k < size; ++k) {
-      for (Index j = 0; j < n; ++j) {
-        const StepFriction& law = fit.friction[static_cast<std::size_t>(j)];
-        const double load = std::abs(of.gravity(j, k));
-        ownColumnsAt(law, qd(j, k), qdd(j, k), load, row);
-        for (Index c = 0; c < columns; ++c) of.own[static_cast<std::size_t>(c)](j, k) = row[c];
-        const double known = carries ? of.loaded(j, k) - of.alone(j, k) : 0.0;
-        of.tau(j, k) = (has_gains ? fit.drive_gains[j] : 1.0) * measured(j, k) - known;
-        if (!has_gains) continue;
-        of.own.back()(j, k) =
-            -(of.loaded(j, k) + fit.rotor_inertia[j] * qdd(j, k) + friction(law, qd(j, k), load));
-      }
-    }
-    const ConstStates tau = of.tau.leftCols(size);
-    GramSamples batch{q, qd, qdd, tau};
-    for (const MatrixXd& column : of.own) batch.own_columns.emplace_back(column.leftCols(size));
-    fast_.addToGram(batch, gram);
+ArmData ArmFitter::data(std::vector<ArmSamples> blocks) const {
+  Index samples = 0;
+  for (const ArmSamples& block : blocks) {
+    checkSamples(chain_.jointCount(), block);
+    samples += block.q.count;
   }
+  std::vector<ArmData::Block> found;
+  for (ArmSamples& block : blocks) {
+    ArmData::Block& to = found.emplace_back(
+        ArmData::Block{std::move(block), RegressorGram(chain_.jointCount()), {}});
+    for (Index first = 0; first < to.samples.q.count; first += kBatch) {
+      GramSamples batch = batchOf(to.samples, first);
+      if (samples <= kMostKept) batch.keep = &to.rows.emplace_back();
+      fast_.addToGram(batch, to.links);
+    }
+  }
+  return ArmData(std::move(found));
+}
+
+RegressorGram ArmFitter::gramOf(const ArmFit& fit, FrictionTerms terms,
+                                const std::vector<const ArmData::Block*>& blocks,
+                                const RegressorGram& links) const {
+  RegressorGram gram(chain_.jointCount(), ownColumns(terms) + (fit.drive_gains.size() > 0 ? 1 : 0));
+  const FastModel alone(Model(withLinks(fit.parameters, nullptr)), fast_);
+  Batch batch(fit, terms);
+  for (const ArmData::Block* block : blocks) {
+    const ArmSamples& samples = block->samples;
+    std::optional<FastModel> loaded;
+    if (isSomething(samples.carried)) {
+      loaded.emplace(Model(withLinks(fit.parameters, nullptr, samples.carried)), fast_);
+    }
+    auto rows = block->rows.begin();
+    for (Index first = 0; first < samples.q.count; first += kBatch) {
+      GramSamples of = batch.rows(alone, loaded ? *loaded : alone, batchOf(samples, first));
+      if (rows != block->rows.end()) of.rows = &*rows++;
+      fast_.addToGram(of, gram);
+    }
+  }
+  gram.addLinks(links);
+  return gram;
 }
 
 void ArmFitter::torques(const ArmFit& fit, ConstStates q, ConstStates qd, ConstStates qdd,

@@ -34,8 +34,14 @@ void requireSize(const char* what, Index expected, Index got) {
 /// The rows of all joints: what normalEquations() adds up, kept apart so that weights may change.
 class Data {
  public:
-  explicit Data(const RegressorGram& gram)
-      : joints_(gram.joints()), own_(gram.ownColumns()), samples_(gram.samples()) {
+  Data(const RegressorGram& gram, const Prior& prior)
+      : joints_(gram.joints()),
+        all_columns_(gram.ownColumns()),
+        samples_(gram.samples()),
+        columns_(prior.columns) {
+    if (columns_.empty()) {
+      for (Index c = 0; c < all_columns_; ++c) columns_.push_back(c);
+    }
     for (Index j = 0; j < joints_; ++j) {
       MatrixXd G(gram.rowSize(), gram.rowSize());
       gram.rowGram(j, G);
@@ -49,8 +55,11 @@ class Data {
   }
 
   Index joints() const { return joints_; }
-  Index ownColumns() const { return own_; }
-  Index unknowns() const { return (kParameters + own_) * joints_; }
+  Index allColumns() const { return all_columns_; }
+  const std::vector<Index>& columns() const { return columns_; }
+  Index ownColumns() const { return static_cast<Index>(columns_.size()); }
+  Index links() const { return kParameters * joints_; }
+  Index unknowns() const { return links() + ownColumns() * joints_; }
 
   /// Root mean square of the torques of each joint.
   VectorXd torques() const {
@@ -62,9 +71,13 @@ class Data {
   /// Root mean square of the errors of each joint, not below a share of its torques.
   VectorXd noise(const VectorXd& x) const {
     VectorXd result(joints_);
+    VectorXd row = VectorXd::Zero(last() + 1);  // e = -row . r
+    row.head(links()) = x.head(links());
+    row[last()] = -1;
     for (Index j = 0; j < joints_; ++j) {
-      VectorXd row(last() + 1);  // e = -row . r
-      row << x.head(kParameters * joints_), x.segment(kParameters * joints_ + own_ * j, own_), -1.0;
+      for (Index c = 0; c < ownColumns(); ++c) {
+        row[links() + columns_[at(c)]] = x[links() + ownColumns() * j + c];
+      }
       result[j] = std::sqrt(std::max(0.0, row.dot(grams_[at(j)] * row)));
     }
     result /= std::sqrt(static_cast<double>(samples_));
@@ -73,81 +86,119 @@ class Data {
 
   /// The quadratic `x' A x - 2 b' x + c` of the weighted squares.
   void quadratic(const VectorXd& noise, MatrixXd& A, VectorXd& b, double& c) const {
-    const Index rigid = kParameters * joints_;
     A.setZero(unknowns(), unknowns());
     b.setZero(unknowns());
     c = 0;
     for (Index j = 0; j < joints_; ++j) {
-      const MatrixXd& G = grams_[at(j)];
       const double w = 1 / (noise[j] * noise[j]);
-      const Index own = rigid + own_ * j;
-      A.topLeftCorner(rigid, rigid) += w * G.topLeftCorner(rigid, rigid);
-      A.block(0, own, rigid, own_) = w * G.block(0, rigid, rigid, own_);
-      A.block(own, 0, own_, rigid) = w * G.block(rigid, 0, own_, rigid);
-      A.block(own, own, own_, own_) = w * G.block(rigid, rigid, own_, own_);
-      b.head(rigid) += w * G.col(last()).head(rigid);
-      b.segment(own, own_) = w * G.col(last()).segment(rigid, own_);
+      const MatrixXd& G = grams_[at(j)];
+      const Index before = kParameters * j, moved = links() - before;  // links that it doesn't move
+      A.block(before, before, moved, moved) += w * G.block(before, before, moved, moved);
+      b.segment(before, moved) += w * G.col(last()).segment(before, moved);
       c += w * G(last(), last());
+      for (Index k = 0; k < ownColumns(); ++k) {
+        const auto column = w * G.col(links() + columns_[at(k)]);
+        const Index own = links() + ownColumns() * j, to = own + k;
+        A.col(to).segment(before, moved) = column.segment(before, moved);
+        A.row(to).segment(before, moved) = column.segment(before, moved);
+        for (Index i = 0; i < ownColumns(); ++i) A(own + i, to) = column[links() + columns_[at(i)]];
+        b[to] = column[last()];
+      }
     }
   }
 
  private:
   static std::size_t at(Index j) { return static_cast<std::size_t>(j); }
-  Index last() const { return kParameters * joints_ + own_; }
+  Index last() const { return links() + all_columns_; }
 
-  Index joints_, own_, samples_;
+  Index joints_, all_columns_, samples_;
+  std::vector<Index> columns_;  // of them all, those that there are unknowns for
   std::vector<MatrixXd> grams_;
 };
+
+/// Solves H x = b in place. First come the unknowns of the links; the own columns of a joint meet those of
+/// no other one, nor the links before it, and are eliminated. False: H isn't positive definite.
+bool solveInPlace(const MatrixXd& H, Index joints, VectorXd& x) {
+  const Index rigid = kParameters * joints, own = (H.rows() - rigid) / joints;
+  MatrixXd rest = H.topLeftCorner(rigid, rigid);
+  std::vector<Eigen::LLT<MatrixXd>> factors;
+  std::vector<MatrixXd> couplings;
+  for (Index j = 0; j < joints; ++j) {
+    const Index at = rigid + own * j, moved = rigid - kParameters * j;
+    const Eigen::LLT<MatrixXd>& factor = factors.emplace_back(H.block(at, at, own, own));
+    if (factor.info() != Eigen::Success) return false;
+    MatrixXd& C = couplings.emplace_back(H.block(at, rigid - moved, own, moved));
+    factor.matrixL().solveInPlace(C);
+    auto own_part = x.segment(at, own);
+    factor.matrixL().solveInPlace(own_part);
+    rest.bottomRightCorner(moved, moved)
+        .selfadjointView<Eigen::Lower>()
+        .rankUpdate(C.transpose(), -1);
+    x.segment(rigid - moved, moved).noalias() -= C.transpose() * own_part;
+  }
+  const Eigen::LLT<MatrixXd> factor(rest);
+  if (factor.info() != Eigen::Success) return false;
+  auto links = x.head(rigid);
+  factor.solveInPlace(links);
+  for (Index j = 0; j < joints; ++j) {
+    auto own_part = x.segment(rigid + own * j, own);
+    own_part.noalias() -= couplings[static_cast<std::size_t>(j)] *
+                          x.segment(kParameters * j, rigid - kParameters * j);
+    factors[static_cast<std::size_t>(j)].matrixU().solveInPlace(own_part);
+  }
+  return true;
+}
 
 /// The cost with given noise, and its minimum.
 class Cost {
  public:
   Cost(const Data& data, const Penalties& penalties, const VectorXd& noise)
-      : penalties_(penalties) {
+      : penalties_(penalties), joints_(data.joints()) {
     data.quadratic(noise, A_, b_, c_);
   }
 
-  double value(double strength, const VectorXd& x) const {
-    const double penalty = penalties_.value(strength, x);
-    return std::isfinite(penalty) ? x.dot(A_ * x) - 2 * b_.dot(x) + c_ + penalty : penalty;
-  }
-
-  void derivatives(double strength, const VectorXd& x, VectorXd& gradient,
-                   MatrixXd& hessian) const {
-    gradient = 2 * (A_ * x - b_);
-    hessian = 2 * A_;
-    penalties_.addDerivatives(strength, x, gradient, hessian);
-  }
+  double value(double strength, const VectorXd& x) const { return value(strength, x, A_ * x); }
 
   /// Damped Newton steps until the cost is within `tolerance` of its minimum. Counts them.
   void minimise(double strength, double tolerance, VectorXd& x, int& steps) const {
-    VectorXd gradient(x.size());
-    MatrixXd hessian(x.size(), x.size());
-    double cost = value(strength, x);
+    VectorXd Ax = A_ * x;
+    double cost = value(strength, x, Ax);
     for (int k = 0; k < kMostSteps; ++k, ++steps) {
-      derivatives(strength, x, gradient, hessian);
+      VectorXd gradient = 2 * (Ax - b_);
+      MatrixXd hessian = 2 * A_;
+      penalties_.addDerivatives(strength, x, gradient, hessian);
       const VectorXd step = newtonStep(gradient, hessian);
       const double decrease = -gradient.dot(step);  // twice what a full step promises
       if (!(decrease > 2 * (tolerance + kTolerance * std::abs(cost)))) return;
+      const VectorXd change = A_ * step;
       double share = 1;
-      double there = value(strength, x + step);
+      double there = value(strength, x + step, Ax + change);
       while (!(there <= cost - 0.1 * share * decrease) && share > 1e-12) {
         share *= 0.5;
-        there = value(strength, x + share * step);
+        there = value(strength, x + share * step, Ax + share * change);
       }
       if (!(there < cost)) return;  // rounding ends it
       x += share * step;
+      Ax += share * change;
       cost = there;
+      // after a full step, Newton's decrement is at most twice its square [Boyd, Vandenberghe, 9.6]
+      const double next = 4 * decrease * decrease / std::min(1.0, strength);
+      if (share == 1 && next < kTolerance * std::abs(cost)) return;
     }
   }
 
   const MatrixXd& quadraticPart() const { return A_; }
 
  private:
+  double value(double strength, const VectorXd& x, const VectorXd& Ax) const {
+    const double penalty = penalties_.value(strength, x);
+    return std::isfinite(penalty) ? x.dot(Ax) - 2 * b_.dot(x) + c_ + penalty : penalty;
+  }
+
   /// -H^-1 g, with unknowns of unit curvature: kilograms stand beside kg m^2. Where a link is about to
   /// lose a dimension, its curvatures differ by more than doubles can tell: a little more of each then.
   /// The matrix is scaled in place.
-  static VectorXd newtonStep(const VectorXd& gradient, MatrixXd& hessian) {
+  VectorXd newtonStep(const VectorXd& gradient, MatrixXd& hessian) const {
     if (!(hessian.diagonal().minCoeff() > 0)) {
       throw ModelError(
           "consistentFit: own columns: expected samples that determine them, got a column of "
@@ -155,17 +206,21 @@ class Cost {
           "give it a deviation");
     }
     const VectorXd scale = hessian.diagonal().cwiseSqrt().cwiseInverse();
-    hessian.array().colwise() *= scale.array();
-    hessian.array().rowwise() *= scale.transpose().array();
-    Eigen::LLT<MatrixXd> factor(hessian);
-    for (double more = 1e-14; factor.info() != Eigen::Success && more < 1; more *= 10) {
-      hessian.diagonal().array() += more;
-      factor.compute(hessian);
+    for (Index c = 0; c < scale.size(); ++c) {  // the lower triangle is enough
+      hessian.col(c).tail(scale.size() - c).array() *=
+          scale[c] * scale.tail(scale.size() - c).array();
     }
-    return -scale.cwiseProduct(factor.solve(scale.cwiseProduct(gradient)));
+    VectorXd step = -scale.cwiseProduct(gradient);
+    VectorXd solved = step;
+    for (double more = 1e-14; !solveInPlace(hessian, joints_, solved) && more < 1; more *= 10) {
+      hessian.diagonal().array() += more;
+      solved = step;
+    }
+    return scale.cwiseProduct(solved);
   }
 
   const Penalties& penalties_;
+  Index joints_;
   MatrixXd A_;
   VectorXd b_;
   double c_ = 0;
@@ -173,18 +228,24 @@ class Cost {
 
 VectorXd unknownsOf(const Fit& fit, const Data& data) {
   requireSize("parameters of the fit", kParameters * data.joints(), fit.parameters.size());
-  requireSize("own columns of the fit", data.ownColumns() * data.joints(), fit.own.size());
+  requireSize("own columns of the fit", data.allColumns() * data.joints(), fit.own.size());
   VectorXd x(data.unknowns());
-  x << Eigen::Map<const VectorXd>(fit.parameters.data(), fit.parameters.size()),
-      Eigen::Map<const VectorXd>(fit.own.data(), fit.own.size());
+  Index at = kParameters * data.joints();
+  x.head(at) = Eigen::Map<const VectorXd>(fit.parameters.data(), at);
+  for (Index j = 0; j < data.joints(); ++j) {
+    for (const Index c : data.columns()) x[at++] = fit.own(c, j);
+  }
   return x;
 }
 
 Fit fitOf(const VectorXd& x, const Data& data) {
-  const Index rigid = kParameters * data.joints();
   Fit fit;
   fit.parameters = Eigen::Map<const MatrixXd>(x.data(), kParameters, data.joints());
-  fit.own = Eigen::Map<const MatrixXd>(x.data() + rigid, data.ownColumns(), data.joints());
+  fit.own = MatrixXd::Zero(data.allColumns(), data.joints());
+  Index at = kParameters * data.joints();
+  for (Index j = 0; j < data.joints(); ++j) {
+    for (const Index c : data.columns()) fit.own(c, j) = x[at++];
+  }
   fit.noise = data.noise(x);
   return fit;
 }
@@ -212,7 +273,7 @@ void check(const Data& data, const Prior& prior, const FitOptions& options) {
 
 Fit consistentFit(const RegressorGram& gram, const Prior& prior, const FitOptions& options,
                   const Fit* start) {
-  const Data data(gram);
+  const Data data(gram, prior);
   check(data, prior, options);
   const Penalties penalties(prior);
   const double strength = options.prior_strength;
@@ -250,7 +311,7 @@ Fit consistentFit(const RegressorGram& gram, const Prior& prior, const FitOption
 
 Information information(const RegressorGram& gram, const Prior& prior, const FitOptions& options,
                         const Fit& fit) {
-  const Data data(gram);
+  const Data data(gram, prior);
   check(data, prior, options);
   requireSize("noise of the fit", data.joints(), fit.weighed_by.size());
   const Penalties penalties(prior);

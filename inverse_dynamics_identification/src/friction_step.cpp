@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "friction_columns.hpp"
+
 namespace inverse_dynamics_identification {
 inline namespace v2 {
 namespace {
@@ -15,7 +17,7 @@ double stribeck(const StepFriction& law, double qd) {
 
 double friction(const StepFriction& law, double qd, double load) {
   const double height = law.fc + law.fl * load + (law.fs != 0 ? law.fs * stribeck(law, qd) : 0.0);
-  return law.fv * qd + law.fo + height * std::tanh((qd + law.shift) / law.width);
+  return law.fv * qd + law.fo + height * smoothStep((qd + law.shift) / law.width);
 }
 
 Eigen::Index ownColumns(FrictionTerms terms) {
@@ -32,24 +34,8 @@ Eigen::Index ownColumns(FrictionTerms terms) {
 
 void ownColumnsAt(const StepFriction& law, double qd, double qdd, double load,
                   Eigen::Ref<Eigen::VectorXd> row) {
-  const double x = (qd + law.shift) / law.width;
-  const double step = std::tanh(x);
-  double height = law.fc + law.fl * load;
-  if (row.size() > own_column::kStribeck) {
-    const double v = qd / law.vs;
-    const double falling = std::exp(-v * v);
-    height += law.fs * falling;
-    row[own_column::kStribeck] = falling * step;
-    row[own_column::kStribeckVelocity] = law.fs * 2 * v * v * falling * step;
-  }
-  if (row.size() > own_column::kLoad) row[own_column::kLoad] = load * step;
-  const double slope = height * (1 - step * step);
-  row[own_column::kAcceleration] = qdd;
-  row[own_column::kVelocity] = qd;
-  row[own_column::kOne] = 1;
-  row[own_column::kStep] = step;
-  row[own_column::kShift] = slope / law.width;
-  row[own_column::kWidth] = -slope * x;
+  frictionColumns(law, qd, qdd, load, row.size(),
+                  [&](Eigen::Index c) -> double& { return row[c]; });
 }
 
 }  // namespace v2

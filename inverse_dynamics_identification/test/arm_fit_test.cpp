@@ -192,6 +192,10 @@ TEST(ArmFitter, OfBlocksIsThatOfAllSamples) {
   const ArmFit whole = fitter.fit({all}, {});
   const ArmFit parts = fitter.fit({part(0, 700), part(700, 1), part(701, 799)}, {});
   EXPECT_NEAR(parts.cost, whole.cost, 1e-6 * std::abs(whole.cost));
+  ArmFitOptions without;
+  without.without = 1;
+  const ArmData data = fitter.data({part(0, 700), part(0, 1500), part(700, 800)});
+  EXPECT_NEAR(fitter.fit(data, without).cost, whole.cost, 1e-6 * std::abs(whole.cost));
 }
 
 TEST(ArmFitter, BeginsWithAnotherFit) {
@@ -272,7 +276,7 @@ TEST(ArmFitter, InformationKnowsHowWellGainsAreKnown) {
   const CurrentMotion motion = currents(2000, 0.3);
   const ArmFitOptions options = gainOptions();
   const ArmFit fit = fitter.fit(motion.samples(), options);
-  const ArmInformation found = fitter.information(fit, motion.samples(), options);
+  const ArmInformation found = fitter.information(fit, fitter.data(motion.samples()), options);
   ASSERT_EQ(found.data.rows(), 3 * (10 + 7 + 1));
   const auto deviations = [](const Eigen::MatrixXd& H) {
     const Eigen::MatrixXd V = H.inverse();
@@ -286,7 +290,7 @@ TEST(ArmFitter, InformationKnowsHowWellGainsAreKnown) {
   // without the body, links, friction and gains have a scale in common: the prior's
   const std::vector<ArmSamples> alone = {samplesOf(motion.alone)};
   const ArmFit scaled = fitter.fit(alone, options);
-  const ArmInformation open = fitter.information(scaled, alone, options);
+  const ArmInformation open = fitter.information(scaled, fitter.data(alone), options);
   EXPECT_GT(deviations(open.data + 1e-3 * open.prior).minCoeff(), 0.3);
 }
 
@@ -302,24 +306,12 @@ TEST(ArmFitter, RefusesGainsThatAreNone) {
   }
 }
 
-TEST(ArmFitter, RefusesAGramOfOtherColumns) {
-  const ArmFitter fitter(threeJointArm());
-  const Motion motion = measured(FrictionTerms::kStep, 100, 1);
-  const ArmFit fit = fitter.fit({samplesOf(motion)}, {});
-  for (const auto& [joints, columns] :
-       {std::pair<int, int>{3, 0}, {3, 5}, {3, 8}, {3, 10}, {2, 6}}) {
-    chain_dynamics::RegressorGram gram(joints, columns);
-    EXPECT_THROW(fitter.addToGram(fit, samplesOf(motion), gram), chain_dynamics::ModelError)
-        << joints << ", " << columns;
-  }
-}
-
 TEST(ArmFitter, InformationHasNoSlopeAtTheMinimum) {
   const ArmFitter fitter(threeJointArm(0.6));
   const Motion motion = measured(FrictionTerms::kStep, 1000, 1);
   ArmFitOptions options;
   const ArmFit fit = fitter.fit({samplesOf(motion)}, options);
-  const ArmInformation found = fitter.information(fit, {samplesOf(motion)}, options);
+  const ArmInformation found = fitter.information(fit, fitter.data({samplesOf(motion)}), options);
   ASSERT_EQ(found.data.rows(), 48);
   ASSERT_EQ(found.scores.cols(), 1);
   const Eigen::MatrixXd H = found.data + found.prior;
@@ -359,7 +351,8 @@ TEST(ArmFitter, RefusesAFitOfAnotherArm) {
                chain_dynamics::ModelError);
   other = fit;
   other.noise.resize(0);
-  EXPECT_THROW(fitter.information(other, {samplesOf(motion)}, {}), chain_dynamics::ModelError);
+  EXPECT_THROW(fitter.information(other, fitter.data({samplesOf(motion)}), {}),
+               chain_dynamics::ModelError);
   ArmFitOptions none;
   none.most_passes = 0;
   EXPECT_THROW(fitter.fit({samplesOf(motion)}, none), chain_dynamics::ModelError);

@@ -142,8 +142,13 @@ TEST(ArmFitter, WhitenedInformationIsThatOfGeneralisedLeastSquares) {
     for (Index j = 0; j < kJoints; ++j) W[static_cast<std::size_t>(j)].row(k) = D.col(j);
   }
   const ResidualNoise noise = noiseOf(0.1, 0.3);
-  const Eigen::MatrixXd found = fitter.whitenedInformation(
-      fit, FrictionTerms::kStribeck, {{states[0], states[1], states[2], states[3]}}, {time}, noise);
+  ArmSamples samples{states[0], states[1], states[2], states[3]};
+  EXPECT_THROW(
+      fitter.whitenedInformation(fit, FrictionTerms::kStribeck, fitter.data({samples}), noise),
+      chain_dynamics::ModelError);  // without times
+  samples.time = time;
+  const Eigen::MatrixXd found =
+      fitter.whitenedInformation(fit, FrictionTerms::kStribeck, fitter.data({samples}), noise);
   Eigen::MatrixXd C(kCount, kCount);
   for (Index a = 0; a < kCount; ++a) {
     for (Index b = 0; b < kCount; ++b) {
@@ -155,10 +160,6 @@ TEST(ArmFitter, WhitenedInformationIsThatOfGeneralisedLeastSquares) {
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(kUnknowns, kUnknowns);
   for (const Eigen::MatrixXd& rows : W) expected += rows.transpose() * factor.solve(rows);
   EXPECT_LT((found - expected).norm(), 1e-9 * expected.norm());
-  EXPECT_THROW(
-      fitter.whitenedInformation(fit, FrictionTerms::kStribeck,
-                                 {{states[0], states[1], states[2], states[3]}}, {}, noise),
-      chain_dynamics::ModelError);
 }
 
 /// An arm that isn't its model, with a body and noise.

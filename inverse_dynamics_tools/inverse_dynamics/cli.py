@@ -206,6 +206,7 @@ def _run(given: list[str]) -> int:
     from inverse_dynamics.base.files import replaced, start_noting_outputs, written_before
 
     start_noting_outputs()
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # matrices are small: others would only wait
     parser = make_parser()
     if "_ARGCOMPLETE" in os.environ:  # a shell asks what may stand at the cursor: `ids completion`
         from argcomplete import autocomplete

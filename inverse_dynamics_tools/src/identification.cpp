@@ -3,6 +3,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <chain_dynamics/error.hpp>
 #include <chain_dynamics/urdf.hpp>
@@ -18,10 +19,56 @@
 #include "annotations.hpp"
 #include "arrays.hpp"
 #include "initialized.hpp"
+#include "options.hpp"
 #include "vectors.hpp"
 
+namespace inverse_dynamics_tools {
+
+/// q, qd, qdd, tau of a block, (N, n) each.
+using Block = std::tuple<Array, Array, Array, Array>;
+
+/// Blocks, and the arrays that they are views of.
+struct HeldData {
+  std::vector<Block> arrays;
+  inverse_dynamics_identification::ArmData data;
+};
+
+}  // namespace inverse_dynamics_tools
+
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::HeldData)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ArmFitter)
 INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ArmFit)
+INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ArmFitOptions)
+
+namespace pybind11::detail {
+
+/// Friction terms by the name of their law.
+template <>
+class type_caster<inverse_dynamics_identification::FrictionTerms> {
+  using Terms = inverse_dynamics_identification::FrictionTerms;
+  static constexpr std::array<const char*, 3> kLaws = {"step", "load", "stribeck"};
+
+ public:
+  PYBIND11_TYPE_CASTER(Terms, const_name("str"));
+
+  bool load(handle source, bool /*convert*/) {
+    if (!isinstance<str>(source)) return false;
+    const auto law = source.cast<std::string>();
+    const auto found = std::find(kLaws.begin(), kLaws.end(), law);
+    if (found == kLaws.end()) {
+      throw chain_dynamics::ModelError("ArmFitter", "law", "step, load or stribeck",
+                                       "'" + law + "'", "name one of them");
+    }
+    value = static_cast<Terms>(found - kLaws.begin());
+    return true;
+  }
+
+  static handle cast(Terms terms, return_value_policy /*policy*/, handle /*parent*/) {
+    return str(kLaws[static_cast<std::size_t>(terms)]).release();
+  }
+};
+
+}  // namespace pybind11::detail
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -36,9 +83,6 @@ using identification::FrictionTerms;
 using identification::LinkPrior;
 using identification::StepFriction;
 using Vector = Eigen::VectorXd;
-
-// q, qd, qdd, tau of a block, (N, n) each.
-using Block = std::tuple<Array, Array, Array, Array>;
 
 std::unique_ptr<ArmFitter> fitterFromUrdf(const std::string& urdf, const std::string& root,
                                           const std::string& tip,
@@ -84,30 +128,14 @@ std::vector<ArmSamples> samplesOf(const std::vector<Block>& blocks, const Carrie
   return samples;
 }
 
-FrictionTerms termsOf(const std::string& law) {
-  if (law == "step") return FrictionTerms::kStep;
-  if (law == "load") return FrictionTerms::kLoad;
-  if (law == "stribeck") return FrictionTerms::kStribeck;
-  throw chain_dynamics::ModelError("ArmFitter", "law", "step, load or stribeck", "'" + law + "'",
-                                   "name one of them");
-}
-
-ArmFitOptions optionsOf(const std::string& law, double prior_strength, int most_passes) {
-  ArmFitOptions options;
-  options.terms = termsOf(law);
-  options.prior_strength = prior_strength;
-  options.most_passes = most_passes;
-  return options;
-}
-
-ArmFit fit(const ArmFitter& fitter, const std::vector<Block>& blocks, const std::string& law,
-           double prior_strength, int most_passes, const std::optional<ArmFit>& start,
-           const std::optional<Array>& drive_gains, const Carried& carried) {
-  ArmFitOptions options = optionsOf(law, prior_strength, most_passes);
-  if (drive_gains) options.drive_gains = states(*drive_gains, "drive_gains").col(0);
-  const std::vector<ArmSamples> samples = samplesOf(blocks, carried);
+std::unique_ptr<HeldData> dataOf(const ArmFitter& fitter, std::vector<Block> blocks,
+                                 const Carried& carried, const std::vector<Vector>& times) {
+  std::vector<ArmSamples> samples = samplesOf(blocks, carried);
+  for (std::size_t b = 0; b < std::min(times.size(), samples.size()); ++b) {
+    samples[b].time = times[b];
+  }
   const py::gil_scoped_release release;
-  return fitter.fit(samples, options, start ? &*start : nullptr);
+  return std::make_unique<HeldData>(HeldData{std::move(blocks), fitter.data(std::move(samples))});
 }
 
 Array torques(const ArmFitter& fitter, const ArmFit& of, const Array& q, const Array& qd,
@@ -130,30 +158,22 @@ Array torques(const ArmFitter& fitter, const ArmFit& of, const Array& q, const A
 }
 
 std::tuple<Array, Array, Array> information(const ArmFitter& fitter, const ArmFit& of,
-                                            const std::vector<Block>& blocks,
-                                            const std::string& law, double prior_strength,
-                                            const Carried& carried) {
-  const ArmFitOptions options = optionsOf(law, prior_strength, 1);
-  const std::vector<ArmSamples> samples = samplesOf(blocks, carried);
+                                            const HeldData& held, const ArmFitOptions& options) {
   identification::ArmInformation found;
   {
     const py::gil_scoped_release release;
-    found = fitter.information(of, samples, options);
+    found = fitter.information(of, held.data, options);
   }
   return {rowsOf(std::move(found.data)), rowsOf(std::move(found.prior)),
           rowsOf(std::move(found.scores))};
 }
 
-Array whitenedInformation(const ArmFitter& fitter, const ArmFit& of,
-                          const std::vector<Block>& blocks, const std::vector<Vector>& times,
-                          const std::string& law, const identification::ResidualNoise& noise) {
-  const FrictionTerms terms = termsOf(law);
-  const std::vector<ArmSamples> samples = samplesOf(blocks, {});
-  const std::vector<chain_dynamics::OwnedVector> owned(times.begin(), times.end());
+Array whitenedInformation(const ArmFitter& fitter, const ArmFit& of, const HeldData& held,
+                          FrictionTerms law, const identification::ResidualNoise& noise) {
   chain_dynamics::OwnedMatrix found;
   {
     const py::gil_scoped_release release;
-    found = fitter.whitenedInformation(of, terms, samples, owned, noise);
+    found = fitter.whitenedInformation(of, law, held.data, noise);
   }
   return rowsOf(std::move(found));
 }
@@ -219,10 +239,18 @@ void bindFit(py::module_& module) {
 
 void bindIdentification(py::module_& module) {
   bindFit(module);
-  py::class_<ArmFitter>(
-      module, "ArmFitter",
-      "Fits models of one arm: arm_fit.hpp. Threads: safe; the GIL is released.\n\n"
-      "blocks: tuples q, qd, qdd, tau, (N, n) each. law: step, load, stribeck.")
+  using O = ArmFitOptions;
+  bindOptions(
+      module, "ArmFitOptions", "How to fit.",
+      "law: step, load, stribeck; most_passes: over the samples; without: number of a block that "
+      "is left out; drive_gains: (n,) N m/A, about: tau are currents [A], and the gains are "
+      "fitted.",
+      Field{"law", &O::terms}, Field{"prior_strength", &O::prior_strength},
+      Field{"most_passes", &O::most_passes}, Field{"without", &O::without},
+      Field{"drive_gains", &O::drive_gains});
+  py::class_<HeldData>(module, "ArmData", "Blocks of samples for any number of fits.");
+  py::class_<ArmFitter>(module, "ArmFitter",
+                        "Fits models of one arm: arm_fit.hpp. Threads: safe; the GIL is released.")
       .def_static(
           "from_urdf", &fitterFromUrdf, py::arg("urdf"), py::kw_only(), py::arg("root") = "",
           py::arg("tip") = "", py::arg("gravity") = py::none(),
@@ -243,22 +271,26 @@ void bindIdentification(py::module_& module) {
             return changes;
           },
           "What the prior has changed about each described link, in words; empty: nothing.")
+      .def("data", &dataOf, py::arg("blocks"), py::kw_only(), py::arg("carried") = Carried(),
+           py::arg("times") = std::vector<Vector>(),
+           "Samples of blocks, q, qd, qdd, tau, (N, n) each. carried: (10,) or None of each block, "
+           "a "
+           "known body m, mc, I in the tip frame, about its origin; times: (N,) s of each block, "
+           "for "
+           "whitened_information().")
       .def(
-          "fit", &fit, py::arg("blocks"), py::kw_only(), py::arg("law"), py::arg("prior_strength"),
-          py::arg("most_passes") = 10, py::arg("start") = static_cast<const ArmFit*>(nullptr),
-          py::arg("drive_gains") = py::none(), py::arg("carried") = Carried(),
-          "A fit to the samples of all blocks. start: another one to begin with; drive_gains: (n,) "
-          "N m/A, about: tau are currents [A], and the gains are fitted; carried: (10,) or None of "
-          "each block, a known body m, mc, I in the tip frame, about its origin.")
+          "fit",
+          [](const ArmFitter& f, const HeldData& held, const ArmFitOptions& options,
+             const ArmFit* start) { return f.fit(held.data, options, start); },
+          py::call_guard<py::gil_scoped_release>(), py::arg("data"), py::arg("options"),
+          py::arg("start") = static_cast<const ArmFit*>(nullptr),
+          "A fit to the samples of all blocks. start: another one to begin with.")
       .def("torques", &torques, py::arg("fit"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
            "Torques of a fit, friction included: (n,) or (N, n).")
-      .def("whitened_information", &whitenedInformation, py::arg("fit"), py::arg("blocks"),
-           py::arg("times"), py::kw_only(), py::arg("law"), py::arg("noise"),
-           "What samples say of the m unknowns where errors are like this noise, (m, m). times: "
-           "(N,) s "
-           "of each block.")
-      .def("information", &information, py::arg("fit"), py::arg("blocks"), py::kw_only(),
-           py::arg("law"), py::arg("prior_strength"), py::arg("carried") = Carried(),
+      .def("whitened_information", &whitenedInformation, py::arg("fit"), py::arg("data"),
+           py::arg("law"), py::arg("noise"),
+           "What samples say of the m unknowns where errors are like this noise, (m, m).")
+      .def("information", &information, py::arg("fit"), py::arg("data"), py::arg("options"),
            "What data and prior say of the m unknowns, (m, m) each, and scores (blocks, m).");
 }
 

@@ -65,7 +65,9 @@ class Currents:
         self.fitter = fitter_of(self.robot)
         states = motion(SECONDS, seed=50)
         sample = (*states, published.torques(*states))
-        self.truth = self.fitter.fit([sample], law="step", prior_strength=1.0)
+        self.truth = self.fitter.fit(
+            self.fitter.data([sample]), _core.ArmFitOptions("step", prior_strength=1.0)
+        )
 
     def torques(self, q, qd, qdd, load=None):
         tau = self.fitter.torques(self.truth, q, qd, qdd)

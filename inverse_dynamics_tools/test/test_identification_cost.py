@@ -174,7 +174,7 @@ def least_cost(parts, prior, strength):
 @pytest.mark.parametrize("strength", [1.0, 100.0, 1000.0])
 def test_the_cost_is_the_least(arm, strength):
     fitter, model, block = arm
-    fit = fitter.fit([block], law="step", prior_strength=strength)
+    fit = fitter.fit(fitter.data([block]), _core.ArmFitOptions("step", prior_strength=strength))
     parts = quadratic(model, fit, block)
     ours = cost(unknowns(fit), parts, fitter.prior, strength)
     assert ours == pytest.approx(least_cost(parts, fitter.prior, strength), rel=RELATIVE)
@@ -183,8 +183,9 @@ def test_the_cost_is_the_least(arm, strength):
 def test_a_worse_fit_is_told_apart(arm):
     """The tolerance is no wider than what the wrong prior strength costs."""
     fitter, model, block = arm
-    fit = fitter.fit([block], law="step", prior_strength=100.0)
-    other = fitter.fit([block], law="step", prior_strength=1000.0, start=fit)
+    data = fitter.data([block])
+    fit = fitter.fit(data, _core.ArmFitOptions("step", prior_strength=100.0))
+    other = fitter.fit(data, _core.ArmFitOptions("step", prior_strength=1000.0), fit)
     parts = quadratic(model, fit, block)
     least = cost(unknowns(fit), parts, fitter.prior, 100.0)
     assert cost(unknowns(other), parts, fitter.prior, 100.0) > least * (1 + 2 * RELATIVE)

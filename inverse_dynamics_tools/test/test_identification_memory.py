@@ -30,11 +30,12 @@ def block(samples):
     random.random(out=arrays)
     return tuple(arrays)
 
-fitter.fit([block(1000)], law="load", prior_strength=100.0, most_passes=1)
+options = _core.ArmFitOptions("load", prior_strength=100.0, most_passes=1)
+fitter.fit(fitter.data([block(1000)]), options)
 long = block({SAMPLES})
 before = peak()
-fit = fitter.fit([long], law="load", prior_strength=100.0, most_passes=1)
-fitter.information(fit, [long], law="load", prior_strength=100.0)
+data = fitter.data([long])
+fitter.information(fitter.fit(data, options), data, options)
 print(peak() - before)
 """
 

@@ -6,13 +6,15 @@
 ///     const ArmFitter fitter(chain);                       // chain_dynamics::chainFromUrdf(...)
 ///     ArmFitOptions options;
 ///     options.terms = FrictionTerms::kLoad;
-///     const ArmFit fit = fitter.fit({{q, qd, qdd, tau}}, options);
+///     const ArmData data = fitter.data({{q, qd, qdd, tau}});
+///     const ArmFit fit = fitter.fit(data, options);
 ///     fitter.torques(fit, q, qd, qdd, computed);
 ///
 /// The torque of joint j is `Y_j p + rotor_inertia_j qdd_j + f_j` [regressor_gram.hpp,
 /// friction_step.hpp]. All that is linear in it is fitted by consistentFit(); width and shift of the
 /// steps by Gauss-Newton steps, for which the samples are gone through again: 3 to 10 times. The
-/// load of friction is that of the fit before. Memory doesn't grow with the samples.
+/// load of friction is that of the fit before. What is the same for all fits, the products Y_j' Y_j, is
+/// summed once; up to 20 000 samples, their rows are kept, too. Memory doesn't grow with more.
 ///
 /// Where `tau` are motor currents i, the drive gains k are fitted too,
 ///
@@ -28,7 +30,9 @@
 
 #include <chain_dynamics/chain.hpp>
 #include <chain_dynamics/fast_model.hpp>
+#include <chain_dynamics/regressor_gram.hpp>
 #include <chain_dynamics/states.hpp>
+#include <utility>
 #include <vector>
 
 #include "inverse_dynamics_identification/consistent_fit.hpp"
@@ -44,6 +48,21 @@ struct ArmSamples {
   chain_dynamics::ConstStates tau;         ///< N m (prismatic N); A where drive gains are fitted
   /// A known body at the tip, in the tip frame and about its origin.
   LinkParameters carried = LinkParameters::zero();
+  OwnedVector time = {};  ///< N, ascending; s; for whitenedInformation() alone
+};
+
+/// Blocks of samples for any number of fits. What their views look at must live as long.
+class ArmData {
+ private:
+  friend class ArmFitter;
+  struct Block {
+    ArmSamples samples;
+    chain_dynamics::RegressorGram links;              // products Y_j' Y_j
+    std::vector<chain_dynamics::RegressorRows> rows;  // of each batch, unless there are too many
+  };
+  explicit ArmData(std::vector<Block> blocks) : blocks_(std::move(blocks)) {}
+
+  std::vector<Block> blocks_;
 };
 
 /// What is known of friction beforehand. Velocities are shares of a joint's greatest.
@@ -67,6 +86,7 @@ struct ArmFitOptions {
   FrictionTerms terms = FrictionTerms::kStep;
   double prior_strength = 100;  ///< gamma [consistent_fit.hpp]
   int most_passes = 10;         ///< over the samples
+  int without = -1;             ///< number of a block that is left out; -1: none
   FrictionPrior friction = {};
   /// n, > 0; N m/A (prismatic N/A), about: what is measured are currents, and the gains are fitted.
   /// Empty: what is measured are torques.
@@ -104,44 +124,48 @@ class ArmFitter {
   /// What was made of the links, and why.
   const std::vector<LinkPrior>& prior() const { return prior_; }
 
-  /// A fit to the samples of all blocks.
+  /// @throws chain_dynamics::ModelError  no samples, other numbers of joints.
+  ArmData data(std::vector<ArmSamples> blocks) const;
+
+  /// A fit to the samples of all blocks, but for one that is left out.
   ///
   /// @param start  another fit to begin with; its terms may be others.
-  /// @throws chain_dynamics::ModelError  no samples, other numbers of joints, numbers that aren't
-  ///     finite, drive gains that aren't above zero.
-  ArmFit fit(const std::vector<ArmSamples>& blocks, const ArmFitOptions& options,
+  /// @throws chain_dynamics::ModelError  no samples are left, numbers that aren't finite, a fit of another
+  ///     arm, drive gains that aren't above zero.
+  ArmFit fit(const ArmData& data, const ArmFitOptions& options,
              const ArmFit* start = nullptr) const;
+  /// The same of samples that no other fit needs.
+  ArmFit fit(const std::vector<ArmSamples>& blocks, const ArmFitOptions& options,
+             const ArmFit* start = nullptr) const {
+    return fit(data(blocks), options, start);
+  }
 
   /// What the samples of each block say at a fit, weighed by its noise.
-  ArmInformation information(const ArmFit& fit, const std::vector<ArmSamples>& blocks,
+  ArmInformation information(const ArmFit& fit, const ArmData& data,
                              const ArmFitOptions& options) const;
 
   /// What samples say of the unknowns at a fit whose errors are correlated in time: as
   /// ArmInformation::data, of rows that the filter of this noise has made white.
   ///
-  /// @param times  of the samples of each block, ascending; s.
-  /// @throws chain_dynamics::ModelError  samples or a fit of others, another number of times.
-  OwnedMatrix whitenedInformation(const ArmFit& fit, FrictionTerms terms,
-                                  const std::vector<ArmSamples>& blocks,
-                                  const std::vector<OwnedVector>& times,
+  /// @throws chain_dynamics::ModelError  samples without times, a fit or noise of others.
+  OwnedMatrix whitenedInformation(const ArmFit& fit, FrictionTerms terms, const ArmData& data,
                                   const ResidualNoise& noise) const;
 
   /// `tau = H qdd + C qd + g + rotor_inertia qdd + f` of N states.
   void torques(const ArmFit& fit, chain_dynamics::ConstStates q, chain_dynamics::ConstStates qd,
                chain_dynamics::ConstStates qdd, chain_dynamics::States tau) const;
 
-  /// Adds samples with the own columns of a fit [friction_step.hpp], less the torque of what is carried.
-  ///
-  /// @param gram  of ownColumns(terms) columns, and of one more for the drive gain where the fit has
-  ///     gains: minus the computed torque, which is the derivative by log k of the errors.
-  /// @throws chain_dynamics::ModelError  a gram of other joints or columns.
-  void addToGram(const ArmFit& fit, const ArmSamples& samples,
-                 chain_dynamics::RegressorGram& gram) const;
-
  private:
+  using Gram = chain_dynamics::RegressorGram;
+
   void check(const ArmFit& fit) const;
   chain_dynamics::Chain withLinks(const OwnedMatrix& parameters, const OwnedVector* rotors,
                                   const LinkParameters& carried = LinkParameters::zero()) const;
+  /// Sums of blocks with the own columns of a fit [friction_step.hpp], less the torque of what is
+  /// carried. Where the fit has drive gains, there is one more column: minus the computed torque, which is
+  /// the derivative by log k of the errors. links: the products Y_j' Y_j of the same blocks.
+  Gram gramOf(const ArmFit& fit, FrictionTerms terms,
+              const std::vector<const ArmData::Block*>& blocks, const Gram& links) const;
 
   chain_dynamics::Chain chain_;
   std::vector<LinkPrior> prior_;

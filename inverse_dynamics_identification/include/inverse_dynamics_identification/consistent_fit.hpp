@@ -56,6 +56,9 @@ struct OwnColumn {
 struct Prior {
   std::vector<LinkParameters> links;  ///< n, positive definite each: linkPrior()
   std::vector<OwnColumn> own;         ///< of joint 1, of joint 2, ...; as many for each
+  /// Which of the gram's own columns these are, ascending; the coefficients of the others are zero.
+  /// Empty: all of them.
+  std::vector<Eigen::Index> columns = {};
 };
 
 /// How to fit.

@@ -71,14 +71,14 @@ class RefittedFriction:
         parts = [self._parts(q, qd, computed) for q, qd, computed, _ in samples]
         errors = np.concatenate([s[3] - r for s, (r, _) in zip(samples, parts, strict=True)])
         columns = np.concatenate([c for _, c in parts])
-        self._figures = np.stack(
+        self._values = np.stack(
             [np.linalg.lstsq(columns[:, :, j], e)[0] for j, e in enumerate(errors.T)], axis=1
         )  # (3, n)
 
     def torques(self, q: Floats, qd: Floats, computed: Floats) -> Floats:
         """(M, n) with that friction; computed: the solver's torques."""
         rigid, columns = self._parts(q, qd, computed)
-        refitted: Floats = rigid + np.einsum("kcj,cj->kj", columns, self._figures)
+        refitted: Floats = rigid + np.einsum("kcj,cj->kj", columns, self._values)
         return refitted
 
     def _parts(self, q: Floats, qd: Floats, computed: Floats) -> tuple[Floats, Floats]:

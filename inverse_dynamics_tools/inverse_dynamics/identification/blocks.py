@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -67,7 +68,7 @@ class Block:
         """Each sample whose number is a multiple of step, with its acceleration."""
         return replace(self, **{name: getattr(self, name)[::step] for name in _ARRAYS})
 
-    @property
+    @cached_property
     def fitted(self) -> FitBlock:
         """q, qd, qdd, tau of the samples to be fitted to."""
         if self.counts.all():

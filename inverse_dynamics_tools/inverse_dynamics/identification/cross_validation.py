@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inverse_dynamics._core import ArmFitOptions
 from inverse_dynamics.identification.blocks import together
 from inverse_dynamics.identification.result import LAWS, Choice
 
@@ -74,30 +75,52 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
 
     Of long recordings, choices take samples at equal distances; the fit takes all.
     """
-    everything = blocks
     step = 1 + sum(map(len, blocks)) // _MOST_SAMPLES
     delay = _delay(fitter, blocks, step)
     as_recorded = _parts([block.thinned(step) for block in blocks])
-    blocks = _later(blocks, delay, step)
-    parts = _parts(blocks)
+    parts = _Parts(fitter, _parts(_later(blocks, delay, step)), as_recorded)
     whole: dict[str, ArmFit] = {}
     alternatives: list[_Alternative] = []
     start = None
     for law in LAWS:
-        start = whole[law] = fitter.fit(
-            together(blocks), law=law, prior_strength=STRENGTHS[1], start=start
-        )
-        alternatives += _left_out(fitter, parts, as_recorded, law, STRENGTHS, start)
+        options = ArmFitOptions(law, prior_strength=STRENGTHS[1])
+        start = whole[law] = fitter.fit(parts.data, options, start)
+        alternatives += parts.left_out(law, STRENGTHS, start)
     noise = whole["step"].noise
     best, choices = _simplest(alternatives, noise, delay)
     fit = fitter.fit(
-        together(_later(everything, delay, 1)),
-        law=best.law,
-        prior_strength=best.prior_strength,
-        start=whole[best.law],
+        parts.data if step == 1 else fitter.data(together(_later(blocks, delay, 1))),
+        ArmFitOptions(best.law, prior_strength=best.prior_strength),
+        whole[best.law],
     )
     band = np.quantile(np.abs(np.concatenate(best.as_computed)), _BAND, axis=0)
     return Chosen(best.law, best.prior_strength, delay, fit, band, choices)
+
+
+class _Parts:
+    """Parts of blocks to be left out in turn; as recorded: without making up for a delay."""
+
+    def __init__(
+        self, fitter: ArmFitter, parts: Sequence[Block], as_recorded: Sequence[Block]
+    ) -> None:
+        self._fitter, self._parts, self._as_recorded = fitter, parts, as_recorded
+        self.data = fitter.data(together(parts))
+
+    def left_out(
+        self, law: str, strengths: Sequence[float], start: ArmFit, passes: int = _PASSES
+    ) -> list[_Alternative]:
+        """Errors of each part under fits to the others, for each prior strength."""
+        found = [_Alternative(law, strength, [], []) for strength in strengths]
+        for k, (part, as_recorded) in enumerate(zip(self._parts, self._as_recorded, strict=True)):
+            fit = start
+            for one in found:
+                options = ArmFitOptions(
+                    law, prior_strength=one.prior_strength, most_passes=passes, without=k
+                )
+                fit = self._fitter.fit(self.data, options, fit)
+                one.errors.append(errors_of(self._fitter, fit, part))
+                one.as_computed.append(errors_of(self._fitter, fit, as_recorded))
+        return found
 
 
 def _parts(blocks: Sequence[Block]) -> list[Block]:
@@ -122,10 +145,9 @@ def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> float:
     for _ in range(_MOST_DELAY_STEPS):
         costs = []
         for delay in (center - step, center, center + step):
-            later = together(_later(blocks, delay, thinned))
-            start = fitter.fit(
-                later, law=_DELAY_LAW, prior_strength=STRENGTHS[1], most_passes=_PASSES, start=start
-            )
+            later = fitter.data(together(_later(blocks, delay, thinned)))
+            options = ArmFitOptions(_DELAY_LAW, prior_strength=STRENGTHS[1], most_passes=_PASSES)
+            start = fitter.fit(later, options, start)
             # samples at the ends of blocks are fewer where the delay is greater
             costs.append(2 * float(np.log(start.noise).sum()))
         slope, curvature = costs[0] - costs[2], costs[0] - 2 * costs[1] + costs[2]
@@ -156,36 +178,10 @@ def _predicts_better(
     scores = []
     for by in (0.0, delay):
         parts = _parts(_later(blocks, by, thinned))
-        tried = _left_out(fitter, parts, parts, _DELAY_LAW, [STRENGTHS[1]], start)[0]
+        tried = _Parts(fitter, parts, parts).left_out(_DELAY_LAW, [STRENGTHS[1]], start, 1)[0]
         scores.append(tried.scores(start.noise))
     gain = scores[0] - scores[1]
     return bool(gain.mean() > gain.std(ddof=1) / np.sqrt(len(gain)))
-
-
-def _left_out(
-    fitter: ArmFitter,
-    parts: Sequence[Block],
-    as_recorded: Sequence[Block],
-    law: str,
-    strengths: Sequence[float],
-    start: ArmFit,
-) -> list[_Alternative]:
-    """Errors of each part under fits to the others, for each prior strength."""
-    found = [_Alternative(law, strength, [], []) for strength in strengths]
-    for k, part in enumerate(parts):
-        others = together([*parts[:k], *parts[k + 1 :]])
-        fit = start
-        for alternative in found:
-            fit = fitter.fit(
-                others,
-                law=law,
-                prior_strength=alternative.prior_strength,
-                most_passes=_PASSES,
-                start=fit,
-            )
-            alternative.errors.append(errors_of(fitter, fit, part))
-            alternative.as_computed.append(errors_of(fitter, fit, as_recorded[k]))
-    return found
 
 
 def _simplest(

@@ -21,18 +21,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics._core import ArmFitOptions
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import listed
 from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.identification.blocks import blocks_of
 from inverse_dynamics.identification.knowledge import Knowledge, student_t
 from inverse_dynamics.identification.result import DriveGain, IdentificationError
+from inverse_dynamics.robot.chain_geometry import rotation_of
 from inverse_dynamics.robot.robots import RIGID_BODY, with_changes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from inverse_dynamics._core import ArmFit, ArmFitter
+    from inverse_dynamics._core import ArmData, ArmFit, ArmFitter
     from inverse_dynamics.base.arrays import Floats, Mask, Parameter
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.evaluation import Evaluation
@@ -134,21 +136,12 @@ def body(parameters: Mapping[str, Parameter]) -> Floats:
             ("inertia", 6),
         )
     )
-    R = _rotation(rpy)
+    R = rotation_of(rpy)
     c = xyz + R @ center
     xx, xy, xz, yy, yz, zz = inertia
     about_center = R @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ R.T
     about_origin = about_center + mass * (c @ c * np.eye(3) - np.outer(c, c))
     return np.concatenate([[mass], mass * c, about_origin[np.triu_indices(3)]])
-
-
-def _rotation(rpy: Floats) -> Floats:
-    """(3, 3): about the fixed x, then y, then z axis."""
-    (cr, cp, cy), (sr, sp, sy) = np.cos(rpy), np.sin(rpy)
-    x = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
-    y = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
-    z = np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]])
-    return np.asarray(z @ y @ x)
 
 
 def _read(
@@ -206,16 +199,13 @@ def _fit(fitter: ArmFitter, read: Sequence[_Recording]) -> ArmFit:
     blocks, carried = _blocks(read)
     gains = _about(read)
     torques = [(q, qd, qdd, current * gains) for q, qd, qdd, current in blocks]
-    start = fitter.fit(torques, law=_LAW, prior_strength=_STRENGTH, carried=carried)
-    return fitter.fit(
-        blocks,
-        law=_LAW,
-        prior_strength=_STRENGTH,
-        most_passes=_PASSES,
-        start=start,
-        drive_gains=gains,
-        carried=carried,
-    )
+    start = fitter.fit(fitter.data(torques, carried=carried), _options())
+    options = _options(most_passes=_PASSES, drive_gains=gains)
+    return fitter.fit(fitter.data(blocks, carried=carried), options, start)
+
+
+def _options(**others: Any) -> ArmFitOptions:
+    return ArmFitOptions(_LAW, prior_strength=_STRENGTH, **others)
 
 
 def _about(read: Sequence[_Recording]) -> Floats:
@@ -235,15 +225,14 @@ def _half_widths(fitter: ArmFitter, fit: ArmFit, read: Sequence[_Recording]) -> 
     the cluster-robust ones, with the prior and hardly without.
     """
     blocks, carried = _blocks(read)
-    data, prior, scores = fitter.information(
-        fit, blocks, law=_LAW, prior_strength=_STRENGTH, carried=carried
-    )
+    samples = fitter.data(blocks, carried=carried)
+    data, prior, scores = fitter.information(fit, samples, _options())
     n = len(fitter.joint_names)
     columns = (len(data) - 10 * n) // n
     at = 10 * n + columns * np.arange(1, n + 1) - 1
     values = np.zeros(len(data))
     values[: 10 * n] = fit.parameters.ravel()
-    deviations = [_jackknife(fitter, fit, blocks, carried)]
+    deviations = [_jackknife(fitter, fit, samples, len(blocks))]
     for share in (1.0, _LOOSENED):
         known = Knowledge(
             fitter.joint_names, values, fitter.prior, data, share * prior, scores, worth=1.0
@@ -253,24 +242,11 @@ def _half_widths(fitter: ArmFitter, fit: ArmFit, read: Sequence[_Recording]) -> 
     return widths
 
 
-def _jackknife(
-    fitter: ArmFitter,
-    fit: ArmFit,
-    blocks: Sequence[FitBlock],
-    carried: Sequence[Floats | None],
-) -> Floats:
+def _jackknife(fitter: ArmFitter, fit: ArmFit, samples: ArmData, count: int) -> Floats:
     """(n,) standard deviations of log k."""
-    count, without = len(blocks), []
+    without = []
     for k in range(count):
-        rest = [j for j in range(count) if j != k]
-        again = fitter.fit(
-            [blocks[j] for j in rest],
-            law=_LAW,
-            prior_strength=_STRENGTH,
-            start=fit,
-            drive_gains=fit.drive_gains,
-            carried=[carried[j] for j in rest],
-        )
+        again = fitter.fit(samples, _options(drive_gains=fit.drive_gains, without=k), fit)
         assert again.drive_gains is not None
         without.append(np.log(again.drive_gains))
     deviation: Floats = np.sqrt((count - 1) * np.var(without, axis=0))

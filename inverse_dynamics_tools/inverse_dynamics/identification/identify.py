@@ -130,9 +130,11 @@ def identify(
     held_out = _held_out(fitter, Baselines(robot, description), cut, progress)
     chosen = choose(fitter, cut)
     seconds["fitting"] = time.perf_counter() - begin
-    found = _result(robot, description, evaluations, fitter, cut, held_out, chosen, seconds)
+    begin = time.perf_counter()
+    found = _result(description, evaluations, fitter, cut, held_out=held_out, chosen=chosen)
+    seconds["intervals"] = time.perf_counter() - begin
     notes = tuple(dict.fromkeys((*posture.notes, *found.notes)))
-    found = replace(found, drive_gains=gains, notes=notes)
+    found = replace(found, drive_gains=gains, notes=notes, seconds=seconds)
     check_result(found, accept)
     return found
 
@@ -202,7 +204,7 @@ def _cut(evaluations: Sequence[Evaluation], blocks: int) -> list[Block]:
 
 def _held_out(
     fitter: ArmFitter, baselines: Baselines, cut: Sequence[Block], progress: Progress
-) -> list[tuple[HeldOutBlock, Chosen]]:
+) -> list[HeldOutBlock]:
     """Each block predicted by models fitted to, and chosen on, the others."""
     found = []
     for k, block in enumerate(cut):
@@ -211,36 +213,36 @@ def _held_out(
         chosen = choose(fitter, others)
         computed = baselines.torques(block, others)
         computed["identified"] = fitter.torques(chosen.fit, block.q, block.qd, block.qdd)
-        held_out = HeldOutBlock(
-            recording=block.recording,
-            time=block.time,
-            q=block.q,
-            qd=block.qd,
-            counts=block.counts,
-            measured=block.tau,
-            computed=computed,
-            band=chosen.band,
-            law=chosen.law,
-            prior_strength=chosen.prior_strength,
-            delay=chosen.delay,
+        found.append(
+            HeldOutBlock(
+                recording=block.recording,
+                time=block.time,
+                q=block.q,
+                qd=block.qd,
+                counts=block.counts,
+                measured=block.tau,
+                computed=computed,
+                band=chosen.band,
+                law=chosen.law,
+                prior_strength=chosen.prior_strength,
+                delay=chosen.delay,
+            )
         )
-        found.append((held_out, chosen))
     progress("predicting held-out blocks", len(cut), len(cut) + 1)
     return found
 
 
 def _result(
-    robot: Robot,
     description: str,
     evaluations: Sequence[Evaluation],
     fitter: ArmFitter,
     cut: Sequence[Block],
-    held_out: Sequence[tuple[HeldOutBlock, Chosen]],
+    *,
+    held_out: Sequence[HeldOutBlock],
     chosen: Chosen,
-    seconds: dict[str, float],
 ) -> Identification:
-    begin = time.perf_counter()
     first, fit = evaluations[0], chosen.fit
+    robot = first.robot
     links = _links(description, fitter.joint_names)
     later = [block.later(chosen.delay) for block in cut]
     errors = [errors_of(fitter, fit, block) for block in later]
@@ -257,8 +259,7 @@ def _result(
     model = _core.FastModel.from_urdf(
         description, root=robot.root, tip=robot.tip, gravity=robot.gravity
     )
-    blocks = tuple(block for block, _ in held_out)
-    held, coverage = _held_out_errors(blocks)
+    held, coverage = _held_out_errors(held_out)
     return Identification(
         robot=robot,
         recordings=tuple(e.bag for e in evaluations),
@@ -277,7 +278,7 @@ def _result(
         duration=float(sum(e.time[-1] for e in evaluations)),
         held_out=held,
         coverage=coverage,
-        blocks=blocks,
+        blocks=tuple(held_out),
         noise=np.sqrt((np.concatenate(errors) ** 2).mean(0)),
         independent=independent,
         choices=chosen.choices,
@@ -288,14 +289,10 @@ def _result(
             *_findings(fitter, links, held, first.units),
             *_motion_findings(fitter, chosen, later, independent),
         ),
-        notes=_notes(evaluations),
-        seconds={**seconds, "intervals": time.perf_counter() - begin},
+        # but for the cause of the present model's errors, which the fit removes
+        notes=tuple(note for e in evaluations for note in e.notes_without_causes),
+        seconds={},
     )
-
-
-def _notes(evaluations: Sequence[Evaluation]) -> tuple[str, ...]:
-    """Those of the evaluations, but for the cause of the present model's errors, which the fit removes."""
-    return tuple(note for e in evaluations for note in e.notes_without_causes)
 
 
 def _model(

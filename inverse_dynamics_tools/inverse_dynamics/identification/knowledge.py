@@ -121,16 +121,18 @@ def knowledge(
 ) -> Knowledge:
     """That of a fit to blocks."""
     data, prior, scores = fitter.information(
-        fit, _clusters(blocks), law=law, prior_strength=prior_strength
+        fit,
+        fitter.data(_clusters(blocks)),
+        _core.ArmFitOptions(law, prior_strength=prior_strength),
     )
     n = len(fitter.joint_names)
     columns = (len(data) - 10 * n) // n
     own = [
         [
-            fit.rotor_inertia[j] if key == "rotor_inertia" else figures.get(key, 0.0)
+            fit.rotor_inertia[j] if key == "rotor_inertia" else friction.get(key, 0.0)
             for key, _ in _OWN
         ]
-        for j, figures in enumerate(fit.friction)
+        for j, friction in enumerate(fit.friction)
     ]
     values = np.concatenate([fit.parameters.ravel(), np.array(own)[:, :columns].ravel()])
     return Knowledge(fitter.joint_names, values, fitter.prior, data, prior, scores, worth)
@@ -166,7 +168,7 @@ def independent_samples(errors: Sequence[Floats]) -> Floats:
 def intervals(
     known: Knowledge, model: _core.FastModel, units: Sequence[str]
 ) -> tuple[Interval, ...]:
-    """95 % intervals of friction figures, rotor inertias, and identifiable inertial combinations.
+    """95 % intervals of values of friction, rotor inertias, and identifiable inertial combinations.
 
     units: of each joint's torque, N m or N.
     """

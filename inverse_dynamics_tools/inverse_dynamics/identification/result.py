@@ -70,7 +70,7 @@ class IdentifiedModel:
 
     parameters: Floats  # (n, 10): m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz about the origin
     rotor_inertia: Floats  # (n,) kg m^2 (prismatic kg), seen at the joint
-    friction: tuple[Mapping[str, float], ...]  # figures of smooth_coulomb, by the model file's keys
+    friction: tuple[Mapping[str, float], ...]  # values of smooth_coulomb, by the model file's keys
     drive_gains: Floats | None  # (n,) N m/A where efforts are currents
     torque_deviation: Floats  # (n,) N m: half the width of the 95 % band of measured - computed
     seen: Floats  # (3, n, 2): lowest and highest q, qd, qdd of the samples
@@ -111,7 +111,7 @@ class HeldOutBlock:
 
 @dataclass(frozen=True)
 class Interval:
-    """A number that the data determine, with its 95 % interval: an inertial combination or a friction figure."""
+    """A number that the data determine, with its 95 % interval: an inertial combination or a value of friction."""
 
     name: str  # as "elbow_joint fc", or of the parameters that move with it
     unit: str
@@ -195,14 +195,14 @@ class Identification:
     @property
     def offsets(self) -> Floats:
         """(n,) N m: constant part of friction, which may do work; drifts between recordings."""
-        return self._figures("fo")
+        return self._values("fo")
 
     @property
     def shifts(self) -> Floats:
         """(n,) rad/s: where the step of friction is off zero velocity."""
-        return self._figures("shift")
+        return self._values("shift")
 
-    def _figures(self, key: str) -> Floats:
+    def _values(self, key: str) -> Floats:
         import numpy as np
 
         return np.array([law.get(key, 0.0) for law in self.model.friction])

@@ -55,15 +55,15 @@ def error_rows(
 ) -> list[HeldOutRow]:
     """The same of other errors (n,) by name of COLUMNS; NaN for a column that these haven't."""
     columns = columns_of(found)
-    figures = np.array(
+    values = np.array(
         [errors.get(column, np.full(len(found.joints), np.nan)) for column in columns]
     )
     rows = [
-        HeldOutRow(joint, unit, tuple(map(float, figures[:, j])), float(coverage[j]))
+        HeldOutRow(joint, unit, tuple(map(float, values[:, j])), float(coverage[j]))
         for j, (joint, unit) in enumerate(zip(found.joints, found.units, strict=True))
     ]
     if len(set(found.units)) == 1 and len(rows) > 1:
-        means = tuple(map(float, figures.mean(axis=1)))
+        means = tuple(map(float, values.mean(axis=1)))
         rows.append(HeldOutRow("mean", found.units[0], means, float(coverage.mean())))
     return rows
 

@@ -14,6 +14,7 @@ import numpy as np
 from inverse_dynamics import _core
 from inverse_dynamics.base.plain import plain
 from inverse_dynamics.evaluation.contacts import LEAST_GAIN
+from inverse_dynamics.identification.blocks import together
 from inverse_dynamics.identification.cross_validation import errors_of
 from inverse_dynamics.robot.model_errors import SCHEMA, read_model_errors, sha256
 
@@ -44,9 +45,7 @@ def factor_of(
     errors = np.concatenate([errors_of(fitter, fit, block) for block in blocks])
     times = [block.time[block.counts] for block in blocks]
     noise = _core.residual_noise(_in_a_row(times), errors - errors.mean(axis=0))
-    data = fitter.whitened_information(
-        fit, [block.fitted for block in blocks], times, law=law, noise=noise
-    )
+    data = fitter.whitened_information(fit, fitter.data(together(blocks), times=times), law, noise)
     information = data + known.prior
     scale = 1 / np.sqrt(np.diag(information))
     scaled = information * np.outer(scale, scale) + _RIDGE * np.eye(len(scale))

@@ -350,7 +350,8 @@ def test_intervals_of_a_prismatic_joint_are_in_newtons_and_metres():
     tau = model.regressor(q, qd, qdd) @ model.parameters + qd + np.tanh(qd / 0.05)
     tau += np.random.default_rng(2).normal(0, 0.1, tau.shape)
     blocks = blocks_of_arrays(q, qd, qdd, tau)
-    fit = fitter.fit([b.fitted for b in blocks], law="stribeck", prior_strength=10)
+    options = _core.ArmFitOptions("stribeck", prior_strength=10)
+    fit = fitter.fit(fitter.data([b.fitted for b in blocks]), options)
     known = knowledge(fitter, fit, blocks, law="stribeck", prior_strength=10, worth=1.0)
     units = {i.name: i.unit for i in intervals(known, model, ("N", "N m"))}
     of = {key: (units[f"slide {key}"], units[f"hinge {key}"]) for key in OWN_UNITS}
@@ -398,11 +399,11 @@ def test_more_passes_over_the_samples_are_never_worse(seed):
         tau += (3 + fs * np.exp(-((qd / vs) ** 2))) * np.tanh((qd + shift) / width)
         return q, qd, qdd, tau + random.normal(0, noise, tau.shape)
 
-    one, other = block(1.0), block(1.3)
+    one, other = fitter.data([block(1.0)]), fitter.data([block(1.3)])
     for law in LAWS:
-        start = fitter.fit([one], law=law, prior_strength=10)
-        costs = [
-            fitter.fit([other], law=law, prior_strength=10, start=start, most_passes=passes).cost
-            for passes in (1, 2, 3, 4)
-        ]
+        options = _core.ArmFitOptions(law, prior_strength=10)
+        start = fitter.fit(one, options)
+        costs = []
+        for options.most_passes in (1, 2, 3, 4):
+            costs.append(fitter.fit(other, options, start).cost)
         assert (np.diff(costs) <= 1e-6 * np.abs(costs[1:])).all(), (law, costs)

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Own columns of a fit at one sample, or at many of one joint: numbers or arrays of them.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "inverse_dynamics_identification/friction_step.hpp"
+
+namespace inverse_dynamics_identification {
+inline namespace v2 {
+
+/// tanh(x), with an error of 1e-16 of one, in a third of the time.
+template <typename Values>
+Values smoothStep(const Values& x) {
+  using std::exp;
+  return 1.0 - 2.0 / (1.0 + exp(2.0 * x));
+}
+
+/// column(c): where column c goes, of the first `count` ones.
+template <typename Values, typename Column>
+void frictionColumns(const StepFriction& law, const Values& qd, const Values& qdd,
+                     const Values& load, Eigen::Index count, const Column& column) {
+  using std::exp;
+  const Values x = (qd + law.shift) / law.width;
+  const Values step = smoothStep(x);
+  Values height = law.fc + law.fl * load;
+  if (count > own_column::kStribeck) {
+    const Values v = qd / law.vs;
+    const Values falling = exp(-v * v);
+    height += law.fs * falling;
+    column(own_column::kStribeck) = falling * step;
+    column(own_column::kStribeckVelocity) = law.fs * 2.0 * v * v * falling * step;
+  }
+  if (count > own_column::kLoad) column(own_column::kLoad) = load * step;
+  const Values slope = height * (1.0 - step * step);
+  column(own_column::kAcceleration) = qdd;
+  column(own_column::kVelocity) = qd;
+  column(own_column::kOne) = 0.0 * qd + 1.0;
+  column(own_column::kStep) = step;
+  column(own_column::kShift) = slope / law.width;
+  column(own_column::kWidth) = -slope * x;
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_identification
