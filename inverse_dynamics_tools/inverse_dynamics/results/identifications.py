@@ -4,7 +4,7 @@
 arm.yaml         run configuration: `ids evaluate RECORDING --robot arm.yaml`
 arm_model.yaml   the model: rigid bodies, friction, 95 % band and range of the data (docs/model_file.md)
 arm_model.json   what the model may be wrong by, for `ids payload` and `contact`
-arm.json         all figures
+arm.json         all values
 arm.html         the report's page
 """
 

@@ -4,7 +4,7 @@
     text = model_file_text(found, "arm")
 
 The frames of the links are those of the description, so that parameters can be compared with it. Rows of
-checks are what the identification predicts, computed from the description and the identified figures
+checks are what the identification predicts, computed from the description and the identified values
 and not from the file: whoever reads the file checks that it gives the same torques.
 """
 
@@ -88,7 +88,7 @@ def parameters_in_links(
 def predicted_torques(
     model: IdentifiedModel, engine: _core.FastModel, q: Floats, qd: Floats, qdd: Floats
 ) -> Floats:
-    """(N, n) of the identification's figures, by the regressor of the description's chain.
+    """(N, n) of the identification's values, by the regressor of the description's chain.
 
     engine: of the description. Independent of the model file and of its reader.
     """
@@ -96,18 +96,18 @@ def predicted_torques(
     parameters = model.parameters.ravel()
     torques = engine.regressor(q, qd, qdd) @ parameters + model.rotor_inertia * qdd
     gravity = engine.regressor(q, still, still) @ parameters
-    for j, figures in enumerate(model.friction):
-        torques[:, j] += friction_torque(figures, qd[:, j], gravity[:, j])
+    for j, law in enumerate(model.friction):
+        torques[:, j] += friction_torque(law, qd[:, j], gravity[:, j])
     return np.asarray(torques)
 
 
-def friction_torque(figures: Mapping[str, float], qd: Floats, gravity: Floats) -> Floats:
+def friction_torque(law: Mapping[str, float], qd: Floats, gravity: Floats) -> Floats:
     """(N,) of the law smooth_coulomb: docs/model_file.md."""
-    height = figures["fc"] + figures.get("fl", 0.0) * np.abs(gravity)
-    if figures.get("fs", 0.0):
-        height = height + figures["fs"] * np.exp(-((qd / figures["vs"]) ** 2))
-    step = np.tanh((qd + figures.get("shift", 0.0)) / figures["width"])
-    return np.asarray(figures["fv"] * qd + figures.get("fo", 0.0) + height * step)
+    height = law["fc"] + law.get("fl", 0.0) * np.abs(gravity)
+    if law.get("fs", 0.0):
+        height = height + law["fs"] * np.exp(-((qd / law["vs"]) ** 2))
+    step = np.tanh((qd + law.get("shift", 0.0)) / law["width"])
+    return np.asarray(law["fv"] * qd + law.get("fo", 0.0) + height * step)
 
 
 def urdf_of(found: Identification) -> Path:

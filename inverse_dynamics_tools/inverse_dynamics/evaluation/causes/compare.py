@@ -206,6 +206,7 @@ class _Contest:
         self.weights = random.multinomial(pieces, np.full(pieces, 1 / pieces), _RESAMPLED) / pieces
         self.rivals: list[Rival] = []
         self.squares: list[Floats] = []
+        self.remedies: dict[int, tuple[Told | None, float]] = {}  # by the number of the rival
 
     def decide(self) -> Comparison:
         """The outcome."""
@@ -283,15 +284,11 @@ class _Contest:
         tied: list[int] = []
         result = []
         for i in map(int, np.argsort(scores, kind="stable")):
-            rival = self.rivals[i]
             if tied and not self.alike(i, tied[0], _MARGIN):
                 break
-            told = rival.told(*self.fit.numbers(rival))
-            if told is None:
-                continue
-            of = least[told.kind in _SCALES]  # a scale of zero is no explanation
-            after = float(self.fit.mean(self.fit.errors(self.fit.applied(rival, told))))
-            if _small(after, of, told):
+            told, after = self.remedy(i)
+            # a scale of zero is no explanation
+            if told is not None and _small(after, least[told.kind in _SCALES], told):
                 tied.append(i)
                 result.append((told, after))
         rough = [i for i, rival in enumerate(self.rivals) if rival.kind == "rough"]
@@ -300,6 +297,16 @@ class _Contest:
         if any(self.alike(i, tied[0], margin) for i in rough if tied):
             return []
         return self._special(tied, result)
+
+    def remedy(self, i: int) -> tuple[Told | None, float]:
+        """What a rival says, and the error that is left with the numbers that it states."""
+        if i not in self.remedies:
+            rival, after = self.rivals[i], np.inf
+            told = rival.told(*self.fit.numbers(rival))
+            if told is not None:
+                after = float(self.fit.mean(self.fit.errors(self.fit.applied(rival, told))))
+            self.remedies[i] = told, after
+        return self.remedies[i]
 
     def alike(self, i: int, best: int, margin: float) -> bool:
         """Whether a rival can't be told from the best one."""
