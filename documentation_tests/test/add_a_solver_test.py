@@ -13,12 +13,6 @@ EXAMPLE = REPOSITORY / "inverse_dynamics_solver/examples/pendulum_inverse_dynami
 BLOCKS = blocks_of(page("docs/add_a_solver.md"))
 
 
-def test_blocks_are_recognized() -> None:
-    text = "1. x\n\n   <!-- file: a.cpp -->\n   ```cpp\n   int a;\n     int b;\n   ```\n\n```console\nls\n```\n"
-    assert blocks_of(text) == [("cpp", "a.cpp", "int a;\n  int b;\n"), ("console", "", "ls\n")]
-    assert blocks_of(text, "console") == [("console", "", "ls\n")]
-
-
 def test_every_block_of_code_names_its_file() -> None:
     assert {block.language for block in BLOCKS} == {"console", "cpp", "cmake", "xml", "yaml"}
     for block in BLOCKS:

@@ -102,15 +102,6 @@ TEST(Migration, GetDynamicParametersIsThere) {
   EXPECT_EQ(g, solver->getGravityVector(kQ));
 }
 
-TEST(Migration, GettersTakeExpressionsAndWriteIntoMemory) {
-  const auto solver = SolverLoader().load(kUr10);
-  solver->initialize();
-  Eigen::VectorXd tau(6);
-  solver->getTorques(2 * kQ, 2 * kQd, 2 * kQdd, tau);
-  const Eigen::VectorXd q = 2 * kQ, qd = 2 * kQd, qdd = 2 * kQdd;
-  EXPECT_EQ(tau, solver->getTorques(q, qd, qdd));
-}
-
 TEST(Migration, FrictionIsLeftOutOrTakenFromTheUrdf) {
   const auto identified = SolverLoader().load(kUr10);
   identified->initialize({{"friction", false}});
@@ -124,49 +115,6 @@ TEST(Migration, FrictionIsLeftOutOrTakenFromTheUrdf) {
   const auto kdl = SolverLoader().load(kKdl);
   kdl->initialize({{"tip", "tool0"}, {"urdf_friction", true}}, "", urdf);
   EXPECT_TRUE(kdl->getFrictionVector(kQd).isApprox(2.0 * kQd, kRounding));
-}
-
-TEST(Migration, GravityIsHonouredByIdentifiedSolvers) {
-  const auto solver = SolverLoader().load(kUr10);
-  solver->initialize({{"gravity", std::vector<double>{0.0, 0.0, 0.0}}});
-  EXPECT_TRUE(solver->getGravityVector(kQ).isZero(0.0));
-}
-
-TEST(Migration, AFailedInitializeLeavesTheSolverAsItWas) {
-  const auto kdl = SolverLoader().load(kKdl);
-  kdl->initialize({{"tip", "tool0"}}, "", ur10());
-  const Eigen::VectorXd before = kdl->getGravityVector(kQ);
-  EXPECT_THROW(kdl->initialize({{"tip", "nothing"}}, "", ur10()),
-               inverse_dynamics_solver::Exception);
-  EXPECT_EQ(kdl->getGravityVector(kQ), before);
-}
-
-std::string ur10With(const std::string& right, const std::string& wrong) {
-  std::string urdf = ur10();
-  return urdf.replace(urdf.find(right), right.size(), wrong);
-}
-
-TEST(Migration, WhatIsWrongInAUrdfIsAnError) {
-  const auto kdl = SolverLoader().load(kKdl);
-  for (const char* wrong : {"<mass value=\"7,1\"/>", "<mass value=\"-7.1\"/>", "<mass/>", ""}) {
-    const std::string urdf = ur10With("<mass value=\"7.1\"/>", wrong);
-    EXPECT_THROW(kdl->initialize({{"tip", "tool0"}}, "", urdf),
-                 inverse_dynamics_solver::InvalidParameterValueException)
-        << wrong;
-  }
-}
-
-TEST(Migration, ANameThatNoUrdfHasIsAWarning) {
-  const auto kdl = SolverLoader().load(kKdl);
-  kdl->initialize({{"tip", "tool0"}}, "", ur10With("<axis xyz", "<axes xyz"));
-  ASSERT_EQ(kdl->warnings().size(), 1u);
-  EXPECT_NE(kdl->warnings()[0].find("axes"), std::string::npos) << kdl->warnings()[0];
-}
-
-TEST(Migration, NothingWorksBeforeInitialize) {
-  const auto solver = SolverLoader().load("ur10_inverse_dynamics_solver/InverseDynamicsSolverUR10");
-  EXPECT_THROW(solver->getGravityVector(Eigen::VectorXd::Zero(6)),
-               inverse_dynamics_solver::UninitializedException);
 }
 
 TEST(Migration, RootAndTipAreThoseOfTheUrdfWhereNothingIsSaid) {

@@ -214,34 +214,3 @@ def test_the_page_shows_the_projects_as_they_are() -> None:
     assert len(blocks) == 3
     for _, file, code in blocks:
         assert code in (REPOSITORY / "examples" / file).read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize(("of_pip", "version"), [("", "1.2.3"), ("2", "None")])
-def test_cmake_notes_the_version_of_a_python_package_unless_pip_does(
-    tmp_path: Path, of_pip: str, version: str
-) -> None:
-    (tmp_path / "arm").mkdir()
-    (tmp_path / "arm/__init__.py").touch()
-    (tmp_path / "package.xml").write_text("<package>\n  <version>1.2.3</version>\n</package>\n")
-    (tmp_path / "CMakeLists.txt").write_text(
-        "cmake_minimum_required(VERSION 3.18)\nproject(arm LANGUAGES NONE)\n"
-        f"list(APPEND CMAKE_MODULE_PATH {WITHOUT_ROS}/cmake)\n"
-        "find_package(ament_cmake_python REQUIRED)\nament_python_install_package(arm)\n"
-    )
-    build = tmp_path / "build"
-    options = ("-DPYTHON_INSTALL_DIR=python", f"-DPython3_EXECUTABLE={sys.executable}")
-    run("cmake", "-S", tmp_path, "-B", build, f"-DSKBUILD={of_pip}", *options)
-    run("cmake", "--install", build, "--prefix", tmp_path / "prefix")
-    program = (
-        "from importlib import metadata\n"
-        "found = list(metadata.distributions(name='arm', path=['.']))\n"
-        "print(found[0].version if found else None)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", program],
-        cwd=tmp_path / "prefix/python",
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert done.stdout.strip() == version
