@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <array>
 #include <limits>
 
 #include "error_of.hpp"
@@ -10,82 +9,17 @@
 #include "inverse_dynamics_evaluation/error.hpp"
 #include "motion.hpp"
 
+// test_core.py of inverse_dynamics_tools compares it with scipy.
 namespace inverse_dynamics_evaluation::low_pass_test {
 
 using ::testing::HasSubstr;
 
-// Two filters of the same mathematics in different forms, 40 samples: some hundred roundings.
-constexpr double kSameFilter = 1e-12;
 // What is left of a start-up transient in the middle of 40 periods of the cut-off.
 constexpr double kSettled = 1e-9;
 
 Eigen::MatrixXd sine(double frequency, double sampling_frequency, Eigen::Index count) {
   const Eigen::ArrayXd k = Eigen::ArrayXd::LinSpaced(count, 0.0, static_cast<double>(count - 1));
   return (2.0 * kPi * frequency / sampling_frequency * k + 0.3).sin().matrix().transpose();
-}
-
-struct ScipyCase {
-  int order;
-  double cutoff;  // Hz, at a sampling frequency of 100 Hz
-  Eigen::Index padding;
-  std::array<double, 12> expected;  // of joint 0, then of joint 1, at the samples below
-};
-
-// By scipy 1.17.1, numpy imported as np, signal from scipy:
-//   k = np.arange(40)
-//   x = np.stack([np.sin(0.3*k) + 0.2*np.cos(2.1*k + 0.5), 0.01*k**2 - np.cos(1.7*k)])
-//   sos = signal.butter(order, cutoff, fs=100.0, output='sos')
-//   signal.sosfiltfilt(sos, x, axis=1, padlen=padding, padtype='odd' if padding else None)
-constexpr std::array<Eigen::Index, 6> kScipySamples = {0, 1, 7, 20, 33, 39};
-const std::array<ScipyCase, 5> kScipyCases = {{
-    {1,
-     5.0,
-     6,
-     {0.11980374265109486, 0.23927285130426312, 0.46302406241673982, -0.14623357190709332,
-      -0.25912463071866632, -0.53981184374063962, -1.0160370071023639, -0.65744315644101048,
-      0.54655669399271378, 4.2143858837279113, 11.133406725585218, 15.843611868991623}},
-    {2,
-     2.0,
-     9,
-     {0.020717941590091334, 0.038915695581422917, 0.08255782408419228, 0.012650278195972968,
-      -0.14818033609364017, -0.27763384255582385, -1.3230976088774151, -1.1060190172677551,
-      0.36059928308904771, 4.9110583313775331, 11.008202152405071, 13.159729501316233}},
-    {2,
-     2.0,
-     30,
-     {0.21641710994518726, 0.21114634049889547, 0.15317662418798408, 0.022853213438512564,
-      -0.28884931205369124, -0.62377405163178512, -1.2488608658677434, -1.0241394768172365,
-      0.34986829459053753, 4.5065849400467934, 11.967683776887984, 16.352248256631295}},
-    {3,
-     12.0,
-     0,
-     {0.21908994082069327, 0.35326933669928523, 0.87109555833970853, -0.2786848882202051,
-      -0.45602215599025453, -0.99739064586355974, -0.50088422439065661, -0.22251735018346097,
-      0.48231210247798068, 4.0001463774513288, 11.000604631652745, 13.26752238420595}},
-    {4,
-     20.0,
-     15,
-     {0.17531894804493017, 0.31971325886390928, 0.85762682296152781, -0.27936310353878269,
-      -0.45305209792659706, -0.61155258998875983, -0.99879417563399431, -0.0074412594800237486,
-      0.51016455564948915, 4.0225310421895646, 10.870917501025691, 16.157405725664951}},
-}};
-
-TEST(LowPass, IsScipysForwardBackwardFilter) {
-  Eigen::MatrixXd x(2, 40);
-  for (Eigen::Index k = 0; k < 40; ++k) {
-    const auto t = static_cast<double>(k);
-    x(0, k) = std::sin(0.3 * t) + 0.2 * std::cos(2.1 * t + 0.5);
-    x(1, k) = 0.01 * t * t - std::cos(1.7 * t);
-  }
-  for (const ScipyCase& scipy : kScipyCases) {
-    const Eigen::MatrixXd y = lowPass(x, 100.0, scipy.cutoff, scipy.order, scipy.padding);
-    for (std::size_t i = 0; i < scipy.expected.size(); ++i) {
-      const auto joint = static_cast<Eigen::Index>(i / kScipySamples.size());
-      const Eigen::Index sample = kScipySamples[i % kScipySamples.size()];
-      EXPECT_NEAR(y(joint, sample), scipy.expected[i], kSameFilter)
-          << "order " << scipy.order << ", joint " << joint << ", sample " << sample;
-    }
-  }
 }
 
 TEST(LowPass, PassesAConstantUnchanged) {

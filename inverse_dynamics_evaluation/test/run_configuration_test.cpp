@@ -115,33 +115,6 @@ TEST_F(RunConfigurations, HoldWhatTheFileSays) {
   EXPECT_EQ(solverParameters(least), (SolverParameters{{"friction", true}}));
 }
 
-TEST_F(RunConfigurations, AreReadStrictly) {
-  const auto error = [&](const std::string& more) { return errorOf(write(kLeast + more)); };
-  const std::string file = folder_ / "mine.yaml";
-  EXPECT_THAT(error("tpi: a\n"),
-              StartsWith(file + ":6: tpi: unknown key; did you mean tip?; known here: schema, "));
-  EXPECT_EQ(error("friction: 0\n"), file + ":6: friction: expected true or false, got '0'");
-  EXPECT_EQ(error("urdf: leg.urdf\n"), file + ":6: urdf: expected a file, got 'leg.urdf'; " +
-                                           (folder_ / "leg.urdf").string() + " isn't there");
-  EXPECT_THAT(error("urdf: package://nobody/a.urdf\n"),
-              HasSubstr("package nobody: not found: expected an installed package"));
-  EXPECT_EQ(error("drive_gains: [1, -2]\n"),
-            file +
-                ":6: drive_gains[1]: expected a drive gain above zero, in N m/A, got '-2'; "
-                "change the sign of the efforts instead");
-  EXPECT_EQ(error("accelerations: {method: lowpass}\n"),
-            file +
-                ":6: accelerations.method: expected one of auto, low-pass, given, "
-                "backward-difference, got 'lowpass'; did you mean low-pass?");
-  EXPECT_THAT(error("parameters: {a: {tip: 1}, tip: b}\n"),
-              HasSubstr("parameters.tip: is a key of its own: put tip at the top"));
-  EXPECT_EQ(error("parameters: {a: [1, x]}\n"),
-            file + ":6: parameters.a[1]: expected a number, as the entries before it, got 'x'");
-  EXPECT_EQ(error("simulation: 5\n"), file + ":6: simulation: expected keys with values, got '5'");
-  EXPECT_THAT(errorOf(write("schema: 1\nname: a/b\ndescription: c\nplugin: d/e\n")),
-              HasSubstr(":2: name: expected a plain name: results are called after it, got 'a/b'"));
-}
-
 TEST_F(RunConfigurations, ChangesReplaceFieldsAndWhatBelongsToThem) {
   RunConfiguration robot;
   robot.model = "model.yaml";

@@ -152,24 +152,6 @@ TEST(TimeWindow, LeavesARecordingWithoutTheJointsToItsReader) {
   EXPECT_THAT(errorOf<RecordingError>([&] { messagesOf(empty); }), HasSubstr("got no message"));
 }
 
-TEST(TimeWindow, IsAnErrorThatNamesTheRecordingsSpanWhereNoSampleLiesInIt) {
-  const auto refused = [](TimeSpan span) {
-    return errorOf<RecordingError>([&] {
-      const Part source{{blockOf(5, 6), blockOf(7, 9)}, span};
-      messagesOf(source);
-    });
-  };
-  EXPECT_EQ(refused({10, 20.5}),
-            "bag: /joint_states: expected samples from 10 s to 20.5 s after the first one, got "
-            "none: those of the recording go from 0 s to 4 s; choose --from and --to in between");
-  EXPECT_EQ(refused({1.25, 1.75}),
-            "bag: /joint_states: expected samples from 1.25 s to 1.75 s after the first one, got "
-            "none: those of the recording go from 0 s to 4 s; choose --from and --to in between");
-  EXPECT_EQ(refused({10, kForever}),
-            "bag: /joint_states: expected samples from 10 s after the first one, got none: those "
-            "of the recording go from 0 s to 4 s; choose --from and --to in between");
-}
-
 TEST(TimeWindow, TakesAnyTwoStamps) {
   JointStateBlock block = blockOf(0, 1);
   block.header_stamps = {std::numeric_limits<std::int64_t>::min(),

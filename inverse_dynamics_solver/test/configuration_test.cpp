@@ -133,20 +133,6 @@ TEST(ChainFromDescription, TakesRootTipGravityAndWhatHangsOnTheChain) {
   EXPECT_NEAR(moment({{"tip", "tool"}, {"locked_joints.slide", 0.5}}), 1.5, 1e-15);
 }
 
-TEST(ChainFromDescription, WarnsOfALockedJointThatIsOnThePath) {
-  const auto warnings = [](const std::string& joint) {
-    return chainFromDescription(
-               readConfiguration({{"tip", "tool"}, {"locked_joints." + joint, 0.5}}, "", kArm))
-        .warnings();
-  };
-  EXPECT_TRUE(warnings("slide").empty());
-  ASSERT_EQ(warnings("shoulder").size(), 1U);
-  EXPECT_NE(
-      warnings("shoulder")[0].find("joint shoulder: its locked position isn't used: the joint "
-                                   "is on the path from root to tip"),
-      std::string::npos);
-}
-
 TEST(ChainFromDescription, RotorInertiaIsThatOfParametersElseOfTheDescriptionWhereAskedFor) {
   std::string urdf = kArm;
   const std::string end = "</robot>";
@@ -186,34 +172,6 @@ TEST(ChainFromDescription, RotorInertiaIsThatOfParametersElseOfTheDescriptionWhe
             "parameter 'rotor_inertia.shoulder': wrong value: expected a finite number >= 0 [kg "
             "m^2; prismatic kg], got -0.100000; give the inertia of the rotor times the square of "
             "the gear ratio");
-}
-
-TEST(ChainFromDescription, WarnsOfADefaultGravityThatTheMountingContradicts) {
-  const std::string wall = R"(<robot name="wall"><link name="world"/><link name="base"/>
-    <link name="arm"><inertial><mass value="1"/>
-      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
-    <joint name="mount" type="fixed"><parent link="world"/><child link="base"/>
-      <origin rpy="0 1.5707963267948966 0"/></joint>
-    <joint name="shoulder" type="continuous"><parent link="base"/><child link="arm"/></joint></robot>)";
-  const auto warnings = [&](const Parameters& parameters) {
-    return chainFromDescription(readConfiguration(parameters, "", wall)).warnings();
-  };
-  ASSERT_EQ(warnings({{"root", "base"}}).size(), 1U);
-  EXPECT_NE(warnings({{"root", "base"}})[0].find("it would be [9.81, 0, 0]"), std::string::npos);
-  EXPECT_TRUE(warnings({}).empty());
-  EXPECT_TRUE(
-      warnings({{"root", "base"}, {"gravity", std::vector<double>{0.0, 0.0, -9.81}}}).empty());
-}
-
-TEST(ChainFromDescription, TakesMasslessBodiesOnlyWhereAllowed) {
-  const std::string massless = R"(<robot name="arm"><link name="base"/><link name="arm"/>
-    <joint name="shoulder" type="continuous"><parent link="base"/><child link="arm"/></joint></robot>)";
-  const auto chain = [&](Parameters parameters) {
-    return chainFromDescription(readConfiguration(parameters, "", massless));
-  };
-  EXPECT_NE(errorOf<InvalidRobotDescriptionException>([&] { chain({}); }).find("massless"),
-            std::string::npos);
-  EXPECT_EQ(chain({{"allow_massless", true}}).links()[0].mass, 0.0);
 }
 
 TEST(ChainFromDescription, RefusesWhatIsNoRobot) {
