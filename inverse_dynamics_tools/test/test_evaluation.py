@@ -57,7 +57,9 @@ def test_backward_differences_are_computed_as_the_formula_says(bag, robot, solve
 def test_a_motion_in_memory_without_efforts_is_refused(bag, robot, monkeypatch):
     log = replace(read_recording(bag), effort=np.zeros((0, 0)))
     monkeypatch.setattr(evaluation, "open_motion", lambda *_, **__: log)
-    with pytest.raises(EvaluationError, match="bag: effort: expected one row per sample, got none"):
+    with pytest.raises(
+        EvaluationError, match="motion: effort: expected one row per sample, got none"
+    ):
         evaluate(bag, robot)
 
 
