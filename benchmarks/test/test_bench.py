@@ -137,9 +137,6 @@ def test_a_benchmark_that_fails_is_told_by_its_last_words(tmp_path, monkeypatch)
     [
         (("--repetitions", "0"), "--repetitions: expected a whole number above zero, got '0'"),
         (("--repetitions", "1"), "--repetitions: expected two or more, got '1'"),
-        (("--repetitions", "1.5"), "expected a whole number above zero, got '1.5'"),
-        (("--calls", "-1"), "--calls: expected a whole number above zero, got '-1'"),
-        (("--seconds", "0"), "--seconds: expected a number above zero, got '0'"),
         (("--only", "("), "--only: expected a regular expression, got '('"),
         (("--from", "nothing.json"), "nothing.json: can't be read (No such file or directory)"),
         (("--plot", "speed.gif"), "speed.gif: expected a name that ends in .svg, .png or .pdf"),
@@ -149,9 +146,6 @@ def test_a_benchmark_that_fails_is_told_by_its_last_words(tmp_path, monkeypatch)
             "name another file with --plot",
         ),
         (("--from", "a", "--only", "b"), "--only: expected no such choice beside --from"),
-        (("--from", "a", "--latency"), "--latency: expected no such choice beside --from"),
-        (("--from", "a", "--calls", "9"), "--calls: expected no such choice beside --from"),
-        (("--from", "a", "--seconds", "1"), "--seconds: expected no such choice beside --from"),
         (
             ("--calls", "9"),
             "--calls: expected --latency beside it, got none; add --latency, or leave --calls out",

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from conftest import JOINT_STATE, RIGID_BODY, STORE, URDF, joint_state, recording
+from conftest import JOINT_STATE, STORE, joint_state
 from rosbags.rosbag2 import Reader, StoragePlugin, Writer
 
 from inverse_dynamics import write_joint_logs

@@ -28,57 +28,38 @@ LAYERS = (
 )
 LEVEL = {part: level for level, parts in enumerate(LAYERS) for part in parts}
 IN_BASE = ("errors", "_core")  # modules whose names users know
-
-
-def modules() -> dict[str, Path]:
-    """Files by the dotted names of their modules, without the package's own."""
-    files = {}
-    for file in sorted(PACKAGE.rglob("*.py")):
-        parts = file.relative_to(PACKAGE).with_suffix("").parts
-        files[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = file
-    del files[""]  # the public names, from everywhere
-    return files
+FILES = {
+    ".".join(file.relative_to(PACKAGE).with_suffix("").parts).removesuffix(".__init__"): file
+    for file in sorted(PACKAGE.rglob("*.py"))
+    if file != PACKAGE / "__init__.py"  # the public names, from everywhere
+}
 
 
 def part_of(module: str) -> str:
-    """The part that a module belongs to."""
     first = module.partition(".")[0]
     return "base" if first in IN_BASE else first
 
 
-def imports(source: str, known: set[str]) -> set[str]:
-    """Modules of the package that a source imports anywhere; `from inverse_dynamics import x` too."""
+def imports(file: Path) -> set[str]:
+    """Modules of the package that a file imports anywhere; `from inverse_dynamics import x` too."""
     found = set()
-    for node in ast.walk(ast.parse(source)):
+    for node in ast.walk(ast.parse(file.read_text())):
         if isinstance(node, ast.ImportFrom):
             assert node.level == 0, "a relative import"
-            whole = [f"{node.module}.{alias.name}" for alias in node.names]
+            found |= {f"{node.module}.{alias.name}" for alias in node.names}
         elif isinstance(node, ast.Import):
-            whole = [alias.name for alias in node.names]
-        else:
-            continue
-        for name in whole:
-            top, _, module = name.partition(".")
-            if top == "inverse_dynamics":
-                found.add(module if module in known else module.rpartition(".")[0] or module)
-    return found
+            found |= {alias.name for alias in node.names}
+    own = [n.removeprefix("inverse_dynamics.") for n in found if n.startswith("inverse_dynamics.")]
+    return {n if n in {*FILES, "_core"} else n.rpartition(".")[0] or n for n in own}
 
 
-def graph() -> dict[str, set[str]]:
-    """What each module imports."""
-    files = modules()
-    known = {*files, "_core"}
-    return {module: imports(file.read_text(), known) for module, file in files.items()}
-
-
-def test_every_module_belongs_to_a_part() -> None:
-    assert {part_of(module) for module in modules()} == set(LEVEL)
+IMPORTS = {module: imports(file) for module, file in FILES.items()}
 
 
 def test_imports_point_down() -> None:
     upward = [
         f"{module} imports {other}"
-        for module, others in graph().items()
+        for module, others in IMPORTS.items()
         for other in sorted(others)
         if part_of(module) != part_of(other) and LEVEL[part_of(module)] <= LEVEL[part_of(other)]
     ]
@@ -87,7 +68,7 @@ def test_imports_point_down() -> None:
 
 def test_no_module_imports_itself_over_others() -> None:
     try:
-        TopologicalSorter(graph()).prepare()
+        TopologicalSorter(IMPORTS).prepare()
     except CycleError as error:
         pytest.fail(f"modules in a circle: {' <- '.join(error.args[1])}")
 
@@ -97,5 +78,4 @@ def test_verbs_import_no_other_verb() -> None:
     from inverse_dynamics.cli import VERBS
 
     verbs = {f"verbs.{verb}" for verb in VERBS}
-    arrows = graph()
-    assert {verb: arrows[verb] & verbs for verb in verbs if arrows[verb] & verbs} == {}
+    assert [verb for verb in verbs if IMPORTS[verb] & verbs] == []

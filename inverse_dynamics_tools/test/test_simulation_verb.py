@@ -200,18 +200,11 @@ def test_mistakes_end_with_code_2_and_leave_nothing(
         (["--noise", "1"], "expected 3 numbers, separated by commas, got '1'"),
         (["--payload", "1,2"], "expected 1 or 4 numbers, separated by commas, got '1,2'"),
         (["--seed", "-1"], "expected an integer that isn't negative"),
-        (["--seed", "１"], "expected an integer that isn't negative, got '１'"),
         (["--seed", "9" * 5000], "expected an integer that isn't negative"),
-        (["--rate", "1_25"], "expected an integer that isn't negative, got '1_25'"),
-        (["--noise", "1_0,1,1"], "expected 3 numbers, separated by commas, got '1_0,1,1'"),
         (["--duration", "1_0"], "expected a number above zero, got '1_0'"),
         (["--drop", "nan"], "expected a number, got 'nan'"),
-        (["--jitter", "1_0"], "expected a number, got '1_0'"),
-        (["--start-stamp", "inf"], "expected a number, got 'inf'"),
-        (["--duration", "0"], "expected a number above zero"),
         (["--gravity", "0,0"], "expected three numbers"),
         (["--mount", "wall", "--gravity", "0,0,1"], "not allowed with"),
-        (["--storage", "bag"], "invalid choice"),
     ],
 )
 def test_malformed_options_are_explained(
