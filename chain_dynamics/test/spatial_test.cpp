@@ -4,9 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <type_traits>
-#include <utility>
-
 #include "random_chains.hpp"
 
 namespace chain_dynamics {
@@ -184,48 +181,6 @@ TEST(Cast, KeepsEveryEntry) {
   EXPECT_EQ(distance(X.cast<float>().cast<double>(), X), 0);
   const LinkParameters I = test::randomIdentifiedLink(random).cast<float>().cast<double>();
   EXPECT_EQ(distance(I.cast<float>().cast<double>(), I), 0);
-}
-
-// What compiles: decided by the compiler, without failing to build.
-template <typename A, typename B, typename = void>
-struct CanAdd : std::false_type {};
-template <typename A, typename B>
-struct CanAdd<A, B, std::void_t<decltype(std::declval<A>() + std::declval<B>())>> : std::true_type {
-};
-
-template <typename A, typename B, typename = void>
-struct CanMultiply : std::false_type {};
-template <typename A, typename B>
-struct CanMultiply<A, B, std::void_t<decltype(std::declval<A>() * std::declval<B>())>>
-    : std::true_type {};
-
-template <typename A, typename B, typename = void>
-struct CanDot : std::false_type {};
-template <typename A, typename B>
-struct CanDot<A, B, std::void_t<decltype(dot(std::declval<A>(), std::declval<B>()))>>
-    : std::true_type {};
-
-template <typename A, typename B, typename = void>
-struct CanCross : std::false_type {};
-template <typename A, typename B>
-struct CanCross<A, B, std::void_t<decltype(cross(std::declval<A>(), std::declval<B>()))>>
-    : std::true_type {};
-
-TEST(Types, WhatMakesNoSenseDoesNotCompile) {
-  using M = Motion<double>;
-  using F = Force<double>;
-  using I = SpatialInertia<double>;
-  EXPECT_TRUE((CanAdd<M, M>::value && CanAdd<F, F>::value && CanAdd<I, I>::value));
-  EXPECT_FALSE((CanAdd<M, F>::value || CanAdd<F, M>::value || CanAdd<I, M>::value));
-
-  EXPECT_TRUE((CanMultiply<I, M>::value));
-  EXPECT_FALSE((CanMultiply<I, F>::value || CanMultiply<M, I>::value || CanMultiply<I, I>::value));
-
-  EXPECT_TRUE((CanDot<M, F>::value));
-  EXPECT_FALSE((CanDot<M, M>::value || CanDot<F, F>::value));
-
-  EXPECT_TRUE((CanCross<M, M>::value && CanCross<M, F>::value));
-  EXPECT_FALSE((CanCross<F, M>::value || CanCross<F, F>::value));
 }
 
 }  // namespace
