@@ -20,7 +20,7 @@ from inverse_dynamics.errors import OutputError, RobotError, SolverError
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.identification.refusals import check_result
 from inverse_dynamics.identification.result import IdentificationError
-from inverse_dynamics.results import identifications
+from inverse_dynamics.results import identifications, robot_files
 from inverse_dynamics.results.hold_out import hold_out
 from inverse_dynamics.results.identifications import write_identification
 from inverse_dynamics.results.model_files import model_file_text, predicted_torques
@@ -337,7 +337,7 @@ def test_a_description_of_an_installed_package_is_named_by_it_without_a_workspac
 ):
     share = tmp_path / "wheel/share"
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
-    monkeypatch.setattr(identifications, "package_share", lambda name: share / "arm")
+    monkeypatch.setattr(robot_files, "package_share", lambda name: share / "arm")
     inside, outside = share / "arm/urdf/arm.urdf", share / "other/arm.urdf"
-    assert identifications._reference(inside, tmp_path) == "package://arm/urdf/arm.urdf"
-    assert identifications._reference(outside, tmp_path) == "wheel/share/other/arm.urdf"
+    assert robot_files.reference(inside, tmp_path) == "package://arm/urdf/arm.urdf"
+    assert robot_files.reference(outside, tmp_path) == "wheel/share/other/arm.urdf"

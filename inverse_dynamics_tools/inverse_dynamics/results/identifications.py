@@ -10,22 +10,21 @@ arm.html         the report's page
 
 from __future__ import annotations
 
-import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from inverse_dynamics import _core
-from inverse_dynamics.base.ament import package_share
 from inverse_dynamics.base.files import check_output_file, files_written_whole, write_text
 from inverse_dynamics.base.plain import json_text, plain
-from inverse_dynamics.errors import OutputError, PackageNotFoundError
+from inverse_dynamics.errors import OutputError
 from inverse_dynamics.identification.summary import error_rows
 from inverse_dynamics.identification.uncertainty import uncertainty_text
 from inverse_dynamics.report.identifications import error_table, render_identification
 from inverse_dynamics.results.model_files import model_file_text
-from inverse_dynamics.results.yaml_text import yaml_list, yaml_text
+from inverse_dynamics.results.robot_files import robot_text
 from inverse_dynamics.robot.model_errors import model_errors_file
 from inverse_dynamics.robot.robots import RIGID_BODY
 
@@ -109,7 +108,7 @@ def write_identification(
         files.figures: json_text(summary(found, tests)),
         files.page: render_identification(found, [_table_of(found, test) for test in tests]),
         **more,
-        files.robot: _run_configuration(found, files, name),  # last: it names the model
+        files.robot: _run_configuration(found, files),  # last: it names the model
     }
     with files_written_whole(list(texts)) as fresh:
         for file, text in zip(fresh, texts.values(), strict=True):
@@ -123,67 +122,20 @@ def _check_model(file: Path) -> None:
     _core.Solver(RIGID_BODY, model=str(file))
 
 
-def _run_configuration(found: Identification, files: IdentificationFiles, name: str) -> str:
-    robot = found.robot
-    lines = [
-        "# SPDX-License-Identifier: Apache-2.0",
-        "#",
-        "# Run configuration, written by `ids identify`; what each key means: docs/add_a_robot.md.",
-        "#",
-        f"#     ids evaluate RECORDING --robot {files.robot.name}",
-        "",
-        "schema: 1",
-        f"name: {yaml_text(name)}",
-        f"description: {yaml_text(f'{robot.name}, identified from {_names(found)}')}",
-        f"plugin: {RIGID_BODY}",
-        f"model: {yaml_text(files.model.name)}",
-        f"urdf: {yaml_text(_reference(robot.urdf, files.robot.parent))}  # for drawing; torques come from the model",
-    ]
-    lines += [
-        f"{key}: {yaml_text(value)}"
-        for key, value in (("root", robot.root), ("tip", robot.tip))
-        if value
-    ]
-    if robot.gravity:
-        lines.append(f"gravity: {yaml_list(robot.gravity)}")
-    lines.append(f"topic: {yaml_text(robot.topic)}")
-    if robot.joints:
-        lines.append(f"joints: [{', '.join(map(yaml_text, robot.joints))}]")
-    lines.append(f"effort: {robot.effort}")
-    gains = found.model.drive_gains
-    if gains is not None or robot.drive_gains:
-        lines.append(f"drive_gains: {yaml_list(robot.drive_gains if gains is None else gains)}")
-    lines.append(f"accelerations: {_accelerations(found)}")
-    source = f"identified from {_names(found)}: {files.page.name}, {files.figures.name}"
-    lines.append(f"source: {yaml_text(source)}")
-    return "\n".join(lines) + "\n"
-
-
-def _accelerations(found: Identification) -> str:
-    robot = found.robot
-    cutoff = f", cutoff: {robot.cutoff!r}" if robot.cutoff is not None else ""
-    return f"{{method: {robot.accelerations}{cutoff}}}"
-
-
-def _names(found: Identification) -> str:
-    return ", ".join(path.name for path in found.recordings)
-
-
-def _reference(urdf: Path | None, directory: Path) -> str:
-    """How a run configuration names a description: by its package, else relative to the configuration."""
-    assert urdf is not None  # the model file's geometry is from it
-    place = urdf.resolve()
-    for share in place.parents:
-        if share.parent.name == "share" and _is_share_of(share.name, share):
-            return f"package://{place.relative_to(share.parent)}"
-    return os.path.relpath(place, directory.resolve())
-
-
-def _is_share_of(package: str, directory: Path) -> bool:
-    try:
-        return package_share(package).resolve() == directory
-    except PackageNotFoundError:
-        return False
+def _run_configuration(found: Identification, files: IdentificationFiles) -> str:
+    robot, gains = found.robot, found.model.drive_gains
+    names = ", ".join(path.name for path in found.recordings)
+    identified = replace(
+        robot,
+        name=files.robot.stem,
+        description=f"{robot.name}, identified from {names}",
+        plugin=RIGID_BODY,
+        model=files.model,
+        friction=True,
+        drive_gains=robot.drive_gains if gains is None else tuple(gains.tolist()),
+        source=f"identified from {names}: {files.page.name}, {files.figures.name}",
+    )
+    return robot_text(identified, files.robot)
 
 
 def _table_of(found: Identification, test: HoldOut) -> ReportTable:

@@ -7,11 +7,13 @@ write_robot(robot_of_description("arm.urdf"), Path("arm.yaml"))
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from inverse_dynamics.base.ament import package_share
 from inverse_dynamics.base.files import check_output_file, write_text_whole
-from inverse_dynamics.errors import OutputError
+from inverse_dynamics.errors import OutputError, PackageNotFoundError
 from inverse_dynamics.results.yaml_text import yaml_list, yaml_number, yaml_text
 
 if TYPE_CHECKING:
@@ -80,7 +82,17 @@ def _key(key: str, value: str, meaning: str, *, stated: bool = True) -> str:
 def _path(key: str, path: Path | None, file: Path) -> list[str]:
     if path is None:
         return []
-    return [f"{key}: {yaml_text(os.path.relpath(path.resolve(), file.resolve().parent))}"]
+    return [f"{key}: {yaml_text(reference(path, file.parent))}"]
+
+
+def reference(path: Path, directory: Path) -> str:
+    """A file as a run configuration in a directory names it: by its package, else by a relative path."""
+    place = path.resolve()
+    for share in place.parents:
+        with suppress(PackageNotFoundError):
+            if share.parent.name == "share" and package_share(share.name).resolve() == share:
+                return f"package://{place.relative_to(share.parent)}"
+    return os.path.relpath(place, directory.resolve())
 
 
 def _table(robot: Robot) -> list[str]:

@@ -158,32 +158,29 @@ def payload(text: str) -> dict[str, Parameter]:
 
 def stated_payload(text: str) -> dict[str, Parameter]:
     """The same without a center of mass where none is stated."""
-    xyz: list[float] = []
-    rpy: list[float] = []
     try:
         [decimal(part) for part in text.split(",")]
     except ValueError:
-        mass, center, inertia, xyz, rpy = _payload_of_file(text)
+        stated = _payload_of_file(text)
     else:
         mass, *others = numbers(text, _PAYLOAD, 1, 4, 10)
-        center, inertia = others[:3], others[3:]
+        parts = {"center_of_mass": others[:3], "inertia": others[3:]}
+        stated = {"payload.mass": mass}
+        stated |= {f"payload.{name}": part for name, part in parts.items() if part}
     zeros = [0.0, 0.0, 0.0]
-    return {
-        "payload.mass": mass,
-        **({"payload.center_of_mass": center} if center else {}),
-        "payload.inertia": inertia or 2 * zeros,
-        "payload.frame.xyz": xyz or zeros,
-        "payload.frame.rpy": rpy or zeros,
-    }
+    rest = {"inertia": 2 * zeros, "frame.xyz": zeros, "frame.rpy": zeros}
+    return {**{f"payload.{name}": part for name, part in rest.items()}, **stated}
 
 
-def _payload_of_file(text: str) -> tuple[float, list[float], list[float], list[float], list[float]]:
-    """Mass, center of mass, inertia, xyz and rpy of the frame; [] where they aren't stated."""
+def _payload_of_file(text: str) -> dict[str, Parameter]:
     from inverse_dynamics.base.located_yaml import read_mapping
 
-    def entries(mapping: YamlMap, key: str, count: int) -> list[float]:
-        value = mapping.optional(key)
-        return [] if value is None else [entry.number() for entry in value.entries(count)]
+    stated: dict[str, Parameter] = {}
+
+    def add(mapping: YamlMap, name: str, count: int) -> None:
+        value = mapping.optional(name.rpartition(".")[2])
+        if value is not None:
+            stated[f"payload.{name}"] = [entry.number() for entry in value.entries(count)]
 
     if not Path(text).is_file():
         raise argparse.ArgumentTypeError(
@@ -191,15 +188,16 @@ def _payload_of_file(text: str) -> tuple[float, list[float], list[float], list[f
         )
     try:
         body = read_mapping(Path(text), UserError)
-        mass = body.required("mass").number()
-        center, inertia = entries(body, "center_of_mass", 3), entries(body, "inertia", 6)
-        xyz, rpy = [], []
+        stated["payload.mass"] = body.required("mass").number()
+        add(body, "center_of_mass", 3)
+        add(body, "inertia", 6)
         frame = body.optional("frame")
         if frame is not None:
             pose = frame.mapping()
-            xyz, rpy = entries(pose, "xyz", 3), entries(pose, "rpy", 3)
+            add(pose, "frame.xyz", 3)
+            add(pose, "frame.rpy", 3)
             pose.reject_others()
         body.reject_others()
     except UserError as error:
         raise argparse.ArgumentTypeError(str(error)) from None
-    return mass, center, inertia, xyz, rpy
+    return stated
