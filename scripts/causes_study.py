@@ -28,7 +28,6 @@ from inverse_dynamics import evaluate
 from inverse_dynamics.data.public_recordings import data_directory
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.evaluation.causes.compare import Cause
-from inverse_dynamics.evaluation.effort import DATA
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -111,7 +110,8 @@ def outcomes_of(made: Iterable[Recording], directory: Path) -> list[Outcome]:
 
 def _named(result: Evaluation) -> tuple[Cause, ...]:
     """The causes, and what efforts were found to mean."""
-    if result.effort.meaning == "torque_without_gravity" and result.effort.stated_by == DATA:
+    by_data = result.effort.stated_by == "found from the data"
+    if result.effort.meaning == "torque_without_gravity" and by_data:
         found = Cause(
             "no_gravity", (), None, 0.0, 0.0, result.effort.summary, "gravity is left out"
         )

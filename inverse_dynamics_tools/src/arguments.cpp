@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "arguments.hpp"
-
 #include <deque>
 #include <string>
+
+#include "bindings.hpp"
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -71,7 +71,14 @@ py::object explained(const py::object& function, const std::string& name) {
       PyCFunction_NewEx(&one.definition, self.ptr(), module.ptr()));
 }
 
+// Instead of memory for an object that isn't there.
+void* refuseWithoutInit(std::size_t /*size*/) {
+  throw py::type_error("an object without __init__; make it by calling its class");
+}
+
 void explainMethods(const py::object& type) {
+  auto* const python_type = reinterpret_cast<PyTypeObject*>(type.ptr());
+  py::detail::get_type_info(python_type)->operator_new = &refuseWithoutInit;
   const std::string owner = py::str(type.attr("__name__"));
   const py::dict members(type.attr("__dict__"));
   for (const auto& [key, value] : members) {
@@ -89,7 +96,7 @@ void explainMethods(const py::object& type) {
 
 }  // namespace
 
-void explainRefusedArguments(py::module_& module) {
+void explainWrongCalls(py::module_& module) {
   const py::dict members(module.attr("__dict__"));
   const py::dict copy = members.attr("copy")();
   for (const auto& [key, value] : copy) {

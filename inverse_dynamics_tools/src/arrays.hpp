@@ -4,6 +4,7 @@
 #pragma once
 
 #include <pybind11/numpy.h>
+#include <pybind11/stl.h>
 
 #include <Eigen/Core>
 #include <chain_dynamics/owned.hpp>
@@ -45,6 +46,19 @@ inline ConstMap states(const Array& array, const char* name) {
   return {array.data(), n, array.ndim() == 1 ? 1 : array.shape(0)};
 }
 
+/// As Python writes it: (4, 6), (6,).
+inline std::string shapeText(const std::vector<pybind11::ssize_t>& shape) {
+  return pybind11::str(pybind11::tuple(pybind11::cast(shape)));
+}
+
+/// @throws pybind11::value_error  an array of another shape; `name` is what the text calls it.
+inline void requireShape(const char* name, const pybind11::array& array,
+                         const std::vector<pybind11::ssize_t>& shape) {
+  if (shape == std::vector(array.shape(), array.shape() + array.ndim())) return;
+  throw pybind11::value_error(std::string(name) + ": expected an array " + shapeText(shape) +
+                              ", got " + std::string(pybind11::str(array.attr("shape"))));
+}
+
 /// A new array of the same shape.
 inline Array like(const Array& array) {
   return Array(std::vector<pybind11::ssize_t>(array.shape(), array.shape() + array.ndim()));
@@ -54,6 +68,18 @@ inline Array like(const Array& array) {
 inline Map columns(Array& array) {
   const auto n = array.shape(array.ndim() - 1);
   return {array.mutable_data(), n, array.ndim() == 1 ? 1 : array.shape(0)};
+}
+
+/// What compute() returns, without the interpreter's lock.
+template <class Compute>
+auto unlocked(const Compute& compute) {
+  const pybind11::gil_scoped_release release;
+  return compute();
+}
+
+/// A copy.
+inline pybind11::array_t<double> arrayOf(const Eigen::Ref<const Eigen::VectorXd>& vector) {
+  return pybind11::array_t<double>(vector.size(), vector.data());
 }
 
 /// A matrix, one state per column, as an array, one state per row; its memory changes hands.

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "contact.hpp"
-
 #include <pybind11/stl.h>
 
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
@@ -12,18 +10,9 @@
 
 #include "annotations.hpp"
 #include "arrays.hpp"
-#include "initialized.hpp"
-#include "options.hpp"
-#include "solver.hpp"
+#include "bindings.hpp"
+#include "fields.hpp"
 #include "vectors.hpp"
-
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::EstimatorOptions)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::ExternalTorqueEstimator)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::MomentumObserver)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::AccelerationResidual)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::ContactThresholds)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::ContactDetector)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::TipWrench)
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -57,74 +46,58 @@ std::pair<Vector, EstimateStatus> update(ExternalTorqueEstimator& estimator, con
   return {estimator.torques(), status};
 }
 
-void requireRows(const char* name, const Array& array, py::ssize_t rows, py::ssize_t columns) {
-  const bool fits = columns < 0
-                        ? array.ndim() == 1 && array.shape(0) == rows
-                        : array.ndim() == 2 && array.shape(0) == rows && array.shape(1) == columns;
-  if (fits) return;
-  const std::string shape = columns < 0
-                                ? "(" + std::to_string(rows) + ",)"
-                                : "(" + std::to_string(rows) + ", " + std::to_string(columns) + ")";
-  throw py::value_error(std::string(name) + ": expected an array " + shape + ", got " +
-                        std::string(py::str(array.attr("shape"))));
+/// Row k of an array (N, n).
+Eigen::Map<const Vector> row(const Array& array, py::ssize_t k) {
+  return {array.data() + k * array.shape(1), array.shape(1)};
 }
+
+/// From the sample before; zero at the first one.
+double periodAt(const double* time, py::ssize_t k) { return k == 0 ? 0.0 : time[k] - time[k - 1]; }
 
 /// All samples, one after the other, without the GIL.
 std::tuple<Array, Mask> runEstimator(ExternalTorqueEstimator& estimator, const Array& time,
                                      const Array& q, const Array& effort,
                                      const std::optional<Array>& qd) {
   requireVelocities(estimator, "run", qd.has_value());
-  const py::ssize_t count = time.ndim() == 1 ? time.shape(0) : 0;
-  const auto n = static_cast<py::ssize_t>(estimator.jointCount());
-  requireRows("time", time, count, -1);
-  requireRows("q", q, count, n);
-  requireRows("effort", effort, count, n);
-  if (qd) requireRows("qd", *qd, count, n);
+  const py::ssize_t count = time.size(), n = estimator.jointCount();
+  requireShape("time", time, {count});
+  requireShape("q", q, {count, n});
+  requireShape("effort", effort, {count, n});
+  if (qd) requireShape("qd", *qd, {count, n});
   Array torques({count, n});
   Mask valid(count);
-  const double* const t = time.data();
-  const auto rows = [n](const Array& array, py::ssize_t k) {
-    return Eigen::Map<const Vector>(array.data() + k * n, n);
-  };
-  double* const out = torques.mutable_data();
+  Map out = columns(torques);
   bool* const ok = valid.mutable_data();
-  {
-    const py::gil_scoped_release release;
+  unlocked([&] {
     JointState state(n);
     for (py::ssize_t k = 0; k < count; ++k) {
-      state.q = rows(q, k);
-      if (qd) state.qd = rows(*qd, k);
-      const double period = k == 0 ? 0.0 : t[k] - t[k - 1];
-      ok[k] = estimator.update(state, rows(effort, k), period) == EstimateStatus::kOk;
-      Eigen::Map<Vector>(out + k * n, n) = estimator.torques();
+      state.q = row(q, k);
+      if (qd) state.qd = row(*qd, k);
+      const double period = periodAt(time.data(), k);
+      ok[k] = estimator.update(state, row(effort, k), period) == EstimateStatus::kOk;
+      out.col(k) = estimator.torques();
     }
-  }
+  });
   return {torques, valid};
 }
 
 /// What isn't an estimate isn't looked at: neither as a torque nor as time without contact.
 Mask runDetector(ContactDetector& detector, const Array& time, const Array& torques,
                  const std::optional<Mask>& valid) {
-  const py::ssize_t count = time.ndim() == 1 ? time.shape(0) : 0;
-  requireRows("time", time, count, -1);
-  requireRows("torques", torques, count, torques.ndim() == 2 ? torques.shape(1) : 0);
-  if (valid && (valid->ndim() != 1 || valid->shape(0) != count)) {
-    throw py::value_error("valid: expected an array (" + std::to_string(count) + ",), got " +
-                          std::string(py::str(valid->attr("shape"))));
-  }
-  const py::ssize_t n = torques.shape(1);
+  const py::ssize_t count = time.size();
+  requireShape("time", time, {count});
+  requireShape("torques", torques, {count, torques.ndim() == 2 ? torques.shape(1) : 0});
+  if (valid) requireShape("valid", *valid, {count});
   const bool* const looked_at = valid ? valid->data() : nullptr;
   Mask contact(count);
   bool* const out = contact.mutable_data();
-  const double* const t = time.data();
-  const double* const in = torques.data();
-  const py::gil_scoped_release release;
-  for (py::ssize_t k = 0; k < count; ++k) {
-    const double period = k == 0 ? 0.0 : t[k] - t[k - 1];
-    out[k] = looked_at != nullptr && !looked_at[k]
-                 ? detector.contact()
-                 : detector.update(Eigen::Map<const Vector>(in + k * n, n), period);
-  }
+  unlocked([&] {
+    for (py::ssize_t k = 0; k < count; ++k) {
+      out[k] = looked_at != nullptr && !looked_at[k]
+                   ? detector.contact()
+                   : detector.update(row(torques, k), periodAt(time.data(), k));
+    }
+  });
   return contact;
 }
 
@@ -135,24 +108,20 @@ Vector numbersOf(const WrenchInRoot& wrench) {
 }
 
 std::tuple<Array, Unseen> runTipWrench(TipWrench& tip, const Array& q, const Array& torques) {
-  const py::ssize_t count = q.ndim() == 2 ? q.shape(0) : 0;
-  const auto n = static_cast<py::ssize_t>(tip.jointCount());
-  requireRows("q", q, count, n);
-  requireRows("torques", torques, count, n);
+  const py::ssize_t count = q.ndim() == 0 ? 0 : q.shape(0), n = tip.jointCount();
+  requireShape("q", q, {count, n});
+  requireShape("torques", torques, {count, n});
   Array wrenches({count, py::ssize_t{6}});
   Unseen unseen(count);
-  double* const out = wrenches.mutable_data();
+  Map out = columns(wrenches);
   Eigen::Index* const number = unseen.mutable_data();
-  const double* const in = q.data();
-  const double* const tau = torques.data();
-  {
-    const py::gil_scoped_release release;
+  unlocked([&] {
     for (py::ssize_t k = 0; k < count; ++k) {
-      tip.update(Eigen::Map<const Vector>(in + k * n, n), Eigen::Map<const Vector>(tau + k * n, n));
-      Eigen::Map<Vector>(out + k * 6, 6) = numbersOf(tip.wrench());
+      tip.update(row(q, k), row(torques, k));
+      out.col(k) = numbersOf(tip.wrench());
       number[k] = tip.unseen();
     }
-  }
+  });
   return {wrenches, unseen};
 }
 
@@ -190,45 +159,34 @@ void bindEstimators(py::module_& module) {
            py::arg("qd") = py::none(),
            "(N, n) torques and (N,) whether they are estimates, of N samples.")
       .def("reset", &ExternalTorqueEstimator::reset, "The next sample is the first one.")
-      .def_property_readonly(
-          "torques", [](const ExternalTorqueEstimator& e) -> Vector { return e.torques(); },
-          "(n,) N m.");
+      .def_property_readonly("torques", &ExternalTorqueEstimator::torques, "(n,) N m.");
   py::class_<MomentumObserver, ExternalTorqueEstimator>(module, "MomentumObserver",
                                                         "From the generalised momentum H(q) qd.")
-      .def(py::init([](const SolverObject& solver, const EstimatorOptions& options) {
-             return std::make_unique<MomentumObserver>(solverOf(solver), options);
-           }),
-           py::arg("solver"), py::arg("options"));
+      .def(ofSolver<MomentumObserver, EstimatorOptions>(), py::arg("solver"), py::arg("options"));
   py::class_<AccelerationResidual, ExternalTorqueEstimator>(
       module, "AccelerationResidual", "Measured minus computed torques, low-passed.")
-      .def(py::init([](const SolverObject& solver, const EstimatorOptions& options) {
-             return std::make_unique<AccelerationResidual>(solverOf(solver), options);
-           }),
-           py::arg("solver"), py::arg("options"));
-}
-
-template <OwnedVector ContactThresholds::*Member>
-Vector numbersOf(const ContactThresholds& thresholds) {
-  return thresholds.*Member;
+      .def(ofSolver<AccelerationResidual, EstimatorOptions>(), py::arg("solver"),
+           py::arg("options"));
 }
 
 void bindThresholds(py::module_& module) {
   using T = ContactThresholds;
   py::class_<T>(module, "ContactThresholds", "Thresholds (n,), and how they came about.")
-      .def_property_readonly("torques", &numbersOf<&T::torques>, "N m.")
-      .def_property_readonly("noise", &numbersOf<&T::noise>, "Root mean square, N m.")
-      .def_property_readonly("correlation_time", &numbersOf<&T::correlation_time>, "s.")
-      .def_property_readonly("peaks", &numbersOf<&T::peaks>, "Number of peaks above the level.")
-      .def_property_readonly("level", &numbersOf<&T::level>, "N m.")
-      .def_property_readonly("scale", &numbersOf<&T::scale>, "N m.")
-      .def_property_readonly("shape", &numbersOf<&T::shape>)
+      .def_readonly("torques", &T::torques, "N m.")
+      .def_readonly("noise", &T::noise, "Root mean square, N m.")
+      .def_readonly("correlation_time", &T::correlation_time, "s.")
+      .def_readonly("peaks", &T::peaks, "Number of peaks above the level.")
+      .def_readonly("level", &T::level, "N m.")
+      .def_readonly("scale", &T::scale, "N m.")
+      .def_readonly("shape", &T::shape)
       .def_readonly("false_alarms_per_hour", &T::false_alarms_per_hour);
   module.def(
       "contact_thresholds",
       [](const Array& quiet, double period, double false_alarms_per_hour,
          const std::vector<std::string>& joint_names) {
-        requireRows("quiet", quiet, quiet.ndim() == 0 ? 0 : quiet.shape(0),
-                    static_cast<py::ssize_t>(joint_names.size()));
+        requireShape(
+            "quiet", quiet,
+            {quiet.ndim() == 0 ? 0 : quiet.shape(0), static_cast<py::ssize_t>(joint_names.size())});
         const ConstMap columns = states(quiet, "quiet");
         const py::gil_scoped_release release;
         return contactThresholds(columns, period, false_alarms_per_hour, joint_names);

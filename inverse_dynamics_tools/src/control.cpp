@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "control.hpp"
-
 #include <pybind11/stl.h>
 
 #include <inverse_dynamics_control/inverse_dynamics_control.hpp>
@@ -10,21 +8,9 @@
 #include <vector>
 
 #include "annotations.hpp"
-#include "initialized.hpp"
-#include "solver.hpp"
+#include "bindings.hpp"
+#include "fields.hpp"
 #include "vectors.hpp"
-
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::Compensated)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::FrictionOptions)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::LawOptions)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::Gains)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::PdGains)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::ControlLaw)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::ComputedTorque)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::GravityCompensation)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::PdGravityCompensation)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::FeedForward)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_control::SafeStop)
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -121,49 +107,34 @@ void bindLawEnums(py::module_& module) {
       .value("MEASURED", ModelState::kMeasured);
 }
 
-void bindOptions(py::module_& module) {
-  py::class_<Compensated>(module, "Compensated", "What the robot adds by itself.")
-      .def(py::init([](bool gravity, bool coriolis, bool friction) {
-             return Compensated{gravity, coriolis, friction};
-           }),
-           py::kw_only(), py::arg("gravity") = false, py::arg("coriolis") = false,
-           py::arg("friction") = false);
-  py::class_<FrictionOptions>(module, "FrictionOptions",
-                              "How friction is compensated; speeds in rad/s.")
-      .def(py::init([](FrictionSource source, double dead_band, double blend, double scale) {
-             return FrictionOptions{source, dead_band, blend, scale};
-           }),
-           py::arg("source") = FrictionSource::kReferenceVelocity, py::kw_only(),
-           py::arg("dead_band") = 0.0, py::arg("blend") = 0.05, py::arg("scale") = 1.0);
-  py::class_<LawOptions>(module, "LawOptions", "Options of every law; arrays (n,).")
-      .def(py::init([](const Vector& effort_limit, const Vector& damping, const Vector& rate_limit,
-                       const Compensated& compensated, const FrictionOptions& friction) {
-             LawOptions options;
-             options.compensated = compensated;
-             options.limits = {effort_limit, rate_limit};
-             options.damping = damping;
-             options.friction = friction;
-             return options;
-           }),
-           py::kw_only(), py::arg("effort_limit"), py::arg("damping"),
-           py::arg("rate_limit") = Vector(), py::arg("compensated") = Compensated(),
-           py::arg("friction") = FrictionOptions());
-  py::class_<Gains>(module, "Gains", "Gains of computed torque, (n,) each.")
-      .def(py::init([](const Vector& Kp, const Vector& Kd) {
-             return Gains{Kp, Kd};
-           }),
-           py::arg("Kp"), py::arg("Kd"))
+/// Of LawOptions.limits.
+auto limitField(const char* name, OwnedVector OutputLimits::*member, const char* doc) {
+  return Field<LawOptions, Vector, Vector>(
+      name, [member](const LawOptions& o) -> Vector { return o.limits.*member; },
+      [member](LawOptions& o, const Vector& values) { o.limits.*member = values; }, doc);
+}
+
+void bindLawOptions(py::module_& module) {
+  using C = Compensated;
+  bindOptions<0>(module, "Compensated", "What the robot adds by itself.", "",
+                 Field{"gravity", &C::gravity}, Field{"coriolis", &C::coriolis},
+                 Field{"friction", &C::friction});
+  using F = FrictionOptions;
+  bindOptions<0>(module, "FrictionOptions", "How friction is compensated; speeds in rad/s.", "",
+                 Field{"source", &F::source}, Field{"dead_band", &F::dead_band},
+                 Field{"blend", &F::blend}, Field{"scale", &F::scale});
+  using O = LawOptions;
+  bindOptions<2>(module, "LawOptions", "Options of every law; arrays (n,).", "",
+                 limitField("effort_limit", &OutputLimits::effort, "N m"),
+                 Field{"damping", &O::damping, "N m s/rad; of the safe torque"},
+                 limitField("rate_limit", &OutputLimits::rate, "N m/s; empty: none"),
+                 Field{"compensated", &O::compensated}, Field{"friction", &O::friction});
+  bindOptions<2>(module, "PdGains", "Gains of a PD law, (n,) each: N m/rad, N m s/rad.", "",
+                 Field{"Kp", &PdGains::Kp}, Field{"Kd", &PdGains::Kd});
+  bindOptions<2>(module, "Gains", "Gains of computed torque, (n,) each.", "",
+                 Field{"Kp", &Gains::Kp}, Field{"Kd", &Gains::Kd})
       .def_static("of", &Gains::of, py::arg("natural_frequency"), py::arg("damping_ratio"),
-                  "Kp = w^2, Kd = 2 z w; w in rad/s.")
-      .def_readonly("Kp", &Gains::Kp)
-      .def_readonly("Kd", &Gains::Kd);
-  py::class_<PdGains>(module, "PdGains", "Gains of a PD law, (n,) each: N m/rad, N m s/rad.")
-      .def(py::init([](const Vector& Kp, const Vector& Kd) {
-             return PdGains{Kp, Kd};
-           }),
-           py::arg("Kp"), py::arg("Kd"))
-      .def_readonly("Kp", &PdGains::Kp)
-      .def_readonly("Kd", &PdGains::Kd);
+                  "Kp = w^2, Kd = 2 z w; w in rad/s.");
 }
 
 void bindLaws(py::module_& module) {
@@ -184,31 +155,24 @@ void bindLaws(py::module_& module) {
           "(n,) Whether the last torque was held back by its rate limit.");
   py::class_<ComputedTorque, ControlLaw>(
       module, "ComputedTorque", "tau = H(q) (qdd_ref + Kp e + Kd ed) + C(q, qd) qd + g(q) + f.")
-      .def(py::init([](const SolverObject& solver, const Gains& gains, const LawOptions& options) {
-             return ComputedTorque(solverOf(solver), gains, options);
-           }),
-           py::arg("solver"), py::arg("gains"), py::arg("options"))
+      .def(ofSolver<ComputedTorque, Gains, LawOptions>(), py::arg("solver"), py::arg("gains"),
+           py::arg("options"))
       .def("update", &computedTorque, py::arg("q"), py::arg("qd"), py::arg("q_reference"),
-           py::arg("qd_reference"), py::arg("qdd_reference"), py::arg("period"), "(tau, Status).")
+           py::arg("qd_reference"), py::arg("qdd_reference"), py::kw_only(), py::arg("period"),
+           "(tau, Status).")
       .def("set_gains", &setGains<ComputedTorque, Gains>, py::arg("gains"),
            "From the next update on; ValueError, and nothing changed, for bad ones.");
   py::class_<PdGravityCompensation, ControlLaw>(module, "PdGravityCompensation",
                                                 "tau = g(q) + Kp e + Kd ed + f.")
-      .def(
-          py::init([](const SolverObject& solver, const PdGains& gains, const LawOptions& options) {
-            return PdGravityCompensation(solverOf(solver), gains, options);
-          }),
-          py::arg("solver"), py::arg("gains"), py::arg("options"))
+      .def(ofSolver<PdGravityCompensation, PdGains, LawOptions>(), py::arg("solver"),
+           py::arg("gains"), py::arg("options"))
       .def("update", &pdGravityCompensation, py::arg("q"), py::arg("qd"), py::arg("q_reference"),
            py::arg("qd_reference"), py::arg("period"), "(tau, Status).")
       .def("set_gains", &setGains<PdGravityCompensation, PdGains>, py::arg("gains"),
            "From the next update on; ValueError, and nothing changed, for bad ones.");
   py::class_<GravityCompensation, ControlLaw>(module, "GravityCompensation",
                                               "tau = g(q) - damping qd + f.")
-      .def(py::init([](const SolverObject& solver, const LawOptions& options) {
-             return GravityCompensation(solverOf(solver), options);
-           }),
-           py::arg("solver"), py::arg("options"))
+      .def(ofSolver<GravityCompensation, LawOptions>(), py::arg("solver"), py::arg("options"))
       .def("update", &gravityCompensation, py::arg("q"), py::arg("qd"), py::arg("period"),
            py::arg("qd_reference") = py::none(), "(tau, Status).");
   py::class_<FeedForward, ControlLaw>(module, "FeedForward",
@@ -218,8 +182,8 @@ void bindLaws(py::module_& module) {
            }),
            py::arg("solver"), py::arg("options"), py::arg("at") = ModelState::kReference)
       .def("update", &feedForward, py::arg("q"), py::arg("qd"), py::arg("q_reference"),
-           py::arg("qd_reference"), py::arg("qdd_reference"), py::arg("effort"), py::arg("period"),
-           "(tau, Status).");
+           py::arg("qd_reference"), py::arg("qdd_reference"), py::kw_only(), py::arg("effort"),
+           py::arg("period"), "(tau, Status).");
 }
 
 void bindDamping(py::module_& module) {
@@ -255,7 +219,7 @@ void bindSafeStop(py::module_& module) {
 
 void bindControl(py::module_& module) {
   bindLawEnums(module);
-  bindOptions(module);
+  bindLawOptions(module);
   bindDamping(module);
   bindLaws(module);
   bindSafeStop(module);

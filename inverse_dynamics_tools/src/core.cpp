@@ -8,21 +8,7 @@
 /// array row after row is, byte for byte, the n x N matrix of Eigen with one state per column, and
 /// anything else is copied once on the way in. All computing releases the GIL.
 
-#include <pybind11/pybind11.h>
-
-#include "accelerations.hpp"
-#include "arguments.hpp"
-#include "contact.hpp"
-#include "control.hpp"
-#include "errors.hpp"
-#include "evaluator.hpp"
-#include "fast_model.hpp"
-#include "identification.hpp"
-#include "metrics.hpp"
-#include "payload.hpp"
-#include "recordings.hpp"
-#include "run_configuration.hpp"
-#include "solver.hpp"
+#include "bindings.hpp"
 
 PYBIND11_MODULE(_core, module) {
   module.doc() = "Solvers, samples of recordings, accelerations, metrics and control laws in C++.";
@@ -31,7 +17,6 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindFastModel(module);
   inverse_dynamics_tools::bindAccelerations(module);
   inverse_dynamics_tools::bindRecordings(module);
-  inverse_dynamics_tools::bindMetrics(module);
   inverse_dynamics_tools::bindEvaluator(module);
   inverse_dynamics_tools::bindYaml(module);
   inverse_dynamics_tools::bindRunConfiguration(module);
@@ -39,6 +24,6 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindContact(module);
   inverse_dynamics_tools::bindPayload(module);
   inverse_dynamics_tools::bindIdentification(module);
-  inverse_dynamics_tools::explainRefusedArguments(module);
+  inverse_dynamics_tools::explainWrongCalls(module);
   pybind11::module_::import("inverse_dynamics.base.wheels").attr("find_other_wheels")();
 }

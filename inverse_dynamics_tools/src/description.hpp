@@ -20,6 +20,14 @@ struct PathText {
   std::string bytes;
 };
 
+/// A text of a file as a Python string, in the way of PathText.
+inline pybind11::str textOf(const std::string& text) {
+  PyObject* const made = PyUnicode_DecodeUTF8(
+      text.data(), static_cast<pybind11::ssize_t>(text.size()), "surrogateescape");
+  if (made == nullptr) throw pybind11::error_already_set();
+  return pybind11::reinterpret_steal<pybind11::str>(made);
+}
+
 /// Whether a text names a file: no URDF ends like this.
 inline bool namesDescription(const std::string& text) {
   const auto ends = [&text](const std::string& ending) {

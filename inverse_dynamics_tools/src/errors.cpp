@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "errors.hpp"
-
 #include <pybind11/pybind11.h>
 
 #include <chain_dynamics/error.hpp>
@@ -11,6 +9,9 @@
 #include <inverse_dynamics_solver/exceptions.hpp>
 #include <string>
 #include <utility>
+
+#include "bindings.hpp"
+#include "description.hpp"
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -42,11 +43,7 @@ std::string inPython(std::string text) {
 
 void raise(const char* class_name, const std::exception& error) {
   const py::object type = py::module_::import("inverse_dynamics.errors").attr(class_name);
-  // Paths and names may hold bytes that aren't UTF-8.
-  const std::string text = inPython(error.what());
-  const auto decoded = py::reinterpret_steal<py::object>(
-      PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
-  if (decoded) PyErr_SetObject(type.ptr(), decoded.ptr());
+  PyErr_SetObject(type.ptr(), textOf(inPython(error.what())).ptr());
 }
 
 void translate(std::exception_ptr thrown) {

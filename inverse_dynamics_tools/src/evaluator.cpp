@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evaluator.hpp"
-
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <inverse_dynamics_evaluation/effort.hpp>
 #include <inverse_dynamics_evaluation/evaluator.hpp>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,37 +10,165 @@
 
 #include "annotations.hpp"
 #include "arrays.hpp"
+#include "bindings.hpp"
 #include "description.hpp"
-#include "initialized.hpp"
+#include "fields.hpp"
 #include "recordings.hpp"
-#include "run_configuration.hpp"
-#include "solver.hpp"
+
+INVERSE_DYNAMICS_TOOLS_OBJECT(JointErrors, "tuple[inverse_dynamics._core.JointError, ...]")
 
 namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
 namespace evaluation = inverse_dynamics_evaluation;
-using Eigen::Index;
+using evaluation::Effort;
 using evaluation::EffortVerdict;
-using Names = std::vector<std::string>;
-
+using evaluation::JointMetrics;
 using Evaluated = evaluation::Evaluation;
+using Names = std::vector<std::string>;
+using MaskArray = py::array_t<bool, py::array::c_style>;
 
-}  // namespace
-}  // namespace inverse_dynamics_tools
+// ---------------------------------------------------------------- results
 
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::EffortVerdict)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::Evaluation)
+/// Errors of a joint, and how texts name it.
+struct JointError : JointMetrics {
+  std::string joint, unit;
+};
 
-namespace inverse_dynamics_tools {
-namespace {
-
-std::string effortSummary(const std::string& meaning, const std::string& stated_by,
-                          const std::vector<double>& drive_gains,
-                          const std::optional<EffortVerdict>& verdict) {
-  return evaluation::Effort{meaning, stated_by, drive_gains, verdict}.summary();
+JointErrors jointErrors(const Names& joints, const Names& units,
+                        const std::vector<JointMetrics>& metrics) {
+  py::list errors;
+  for (std::size_t j = 0; j < metrics.size(); ++j) {
+    errors.append(JointError{metrics[j], joints.at(j), units.at(j)});
+  }
+  return py::tuple(errors);
 }
+
+JointErrors errorsOf(const Names& joints, const Names& units, const Array& computed,
+                     const Array& measured, const std::optional<MaskArray>& kept) {
+  const ConstMap computed_in = states(computed, "computed"),
+                 measured_in = states(measured, "measured");
+  return jointErrors(joints, units, unlocked([&] {
+                       if (!kept) return evaluation::metrics(computed_in, measured_in);
+                       using Rows = Eigen::Array<bool, Eigen::Dynamic, 1>;
+                       const evaluation::Mask counts =
+                           Eigen::Map<const Rows>(kept->data(), kept->size());
+                       return evaluation::metrics(computed_in, measured_in, counts);
+                     }));
+}
+
+void bindErrors(py::module_& module) {
+  const auto number = [](const char* name, double JointMetrics::*member, const char* doc) {
+    return inherited<JointError>(name, member, doc);
+  };
+  bindRecord(
+      module, "JointError",
+      "How far the computed torques of one joint are from the measured ones: see\n"
+      "docs/notation.md.\n\n"
+      "NaN where a number is undefined (nrmse and r2 of a joint whose measured torque never\n"
+      "changes).",
+      Field{"joint", &JointError::joint}, Field{"unit", &JointError::unit, "N m or N"},
+      number("mae", &JointError::mae, "mean absolute error"),
+      number("rmse", &JointError::rmse, "root mean square error"),
+      number("nrmse", &JointError::nrmse, "share of the measured range: 0.01 is 1 %"),
+      number("bias", &JointError::bias, "mean error: positive where too much is computed"),
+      number("r2", &JointError::r2, "coefficient of determination"),
+      number("max_abs", &JointError::max_abs, "greatest absolute error"));
+  module.def("joint_errors", &errorsOf, py::arg("joint_names"), py::arg("units"),
+             py::arg("computed"), py::arg("measured"), py::arg("kept") = py::none(),
+             "Errors of each joint: of all samples, or of those where kept (N,) is true.\n\n"
+             "computed, measured: (N, n).");
+}
+
+/// What was done, without what was found in the samples: a few numbers that outlive them.
+struct Accelerations {
+  std::string method;
+  std::optional<double> cutoff;
+  bool chosen = false;
+  std::optional<int> order;
+  std::string time_base = evaluation::name(evaluation::TimeBase::kStamps);
+};
+
+Accelerations howOf(const Evaluated& evaluated) {
+  const auto& filter = evaluated.accelerations.filter;
+  Accelerations how;
+  how.method = evaluation::name(evaluated.accelerations.method);
+  if (evaluated.accelerations.method != evaluation::AccelerationMethod::kLowPass) return how;
+  how.cutoff = filter.cutoff;
+  how.chosen = filter.chosen;
+  how.order = filter.order;
+  how.time_base = evaluation::name(filter.time_base);
+  return how;
+}
+
+void bindHow(py::module_& module) {
+  using A = Accelerations;
+  bindRecord<1>(
+      module, "Accelerations", "How accelerations were estimated.",
+      Field{"method", &A::method, "low-pass, given or backward-difference"},
+      Field{"cutoff", &A::cutoff, "Hz; gain one half there"},
+      Field{"chosen", &A::chosen, "whether the cut-off was chosen from the data"},
+      Field{"order", &A::order, "of the Butterworth filter that runs both ways"},
+      Field{"time_base", &A::time_base, "when samples were taken: stamps, regular, regular_fresh"})
+      .def_property_readonly(
+          "summary",
+          [](const A& a) {
+            return evaluation::accelerationSummary(evaluation::accelerationMethod(a.method),
+                                                   a.cutoff.value_or(0.0), a.chosen);
+          },
+          "In words, as titles and tables show it.");
+}
+
+void bindEffort(py::module_& module) {
+  using V = EffortVerdict;
+  bindRecord<2>(module, "Verdict", "What the data say efforts mean.",
+                Field{"best", &V::best, "the meaning that fits best"},
+                Field{"sure", &V::sure, "whether no other meaning or mistake fits as well"},
+                Field{"summary", &V::summary, "errors of the meanings, in words"},
+                Field{"reason", &V::reason, "why it isn't sure, in words"});
+  bindRecord(module, "Effort", "What recorded efforts mean, and how that is known.",
+             Field{"meaning", &Effort::meaning, "one of EFFORT_MEANINGS"},
+             Field{"stated_by", &Effort::stated_by, "in words"},
+             Field{"drive_gains", &Effort::drive_gains, "N m/A (prismatic N/A), of currents"},
+             Field{"verdict", &Effort::verdict, "of the data, if they were asked"})
+      .def_property_readonly("summary", &Effort::summary, "In words, as tables show it.")
+      .def(
+          "torques",
+          [](const Effort& effort, const Array& recorded) {
+            const ConstMap efforts = states(recorded, "effort");
+            return rowsOf(effort.torques(efforts));
+          },
+          py::arg("effort"),
+          "Measured torques (N, n) [N m] of recorded efforts; without gravity if these are.");
+  py::class_<evaluation::EffortOptions>(module, "EffortOptions",
+                                        "What is stated of efforts, and by whom: effort_options().")
+      .def_readonly("drive_gains", &evaluation::EffortOptions::drive_gains, "(n,) N m/A, or none");
+}
+
+void bindEvaluated(py::module_& module) {
+  using E = const Evaluated&;
+  py::class_<Evaluated>(module, "Evaluated", "What came of evaluate().")
+      .def_property_readonly("accelerations", &howOf)
+      .def_property_readonly("period", [](E e) { return e.accelerations.samples.period; })
+      .def_property_readonly("jitter", [](E e) { return e.accelerations.samples.jitter; })
+      .def_property_readonly("effort", [](E e) { return e.effort; })
+      .def_property_readonly(
+          "table", [](E e) { return e.table; }, "The samples, and what was found.")
+      .def(
+          "errors",
+          [](E e, const Names& units) { return jointErrors(e.joint_names, units, e.errors); },
+          py::arg("units"), "Of all samples.")
+      .def(
+          "errors_of_kept",
+          [](E e, const Names& units) {
+            return jointErrors(e.joint_names, units, e.errors_of_kept);
+          },
+          py::arg("units"), "Of those that were kept.")
+      .def_readonly("notes", &Evaluated::notes);
+}
+
+// ---------------------------------------------------------------- evaluating
 
 /// What JointLog of joint_log.py holds of the samples.
 struct Log {
@@ -76,21 +200,56 @@ struct Log {
   std::optional<Array> qdd;
 };
 
-/// EvaluationOptions and RecordingOptions, by keyword.
+/// EvaluationOptions and RecordingOptions.
 struct Options : evaluation::EvaluationOptions {
+  Options() { source.joints_option = "--joints"; }
+
   evaluation::RecordingOptions source;
 };
 
-evaluation::Evaluation evaluate(const SolverObject& solver, const py::object& motion,
-                                const Options& given, const py::function& ask,
-                                const py::function& progress) {
+void bindEvaluationOptions(py::module_& module) {
+  using O = Options;
+  using Window = std::pair<double, double>;
+  bindOptions<0>(
+      module, "EvaluationOptions", "How evaluate() is to work.", "",
+      Field<O, Names, Names>(
+          "joints", [](const O& o) { return o.source.joints; },
+          [](O& o, const Names& joints) { o.source.joints = joints; },
+          "in the recording, in the order of the chain"),
+      Field<O, std::string, std::string>(
+          "clock", [](const O& o) { return evaluation::name(o.source.clock); },
+          [](O& o, const std::string& clock) { o.source.clock = clockOf(clock); },
+          "header, receive or auto"),
+      Field<O, Window, Window>(
+          "window", [](const O& o) { return Window(o.source.window.from, o.source.window.to); },
+          [](O& o, const Window& window) {
+            o.source.window = {window.first, window.second};
+          },
+          "s since the first sample; what lies outside is left out"),
+      Field<O, FilePath, PathText>(
+          "scratch", [](const O& o) { return textOf(o.source.scratch); },
+          [](O& o, const PathText& directory) { o.source.scratch = directory.bytes; },
+          "directory for unnamed files of the samples; empty: memory"),
+      Field<O, std::string, std::string>(
+          "method", [](const O& o) { return evaluation::name(o.method); },
+          [](O& o, const std::string& name) { o.method = evaluation::accelerationMethod(name); },
+          "auto, low-pass, given or backward-difference"),
+      inherited<O>("cutoff", &O::cutoff, "Hz; 0: chosen from the data"),
+      Field<O, Names, Names>(
+          "without_rules", [](const O&) { return Names(); },
+          [](O& o, const Names& names) { o.rules = evaluation::rulesWithout(names); },
+          "rules not to be acted upon"),
+      inherited<O>("effort", &O::effort, "what is stated of efforts"),
+      inherited<O>("recording", &O::recording, "for errors' texts"),
+      inherited<O>("topic", &O::topic, "of the recording"), inherited<O>("units", &O::units),
+      inherited<O>("notes", &O::notes, "of reading"));
+}
+
+Evaluated evaluate(const SolverObject& solver, const py::object& motion, const Options& given,
+                   const py::function& ask, const py::function& progress) {
   const auto shared = solverOf(solver);
   evaluation::EvaluationOptions options = given;
-  options.progress = [&](double share) {
-    const py::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    progress(share);
-  };
+  options.progress = telling(progress);
   options.ask = [&](const Evaluated& found) {
     const py::gil_scoped_acquire acquire;
     return ask(py::cast(found)).cast<EffortVerdict>();
@@ -111,134 +270,35 @@ evaluation::Evaluation evaluate(const SolverObject& solver, const py::object& mo
   return evaluation::evaluate(view, *shared, options);
 }
 
-void bindReading(py::class_<Options>& options) {
-  options
-      .def_property(
-          "joints", [](const Options& o) { return o.source.joints; },
-          [](Options& o, const Names& joints) { o.source.joints = joints; },
-          "in the recording, in the order of the chain")
-      .def_property(
-          "clock", [](const Options& o) { return evaluation::name(o.source.clock); },
-          [](Options& o, const std::string& clock) { o.source.clock = clockOf(clock); })
-      .def_property(
-          "window",
-          [](const Options& o) { return std::pair(o.source.window.from, o.source.window.to); },
-          [](Options& o, const std::pair<double, double>& window) {
-            o.source.window = {window.first, window.second};
-          },
-          "s since the first sample; what lies outside is left out")
-      .def_property(
-          "scratch", [](const Options& o) { return py::bytes(o.source.scratch); },
-          [](Options& o, const PathText& directory) { o.source.scratch = directory.bytes; },
-          "directory for unnamed files of the samples; empty: memory");
-}
-
-void bindOptions(py::module_& module) {
-  py::class_<Options> options(
-      module, "EvaluationOptions",
-      "How evaluate() is to work, by keyword: EvaluationOptions and, for a\n"
-      "recording, RecordingOptions of inverse_dynamics_evaluation.");
-  options
-      .def(py::init([](const py::kwargs& given) {
-        auto made = std::make_unique<Options>();
-        made->source.joints_option = "--joints";
-        const py::object self = py::cast(made.get(), py::return_value_policy::reference);
-        for (const auto& [name, value] : given) py::setattr(self, name, value);
-        return made;
-      }))
-      .def_property(
-          "method", [](const Options& o) { return evaluation::name(o.method); },
-          [](Options& o, const std::string& name) {
-            o.method = evaluation::accelerationMethod(name);
-          },
-          "auto, low-pass, given or backward-difference")
-      .def_readwrite("cutoff", &Options::cutoff, "Hz; 0: chosen from the data")
-      .def_property(
-          "without_rules", nullptr,
-          [](Options& o, const Names& names) { o.rules = evaluation::rulesWithout(names); },
-          "rules not to be acted upon")
-      .def_readwrite("effort", &Options::effort)
-      .def_readwrite("recording", &Options::recording, "for errors' texts")
-      .def_readwrite("topic", &Options::topic, "of the recording")
-      .def_readwrite("units", &Options::units)
-      .def_readwrite("notes", &Options::notes, "of reading");
-  bindReading(options);
-}
-
-void bindEffort(py::module_& module) {
-  py::class_<EffortVerdict>(module, "EffortVerdict", "What the data say efforts mean.")
-      .def(py::init([](std::string best, bool sure, std::string summary, std::string reason) {
-             return EffortVerdict{std::move(best), sure, std::move(summary), std::move(reason)};
-           }),
-           py::arg("best"), py::arg("sure"), py::arg("summary"), py::arg("reason"))
-      .def_readonly("best", &EffortVerdict::best)
-      .def_readonly("sure", &EffortVerdict::sure)
-      .def_readonly("summary", &EffortVerdict::summary)
-      .def_readonly("reason", &EffortVerdict::reason);
-  py::class_<evaluation::EffortOptions>(module, "EffortOptions",
-                                        "What is stated of efforts, and by whom: effort_options().")
-      .def_readonly("drive_gains", &evaluation::EffortOptions::drive_gains, "(n,) N m/A, or none");
-  module.def("effort_summary", &effortSummary, py::arg("meaning"), py::arg("stated_by"),
-             py::arg("drive_gains"), py::arg("verdict"), "What efforts mean, in words.");
+void checkOptions(const std::string& method, const std::optional<double>& cutoff,
+                  const Names& without_rules, const std::optional<std::string>& effort_is) {
+  evaluation::EvaluationOptions options;
+  options.method = evaluation::accelerationMethod(method);
+  options.rules = evaluation::rulesWithout(without_rules);
+  options.cutoff = cutoff.value_or(0.0);
+  options.effort.option = effort_is;
+  options.effort.drive_gains = {1.0};  // whether there are any is up to the robot
+  evaluation::checkOptions(options);
 }
 
 }  // namespace
 
 void bindEvaluator(py::module_& module) {
+  bindErrors(module);
+  bindHow(module);
   bindEffort(module);
-  bindOptions(module);
-  py::class_<Evaluated>(module, "Evaluated", "What came of evaluate().")
-      .def_property_readonly(
-          "method", [](const Evaluated& e) { return evaluation::name(e.accelerations.method); })
-      .def_property_readonly(
-          "filter", [](const Evaluated& e) { return e.accelerations.filter; },
-          "What the low-pass did, if there was one.")
-      .def_property_readonly("period",
-                             [](const Evaluated& e) { return e.accelerations.samples.period; })
-      .def_property_readonly("jitter",
-                             [](const Evaluated& e) { return e.accelerations.samples.jitter; })
-      .def_property_readonly("table", [](const Evaluated& e) { return e.table; })
-      .def_property_readonly("meaning", [](const Evaluated& e) { return e.effort.meaning; })
-      .def_property_readonly("stated_by", [](const Evaluated& e) { return e.effort.stated_by; })
-      .def_property_readonly("drive_gains", [](const Evaluated& e) { return e.effort.drive_gains; })
-      .def_property_readonly("verdict", [](const Evaluated& e) { return e.effort.verdict; })
-      .def_property_readonly("errors", [](const Evaluated& e) { return e.errors; })
-      .def_property_readonly("errors_of_kept", [](const Evaluated& e) { return e.errors_of_kept; })
-      .def_property_readonly("reading_seconds",
-                             [](const Evaluated& e) { return e.reading_seconds; })
-      .def_property_readonly("acceleration_seconds",
-                             [](const Evaluated& e) { return e.acceleration_seconds; })
-      .def_property_readonly("torque_seconds", [](const Evaluated& e) { return e.torque_seconds; })
-      .def_property_readonly("notes", [](const Evaluated& e) { return e.notes; });
+  bindEvaluated(module);
+  bindEvaluationOptions(module);
   module.def(
       "evaluate", &evaluate, py::arg("solver"), py::arg("motion"), py::arg("options"),
       py::arg("ask"), py::arg("progress"),
       "Computed torques of recorded joint states and their errors.\n\n"
       "motion: a JointLog, or a Recording, whose topic is read. ask: called with what is known\n"
-      "before efforts are, if they are `auto`; returns an EffortVerdict. progress: called with\n"
-      "the share that is done.");
-  module.def(
-      "check_options",
-      [](const std::string& method, const std::optional<double>& cutoff, const Names& without_rules,
-         const std::optional<std::string>& effort_is) {
-        evaluation::EvaluationOptions options;
-        options.method = evaluation::accelerationMethod(method);
-        options.rules = evaluation::rulesWithout(without_rules);
-        options.cutoff = cutoff.value_or(0.0);
-        options.effort.option = effort_is;
-        options.effort.drive_gains = {1.0};  // whether there are any is up to the robot
-        evaluation::checkOptions(options);
-      },
-      py::arg("method"), py::arg("cutoff"), py::arg("without_rules"), py::arg("effort_is"),
-      "Raise EvaluationError for what no recording can be evaluated with.");
-  module.def(
-      "acceleration_summary",
-      [](const std::string& method, const std::optional<double>& cutoff, bool chosen) {
-        return evaluation::accelerationSummary(evaluation::accelerationMethod(method),
-                                               cutoff.value_or(0.0), chosen);
-      },
-      py::arg("method"), py::arg("cutoff"), py::arg("chosen"),
-      "How accelerations came about, in words.");
+      "before efforts are, if they are `auto`; returns a Verdict. progress: called with the share\n"
+      "that is done.");
+  module.def("check_options", &checkOptions, py::arg("method"), py::arg("cutoff"),
+             py::arg("without_rules"), py::arg("effort_is"),
+             "Raise EvaluationError for what no recording can be evaluated with.");
   module.def(
       "check_torques",
       [](const std::string& where, const Names& joint_names, const Names& units,

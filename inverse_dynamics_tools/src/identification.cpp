@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "identification.hpp"
-
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -18,8 +16,8 @@
 
 #include "annotations.hpp"
 #include "arrays.hpp"
-#include "initialized.hpp"
-#include "options.hpp"
+#include "bindings.hpp"
+#include "fields.hpp"
 #include "vectors.hpp"
 
 namespace inverse_dynamics_tools {
@@ -34,11 +32,6 @@ struct HeldData {
 };
 
 }  // namespace inverse_dynamics_tools
-
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::HeldData)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ArmFitter)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ArmFit)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ArmFitOptions)
 
 namespace pybind11::detail {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "payload.hpp"
-
 #include <pybind11/stl.h>
 
 #include <inverse_dynamics_identification/payload_estimator.hpp>
@@ -14,9 +12,8 @@
 
 #include "annotations.hpp"
 #include "arrays.hpp"
-#include "initialized.hpp"
-#include "options.hpp"
-#include "solver.hpp"
+#include "bindings.hpp"
+#include "fields.hpp"
 #include "solver_payload.hpp"
 #include "vectors.hpp"
 
@@ -46,15 +43,6 @@ class SharedEstimator {
   std::mutex busy_;
 };
 
-}  // namespace inverse_dynamics_tools
-
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::PayloadOptions)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::PayloadEstimate)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::SharedEstimator)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ResidualNoise)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_identification::ArmUncertainty)
-
-namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;

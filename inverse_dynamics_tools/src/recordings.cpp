@@ -17,8 +17,8 @@
 
 #include "annotations.hpp"
 #include "arrays.hpp"
+#include "bindings.hpp"
 #include "description.hpp"
-#include "initialized.hpp"
 
 namespace inverse_dynamics_tools {
 
@@ -58,27 +58,12 @@ struct Writer {
   std::vector<std::size_t> joints;
 };
 
-}  // namespace inverse_dynamics_tools
-
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::JointStates)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::Messages)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::Writer)
-
-namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
 using recordings::JointStateRows;
 using recordings::Recording;
 using recordings::SampleTable;
-
-/// A text of a file as a Python string: bytes that aren't UTF-8 become lone surrogates.
-py::str textOf(const std::string& text) {
-  PyObject* const made =
-      PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape");
-  if (made == nullptr) throw py::error_already_set();
-  return py::reinterpret_steal<py::str>(made);
-}
 
 recordings::Storage storageOf(const std::string& name) {
   for (const auto storage : {recordings::Storage::kSqlite3, recordings::Storage::kMcap}) {
@@ -167,14 +152,9 @@ std::shared_ptr<SampleTable> readSamples(const Recording& recording, const PathT
   options.joints = joints;
   options.clock = clockOf(clock);
   options.joints_option = "--joints";
-  const auto tell = [&](double share) {
-    const py::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    progress(share);
-  };
   const py::gil_scoped_release release;
   auto table = std::make_shared<SampleTable>();
-  recordings::readTable(*recording.jointStates(topic.bytes), options, *table, tell);
+  recordings::readTable(*recording.jointStates(topic.bytes), options, *table, telling(progress));
   return table;
 }
 
@@ -246,14 +226,9 @@ void writeTorques(const PathText& path, const std::string& storage_name, const W
   std::get<4>(other) = measured;
   const double* const efforts = rowsOf(other, n).effort;
   const auto storage = storageOf(storage_name);
-  const auto tell = [&](double share) {
-    const py::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    progress(share);
-  };
   const py::gil_scoped_release release;
   recordings::writeTorques(path.bytes, storage, Writer::about({topic}).front(), rows, efforts,
-                           tell);
+                           telling(progress));
 }
 
 void bindSources(py::module_& module) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// rosbag2 recordings, for Python.
+/// What readers of recordings share.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -9,17 +9,18 @@
 #include <inverse_dynamics_evaluation/sample_table.hpp>
 #include <string>
 
-#include "initialized.hpp"
-
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::SampleTable)
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_evaluation::Recording)
-
 namespace inverse_dynamics_tools {
 
 /// `header`, `receive`, or else whichever there is.
 inverse_dynamics_evaluation::Clock clockOf(const std::string& clock);
 
-/// Declares `Recording`, `Messages`, `JointStates`, `SampleTable` and `JointStateWriter`.
-void bindRecordings(pybind11::module_& module);
+/// Calls a function of Python, which must outlive it, with the share that is done; Ctrl-C is raised.
+inline auto telling(const pybind11::function& progress) {
+  return [&progress](double share) {
+    const pybind11::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+    progress(share);
+  };
+}
 
 }  // namespace inverse_dynamics_tools

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver.hpp"
-
 #include <pybind11/stl.h>
 
 #include <array>
+#include <inverse_dynamics_solver/coriolis_matrix.hpp>
+#include <inverse_dynamics_solver/energies.hpp>
+#include <inverse_dynamics_solver/external_wrench.hpp>
+#include <inverse_dynamics_solver/forward_dynamics.hpp>
 #include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <inverse_dynamics_solver/kinematics.hpp>
 #include <inverse_dynamics_solver/load_friction.hpp>
 #include <inverse_dynamics_solver/motor_currents.hpp>
 #include <inverse_dynamics_solver/plausibility.hpp>
+#include <inverse_dynamics_solver/regressor.hpp>
 #include <inverse_dynamics_solver/solver_loader.hpp>
+#include <inverse_dynamics_solver/torque_derivatives.hpp>
 #include <inverse_dynamics_solver/torque_deviation.hpp>
 #include <memory>
 #include <optional>
@@ -16,11 +21,10 @@
 #include <utility>
 #include <vector>
 
+#include "bindings.hpp"
 #include "description.hpp"
-#include "initialized.hpp"
-#include "solver_call.hpp"
-#include "solver_capabilities.hpp"
-#include "solver_origin.hpp"
+#include "parameters.hpp"
+#include "quantities.hpp"
 #include "solver_payload.hpp"
 
 namespace inverse_dynamics_tools {
@@ -29,11 +33,24 @@ namespace {
 namespace py = pybind11;
 namespace ids = inverse_dynamics_solver;
 
-/// What a function returns that may wait for other threads, which may need the interpreter.
-template <class Read>
-auto withoutInterpreter(const Read& read) {
-  const py::gil_scoped_release release;
-  return read();
+/// What a solver was made from: enough to make it again elsewhere (pickle).
+struct Origin {
+  std::string plugin, urdf;
+  ParameterValues parameters;
+};
+
+/// Names of the installed solvers for which `has` is true.
+template <class Has>
+std::string solversThat(const Has& has) {
+  const ids::SolverLoader loader;
+  std::string names;
+  for (const std::string& name : loader.availableSolvers()) {
+    try {
+      if (has(*loader.load(name))) names += (names.empty() ? "" : ", ") + name;
+    } catch (const ids::Exception&) {  // one that can't be loaded is no advice
+    }
+  }
+  return names;
 }
 
 /// A UserWarning, if there is a text.
@@ -48,205 +65,405 @@ class Solver {
   explicit Solver(Origin origin) : origin_(std::move(origin)) {
     const py::gil_scoped_release release;
     solver_ = ids::SolverLoader().load(origin_.plugin);
-    solver_->initialize(ids::Parameters(parametersOf(origin_)).strict(), "", origin_.urdf);
+    solver_->initialize(ids::Parameters(origin_.parameters).strict(), "", origin_.urdf);
   }
 
   const Origin& origin() const { return origin_; }
   const ids::InverseDynamicsSolver& get() const { return *solver_; }
-  NamedSolver named() const { return {*solver_, origin_.plugin}; }
   std::shared_ptr<const ids::InverseDynamicsSolver> shared() const { return solver_; }
+  const std::vector<std::string>& joints() const { return solver_->jointNames(); }
 
-  Floats torques(const ArrayLike& q, const ArrayLike& qd, const ArrayLike& qdd,
-                 const MaybeArrayLike& wrench, const std::string& frame,
-                 const MaybeFloats& out) const {
-    if (!wrench.is_none()) return torquesWithWrench(named(), q, qd, qdd, wrench, frame, out);
-    if (frame != "root") {
-      throw ids::InvalidParameterValueException(ids::errorText(
-          "torques: argument frame", "without effect", "a wrench whose axes it names",
-          "'" + frame + "' and no wrench", "give wrench=, or leave frame= out"));
-    }
-    return vectors("torques", {{"q", q}, {"qd", qd}, {"qdd", qdd}}, out, [&](auto& call) {
-      get().getTorquesBatch(call.in(0), call.in(1), call.in(2), call.states(0));
-    });
-  }
-  Floats coriolisVector(const ArrayLike& q, const ArrayLike& qd, const MaybeFloats& out) const {
-    return vectors("coriolis_vector", {{"q", q}, {"qd", qd}}, out, [&](auto& call) {
-      get().getCoriolisVectorBatch(call.in(0), call.in(1), call.states(0));
-    });
-  }
-  Floats gravityVector(const ArrayLike& q, const MaybeFloats& out) const {
-    return vectors("gravity_vector", {{"q", q}}, out,
-                   [&](auto& call) { get().getGravityVectorBatch(call.in(0), call.states(0)); });
-  }
-  Floats frictionVector(const ArrayLike& qd, const MaybeArrayLike& q,
-                        const MaybeFloats& out) const {
-    Arguments arguments = {{"qd", qd}};
-    if (!q.is_none()) arguments.emplace_back("q", q);
-    return vectors("friction_vector", arguments, out, [&](auto& call) {
-      const ids::ConstStates unknown(call.in(0).data, 0, call.count(), 1, 0);
-      get().getFrictionVectorBatch(q.is_none() ? unknown : call.in(1), call.in(0), call.states(0));
-    });
-  }
-  Floats inertiaMatrix(const ArrayLike& q, const MaybeFloats& out) const {
-    SolverCall call("inertia_matrix", get());
-    call.input("q", q);
-    call.matrices("out", out, get().jointCount(), get().jointCount());
-    call.run([&] { get().getInertiaMatrixBatch(call.in(0), call.matricesOf(0)); });
-    return call.result(0);
-  }
-  ThreeFloats dynamicComponents(const ArrayLike& q, const ArrayLike& qd,
-                                const py::object& out) const {
-    const char* const method = "dynamic_components";
-    const std::array<py::object, 3> outs = threeOf(method, out);
-    SolverCall call(method, get());
-    call.input("q", q);
-    call.input("qd", qd);
-    call.matrices("out[0]", outs[0], get().jointCount(), get().jointCount());
-    call.vectors("out[1]", outs[1]);
-    call.vectors("out[2]", outs[2]);
-    call.run([&] {
-      get().getDynamicComponentsBatch(call.in(0), call.in(1), call.matricesOf(0), call.states(1),
-                                      call.states(2));
-    });
-    return {call.result(0), call.result(1), call.result(2)};
+  /// What only some solvers can; null: this one can't.
+  template <class Capability>
+  Capability* find() const {
+    return dynamic_cast<Capability*>(solver_.get());
   }
 
-  void setPayload(const std::string& name, double mass, const MaybeArrayLike& center_of_mass,
-                  const MaybeArrayLike& inertia, const MaybeArrayLike& frame) {
-    auto& payload = capability<ids::Payload>("set_payload");
-    const ids::RigidBody body = bodyOf(mass, center_of_mass, inertia, frame);
-    withoutInterpreter([&] { payload.setPayload(name, body); });
-    warn(ids::doubtOf(body));
-  }
-  bool removePayload(const std::string& name) {
-    auto& payload = capability<ids::Payload>("remove_payload");
-    const py::gil_scoped_release release;
-    return payload.removePayload(name);
-  }
-  void clearPayloads() {
-    auto& payload = capability<ids::Payload>("clear_payloads");
-    const py::gil_scoped_release release;
-    payload.clearPayloads();
-  }
-  bool isChangeable() const {
-    return dynamic_cast<const ids::Payload*>(solver_.get()) != nullptr &&
-           dynamic_cast<const ids::VariableGravity*>(solver_.get()) != nullptr;
-  }
-  // What is set waits for a change, which waits for batches: without the interpreter's lock.
-  ids::Payloads payloads() {
-    auto& payload = capability<ids::Payload>("payloads");
-    return withoutInterpreter([&] { return payload.payloads(); });
+  /// @throws Exception  this one can't: names those that can. `method` begins the text.
+  template <class Capability>
+  Capability& as(const std::string& method) const {
+    if (auto* const found = find<Capability>()) return *found;
+    const std::string others = solversThat(
+        [](const auto& solver) { return dynamic_cast<const Capability*>(&solver) != nullptr; });
+    throw ids::Exception(ids::errorText(method, "this solver doesn't compute it",
+                                        others.empty() ? "a solver that does" : "one of " + others,
+                                        origin_.plugin, "make another Solver for it"));
   }
 
-  void setGravity(const ArrayLike& gravity) {
-    auto& mount = capability<ids::VariableGravity>("set_gravity");
-    const Eigen::Vector3d numbers = vectorOf("set_gravity: argument gravity", gravity);
-    withoutInterpreter([&] { mount.setGravity(numbers); });
-    warn(ids::doubtOf(numbers));
-  }
-  void setBaseAcceleration(const ArrayLike& acceleration) {
-    auto& mount = capability<ids::VariableGravity>("set_base_acceleration");
-    const Eigen::Vector3d numbers =
-        vectorOf("set_base_acceleration: argument acceleration", acceleration);
-    const py::gil_scoped_release release;
-    mount.setBaseAcceleration(numbers);
-  }
-  Floats gravity() {
-    auto& mount = capability<ids::VariableGravity>("gravity");
-    return arrayOf(withoutInterpreter([&] { return mount.gravity(); }));
-  }
-  Floats baseAcceleration() {
-    auto& mount = capability<ids::VariableGravity>("base_acceleration");
-    return arrayOf(withoutInterpreter([&] { return mount.baseAcceleration(); }));
+  template <class Capability>
+  Capability& as(const PartOfCall& part) const {
+    return as<Capability>(part.call.method());
   }
 
-  /// Drive gains of a model identified in currents; None of any other.
-  MaybeFloats driveGains() const {
-    const auto* motors = dynamic_cast<const ids::MotorCurrents*>(solver_.get());
-    if (motors == nullptr) return py::none();
-    const Eigen::VectorXd gains = motors->getDriveGainsMatrix().diagonal();
-    return py::array_t<double>(gains.size(), gains.data());
-  }
-
-  bool frictionDependsOnPosition() const { return ids::frictionDependsOnPosition(*solver_); }
-
-  /// Half the width of the band that holds 95 % of the torques; None where it is unknown.
-  MaybeFloats torqueDeviation() const {
-    const auto* band = dynamic_cast<const ids::TorqueDeviation*>(solver_.get());
-    if (band == nullptr || !band->hasTorqueDeviation()) return py::none();
-    const Eigen::VectorXd deviation = band->getTorqueDeviation();
-    return py::array_t<double>(deviation.size(), deviation.data());
-  }
-
-  /// n: "revolute", "continuous" or "prismatic".
-  NameTuple jointTypes() const {
-    const auto name = [](chain_dynamics::JointType type) {
-      return type == chain_dynamics::JointType::kPrismatic    ? "prismatic"
-             : type == chain_dynamics::JointType::kContinuous ? "continuous"
-                                                              : "revolute";
-    };
-    std::vector<std::string> names;
-    for (const auto type : get().jointTypes()) names.emplace_back(name(type));
-    return tupleOf(names);
-  }
-
-  /// (3, n, 2): q, qd, qdd; joint; least and greatest. None where it is unknown.
-  MaybeFloats seenRanges() const {
-    const auto* band = dynamic_cast<const ids::TorqueDeviation*>(solver_.get());
-    if (band == nullptr || band->seenRanges().empty()) return py::none();
-    const auto& ranges = band->seenRanges();
-    py::array_t<double> result(
-        {py::ssize_t{3}, static_cast<py::ssize_t>(ranges.size()), py::ssize_t{2}});
-    for (std::size_t j = 0; j < ranges.size(); ++j) {
-      const chain_dynamics::Interval of_joint[] = {ranges[j].q, ranges[j].qd, ranges[j].qdd};
-      for (int k = 0; k < 3; ++k) {
-        result.mutable_at(k, j, 0) = of_joint[k].lower;
-        result.mutable_at(k, j, 1) = of_joint[k].upper;
-      }
-    }
-    return py::object(std::move(result));  // GCC 14 calls a plain move redundant, others need one
+  template <class OfPart>
+  void compute(const SolverCall& call, const OfPart& of_part) const {
+    call.run([&] { of_part(PartOfCall{call, 0, call.count()}); });
   }
 
  private:
-  using Arguments = std::vector<std::pair<const char*, py::object>>;
-
-  template <class Capability>
-  Capability& capability(const char* method) {
-    return capabilityOf<Capability>(*solver_, method, origin_.plugin);
-  }
-
-  template <class Compute>
-  Floats vectors(const char* method, const Arguments& arguments, const MaybeFloats& out,
-                 Compute compute) const {
-    SolverCall call(method, get());
-    for (const auto& [name, values] : arguments) call.input(name, values);
-    call.vectors("out", out);
-    call.run([&] { compute(call); });
-    return call.result(0);
-  }
-
-  /// The arrays of a tuple (H, c, g), or None for each.
-  static std::array<py::object, 3> threeOf(const char* method, const py::object& out) {
-    if (out.is_none()) return {py::none(), py::none(), py::none()};
-    if (!py::isinstance<py::tuple>(out) || py::len(out) != 3) {
-      throw ids::InvalidParameterValueException(
-          ids::errorText(std::string(method) + ": argument out", "", "a tuple (H, c, g) of arrays",
-                         py::str(py::type::of(out).attr("__name__"))));
-    }
-    return {out[py::int_(0)], out[py::int_(1)], out[py::int_(2)]};
-  }
-
   Origin origin_;
   std::shared_ptr<ids::InverseDynamicsSolver> solver_;
 };
 
-}  // namespace
-}  // namespace inverse_dynamics_tools
+// ---------------------------------------------------------------- torques
 
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(inverse_dynamics_tools::Solver)
+/// Calls compute() with the wrenches as the type of their frame.
+template <class Compute>
+void withWrenches(const ids::ConstStates& wrenches, const std::string& frame,
+                  const Compute& compute) {
+  if (frame == "tip") {
+    compute(ids::WrenchesInTip(wrenches));
+  } else {
+    compute(ids::WrenchesInRoot(wrenches));
+  }
+}
 
-namespace inverse_dynamics_tools {
-namespace {
+void requireFrame(const std::string& method, const std::string& frame) {
+  if (frame == "root" || frame == "tip") return;
+  throw ids::InvalidParameterValueException(
+      ids::errorText(method + ": argument frame", "",
+                     "'root' or 'tip': whose axes the wrench is expressed in", "'" + frame + "'"));
+}
+
+Floats externalTorques(const Solver& solver, const ArrayLike& q, const ArrayLike& wrench,
+                       const std::string& frame, const MaybeFloats& out) {
+  const auto& contact = solver.as<ids::ExternalWrench>("external_torques");
+  requireFrame("external_torques", frame);
+  SolverCall call("external_torques", solver.joints());
+  call.input("q", q);
+  call.wrench("wrench", wrench);
+  call.result("out", out, {solver.get().jointCount()});
+  call.run([&] {
+    withWrenches(call.in(1), frame, [&](const auto& wrenches) {
+      contact.getExternalTorquesBatch(call.in(0), wrenches, call.states(0));
+    });
+  });
+  return call.array(0);
+}
+
+Floats torques(const Solver& solver, const ArrayLike& q, const ArrayLike& qd, const ArrayLike& qdd,
+               const MaybeArrayLike& wrench, const std::string& frame, const MaybeFloats& out) {
+  if (wrench.is_none() && frame != "root") {
+    throw ids::InvalidParameterValueException(
+        ids::errorText("torques: argument frame", "without effect", "a wrench whose axes it names",
+                       "'" + frame + "' and no wrench", "give wrench=, or leave frame= out"));
+  }
+  SolverCall call("torques", solver.joints());
+  call.input("q", q);
+  call.input("qd", qd);
+  call.input("qdd", qdd);
+  if (wrench.is_none()) {
+    call.result("out", out, {solver.get().jointCount()});
+    call.run(
+        [&] { solver.get().getTorquesBatch(call.in(0), call.in(1), call.in(2), call.states(0)); });
+    return call.array(0);
+  }
+  const auto& contact = solver.as<ids::ExternalWrench>("torques");
+  requireFrame("torques", frame);
+  call.wrench("wrench", wrench);
+  call.result("out", out, {solver.get().jointCount()});
+  call.run([&] {
+    withWrenches(call.in(3), frame, [&](const auto& wrenches) {
+      contact.getTorquesBatch(call.in(0), call.in(1), call.in(2), wrenches, call.states(0));
+    });
+  });
+  return call.array(0);
+}
+
+Floats frictionVector(const Solver& solver, const ArrayLike& qd, const MaybeArrayLike& q,
+                      const MaybeFloats& out) {
+  SolverCall call("friction_vector", solver.joints());
+  call.input("qd", qd);
+  if (!q.is_none()) call.input("q", q);
+  call.result("out", out, {solver.get().jointCount()});
+  call.run([&] {
+    const ids::ConstStates unknown(call.in(0).data, 0, call.count(), 1, 0);
+    solver.get().getFrictionVectorBatch(q.is_none() ? unknown : call.in(1), call.in(0),
+                                        call.states(0));
+  });
+  return call.array(0);
+}
+
+/// The arrays of a tuple (H, c, g), or None for each.
+std::array<py::object, 3> threeOf(const py::object& out) {
+  if (out.is_none()) return {py::none(), py::none(), py::none()};
+  if (!py::isinstance<py::tuple>(out) || py::len(out) != 3) {
+    throw ids::InvalidParameterValueException(
+        ids::errorText("dynamic_components: argument out", "", "a tuple (H, c, g) of arrays",
+                       py::str(py::type::of(out).attr("__name__"))));
+  }
+  return {out[py::int_(0)], out[py::int_(1)], out[py::int_(2)]};
+}
+
+ThreeFloats dynamicComponents(const Solver& solver, const ArrayLike& q, const ArrayLike& qd,
+                              const py::object& out) {
+  const std::array<py::object, 3> outs = threeOf(out);
+  const auto n = solver.get().jointCount();
+  SolverCall call("dynamic_components", solver.joints());
+  call.input("q", q);
+  call.input("qd", qd);
+  call.result("out[0]", outs[0], {n, n});
+  call.result("out[1]", outs[1], {n});
+  call.result("out[2]", outs[2], {n});
+  call.run([&] {
+    solver.get().getDynamicComponentsBatch(call.in(0), call.in(1), call.matrices(0), call.states(1),
+                                           call.states(2));
+  });
+  return {call.array(0), call.array(1), call.array(2)};
+}
+
+/// What each solver has for each state.
+void bindQuantities(py::class_<Solver>& solver) {
+  using S = const Solver&;
+  using Part = const PartOfCall&;
+  Quantities<Solver>(solver)
+      .add(
+          "inertia_matrix", std::array{"q"}, std::array{kJointByJoint},
+          [](S s, Part p) { s.get().getInertiaMatrixBatch(p.in(0), p.matrices(0)); },
+          "H(q), (n, n) or (N, n, n).")
+      .add(
+          "coriolis_vector", std::array{"q", "qd"}, std::array{kPerJoint},
+          [](S s, Part p) { s.get().getCoriolisVectorBatch(p.in(0), p.in(1), p.states(0)); },
+          "C(q, qd) qd.")
+      .add(
+          "gravity_vector", std::array{"q"}, std::array{kPerJoint},
+          [](S s, Part p) { s.get().getGravityVectorBatch(p.in(0), p.states(0)); },
+          "g(q): what holds the robot still.");
+  const py::kw_only keywords;
+  const py::arg_v frame = py::arg("frame") = "root", out = py::arg("out") = py::none();
+  solver
+      .def("torques", &torques, py::arg("q"), py::arg("qd"), py::arg("qdd"), keywords,
+           py::arg("wrench") = py::none(), frame, out,
+           "tau = H(q) qdd + C(q, qd) qd + f(q, qd) + g(q); with a wrench + J(q)^T wrench, as in\n"
+           "external_torques(); frame='tip' without a wrench is an error.")
+      .def("friction_vector", &frictionVector, py::arg("qd"), keywords, py::arg("q") = py::none(),
+           out,
+           "f(q, qd); zero if the solver has no friction model or was made without. q is needed\n"
+           "where friction_depends_on_position.")
+      .def("dynamic_components", &dynamicComponents, py::arg("q"), py::arg("qd"), keywords, out,
+           "H(q), C(q, qd) qd, g(q); out: a tuple of three arrays.");
+}
+
+// ---------------------------------------------------------------- capabilities
+
+void bindCapabilities(py::class_<Solver>& solver) {
+  using S = const Solver&;
+  using Part = const PartOfCall&;
+  Quantities<Solver>(solver)
+      .add(
+          "tip_pose", std::array{"q"}, std::array{kRotation, kVector3},
+          [](S s, Part p) {
+            s.as<ids::Kinematics>(p).getTipPoseBatch(p.in(0), p.matrices(0), p.states(1));
+          },
+          "Pose of the tip in the root frame: R, (3, 3) or (N, 3, 3), and p, (3,) or (N, 3).")
+      .add(
+          "tip_jacobian", std::array{"q"}, std::array{kJacobian},
+          [](S s, Part p) { s.as<ids::Kinematics>(p).getTipJacobianBatch(p.in(0), p.matrices(0)); },
+          "J(q), (6, n) or (N, 6, n): [v, w] = J qd is the velocity of the tip's origin, linear\n"
+          "first, in the axes of the root frame.")
+      .add(
+          "tip_jacobian_derivative", std::array{"q", "qd"}, std::array{kJacobian},
+          [](S s, Part p) {
+            s.as<ids::Kinematics>(p).getTipJacobianDerivativeBatch(p.in(0), p.in(1), p.matrices(0));
+          },
+          "dJ/dt where q moves with qd, in the shape of J.")
+      .add(
+          "coriolis_matrix", std::array{"q", "qd"}, std::array{kJointByJoint},
+          [](S s, Part p) {
+            s.as<ids::CoriolisMatrix>(p).getCoriolisMatrixBatch(p.in(0), p.in(1), p.matrices(0));
+          },
+          "C(q, qd) of Christoffel's symbols, (n, n) or (N, n, n).")
+      .add<FloatOrFloats>(
+          "kinetic_energy", std::array{"q", "qd"}, std::array{kScalar},
+          [](S s, Part p) {
+            s.as<ids::Energies>(p).getKineticEnergyBatch(p.in(0), p.in(1), p.states(0));
+          },
+          "1/2 qd^T H qd [J], a number or (N,); where H is symmetric.")
+      .add<FloatOrFloats>(
+          "potential_energy", std::array{"q"}, std::array{kScalar},
+          [](S s, Part p) { s.as<ids::Energies>(p).getPotentialEnergyBatch(p.in(0), p.states(0)); },
+          "Of gravity [J], a number or (N,); zero where all masses are at the root's origin.\n"
+          "Where H is symmetric.")
+      .add(
+          "torque_derivatives", std::array{"q", "qd", "qdd"},
+          std::array{kJointByJoint, kJointByJoint, kJointByJoint},
+          [](S s, Part p) {
+            s.as<ids::TorqueDerivatives>(p).getTorqueDerivativesBatch(
+                p.in(0), p.in(1), p.in(2), p.matrices(0), p.matrices(1), p.matrices(2));
+          },
+          "dtau/dq, dtau/dqd and dtau/dqdd = H, (n, n) or (N, n, n) each, friction included.")
+      .add(
+          "regressor", std::array{"q", "qd", "qdd"}, std::array{kRegressor},
+          [](S s, Part p) {
+            s.as<ids::Regressor>(p).getRegressorBatch(p.in(0), p.in(1), p.in(2), p.matrices(0));
+          },
+          "Y, (n, 10 n) or (N, n, 10 n): torques of rigid bodies are Y p.")
+      .add(
+          "accelerations", std::array{"q", "qd", "tau"}, std::array{kPerJoint},
+          [](S s, Part p) {
+            s.as<ids::ForwardDynamics>(p).getAccelerationsBatch(p.in(0), p.in(1), p.in(2),
+                                                                p.states(0));
+          },
+          "qdd under these torques, friction subtracted.");
+  solver.def("external_torques", &externalTorques, py::arg("q"), py::arg("wrench"),
+             py::arg("frame") = "root", py::kw_only(), py::arg("out") = py::none(),
+             "J(q)^T wrench: what the joints add so that the tip exerts the wrench on its\n"
+             "surroundings. wrench: (6,) or (N, 6), force [N] and torque [N m] about the tip's\n"
+             "origin, in the axes of frame, 'root' or 'tip'.");
+}
+
+// ---------------------------------------------------------------- properties
+
+MaybeFloats arrayOrNone(const Eigen::VectorXd& vector) {
+  if (vector.size() == 0) return py::none();
+  return arrayOf(vector);
+}
+
+MaybeFloats driveGains(const Solver& solver) {
+  const auto* motors = solver.find<ids::MotorCurrents>();
+  return arrayOrNone(motors ? motors->getDriveGainsMatrix().diagonal() : Eigen::VectorXd());
+}
+
+MaybeFloats torqueDeviation(const Solver& solver) {
+  const auto* band = solver.find<ids::TorqueDeviation>();
+  const bool known = band != nullptr && band->hasTorqueDeviation();
+  return arrayOrNone(known ? band->getTorqueDeviation() : Eigen::VectorXd());
+}
+
+NameTuple jointTypes(const Solver& solver) {
+  const auto name = [](chain_dynamics::JointType type) {
+    return type == chain_dynamics::JointType::kPrismatic    ? "prismatic"
+           : type == chain_dynamics::JointType::kContinuous ? "continuous"
+                                                            : "revolute";
+  };
+  std::vector<std::string> names;
+  for (const auto type : solver.get().jointTypes()) names.emplace_back(name(type));
+  return tupleOf(names);
+}
+
+MaybeFloats seenRanges(const Solver& solver) {
+  const auto* band = solver.find<ids::TorqueDeviation>();
+  if (band == nullptr || band->seenRanges().empty()) return py::none();
+  const auto& ranges = band->seenRanges();
+  py::array_t<double> result(Shape{3, static_cast<py::ssize_t>(ranges.size()), 2});
+  for (std::size_t j = 0; j < ranges.size(); ++j) {
+    const chain_dynamics::Interval of_joint[] = {ranges[j].q, ranges[j].qd, ranges[j].qdd};
+    for (int k = 0; k < 3; ++k) {
+      result.mutable_at(k, j, 0) = of_joint[k].lower;
+      result.mutable_at(k, j, 1) = of_joint[k].upper;
+    }
+  }
+  return py::object(std::move(result));  // GCC 14 calls a plain move redundant, others need one
+}
+
+void bindProperties(py::class_<Solver>& solver) {
+  solver.def_property_readonly("plugin", [](const Solver& s) { return s.origin().plugin; })
+      .def_property_readonly(
+          "joint_names", [](const Solver& s) { return tupleOf(s.joints()); },
+          "Names of the joints, from root to tip: the order of all arrays.")
+      .def_property_readonly("joint_types", &jointTypes,
+                             "revolute, continuous or prismatic, of each joint. Positions of a\n"
+                             "continuous joint that differ by whole turns are the same.")
+      .def_property_readonly(
+          "warnings", [](const Solver& s) { return tupleOf(s.get().warnings()); },
+          "Warnings about the robot that don't prevent computing, one sentence each.")
+      .def_property_readonly(
+          "inertia_is_physical", [](const Solver& s) { return s.get().inertiaIsPhysical(); },
+          "Whether H is symmetric and positive definite by construction.")
+      .def_property_readonly("drive_gains", &driveGains,
+                             "(n,) N m/A (prismatic N/A) of a model identified in motor\n"
+                             "currents; None of any other.")
+      .def_property_readonly(
+          "friction_depends_on_position",
+          [](const Solver& s) { return ids::frictionDependsOnPosition(s.get()); },
+          "Whether friction grows with the gravity torques: then friction_vector() needs q.")
+      .def_property_readonly(
+          "torque_deviation", &torqueDeviation,
+          "(n,) N m (prismatic N): half the width of the band that holds 95 %\n"
+          "of the differences between measured and computed torques of data\n"
+          "that weren't used to identify; None where the model doesn't state it.")
+      .def_property_readonly("seen", &seenRanges,
+                             "(3, n, 2): least and greatest q, qd, qdd of the data of\n"
+                             "identification; None where the model doesn't state it.");
+}
+
+// ---------------------------------------------------------------- bodies and gravity
+
+// What is set waits for a change, which waits for batches: without the interpreter's lock.
+ids::Payloads payloads(const Solver& solver) {
+  auto& payload = solver.as<ids::Payload>("payloads");
+  return unlocked([&] { return payload.payloads(); });
+}
+
+Floats gravity(const Solver& solver) {
+  auto& mount = solver.as<ids::VariableGravity>("gravity");
+  return arrayOf(unlocked([&] { return mount.gravity(); }));
+}
+
+Floats baseAcceleration(const Solver& solver) {
+  auto& mount = solver.as<ids::VariableGravity>("base_acceleration");
+  return arrayOf(unlocked([&] { return mount.baseAcceleration(); }));
+}
+
+void setPayload(const Solver& solver, const std::string& name, double mass,
+                const MaybeArrayLike& center_of_mass, const MaybeArrayLike& inertia,
+                const MaybeArrayLike& frame) {
+  auto& payload = solver.as<ids::Payload>("set_payload");
+  const ids::RigidBody body = bodyOf(mass, center_of_mass, inertia, frame);
+  unlocked([&] { payload.setPayload(name, body); });
+  warn(ids::doubtOf(body));
+}
+
+void setGravity(const Solver& solver, const ArrayLike& gravity) {
+  auto& mount = solver.as<ids::VariableGravity>("set_gravity");
+  const Eigen::Vector3d numbers = vectorOf("set_gravity: argument gravity", gravity);
+  unlocked([&] { mount.setGravity(numbers); });
+  warn(ids::doubtOf(numbers));
+}
+
+void setBaseAcceleration(const Solver& solver, const ArrayLike& acceleration) {
+  auto& mount = solver.as<ids::VariableGravity>("set_base_acceleration");
+  const Eigen::Vector3d numbers =
+      vectorOf("set_base_acceleration: argument acceleration", acceleration);
+  unlocked([&] { mount.setBaseAcceleration(numbers); });
+}
+
+void bindChanges(py::class_<Solver>& solver) {
+  solver
+      .def("set_payload", &setPayload, py::arg("name"), py::arg("mass"),
+           py::arg("center_of_mass") = py::none(), py::arg("inertia") = py::none(),
+           py::arg("frame") = py::none(),
+           "Adds a rigid body to the tip, or replaces the one of that name, also while other\n"
+           "threads compute. mass: kg. center_of_mass: (3,) m, in the body's frame. inertia:\n"
+           "(3, 3) or ixx ixy ixz iyy iyz izz, kg m^2, about the center of mass, in the axes of\n"
+           "the body's frame; none: a point mass. frame: (4, 4) pose of that frame in the tip\n"
+           "frame. A UserWarning for a body that is implausible: 5 m away, for one.")
+      .def(
+          "remove_payload",
+          [](const Solver& s, const std::string& name) {
+            auto& payload = s.as<ids::Payload>("remove_payload");
+            return unlocked([&] { return payload.removePayload(name); });
+          },
+          py::arg("name"), "Takes a body away; False if there is none of that name.")
+      .def(
+          "clear_payloads",
+          [](const Solver& s) {
+            auto& payload = s.as<ids::Payload>("clear_payloads");
+            unlocked([&] { payload.clearPayloads(); });
+          },
+          "Takes all bodies away.")
+      .def_property_readonly("payloads", &payloads,
+                             "The bodies: name to the arguments of set_payload().")
+      .def("set_gravity", &setGravity, py::arg("gravity"),
+           "Sets the gravitational acceleration: (3,) m/s^2, in the axes of the root link.\n"
+           "A UserWarning where it is implausible: 981, for one.")
+      .def("set_base_acceleration", &setBaseAcceleration, py::arg("acceleration"),
+           "How the root link accelerates, (3,) m/s^2 in its axes. Not for a base that rotates.")
+      .def_property_readonly("gravity", &gravity, "(3,) m/s^2.")
+      .def_property_readonly("base_acceleration", &baseAcceleration, "(3,) m/s^2.");
+}
+
+// ---------------------------------------------------------------- making
 
 std::unique_ptr<Solver> makeSolver(const std::string& plugin, const Description& urdf,
                                    const std::string& root, const std::string& tip,
@@ -254,70 +471,45 @@ std::unique_ptr<Solver> makeSolver(const std::string& plugin, const Description&
                                    bool friction, const std::string& attached,
                                    const std::optional<std::string>& model,
                                    const ParameterDict& parameters) {
-  Origin origin{plugin, urdf.text, root, tip, gravity, friction, attached, model, {}};
-  for (const auto& [key, value] : py::dict(parameters)) {
-    addParameter(key.cast<std::string>(), value, origin.parameters);
-  }
+  Origin origin{plugin, urdf.text, parametersOf(parameters)};
+  const auto give = [&](const std::string& name, const ids::ParameterValue& value) {
+    if (origin.parameters.emplace(name, value).second) return;
+    throw ids::InvalidParameterValueException(
+        ids::errorText("Solver", "", "each parameter once",
+                       "argument " + name + " and parameters['" + name + "']", "leave out one"));
+  };
+  if (!friction || origin.parameters.count("friction") == 0) give("friction", friction);
+  if (!root.empty()) give("root", root);
+  if (!tip.empty()) give("tip", tip);
+  if (!attached.empty()) give("attached", attached);
+  if (model) give("model", *model);
+  if (gravity) give("gravity", std::vector<double>(gravity->begin(), gravity->end()));
   return std::make_unique<Solver>(std::move(origin));
 }
 
 /// How pickle and copy make the solver again: of the same arguments, with what was set since.
 py::tuple reduced(const py::object& self) {
-  auto& solver = self.cast<Solver&>();
-  const py::tuple arguments = argumentsOf(solver.origin());
-  if (!solver.isChangeable()) return py::make_tuple(py::type::of(self), arguments);
+  const auto& solver = self.cast<const Solver&>();
+  py::dict since;
+  if (solver.find<ids::Payload>() && solver.find<ids::VariableGravity>()) {
+    since["payloads"] = payloads(solver);
+    since["gravity"] = gravity(solver);
+    since["base_acceleration"] = baseAcceleration(solver);
+  }
+  const Origin& origin = solver.origin();
   return py::make_tuple(
       py::module_::import("inverse_dynamics.base.restored").attr("restored_solver"),
-      py::make_tuple(py::type::of(self), arguments, solver.payloads(), solver.gravity(),
-                     solver.baseAcceleration()));
-}
-
-/// A function of a solver as a method.
-template <class Result, class... Values>
-auto of(Result (*function)(const NamedSolver&, Values...)) {
-  return [function](const Solver& solver, Values... values) {
-    return function(solver.named(), values...);
-  };
-}
-
-void bindCapabilities(py::class_<Solver>& solver) {
-  const py::arg q("q"), qd("qd"), qdd("qdd"), tau("tau"), wrench("wrench");
-  const py::arg_v frame = py::arg("frame") = "root", out = py::arg("out") = py::none();
-  const py::kw_only keywords;
-  solver
-      .def("tip_pose", of(&tipPose), q,
-           "Pose of the tip in the root frame: R, (3, 3) or (N, 3, 3), and p, (3,) or (N, 3).")
-      .def("tip_jacobian", of(&tipJacobian), q, keywords, out,
-           "J(q), (6, n) or (N, 6, n): [v, w] = J qd is the velocity of the tip's origin, linear\n"
-           "first, in the axes of the root frame.")
-      .def("tip_jacobian_derivative", of(&tipJacobianDerivative), q, qd, keywords, out,
-           "dJ/dt where q moves with qd, in the shape of J.")
-      .def("external_torques", of(&externalTorques), q, wrench, frame, keywords, out,
-           "J(q)^T wrench: what the joints add so that the tip exerts the wrench on its\n"
-           "surroundings. wrench: (6,) or (N, 6), force [N] and torque [N m] about the tip's\n"
-           "origin, in the axes of frame, 'root' or 'tip'.")
-      .def("coriolis_matrix", of(&coriolisMatrix), q, qd, keywords, out,
-           "C(q, qd) of Christoffel's symbols, (n, n) or (N, n, n).")
-      .def("kinetic_energy", of(&kineticEnergy), q, qd,
-           "1/2 qd^T H qd [J], a number or (N,); where H is symmetric.")
-      .def("potential_energy", of(&potentialEnergy), q,
-           "Of gravity [J], a number or (N,); zero where all masses are at the root's origin.\n"
-           "Where H is symmetric.")
-      .def("torque_derivatives", of(&torqueDerivatives), q, qd, qdd,
-           "dtau/dq, dtau/dqd and dtau/dqdd = H, (n, n) or (N, n, n) each, friction included.")
-      .def("regressor", of(&regressor), q, qd, qdd, keywords, out,
-           "Y, (n, 10 n) or (N, n, 10 n): torques of rigid bodies are Y p.")
-      .def("accelerations", of(&accelerations), q, qd, tau, keywords, out,
-           "qdd under these torques, friction subtracted.");
+      py::make_tuple(py::type::of(self), origin.plugin, origin.urdf, dictOf(origin.parameters),
+                     since));
 }
 
 std::string represented(const Solver& solver) {
-  const std::vector<std::string>& joints = solver.get().jointNames();
-  const std::string number = std::to_string(joints.size());
-  return "<Solver " + solver.origin().plugin + ": " +
-         (joints.size() == 1 ? "joint " + joints[0]
-                             : number + " joints, " + joints.front() + " to " + joints.back()) +
-         ">";
+  const std::vector<std::string>& joints = solver.joints();
+  const std::string joints_in_words =
+      joints.size() == 1
+          ? "joint " + joints[0]
+          : std::to_string(joints.size()) + " joints, " + joints.front() + " to " + joints.back();
+  return "<Solver " + solver.origin().plugin + ": " + joints_in_words + ">";
 }
 
 }  // namespace
@@ -346,8 +538,8 @@ void bindSolver(py::module_& module) {
   solver
       .def(
           py::init(&makeSolver), py::arg("plugin"), py::arg("urdf") = "", py::arg("root") = "",
-          py::arg("tip") = "", py::arg("gravity") = py::none(), py::arg("friction") = true,
-          py::arg("attached") = "", py::arg("model") = py::none(),
+          py::arg("tip") = "", py::arg("gravity") = py::none(), py::kw_only(),
+          py::arg("friction") = true, py::arg("attached") = "", py::arg("model") = py::none(),
           py::arg("parameters") = py::dict(),
           "plugin: package/Class, one of available_solvers(). urdf: its text, or the path\n"
           "of a .urdf or .xacro file. root, tip: links; empty: the first and the last. gravity:\n"
@@ -357,74 +549,12 @@ void bindSolver(py::module_& module) {
           "batch_threads: number of threads that may share a large batch. Arguments that are not\n"
           "given have the solver's defaults.\n\n"
           "Raises SolverError: see inverse_dynamics.errors.")
-      .def_property_readonly("plugin", [](const Solver& s) { return s.origin().plugin; })
-      .def_property_readonly(
-          "joint_names", [](const Solver& s) { return tupleOf(s.get().jointNames()); },
-          "Names of the joints, from root to tip: the order of all arrays.")
-      .def_property_readonly("joint_types", &Solver::jointTypes,
-                             "revolute, continuous or prismatic, of each joint. Positions of a\n"
-                             "continuous joint that differ by whole turns are the same.")
-      .def_property_readonly(
-          "warnings", [](const Solver& s) { return tupleOf(s.get().warnings()); },
-          "Warnings about the robot that don't prevent computing, one sentence each.")
-      .def_property_readonly(
-          "inertia_is_physical", [](const Solver& s) { return s.get().inertiaIsPhysical(); },
-          "Whether H is symmetric and positive definite by construction.")
-      .def_property_readonly("drive_gains", &Solver::driveGains,
-                             "(n,) N m/A (prismatic N/A) of a model identified in motor\n"
-                             "currents; None of any other.")
-      .def_property_readonly("friction_depends_on_position", &Solver::frictionDependsOnPosition,
-                             "Whether friction grows with the gravity torques: then\n"
-                             "friction_vector() needs q.")
-      .def_property_readonly(
-          "torque_deviation", &Solver::torqueDeviation,
-          "(n,) N m (prismatic N): half the width of the band that holds 95 %\n"
-          "of the differences between measured and computed torques of data\n"
-          "that weren't used to identify; None where the model doesn't state it.")
-      .def_property_readonly("seen", &Solver::seenRanges,
-                             "(3, n, 2): least and greatest q, qd, qdd of the data of\n"
-                             "identification; None where the model doesn't state it.")
-      .def("torques", &Solver::torques, py::arg("q"), py::arg("qd"), py::arg("qdd"), py::kw_only(),
-           py::arg("wrench") = py::none(), py::arg("frame") = "root", py::arg("out") = py::none(),
-           "tau = H(q) qdd + C(q, qd) qd + f(q, qd) + g(q); with a wrench + J(q)^T wrench, as in\n"
-           "external_torques(); frame='tip' without a wrench is an error.")
-      .def("inertia_matrix", &Solver::inertiaMatrix, py::arg("q"), py::kw_only(),
-           py::arg("out") = py::none(), "H(q), (n, n) or (N, n, n).")
-      .def("coriolis_vector", &Solver::coriolisVector, py::arg("q"), py::arg("qd"), py::kw_only(),
-           py::arg("out") = py::none(), "C(q, qd) qd.")
-      .def("gravity_vector", &Solver::gravityVector, py::arg("q"), py::kw_only(),
-           py::arg("out") = py::none(), "g(q): what holds the robot still.")
-      .def("friction_vector", &Solver::frictionVector, py::arg("qd"), py::kw_only(),
-           py::arg("q") = py::none(), py::arg("out") = py::none(),
-           "f(q, qd); zero if the solver has no friction model or was made without. q is needed\n"
-           "where friction_depends_on_position.")
-      .def("dynamic_components", &Solver::dynamicComponents, py::arg("q"), py::arg("qd"),
-           py::kw_only(), py::arg("out") = py::none(),
-           "H(q), C(q, qd) qd, g(q); out: a tuple of three arrays.")
-      .def("set_payload", &Solver::setPayload, py::arg("name"), py::arg("mass"),
-           py::arg("center_of_mass") = py::none(), py::arg("inertia") = py::none(),
-           py::arg("frame") = py::none(),
-           "Adds a rigid body to the tip, or replaces the one of that name, also while other\n"
-           "threads compute. mass: kg. center_of_mass: (3,) m, in the body's frame. inertia: (3, "
-           "3)\n"
-           "or ixx ixy ixz iyy iyz izz, kg m^2, about the center of mass, in the axes of the\n"
-           "body's frame; none: a point mass. frame: (4, 4) pose of that frame in the tip frame.\n"
-           "A UserWarning for a body that is implausible: 5 m away, for one.")
-      .def("remove_payload", &Solver::removePayload, py::arg("name"),
-           "Takes a body away; False if there is none of that name.")
-      .def("clear_payloads", &Solver::clearPayloads, "Takes all bodies away.")
-      .def_property_readonly("payloads", &Solver::payloads,
-                             "The bodies: name to the arguments of set_payload().")
-      .def("set_gravity", &Solver::setGravity, py::arg("gravity"),
-           "Sets the gravitational acceleration: (3,) m/s^2, in the axes of the root link.\n"
-           "A UserWarning where it is implausible: 981, for one.")
-      .def("set_base_acceleration", &Solver::setBaseAcceleration, py::arg("acceleration"),
-           "How the root link accelerates, (3,) m/s^2 in its axes. Not for a base that rotates.")
-      .def_property_readonly("gravity", &Solver::gravity, "(3,) m/s^2.")
-      .def_property_readonly("base_acceleration", &Solver::baseAcceleration, "(3,) m/s^2.")
       .def("__repr__", &represented)
       .def("__reduce__", &reduced);
+  bindProperties(solver);
+  bindQuantities(solver);
   bindCapabilities(solver);
+  bindChanges(solver);
 }
 
 }  // namespace inverse_dynamics_tools

@@ -7,26 +7,19 @@
 #include <cstring>
 #include <utility>
 
+#include "arrays.hpp"
+
 namespace inverse_dynamics_tools {
 namespace {
 
 namespace py = pybind11;
 namespace ids = inverse_dynamics_solver;
 using Doubles = py::array_t<double, 0>;
-using Eigen::Index;
-using Shape = std::vector<py::ssize_t>;
 
 Shape shapeOf(const py::array& array) { return {array.shape(), array.shape() + array.ndim()}; }
 
 Shape stridesOf(const py::array& array) {
   return {array.strides(), array.strides() + array.ndim()};
-}
-
-/// As Python writes it: (4, 6), (6,).
-std::string text(const Shape& shape) {
-  py::tuple numbers(shape.size());
-  for (std::size_t i = 0; i < shape.size(); ++i) numbers[i] = shape[i];
-  return py::str(numbers);
 }
 
 std::string typeName(const py::handle& object) {
@@ -131,13 +124,14 @@ void SolverCall::requireShape(const char* name, const py::array& array) const {
     std::string remedy = "the joints are";
     for (const std::string& joint : joint_names_) remedy += " " + joint;
     if (shape.size() == 2 && shape.front() == n_) remedy = "states are rows: transpose it (.T)";
-    throw ids::SizeMismatchException(
-        ids::errorText(place(name), "wrong shape",
-                       "(" + n + ",) or (N, " + n + "), one state per row", text(shape), remedy));
+    throw ids::SizeMismatchException(ids::errorText(
+        place(name), "wrong shape", "(" + n + ",) or (N, " + n + "), one state per row",
+        shapeText(shape), remedy));
   }
   if (!inputs_.empty() && shape != shape_) {
-    throw ids::SizeMismatchException(ids::errorText(
-        place(name), "wrong shape", text(shape_) + ", that of " + inputs_[0].name, text(shape)));
+    throw ids::SizeMismatchException(
+        ids::errorText(place(name), "wrong shape",
+                       shapeText(shape_) + ", that of " + inputs_[0].name, shapeText(shape)));
   }
 }
 
@@ -166,13 +160,12 @@ void SolverCall::wrench(const char* name, const py::object& values) {
   py::array array = numbersFrom(name, values);
   const Shape shape = shapeOf(array);
   if (shape != Shape{6} && shape != perState({6})) {
-    throw ids::SizeMismatchException(
-        ids::errorText(place(name), "wrong shape",
-                       shape_.size() == 1 ? "(6,), force and torque"
-                                          : "(6,) or " + text(perState({6})) + ", force and torque",
-                       text(shape)));
+    throw ids::SizeMismatchException(ids::errorText(
+        place(name), "wrong shape",
+        shape_.size() == 1 ? "(6,), force and torque"
+                           : "(6,) or " + shapeText(perState({6})) + ", force and torque",
+        shapeText(shape)));
   }
-  wrench_ = inputs_.size();
   inputs_.push_back({name, asDoubles(std::move(array))});
 }
 
@@ -185,15 +178,16 @@ py::array SolverCall::outOf(const std::string& name, const py::object& out,
   if (!py::isinstance<Doubles>(array)) refuse(name, "an array of float64", py::str(array.dtype()));
   if (shapeOf(array) != shape) {
     throw ids::SizeMismatchException(
-        ids::errorText(place(name), "wrong shape", text(shape), text(shapeOf(array))));
+        ids::errorText(place(name), "wrong shape", shapeText(shape), shapeText(shapeOf(array))));
   }
   if (!array.writeable()) refuse(name, "an array that may be written to", "a read-only one");
   if (!standsAsDoubles(array)) {
     refuse(name, "an array at addresses of doubles", "fields of a packed record");
   }
   if (overlapsItself(array)) {
-    refuse(name, "a place in memory for each number",
-           "an array whose entries overlap, with strides " + text(stridesOf(array)) + " bytes");
+    refuse(
+        name, "a place in memory for each number",
+        "an array whose entries overlap, with strides " + shapeText(stridesOf(array)) + " bytes");
   }
   return array;
 }
@@ -208,7 +202,15 @@ void SolverCall::requireOwnMemory(const Argument& result) const {
   }
 }
 
-void SolverCall::addResult(const std::string& name, const py::object& out, const Shape& shape) {
+/// The shape of results that have this one for each state.
+Shape SolverCall::perState(const Shape& of_each) const {
+  Shape shape(shape_.begin(), shape_.end() - 1);
+  shape.insert(shape.end(), of_each.begin(), of_each.end());
+  return shape;
+}
+
+void SolverCall::result(const std::string& name, const py::object& out, const Shape& of_each) {
+  const Shape shape = perState(of_each);
   if (out.is_none()) {
     results_.push_back({name, py::array_t<double>(shape)});
     return;
@@ -218,56 +220,24 @@ void SolverCall::addResult(const std::string& name, const py::object& out, const
   results_.push_back(std::move(result));
 }
 
-/// The shape of results that have this one for each state.
-Shape SolverCall::perState(const std::vector<Index>& of_each) const {
-  Shape shape(shape_.begin(), shape_.end() - 1);
-  shape.insert(shape.end(), of_each.begin(), of_each.end());
-  return shape;
-}
-
-void SolverCall::vectors(const std::string& name, const py::object& out) {
-  addResult(name, out, shape_);
-}
-
-void SolverCall::vectors(const std::string& name, const py::object& out, Index rows) {
-  addResult(name, out, perState({rows}));
-}
-
-void SolverCall::numbers(const std::string& name, const py::object& out) {
-  addResult(name, out, perState({}));
-}
-
-void SolverCall::matrices(const std::string& name, const py::object& out, Index rows,
-                          Index columns) {
-  addResult(name, out, perState({rows, columns}));
-}
-
 // ---------------------------------------------------------------- memory, as solvers see it
 
 ids::ConstStates SolverCall::in(std::size_t i) const {
   const py::array& array = inputs_[i].array;
-  return {static_cast<const double*>(array.data()), n_, count_, stepOf(array, array.ndim() - 1),
-          stepOf(array, array.ndim() - 2)};
-}
-
-ids::ConstStates SolverCall::wrenches() const {
-  const py::array& array = inputs_[wrench_].array;
-  return {static_cast<const double*>(array.data()), 6, count_, stepOf(array, array.ndim() - 1),
-          stepOf(array, array.ndim() - 2)};
+  const py::ssize_t last = array.ndim() - 1;
+  return {static_cast<const double*>(array.data()), array.shape(last), count_, stepOf(array, last),
+          stepOf(array, last - 1)};
 }
 
 ids::States SolverCall::states(std::size_t i) const {
   const py::array& array = results_[i].array;
-  const py::ssize_t last = array.ndim() - 1;
-  return {memoryOf(array), array.shape(last), count_, stepOf(array, last), stepOf(array, last - 1)};
+  const py::ssize_t axis_of_states = static_cast<py::ssize_t>(shape_.size()) - 2;
+  const bool are_numbers = array.ndim() == axis_of_states + 1;
+  return {memoryOf(array), are_numbers ? 1 : array.shape(axis_of_states + 1), count_,
+          are_numbers ? 1 : stepOf(array, axis_of_states + 1), stepOf(array, axis_of_states)};
 }
 
-ids::States SolverCall::numbersOf(std::size_t i) const {
-  const py::array& array = results_[i].array;
-  return {memoryOf(array), 1, count_, 1, stepOf(array, array.ndim() - 1)};
-}
-
-ids::StridedMatrices SolverCall::matricesOf(std::size_t i) const {
+ids::StridedMatrices SolverCall::matrices(std::size_t i) const {
   const py::array& array = results_[i].array;
   const py::ssize_t last = array.ndim() - 1;
   return {memoryOf(array),         array.shape(last - 1), array.shape(last),      count_,

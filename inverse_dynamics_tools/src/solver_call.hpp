@@ -2,11 +2,11 @@
 /// @file
 /// One call of a solver on numpy arrays: arguments checked, nothing copied that needs no copy.
 ///
-///     SolverCall call("gravity_vector", solver);
+///     SolverCall call("gravity_vector", solver.jointNames());
 ///     call.input("q", q);
-///     call.vectors("out", out);  // the caller's array, or None: a new one
+///     call.result("out", out, {n});  // the caller's array, or None: a new one
 ///     call.run([&] { solver.getGravityVectorBatch(call.in(0), call.states(0)); });
-///     return call.result(0);
+///     return call.array(0);
 ///
 /// Doubles are computed from and into where they are, whatever their layout. Other types are
 /// copied, and so are doubles at addresses that no array of doubles has (fields of a packed
@@ -22,13 +22,13 @@
 
 namespace inverse_dynamics_tools {
 
+/// Of an array, or of what a result has for each state: {} a number, {n}, {6, n}.
+using Shape = std::vector<pybind11::ssize_t>;
+
 class SolverCall {
  public:
-  /// @param method  its name in Python: errors begin with it.
-  SolverCall(const char* method, const inverse_dynamics_solver::InverseDynamicsSolver& solver)
-      : SolverCall(method, solver.jointNames()) {}
-
-  /// Of a class that isn't a solver; joint_names must live as long.
+  /// @param method       its name in Python: errors begin with it.
+  /// @param joint_names  must live as long.
   SolverCall(const char* method, const std::vector<std::string>& joint_names)
       : method_(method),
         joint_names_(joint_names),
@@ -40,34 +40,20 @@ class SolverCall {
   /// @throws InvalidParameterValueException  not real numbers.
   void input(const char* name, const pybind11::object& values);
 
-  /// Six numbers for all states, (6,), or for each, (N, 6).
-  ///
-  /// @throws SizeMismatchException           another shape.
-  /// @throws InvalidParameterValueException  not real numbers.
+  /// Six numbers for all states, (6,), or for each, (N, 6). Throws as input() does.
   void wrench(const char* name, const pybind11::object& values);
 
-  /// A result of n numbers per state, in the shape of the first argument, or of `rows`.
+  /// A result of this shape for each state.
   ///
   /// @param out  None, or an array of doubles of any layout that shares no memory with others.
   /// @throws SizeMismatchException           another shape.
   /// @throws InvalidParameterValueException  an array that can't be written to as it is.
-  void vectors(const std::string& name, const pybind11::object& out);
-  void vectors(const std::string& name, const pybind11::object& out, Eigen::Index rows);
+  void result(const std::string& name, const pybind11::object& out, const Shape& of_each);
 
-  /// A result of one number per state, () or (N,): as vectors().
-  void numbers(const std::string& name, const pybind11::object& out);
-
-  /// A result of a matrix per state: as vectors().
-  void matrices(const std::string& name, const pybind11::object& out, Eigen::Index rows,
-                Eigen::Index columns);
-
-  /// The i-th argument; the wrenches; the i-th result, which is one of vectors, of numbers, of
-  /// matrices.
+  /// The i-th argument; the i-th result, of vectors or numbers, or of matrices.
   inverse_dynamics_solver::ConstStates in(std::size_t i) const;
-  inverse_dynamics_solver::ConstStates wrenches() const;
   inverse_dynamics_solver::States states(std::size_t i) const;
-  inverse_dynamics_solver::States numbersOf(std::size_t i) const;
-  inverse_dynamics_solver::StridedMatrices matricesOf(std::size_t i) const;
+  inverse_dynamics_solver::StridedMatrices matrices(std::size_t i) const;
 
   /// Calls compute() without the GIL.
   template <class Compute>
@@ -76,8 +62,9 @@ class SolverCall {
     compute();
   }
 
+  const char* method() const { return method_; }
   Eigen::Index count() const { return count_; }
-  pybind11::object result(std::size_t i) const { return results_[i].array; }
+  pybind11::object array(std::size_t i) const { return results_[i].array; }
 
  private:
   struct Argument {
@@ -87,12 +74,10 @@ class SolverCall {
 
   std::string place(const std::string& argument) const;
   pybind11::array numbersFrom(const char* name, const pybind11::object& values) const;
-  std::vector<pybind11::ssize_t> perState(const std::vector<Eigen::Index>& of_each) const;
+  Shape perState(const Shape& of_each) const;
   void requireShape(const char* name, const pybind11::array& array) const;
-  void addResult(const std::string& name, const pybind11::object& out,
-                 const std::vector<pybind11::ssize_t>& shape);
   pybind11::array outOf(const std::string& name, const pybind11::object& out,
-                        const std::vector<pybind11::ssize_t>& shape) const;
+                        const Shape& shape) const;
   void requireOwnMemory(const Argument& result) const;
   [[noreturn]] void refuse(const std::string& name, const std::string& expected,
                            const std::string& got) const;
@@ -100,9 +85,18 @@ class SolverCall {
   const char* method_;
   const std::vector<std::string>& joint_names_;
   Eigen::Index n_, count_ = 0;
-  std::vector<pybind11::ssize_t> shape_;  // of the first argument
+  Shape shape_;  // of the first argument
   std::vector<Argument> inputs_, results_;
-  std::size_t wrench_ = 0;  // which input it is
+};
+
+/// Some states of a call: all, or those of one thread.
+struct PartOfCall {
+  const SolverCall& call;
+  Eigen::Index first, size;
+
+  auto in(std::size_t i) const { return call.in(i).middle(first, size); }
+  auto states(std::size_t i) const { return call.states(i).middle(first, size); }
+  auto matrices(std::size_t i) const { return call.matrices(i).middle(first, size); }
 };
 
 }  // namespace inverse_dynamics_tools

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver_payload.hpp"
 
-#include <cstring>
 #include <vector>
 
 #include "arrays.hpp"
+#include "vectors.hpp"
 
 namespace inverse_dynamics_tools {
 
@@ -21,20 +21,11 @@ using RowMajor4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
   throw ids::InvalidParameterValueException(ids::errorText(where, "", expected, got));
 }
 
-std::string shapeOf(const Array& array) {
-  std::string text;
-  for (py::ssize_t i = 0; i < array.ndim(); ++i) {
-    text += (i == 0 ? "" : ", ") + std::to_string(array.shape(i));
-  }
-  return "an array of shape (" + text + (array.ndim() == 1 ? ",)" : ")");
-}
-
 /// Numbers of one of these shapes.
 Array numbersOf(const std::string& where, const py::object& object, const std::string& expected,
                 const std::vector<std::vector<py::ssize_t>>& shapes) {
   const py::array given = py::array::ensure(object);
-  // A text isn't a number, although numpy would read it as one; nor is a complex number.
-  if (!given || std::strchr("biuf", given.dtype().kind()) == nullptr) {
+  if (!given || !hasNumbers(given)) {
     PyErr_Clear();
     refuse(where, expected, py::str(py::type::handle_of(object).attr("__name__")));
   }
@@ -43,16 +34,7 @@ Array numbersOf(const std::string& where, const py::object& object, const std::s
   for (const auto& allowed : shapes) {
     if (shape == allowed) return array;
   }
-  refuse(where, expected, shapeOf(array));
-}
-
-template <class Matrix>
-py::object arrayOfMatrix(const Matrix& matrix) {
-  Array array({matrix.rows(), matrix.cols()});
-  Eigen::Map<
-      Eigen::Matrix<double, Matrix::RowsAtCompileTime, Matrix::ColsAtCompileTime, Eigen::RowMajor>>(
-      array.mutable_data()) = matrix;
-  return array;
+  refuse(where, expected, "an array of shape " + std::string(py::str(given.attr("shape"))));
 }
 
 Eigen::Matrix3d inertiaOf(const py::object& object) {
@@ -83,8 +65,6 @@ Eigen::Vector3d vectorOf(const std::string& where, const py::object& numbers) {
   return Eigen::Map<const Eigen::Vector3d>(numbersOf(where, numbers, "3 numbers", {{3}}).data());
 }
 
-py::object arrayOf(const Eigen::Vector3d& vector) { return Array(3, vector.data()); }
-
 ids::RigidBody bodyOf(double mass, const py::object& center_of_mass, const py::object& inertia,
                       const py::object& frame) {
   ids::RigidBody body{mass};
@@ -103,8 +83,8 @@ py::dict dictionaryOf(const ids::RigidBody& body) {
   py::dict found;
   found["mass"] = body.mass;
   found["center_of_mass"] = arrayOf(body.center_of_mass);
-  found["inertia"] = arrayOfMatrix(body.inertia);
-  found["frame"] = arrayOfMatrix(frame);
+  found["inertia"] = body.inertia;
+  found["frame"] = frame;
   return found;
 }
 

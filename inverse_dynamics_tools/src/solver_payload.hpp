@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file
-/// Bodies at the tip of a solver's robot, from and to Python.
+/// Bodies at the tip of a solver's robot: dictionaries of the arguments of set_payload().
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -8,6 +8,8 @@
 #include <inverse_dynamics_solver/payload.hpp>
 #include <inverse_dynamics_solver/variable_gravity.hpp>
 #include <string>
+
+#include "arrays.hpp"
 
 namespace inverse_dynamics_tools {
 
@@ -19,33 +21,15 @@ namespace inverse_dynamics_tools {
 inverse_dynamics_solver::RigidBody bodyOf(double mass, const pybind11::object& center_of_mass,
                                           const pybind11::object& inertia,
                                           const pybind11::object& frame);
-
-/// A dictionary of the arguments of set_payload().
 pybind11::dict dictionaryOf(const inverse_dynamics_solver::RigidBody& body);
 
 /// Three numbers. Throws as bodyOf(); `where` is method and argument.
 Eigen::Vector3d vectorOf(const std::string& where, const pybind11::object& numbers);
 
-/// (3,) numbers.
-pybind11::object arrayOf(const Eigen::Vector3d& vector);
-
-/// A capability of the solver.
-///
-/// @throws inverse_dynamics_solver::Exception  the solver doesn't have it; `what` it is.
-template <class Capability>
-Capability& capabilityOf(inverse_dynamics_solver::InverseDynamicsSolver& solver,
-                         const std::string& method, const std::string& plugin) {
-  if (auto* const capability = dynamic_cast<Capability*>(&solver)) return *capability;
-  throw inverse_dynamics_solver::Exception(inverse_dynamics_solver::errorText(
-      method, "this solver can't", "", plugin,
-      "all plugins of this workspace can; see the solver's documentation"));
-}
-
 }  // namespace inverse_dynamics_tools
 
 namespace pybind11::detail {
 
-/// Bodies are dictionaries of the arguments of set_payload().
 template <>
 struct type_caster<inverse_dynamics_solver::RigidBody> {
   PYBIND11_TYPE_CASTER(inverse_dynamics_solver::RigidBody, const_name("dict[str, typing.Any]"));

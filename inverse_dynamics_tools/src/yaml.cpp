@@ -5,10 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "bindings.hpp"
 #include "description.hpp"
-#include "run_configuration.hpp"
-
-INVERSE_DYNAMICS_TOOLS_REQUIRE_INIT(chain_dynamics::LocatedValue)
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -20,10 +18,7 @@ using chain_dynamics::LocatedValue;
 /// Raises a Python exception of that class.
 LocatedValue::Throw raising(const py::type& error) {
   return [error](const std::string& text) {
-    // Paths may hold bytes that aren't UTF-8.
-    const auto decoded = py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(
-        text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
-    if (decoded) PyErr_SetObject(error.ptr(), decoded.ptr());
+    PyErr_SetObject(error.ptr(), textOf(text).ptr());
     throw py::error_already_set();
   };
 }

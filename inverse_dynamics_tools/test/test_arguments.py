@@ -62,7 +62,7 @@ def refusal(call) -> str:
             "Solver: argument parameters: expected a dictionary whose keys are texts, got an object "
             "of type dict",
         ),
-        ((UR10,) * 12, {}, "Solver: expected at most 9 arguments without a name, got 12"),
+        ((UR10,) * 12, {}, "Solver: expected at most 5 arguments without a name, got 12"),
     ],
 )
 def test_constructor_names_the_argument(positional: tuple, named: dict, text: str) -> None:
@@ -87,8 +87,8 @@ def test_methods_name_the_argument(solver: Solver) -> None:
 
 
 def test_functions_and_laws_name_the_argument(solver: Solver) -> None:
-    assert refusal(lambda: _core.low_pass_gain("a", 1, 2)) == (
-        "low_pass_gain: argument frequency: expected a number, got 'a'"
+    assert refusal(lambda: _core.low_pass(Q[:, None], "a", 2)) == (
+        "low_pass: argument sampling_frequency: expected a number, got 'a'"
     )
     assert refusal(lambda: _core.Gains(Q, ["a"])) == (
         "Gains: argument Kd: expected an array of real numbers, got an object of type list"
@@ -194,8 +194,8 @@ def test_what_fits_is_passed_on(solver: Solver) -> None:
 )
 def test_masks_of_numbers_are_named(mask: np.ndarray, got: str) -> None:
     numbers = np.zeros((3, 2))
-    assert refusal(lambda: _core.metrics(numbers, numbers, mask)) == (
-        f"metrics: argument mask: expected an array of True and False or None, got {got}"
+    assert refusal(lambda: _core.joint_errors(["a", "b"], ["c", "d"], numbers, numbers, mask)) == (
+        f"joint_errors: argument kept: expected an array of True and False or None, got {got}"
     )
 
 

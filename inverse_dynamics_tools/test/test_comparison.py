@@ -6,9 +6,9 @@ import pytest
 from test_results import make_evaluation
 
 from inverse_dynamics import cli, write_evaluation
+from inverse_dynamics._core import Effort
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.comparison import compare
-from inverse_dynamics.evaluation.effort import FORMAT, OPTION, Effort
 
 
 @pytest.fixture(scope="module")
@@ -17,7 +17,7 @@ def evaluation():
 
 
 def currents(*gains):
-    return Effort("current", OPTION, gains)
+    return Effort("current", "as given", gains)
 
 
 def test_runs_are_called_by_what_differs(evaluation):
@@ -42,7 +42,7 @@ def test_other_recordings_are_refused(evaluation):
     ("first", "other", "said"),
     [
         (
-            Effort(stated_by=FORMAT),
+            Effort(stated_by="as the recording's format says"),
             currents(2.0, 3.0, 4.0),
             "got 'torque, as the recording's format says' and 'current, as given, with drive gains 2 "
             "3 4 N m/A', so measured torques differ; evaluate again with the same "

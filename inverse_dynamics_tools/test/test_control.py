@@ -54,7 +54,7 @@ def identified():
 def test_computed_torque(solver):
     gains = Gains.of(np.full(N, 20.0), np.full(N, 0.7))
     tau, status = ComputedTorque(solver, gains, options()).update(
-        q, qd, q_ref, qd_ref, qdd_ref, PERIOD
+        q, qd, q_ref, qd_ref, qdd_ref, period=PERIOD
     )
     a = qdd_ref + 400 * (q_ref - q) + 28 * (qd_ref - qd)
     np.testing.assert_allclose(tau, solver.torques(q, qd, a), atol=ROUNDING)
@@ -89,12 +89,12 @@ def test_pd_with_gravity_compensation(identified):
 def test_feed_forward_of_an_identified_robot(identified):
     effort = np.arange(N)
     law = FeedForward(identified, options(friction=FrictionOptions(FrictionSource.NONE)))
-    tau, _ = law.update(q, qd, q_ref, qd_ref, qdd_ref, effort, PERIOD)
+    tau, _ = law.update(q, qd, q_ref, qd_ref, qdd_ref, effort=effort, period=PERIOD)
     without = identified.torques(q_ref, qd_ref, qdd_ref) - identified.friction_vector(qd_ref)
     np.testing.assert_allclose(tau, without + effort, atol=ROUNDING)
     compensated = options(compensated=Compensated(gravity=True, coriolis=True, friction=True))
     law = FeedForward(identified, compensated, at=ModelState.MEASURED)
-    tau, _ = law.update(q, qd, q_ref, qd_ref, qdd_ref, effort, PERIOD)
+    tau, _ = law.update(q, qd, q_ref, qd_ref, qdd_ref, effort=effort, period=PERIOD)
     np.testing.assert_allclose(tau, identified.inertia_matrix(q) @ qdd_ref + effort, atol=ROUNDING)
 
 

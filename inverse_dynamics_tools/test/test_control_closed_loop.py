@@ -88,7 +88,7 @@ class Tracking:
         self.references = list(zip(*fast_motion(name).at(np.arange(10000) * PERIOD), strict=True))
 
     def command(self, k: int, q: Floats, qd: Floats) -> Floats:
-        tau, status = self.law.update(q, qd, *self.references[k], PERIOD)
+        tau, status = self.law.update(q, qd, *self.references[k], period=PERIOD)
         self.statuses.add(status)
         return tau
 
@@ -206,7 +206,7 @@ def test_feed_forward_makes_a_weak_pd_follow(name: str) -> None:
         return 20 * Kd * (references[k][0] - q) + Kd * (references[k][1] - qd)
 
     def with_feed_forward(k: int, q: Floats, qd: Floats) -> Floats:
-        tau, status = law.update(q, qd, *references[k], pd(k, q, qd), PERIOD)
+        tau, status = law.update(q, qd, *references[k], effort=pd(k, q, qd), period=PERIOD)
         assert status == Status.OK
         return tau
 
@@ -241,7 +241,7 @@ def test_a_joint_turns_ten_times_whatever_its_driver_reports(law: str) -> None:
             if law == "PD":
                 tau, status = pd.update(q, qd, q_ref, qd_ref, PERIOD)
             else:
-                tau, status = computed.update(q, qd, q_ref, qd_ref, qdd_ref, PERIOD)
+                tau, status = computed.update(q, qd, q_ref, qd_ref, qdd_ref, period=PERIOD)
             assert status == Status.OK
             return tau
 

@@ -10,10 +10,10 @@ from conftest import JOINTS, UR10, motion
 from test_results import make_evaluation
 
 from inverse_dynamics import Solver, cli, evaluate, write_evaluation
+from inverse_dynamics._core import Effort
 from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.evaluation.effort import Effort
 from inverse_dynamics.results.exports import export_series, series_columns
 
 

@@ -42,10 +42,11 @@ def quadratic(model, fit, block):
     width = np.array([law["width"] for law in fit.friction])
     shift = np.array([law["shift"] for law in fit.friction])
     own = [qdd, qd, np.ones_like(qd), np.tanh((qd + shift) / width)]
-    grams = model.regressor_gram(q, qd, qdd, tau, own_columns=own)
-    n = len(grams)
+    Y, n = model.regressor(q, qd, qdd), q.shape[1]
     A, b, c = np.zeros((14 * n, 14 * n)), np.zeros(14 * n), 0.0
-    for j, gram in enumerate(grams):
+    for j in range(n):
+        rows = np.column_stack([Y[:, j], *(column[:, j] for column in own), tau[:, j]])
+        gram = rows.T @ rows
         at = np.r_[0 : 10 * n, 10 * n + OWN * j : 10 * n + OWN * (j + 1)]
         weight = fit.noise[j] ** -2
         A[np.ix_(at, at)] += weight * gram[:-1, :-1]

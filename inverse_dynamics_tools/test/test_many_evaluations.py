@@ -9,7 +9,7 @@ import subprocess
 import sys
 import threading
 import time
-from dataclasses import replace
+from dataclasses import asdict, replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -97,7 +97,7 @@ def test_the_summary_has_a_row_per_recording_and_joint(bags, week):
     one = evaluate(bags / "tuesday", "ur10_simulated", accelerations="backward-difference")
     tuesday = [row for row in week.rows if row["recording"] == "tuesday"]
     for row, error, kept in zip(tuesday, one.errors, one.errors_of_kept, strict=True):
-        assert {name: row[name] for name in vars(error)} == vars(error)
+        assert {name: row[name] for name in asdict(error)} == asdict(error)
         assert row["kept_rmse"] == kept.rmse
     assert (tuesday[0]["samples"], tuesday[0]["kept_samples"]) == (1500, 1500)
     assert (tuesday[0]["accelerations"], tuesday[0]["effort"]) == ("backward-difference", "torque")

@@ -7,7 +7,7 @@ import pytest
 from test_results import make_evaluation
 
 from inverse_dynamics import save_torque_figure, torque_figure
-from inverse_dynamics.evaluation.accelerations import Accelerations
+from inverse_dynamics._core import Accelerations
 from inverse_dynamics.evaluation.comparison import compare
 from inverse_dynamics.figures import palette
 from inverse_dynamics.figures.plots import comparison_figure

@@ -15,9 +15,9 @@ from test_joint_trajectories import points_of_motion, trajectory, write_trajecto
 from test_table_logs import table_of, write_table
 
 from inverse_dynamics import Solver, cli, evaluate, read_evaluation, write_evaluation
+from inverse_dynamics._core import Effort, Verdict
 from inverse_dynamics.errors import UserError
 from inverse_dynamics.evaluation.comparison import compare
-from inverse_dynamics.evaluation.effort import DATA, Effort, Verdict
 from inverse_dynamics.report import report_comparison, report_run
 from inverse_dynamics.report.page import (
     MAX_SAMPLES,
@@ -161,7 +161,7 @@ def test_what_efforts_mean_and_how_sure_that_is_stands_among_the_assumptions(eva
     stated = dict(run.assumptions)
     assert stated["effort means"] == "torque, as the run configuration says"
     verdict = Verdict("current", sure=True, summary="current is 1 % of the range off")
-    found = Effort("current", DATA, (2.0,) * 6, verdict)
+    found = Effort("current", "found from the data", (2.0,) * 6, verdict)
     page = render_page("A page", [report_run(replace(evaluation, effort=found))])
     assert "current, found from the data, with drive gains 2 2 2 2 2 2 N m/A; sure: " in page
     assert verdict.summary in page

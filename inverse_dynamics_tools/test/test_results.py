@@ -9,9 +9,9 @@ import pytest
 from conftest import joint_log
 
 from inverse_dynamics import read_evaluation, read_joint_log, write_evaluation
+from inverse_dynamics._core import Accelerations, Effort, Verdict
 from inverse_dynamics.errors import OutputError, UserError
-from inverse_dynamics.evaluation.accelerations import Accelerations, Samples
-from inverse_dynamics.evaluation.effort import DATA, Effort, Verdict
+from inverse_dynamics.evaluation.accelerations import Samples
 from inverse_dynamics.evaluation.evaluation import Evaluation, joint_errors
 from inverse_dynamics.robot.robots import Robot
 
@@ -95,7 +95,7 @@ def test_a_result_is_read_back_whole(result, evaluation):
 
 def test_currents_are_kept_beside_the_torques_that_they_mean(tmp_path):
     verdict = Verdict("current", sure=True, summary="current is 1 % of the range off")
-    effort = Effort("current", DATA, (2.0, 3.0, 4.0), verdict)
+    effort = Effort("current", "found from the data", (2.0, 3.0, 4.0), verdict)
     evaluation = make_evaluation(effort=effort)
     evaluation = replace(evaluation, log=replace(evaluation.log, effort_is="current"))
     write_evaluation(evaluation, tmp_path / "result", figures=())
@@ -233,7 +233,7 @@ def use(directory, *, page=True):
 @pytest.fixture(scope="module")
 def plain_result(tmp_path_factory):
     """A result without a description, and with a verdict: it can be shown, and has every kind of entry."""
-    effort = Effort("current", DATA, (2.0,), Verdict("current", sure=True))
+    effort = Effort("current", "found from the data", (2.0,), Verdict("current", sure=True))
     plain = make_evaluation(samples=60, joints=1, effort=effort)
     plain = replace(plain, robot=replace(plain.robot, urdf=None))
     target = tmp_path_factory.mktemp("plain") / "result"

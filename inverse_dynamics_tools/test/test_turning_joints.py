@@ -220,7 +220,7 @@ def test_the_range_of_identification_holds_for_any_turn():
 
     def outside(low: float, high: float, kind: str) -> str:
         q = np.array([[low], [high]])
-        return outside_of_seen(seen, (q, zero, zero), kept, ["j"], ["N m"], [kind])
+        return outside_of_seen(seen, (q, zero, zero), kept, ["j"], ["N m"], types=[kind])
 
     assert outside(TURN - 0.9, TURN + 2.9, "continuous") == ""
     assert "j q" in outside(TURN - 0.9, TURN + 2.9, "revolute")

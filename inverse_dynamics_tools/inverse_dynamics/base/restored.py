@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from inverse_dynamics._core import Solver
-    from inverse_dynamics.base.arrays import Floats
 
 
 def restored_solver(
     made: type[Solver],
-    arguments: tuple[Any, ...],
-    payloads: dict[str, dict[str, Any]],
-    gravity: Floats,
-    base_acceleration: Floats,
+    plugin: str,
+    urdf: str,
+    parameters: dict[str, Any],
+    since: dict[str, Any],
 ) -> Solver:
-    """A solver of these arguments, with these bodies and this gravity."""
-    solver = made(*arguments)
-    solver.clear_payloads()
-    for name, body in payloads.items():
-        solver.set_payload(name, **body)
-    solver.set_gravity(gravity)
-    solver.set_base_acceleration(base_acceleration)
+    """A solver of these arguments, with the bodies and the gravity that it had; empty: it can't have any."""
+    solver = made(plugin, urdf, parameters=parameters)
+    if since:
+        solver.clear_payloads()
+        for name, body in since["payloads"].items():
+            solver.set_payload(name, **body)
+        solver.set_gravity(since["gravity"])
+        solver.set_base_acceleration(since["base_acceleration"])
     return solver

@@ -160,6 +160,7 @@ def write_torques(
     topic: str,
     log: JointLog,
     torques: tuple[Floats, Floats],
+    *,
     progress: Progress = no_progress,
 ) -> None:
     """Write a new recording of torques, computed ones as `topic`, measured ones as `topic`_gt.

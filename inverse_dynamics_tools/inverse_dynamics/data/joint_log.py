@@ -51,7 +51,7 @@ class JointLog:
     clock: Clock = "header"  # which of the two stamps is the time
     topic: str = "/joint_states"
     storage: Storage = "sqlite3"
-    effort_is: str = ""  # the meaning that the file's format states, see effort.py; "": none
+    effort_is: str = ""  # the meaning that the file's format states, see Effort; "": none
     notes: tuple[str, ...] = ()  # what was left out or assumed, in words
 
     @property

@@ -418,12 +418,12 @@ def _differentiated(time: Floats, q: Floats) -> tuple[Floats, str]:
     steady = turned * np.unwrap(q, axis=0) + (1.0 - turned) * q
     distinct = np.concatenate([[True], np.diff(time) > 0])
     raw = np.gradient(steady[distinct], time[distinct], axis=0)
-    _, choice, _ = _core.low_pass_accelerations(
+    _, _, cutoff, frequency = _core.low_pass_accelerations(
         time[distinct], steady[distinct], raw, np.zeros((0, 0))
     )
-    qd = _core.low_pass(raw, choice.sampling_frequency, choice.cutoff)
+    qd = _core.low_pass(raw, frequency, cutoff)
     qd = np.column_stack([np.interp(time, time[distinct], column) for column in qd.T])
     return qd, (
         "no velocities: those of the positions are taken, through a zero-phase low-pass of "
-        f"{choice.cutoff:.3g} Hz"
+        f"{cutoff:.3g} Hz"
     )

@@ -248,7 +248,7 @@ def _instants(evaluation: Evaluation) -> tuple[Floats, Mask]:
     used = ~(samples.repeated | samples.start_transient)
     if evaluation.accelerations.time_base == "stamps":
         return log.time, used & ~samples.non_increasing
-    return _core.examine_samples(log.time, log.q, log.qd, log.effort).time, used
+    return _core.sample_instants(log.time, log.q, log.qd, log.effort), used
 
 
 def _bandwidth(gain: float) -> float:

@@ -8,10 +8,11 @@ for error in result.errors:
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from inverse_dynamics._core import Accelerations, Effort, JointError, joint_errors
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data.array_files import Arrays
@@ -19,16 +20,10 @@ from inverse_dynamics.data.joint_log import JointLog, check_clock
 from inverse_dynamics.data.recordings import open_motion
 from inverse_dynamics.data.table_logs import LogFormat
 from inverse_dynamics.data.time_window import TimeWindow
-from inverse_dynamics.evaluation.accelerations import (
-    Accelerations,
-    Samples,
-    accelerations_of,
-    samples_of,
-)
+from inverse_dynamics.evaluation.accelerations import MASKS, Samples
 from inverse_dynamics.evaluation.causes.arm import arm_model
 from inverse_dynamics.evaluation.causes.compare import Cause, compare, meaning_of_efforts
 from inverse_dynamics.evaluation.causes.samples import pieces_of
-from inverse_dynamics.evaluation.effort import Effort, effort_of
 from inverse_dynamics.evaluation.posture import posture_of
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.views import Views
@@ -39,31 +34,16 @@ from inverse_dynamics.robot.solvers import description_notes, open_solver
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from inverse_dynamics._core import EffortVerdict, Evaluated, JointMetrics
-    from inverse_dynamics.base.arrays import DataFrame, Floats, Mask, Parameter
+    from inverse_dynamics._core import Evaluated, Verdict
+    from inverse_dynamics.base.arrays import DataFrame, Floats, Parameter
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.bags import JointStateTopic
     from inverse_dynamics.data.joint_log import Clock
 
+__all__ = ["Arm", "Evaluation", "JointError", "check_options", "evaluate", "joint_errors"]
+
 CAUSE = "likely cause of the error: "
 """How the note begins that says a diagnosis."""
-
-
-@dataclass(frozen=True)
-class JointError:
-    """How far the computed torques of one joint are from the measured ones: see docs/notation.md.
-
-    NaN where a figure is undefined (nrmse and r2 of a joint whose measured torque never changes).
-    """
-
-    joint: str
-    unit: str  # of mae, rmse, bias: N m or N
-    mae: float
-    rmse: float
-    nrmse: float  # share of the measured range: 0.01 is 1 %
-    bias: float
-    r2: float
-    max_abs: float
 
 
 @dataclass(frozen=True, repr=False)
@@ -212,7 +192,7 @@ def evaluate(
     states = (result.log.q, result.log.qd, result.qdd)
     kept = result.samples.kept
     outside = outside_of_seen(
-        arm.solver.seen, states, kept, arm.joint_names, arm.units, result.joint_types
+        arm.solver.seen, states, kept, arm.joint_names, arm.units, types=result.joint_types
     )
     result = replace(result, notes=(*result.notes, *filter(None, [outside])))
     if posture.moves:
@@ -294,13 +274,13 @@ def _compare(
         expected, notes = motion.recording.expected_messages(motion.topic), ()
     effort = _core.effort_options(robot, arm.solver, effort_is, motion.effort_is)
 
-    def ask(found: Evaluated) -> EffortVerdict:
+    def ask(found: Evaluated) -> Verdict:
         columns = (
             found.table.series[name] for name in ("time", "q", "qd", "qdd", "effort", "kept")
         )
         samples = pieces_of(arm.joint_names, *columns)
         model = arm_model(robot, arm.solver, arm.description)
-        return _core.EffortVerdict(**asdict(meaning_of_efforts(samples, model, effort.drive_gains)))
+        return meaning_of_efforts(samples, model, effort.drive_gains)
 
     options = _core.EvaluationOptions(
         joints=list(arm.recorded_names),
@@ -329,42 +309,24 @@ def _compare(
     else:
         log = motion.log(found.table)
     return Evaluation(
-        robot=replace(robot, joints=arm.recorded_names, topic=log.topic, effort=found.meaning),
+        robot=replace(
+            robot, joints=arm.recorded_names, topic=log.topic, effort=found.effort.meaning
+        ),
         bag=bag,
         log=log,
         joint_names=arm.joint_names,
         units=arm.units,
-        accelerations=accelerations_of(found),
-        samples=samples_of(found, arrays),
+        accelerations=found.accelerations,
+        samples=Samples(
+            **{name: arrays[name] for name in MASKS}, period=found.period, jitter=found.jitter
+        ),
         time=arrays["time"],
         qdd=arrays["qdd"],
         measured=arrays["measured"],
         computed=arrays["computed"],
-        errors=_joint_errors(arm.joint_names, arm.units, found.errors),
-        errors_of_kept=_joint_errors(arm.joint_names, arm.units, found.errors_of_kept),
-        effort=effort_of(found),
+        errors=found.errors(arm.units),
+        errors_of_kept=found.errors_of_kept(arm.units),
+        effort=found.effort,
         joint_types=arm.solver.joint_types,
         notes=tuple(found.notes),
-    )
-
-
-def joint_errors(
-    joint_names: Sequence[str],
-    units: Sequence[str],
-    computed: Floats,
-    measured: Floats,
-    kept: Mask | None = None,
-) -> tuple[JointError, ...]:
-    """Errors of each joint; computed and measured are (N, n), kept (N,) marks the valid samples."""
-    from inverse_dynamics import _core
-
-    return _joint_errors(joint_names, units, _core.metrics(computed, measured, kept))
-
-
-def _joint_errors(
-    joint_names: Sequence[str], units: Sequence[str], metrics: Sequence[JointMetrics]
-) -> tuple[JointError, ...]:
-    return tuple(
-        JointError(joint, unit, m.mae, m.rmse, m.nrmse, m.bias, m.r2, m.max_abs)
-        for joint, unit, m in zip(joint_names, units, metrics, strict=True)
     )

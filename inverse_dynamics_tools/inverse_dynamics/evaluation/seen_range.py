@@ -25,6 +25,7 @@ def outside_of_seen(
     kept: Mask,
     joints: Sequence[str],
     units: Sequence[str],
+    *,
     types: Sequence[str] = (),
 ) -> str:
     """A sentence on joints that leave the range of identification; "": none does, or it isn't known.

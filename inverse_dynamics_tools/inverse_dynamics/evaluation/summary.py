@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from inverse_dynamics.data.time_window import TimeWindow
 
 if TYPE_CHECKING:
-    from inverse_dynamics.evaluation.accelerations import Accelerations
-    from inverse_dynamics.evaluation.evaluation import Evaluation, JointError
+    from inverse_dynamics._core import Accelerations, JointError
+    from inverse_dynamics.evaluation.evaluation import Evaluation
 
 EVERYTHING = TimeWindow()
 

@@ -131,9 +131,7 @@ def _accelerations(evaluation: Evaluation, part: slice) -> tuple[Floats, Floats]
     if how.method == "backward-difference":
         return _core.backward_difference(time, qd), time
     cutoff = 0.0 if how.chosen else how.cutoff or 0.0  # zero: chosen from the block
-    rules = _core.SampleRules(start_transient=False)
-    qdd, _, samples = _core.low_pass_accelerations(time, q, qd, effort, cutoff, rules)
-    return qdd, samples.time
+    return _core.low_pass_accelerations(time, q, qd, effort, cutoff)[:2]
 
 
 def together(blocks: Sequence[Block]) -> list[FitBlock]:

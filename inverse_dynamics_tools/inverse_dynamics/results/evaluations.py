@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import json
+import math
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics._core import Accelerations, Effort, JointError, Verdict
 from inverse_dynamics.base.files import Contents, write_text, written_whole
 from inverse_dynamics.base.plain import json_text, read_back
 from inverse_dynamics.base.progress import no_progress
@@ -132,7 +134,9 @@ def _write(
 
     storage = storage or evaluation.log.storage
     torques = (evaluation.computed, evaluation.measured)
-    write_torques(target / "bag", storage, COMPUTED_TOPIC, evaluation.log, torques, progress)
+    write_torques(
+        target / "bag", storage, COMPUTED_TOPIC, evaluation.log, torques, progress=progress
+    )
     np.savez(target / "series.npz", **_series(evaluation))
     write_text(target / "metrics.json", json_text(metrics(evaluation)))
     write_text(target / MARK, json_text(_about(evaluation)))
@@ -173,14 +177,17 @@ def _read_back(
 ) -> Evaluation:
     """The evaluation that files hold. Raises ValueError, TypeError, KeyError."""
     recorded = {name: arrays[name] for name in _RECORDED}
+    verdict = about["effort"]["verdict"]
     parts = {
         **arrays,
         **about,
         "robot": Robot(**about["robot"]),
+        "accelerations": Accelerations(**about["accelerations"]),
+        "effort": Effort(**{**about["effort"], "verdict": verdict and Verdict(**verdict)}),
         "log": {**about["recording"], **recorded},
         "samples": {**about["sampling"], **arrays},
-        "errors": metrics["joints"],
-        "errors_of_kept": metrics["kept"]["joints"],
+        "errors": [_joint_error(joint) for joint in metrics["joints"]],
+        "errors_of_kept": [_joint_error(joint) for joint in metrics["kept"]["joints"]],
     }
     evaluation: Evaluation = read_back(Evaluation, parts, "evaluation")
     samples, joints = len(evaluation.log.header_stamps), len(evaluation.log.joint_names)
@@ -196,6 +203,11 @@ def _read_back(
         if len(entries) != joints or not joints:
             raise ValueError(f"{name}: expected {joints}, one per joint, got {len(entries)}")
     return evaluation
+
+
+def _joint_error(joint: dict[str, Any]) -> JointError:
+    values: dict[str, Any] = {k: math.nan if v is None else v for k, v in joint.items()}
+    return JointError(**values)
 
 
 def _check_marked(directory: Path) -> None:

@@ -15,7 +15,7 @@ import math
 import os
 import shutil
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -292,7 +292,7 @@ def _rows(summaries: Iterable[EvaluationSummary]) -> list[Row]:
             "cutoff": summary.accelerations.cutoff,
         }
         for error, kept in zip(summary.errors, summary.errors_of_kept, strict=True):
-            row = {**of_all, **vars(error), "kept_rmse": kept.rmse}
+            row = {**of_all, **asdict(error), "kept_rmse": kept.rmse}
             rows.append({name: _defined(row[name]) for name in COLUMNS})
     return rows
 

@@ -68,7 +68,7 @@ class ArmGeometry:
             np.array(rotations),
             np.array(offsets),
             np.einsum("icb,ib->ic", to_axis_frames, p),
-            list(model.opt.gravity),
+            gravity=list(model.opt.gravity),
         )
         return cls(np.array(axes), fast, np.array(to_axis_frames))
 

@@ -20,21 +20,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics._core import Verdict
 from inverse_dynamics.base.wording import listed
 from inverse_dynamics.evaluation.causes import bodies, columns, efforts, motions, pairs, residuals
 from inverse_dynamics.evaluation.causes.arm import ArmModel
 from inverse_dynamics.evaluation.causes.fit import Fitting
 from inverse_dynamics.evaluation.causes.rival import PAGE, Rival
 from inverse_dynamics.evaluation.causes.samples import View
-from inverse_dynamics.evaluation.effort import Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from inverse_dynamics._core import Effort
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.evaluation.causes.rival import Told
     from inverse_dynamics.evaluation.causes.samples import Samples
-    from inverse_dynamics.evaluation.effort import Effort
 
 # Errors: mean over the joints, as shares of their measured ranges.
 _MISMATCH = 0.02  # up to which a model fits

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// Structs of C++ as classes of Python, each from one list of its fields.
+///
+///     bindRecord<Effort>(module, "Effort", "What recorded efforts mean.",
+///                        Field{"meaning", &Effort::meaning, "one of EFFORT_MEANINGS"},
+///                        Field{"verdict", &Effort::verdict, "of the data; None: not asked"});
+///     // Effort(meaning="torque", verdict=None): frozen, with what dataclasses have
+#pragma once
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "annotations.hpp"
+#include "vectors.hpp"
+
+namespace inverse_dynamics_tools {
+
+/// What Python gives for a value of C++, and what it gets.
+template <class Value>
+struct InPython {
+  using Given = Value;
+  using Got = Value;
+  static Got of(const Value& value) { return value; }
+};
+template <>
+struct InPython<chain_dynamics::OwnedVector> {
+  using Given = Eigen::VectorXd;
+  using Got = Eigen::VectorXd;
+  static Got of(const chain_dynamics::OwnedVector& value) { return value; }
+};
+template <>
+struct InPython<std::vector<std::string>> {
+  using Given = std::vector<std::string>;
+  using Got = NameTuple;
+  static Got of(const Given& names) { return tupleOf(names); }
+};
+template <>
+struct InPython<std::vector<double>> {
+  using Given = std::vector<double>;
+  using Got = NumberTuple;
+  static Got of(const Given& numbers) { return pybind11::tuple(pybind11::cast(numbers)); }
+};
+template <>
+struct InPython<std::optional<std::array<double, 3>>> {
+  using Given = std::optional<std::array<double, 3>>;
+  using Got = Numbers3OrNone;
+  static Got of(const Given& numbers) {
+    if (!numbers) return pybind11::none();
+    return pybind11::tuple(pybind11::cast(*numbers));
+  }
+};
+
+/// A field of T: how it is read and set.
+template <class T, class Got_, class Given_>
+struct Field {
+  using Got = Got_;
+  using Given = Given_;
+
+  template <class Base, class Value>
+  Field(const char* of_name, Value Base::*member, const char* meaning = "")
+      : name(of_name),
+        get([member](const T& t) { return InPython<Value>::of(t.*member); }),
+        set([member](T& t, const Given& value) { t.*member = value; }),
+        doc(meaning) {}
+  Field(const char* of_name, std::function<Got(const T&)> how_to_get,
+        std::function<void(T&, const Given&)> how_to_set, const char* meaning = "")
+      : name(of_name), get(std::move(how_to_get)), set(std::move(how_to_set)), doc(meaning) {}
+
+  const char* name;
+  std::function<Got(const T&)> get;
+  std::function<void(T&, const Given&)> set;
+  const char* doc;
+};
+template <class T, class Value>
+Field(const char*, Value T::*, const char* = "")
+    -> Field<T, typename InPython<Value>::Got, typename InPython<Value>::Given>;
+
+/// A field that T has from a base.
+template <class T, class Base, class Value>
+auto inherited(const char* name, Value Base::*member, const char* doc = "") {
+  return Field<T, typename InPython<Value>::Got, typename InPython<Value>::Given>(name, member,
+                                                                                  doc);
+}
+
+/// A constructor of all fields, the first kRequired of them without a default. Of more than five
+/// only these can be given without their name. `doc`: its own.
+template <std::size_t kRequired, class T, class... Fields, std::size_t... I>
+void defineConstructor(pybind11::class_<T>& of, const char* doc, std::index_sequence<I...> /*all*/,
+                       const Fields&... fields) {
+  namespace py = pybind11;
+  constexpr std::size_t kPositional = sizeof...(Fields) > 5 ? kRequired : sizeof...(Fields);
+  const auto argument = [](auto number, const auto& field) {
+    constexpr std::size_t kNumber = decltype(number)::value;
+    const auto usual = [&] {
+      if constexpr (kNumber < kRequired) {
+        return py::arg(field.name);
+      } else {
+        return py::arg(field.name) = field.get(T());
+      }
+    };
+    if constexpr (kNumber == kPositional) {
+      return std::tuple(py::kw_only(), usual());
+    } else {
+      return std::tuple(usual());
+    }
+  };
+  const auto make = [fields...](const typename Fields::Given&... values) {
+    T made;
+    (fields.set(made, values), ...);
+    return made;
+  };
+  std::apply([&](const auto&... arguments) { of.def(py::init(make), arguments..., doc); },
+             std::tuple_cat(argument(std::integral_constant<std::size_t, I>(), fields)...));
+}
+
+/// Options: attributes that can be set. `meanings`: of the constructor.
+template <std::size_t kRequired = 1, class T, class... Gots, class... Givens>
+pybind11::class_<T> bindOptions(pybind11::module_& module, const char* name, const char* doc,
+                                const char* meanings, const Field<T, Gots, Givens>&... fields) {
+  pybind11::class_<T> options(module, name, doc);
+  defineConstructor<kRequired>(options, meanings, std::index_sequence_for<Gots...>(), fields...);
+  (options.def_property(fields.name, fields.get, fields.set, fields.doc), ...);
+  return options;
+}
+
+/// A record: attributes that can't be set; compared, shown and pickled by them, and a dataclass to
+/// dataclasses.replace() and asdict().
+template <std::size_t kRequired = 0, class T, class... Gots, class... Givens>
+pybind11::class_<T> bindRecord(pybind11::module_& module, const char* name, const char* doc,
+                               const Field<T, Gots, Givens>&... fields) {
+  namespace py = pybind11;
+  py::class_<T> record(module, name, doc);
+  defineConstructor<kRequired>(record, "", std::index_sequence_for<Gots...>(), fields...);
+  (record.def_property_readonly(fields.name, fields.get, fields.doc), ...);
+  const auto dict_of = [fields...](const T& t) {
+    py::dict found;
+    ((found[fields.name] = fields.get(t)), ...);
+    return found;
+  };
+  record
+      .def(
+          "__eq__", [=](const T& a, const T& b) { return dict_of(a).equal(dict_of(b)); },
+          py::is_operator())
+      .def("__repr__",
+           [=](const T& t) {
+             std::string text;
+             for (const auto& [key, value] : dict_of(t)) {
+               text += (text.empty() ? "" : ", ") + std::string(py::str(key)) + "=" +
+                       std::string(py::repr(value));
+             }
+             return name + ("(" + text + ")");
+           })
+      .def(py::pickle(dict_of, [](const py::dict& values) {
+        return py::type::of<T>()(**values).template cast<T>();
+      }));
+  // Made when asked for, as dataclasses takes 9 ms to import.
+  const py::tuple names = py::make_tuple(fields.name...);
+  record.def_property_readonly_static("__dataclass_fields__", [=](const py::object&) {
+    const auto dataclasses = py::module_::import("dataclasses");
+    return dataclasses.attr("make_dataclass")(name, names).attr("__dataclass_fields__");
+  });
+  return record;
+}
+
+}  // namespace inverse_dynamics_tools
