@@ -108,6 +108,13 @@ std::vector<std::string> sampleFindings(const std::string& clock, const SampleRe
     found.push_back("the first " + std::to_string(counts.start_transient) + of_all +
                     "are a start transient: efforts jump");
   }
+  if (const LoneSample& lone = samples.lone; lone.sample > 0) {
+    found.push_back(
+        "sample " + std::to_string(lone.sample + 1) + " at " + seconds(lone.stamp) +
+        ": position or velocity of joint " + std::to_string(lone.joint + 1) +
+        " of the chain jumps and returns, further than all other samples together: if it "
+        "is wrong, leave it out, or give a cut-off");
+  }
   if (filter != nullptr) {
     addFilterFindings(*filter, found);
   }

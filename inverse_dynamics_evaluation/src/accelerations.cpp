@@ -219,6 +219,9 @@ namespace {
 // Equidistant samples whose spectra are computed at once: longer pieces are cut for that.
 constexpr Index kMostInStretch = 262144;
 
+// How many times longer the longest piece is than a short one.
+constexpr Index kShortest = 8;
+
 // Distances of samples that a cubic may run through, in periods: across a longer hole, the noise of
 // the two samples at either end would set its slope.
 constexpr double kLeastApart = 0.5;
@@ -325,6 +328,14 @@ std::vector<Grid> gridsOf(const Examination& found, const SampleRules& rules) {
   return grids;
 }
 
+Index longestOf(const std::vector<Grid>& grids) {
+  Index longest = 0;
+  for (const Grid& grid : grids) {
+    longest = std::max(longest, grid.count);
+  }
+  return longest;
+}
+
 // Of the equidistant samples of all pieces [Hz].
 double samplingFrequency(const std::vector<Grid>& grids) {
   double intervals = 0.0;
@@ -336,18 +347,14 @@ double samplingFrequency(const std::vector<Grid>& grids) {
   return intervals / duration;
 }
 
-// The cut-off that suits the equidistant samples.
-CutoffChoice choiceOf(const SampleTable& table, const std::vector<Grid>& grids,
-                      double sampling_frequency, int order) {
+// Spectra of the pieces that have at least so many equidistant samples.
+VelocitySpectra spectraOf(const SampleTable& table, const std::vector<Grid>& grids, Index shortest,
+                          double sampling_frequency) {
   const Index joints = table.q.rows();
-  Index longest = 0;
-  for (const Grid& grid : grids) {
-    longest = std::max(longest, grid.count);
-  }
-  requireLongEnough(longest);
-  SpectrumSums sums(joints, std::min(longest, kMostInStretch), sampling_frequency);
+  SpectrumSums sums(joints, std::min(longestOf(grids), kMostInStretch), sampling_frequency);
   Stretch stretch;
   for (const Grid& grid : grids) {
+    if (grid.count < shortest) continue;
     Resampler resampler(table, grid);
     const Index parts = (grid.count + kMostInStretch - 1) / kMostInStretch;
     for (Index part = 0; part < parts; ++part) {
@@ -362,7 +369,27 @@ CutoffChoice choiceOf(const SampleTable& table, const std::vector<Grid>& grids,
       sums.add(stretch);
     }
   }
-  return cutoffOf(sums.spectra(), static_cast<double>(longest - 1) / sampling_frequency,
+  return sums.spectra();
+}
+
+// The cut-off that suits the equidistant samples.
+//
+// A short piece smears its motion over higher frequencies, where the long ones have noise alone: it is
+// left out, unless it has more samples than the long ones have in motion.
+CutoffChoice choiceOf(const SampleTable& table, const std::vector<Grid>& grids,
+                      double sampling_frequency, int order) {
+  const Index longest = longestOf(grids);
+  requireLongEnough(longest);
+  const Index shortest = longest / kShortest;
+  double kept = 0, left_out = 0;  // samples
+  for (const Grid& grid : grids) {
+    (grid.count < shortest ? left_out : kept) += static_cast<double>(grid.count);
+  }
+  VelocitySpectra spectra = spectraOf(table, grids, shortest, sampling_frequency);
+  if (spectra.moving * kept < left_out) {
+    spectra = spectraOf(table, grids, 0, sampling_frequency);
+  }
+  return cutoffOf(spectra, static_cast<double>(longest - 1) / sampling_frequency,
                   sampling_frequency, order);
 }
 

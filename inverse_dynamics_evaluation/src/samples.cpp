@@ -87,6 +87,38 @@ struct Timing {
   double duration = 0;  // s; from there to the latest stamp
 };
 
+// Second differences of one wrong number are -1, 2, -1 times its error: shares of their squares.
+constexpr double kOfThree = 0.9;                        // at least, of those of all samples
+constexpr double kLeastOfOne = 0.55, kMostOfOne = 0.8;  // of the three, in the middle: 4 of 6
+
+// The sample of a joint whose number can't be right; 0: none.
+Index loneSample(const SampleTable::JointColumns& columns, Index j) {
+  const auto square = [&](Index k) {
+    return std::pow(columns(j, k - 1) - 2.0 * columns(j, k) + columns(j, k + 1), 2);
+  };
+  const Index last = columns.cols() - 1;
+  double sum = 0, greatest = 0;
+  Index middle = 0;
+  for (Index k = 1; k < last; ++k) {
+    const double value = square(k);
+    sum += value;
+    if (value > greatest) greatest = value, middle = k;
+  }
+  if (middle < 2 || middle + 2 > last) return 0;
+  const double three = square(middle - 1) + greatest + square(middle + 1);
+  const double share = greatest / three;
+  return three > kOfThree * sum && share > kLeastOfOne && share < kMostOfOne ? middle : 0;
+}
+
+LoneSample findLoneSample(const SampleTable& table) {
+  for (Index j = 0; j < table.q.rows(); ++j) {
+    for (const SampleTable::JointColumns* columns : {&table.qd, &table.q}) {
+      if (const Index k = loneSample(*columns, j); k > 0) return {k, j, table.stamps()[k]};
+    }
+  }
+  return {};
+}
+
 // What is counted of the faults.
 struct Census {
   SampleCounts counts;
@@ -465,6 +497,7 @@ Examination examine(SampleTable& table, const SampleRules& rules) {
   Examination found;
   SampleReport& report = found.report;
   report.backward = census.backward;
+  report.lone = findLoneSample(table);
   const TimeBase fitting = chooseTimeBase(bases, report);
   report.time_base = rules.time_base ? fitting : TimeBase::kStamps;
   checkStamps(census, rules, report.time_base);

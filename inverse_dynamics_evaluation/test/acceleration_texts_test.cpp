@@ -16,6 +16,7 @@ using ::testing::Contains;
 using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // A sine of 0.5 Hz, 10 s at 100 Hz.
 JointLog sine() {
@@ -99,6 +100,33 @@ TEST(LogAccelerations, SayThatThereIsAGap) {
   EXPECT_THAT(logAccelerations(log, AccelerationMethod::kBackwardDifference).findings,
               Contains("2 gaps in the recording: no sample for 10 s after sample 700 at "
                        "6.990000000 s (the longest)"));
+}
+
+TEST(LogAccelerations, SayWhichSampleCannotBeRight) {
+  JointLog log = sine();
+  EXPECT_THAT(logAccelerations(log).findings, Not(Contains(HasSubstr("jumps and returns"))));
+  log.qd(0, 300) += 0.5;
+  EXPECT_THAT(logAccelerations(log).findings,
+              Contains(ContainsRegex("sample 301 at 3.0+ s: .* joint 1 .* jumps and returns")));
+  log = sine();
+  log.q(0, 700) -= 0.1;
+  EXPECT_THAT(logAccelerations(log).findings, Contains(HasSubstr("sample 701 at 7.0")));
+  log.q.rightCols(300).array() -= 1.0;  // a jump that stays isn't one wrong sample
+  EXPECT_THAT(logAccelerations(log).findings, Not(Contains(HasSubstr("jumps and returns"))));
+}
+
+TEST(LogAccelerations, ChooseTheCutOffFromLongPieces) {
+  // half a second of motion after a gap would seem faster than it is
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0.0, 0.003);
+  JointLog log = sine();
+  for (double& value : log.qd.reshaped()) value += noise(random);
+  const double whole = logAccelerations(log).filter.cutoff;
+  log.header_stamps.tail(50).array() += 2'000'000'000;
+  log.receive_stamps = log.header_stamps;
+  const double with_gap = logAccelerations(log).filter.cutoff;
+  EXPECT_LT(with_gap, 1.5 * whole);
+  EXPECT_GT(with_gap, whole / 1.5);
 }
 
 TEST(LogAccelerations, SayWhatTheDataCannotTell) {

@@ -13,13 +13,14 @@
 PYBIND11_MODULE(_core, module) {
   module.doc() = "Solvers, samples of recordings, accelerations, metrics and control laws in C++.";
   inverse_dynamics_tools::bindErrors();
+  // classes before the functions whose signatures name them
+  inverse_dynamics_tools::bindYaml(module);
+  inverse_dynamics_tools::bindRecordings(module);
+  inverse_dynamics_tools::bindEvaluator(module);
+  inverse_dynamics_tools::bindRunConfiguration(module);
   inverse_dynamics_tools::bindSolver(module);
   inverse_dynamics_tools::bindFastModel(module);
   inverse_dynamics_tools::bindAccelerations(module);
-  inverse_dynamics_tools::bindRecordings(module);
-  inverse_dynamics_tools::bindEvaluator(module);
-  inverse_dynamics_tools::bindYaml(module);
-  inverse_dynamics_tools::bindRunConfiguration(module);
   inverse_dynamics_tools::bindControl(module);
   inverse_dynamics_tools::bindContact(module);
   inverse_dynamics_tools::bindPayload(module);

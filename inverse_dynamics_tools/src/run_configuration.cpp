@@ -73,7 +73,13 @@ void bindRobot(py::module_& module) {
             return std::tuple<FilePath, MaybeFilePath, MaybeFilePath>(
                 pathOf(r.file), pathOf(r.urdf), pathOf(r.model));
           },
-          "What is read for this robot: run configuration, description, model.");
+          "What is read for this robot: run configuration, description, model.")
+      .def(
+          "solver",
+          [](const py::object& robot) -> SolverObject {
+            return py::module_::import("inverse_dynamics._core").attr("Solver")(robot);
+          },
+          "The solver that the run configuration names: Solver(robot).");
 }
 
 /// The robot with the changes that aren't None.

@@ -2,6 +2,8 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <filesystem>
+#include <inverse_dynamics_evaluation/run_configuration.hpp>
 #include <inverse_dynamics_solver/coriolis_matrix.hpp>
 #include <inverse_dynamics_solver/energies.hpp>
 #include <inverse_dynamics_solver/external_wrench.hpp>
@@ -19,6 +21,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "bindings.hpp"
@@ -32,6 +35,8 @@ namespace {
 
 namespace py = pybind11;
 namespace ids = inverse_dynamics_solver;
+using Robot = inverse_dynamics_evaluation::RunConfiguration;
+using SolverName = std::variant<Robot, PathText>;
 
 /// What a solver was made from: enough to make it again elsewhere (pickle).
 struct Origin {
@@ -465,25 +470,64 @@ void bindChanges(py::class_<Solver>& solver) {
 
 // ---------------------------------------------------------------- making
 
-std::unique_ptr<Solver> makeSolver(const std::string& plugin, const Description& urdf,
+constexpr const char* kUsualPlugin =
+    "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody";
+
+/// What names a robot or a solver: a Robot, a name of robot_names(), the file of a run configuration,
+/// `package/Class`, or the package without its ending; nothing beside a description: the usual plugin.
+Robot robotOf(const SolverName& named, bool described) {
+  if (const auto* const robot = std::get_if<Robot>(&named)) return *robot;
+  const std::string& text = std::get<PathText>(named).bytes;
+  Robot robot;
+  robot.plugin = text.empty() && described ? kUsualPlugin : text;
+  if (robot.plugin.empty()) {
+    throw ids::InvalidParameterValueException(
+        ids::errorText("Solver", "", "a robot, a plugin or urdf=", "none",
+                       "`ids robots` lists the names of both"));
+  }
+  const std::string ending = std::filesystem::path(text).extension();
+  const bool is_file = ending == ".yaml" || ending == ".yml";
+  if (!is_file && robot.plugin.find('/') != std::string::npos) return robot;
+  for (const std::string& plugin : ids::SolverLoader().availableSolvers()) {
+    if (is_file || plugin.rfind(text + "_inverse_dynamics_solver/", 0) != 0) continue;
+    robot.plugin = plugin;
+    return robot;
+  }
+  return inverse_dynamics_evaluation::readRunConfiguration(text);
+}
+
+std::string descriptionOf(const Robot& robot) {
+  const auto read =
+      py::module_::import("inverse_dynamics.robot.descriptions").attr("read_description");
+  return read(py::module_::import("pathlib").attr("Path")(textOf(robot.urdf))).cast<std::string>();
+}
+
+std::unique_ptr<Solver> makeSolver(const SolverName& named, const Description& urdf,
                                    const std::string& root, const std::string& tip,
                                    const std::optional<std::array<double, 3>>& gravity,
-                                   bool friction, const std::string& attached,
+                                   const std::optional<bool>& friction, const std::string& attached,
                                    const std::optional<std::string>& model,
                                    const ParameterDict& parameters) {
-  Origin origin{plugin, urdf.text, parametersOf(parameters)};
+  const Robot robot = robotOf(named, !urdf.text.empty());
+  const bool described = urdf.text.empty() && !robot.urdf.empty();
+  Origin origin{robot.plugin, described ? descriptionOf(robot) : urdf.text,
+                parametersOf(parameters)};
   const auto give = [&](const std::string& name, const ids::ParameterValue& value) {
     if (origin.parameters.emplace(name, value).second) return;
     throw ids::InvalidParameterValueException(
         ids::errorText("Solver", "", "each parameter once",
                        "argument " + name + " and parameters['" + name + "']", "leave out one"));
   };
-  if (!friction || origin.parameters.count("friction") == 0) give("friction", friction);
+  if (friction) give("friction", *friction);
   if (!root.empty()) give("root", root);
   if (!tip.empty()) give("tip", tip);
   if (!attached.empty()) give("attached", attached);
   if (model) give("model", *model);
   if (gravity) give("gravity", std::vector<double>(gravity->begin(), gravity->end()));
+  // what the robot states, and nobody replaces
+  auto own = inverse_dynamics_evaluation::solverParameters(robot);
+  if (!urdf.text.empty()) own.erase("model");
+  origin.parameters.insert(own.begin(), own.end());
   return std::make_unique<Solver>(std::move(origin));
 }
 
@@ -537,12 +581,15 @@ void bindSolver(py::module_& module) {
       "made again.");
   solver
       .def(
-          py::init(&makeSolver), py::arg("plugin"), py::arg("urdf") = "", py::arg("root") = "",
+          py::init(&makeSolver), py::arg("plugin") = "", py::arg("urdf") = "", py::arg("root") = "",
           py::arg("tip") = "", py::arg("gravity") = py::none(), py::kw_only(),
-          py::arg("friction") = true, py::arg("attached") = "", py::arg("model") = py::none(),
+          py::arg("friction") = py::none(), py::arg("attached") = "", py::arg("model") = py::none(),
           py::arg("parameters") = py::dict(),
-          "plugin: package/Class, one of available_solvers(). urdf: its text, or the path\n"
-          "of a .urdf or .xacro file. root, tip: links; empty: the first and the last. gravity:\n"
+          "plugin: a Robot, a name of robot_names(), the file of a run configuration, or a\n"
+          "plugin: package/Class, one of available_solvers(), or its package without the ending,\n"
+          "such as kdl; none beside a description: rigid bodies. What follows replaces what the\n"
+          "robot states. urdf: its text, or the path of a .urdf or .xacro file. root, tip: links; "
+          "empty: the first and the last. gravity:\n"
           "3 numbers, m/s^2, in the frame of the root link. friction: whether the solver adds its\n"
           "friction model. attached: 'lump' or 'ignore' the links that are attached to the chain.\n"
           "model: file or name of a model. parameters: other parameters of the solver, by name;\n"

@@ -97,6 +97,14 @@ struct LongestGap {
   std::int64_t stamp_before = 0;  ///< ns; of the sample before that one
 };
 
+/// A sample of which a joint's position or velocity leaves its neighbours by more than all other
+/// samples together: by the squares of second differences. No motion does that.
+struct LoneSample {
+  Eigen::Index sample = 0;  ///< its number; 0: there is none
+  Eigen::Index joint = 0;
+  std::int64_t stamp = 0;  ///< ns
+};
+
 /// What the rules found in N samples, and what follows.
 ///
 /// An evaluation leaves the columns (one entry per sample) empty: its table has them.
@@ -116,6 +124,7 @@ struct SampleReport {
   std::vector<Eigen::Index> gaps;          ///< first used sample behind each gap (rule 5)
   LongestGap longest_gap;
   BackwardStamp backward;
+  LoneSample lone;
 
   double period = 0;          ///< s; mean distance of the used samples, gaps aside
   double stamped_period = 0;  ///< s; median distance of the stamps

@@ -12,13 +12,17 @@ was fitted to the others, with everything chosen on the others too.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
+from inverse_dynamics._core import Solver
 from inverse_dynamics.errors import EvaluationError
+from inverse_dynamics.robot.robots import RIGID_BODY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
     from inverse_dynamics.base.arrays import Floats, Mask
     from inverse_dynamics.robot.robots import Robot
@@ -191,6 +195,16 @@ class Identification:
     def rmse(self, column: str) -> float:
         """Held-out error of a name of COLUMNS: mean over the joints."""
         return float(self.held_out[column].mean())
+
+    def solver(self) -> Solver:
+        """The identified model as a solver, as `Solver(model=...)` of its model file is."""
+        text = import_module("inverse_dynamics.results.model_files").model_file_text(
+            self, "identified"
+        )
+        with TemporaryDirectory() as directory:
+            file = Path(directory) / "model.yaml"
+            file.write_text(text, encoding="utf-8")
+            return Solver(RIGID_BODY, model=f"{file}")
 
     @property
     def offsets(self) -> Floats:
