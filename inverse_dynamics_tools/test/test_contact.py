@@ -339,7 +339,7 @@ def test_the_command_writes_table_figure_and_series(ids, tmp_path, recording, ro
     assert series["wrenches"].shape == (30_000, 6)
     fails(ids(*command), "found: exists", "--overwrite")
     code, out, err = ids(*command, "--overwrite", "--no-figures", "--json")
-    assert (code, err) == (0, "")
+    assert (code, err) == (0, "ids: replaced the earlier result in found\n")
     document = {"schema": 3, "verb": "contact", "written": ["found"], "result": summary}
     assert json.loads(out) == document
     assert not (tmp_path / "found" / "contacts.png").exists()

@@ -233,7 +233,7 @@ def test_a_comparison_is_replaced_as_a_whole(ids, result, tmp_path):
     command = ("compare", result, result, "--labels", "a,b", "--out", "out")
     assert ids(*command)[0] == 0
     first = (tmp_path / "out").stat().st_ino
-    assert ids(*command, "--overwrite")[::2] == (0, "")
+    assert ids(*command)[::2] == (0, "ids: replaced the earlier result in out\n")
     assert (tmp_path / "out").stat().st_ino != first
     (tmp_path / "out" / "notes.txt").touch()
     fails(ids(*command, "--overwrite"), "1 file that this command doesn't write (notes.txt)")
