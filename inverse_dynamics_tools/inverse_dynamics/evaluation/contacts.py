@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What touched the robot in a recording: external torques, contacts, the wrench at the tip.
+"""Contacts in a recording: external torques, when they exceed thresholds, the wrench at the tip.
 
     found = find_contacts("recording", "panda_real", quiet=(0.0, 20.0))
     for contact in found.contacts:
         print(contact.begin, contact.end, contact.joint, contact.torque)
 
-Estimators and statistics are those of the C++ package inverse_dynamics_control: see docs/contact.md.
+The C++ package inverse_dynamics_control has the estimators and statistics: see docs/contact.md.
 """
 
 from __future__ import annotations
@@ -31,10 +31,9 @@ from inverse_dynamics.contact import (
     contact_thresholds,
 )
 from inverse_dynamics.errors import EvaluationError, InvalidParameterError
-from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate
-from inverse_dynamics.robot.descriptions import effort_limits, read_description
+from inverse_dynamics.evaluation.evaluation import Arm, Evaluation, evaluate
+from inverse_dynamics.robot.descriptions import effort_limits
 from inverse_dynamics.robot.model_errors import read_model_errors
-from inverse_dynamics.robot.solvers import open_solver
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -86,9 +85,7 @@ class Contact:
     torque_time: float
     unknown: float = 0.0  # s of it without an estimate: see Contacts.interruptions
     force: float | None = None  # N, at the tip, mean over it; None: the solver has no Kinematics
-    force_direction: tuple[float, float, float] | None = (
-        None  # of that mean, in the axes of the root
-    )
+    force_direction: tuple[float, float, float] | None = None  # of that mean, in the root's axes
     greatest_force: float | None = None  # N; near singularities it is mostly noise
     unseen: int | None = None  # directions of a wrench that can't be observed, the most during it
 
@@ -136,7 +133,7 @@ def find_contacts(
     """Find the contacts of a recording.
 
     quiet: from, to [s] of a part without contact; quiet_recording: a recording without contact; both:
-    that part of that recording; none: the errors that `ids identify` has found on held-out data.
+    that part of that recording; none: the errors that `ids identify` found on held-out data.
     false_alarms: per hour. gain: 1/s; none: gain_for() of the recording that thresholds are made of.
     tracking: rad/s, of velocities from positions; none: recorded velocities. friction_band: N m, one
     number per joint, or one for all: what the friction model may be wrong by beyond what the quiet part
@@ -144,10 +141,14 @@ def find_contacts(
 
     Raises UserError: those of evaluate(), InvalidParameterError.
     """
-    if quiet is not None:
-        _check_quiet(*quiet)  # before anything is read
+    if quiet is not None and not -_LATEST < quiet[0] < quiet[1] < _LATEST:
+        raise EvaluationError(
+            "--quiet (quiet=): expected two times in s since the first sample, the later one second, "
+            f"got {quiet[0]:g},{quiet[1]:g}"
+        )
     evaluation = evaluate(bag, robot, progress=progress, **options)
-    solver = _solver_of(evaluation)
+    arm = Arm(evaluation.robot)
+    solver = arm.solver
     quiet_from, held_out = evaluation, None
     if quiet_recording is not None:
         quiet_from = evaluate(quiet_recording, robot, progress=progress, **options)
@@ -161,10 +162,9 @@ def find_contacts(
     if gain is None:
         gain = held_out.gain if held_out else gain_for(quiet_from.accelerations.cutoff)
     estimates = plain = _estimate(evaluation, solver, gain, tracking)
-    band = tuple(friction_band)
+    # Thresholds contain the friction's error of the quiet part: no band there.
+    band = tuple(friction_band) * (len(solver.joint_names) if len(friction_band) == 1 else 1)
     if band:
-        # What the quiet part shows of the friction's error is in the thresholds: no band there.
-        band = band * len(evaluation.joint_names) if len(band) == 1 else band
         estimates = _estimate(evaluation, solver, gain, tracking, band)
     of_quiet = plain
     if quiet_from is not evaluation:
@@ -172,6 +172,8 @@ def find_contacts(
     quiet_torques = held_out or _quiet_part(of_quiet, quiet, gain)
     thresholds, raised_notes = _raised(quiet_torques, plain, solver, false_alarms)
     wrenches, unseen, wrench_notes = _wrenches(solver, estimates, thresholds)
+    limits = effort_limits(evaluation.robot.urdf, arm.description, arm.joint_names)
+    interruptions = _interruptions(estimates)
     found = Contacts(
         evaluation=evaluation,
         estimator=estimates.estimator,
@@ -188,29 +190,20 @@ def find_contacts(
         unseen=unseen,
         thresholds=thresholds,
         contacts=(),
-        interruptions=_interruptions(estimates),
+        interruptions=interruptions,
         quiet_part=quiet if quiet_recording is None else None,
+        notes=(
+            *evaluation.notes,
+            *_interruption_notes(interruptions, estimates.longest_period),
+            *raised_notes,
+            *_threshold_notes(evaluation, thresholds, limits),
+            *wrench_notes,
+        ),
     )
     spans = _spans(found)
     for first, last in spans:
         found.contact[first : last + 1] = True
-    found = replace(found, contacts=tuple(_contact(found, *span) for span in spans))
-    notes = (
-        *evaluation.notes,
-        *_interruption_notes(found.interruptions, estimates.longest_period),
-        *raised_notes,
-        *_threshold_notes(evaluation, thresholds),
-        *wrench_notes,
-    )
-    return replace(found, notes=notes)
-
-
-def _check_quiet(start: float, end: float) -> None:
-    if not (abs(start) < _LATEST and abs(end) < _LATEST and start < end):
-        raise EvaluationError(
-            "--quiet (quiet=): expected two times in s since the first sample, the later one second, "
-            f"got {start:g},{end:g}"
-        )
+    return replace(found, contacts=tuple(_contact(found, *span) for span in spans))
 
 
 @dataclass(frozen=True)
@@ -227,11 +220,6 @@ class _Estimates:
     estimator: str  # name of its class
 
 
-def _solver_of(evaluation: Evaluation) -> Solver:
-    urdf = evaluation.robot.urdf
-    return open_solver(evaluation.robot, "" if urdf is None else read_description(urdf))
-
-
 @dataclass(frozen=True)
 class _Quiet:
     """External torques without contact."""
@@ -242,18 +230,13 @@ class _Quiet:
     torques: Floats  # (M, n)
 
 
-def _instants(evaluation: Evaluation) -> tuple[Floats, Mask]:
-    """When samples were taken, by the time base of the evaluation, and which ones are used."""
-    log, samples = evaluation.log, evaluation.samples
-    used = ~(samples.repeated | samples.start_transient)
-    if evaluation.accelerations.time_base == "stamps":
-        return log.time, used & ~samples.non_increasing
-    return _core.sample_instants(log.time, log.q, log.qd, log.effort), used
-
-
 def _bandwidth(gain: float) -> float:
     """Of tracked velocities [rad/s], the least that a gain goes with."""
     return gain / _GAIN_BY_TRACKING
+
+
+def _period(time: Floats) -> float:
+    return float(np.median(np.diff(time))) if len(time) > 1 else _LONGEST_PERIOD
 
 
 def _estimate(
@@ -264,8 +247,13 @@ def _estimate(
     friction_band: Sequence[float] = (),
 ) -> _Estimates:
     """Of samples that are later than those before them and don't repeat them."""
-    time, used = _instants(evaluation)
-    time, log = time[used], evaluation.log
+    log, samples, time = evaluation.log, evaluation.samples, evaluation.log.time
+    used = ~(samples.repeated | samples.start_transient)
+    if evaluation.accelerations.time_base == "stamps":
+        used &= ~samples.non_increasing
+    else:
+        time = _core.examine_samples(time, log.q, log.qd, log.effort).time
+    time, q, qd = time[used], log.q[used], log.qd[used]
     longest_period = max(_LONGEST_PERIOD, _GAP * _period(time))
     options = EstimatorOptions(
         np.full(len(evaluation.joint_names), gain),
@@ -275,12 +263,10 @@ def _estimate(
         friction_band=friction_band,
         longest_period=longest_period,
     )
-    q, qd = log.q[used], log.qd[used]
     kind = MomentumObserver if solver.inertia_is_physical else AccelerationResidual
-    estimator = kind(solver, options)
     effort = evaluation.measured[used]
     effort[1:] = (effort[1:] + effort[:-1]) / 2  # estimators take the mean since the sample before
-    torques, valid = estimator.run(time, q, effort, None if tracking else qd)
+    torques, valid = kind(solver, options).run(time, q, effort, None if tracking else qd)
     if not valid.any():
         raise EvaluationError(
             f"{evaluation.bag}: expected a stretch of {10 / tracking if tracking else 0:.3g} s without a "
@@ -288,10 +274,6 @@ def _estimate(
             f"in {time[-1] - time[0]:.3g} s; take a longer recording, or more --tracking"
         )
     return _Estimates(evaluation, time, q, qd, torques, valid, longest_period, kind.__name__)
-
-
-def _period(time: Floats) -> float:
-    return float(np.median(np.diff(time))) if len(time) > 1 else _LONGEST_PERIOD
 
 
 def _quiet_part(estimates: _Estimates, quiet: tuple[float, float] | None, gain: float) -> _Quiet:
@@ -310,7 +292,7 @@ def _quiet_part(estimates: _Estimates, quiet: tuple[float, float] | None, gain: 
 
 
 def _held_out(robot: Robot) -> _Quiet:
-    """What the model of `ids identify` was wrong by on data that it wasn't fitted to."""
+    """Held-out errors of a model of `ids identify`."""
     content, why = read_model_errors(robot.model) if robot.model else (None, "it has none")
     if content is None:
         raise EvaluationError(
@@ -398,7 +380,8 @@ def _spans(found: Contacts) -> list[tuple[int, int]]:
 
 
 def _contact(found: Contacts, first: int, last: int) -> Contact:
-    part = found.torques[first : last + 1]
+    during = slice(first, last + 1)
+    part = found.torques[during]
     row, j = np.unravel_index(np.abs(part / found.thresholds.torques).argmax(), part.shape)
     begin, end = float(found.time[first]), float(found.time[last])
     contact = Contact(
@@ -412,17 +395,17 @@ def _contact(found: Contacts, first: int, last: int) -> Contact:
     )
     if found.wrenches is None or found.unseen is None:
         return contact
-    known = found.valid[first : last + 1]
-    forces = found.wrenches[first : last + 1, :3][known]
+    known = found.valid[during]
+    forces = found.wrenches[during, :3][known]
     mean = forces.mean(axis=0)
     force = float(np.linalg.norm(mean))
-    x, y, z = (float(component) for component in mean / max(force, 1e-300))
+    x, y, z = (mean / max(force, 1e-300)).tolist()
     return replace(
         contact,
         force=force,
         force_direction=(x, y, z),
         greatest_force=float(np.linalg.norm(forces, axis=1).max()),
-        unseen=int(found.unseen[first : last + 1][known].max()),
+        unseen=int(found.unseen[during][known].max()),
     )
 
 
@@ -440,11 +423,11 @@ def _interruption_notes(
     )
 
 
-def _threshold_notes(evaluation: Evaluation, thresholds: ContactThresholds) -> tuple[str, ...]:
+def _threshold_notes(
+    evaluation: Evaluation, thresholds: ContactThresholds, limits: Floats
+) -> list[str]:
     """Thresholds that a contact hardly reaches, and those that may well be others."""
     names, units = evaluation.joint_names, evaluation.units
-    urdf = evaluation.robot.urdf
-    limits = effort_limits(urdf, "" if urdf is None else read_description(urdf), names)
     seen = np.abs(evaluation.measured).max(axis=0)
     large, uncertain = [], []
     for j, joint in enumerate(names):
@@ -467,4 +450,4 @@ def _threshold_notes(evaluation: Evaluation, thresholds: ContactThresholds) -> t
             f"thresholds rest on few peaks, and are high for that: {listed(uncertain)}; take a longer "
             "part without contact"
         )
-    return tuple(notes)
+    return notes

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is worth knowing of an evaluation without its samples: a few numbers per joint."""
+"""An evaluation without its samples: a few numbers per joint."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ from inverse_dynamics.data.table_logs import (
 )
 from inverse_dynamics.errors import BagError
 from inverse_dynamics.evaluation.evaluation import Arm
-from inverse_dynamics.robot.descriptions import effort_limits, read_description
+from inverse_dynamics.robot.descriptions import effort_limits
 from inverse_dynamics.robot.robots import Robot, load_robot
 
 if TYPE_CHECKING:
@@ -119,7 +119,6 @@ def trajectory_torques(
     path = Path(path)
     if not isinstance(robot, Robot):
         robot = load_robot(robot)
-    description = "" if robot.urdf is None else read_description(robot.urdf)
     arm = Arm(robot)
     solver, joints = arm.solver, arm.recorded_names
     trajectories: list[JointTrajectory] = []
@@ -143,7 +142,7 @@ def trajectory_torques(
         robot=robot,
         joint_names=joints,
         units=arm.units,
-        limits=effort_limits(robot.urdf, description, solver.joint_names),
+        limits=effort_limits(robot.urdf, arm.description, solver.joint_names),
         times=tuple(time for time, _ in states),
         torques=tuple(torques),
         trajectories=tuple(trajectories),

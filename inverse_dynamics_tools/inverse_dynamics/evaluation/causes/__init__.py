@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Why computed torques don't match the measured ones: one file per kind of mistake, compare.py decides."""
+"""Why computed torques don't match the measured ones: mistakes as rivals; compare.py decides."""

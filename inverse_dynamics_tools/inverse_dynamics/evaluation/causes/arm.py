@@ -33,7 +33,7 @@ _REACH = 0.1  # m: a body's torques are linear in mass and first moment, but for
 
 @dataclass(frozen=True)
 class ArmModel:
-    """What computes torques of motions (N, n); n joints.
+    """Functions that compute torques of motions (N, n); n joints.
 
     torques: (N, n) with friction. gravity: (N, n) of positions.
     pulled: (3, N, n) torques of positions for 1 m/s^2 of gravity along x, y, z of the root.
@@ -60,7 +60,7 @@ class ArmModel:
         return np.array([t == kind for t in self.joint_types or ("revolute",) * joints])
 
     def compared(self, q: Floats, qd: Floats, qdd: Floats) -> Floats:
-        """What measured torques are compared with."""
+        """The torques to compare measured ones with."""
         torques = self.torques(q, qd, qdd)
         return torques - self.gravity(q) if self.compared_without_gravity else torques
 
@@ -68,7 +68,7 @@ class ArmModel:
 def arm_model(
     robot: Robot, solver: Solver, description: str, *, without_gravity: bool = False
 ) -> ArmModel:
-    """What rivals need. description: URDF text, or none; without_gravity: what efforts are."""
+    """The model of a solver. description: URDF text, or none; without_gravity: whether efforts are."""
     ones = np.ones(len(solver.joint_names))
     rubs = bool(np.any(solver.friction_vector(ones, q=ones)))
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.evaluation.causes.rival import Rival, Told, printed
+from inverse_dynamics.evaluation.causes.rival import Finding, Rival, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
@@ -37,8 +37,8 @@ def rivals(view: View, _: object = None) -> Iterator[Rival]:
         return
     low, high = _FACTORS[0] - 1, _FACTORS[1] - 1
     for k, part in enumerate(arm.links(*view.motion)):
-        tell = partial(_mass, view, k % len(view.names))
-        yield view.rival("mass", tell, columns=(part,), low=low, high=high)
+        words = partial(_mass, view, k % len(view.names))
+        yield view.rival("mass", words, columns=(part,), low=low, high=high)
 
 
 def mounts_and_loads(view: View) -> Iterator[Rival]:
@@ -51,19 +51,19 @@ def mounts_and_loads(view: View) -> Iterator[Rival]:
     parts = view.loaded
     if parts is not None and not arm.compared_without_gravity:
         low = (0.0, -np.inf, -np.inf, -np.inf)
-        tell = partial(_load, parts, arm.mass)
-        yield view.rival("payload", tell, columns=tuple(parts), low=low)
+        words = partial(_load, parts, arm.mass)
+        yield view.rival("payload", words, columns=tuple(parts), low=low)
 
 
 def rough(view: View) -> Rival:
-    """Masses that a maker has estimated: nobody's mistake, and no other cause if they explain as much."""
+    """Masses that a maker has estimated: no mistake, and no other cause if they explain as much."""
     if view.arm.links is None or view.arm.compared_without_gravity:
         return view.rival("rough", own=(view.computed,), own_low=-_ROUGH, own_high=_ROUGH)
     parts = view.arm.links(*view.motion)[: len(view.names)]
     return view.rival("rough", columns=tuple(parts), low=-_ROUGH, high=_ROUGH)
 
 
-def _mount(own: Floats, change: Floats, _: Floats) -> Told | None:
+def _mount(own: Floats, change: Floats, _: Floats) -> Finding | None:
     found = own + change
     length, size = float(np.linalg.norm(found)), float(np.linalg.norm(own))
     if not _LENGTH[0] <= length <= _LENGTH[1]:
@@ -74,7 +74,7 @@ def _mount(own: Floats, change: Floats, _: Floats) -> Told | None:
     if size and angle < _LEAST_ANGLE:
         return None
     option = ",".join(f"{x:g}" for x in direction)
-    return Told(
+    return Finding(
         "gravity",
         "The robot hangs from the ceiling" if angle > 150 else "The robot hangs on a wall",
         f"torques match if gravity acts along {option} m/s² in the frame of the root link"
@@ -86,7 +86,7 @@ def _mount(own: Floats, change: Floats, _: Floats) -> Told | None:
     )
 
 
-def _load(parts: Floats, arm: float, body: Floats, _: Floats) -> Told | None:
+def _load(parts: Floats, arm: float, body: Floats, _: Floats) -> Finding | None:
     least, most = (share * arm for share in _MASS)
     if body[0] <= least or (arm and body[0] > most):
         return None
@@ -98,7 +98,7 @@ def _load(parts: Floats, arm: float, body: Floats, _: Floats) -> Told | None:
     load = np.tensordot(rounded, parts, axes=1)
     beside = float(np.abs(load[:, -1]).max()) > _BESIDE * float(np.abs(load).max())
     where = ",".join(f"{x:g}" for x in center)
-    return Told(
+    return Finding(
         "tool" if beside else "payload",
         "A tool the description lacks, and the tip" if beside else "A payload",
         f"torques match if the tip carries about {mass:.2g} kg at {where} m",
@@ -108,12 +108,12 @@ def _load(parts: Floats, arm: float, body: Floats, _: Floats) -> Told | None:
     )
 
 
-def _mass(view: View, link: int, change: Floats, _: Floats) -> Told | None:
+def _mass(view: View, link: int, change: Floats, _: Floats) -> Finding | None:
     factor = printed(1 + change[0], 2)
     if max(factor, 1 / factor) < _LEAST_FACTOR:
         return None
     name = view.arm.link_names[link] if view.arm.link_names else f"of joint {view.names[link]}"
-    return Told(
+    return Finding(
         "mass",
         "A mass of the description is wrong",
         f"torques match if link {name} has {factor:g} times the mass of the description",

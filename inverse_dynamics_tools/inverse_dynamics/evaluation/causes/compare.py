@@ -5,7 +5,7 @@
     for cause in found.causes:
         print(cause.text)
 
-1. Positions, velocities and time are compared with each other. What contradicts is put right.
+1. Positions, velocities and time are compared with each other. Contradictions are corrected.
 2. All rivals are fitted to every second piece of the recording and judged on the others (fit.py).
 3. A cause is named if its remedy, with the numbers that it states, leaves a small error, and if in 95 % of the
    recordings that resampled pieces make it is better than each rival by a margin. Rivals that can't be told apart
@@ -22,7 +22,7 @@ import numpy as np
 
 from inverse_dynamics._core import Verdict
 from inverse_dynamics.base.wording import listed
-from inverse_dynamics.evaluation.causes import bodies, columns, efforts, motions, pairs, residuals
+from inverse_dynamics.evaluation.causes import bodies, efforts, motions, pairs, residuals
 from inverse_dynamics.evaluation.causes.arm import ArmModel
 from inverse_dynamics.evaluation.causes.fit import Fitting
 from inverse_dynamics.evaluation.causes.rival import PAGE, Rival
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics._core import Effort
     from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.evaluation.causes.rival import Told
+    from inverse_dynamics.evaluation.causes.rival import Finding
     from inverse_dynamics.evaluation.causes.samples import Samples
 
 # Errors: mean over the joints, as shares of their measured ranges.
@@ -54,7 +54,7 @@ _SCALES = {"currents", "effort_scale"}
 _OF_EFFORTS = {*_SCALES, "effort_sign", "effort_direction", "no_gravity", "gravity"}
 _LIKE_COUPLING = {*_SCALES, "mass"}  # of one joint, where the other's torque is like its own
 
-KINDS = (efforts, bodies, columns, motions, residuals)
+KINDS = (efforts.rivals, bodies.rivals, efforts.columns, motions.rivals, residuals.rivals)
 
 
 @dataclass(frozen=True)
@@ -98,19 +98,19 @@ class Comparison:
 
     @property
     def text(self) -> str:
-        """What a reader should know of it; "": nothing."""
-        told = [cause.text for cause in self.causes if not cause.rival]
+        """The causes in words; "": there are none."""
+        texts = [cause.text for cause in self.causes if not cause.rival]
         if rivals := "; or ".join(cause.text for cause in self.causes if cause.rival):
-            told.append(f"{rivals}. This recording doesn't tell them apart: {self._experiment}")
+            texts.append(f"{rivals}. This recording doesn't tell them apart: {self._experiment}")
         if self.excluded:
-            left = " that is left" if told else ""
-            told.append(
+            left = " that is left" if texts else ""
+            texts.append(
                 f"no single cause explains the error{left}; these were excluded: {listed(self.excluded)}"
             )
-        return "; and ".join(told)
+        return "; and ".join(texts)
 
     def doubting(self, effort: Effort) -> Effort:
-        """What efforts mean; not sure where a cause, or nothing that was compared, contradicts it."""
+        """The meaning of efforts; not sure where a cause contradicts it, or where no cause was found."""
         contradicts = {c.kind for c in self.causes} & _OF_EFFORTS or set(self.excluded)
         if effort.verdict is None or not effort.verdict.sure or not contradicts:
             return effort
@@ -132,7 +132,7 @@ class Comparison:
 
 
 def residual_causes(samples: Samples, computed: Floats) -> tuple[Cause, ...]:
-    """What no model of an arm can have: saturation, coupled joints, drift. computed: (K M, n) N m."""
+    """Causes outside any model of an arm: saturation, coupled joints, drift. computed: (K M, n) N m."""
     view = View(samples, ArmModel(lambda *_: computed, np.zeros_like))
     contest = _Contest(view)
     contest.add(view.rival("friction", residuals.FRICTION))
@@ -140,8 +140,8 @@ def residual_causes(samples: Samples, computed: Floats) -> tuple[Cause, ...]:
     before = float(contest.fit.mean(contest.squares[0]))
     if before > _MISMATCH and (named := contest.best(before)):
         return _causes(named, contest.as_is)
-    told = residuals.of_joints(view, contest.fit, contest.squares[0])
-    return () if told is None else _causes([(told, None)], before)
+    finding = residuals.of_joints(view, contest.fit, contest.squares[0])
+    return () if finding is None else _causes([(finding, None)], before)
 
 
 def meaning_of_efforts(
@@ -184,12 +184,12 @@ def compare(samples: Samples | None, arm: ArmModel) -> Comparison:
     found = motions.contradiction(samples, arm)
     if found is None:
         return _Contest(View(samples, arm)).decide()
-    told, right = found
+    finding, right = found
     contest = _Contest(View(right, arm))
     rest = contest.decide()
     known = [cause.error_after for cause in rest.causes if cause.error_after is not None]
     after = min(known, default=contest.score(0))  # of friction alone
-    first = _causes([(told, after)], _Contest(View(samples, arm)).as_is)
+    first = _causes([(finding, after)], _Contest(View(samples, arm)).as_is)
     others = [c for c in rest.causes if c.kind != "friction"]
     rivals = (replace(c, rival=len(others) > 1 and c.rival) for c in others)
     return replace(rest, causes=(*first, *rivals))
@@ -206,7 +206,7 @@ class _Contest:
         self.weights = random.multinomial(pieces, np.full(pieces, 1 / pieces), _RESAMPLED) / pieces
         self.rivals: list[Rival] = []
         self.squares: list[Floats] = []
-        self.remedies: dict[int, tuple[Told | None, float]] = {}  # by the number of the rival
+        self.remedies: dict[int, tuple[Finding | None, float]] = {}  # by the number of the rival
 
     def decide(self) -> Comparison:
         """The outcome."""
@@ -216,7 +216,7 @@ class _Contest:
         if before > _MISMATCH:
             self.add(bodies.rough(view))
             for kind in KINDS:
-                self.add(*kind.rivals(view, fit))
+                self.add(*kind(view, fit))
             named = self.best(before)
             if not named or named[0][0].kind in _LIKE_COUPLING:
                 self.add(*residuals.couplings(view))
@@ -225,7 +225,7 @@ class _Contest:
                 return Comparison(causes)
         return self._unnamed(before)
 
-    def _pair(self, named: list[tuple[Told, float]], before: float) -> tuple[Cause, ...]:
+    def _pair(self, named: list[tuple[Finding, float]], before: float) -> tuple[Cause, ...]:
         """Two mistakes, if they leave half of what the best single one leaves, and no other pair does."""
         least = min((after for _, after in named), default=before)
         each = bool(named) and named[0][0].own is not None
@@ -237,18 +237,18 @@ class _Contest:
         found = contest.best(_GAIN * (_MARGIN * least + _FLAT) if each else min(before, least))
         if len(found) != 1 or found[0][1] > _PAIR_FITS:
             return ()
-        told, after = found[0]
-        both = [(one, after) for one in (told, told.also) if one]
+        finding, after = found[0]
+        both = [(one, after) for one in (finding, finding.also) if one]
         return tuple(replace(cause, rival=False) for cause in _causes(both, self.as_is))
 
     def _unnamed(self, before: float) -> Comparison:
-        """What is said where no rival wins."""
+        """The outcome where no rival wins."""
         own = residuals.of_joints(self.view, self.fit, self.squares[0])
-        told = () if own is None else (own,)
-        if not told and before > _FITS:
-            told = motions.beyond_reach(self.view) or efforts.too_small(self.view)
-        if told:
-            return Comparison(_causes([(one, None) for one in told], self.as_is))
+        findings: tuple[Finding, ...] = () if own is None else (own,)
+        if not findings and before > _FITS:
+            findings = motions.beyond_reach(self.view) or efforts.too_small(self.view)
+        if findings:
+            return Comparison(_causes([(one, None) for one in findings], self.as_is))
         if before > _FITS:
             return Comparison(excluded=tuple(sorted({r.kind for r in self.rivals} - {"rough"})))
         lacks = self.fit.friction is None and self.as_is >= max(_GAIN * before, _RUBS)
@@ -273,8 +273,8 @@ class _Contest:
                 self.rivals.append(rival)
                 self.squares.append(squares)
 
-    def best(self, before: float) -> list[tuple[Told, float]]:
-        """What is named: one, or those that can't be told apart; with the errors that remedies leave.
+    def best(self, before: float) -> list[tuple[Finding, float]]:
+        """The best finding, or those that can't be told apart, with the errors that their remedies leave.
 
         before: the error without any.
         """
@@ -286,11 +286,11 @@ class _Contest:
         for i in map(int, np.argsort(scores, kind="stable")):
             if tied and not self.alike(i, tied[0], _MARGIN):
                 break
-            told, after = self.remedy(i)
+            finding, after = self.remedy(i)
             # a scale of zero is no explanation
-            if told is not None and _small(after, least[told.kind in _SCALES], told):
+            if finding and _small(after, least[finding.kind in _SCALES], finding):
                 tied.append(i)
-                result.append((told, after))
+                result.append((finding, after))
         rough = [i for i, rival in enumerate(self.rivals) if rival.kind == "rough"]
         static = bool(tied) and self.rivals[tied[0]].kind in _AT_REST
         margin = _ROUGH_MARGIN if static else _MARGIN
@@ -298,14 +298,14 @@ class _Contest:
             return []
         return self._special(tied, result)
 
-    def remedy(self, i: int) -> tuple[Told | None, float]:
-        """What a rival says, and the error that is left with the numbers that it states."""
+    def remedy(self, i: int) -> tuple[Finding | None, float]:
+        """The finding of a rival, and the error that is left with the numbers that it states."""
         if i not in self.remedies:
             rival, after = self.rivals[i], np.inf
-            told = rival.told(*self.fit.numbers(rival))
-            if told is not None:
-                after = float(self.fit.mean(self.fit.errors(self.fit.applied(rival, told))))
-            self.remedies[i] = told, after
+            finding = rival.finding(*self.fit.numbers(rival))
+            if finding is not None:
+                after = float(self.fit.mean(self.fit.errors(self.fit.applied(rival, finding))))
+            self.remedies[i] = finding, after
         return self.remedies[i]
 
     def alike(self, i: int, best: int, margin: float) -> bool:
@@ -315,36 +315,32 @@ class _Contest:
         return bool(worse.mean() < _SURE)
 
     def _special(
-        self, tied: list[int], result: list[tuple[Told, float]]
-    ) -> list[tuple[Told, float]]:
+        self, tied: list[int], result: list[tuple[Finding, float]]
+    ) -> list[tuple[Finding, float]]:
         """Without those that include another one; nothing if too many are left."""
         kinds = {self.rivals[i].kind for i in tied}
-        kept: dict[tuple[str, tuple[str, ...]], tuple[Told, float]] = {}
-        for i, (told, after) in zip(tied, result, strict=True):
+        kept: dict[tuple[str, tuple[str, ...]], tuple[Finding, float]] = {}
+        for i, (finding, after) in zip(tied, result, strict=True):
             if not kinds & set(self.rivals[i].includes):
-                kept.setdefault((told.kind, told.joints), (told, after))
+                kept.setdefault((finding.kind, finding.joints), (finding, after))
         return list(kept.values()) if len(kept) <= _MOST_NAMED else []
 
 
-def _small(after: float, before: float, told: Told) -> bool:
+def _small(after: float, before: float, finding: Finding) -> bool:
     """Whether a remedy leaves little enough of an error; of weights, wrong masses leave more."""
-    most = max(_FITS, min(before / _FAR, _MOST_LEFT)) if told.kind in _AT_REST else _FITS
-    return told.gain * after <= before and after <= most
+    most = max(_FITS, min(before / _FAR, _MOST_LEFT)) if finding.kind in _AT_REST else _FITS
+    return finding.gain * after <= before and after <= most
 
 
-def _causes(named: Sequence[tuple[Told, float | None]], before: float) -> tuple[Cause, ...]:
+def _causes(named: Sequence[tuple[Finding, float | None]], before: float) -> tuple[Cause, ...]:
     """One, or rivals. named: with the errors that remedies leave."""
+    words = ("kind", "joints", "value", "reason", "remedy", "mistake")
     return tuple(
         Cause(
-            kind=told.kind,
-            joints=told.joints,
-            value=told.value,
+            **{name: getattr(finding, name) for name in words},
             error_before=before,
             error_after=after,
-            reason=told.reason,
-            remedy=told.remedy,
-            mistake=told.mistake,
             rival=len(named) > 1,
         )
-        for told, after in named
+        for finding, after in named
     )

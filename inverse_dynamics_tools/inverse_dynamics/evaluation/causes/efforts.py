@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Efforts of another sign, unit or meaning than torques: the motion is right."""
+"""Efforts of another sign, unit or meaning than torques, and columns that belong to other joints or are reversed."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from inverse_dynamics.base.wording import listed
-from inverse_dynamics.evaluation.causes.rival import Rival, Told, printed
+from inverse_dynamics.evaluation.causes.rival import Finding, Rival, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Mask
@@ -34,7 +35,7 @@ _UNITS = {  # per N m
     0.001: "kN m",
 }
 _SHARES = {1.0: "shares", 100.0: "per cent", 1000.0: "per mille"}
-_CURRENT = Told(
+_CURRENT = Finding(
     "currents",
     "Efforts are motor currents",
     "",
@@ -47,15 +48,15 @@ def rivals(view: View, fitting: Fitting) -> Iterator[Rival]:
     yield from _signs(view, fitting)
     yield common(view)
     nothing, own = np.zeros_like(view.computed), (view.computed,)
-    tell, includes = partial(_each, view), ("effort_scale",)
-    yield view.rival("scales", tell, base=nothing, own=own, own_low=0.0, includes=includes)
+    words, includes = partial(_each, view), ("effort_scale",)
+    yield view.rival("scales", words, base=nothing, own=own, own_low=0.0, includes=includes)
     sign = 1.0 if view.arm.compared_without_gravity else -1.0
     yield view.rival("no_gravity", _no_gravity(sign), base=view.computed + sign * view.gravity)
 
 
-def _no_gravity(sign: float) -> Told:
+def _no_gravity(sign: float) -> Finding:
     why = "efforts include it" if sign > 0 else "the robot's driver subtracts it from its efforts"
-    return Told(
+    return Finding(
         "no_gravity",
         "Gravity is subtracted from the efforts",
         f"the error is the gravity torque: {why}",
@@ -90,7 +91,7 @@ def _turned(view: View, flipped: Mask, *, everything: bool) -> Rival:
         whose, which = f"effort of {names[0]} is", "this effort"
     else:
         whose, which = f"effort of {listed(names)} are", "these efforts"
-    told = Told(
+    finding = Finding(
         "effort_sign" if everything else "effort_direction",
         "A joint is reversed",
         f"torques match if the {whose} reversed",
@@ -99,7 +100,9 @@ def _turned(view: View, flipped: Mask, *, everything: bool) -> Rival:
         value=-1.0,
     )
     base, qd = sign * view.computed, sign * view.qd
-    return view.rival(told.kind, told, base=base, qd=qd, effort=lambda computed: sign * computed)
+    return view.rival(
+        finding.kind, finding, base=base, qd=qd, effort=lambda computed: sign * computed
+    )
 
 
 def common(view: View) -> Rival:
@@ -108,12 +111,12 @@ def common(view: View) -> Rival:
     return view.rival("effort_scale", _common, base=nothing, columns=columns, low=0.0)
 
 
-def _common(shared: Floats, _: Floats) -> Told | None:
+def _common(shared: Floats, _: Floats) -> Finding | None:
     scale = float(shared[0])
     if scale <= 0 or abs(np.log(scale)) < np.log(_SAME):
         return None
     unit, scale = _unit(scale)
-    return Told(
+    return Finding(
         "effort_scale",
         "Efforts in another unit",
         f"efforts are {scale:.4g} times the torques in every joint"
@@ -124,7 +127,7 @@ def _common(shared: Floats, _: Floats) -> Told | None:
     )
 
 
-def too_small(view: View) -> tuple[Told, ...]:
+def too_small(view: View) -> tuple[Finding, ...]:
     """Efforts that are far smaller than torques wherever those are large, whatever their shape."""
     measured = np.quantile(np.abs(view.samples.flat(view.samples.measured)), 0.95, axis=0)
     torque = np.quantile(np.abs(view.computed), 0.95, axis=0)
@@ -152,35 +155,35 @@ def _unit(scale: float) -> tuple[str, float]:
     return "", printed(scale)
 
 
-def _each(view: View, _: Floats, own: Floats) -> Told | None:
+def _each(view: View, _: Floats, own: Floats) -> Finding | None:
     """Scales of their own: of currents, of limits, of a unit of the joints that turn."""
-    scales, tell = own[0], view.informative
-    if not (scales[tell] > 0).all():
+    scales, shown = own[0], view.informative
+    if not (scales[shown] > 0).all():
         return None
-    off = tell & (np.abs(np.log(np.maximum(scales, 1e-12))) > np.log(1.5))
+    off = shown & (np.abs(np.log(np.maximum(scales, 1e-12))) > np.log(1.5))
     if not off.any():
         return None
     rounded = np.array([printed(s) for s in scales])
     limits = view.arm.effort_limits
-    if limits is not None and np.isfinite(limits[tell]).all():
+    if limits is not None and np.isfinite(limits[shown]).all():
         shares = scales * limits
         for exact, what in _SHARES.items():
-            if (np.abs(shares[tell] / exact - 1) < 2 * _NAMED).all():
+            if (np.abs(shares[shown] / exact - 1) < 2 * _NAMED).all():
                 stated = np.where(np.isfinite(limits), exact / limits, rounded)
-                return _scales(view, tell, stated, f"{what} of the effort limits")
-    if _are_currents(scales[tell]):
-        numbers = listed([f"{s:.3g}" for s in rounded[tell]])
+                return _scales(view, shown, stated, f"{what} of the effort limits")
+    if _are_currents(scales[shown]):
+        numbers = listed([f"{s:.3g}" for s in rounded[shown]])
         reason = (
             f"measured efforts have the shape of the torques at another scale in every joint ({numbers}): "
             "they may be motor currents"
         )
         return replace(_CURRENT, reason=reason, value=rounded.tolist(), own=rounded[None])
-    turning = tell & ~view.prismatic
+    turning = shown & ~view.prismatic
     if view.prismatic.any() and turning.any():
         unit, exact = _unit(float(np.median(scales[turning])))
         if unit and (np.abs(scales[turning] / exact - 1) < _NAMED).all():
             return _scales(view, off, np.where(view.prismatic, rounded, exact), f"in {unit}")
-    milli = "motor currents in mA" if _are_currents(scales[tell] / 1000) else ""
+    milli = "motor currents in mA" if _are_currents(scales[shown] / 1000) else ""
     return _scales(view, off, rounded, milli)
 
 
@@ -188,10 +191,10 @@ def _are_currents(scales: Floats) -> bool:
     return bool(((scales > _CURRENTS[0]) & (scales < _CURRENTS[1])).all())
 
 
-def _scales(view: View, off: Mask, scales: Floats, what: str) -> Told:
+def _scales(view: View, off: Mask, scales: Floats, what: str) -> Finding:
     names = view.samples.named(off)
     numbers = listed([f"{s:.4g}" for s in scales[off]])
-    return Told(
+    return Finding(
         "effort_scale",
         "Efforts in another unit",
         f"efforts of {listed(names)} are {numbers} times the torques"
@@ -201,3 +204,56 @@ def _scales(view: View, off: Mask, scales: Floats, what: str) -> Told:
         value=scales.tolist(),
         own=scales[None],
     )
+
+
+def columns(view: View, _: object = None) -> Iterator[Rival]:
+    """Two joints exchanged, or their efforts; a joint reversed."""
+    for i, j in combinations(range(len(view.names)), 2):
+        alike = view.prismatic[i] == view.prismatic[j]
+        if alike and (view.informative[i] or view.informative[j]):
+            yield from _exchanged(view, i, j)
+    for j in map(int, np.flatnonzero(view.informative)):
+        yield _reversed(view, j)
+
+
+def _exchanged(view: View, i: int, j: int) -> Iterator[Rival]:
+    order = np.arange(len(view.names))
+    order[[i, j]] = j, i
+    pair = (view.names[i], view.names[j])
+
+    def recorded(computed: Floats) -> Floats:
+        return computed[:, order]
+
+    motion = tuple(map(recorded, view.motion))
+    in_order = Finding(
+        "order",
+        "Joints in another order",
+        f"torques match if joints {pair[0]} and {pair[1]} have each other's columns",
+        "give the recording's names in the order of the chain: --joints, or `joints:`",
+        pair,
+    )
+    base = recorded(view.arm.compared(*motion))
+    yield view.rival("order", in_order, base=base, motion=motion, effort=recorded)
+    efforts = replace(
+        in_order,
+        kind="effort_order",
+        reason=f"torques match if joints {pair[0]} and {pair[1]} have each other's efforts",
+        remedy="correct this where the recording is made: positions are in order, efforts aren't",
+    )
+    base, qd = recorded(view.computed), recorded(view.qd)
+    yield view.rival("effort_order", efforts, base=base, qd=qd, effort=recorded)
+
+
+def _reversed(view: View, j: int) -> Rival:
+    sign = np.where(np.arange(len(view.names)) == j, -1.0, 1.0)
+    finding = Finding(
+        "direction",
+        "A joint is reversed",
+        f"joint {view.names[j]}: torques match if its position, velocity and effort are reversed",
+        "change the sign where the recording is made, or the <axis> in the description",
+        (view.names[j],),
+        value=-1.0,
+    )
+    motion = tuple(sign * values for values in view.motion)
+    base = sign * view.arm.compared(*motion)
+    return view.rival("direction", finding, base=base, motion=motion, effort=lambda c: sign * c)

@@ -17,7 +17,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
-    from inverse_dynamics.evaluation.causes.rival import Rival, Told
+    from inverse_dynamics.evaluation.causes.rival import Finding, Rival
     from inverse_dynamics.evaluation.causes.samples import Samples
 
 _FRICTION = 0.25  # greatest step, and greatest viscous torque, as a share of the joint's range
@@ -84,10 +84,14 @@ class Fitting:
         beyond = np.maximum(of_joints - self.noise**2, 0.0)[..., self.moved]
         return np.asarray(np.sqrt(beyond.mean(axis=-1)))
 
-    def applied(self, rival: Rival, told: Told) -> Rival:
+    def applied(self, rival: Rival, finding: Finding) -> Rival:
         """The rival with the numbers that its remedy states."""
-        rival = replace(rival, low=told.shared, high=told.shared)
-        return rival if told.own is None else replace(rival, own_low=told.own, own_high=told.own)
+        rival = replace(rival, low=finding.shared, high=finding.shared)
+        return (
+            rival
+            if finding.own is None
+            else replace(rival, own_low=finding.own, own_high=finding.own)
+        )
 
     def _friction_columns(self, rival: Rival) -> list[Floats]:
         width = 0.05 * np.sqrt(np.mean(rival.qd**2, axis=0))

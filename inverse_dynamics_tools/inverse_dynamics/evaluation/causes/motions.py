@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Positions, velocities and time that contradict each other, the description's limits, or the efforts.
 
-Comparing velocities with the slope of positions needs no torques, so it comes first; what it finds is
-put right before rivals are compared.
+Comparing velocities with the slope of positions needs no torques, so it comes first; contradictions are
+corrected before rivals are compared.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.wording import listed
-from inverse_dynamics.evaluation.causes.rival import Rival, Told, printed
+from inverse_dynamics.evaluation.causes.rival import Finding, Rival, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Mask
-    from inverse_dynamics.evaluation.causes.arm import ArmModel, View
+    from inverse_dynamics.evaluation.causes.arm import ArmModel
     from inverse_dynamics.evaluation.causes.fit import Fitting
-    from inverse_dynamics.evaluation.causes.samples import Samples
+    from inverse_dynamics.evaluation.causes.samples import Samples, View
 
 _AGREE = 0.1  # relative, of velocities and slopes of positions: filters of drivers take some
 _SAME = 0.04  # relative, of the factors of joints, and of a factor and that of a unit
@@ -38,8 +38,8 @@ _BEYOND = 1.2  # times the limit
 _CLOCK = 1.12  # least factor of time that efforts tell from wrong inertias
 
 
-def contradiction(samples: Samples, arm: ArmModel) -> tuple[Told, Samples] | None:
-    """What is wrong with velocities, positions or time, and the samples without it."""
+def contradiction(samples: Samples, arm: ArmModel) -> tuple[Finding, Samples] | None:
+    """A contradiction of velocities, positions and time, and the samples without it."""
     way, integral, moves = _ways(samples)
     power = np.maximum((integral**2).sum(axis=0), 1e-300)
     rate = (way * integral).sum(axis=0) / power  # positions change so many times as fast
@@ -82,7 +82,7 @@ def _ways(samples: Samples) -> tuple[Floats, Floats, Mask]:
     return way, integral, np.quantile(np.abs(way), 0.9, axis=0) > 5 * resolution
 
 
-def _in_degrees(samples: Samples, usable: Mask, rate: float) -> tuple[Told, Samples] | None:
+def _in_degrees(samples: Samples, usable: Mask, rate: float) -> tuple[Finding, Samples] | None:
     """Positions or velocities of all joints that turn."""
     if min(abs(rate / _DEGREE - 1), abs(rate * _DEGREE - 1)) >= _SAME:
         return None
@@ -102,13 +102,13 @@ def _in_degrees(samples: Samples, usable: Mask, rate: float) -> tuple[Told, Samp
 
 def _by_clock(
     samples: Samples, usable: Mask, rate: float, everywhere: bool
-) -> tuple[Told, Samples] | None:
+) -> tuple[Finding, Samples] | None:
     """Time that runs at another speed for all joints, which no unit of velocities explains."""
     known = any(abs(1 / rate / factor - 1) < _SAME for factor in _RATES if factor < 100)
     if rate <= 0 or known or not everywhere or usable.sum() < 2:
         return None
     unit = next((u for f, u in _CLOCKS.items() if abs(1 / rate / f - 1) < _SAME), "")
-    told = Told(
+    finding = Finding(
         "clock",
         "A clock at the wrong speed",
         f"positions change {rate:.3g} times as fast as velocities say, in every joint"
@@ -116,17 +116,17 @@ def _by_clock(
         "record again with a clock that runs right; that of reception may do: ids evaluate --clock receive",
         value=rate,
     )
-    return told, replace(samples, time=samples.time * rate, qdd=samples.qdd / rate)
+    return finding, replace(samples, time=samples.time * rate, qdd=samples.qdd / rate)
 
 
-def _degrees(reason: str, remedy: str) -> Told:
-    return Told("degrees", "Degrees", reason, remedy, value=_DEGREE)
+def _degrees(reason: str, remedy: str) -> Finding:
+    return Finding("degrees", "Degrees", reason, remedy, value=_DEGREE)
 
 
-def _velocity(samples: Samples, wrong: Mask, factor: float, text: str) -> Told:
+def _velocity(samples: Samples, wrong: Mask, factor: float, text: str) -> Finding:
     names = samples.named(wrong)
     whose = "" if wrong.all() else f" of {listed(names)}"
-    return Told(
+    return Finding(
         "velocity",
         "Velocities that contradict positions",
         f"velocities{whose} contradict the slope of the positions: they are {text}",
@@ -165,11 +165,11 @@ def rivals(view: View, _: Fitting) -> Iterator[Rival]:
     if beyond_limits(view).any():
         scale = np.where(view.prismatic, 1.0, 1 / _DEGREE)
         q, qd, qdd = (scale * values for values in view.motion)
-        told = _degrees(
+        finding = _degrees(
             "positions are beyond the joints' limits, and torques match if they are degrees",
             "convert positions and velocities to rad",
         )
-        yield view.rival("degrees", told, base=view.arm.compared(q, qd, qdd), qd=qd)
+        yield view.rival("degrees", finding, base=view.arm.compared(q, qd, qdd), qd=qd)
     still = np.zeros_like(view.computed)
     if view.friction is not None:
         still = still + view.friction
@@ -179,11 +179,11 @@ def rivals(view: View, _: Fitting) -> Iterator[Rival]:
     yield view.rival("clock", _clock, base=still, columns=columns, low=1e-6, high=1e6)
 
 
-def _clock(square: Floats, _: Floats) -> Told | None:
+def _clock(square: Floats, _: Floats) -> Finding | None:
     rate = printed(np.sqrt(square[0]))
     if max(rate, 1 / rate) < _CLOCK:
         return None
-    return Told(
+    return Finding(
         "clock",
         "A clock at the wrong speed",
         f"torques match if the motion is {rate:g} times as fast as time and velocities say",
@@ -193,15 +193,16 @@ def _clock(square: Floats, _: Floats) -> Told | None:
     )
 
 
-def beyond_reach(view: View) -> tuple[Told, ...]:
+def beyond_reach(view: View) -> tuple[Finding, ...]:
     """Positions that are beyond limits in most joints, and torques that fit neither as rad nor as degrees."""
-    beyond, turning = beyond_limits(view), view.informative & ~view.prismatic & ~view.continuous
+    bounded = ~view.prismatic & ~view.arm.of_type("continuous", len(view.names))
+    beyond, turning = beyond_limits(view), view.informative & bounded
     if not turning.any() or beyond[turning].mean() < 0.5:
         return ()
     greatest = np.abs(view.motion[0]).max(axis=0)
     names = view.samples.named(beyond)
     reach = f"positions of {listed(names)} go to {listed([f'{g:.3g}' for g in greatest[beyond]])}, far beyond "
-    motors = Told(
+    motors = Finding(
         "motor_side",
         "Positions of the motors",
         f"{reach}the joints' limits in rad: they may be those of the motors, before the gears",

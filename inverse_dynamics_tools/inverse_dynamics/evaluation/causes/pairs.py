@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.evaluation.causes import bodies, columns, efforts
-from inverse_dynamics.evaluation.causes.rival import Rival, Tell, Told
+from inverse_dynamics.evaluation.causes import bodies, efforts
+from inverse_dynamics.evaluation.causes.rival import Finding, Rival, Words
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
@@ -23,12 +23,12 @@ _LIKELIEST = 3  # mistakes of columns, of those that fit best with any load and 
 
 def rivals(view: View, fitting: Fitting) -> Iterator[Rival]:
     """Pairs; of the mistakes of columns, those that could leave least."""
-    firsts = [*efforts.each_reversed(view), *columns.rivals(view, fitting), efforts.common(view)]
+    firsts = [*efforts.each_reversed(view), *efforts.columns(view), efforts.common(view)]
     errors = [float(fitting.mean(fitting.errors(_with_anything(view, f)))) for f in firsts]
     for i in np.argsort(errors)[:_LIKELIEST]:
         first = firsts[i]
         for second in bodies.rivals(_moved(view, first)):
-            yield _joined(first, second, partial(_tell, first, second))
+            yield _joined(first, second, partial(_both, first, second))
 
 
 def _moved(view: View, first: Rival) -> View:
@@ -42,22 +42,22 @@ def _with_anything(view: View, first: Rival) -> Rival:
     return _joined(first, moved.rival("", columns=tuple(parts)), None)
 
 
-def _joined(first: Rival, second: Rival, tell: Tell) -> Rival:
-    """What the second mistake adds, in columns of efforts that have the first."""
+def _joined(first: Rival, second: Rival, words: Words) -> Rival:
+    """The second mistake, in columns of efforts that have the first."""
     parts: Sequence[Floats] = [first.effort(part) for part in second.columns]
     base = first.effort(second.base)
     if first.columns:  # a scale, of all that the second says
         parts, base = [base, *parts], np.zeros_like(base)
-    return Rival("pair", base, first.qd, tell, tuple(parts))
+    return Rival("pair", base, first.qd, words, tuple(parts))
 
 
-def _tell(first: Rival, second: Rival, shared: Floats, none: Floats) -> Told | None:
+def _both(first: Rival, second: Rival, shared: Floats, none: Floats) -> Finding | None:
     scale, numbers = np.zeros(0), shared
     if first.columns:
         if shared[0] <= 0:
             return None
         scale, numbers = shared[:1], shared[1:] / shared[0]
-    one, other = first.told(scale, none), second.told(numbers, none)
+    one, other = first.finding(scale, none), second.finding(numbers, none)
     if one is None or other is None:
         return None
     together = other.shared

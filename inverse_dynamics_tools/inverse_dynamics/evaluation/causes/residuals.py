@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What no model of rigid bodies has: friction, a guiding hand, efforts at a limit, coupled joints, drift."""
+"""Causes outside a model of rigid bodies: friction, a guiding hand, efforts at a limit, coupled joints, drift."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.wording import listed
-from inverse_dynamics.evaluation.causes.rival import Rival, Told, printed
+from inverse_dynamics.evaluation.causes.rival import Finding, Rival, printed
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Mask
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
 _FLAT = 2e-3  # of a joint's range: efforts within it of the greatest one are at the limit
 _SHARE = (0.02, 0.9)  # of the samples, at a limit
 _PILE = 5.0  # times as many efforts at a limit as in the bands beside it
-_CUT = 0.5  # of what the model asks for beyond the limit, that is missing
+_CUT = 0.5  # part of the torque beyond the limit that is missing
 _LONG = 15.0  # s: in less, friction that changes is nothing but wrong
 _LEAVES = 0.6  # most of a joint's error that its cause may leave
-_CLEARER = 1.5  # ratio of errors: wrong masses leave so many times what drift leaves
+_CLEARER = 1.5  # least ratio of the errors that wrong masses leave to those that drift leaves
 _NOTICED = 0.03  # least error of a joint that is looked at, as a share of its range
 
 
-FRICTION = Told(
+FRICTION = Finding(
     "friction",
     "Friction",
     "the error is mostly friction and offset, which the model lacks",
     "take a model with friction, or make one: ids identify RECORDING --robot NAME --out arm.yaml, or "
     "with --urdf FILE instead of --robot NAME",
 )
-_GUIDED = Told(
+_GUIDED = Finding(
     "guided",
     "Somebody guides the arm",
     "measured minus computed torques are against the motion in every joint: somebody guides the arm by hand",
@@ -50,7 +50,7 @@ def rivals(view: View, fitting: Fitting) -> Iterator[Rival]:
 
 
 def limits(view: View, fitting: Fitting) -> Iterator[Rival]:
-    """Efforts that stay at their greatest value while the model, with friction, asks for more."""
+    """Efforts that stay at their greatest value while the model, with friction, needs more."""
     at_limit, _ = _at_limit(view, fitting)
     if at_limit.any():
         yield _limited(view, at_limit)
@@ -97,7 +97,7 @@ def _band(fitting: Fitting) -> Floats:
 
 
 def _limited(view: View, at_limit: Mask) -> Rival:
-    """What the model asks for at a limit is missing; a limit has no friction, so that the fit's is taken off."""
+    """Efforts lack the torque beyond a limit; at a limit friction doesn't show, so the fit's is removed."""
     missing = view.samples.flat(view.samples.measured) - view.computed
     columns = (missing, view.qd, np.sign(view.qd), np.ones_like(missing))
     free = [[np.inf]] * 3
@@ -110,13 +110,13 @@ def _limited(view: View, at_limit: Mask) -> Rival:
     )
 
 
-def _saturated(view: View, at_limit: Mask, _: Floats, own: Floats) -> Told | None:
+def _saturated(view: View, at_limit: Mask, _: Floats, own: Floats) -> Finding | None:
     found = at_limit.any(axis=0) & (own[0] > _CUT)
     if not found.any():
         return None
     j = int(np.argmax(found))
     limit = view.samples.flat(view.samples.measured)[at_limit[:, j], j]
-    return Told(
+    return Finding(
         "saturation",
         "",
         f"joint {view.names[j]}: efforts stay at {limit[np.argmax(np.abs(limit))]:.4g} in "
@@ -135,13 +135,13 @@ def couplings(view: View) -> Iterator[Rival]:
         for k in (k for k in range(len(view.names)) if k != j):
             column = np.zeros_like(measured)
             column[:, j] = measured[:, k]
-            tell = partial(_coupled, (view.names[j], view.names[k]))
-            yield view.rival("coupling", tell, columns=(column,))
+            words = partial(_coupled, (view.names[j], view.names[k]))
+            yield view.rival("coupling", words, columns=(column,))
 
 
-def _coupled(pair: tuple[str, str], ratio: Floats, _: Floats) -> Told:
+def _coupled(pair: tuple[str, str], ratio: Floats, _: Floats) -> Finding:
     value = printed(ratio[0], 2)
-    return Told(
+    return Finding(
         "coupling",
         "",
         f"joint {pair[0]}: its effort has {value:g} times that of joint {pair[1]} in it: a gear couples the two",
@@ -152,7 +152,7 @@ def _coupled(pair: tuple[str, str], ratio: Floats, _: Floats) -> Told:
     )
 
 
-def of_joints(view: View, fitting: Fitting, plain: Floats) -> Told | None:
+def of_joints(view: View, fitting: Fitting, plain: Floats) -> Finding | None:
     """A limit of efforts, or friction that drifts, in a joint that others outvote.
 
     plain: (K, n) squares with friction alone.
@@ -162,8 +162,8 @@ def of_joints(view: View, fitting: Fitting, plain: Floats) -> Told | None:
         rival = _limited(view, at_limit)
         found = shown | _better(fitting, plain, fitting.errors(rival), _NOTICED / 2)
         numbers = np.where(found, fitting.numbers(rival)[1], 0.0)
-        if told := rival.told(np.zeros(0), numbers):
-            return told
+        if finding := rival.finding(np.zeros(0), numbers):
+            return finding
     return _drift(view, fitting, plain)
 
 
@@ -175,10 +175,10 @@ def _better(fitting: Fitting, plain: Floats, squares: Floats, noticed: float) ->
     return np.asarray((before > noticed) & (after < _LEAVES * before))
 
 
-def _drift(view: View, fitting: Fitting, plain: Floats) -> Told | None:
+def _drift(view: View, fitting: Fitting, plain: Floats) -> Finding | None:
     """Friction or offset that changes along the recording.
 
-    What wrong masses give of gravity may change with time too, where the motion is slow.
+    Gravity of wrong masses may change with time too, where the motion is slow.
     """
     time = view.samples.time.reshape(-1, 1)
     if np.ptp(time) < _LONG:
@@ -191,7 +191,7 @@ def _drift(view: View, fitting: Fitting, plain: Floats) -> Told | None:
     names = view.samples.named(_better(fitting, plain, drifting, _NOTICED) & clearer)
     if not names:
         return None
-    return Told(
+    return Finding(
         "drift",
         "Friction",
         f"friction or offset of {listed(names)} changes along the recording, as it does while gears warm up",

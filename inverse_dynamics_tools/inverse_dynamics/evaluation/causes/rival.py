@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a mistake predicts of the recorded efforts: linear in a few unknown numbers.
+"""A mistake predicts the recorded efforts: linear in a few unknown numbers.
 
     recorded effort = base + shared numbers * columns + each joint's own numbers * columns + friction + offset
 
@@ -26,8 +26,8 @@ def printed(value: float, digits: int = 3) -> float:
 
 
 @dataclass(frozen=True)
-class Told:
-    """A rival in words, and the numbers of its remedy as printed: all that the remedy changes.
+class Finding:
+    """A mistake in words, and the numbers of its remedy as printed: all that the remedy changes.
 
     mistake: the nearest heading of PAGE; "": none is near. shared, own: see Rival.
     """
@@ -41,10 +41,10 @@ class Told:
     shared: Floats = field(default_factory=lambda: np.zeros(0))
     own: Floats | None = None
     gain: float = 2.0  # least ratio of the errors before and after
-    also: Told | None = None  # a second mistake, of a pair
+    also: Finding | None = None  # a second mistake, of a pair
 
 
-Tell = Callable[["Floats", "Floats"], Told | None] | Told | None
+Words = Callable[["Floats", "Floats"], Finding | None] | Finding | None
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Rival:
 
     base: (N, n). columns: (p, N, n); low, high: bounds of their numbers. own: (m, N, n), likewise.
     qd: (N, n) velocities that friction opposes, as recorded efforts have it.
-    tell: the words, or what finds them from shared numbers (p,) and own ones (m, n): None where no robot can have
+    words: the finding, or what finds them from shared numbers (p,) and own ones (m, n): None where no robot can have
     these numbers. None: for comparison alone.
     includes: kinds that are special cases of it. motion, effort: q, qd, qdd that it changes, and computed
     efforts to recorded ones: for pairs.
@@ -62,7 +62,7 @@ class Rival:
     kind: str
     base: Floats
     qd: Floats
-    tell: Tell = None
+    words: Words = None
     columns: tuple[Floats, ...] = ()
     low: Any = -np.inf
     high: Any = np.inf
@@ -73,6 +73,6 @@ class Rival:
     motion: tuple[Floats, ...] | None = None
     effort: Callable[[Floats], Floats] = field(default=lambda efforts: efforts)
 
-    def told(self, shared: Floats, own: Floats) -> Told | None:
-        """The words for these numbers."""
-        return self.tell(shared, own) if callable(self.tell) else self.tell
+    def finding(self, shared: Floats, own: Floats) -> Finding | None:
+        """The finding at these numbers."""
+        return self.words(shared, own) if callable(self.words) else self.words

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.evaluation.causes.rival import Rival, Tell
+from inverse_dynamics.evaluation.causes.rival import Rival, Words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.causes.arm import ArmModel
 
 _PIECES = 48  # even ones are fitted where odd ones judge, and the other way round
-_LEAST = 4  # samples of a piece: its noise is told by second differences
+_LEAST = 4  # samples of a piece: second differences show its noise
 _MOST = 40
 _SECONDS = 0.2  # of a piece, where that is more samples: as good as independent, yet smooth
 _INFORMATIVE = 0.02  # of the greatest torque: less is lost in friction and noise
@@ -97,7 +97,7 @@ class View:
 
     @cached_property
     def computed(self) -> Floats:
-        """What measured torques are compared with if nothing is wrong."""
+        """The torques to compare measured ones with if nothing is wrong."""
         return self.arm.compared(*self.motion)
 
     @cached_property
@@ -121,11 +121,6 @@ class View:
         return self.arm.of_type("prismatic", len(self.names))
 
     @cached_property
-    def continuous(self) -> Mask:
-        """(n,)."""
-        return self.arm.of_type("continuous", len(self.names))
-
-    @cached_property
     def informative(self) -> Mask:
         """(n,) joints that move, and whose torque shows beside that of the others."""
         travel = np.ptp(self.motion[0], axis=0)
@@ -133,9 +128,9 @@ class View:
         size = np.maximum(size, 0.2 * np.quantile(np.abs(self.computed), 0.95, axis=0))
         return np.asarray((size >= _INFORMATIVE * size.max()) & (travel > 1e-3 * travel.max()))
 
-    def rival(self, kind: str, tell: Tell = None, **changes: Any) -> Rival:
+    def rival(self, kind: str, words: Words = None, **changes: Any) -> Rival:
         """A rival that predicts what the model computes, but for the changes."""
-        return replace(Rival(kind, self.computed, self.qd, tell), **changes)
+        return replace(Rival(kind, self.computed, self.qd, words), **changes)
 
     def moving(self, q: Floats, qd: Floats, qdd: Floats) -> View:
         """The same efforts, of another motion."""
