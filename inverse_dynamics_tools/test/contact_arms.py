@@ -21,8 +21,7 @@ from conftest import RIGID_BODY
 from simulation_arms import CHAINS, robots_package, simulated, urdf_of
 
 from inverse_dynamics import Solver
-from inverse_dynamics.simulation.model import GRAVITY, _read_spec, _write_true_inertia
-from inverse_dynamics.simulation.regressor import inertial_parameters
+from inverse_dynamics.simulation.model import GRAVITY, _inertia, _read_spec, _write_true_inertia
 from inverse_dynamics.simulation.urdf import chain_from_urdf
 
 if TYPE_CHECKING:
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from inverse_dynamics.base.arrays import Floats
+    from inverse_dynamics.simulation.model import SimulatedRobot
 
 PERIOD = 1e-3  # s
 ENCODER_STEP = 2 * np.pi / 2**19  # rad
@@ -182,6 +182,29 @@ def write_model(name: str, file: Path) -> Path:
     return file
 
 
+def inertial_parameters(robot: SimulatedRobot) -> Floats:
+    """(10 n,) about the origins of the links' frames; what is fixed to a link counts as part of it."""
+    model, data = robot.model, robot.new_data()
+    mujoco.mj_kinematics(model, data)
+    links = [int(model.joint(name).bodyid[0]) for name in robot.chain.joint_names]
+    p = np.zeros((len(links), 10))
+    for body in range(1, model.nbody):
+        link = body
+        while link and link not in links:
+            link = model.body_parentid[link]
+        if not link:
+            continue  # fixed to the ground
+        R_WL = data.xmat[link].reshape(3, 3)
+        R = R_WL.T @ data.ximat[body].reshape(3, 3)
+        c = R_WL.T @ (data.xipos[body] - data.xpos[link])
+        m = model.body_mass[body]
+        tensor = R @ np.diag(model.body_inertia[body]) @ R.T + m * (
+            c @ c * np.eye(3) - np.outer(c, c)
+        )
+        p[links.index(link)] += np.r_[m, m * c, tensor[np.triu_indices(3)]]
+    return p.ravel()
+
+
 def _placements(name: str) -> list[tuple[Floats, Floats, Floats]]:
     """R, p of each link in the one before, and its joint's axis; last the tip."""
     robot = simulated(name)
@@ -226,12 +249,13 @@ class ContactArm:
         chain = chain_from_urdf(urdf_of(name), *CHAINS[name])
         self.velocity, self.tip = chain.velocity, chain.tip
         spec = _read_spec(chain)
+        inertia = _inertia(spec)
         for geom in spec.geoms:
             geom.contype = geom.conaffinity = 0
         if ball is not None:
             _add_ball(spec, ball)
         self.model = spec.compile()
-        _write_true_inertia(self.model, chain)
+        _write_true_inertia(self.model, inertia)
         self.model.dof_damping[:] = 0.0
         self.model.dof_frictionloss[:] = 0.0
         self.model.opt.gravity = GRAVITY

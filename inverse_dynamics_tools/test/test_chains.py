@@ -294,5 +294,5 @@ def test_a_simulated_robot_stands_on_any_link_that_is_fixed_to_its_root():
         "left/slide",
         "left/j2",
     )
-    with pytest.raises(SimulationError, match="a simulated robot stands on the root"):
+    with pytest.raises(SimulationError, match="choose a root nearer to that of the description"):
         chain_from_urdf(urdf, "left/hand", "right/hand")

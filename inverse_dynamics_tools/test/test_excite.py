@@ -146,7 +146,7 @@ def test_given_recording_that_never_moves_the_wrist_is_completed(tmp_path: Path)
         ),
         (["--urdf", "no.urdf"], "no.urdf: no such file"),
         (["--urdf", __file__], f"{__file__}: isn't XML; expected a URDF"),
-        (["--tip", "nowhere"], "there is no tip link 'nowhere'"),
+        (["--tip", "nowhere"], "tip: expected a link of the robot, got 'nowhere'"),
     ],
 )
 def test_mistakes_end_with_code_2_and_leave_nothing(
@@ -182,7 +182,9 @@ def test_wrong_options_are_named(
 def test_description_without_limits_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (tmp_path / "arm.urdf").write_text(pendulum(limit='<limit lower="-1" upper="1" effort="9"/>'))
+    (tmp_path / "arm.urdf").write_text(
+        pendulum(limit='<limit lower="-1" upper="1" velocity="0" effort="9"/>')
+    )
     out = tmp_path / "motion.yaml"
     assert main(["excite", "--urdf", str(tmp_path / "arm.urdf"), "--out", str(out)]) == 2
     assert "joint swing: the search needs a velocity limit, got inf; add" in capsys.readouterr().err

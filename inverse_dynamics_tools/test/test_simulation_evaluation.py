@@ -14,7 +14,6 @@ from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import load_robot
 from inverse_dynamics.robot.solvers import open_solver
 from inverse_dynamics.simulation import MOUNTS, simulate, write_run
-from inverse_dynamics.simulation.match import greatest_differences
 
 ROBOTS = ("ur10_simulated", "panda_simulated")
 PLUGINS = (
@@ -56,11 +55,11 @@ def test_what_is_left_where_nothing_is_estimated_is_said_by_joint() -> None:
     robot = load_robot("ur10_simulated")
     run = simulate(robot, joint_friction=0.02, duration=1.0)
     solver = open_solver(robot, read_description(robot.urdf))
-    assert greatest_differences(run, solver).max() < 1e-6
+    assert run.differences_from(solver).max() < 1e-6
     off = run.motion.effort.copy()
     off[7, 2] -= 3.0
     spoiled = replace(run, motion=replace(run.motion, effort=off))
-    left = greatest_differences(spoiled, solver)
+    left = spoiled.differences_from(solver)
     assert left[2] == pytest.approx(3.0, abs=1e-6)
     assert np.delete(left, 2).max() < 1e-6
 

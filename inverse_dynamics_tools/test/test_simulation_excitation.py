@@ -168,10 +168,13 @@ def test_condition_grows_where_a_joint_rests() -> None:
 @pytest.mark.parametrize(
     ("limit", "text"),
     [
-        ('<limit lower="-1" upper="1" effort="9"/>', "needs a velocity limit, got inf"),
-        ('<limit lower="-1" upper="1" velocity="2"/>', "needs an effort limit, got inf"),
         (
-            '<limit lower="1" upper="-1" velocity="2" effort="9"/>',
+            '<limit lower="-1" upper="1" velocity="0" effort="9"/>',
+            "needs a velocity limit, got inf",
+        ),
+        ('<limit lower="-1" upper="1" velocity="2" effort="0"/>', "needs an effort limit, got inf"),
+        (
+            '<limit lower="1" upper="1" velocity="2" effort="9"/>',
             "expected a range of positions to move in, got",
         ),
     ],

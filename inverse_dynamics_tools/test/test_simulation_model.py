@@ -116,11 +116,11 @@ def test_limits_are_read_and_absent_ones_are_infinite() -> None:
     chain = simulated("ur10").chain
     assert chain.effort.tolist() == [330, 330, 150, 56, 56, 56]
     assert chain.upper[2] == pytest.approx(np.pi)
-    bare = SimulatedRobot.from_urdf(pendulum(limit="")).chain
-    assert np.isinf([bare.lower, bare.upper, bare.velocity, bare.effort]).all()
     turning = SimulatedRobot.from_urdf(pendulum(kind="continuous")).chain
     assert np.isinf(turning.upper[0])
     assert turning.velocity[0] == 2
+    bare = SimulatedRobot.from_urdf(pendulum(kind="continuous", limit="")).chain
+    assert np.isinf([bare.lower, bare.upper, bare.velocity, bare.effort]).all()
 
 
 def test_joints_beside_the_chain_are_locked_and_said_so() -> None:
@@ -138,6 +138,7 @@ def test_joints_beside_the_chain_are_locked_and_said_so() -> None:
     assert arm.torques(ZERO, ZERO, ZERO)[0, 0] == pytest.approx(-(2 * 0.5 + 1.1) * G, abs=1e-12)
 
 
+HEAVY_BASE = robot(link("base", 1.0), link("arm", 2.0), joint("swing", "base", "arm"))
 FORKED = robot(
     link("base"),
     link("arm", 1.0),
@@ -154,33 +155,49 @@ FORKED = robot(
     [
         ("<robot", {}, "isn't a robot description: no XML"),
         ("<model/>", {}, "expected the element <robot>, got <model>"),
-        (pendulum(), {"root": "bse"}, "there is no root link 'bse'; links: base, arm"),
-        (pendulum(), {"tip": "hand"}, "there is no tip link 'hand'"),
-        (pendulum(), {"root": "arm", "tip": "base"}, "tip 'base' is not below root 'arm'"),
-        (pendulum(), {"tip": "base"}, "no joint moves between 'base' and 'base'"),
-        (FORKED, {}, "several tips are possible: left, right"),
-        (pendulum(kind="floating"), {}, "joint swing: expected revolute"),
         (
-            pendulum(inner='<mimic joint="other"/>'),
-            {},
-            "joint swing: expected revolute, continuous, prismatic or fixed, got mimic",
+            pendulum(),
+            {"root": "bse"},
+            "root: expected a link of the robot, got 'bse'; links: base, arm",
         ),
-        (robot(link("base"), link("arm"), joint("swing", "base", "arm")), {}, "MuJoCo refuses it"),
-        (robot(link("a"), link("b")), {}, "expected one link without a joint above it, got 2"),
+        (pendulum(), {"tip": "hand"}, "tip: expected a link of the robot, got 'hand'"),
+        (
+            HEAVY_BASE,
+            {"root": "arm", "tip": "base"},
+            "choose a root nearer to that of the description",
+        ),
+        (pendulum(), {"tip": "base"}, "root and tip are the same link"),
+        (FORKED, {}, "got left (moved by l), right (moved by r); name one of them as tip"),
+        (
+            pendulum(kind="floating"),
+            {},
+            "expected revolute, continuous, prismatic or fixed, got floating",
+        ),
+        (
+            FORKED.replace("<axis", '<mimic joint="r"/><axis', 1),
+            {"tip": "left"},
+            "joint swing: <mimic>: expected a joint that moves by itself",
+        ),
+        (
+            robot(link("base"), link("arm"), joint("swing", "base", "arm")),
+            {},
+            "got no mass and no inertia; give link arm an <inertial>",
+        ),
+        (robot(link("a"), link("b")), {}, "expected one link that is no joint's child, got 2"),
         (
             pendulum(xyz="0 0 nan"),
             {},
-            "<origin xyz=...>: expected 3 finite numbers, got '0 0 nan'",
+            "joint swing: <origin> xyz: expected three finite numbers, got '0 0 nan'",
         ),
         (
             pendulum(limit='<limit effort="a"/>'),
             {},
-            "<limit effort=...>: expected a finite number, got 'a'",
+            "joint swing: <limit> effort: expected a finite number, got 'a'",
         ),
         (
             pendulum().replace('ixx="0.02"', 'ixx="x"'),
             {},
-            "<inertia ixx=...>: expected a finite number, got 'x'",
+            "link arm: <inertia> ixx: expected a finite number, got 'x'",
         ),
     ],
 )

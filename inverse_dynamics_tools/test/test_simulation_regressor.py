@@ -7,14 +7,8 @@ import numpy as np
 import pytest
 from simulation_arms import joint, link, robot, simulated
 
+from inverse_dynamics.simulation.information import base_count, condition_number, engine_of
 from inverse_dynamics.simulation.model import Payload, SimulatedRobot
-from inverse_dynamics.simulation.regressor import (
-    ArmGeometry,
-    base_count,
-    condition_number,
-    inertial_parameters,
-    regressor,
-)
 
 MIXED = robot(
     link("base", 3.0),
@@ -43,9 +37,11 @@ def test_regressor_times_parameters_are_the_torques(name: str) -> None:
     arm = arms()[name]
     q, qd, qdd = np.random.default_rng(1).normal(size=(3, 100, len(arm.chain.joint_names)))
     tau = arm.torques(q, qd, qdd)
-    Y = regressor(ArmGeometry.of(arm), q, qd, qdd)
+    engine = engine_of(arm)
     # rounding: torques of up to 1e3 N m
-    np.testing.assert_allclose(Y @ inertial_parameters(arm), tau, rtol=0, atol=1e-10)
+    np.testing.assert_allclose(
+        engine.regressor(q, qd, qdd) @ engine.parameters, tau, rtol=0, atol=1e-10
+    )
 
 
 # How many combinations of inertial parameters have an influence: with gravity along the first axis 36 for a UR10,
@@ -61,10 +57,11 @@ def test_regressor_times_parameters_are_the_torques(name: str) -> None:
 def test_base_parameters_are_as_many_as_published(
     name: str, gravity: tuple[float, float, float], count: int
 ) -> None:
-    geometry = ArmGeometry.of(simulated(name, gravity=gravity))
-    assert base_count(geometry) == count
-    q, qd, qdd = np.random.default_rng(2).normal(size=(3, 200, len(geometry.axis)))
-    Y = regressor(geometry, q, qd, qdd).reshape(200 * len(geometry.axis), -1)
+    engine = engine_of(simulated(name, gravity=gravity))
+    joints = len(engine.joint_names)
+    assert base_count(engine) == count
+    Y = engine.regressor(*np.random.default_rng(2).normal(size=(3, 200, joints)))
+    Y = Y.reshape(200 * joints, -1)
     assert np.linalg.matrix_rank(Y, tol=1e-8) == count
 
 
@@ -80,11 +77,10 @@ def test_condition_number_is_the_ratio_of_singular_values() -> None:
 
 @pytest.mark.parametrize("name", ["ur10", "panda"])
 def test_condition_number_does_not_depend_on_rounding_or_on_the_order_of_columns(name: str) -> None:
-    geometry = ArmGeometry.of(simulated(name))
+    engine = engine_of(simulated(name))
     random = np.random.default_rng(4)
-    q, qd, qdd = random.normal(size=(3, 100, len(geometry.axis)))
-    Y = regressor(geometry, q, qd, qdd)
-    count = base_count(geometry)
+    Y = engine.regressor(*random.normal(size=(3, 100, len(engine.joint_names))))
+    count = base_count(engine)
     condition = condition_number(Y, count)
     for _ in range(10):
         rounded = Y * (1 + 1e-15 * random.normal(size=Y.shape))

@@ -245,7 +245,9 @@ def test_impossible_wishes_are_refused(
 
 
 def test_friction_by_part_needs_limits(tmp_path: Path) -> None:
-    arm = robot(tmp_path, urdf=pendulum(limit='<limit lower="-1" upper="1" effort="90"/>'))
+    arm = robot(
+        tmp_path, urdf=pendulum(limit='<limit lower="-1" upper="1" velocity="0" effort="90"/>')
+    )
     with pytest.raises(SimulationError, match="joint friction: joint swing has no velocity limit"):
         simulate(arm, trajectory=SWING, rate=125, joint_friction=0.1)
 

@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from inverse_dynamics.simulation.controller import Gains
-from inverse_dynamics.simulation.effort_noise import EffortNoise
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.physics import Motion
-from inverse_dynamics.simulation.sensors import EPOCH, Resolution, Sensors
+from inverse_dynamics.simulation.sensors import EPOCH, EffortNoise, Resolution, Sensors
 
 N = 20_000
 TIME = (np.arange(N) + 0.5) / 1000

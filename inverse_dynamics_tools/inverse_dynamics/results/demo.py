@@ -189,7 +189,6 @@ def _recordings_in(directory: Path | None) -> dict[str, Path]:
 def _simulated(name: str, target: Path, final: Path, quick: bool, progress: Progress) -> Evaluation:
     """Evaluate a simulated motion and keep its recording. final: where `target` will be."""
     from inverse_dynamics.simulation import simulate, write_run
-    from inverse_dynamics.simulation.match import greatest_differences
 
     robot, bag = load_robot(name), f"{name}_bag"
     run = simulate(robot, duration=_QUICK_SECONDS if quick else None, seed=0, progress=progress)
@@ -198,7 +197,7 @@ def _simulated(name: str, target: Path, final: Path, quick: bool, progress: Prog
     solver = Arm(evaluation.robot).solver
     note = (
         "with the simulator's own accelerations, computed and measured torques differ by "
-        f"{float(greatest_differences(run, solver).max()):.1g} N m at most: the errors shown are those "
+        f"{float(run.differences_from(solver).max()):.1g} N m at most: the errors shown are those "
         "of estimated accelerations"
     )
     return replace(evaluation, bag=final / bag, notes=(*evaluation.notes, note))

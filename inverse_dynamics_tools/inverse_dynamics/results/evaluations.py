@@ -50,7 +50,6 @@ CONTENTS = Contents(
 """Files of a result; `ids export` and `ids report` add theirs."""
 
 COMPUTED_TOPIC = "/torques"
-MEASURED_TOPIC = "/torques_gt"
 
 
 def write_evaluation(

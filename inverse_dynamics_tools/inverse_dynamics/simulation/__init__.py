@@ -9,11 +9,16 @@
 MuJoCo is independent of the engine and of every solver here, so a simulated recording checks them.
 """
 
-from inverse_dynamics.simulation.effort_noise import EffortNoise
 from inverse_dynamics.simulation.errors import SimulationError, TrajectoryError
 from inverse_dynamics.simulation.model import MOUNTS, JointFriction, Payload
 from inverse_dynamics.simulation.run import SimulatedRun, simulate
-from inverse_dynamics.simulation.sensors import NOISE, QUANTISATION, Resolution, Sensors
+from inverse_dynamics.simulation.sensors import (
+    NOISE,
+    QUANTISATION,
+    EffortNoise,
+    Resolution,
+    Sensors,
+)
 from inverse_dynamics.simulation.writer import write_run
 
 __all__ = [

@@ -5,8 +5,8 @@
     checker.violations(q)               # (N,) m: how far each state is within the clearance, 0 where it is free
     checker.closest_pair(q[k])          # names of the two links, and their distance
 
-Shapes are the URDF's collision boxes, cylinders and spheres. The table is the plane z = 0 of the root link, endless.
-Neighbours in the chain are not compared, nor are links whose shapes always overlap.
+Shapes are the URDF's collision boxes, cylinders and spheres. The table is the infinite plane z = 0 of the root
+link. Neighbours in the chain are not compared, nor are links whose shapes always overlap.
 """
 
 from __future__ import annotations
@@ -64,16 +64,13 @@ class ContactChecker:
 
     def violations(self, q: Floats) -> Floats:
         """How far each state (N, n) is within the clearance: (N,) m, 0 where it is free."""
-        return np.array([self.clearance - self._distance(state) for state in q])
+        return np.array([self.clearance - self.closest_pair(state).distance for state in q])
 
     def closest_pair(self, q: Floats) -> Closeness:
         """The two links that are closest within the clearance in one state (n,)."""
         pairs = self._pairs(q)
         distance, (a, b) = min(pairs, default=(self.clearance, (-1, -1)))
         return Closeness(distance, (self._name(a), self._name(b)))
-
-    def _distance(self, q: Floats) -> float:
-        return min((distance for distance, _ in self._pairs(q)), default=self.clearance)
 
     def _pairs(self, q: Floats) -> list[tuple[float, tuple[int, int]]]:
         """Distance and geoms of what is within the clearance."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a run configuration says about its simulation.
+"""Settings of a simulation in a run configuration.
 
-The run configuration's key `simulation` may say
+All of it may be left out:
 
     simulation:
       trajectory: package://inverse_dynamics_robots/trajectories/ur10.yaml   # the default one; a path as for urdf
@@ -12,7 +12,7 @@ The run configuration's key `simulation` may say
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,33 +34,26 @@ DEFAULT_RATE = 500  # Hz, where neither caller nor run configuration says
 
 
 @dataclass(frozen=True)
-class StatedGains:
-    """Gains that a run configuration states: (joint index, name) to value."""
-
-    values: dict[tuple[int, str], float]
-
-    def apply(self, gains: Gains) -> Gains:
-        """The gains with those that are stated in their places."""
-        columns = {field.name: np.array(getattr(gains, field.name)) for field in fields(gains)}
-        for (joint, name), value in self.values.items():
-            columns[name][joint] = value
-        return replace(gains, **columns)
-
-
-@dataclass(frozen=True)
 class StatedSimulation:
-    """What a run configuration says under `simulation`."""
+    """Contents of the key `simulation` of a run configuration."""
 
-    trajectory: Path | None
-    rate: int  # Hz
-    gains: StatedGains
+    trajectory: Path | None = None
+    rate: int = DEFAULT_RATE  # Hz
+    gains: dict[tuple[int, str], float] = field(default_factory=dict)  # by joint index and name
+
+    def with_gains(self, gains: Gains) -> Gains:
+        """The gains with those that are stated in their places."""
+        columns = {name: np.array(values) for name, values in vars(gains).items()}
+        for (joint, name), value in self.gains.items():
+            columns[name][joint] = value
+        return Gains(**columns)
 
     @classmethod
     def of(cls, robot: Robot, chain: UrdfChain) -> StatedSimulation:
         """Reads them. Raises RobotError with file, line and key."""
         mapping = _simulation(robot)
         if mapping is None:
-            return cls(None, DEFAULT_RATE, StatedGains({}))
+            return cls()
         trajectory = mapping.optional("trajectory")
         file = None if trajectory is None else resolve(trajectory.text(), robot.file.parent)
         if trajectory is not None and file is not None and not file.is_file():
@@ -69,13 +62,13 @@ class StatedSimulation:
         if rate is not None and rate.integer() not in RATES:
             rate.fail(f"one of {', '.join(map(str, RATES))} Hz")
         gains = mapping.optional("gains")
-        stated = StatedGains({} if gains is None else _gains(gains.mapping(), chain))
+        stated = {} if gains is None else _gains(gains.mapping(), chain)
         mapping.reject_others()
         return cls(file, DEFAULT_RATE if rate is None else rate.integer(), stated)
 
 
 def states_simulation(robot: Robot) -> bool:
-    """Whether the run configuration says anything of its simulation."""
+    """Whether the run configuration has the key `simulation`."""
     return _simulation(robot) is not None
 
 
@@ -93,10 +86,9 @@ def _gains(mapping: Mapping, chain: UrdfChain) -> dict[tuple[int, str], float]:
         if value is None:
             continue
         gains = value.mapping()
-        for field in fields(Gains):
-            number = gains.optional(field.name)
-            if number is not None:
-                found[index, field.name] = number.number()
+        for name in (gain.name for gain in fields(Gains)):
+            if (number := gains.optional(name)) is not None:
+                found[index, name] = number.number()
         gains.reject_others()
     mapping.reject_others()
     return found

@@ -23,27 +23,20 @@ if TYPE_CHECKING:
     from inverse_dynamics.simulation.model import SimulatedRobot
 
 FASTEST = 60.0
-"""Of the default gains: greatest natural frequency of a joint's error [rad/s]."""
+"""Greatest natural frequency of a joint's error with default gains [rad/s]."""
 
-# Of the default gains, where a joint is lightest; stiff enough against gravity where it is heaviest.
-_DAMPING_RATIO = 0.75
-
-# Damping rate times period; a sampled velocity loop is unstable from 2 on.
-_SAMPLED_DAMPING = 1.2
-
-
-# Stiffness over what topples the load of a joint; at 1 it stands as a pencil does.
-_UPRIGHT = 2.0
+_DAMPING_RATIO = 0.75  # of the default gains, where a joint is lightest
+_SAMPLED_DAMPING = 1.2  # damping rate times period; a sampled velocity loop is unstable from 2 on
+_UPRIGHT = 2.0  # stiffness over the slope of the toppling torque; 1 is marginally stable
 
 
 def _toppling(robot: SimulatedRobot, q: Floats) -> Floats:
-    """(n,) N m/rad by which gravity at most drives each joint away from states q (N, n)."""
+    """(n,) N m/rad, greatest slope of gravity that drives a joint away from states q (N, n)."""
     step, still = 1e-4, np.zeros_like(q)  # rad, m
     slopes = []
     for j, move in enumerate(step * np.eye(q.shape[1])):
-        there = robot.torques(q + move, still, still)[:, j]
-        back = robot.torques(q - move, still, still)[:, j]
-        slopes.append((back - there).max() / (2 * step))
+        ahead, behind = (robot.torques(x, still, still)[:, j] for x in (q + move, q - move))
+        slopes.append((behind - ahead).max() / (2 * step))
     return np.maximum(slopes, 0.0)
 
 
@@ -62,9 +55,9 @@ class Gains:
         """Gains that suit a robot along states q (N, n), for a controller with this period [s].
 
         Well damped for the least inertia h_j each joint shows along the way while the others yield, 1 / (H^-1)_jj.
-        All joints get one natural frequency w: as fast as the sampled damping allows where the arm is lightest, which
-        the greatest eigenvalue of H^-1 diag(h) tells. Where it is heaviest (the least eigenvalue) the integral must be
-        slow enough. A joint that carries its load above its axis gets as much stiffness as keeps the load there.
+        All joints get one natural frequency w. The greatest eigenvalue of H^-1 diag(h) limits it: there the arm is
+        lightest, and the sampled damping must be stable. The least eigenvalue, where the arm is heaviest, limits the
+        integral. A joint that carries its load above its axis gets enough stiffness to keep the load there.
         """
         inverses = np.linalg.inv([robot.inertia_matrix(x) for x in q])
         h = 1.0 / np.diagonal(inverses, axis1=1, axis2=2).max(axis=0)
@@ -91,7 +84,7 @@ class DesiredMotion:
 
 
 class JointTrajectoryController:
-    """Follows desired points; one update a tick. Holds the integral of the error."""
+    """Follows desired points; one update per tick. Holds the integral of the error."""
 
     def __init__(
         self, gains: Gains, desired: DesiredMotion, effort_limit: Floats, period: float

@@ -36,7 +36,7 @@ def minimise(
     step: float = _STEP,
     progress: Progress = no_progress,
 ) -> Floats:
-    """The point (m,) after so many steps from `start`, coordinates of about one.
+    """The point (m,) after `iterations` steps from `start`, coordinates of about one.
 
     gradient: of the cost at x (m,), done a part from 0 to 1 of the steps, since penalties may grow.
     """

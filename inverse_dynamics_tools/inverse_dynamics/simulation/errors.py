@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can be wrong with a request for a simulation."""
+"""Errors of simulations."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _DESCRIPTION = "robot description"
 
 
 class SimulationError(UserError):
-    """A robot that can't be simulated, or an option that makes no sense."""
+    """A robot that can't be simulated, or an option out of range."""
 
 
 class TrajectoryError(UserError):

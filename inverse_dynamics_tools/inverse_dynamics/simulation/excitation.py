@@ -4,7 +4,7 @@
     found = optimise_excitation(robot, ExcitationOptions(duration=20.0), seed=0)
     found.trajectory, found.deviation, found.condition_number
 
-What is minimised is the variance of predicted torques, averaged over states drawn evenly from the limits: V-optimality
+The search minimises the variance of predicted torques, averaged over states drawn evenly from the limits: V-optimality
 [Fedorov 1972; Atkinson, Donev, Tobias, Optimum Experimental Designs, with SAS, 2007, ch. 10], in logarithms, so that
 each joint counts by its ratio, whatever its size and unit:
 
@@ -31,14 +31,14 @@ from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.descent import minimise
 from inverse_dynamics.simulation.errors import SimulationError, TrajectoryError
 from inverse_dynamics.simulation.excitation_motion import MotionFamily
-from inverse_dynamics.simulation.information import Unknowns, sample_weight
-from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
-from inverse_dynamics.simulation.regressor import (
-    ArmGeometry,
+from inverse_dynamics.simulation.information import (
+    Unknowns,
     base_count,
     condition_number,
-    regressor,
+    engine_of,
+    sample_weight,
 )
+from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
@@ -74,7 +74,7 @@ _CONDITION_SAMPLES = 200
 
 @dataclass(frozen=True)
 class ExcitationOptions:
-    """What a motion may take, and what it is for."""
+    """Constraints of a motion, and its purpose."""
 
     duration: float = DURATION  # s
     share: float = MARGIN  # of the limits of position, velocity, acceleration and effort
@@ -174,9 +174,9 @@ def check_limits(robot: SimulatedRobot, limits: MotionLimits) -> None:
 
 def condition_of(robot: SimulatedRobot, trajectory: Trajectory) -> float:
     """Condition number of the base regressor over a trajectory."""
-    arm = ArmGeometry.of(robot)
+    engine = engine_of(robot)
     time = np.linspace(0.0, trajectory.duration, _CONDITION_SAMPLES, endpoint=False)
-    return condition_number(regressor(arm, *trajectory.at(time)), base_count(arm))
+    return condition_number(engine.regressor(*trajectory.at(time)), base_count(engine))
 
 
 def motion_gram(
@@ -389,7 +389,8 @@ class _Judge:
         heavy = self._heavy > _LIGHT * self._limits.effort
 
         def load(states: Floats) -> Floats:
-            return np.where(heavy, self._unknowns.gravity(states) / self._heavy, 0.0)
+            gravity = np.where(heavy, self._unknowns.gravity(states), 0.0)
+            return np.asarray(gravity / np.where(heavy, self._heavy, 1.0))
 
         loads = load(turning)
         total, side = 0.0, np.where(loads[0] >= loads[1], 1.0, -1.0)

@@ -123,7 +123,7 @@ class MotionFamily:
         )
 
     def basis(self, time: Floats) -> Basis:
-        """What turns positions of waypoints into the motion at those times."""
+        """Matrices that turn positions of waypoints into the motion at those times."""
         unit = WaypointTrajectory.through((), self.times, np.eye(len(self.times)), self.rests)
         return Basis(*unit.at(time))
 
@@ -143,7 +143,7 @@ class MotionFamily:
 
 
 def _waves(count: int) -> Floats:
-    """Columns: cosines of 0, 1/2, 1, ... turns over so many poses, of amplitude one."""
+    """Columns: cosines of 0, 1/2, 1, ... turns over `count` poses, of amplitude one."""
     at = (np.arange(count) + 0.5) / count
     return np.asarray(np.cos(np.pi * np.outer(at, np.arange(count))))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a motion tells about the torques of an arm: how far predicted torques are uncertain after it.
+"""How uncertain the predicted torques of an arm are after a motion has been recorded.
 
     unknowns = Unknowns.of_arm(robot, limits, noise)
     gram = unknowns.gram(q, qd, qdd, period)          # of a motion, or of a recording
@@ -21,22 +21,24 @@ interval CORRELATION counts as one sample.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from inverse_dynamics.simulation.regressor import PARAMETERS_PER_LINK, ArmGeometry
+from inverse_dynamics._core import FastModel
+from inverse_dynamics.robot.link_parameters import inertia_matrix, pseudo_inertia
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
-    from inverse_dynamics._core import FastModel
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.simulation.limits import MotionLimits
     from inverse_dynamics.simulation.model import SimulatedRobot
 
+PARAMETERS_PER_LINK = 10
 OWN = 7  # unknowns that belong to one joint: rotor, viscous, step, offset, load, width, shift
 CORRELATION = 0.25  # s, distance of samples with independent errors
 NOISE = 0.01  # part of the effort limit that is the noise's standard deviation, where none is known
@@ -56,19 +58,50 @@ _LEAST_MASS = 1e-3  # of the arm's mass
 _BLOCK = 2000  # states at a time
 
 
-@dataclass(frozen=True)
-class States:
+def engine_of(robot: SimulatedRobot) -> FastModel:
+    """The chain as the description has it, with the payload."""
+    chain, payload, urdf = robot.chain, robot.payload, robot.chain.urdf
+    if payload is not None:
+        center = " ".join(map(repr, map(float, payload.center)))
+        body = (
+            f'<link name="ids_payload"><inertial><origin xyz="{center}"/><mass value="{payload.mass!r}"/>'
+            '<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>'
+            f'<joint name="ids_payload" type="fixed"><parent link={quoteattr(chain.tip)}/>'
+            '<child link="ids_payload"/></joint>'
+        )
+        urdf = urdf.removesuffix("</robot>") + f"{body}</robot>"
+    return FastModel.from_urdf(urdf, root=chain.root, tip=chain.tip, gravity=robot.gravity)
+
+
+def base_count(engine: FastModel) -> int:
+    """Number of base parameters: the rank of Y over all motions."""
+    joints = len(engine.joint_names)
+    random = np.random.default_rng(0)
+    q, qd, qdd = random.uniform(-np.pi, np.pi, (3, 20 * joints, joints))
+    Y = engine.regressor(q, qd, qdd).reshape(-1, PARAMETERS_PER_LINK * joints)
+    values = np.linalg.svd(Y, compute_uv=False)
+    # rounding leaves about 1e-15 of the greatest one where there is none
+    return int((values > 1e-8 * values[0]).sum())
+
+
+def condition_number(Y: Floats, count: int) -> float:
+    """Ratio of the greatest to the least of the `count` nonzero singular values of the stacked Y.
+
+    It is the condition number of `Y V`, V an orthonormal basis of the base parameters: every such basis gives the same
+    one. A choice of independent columns of Y would not: columns of equal norm leave that choice to rounding.
+    """
+    # the square of the condition, from a small matrix: enough digits up to about 1e6
+    # (summed sample by sample: one large product would start threads, which costs more than it saves)
+    squares = np.linalg.eigvalsh((Y.transpose(0, 2, 1) @ Y).sum(axis=0))
+    return float(np.sqrt(squares[-1] / max(squares[-count], 1e-16 * squares[-1])))
+
+
+class States(NamedTuple):
     """Joint states, (N, n) each."""
 
     q: Floats
     qd: Floats
     qdd: Floats
-
-    def __iter__(self):  # type: ignore[no-untyped-def]
-        return iter((self.q, self.qd, self.qdd))
-
-    def __len__(self) -> int:
-        return len(self.q)
 
 
 @dataclass(frozen=True)
@@ -80,71 +113,37 @@ class Unknowns:
     noise: Floats  # (n,) N m, standard deviation of an independent sample
     columns: slice  # of the regressor, which are unknown
     scale: Floats  # (m, m): the covariance of the prior is scale scale'
-    predicted: (
-        Floats  # (m,) 1 for unknowns whose effect on torques is to be known, 0 for the others
-    )
+    predicted: Floats  # (m,) 1 for unknowns whose effect on torques is to be known, 0 for others
 
     @classmethod
     def of_arm(
         cls, robot: SimulatedRobot, limits: MotionLimits, noise: Floats | None = None
     ) -> Unknowns:
         """All parameters of an arm. noise: None: NOISE of each effort limit."""
-        model = ArmGeometry.of(robot).model
+        model = engine_of(robot)
         links = model.parameters.reshape(-1, PARAMETERS_PER_LINK)
         total = max(float(links[:, 0].sum()), 1e-3)
         scales = [_prior_scale(_pseudo_inertia(link, total)) for link in links]
-        return cls._made(model, limits, noise, slice(0, 10 * len(links)), scales, predict_own=True)
+        own = _own_scales(limits)
+        scale = _block_diagonal([*scales, np.diag(own)])
+        noise = NOISE * limits.effort if noise is None else noise
+        return cls(model, limits, noise, slice(0, links.size), scale, np.ones(len(scale)))
 
     @classmethod
     def of_payload(
         cls, robot: SimulatedRobot, limits: MotionLimits, noise: Floats | None = None
     ) -> Unknowns:
         """The ten parameters of a body at the tip; what friction may have changed is a nuisance."""
-        model = ArmGeometry.of(robot).model
-        count = len(model.joint_names)
-        mass = _PAYLOAD_SHARE * max(float(model.parameters[::PARAMETERS_PER_LINK].sum()), 1e-3)
-        ball = mass * np.diag([*3 * [_PAYLOAD_RADIUS**2 / 5], 1.0])
-        columns = slice(10 * count - 10, 10 * count)
-        return cls._made(model, limits, noise, columns, [_prior_scale(ball)], predict_own=False)
-
-    @classmethod
-    def _made(
-        cls,
-        model: FastModel,
-        limits: MotionLimits,
-        noise: Floats | None,
-        columns: slice,
-        link_scales: list[Floats],
-        *,
-        predict_own: bool,
-    ) -> Unknowns:
-        joints, inertial = len(model.joint_names), PARAMETERS_PER_LINK * len(link_scales)
-        scale = np.zeros(2 * (inertial + OWN * joints,))
-        for i, block in enumerate(link_scales):
-            at = slice(PARAMETERS_PER_LINK * i, PARAMETERS_PER_LINK * (i + 1))
-            scale[at, at] = block
-        effort, velocity = limits.effort, limits.velocity
-        own = np.column_stack(
-            [
-                _PRIOR_FRICTION * effort / limits.acceleration,
-                _PRIOR_FRICTION * effort / velocity,
-                _PRIOR_FRICTION * effort,
-                _PRIOR_OFFSET * effort,
-                np.full(joints, _PRIOR_LOAD),
-                *2 * [np.full(joints, _PRIOR_STEP_SHAPE)],
-            ]
-        )
-        np.fill_diagonal(scale[inertial:, inertial:], own.ravel())
-        predicted = np.ones(len(scale))
-        predicted[inertial:] = predict_own
-        return cls(
-            model,
-            limits,
-            NOISE * effort if noise is None else noise,
-            columns,
-            scale,
-            predicted,
-        )
+        model = engine_of(robot)
+        links = model.parameters.reshape(-1, PARAMETERS_PER_LINK)
+        mass = _PAYLOAD_SHARE * max(float(links[:, 0].sum()), 1e-3)
+        ball = _prior_scale(mass * np.diag([*3 * [_PAYLOAD_RADIUS**2 / 5], 1.0]))
+        own = _own_scales(limits)
+        scale = _block_diagonal([ball, np.diag(own)])
+        noise = NOISE * limits.effort if noise is None else noise
+        predicted = np.repeat([1.0, 0.0], [PARAMETERS_PER_LINK, len(own)])
+        columns = slice(links.size - PARAMETERS_PER_LINK, links.size)
+        return cls(model, limits, noise, columns, scale, predicted)
 
     def rows(self, q: Floats, qd: Floats, qdd: Floats) -> Floats:
         """z, (N, n, m), of states (N, n)."""
@@ -242,6 +241,31 @@ class Unknowns:
         return np.asarray(np.sqrt(np.maximum(variances, 0.0)).mean(axis=0))
 
 
+def _own_scales(limits: MotionLimits) -> Floats:
+    """(OWN n,) standard deviations of the prior, of the unknowns that belong to single joints."""
+    effort, velocity = limits.effort, limits.velocity
+    shape = _PRIOR_STEP_SHAPE * np.ones_like(effort)
+    columns = [
+        _PRIOR_FRICTION * effort / limits.acceleration,
+        _PRIOR_FRICTION * effort / velocity,
+        _PRIOR_FRICTION * effort,
+        _PRIOR_OFFSET * effort,
+        _PRIOR_LOAD * np.ones_like(effort),
+        shape,
+        shape,
+    ]
+    return np.column_stack(columns).ravel()
+
+
+def _block_diagonal(blocks: Sequence[Floats]) -> Floats:
+    whole = np.zeros(2 * (sum(map(len, blocks)),))
+    at = 0
+    for block in blocks:
+        whole[at : at + len(block), at : at + len(block)] = block
+        at += len(block)
+    return whole
+
+
 def sample_weight(period: float) -> float:
     """How many independent samples one is worth, where samples are `period` s apart."""
     return min(1.0, period / CORRELATION)
@@ -249,39 +273,20 @@ def sample_weight(period: float) -> float:
 
 def _pseudo_inertia(link: Floats, total_mass: float) -> Floats:
     """P (4, 4) of ten parameters; where the description's isn't usable, made so at the center of mass."""
-    m, mc = link[0], link[1:4]
-    xx, xy, xz, yy, yz, zz = link[4:]
-    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    m, mc, inertia = link[0], link[1:4], inertia_matrix(link[4:])
     second = 0.5 * np.trace(inertia) * np.eye(3) - inertia
     mass = max(m, _LEAST_MASS * total_mass)
     center = mc / m if m > 0.0 else np.zeros(3)
     # about the center of mass, in principal axes: the same in whatever frame
     moments, axes = np.linalg.eigh(second - m * np.outer(center, center))
     central = (axes * np.maximum(moments, mass * _LEAST_EXTENT**2)) @ axes.T
-    P = np.empty((4, 4))
-    P[:3, :3] = central + mass * np.outer(center, center)
-    P[:3, 3] = P[3, :3] = mass * center
-    P[3, 3] = mass
-    return P
+    place = np.append(center, 1.0)
+    return np.asarray(np.pad(central, (0, 1)) + mass * np.outer(place, place))
 
 
 def _prior_scale(P0: Floats) -> Floats:
     """S (10, 10), S S' the covariance of the ten parameters under the prior at P0."""
-    inverse = np.linalg.inv(P0)
-    basis = np.array([_pseudo_inertia_of_unit(i) for i in range(PARAMETERS_PER_LINK)])
-    products = inverse @ basis
+    basis = np.array([pseudo_inertia(unit) for unit in np.eye(PARAMETERS_PER_LINK)])
+    products = np.linalg.inv(P0) @ basis
     H = 0.5 * _STRENGTH * np.einsum("iab,jba->ij", products, products)
     return np.linalg.inv(np.linalg.cholesky(H)).T
-
-
-def _pseudo_inertia_of_unit(i: int) -> Floats:
-    """Derivative of P by p_i, (4, 4), constant: P is linear in the ten parameters."""
-    unit = np.zeros(PARAMETERS_PER_LINK)
-    unit[i] = 1.0
-    xx, xy, xz, yy, yz, zz = unit[4:]
-    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    P = np.zeros((4, 4))
-    P[:3, :3] = 0.5 * np.trace(inertia) * np.eye(3) - inertia
-    P[:3, 3] = P[3, :3] = unit[1:4]
-    P[3, 3] = unit[0]
-    return P

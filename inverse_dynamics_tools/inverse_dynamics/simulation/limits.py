@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a trajectory may ask of a robot, and where one asks too much.
+"""Limits of a robot, and the place where a trajectory exceeds them.
 
     check_trajectory(robot, trajectory, MotionLimits.of(robot), ContactChecker(robot))
 
@@ -44,11 +44,9 @@ class MotionLimits:
         time_to_full_speed: s; above zero, accelerations are limited to what reaches the velocity limit in this time.
         """
         chain = robot.chain
-        acceleration = (
-            chain.velocity / time_to_full_speed
-            if time_to_full_speed > 0
-            else np.full_like(chain.velocity, np.inf)
-        )
+        acceleration = np.full_like(chain.velocity, np.inf)
+        if time_to_full_speed > 0:
+            acceleration = chain.velocity / time_to_full_speed
         return cls(chain.lower, chain.upper, chain.velocity, acceleration, chain.effort)
 
     def window(self) -> tuple[Floats, Floats]:
@@ -57,11 +55,8 @@ class MotionLimits:
 
     def fraction(self, fraction: float) -> MotionLimits:
         """Limits with a margin: positions about the middle of their range."""
-        margin = np.where(
-            np.isfinite(self.upper - self.lower),
-            (1.0 - fraction) / 2 * (self.upper - self.lower),
-            0.0,
-        )
+        width = self.upper - self.lower
+        margin = np.where(np.isfinite(width), (1.0 - fraction) / 2 * width, 0.0)
         return MotionLimits(
             self.lower + margin,
             self.upper - margin,
@@ -78,7 +73,7 @@ def check_trajectory(
     checker: ContactChecker | None,
     step: float = CHECK_STEP,
 ) -> None:
-    """Raises TrajectoryError naming joint, time, value and limit where a trajectory asks too much.
+    """Raises TrajectoryError naming joint, time, value and limit where a trajectory demands too much.
 
     Torques are those of the robot with its payload and gravity, friction included. checker None: contacts are allowed.
     step: s between the points that are checked, at most; contacts are looked for at most CHECK_STEP apart.
@@ -99,41 +94,24 @@ def check_trajectory(
         ("acceleration", "rad/s^2", qdd, -limits.acceleration, limits.acceleration),
         ("effort", "N m", tau, -limits.effort, limits.effort),
     ):
-        _check_range(robot.chain.joint_names, time, what, unit, values, least, greatest)
+        rounding = _ROUNDING * (1.0 + np.abs(values))
+        beyond = (values < least - rounding) | (values > greatest + rounding)
+        for k, j in np.argwhere(beyond)[:1]:
+            raise TrajectoryError(
+                f"trajectory: joint {robot.chain.joint_names[j]}: {what} at {time[k]:.2f} s: expected "
+                f"{least[j]:.4g} to {greatest[j]:.4g} {unit}, got {values[k, j]:.4g}; "
+                "make the motion slower or smaller, or let --optimise find one"
+            )
     if checker is not None:
         every = max(1, round(CHECK_STEP / step))
         _check_contacts(time[::every], q[::every], checker)
 
 
-def _check_range(
-    joints: tuple[str, ...],
-    time: Floats,
-    what: str,
-    unit: str,
-    values: Floats,
-    least: Floats,
-    greatest: Floats,
-) -> None:
-    tolerance = _ROUNDING * (1.0 + np.abs(values))
-    beyond = (values < least - tolerance) | (values > greatest + tolerance)
-    if not beyond.any():
-        return
-    k, j = np.argwhere(beyond)[0]
-    raise TrajectoryError(
-        f"trajectory: joint {joints[j]}: {what} at {time[k]:.2f} s: expected "
-        f"{least[j]:.4g} to {greatest[j]:.4g} {unit}, got {values[k, j]:.4g}; "
-        "make the motion slower or smaller, or let --optimise find one"
-    )
-
-
 def _check_contacts(time: Floats, q: Floats, checker: ContactChecker) -> None:
-    violations = checker.violations(q)
-    if not (violations > 0).any():
-        return
-    k = int(np.argmax(violations > 0))
-    pair = checker.closest_pair(q[k])
-    raise TrajectoryError(
-        f"trajectory: at {time[k]:.2f} s {pair.links[0]} and {pair.links[1]}: expected a distance of "
-        f"at least {checker.clearance:g} m, got {pair.distance:.3f} m; "
-        "change the motion, or let --optimise find one"
-    )
+    for k in np.flatnonzero(checker.violations(q) > 0)[:1]:
+        pair = checker.closest_pair(q[k])
+        raise TrajectoryError(
+            f"trajectory: at {time[k]:.2f} s {pair.links[0]} and {pair.links[1]}: expected a distance of "
+            f"at least {checker.clearance:g} m, got {pair.distance:.3f} m; "
+            "change the motion, or let --optimise find one"
+        )

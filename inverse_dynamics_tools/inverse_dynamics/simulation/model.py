@@ -8,14 +8,14 @@ What MuJoCo would do to a URDF on its own, and what is done about it:
 
 - it refuses inertia that breaks the triangle inequality (vendors publish such numbers): it may balance them while it
   compiles, then the URDF's inertia is written back;
-- it takes `<dynamics>` for damping and friction: set to zero; the friction that is asked for has its own law;
+- it takes `<dynamics>` for damping and friction: set to zero; the chosen friction has its own law;
 - it pushes at position limits and contacts: switched off, since a trajectory must stay clear of both (limits.py and
   collision.py check that).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -23,7 +23,7 @@ import numpy as np
 from inverse_dynamics.base.extras import lazily_imported
 from inverse_dynamics.base.wording import listed
 from inverse_dynamics.simulation.errors import SimulationError
-from inverse_dynamics.simulation.urdf import NO_INERTIA, Inertia, UrdfChain, chain_from_urdf
+from inverse_dynamics.simulation.urdf import UrdfChain, chain_from_urdf
 
 if TYPE_CHECKING:
     import mujoco
@@ -45,6 +45,15 @@ class Payload:
 
     mass: float
     center: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Inertia:
+    """Inertia of one link: mass [kg], tensor [kg m^2] about the center of mass."""
+
+    mass: float
+    center: Floats  # (3,) m, in the link's frame
+    tensor: Floats  # (3, 3), along the axes of the link's frame
 
 
 @dataclass(frozen=True)
@@ -127,18 +136,20 @@ class SimulatedRobot:
         bodies: in place of those of the description.
         """
         chain = chain_from_urdf(urdf, root, tip)
-        if bodies is not None:
-            chain = replace(chain, inertia=_in_place_of(chain.inertia, bodies.inertia))
         spec = _read_spec(chain)
+        inertia = _inertia(spec)
+        if bodies is not None:
+            nothing = Inertia(0.0, np.zeros(3), np.zeros((3, 3)))
+            inertia = {**dict.fromkeys(inertia, nothing), **bodies.inertia}
         if payload is not None:
             _attach(spec, chain.tip, payload)
         try:
             model = spec.compile()
         except ValueError as error:
             raise SimulationError(
-                f"robot description: MuJoCo refuses it: {_massless(error, chain) or _line(error)}"
+                f"robot description: MuJoCo refuses it: {_massless(error, chain, inertia) or _line(error)}"
             ) from error
-        _write_true_inertia(model, chain)
+        _write_true_inertia(model, inertia)
         dofs = np.array([model.joint(name).dofadr[0] for name in chain.joint_names])
         if isinstance(friction, JointFriction):
             _check_friction(friction, len(dofs))
@@ -204,11 +215,9 @@ def _line(error: Exception) -> str:
     return " ".join(str(error).split())
 
 
-def _massless(error: Exception, chain: UrdfChain) -> str:
+def _massless(error: Exception, chain: UrdfChain, inertia: dict[str, Inertia]) -> str:
     """Which links MuJoCo finds too light, and what to do; empty where it minds something else."""
-    links = [
-        link for link in chain.moving_links if not chain.inertia.get(link, NO_INERTIA).mass > 0
-    ]
+    links = [n for n in chain.moving_links if n not in inertia or not inertia[n].mass > 0]
     if "mjMINVAL" not in str(error) or not links:
         return ""
     return (
@@ -233,19 +242,29 @@ def _attach(spec: mujoco.MjSpec, tip: str, payload: Payload) -> None:
     )
 
 
-def _in_place_of(described: dict[str, Inertia], given: dict[str, Inertia]) -> dict[str, Inertia]:
-    return {**dict.fromkeys(described, NO_INERTIA), **given}
+def _inertia(spec: mujoco.MjSpec) -> dict[str, Inertia]:
+    """What the URDF states, by link, before MuJoCo balances it."""
+    found = {}
+    for body in spec.bodies:
+        if not body.explicitinertial:
+            continue
+        R = np.empty((3, 3))
+        mujoco.mju_quat2Mat(R.reshape(9), body.iquat)
+        xx, yy, zz, xy, xz, yz = body.fullinertia
+        tensor = R @ [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] @ R.T
+        found[body.name] = Inertia(body.mass, np.array(body.ipos), tensor)
+    return found
 
 
-def _write_true_inertia(model: mujoco.MjModel, chain: UrdfChain) -> None:
+def _write_true_inertia(model: mujoco.MjModel, inertia: dict[str, Inertia]) -> None:
     """Puts back what balancing changed: moments about the principal axes, and the axes."""
-    for link, inertia in chain.inertia.items():
+    for link, true in inertia.items():
         body = model.body(link).id
-        moments, axes = np.linalg.eigh(inertia.tensor)
+        moments, axes = np.linalg.eigh(true.tensor)
         if np.linalg.det(axes) < 0:
             axes[:, 0] = -axes[:, 0]
-        model.body_mass[body] = inertia.mass
-        model.body_ipos[body] = inertia.center
+        model.body_mass[body] = true.mass
+        model.body_ipos[body] = true.center
         model.body_inertia[body] = moments
         mujoco.mju_mat2Quat(model.body_iquat[body], axes.flatten())
     mujoco.mj_setConst(model, mujoco.MjData(model))

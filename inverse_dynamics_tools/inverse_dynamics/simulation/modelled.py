@@ -20,8 +20,7 @@ from inverse_dynamics.robot.chain_geometry import chain_geometry
 from inverse_dynamics.robot.link_parameters import inertia_matrix, pseudo_inertia, turned
 from inverse_dynamics.robot.solvers import open_solver
 from inverse_dynamics.simulation.errors import SimulationError
-from inverse_dynamics.simulation.model import Bodies, Payload, SimulatedRobot
-from inverse_dynamics.simulation.urdf import Inertia
+from inverse_dynamics.simulation.model import Bodies, Inertia, Payload, SimulatedRobot
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats

@@ -4,26 +4,26 @@
     run = simulate(load_robot("ur10_simulated"), rate=500, seed=1)
     write_run(run, Path("bag"))
 
-What a run configuration may say about it is in configuration.py.
+configuration.py reads the settings that a run configuration has for it.
 """
 
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from inverse_dynamics.base.decimals import decimal
+from inverse_dynamics.base.extras import lazily_imported
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import listed
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.configuration import StatedSimulation
-from inverse_dynamics.simulation.controller import Gains
 from inverse_dynamics.simulation.errors import SimulationError, described_by
 from inverse_dynamics.simulation.excitation import (
     ExcitationOptions,
@@ -53,11 +53,17 @@ from inverse_dynamics.simulation.urdf import chain_from_urdf
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import mujoco
+
+    from inverse_dynamics._core import Solver
+    from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.robot.robots import Robot
     from inverse_dynamics.simulation.model import Payload
     from inverse_dynamics.simulation.trajectory import Trajectory
     from inverse_dynamics.simulation.urdf import UrdfChain
+else:
+    mujoco = lazily_imported("mujoco", "a simulation")
 
 
 @dataclass(frozen=True)
@@ -72,6 +78,15 @@ class SimulatedRun:
     condition_number: float  # of the base regressor
     settings: dict[str, Any]  # everything needed to make it again, ready for YAML
     notes: tuple[str, ...]  # what was left out or assumed, in words
+
+    def differences_from(self, solver: Solver) -> Floats:
+        """(n,) N m: greatest `|tau - effort|` at the simulator's own accelerations, joint friction aside.
+
+        solver: of rigid bodies, of the robot that was simulated.
+        """
+        motion = self.motion
+        computed = solver.torques(motion.q, motion.qd, motion.qdd)
+        return np.asarray(np.abs(computed - (motion.effort - motion.friction)).max(axis=0))
 
 
 def simulate(
@@ -96,7 +111,7 @@ def simulate(
     trajectory: a file or an object; None: the run configuration's; without one, or with `optimise`, a new exciting
         trajectory is searched for, which takes about a minute.
     rate: of controller and recording, 125, 500 or 1000 Hz.
-    duration: s; None: once through the trajectory. A periodic one goes on as long as is asked.
+    duration: s; None: once through the trajectory. A periodic one repeats until then.
     seed: of the search, of the sensors' random numbers, and of where in its period the run configuration's
         trajectory begins if it is a periodic one; 0: at its beginning.
     joint_friction: the friction itself; a number: Coulomb friction that part of each joint's effort limit, and as much
@@ -105,7 +120,7 @@ def simulate(
     from_model: links and rotor inertias are those of the run configuration's model, not of the description.
     gravity: m/s^2, in the frame of the root link; None: the run configuration's.
     table: whether the plane z = 0 of the root link must not be touched.
-    say: called with a sentence before what takes long.
+    say: called with a sentence before each slow step.
 
     Raises UserError: SimulationError, TrajectoryError, RobotError.
     """
@@ -114,47 +129,71 @@ def simulate(
             f"{robot.file}: names no urdf; a simulation needs the robot's description"
         )
     description = read_description(robot.urdf)
+    gravity = gravity or robot.gravity or GRAVITY
     with described_by(robot.urdf):
-        chain = chain_from_urdf(description, robot.root, robot.tip)
         simulated = _simulated_robot(
-            robot,
-            description,
-            gravity or robot.gravity or GRAVITY,
-            payload,
-            joint_friction,
-            from_model,
+            robot, description, gravity, payload, joint_friction, from_model
         )
+    chain = simulated.chain
     stated = StatedSimulation.of(robot, chain)
     rate = stated.rate if rate is None else rate
     check_rate(rate)
     sensors = sensors or Sensors()
     sensors.check(len(chain.joint_names), rate)
-    chosen, source = _choose_trajectory(
-        simulated, trajectory, stated.trajectory, optimise, seed, table, say, progress
-    )
+    if optimise and trajectory is not None:
+        raise SimulationError(
+            "expected either a trajectory or a search for one (optimise), got both"
+        )
+    if trajectory is not None:
+        chosen, source = _given_trajectory(trajectory, chain)
+    elif optimise or stated.trajectory is None:
+        why = "" if optimise else "the run configuration names no trajectory: "
+        say(
+            f"{why}searching for an exciting one, which takes about a minute; --trajectory names one"
+        )
+        options = ExcitationOptions(table=table)
+        found = optimise_excitation(simulated, options, seed=seed, progress=progress)
+        chosen, source = (
+            found.trajectory,
+            (
+                f"Exciting trajectory for {chain.name}, optimised with seed {seed}: condition number of "
+                f"the base regressor {found.condition_number:.4g}."
+            ),
+        )
+    else:
+        chosen, source = _begun_by_seed(*_given_trajectory(stated.trajectory, chain), seed)
     checker = ContactChecker(simulated, table=table)
     notes = list(chain.notes)
     if not checker.has_shapes:
         notes.append("the description has no collision shapes: self-collision can't be checked")
     check_trajectory(simulated, chosen, MotionLimits.of(simulated), checker)
-    if robot.parameters:
-        notes.append(
-            f"parameters of the solver aren't used by the simulation: {listed([*robot.parameters])}"
-        )
-    if robot.effort not in ("torque", "auto"):
-        notes.append(
-            f"efforts are recorded as torques, though the run configuration says {robot.effort}: "
-            "evaluate them with --effort-is torque"
-        )
+    notes += _unused(robot)
     if seed and trajectory is not None and not sensors.are_random:
         notes.append("the seed has no effect: the trajectory is given, and nothing is random")
     duration = duration or chosen.duration
-    gains = stated.gains.apply(default_gains(simulated, chosen, rate))
+    gains = stated.with_gains(default_gains(simulated, chosen, rate))
     motion = follow(simulated, chosen, rate=rate, duration=duration, gains=gains, progress=progress)
     check_followed(motion, simulated)
     recorded = sensors.record(motion, seed)
-    settings = _settings(robot, simulated, sensors, gains, rate, duration, seed, source, from_model)
-    settings["robot_description_sha256"] = hashlib.sha256(description.encode()).hexdigest()
+    links = robot.model if from_model else robot.urdf
+    settings = {
+        "robot": robot.name,
+        "joints": list(chain.joint_names),
+        "root": chain.root,
+        "tip": chain.tip,
+        "gravity": list(map(float, gravity)),
+        "rate": rate,
+        "duration": float(duration),
+        "seed": seed,
+        "trajectory": source,
+        "payload": _plain(payload),
+        "links": links.name if links else None,
+        "joint_friction": _friction_settings(robot, simulated.friction),
+        **_sensor_settings(sensors),
+        "gains": _plain(gains),
+        "mujoco": mujoco.__version__,
+        "robot_description_sha256": hashlib.sha256(description.encode()).hexdigest(),
+    }
     return SimulatedRun(
         log=_joint_log(robot, chain, recorded),
         motion=motion,
@@ -202,43 +241,34 @@ def _simulated_robot(
     return simulated
 
 
-def _choose_trajectory(
-    robot: SimulatedRobot,
-    given: Path | Trajectory | None,
-    default: Path | None,
-    optimise: bool,
-    seed: int,
-    table: bool,
-    say: Callable[[str], None],
-    progress: Progress,
-) -> tuple[Trajectory, str]:
+def _given_trajectory(given: Path | Trajectory, chain: UrdfChain) -> tuple[Trajectory, str]:
     """The trajectory, and in words where it comes from."""
-    if optimise and given is not None:
-        raise SimulationError(
-            "expected either a trajectory or a search for one (optimise), got both"
-        )
-    of_robot = given is None and not optimise
-    if of_robot:
-        given = default
-    if given is None:
-        why = "" if optimise else "the run configuration names no trajectory: "
-        say(
-            f"{why}searching for an exciting one, which takes about a minute; --trajectory names one"
-        )
-        found = optimise_excitation(
-            robot, ExcitationOptions(table=table), seed=seed, progress=progress
-        )
-        return found.trajectory, (
-            f"Exciting trajectory for {robot.chain.name}, optimised with seed {seed}: condition number of "
-            f"the base regressor {found.condition_number:.4g}."
-        )
     if isinstance(given, Path):
-        read, source = read_trajectory(given, robot.chain.joint_names)
-        if of_robot and seed and isinstance(read, FourierTrajectory):
-            begin = round(np.random.default_rng(seed).uniform(0.0, read.period), 3)
-            return read.later(begin), f"{source} Begun {begin:g} s later, by seed {seed}."
-        return read, source
+        return read_trajectory(given, chain.joint_names)
     return given, "Given by the caller."
+
+
+def _begun_by_seed(trajectory: Trajectory, source: str, seed: int) -> tuple[Trajectory, str]:
+    """A periodic one begins at a random time of its period; with seed 0 at its beginning."""
+    if not seed or not isinstance(trajectory, FourierTrajectory):
+        return trajectory, source
+    begin = round(np.random.default_rng(seed).uniform(0.0, trajectory.period), 3)
+    return trajectory.later(begin), f"{source} Begun {begin:g} s later, by seed {seed}."
+
+
+def _unused(robot: Robot) -> list[str]:
+    """Notes on settings of the run configuration that the simulation doesn't use."""
+    notes = []
+    if robot.parameters:
+        notes.append(
+            f"parameters of the solver aren't used by the simulation: {listed([*robot.parameters])}"
+        )
+    if robot.effort not in ("torque", "auto"):
+        notes.append(
+            f"efforts are recorded as torques, though the run configuration says {robot.effort}: "
+            "evaluate them with --effort-is torque"
+        )
+    return notes
 
 
 def _friction(given: Friction | float | str | None, chain: UrdfChain) -> Friction | None:
@@ -283,55 +313,31 @@ def _joint_log(robot: Robot, chain: UrdfChain, recorded: Recorded) -> JointLog:
     )
 
 
-def _settings(
-    robot: Robot,
-    simulated: SimulatedRobot,
-    sensors: Sensors,
-    gains: Gains,
-    rate: int,
-    duration: float,
-    seed: int,
-    source: str,
-    from_model: bool,
-) -> dict[str, Any]:
-    """Everything that decides the result, as plain data."""
-    import mujoco
+def _friction_settings(robot: Robot, friction: Friction | None) -> dict[str, Any] | None:
+    if isinstance(friction, ModelFriction):
+        return {"model": robot.plugin if robot.model is None else robot.model.name}
+    return _plain(friction)
 
-    def plain(thing: object) -> dict[str, Any] | None:
-        if thing is None:
-            return None
-        if isinstance(thing, ModelFriction):
-            return {"model": robot.plugin if robot.model is None else robot.model.name}
-        out: dict[str, Any] = {}
-        for field in fields(thing):  # type: ignore[arg-type]
-            value = getattr(thing, field.name)
-            if isinstance(value, np.ndarray | tuple):
-                value = [float(number) for number in value]
-            out[field.name] = value
-        return out
 
+def _sensor_settings(sensors: Sensors) -> dict[str, Any]:
     return {
-        "robot": robot.name,
-        "joints": list(simulated.chain.joint_names),
-        "root": simulated.chain.root,
-        "tip": simulated.chain.tip,
-        "gravity": [float(g) for g in simulated.gravity],
-        "rate": rate,
-        "duration": float(duration),
-        "seed": seed,
-        "trajectory": source,
-        "payload": plain(simulated.payload),
-        "links": links.name if (links := robot.model if from_model else robot.urdf) else None,
-        "joint_friction": plain(simulated.friction),
-        "noise": plain(sensors.noise),
+        "noise": _plain(sensors.noise),
         "effort_noise": None if sensors.effort_noise is None else sensors.effort_noise.source,
         "effort_delay": sensors.effort_delay,
         "message_rate": sensors.message_rate,
-        "quantisation": plain(sensors.quantisation),
+        "quantisation": _plain(sensors.quantisation),
         "drop": sensors.drop,
         "repeat": sensors.repeat,
         "jitter": sensors.jitter,
         "start_stamp": sensors.epoch,
-        "gains": plain(gains),
-        "mujoco": mujoco.__version__,
+    }
+
+
+def _plain(thing: object) -> dict[str, Any] | None:
+    """The fields of a dataclass as plain data."""
+    if thing is None:
+        return None
+    return {
+        name: [float(x) for x in value] if isinstance(value, np.ndarray | tuple) else value
+        for name, value in vars(thing).items()
     }

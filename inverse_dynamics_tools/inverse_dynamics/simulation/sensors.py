@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a recording does to a motion: noise, delay, quantisation, repeated and lost messages, stamps that jitter.
+"""Errors of a recorded motion: noise, delay, quantisation, repeated and lost messages, stamps that jitter.
 
     recorded = Sensors(noise=Resolution(1e-5, 1e-3, 0.1), drop=0.01).record(motion, seed=0)
 
@@ -9,7 +9,7 @@ own, so switching one on leaves the others as they were.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -17,20 +17,85 @@ import numpy as np
 from inverse_dynamics.simulation.errors import SimulationError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from numpy.typing import NDArray
 
     from inverse_dynamics.base.arrays import Floats, Integers
-    from inverse_dynamics.simulation.effort_noise import EffortNoise
     from inverse_dynamics.simulation.physics import Motion
 
 EPOCH = 1_700_000_000.0
 """Stamp of the start of a simulation [s], so that stamps look like those of a real clock."""
+
+STRETCH = 2.0
+"""Default length of a stretch [s], several times the correlation time of the residuals of real arms."""
 
 _LATEST_EPOCH = 2.0e9  # s
 _MOST_JITTER = 60.0  # s
 _MOST_DELAY = 1.0  # s
 _FINEST, _COARSEST = 1e-12, 1e6  # of noise and steps
 _ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class EffortNoise:
+    """Torque noise of a real robot: what its model leaves unexplained, in another order.
+
+        noise = EffortNoise.of_result(Path("recording_panda_real"))
+        torques += noise.at(time, np.random.default_rng(0))
+
+    Residuals of neighbouring samples are alike, and those of different joints are too. So stretches of all joints
+    together are drawn with replacement and put one after another: the circular block bootstrap [Politis, Romano 1992,
+    in: Exploring the Limits of Bootstrap]. Where two stretches meet, there is a jump.
+    """
+
+    residuals: Floats = field(repr=False)  # (M, n) N m (prismatic N); used without their means
+    period: float  # s between two of them
+    source: str = "given by the caller"
+    stretch: float = STRETCH  # s
+
+    def __post_init__(self) -> None:
+        if not (np.ndim(self.residuals) == 2 and np.isfinite(self.residuals).all()):
+            raise SimulationError(f"effort noise: {self.source}: expected finite residuals (M, n)")
+        for name, value in (("period", self.period), ("stretch", self.stretch)):
+            if not (np.isfinite(value) and value > 0):
+                raise SimulationError(
+                    f"effort noise: {name}: expected a time in s above zero, got {value:g}"
+                )
+        if len(self.residuals) * self.period < 2 * self.stretch:
+            raise SimulationError(
+                f"effort noise: {self.source}: expected at least {2 * self.stretch:g} s of samples without a fault, "
+                f"got {len(self.residuals) * self.period:.2g} s; evaluate a longer recording"
+            )
+
+    @classmethod
+    def of_result(cls, directory: Path) -> EffortNoise:
+        """Measured minus computed torques of a result of `ids evaluate`. Raises SimulationError."""
+        try:
+            with np.load(directory / "series.npz", allow_pickle=False) as series:
+                arrays = {name: series[name] for name in ("time", "measured", "computed", "kept")}
+        except Exception as error:  # of damaged files, whatever their reader raises
+            raise SimulationError(
+                f"effort noise: {directory}: expected a result of `ids evaluate`, with measured and computed torques "
+                "in series.npz, got none that can be read"
+            ) from error
+        residuals = (arrays["measured"] - arrays["computed"])[arrays["kept"]]
+        steps = np.diff(arrays["time"][arrays["kept"]])
+        return cls(residuals, float(np.median(steps)) if len(steps) else 0.0, f"{directory}")
+
+    def at(self, time: Floats, random: np.random.Generator) -> Floats:
+        """(N, n) noise at times (N,) s, ascending; between two residuals: on the line through them."""
+        count = len(self.residuals)
+        stretch = np.floor((time - time[0]) / self.stretch).astype(int)
+        starts = random.integers(count, size=stretch[-1] + 1)
+        place = starts[stretch] + (time - time[0] - stretch * self.stretch) / self.period
+        before = np.floor(place + 1e-6).astype(int)
+        share = np.maximum(place - before, 0.0)[:, None]
+        centered = self.residuals - self.residuals.mean(axis=0)
+        noise: Floats = (1 - share) * centered[before % count] + share * centered[
+            (before + 1) % count
+        ]
+        return noise
 
 
 @dataclass(frozen=True)
@@ -79,36 +144,20 @@ class Sensors:
                 raise SimulationError(
                     f"{name}: expected a probability from 0 to below 1, got {value:g}"
                 )
-        for name, value in (
-            ("jitter", self.jitter),
-            ("start stamp", self.epoch),
-            ("effort delay", self.effort_delay),
+        for name, value, most, why in (
+            ("jitter", self.jitter, _MOST_JITTER, ""),
+            ("start stamp", self.epoch, _LATEST_EPOCH, " (a ROS stamp has 32 bits)"),
+            ("effort delay", self.effort_delay, _MOST_DELAY, ""),
         ):
-            if not (np.isfinite(value) and value >= 0):
-                raise SimulationError(
-                    f"{name}: expected a time in s that isn't negative, got {value:g}"
-                )
-        if self.epoch > _LATEST_EPOCH:
-            raise SimulationError(
-                f"start stamp: expected at most {_LATEST_EPOCH:g} s (a ROS stamp has 32 bits), got {self.epoch:g}"
-            )
-        for name, value, most in (
-            ("jitter", self.jitter, _MOST_JITTER),
-            ("effort delay", self.effort_delay, _MOST_DELAY),
-        ):
-            if value > most:
-                raise SimulationError(f"{name}: expected at most {most:g} s, got {value:g}")
+            _check(name, value, "a time in s that isn't negative", most, f"{most:g} s{why}")
         for name, three in (("noise", self.noise), ("quantisation", self.quantisation)):
-            for field, value in vars(three).items() if three else ():
-                if not (np.isfinite(value) and value >= 0):
-                    expected = "a number that isn't negative"
-                elif value > _COARSEST:
-                    expected = f"at most {_COARSEST:g}"
-                elif 0 < value < _FINEST:
-                    expected = f"0 or at least {_FINEST:g}"
-                else:
-                    continue
-                raise SimulationError(f"{name}: {field}: expected {expected}, got {value:g}")
+            for quantity, value in vars(three).items() if three else ():
+                where = f"{name}: {quantity}"
+                _check(where, value, "a number that isn't negative", _COARSEST, f"{_COARSEST:g}")
+                if 0 < value < _FINEST:
+                    raise SimulationError(
+                        f"{where}: expected 0 or at least {_FINEST:g}, got {value:g}"
+                    )
 
     @property
     def are_random(self) -> bool:
@@ -116,9 +165,13 @@ class Sensors:
         return bool(self.noise or self.effort_noise or self.drop or self.repeat or self.jitter)
 
     def check(self, joints: int, rate: float) -> None:
-        """Raises SimulationError unless so many joints at this rate [Hz] can be recorded."""
-        if self.effort_noise is not None:
-            self.effort_noise.check_joints(joints)
+        """Raises SimulationError unless this number of joints can be recorded at this rate [Hz]."""
+        noise = self.effort_noise
+        if noise is not None and noise.residuals.shape[1] != joints:
+            raise SimulationError(
+                f"effort noise: {noise.source}: expected residuals of {joints} joints, got "
+                f"{noise.residuals.shape[1]}; are they of another robot?"
+            )
         if self.message_rate is not None and not 0 < self.message_rate <= rate * (1 + _ROUNDING):
             raise SimulationError(
                 f"message rate: expected a rate above zero, and at most the controller's ({rate:g} Hz), got "
@@ -181,3 +234,10 @@ class Sensors:
         order = np.arange(len(time))
         apart = np.maximum.accumulate(offsets - order) + order
         return apart - min(0, int(apart[0])) + round(self.epoch * 1e9)  # never before the epoch
+
+
+def _check(name: str, value: float, expected: str, most: float, most_text: str) -> None:
+    if not (np.isfinite(value) and value >= 0):
+        raise SimulationError(f"{name}: expected {expected}, got {value:g}")
+    if value > most:
+        raise SimulationError(f"{name}: expected at most {most_text}, got {value:g}")

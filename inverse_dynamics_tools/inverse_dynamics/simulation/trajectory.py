@@ -58,7 +58,7 @@ class FourierTrajectory:
         return self.period
 
     def later(self, seconds: float) -> FourierTrajectory:
-        """The same motion, begun so much later in its period."""
+        """The same motion, started later in its period by this time."""
         angle = 2.0 * np.pi * seconds / self.period * np.arange(1, self.sine.shape[1] + 1)
         return replace(
             self,

@@ -24,10 +24,11 @@ or waypoints, passed smoothly, at rest at both ends:
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from inverse_dynamics.base.extras import lazily_imported
 from inverse_dynamics.base.located_yaml import read_mapping
 from inverse_dynamics.simulation.errors import TrajectoryError
 from inverse_dynamics.simulation.trajectory import FourierTrajectory, WaypointTrajectory
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.located_yaml import Mapping, Value
     from inverse_dynamics.simulation.trajectory import Trajectory
+
+yaml = lazily_imported("yaml", "a file of a trajectory")
 
 SCHEMA = 1
 
@@ -89,27 +92,17 @@ def _waypoints(top: Mapping, names: tuple[str, ...], order: list[int]) -> Waypoi
 
 def trajectory_text(trajectory: Trajectory, source: str) -> str:
     """The file of a trajectory; all digits are kept."""
-    lines = ["# SPDX-License-Identifier: Apache-2.0", f"schema: {SCHEMA}"]
-    rows: dict[str, Floats]
     if isinstance(trajectory, FourierTrajectory):
-        kind, rows = "fourier", {"sine": trajectory.sine, "cosine": trajectory.cosine}
-        head = [f"period: {float(trajectory.period)!r}", f"center: {_flow(trajectory.center)}"]
+        kind, names = "fourier", ["period", "center", "sine", "cosine"]
     elif isinstance(trajectory, WaypointTrajectory):
-        kind, rows = "waypoints", {"positions": trajectory.positions}
-        head = [f"times: {_flow(trajectory.times)}"]
-        head += [f"rests: [{', '.join(map(str, trajectory.rests))}]"] if trajectory.rests else []
+        kind, names = "waypoints", ["times", "positions", *(["rests"] if trajectory.rests else [])]
     else:
         raise TypeError(f"no file format for {type(trajectory).__name__}")
-    lines += [f"kind: {kind}", f"source: >-\n  {' '.join(source.split())}"]
-    lines += [f"joints: [{', '.join(trajectory.joint_names)}]", *head]
-    for key, table in rows.items():
-        lines.append(f"{key}:")
-        lines += [f"  - {_flow(row)}" for row in table]
-    return "\n".join(lines) + "\n"
-
-
-def _flow(numbers: Floats) -> str:
-    return f"[{', '.join(repr(float(number)) for number in numbers)}]"
+    content: dict[str, Any] = {"schema": SCHEMA, "kind": kind, "source": " ".join(source.split())}
+    content["joints"] = list(trajectory.joint_names)
+    content |= {name: np.asarray(getattr(trajectory, name)).tolist() for name in names}
+    text = yaml.safe_dump(content, sort_keys=False, width=120, default_flow_style=None)
+    return f"# SPDX-License-Identifier: Apache-2.0\n{text}"
 
 
 def _order(value: Value, joint_names: Sequence[str]) -> list[int]:
