@@ -102,7 +102,8 @@ def svg_of(make: Callable[[], Figure], **style: Any) -> str:
 def _styled(make: Callable[[], Figure], **style: Any) -> Iterator[Figure]:
     import matplotlib as mpl
 
-    with mpl.rc_context({**STYLE, "svg.hashsalt": "inverse_dynamics", **style}):
+    settings: Any = {**STYLE, "svg.hashsalt": "inverse_dynamics", **style}
+    with mpl.rc_context(settings):
         figure = make()
         make_printable(figure)
         yield figure
@@ -157,8 +158,9 @@ def torque_figure(evaluation: Evaluation) -> Figure:
     if left_out:
         torques.append(Patch(label="samples left out", **LEFT_OUT))
     error = Line2D([], [], label="error: computed - measured", **ERROR)
-    for axis, handles in zip(axes[0], (torques, [error]), strict=True):
-        write_legend(figure, handles, axis.get_position().x0, 0.87)
+    torque_place, error_place = (axis.get_position().x0 for axis in axes[0])
+    write_legend(figure, torques, torque_place, 0.87)
+    write_legend(figure, [error], error_place, 0.87)
     return figure
 
 
@@ -172,7 +174,7 @@ def write_heading(figure: Figure, title: str, *lines: str) -> None:
 
 
 def write_legend(figure: Figure, handles: Sequence[Artist], left: float, inches: float) -> None:
-    """A legend in one row, so many inches from the top."""
+    """A legend in one row, at this distance from the top."""
     figure.legend(
         handles=handles,
         loc="upper left",

@@ -171,7 +171,7 @@ def _link(
 
 
 class _Shapes:
-    """What is drawn of each link, and what isn't."""
+    """Shapes of each link, and those that can't be drawn."""
 
     def __init__(self, robot: ElementTree.Element, directory: Path) -> None:
         self._directory = directory

@@ -26,7 +26,7 @@ def line(time: Floats, values: Floats) -> tuple[Floats, Floats]:
 
 
 def error_limit(error: Floats) -> float:
-    """What an axis of errors (N,) must show: all of them, but for spikes that would flatten the rest.
+    """Limit of an axis of errors (N,): their greatest size, but for spikes that would flatten the rest.
 
     A spike is beyond one and a half times the 99.5 % quantile of the magnitudes, of which 32,768 to
     65,536 are looked at in longer recordings.

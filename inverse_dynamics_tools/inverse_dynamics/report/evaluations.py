@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def report_run(evaluation: Evaluation, title: str = "") -> ReportRun:
-    """What the page shows of an evaluation; `title` stands for the robot's name."""
+    """An evaluation for the page; `title` replaces the robot's name."""
     robot, log = evaluation.robot, evaluation.log
     scene = Scene() if robot.urdf is None else read_scene(robot.urdf, evaluation.joint_names)
     left_out = evaluation.samples.left_out
@@ -60,7 +60,7 @@ def _caption(evaluation: Evaluation) -> str:
 def report_comparison(
     comparison: Comparison, title: str = "", description: str = ""
 ) -> ReportComparison:
-    """What the page shows of a comparison; empty texts: the recording's name and the labels."""
+    """A comparison for the page; empty texts: the recording's name and the labels."""
     first = comparison.evaluations[0]
     svg = not_drawn()
     if is_installed("matplotlib"):

@@ -41,7 +41,7 @@ def _error_figure(evaluation: Evaluation) -> Figure:
 
 
 def not_drawn() -> str:
-    """What the page has in place of a figure where matplotlib isn't installed."""
+    """The text in place of a figure where matplotlib isn't installed."""
     return f"<p>Not drawn: a figure needs matplotlib: {how_to_install('matplotlib')}</p>"
 
 
@@ -100,6 +100,7 @@ def _spectrum(values: Floats, period: float) -> tuple[Floats, Floats]:
 
     length = max(2, min(len(values), 2 ** int(np.log2(max(4, len(values) / 4)))))
     window, overlap = np.hanning(length + 1)[:-1], length // 2
-    spectra = [psd(c, length, 1 / period, detrend_mean, window, overlap) for c in values.T]
-    density: Floats = np.sqrt(np.mean([power for power, _ in spectra], axis=0))
-    return spectra[0][1][1:], density[1:]
+    frequency: Floats = np.arange(length // 2 + 1) / (length * period)
+    power = [psd(c, length, 1 / period, detrend_mean, window, overlap)[0] for c in values.T]
+    density: Floats = np.sqrt(np.mean(np.array(power), axis=0))
+    return frequency[1:], density[1:]

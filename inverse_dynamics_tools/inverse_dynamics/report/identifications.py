@@ -70,7 +70,7 @@ def _run(found: Identification, recording: str, several: bool) -> ReportRun:
 
 
 def _block_facts(blocks: Sequence[HeldOutBlock]) -> list[tuple[str, str]]:
-    """What was chosen for each block on the others."""
+    """Choices for each block, made on the others."""
     return [
         (
             f"{block.time[0]:.1f} to {block.time[-1]:.1f} s",

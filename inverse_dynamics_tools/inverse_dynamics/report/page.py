@@ -54,7 +54,7 @@ class Band:
 
 @dataclass(frozen=True)
 class ReportRun:
-    """What the page shows of one evaluation. Arrays: time N [s], the others N x n; order of joints as `table`."""
+    """One evaluation. Arrays: time N [s], the others N x n; order of joints as `table`."""
 
     title: str
     description: str
@@ -97,7 +97,7 @@ class ReportTable:
 
 @dataclass(frozen=True)
 class ReportSummary:
-    """What the page says before its runs: a table, facts beside it, notes, and tables to be unfolded."""
+    """The part before the runs: a table, facts beside it, notes, and tables to be unfolded."""
 
     table: ReportTable
     facts_title: str
@@ -201,7 +201,7 @@ def _asset(name: str) -> str:
 
 
 def _view(run: ReportRun, index: int) -> dict[str, Any]:
-    """What the template prints."""
+    """A run for the template."""
     rows = list(run.table)
     shares = {row.joint: row.nrmse for row in rows if math.isfinite(row.nrmse)}
     worst = max(shares, key=lambda joint: shares[joint], default=rows[0].joint)
@@ -226,7 +226,7 @@ def _view(run: ReportRun, index: int) -> dict[str, Any]:
 
 
 def _data(run: ReportRun, index: int) -> dict[str, Any]:
-    """What the script draws."""
+    """A run for the script."""
     # The motion in 3D is drawn at screen rate and interpolated: evenly spaced samples serve it.
     stride = math.ceil(len(run.time) / MAX_SAMPLES)
     keep = np.unique(np.append(np.arange(0, len(run.time), stride), len(run.time) - 1))

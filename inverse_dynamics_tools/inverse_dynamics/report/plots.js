@@ -218,7 +218,7 @@ class Plot {
     this.title_end = kMargin.left + context.measureText(title).width;
   }
 
-  // Between some times, from top to bottom; at least so many pixels wide.
+  // Fills the plot between two times, at least `least` pixels wide.
   fillSpan(context, [from, to], view, name, alpha, least = 0) {
     const x = this.x(from, view), height = this.height - kMargin.top - kMargin.bottom;
     context.fillStyle = themeColor(name);

@@ -225,7 +225,7 @@ function transformed(pose, corner) {
   return [x, y, z];
 }
 
-// What the robot fills in some positions: points, m.
+// Corners of the robot in some positions, m.
 function pointsOf(links, motion) {
   const corners = links.map(cornersOf);
   return motion.flatMap((q) => linkPoses(links, q).flatMap((pose, i) => corners[i].map((corner) => transformed(pose, corner))));

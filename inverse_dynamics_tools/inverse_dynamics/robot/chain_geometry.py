@@ -153,11 +153,11 @@ def _origin(element: Element) -> tuple[Floats, Floats]:
 
 def _axis(joint: Element) -> Floats:
     axis = np.array(numbers_or(joint.find("axis"), "xyz", (1.0, 0.0, 0.0)))
-    return axis / np.linalg.norm(axis)
+    return np.asarray(axis / np.linalg.norm(axis))
 
 
 def _limits(joint: Element) -> dict[str, float]:
-    """What is stated; of velocity and effort, zero states nothing."""
+    """Stated limits; a velocity or effort of zero states none."""
     limit = joint.find("limit")
     if limit is None:
         return {}

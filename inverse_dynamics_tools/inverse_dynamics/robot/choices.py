@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a run configuration chooses between, by name: filters, and meanings of recorded efforts."""
+"""Choices of a run configuration, by name: filters, and meanings of recorded efforts."""
 
 from __future__ import annotations
 
