@@ -62,9 +62,10 @@ def engine_of(robot: SimulatedRobot) -> FastModel:
     """The chain as the description has it, with the payload."""
     chain, payload, urdf = robot.chain, robot.payload, robot.chain.urdf
     if payload is not None:
-        center = " ".join(map(repr, map(float, payload.center)))
+        mass, *center = (repr(float(number)) for number in (payload.mass, *payload.center))
+        place = " ".join(center)
         body = (
-            f'<link name="ids_payload"><inertial><origin xyz="{center}"/><mass value="{payload.mass!r}"/>'
+            f'<link name="ids_payload"><inertial><origin xyz="{place}"/><mass value="{mass}"/>'
             '<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>'
             f'<joint name="ids_payload" type="fixed"><parent link={quoteattr(chain.tip)}/>'
             '<child link="ids_payload"/></joint>'
