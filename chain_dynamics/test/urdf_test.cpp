@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "chain_dynamics/dynamic_components.hpp"
 #include "chain_dynamics/tip_kinematics.hpp"
 #include "chain_dynamics/torques.hpp"
 #include "reference.hpp"
@@ -30,8 +29,6 @@ using ::testing::Not;
 
 // Two ways of rounding through the same few hundred operations on figures below 100.
 constexpr double kRounding = 1e-12;
-// What is asked for: the greatest difference from another program, in kg m^2 and N m.
-constexpr double kReference = 1e-10;
 
 Eigen::VectorXd someTorques(const Chain& chain) {
   const Eigen::Index n = chain.jointCount();
@@ -730,51 +727,6 @@ TEST(UrdfDoubts, PositionFarBeyondTheLimitsOfALockedJointIsAWarning) {
   EXPECT_THAT(warnings(30.0),
               ElementsAre(AllOf(HasSubstr("joint grip: held at 30 m"),
                                 HasSubstr("beyond its limits of 0 to 0.04; check the unit"))));
-}
-
-// --- other people's values on real robots ---
-
-void expectReference(const std::string& urdf_file, const std::string& reference,
-                     const UrdfOptions& options) {
-  const auto chain = chainFromUrdf(textOf(dataFolder() + "/urdf/" + urdf_file), options);
-  const Eigen::Index n = chain.jointCount();
-  const auto states = referenceStates(reference);
-  ASSERT_EQ(states.size(), 25U);
-  for (const ReferenceState& state : states) {
-    Eigen::MatrixXd H(n, n);
-    Eigen::VectorXd c(n), g(n), tau(n);
-    dynamicComponents(chain, state.q, state.qd, H, c, g);
-    torques(chain, state.q, state.qd, state.qdd, tau);
-    EXPECT_LT(difference(H, state.H), kReference) << state.label;
-    EXPECT_LT(difference(c, state.coriolis), kReference) << state.label;
-    EXPECT_LT(difference(g, state.gravity), kReference) << state.label;
-    EXPECT_LT(difference(tau, state.torques), kReference) << state.label;
-  }
-}
-
-TEST(UrdfReference, UR10AgreesWithPinocchioAndKDL) {
-  if (dataFolder().empty()) {
-    GTEST_SKIP() << "IDS_DATA_DIR isn't set: it names the folder with urdf/ur10.urdf";
-  }
-  expectReference("ur10.urdf", "ur10_urdf.json", {"base_link", "tool0"});
-  // several leaves, all moved by the same joints: ft_frame, tool0 and (by none) base
-  expectReference("ur10.urdf", "ur10_urdf.json", {});
-}
-
-TEST(UrdfReference, PandaAgreesWithPinocchioAndKDL) {
-  if (dataFolder().empty()) {
-    GTEST_SKIP() << "IDS_DATA_DIR isn't set: it names the folder with urdf/panda.urdf";
-  }
-  expectReference("panda.urdf", "panda_urdf.json", between("fer_link0", "fer_link8"));
-}
-
-TEST(UrdfReference, PandaLink4BreaksTheTriangleInequality) {
-  if (dataFolder().empty()) {
-    GTEST_SKIP() << "IDS_DATA_DIR isn't set: it names the folder with urdf/panda.urdf";
-  }
-  const auto chain = chainFromUrdf(textOf(dataFolder() + "/urdf/panda.urdf"));
-  ASSERT_FALSE(chain.warnings().empty());
-  EXPECT_THAT(chain.warnings()[0], HasSubstr("fer_joint4"));
 }
 
 }  // namespace chain_dynamics::urdf_test
