@@ -252,7 +252,7 @@ def _estimate(
     if evaluation.accelerations.time_base == "stamps":
         used &= ~samples.non_increasing
     else:
-        time = _core.examine_samples(time, log.q, log.qd, log.effort).time
+        time = _core.sample_instants(time, log.q, log.qd, log.effort)
     time, q, qd = time[used], log.q[used], log.qd[used]
     longest_period = max(_LONGEST_PERIOD, _GAP * _period(time))
     options = EstimatorOptions(
