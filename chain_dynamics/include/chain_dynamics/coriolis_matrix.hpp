@@ -65,9 +65,7 @@ void coriolisOfMotion(const Chain& chain, const std::vector<LinkParameters>& lin
                       Eigen::Index first, MatrixC& C) {
   const Eigen::Index n = chain.jointCount();
   Scratch<Motion<Scalar>> S_rate(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    S_rate[i] = cross(V[i], axisMotion<Scalar>(joint(chain, i)));
-  }
+  for (Eigen::Index i = 0; i < n; ++i) S_rate[i] = cross(V[i], axisMotion<Scalar>(joint(chain, i)));
   SpatialInertia<Scalar> I_c = SpatialInertia<Scalar>::zero();
   MassFlow<Scalar> flow = MassFlow<Scalar>::zero();
   for (Eigen::Index i = n - 1; i >= first; --i) {

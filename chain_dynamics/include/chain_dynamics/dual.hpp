@@ -149,9 +149,7 @@ struct Dual {
   /// `9.1 + [5.0, 0.0] e`
   friend std::ostream& operator<<(std::ostream& stream, const Dual& a) {
     stream << a.value << " + [";
-    for (int i = 0; i < N; ++i) {
-      stream << (i == 0 ? "" : ", ") << a.derivative[i];
-    }
+    for (int i = 0; i < N; ++i) stream << (i == 0 ? "" : ", ") << a.derivative[i];
     return stream << "] e";
   }
 };

@@ -55,9 +55,7 @@ void gravityOfPoses(const Chain& chain, const std::vector<LinkParameters>& links
     g[i] = alongAxis(joint(chain, i), point.forceFor(a[i]));
 
     // on to the parent link
-    if (i > first) {
-      point = X[i] * point;
-    }
+    if (i > first) point = X[i] * point;
   }
 }
 

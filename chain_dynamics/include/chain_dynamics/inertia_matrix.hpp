@@ -44,9 +44,7 @@ void inertiaOfPoses(const Chain& chain, const std::vector<LinkParameters>& links
     inertiaUpToDiagonal(chain, I_c, X, i, first, H);
 
     // on to the parent link
-    if (i > first) {
-      I_c = X[i] * I_c;
-    }
+    if (i > first) I_c = X[i] * I_c;
   }
 }
 

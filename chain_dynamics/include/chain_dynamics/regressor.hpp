@@ -121,9 +121,7 @@ void regressor(const Chain& chain, const Eigen::MatrixBase<Q>& q, const Eigen::M
     for (Eigen::Index j = i; j >= 0; --j) {
       const bool prismatic = isPrismatic(internal::joint(chain, j));
       output.row(j).template segment<10>(10 * i) = (prismatic ? F.force : F.moment).row(2);
-      if (j > 0) {
-        F = X[j] * F;
-      }
+      if (j > 0) F = X[j] * F;
     }
   }
 }

@@ -40,9 +40,7 @@ class Scratch {
 
   ~Scratch() {
     std::destroy_n(data_, size_);
-    if (data_ != reinterpret_cast<T*>(stack_)) {
-      std::allocator<T>().deallocate(data_, size_);
-    }
+    if (data_ != reinterpret_cast<T*>(stack_)) std::allocator<T>().deallocate(data_, size_);
   }
 
   Scratch(const Scratch&) = delete;

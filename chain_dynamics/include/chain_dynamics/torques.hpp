@@ -34,9 +34,7 @@ void torquesOfMotion(const Chain& chain, const std::vector<LinkParameters>& link
     tau[i] = alongAxis(joint(chain, i), F);
 
     // on to the parent link
-    if (i > first) {
-      F = X[i] * F;
-    }
+    if (i > first) F = X[i] * F;
   }
 }
 
@@ -61,9 +59,7 @@ void rotorTorques(const Chain& chain, const Eigen::MatrixBase<Qdd>& qdd, Scratch
 // tau += other
 template <typename Scalar, typename Tau>
 void addTo(Tau& tau, const Scratch<Scalar>& other) {
-  for (Eigen::Index i = 0; i < tau.size(); ++i) {
-    tau[i] += other[i];
-  }
+  for (Eigen::Index i = 0; i < tau.size(); ++i) tau[i] += other[i];
 }
 
 // tau += g of the set for gravity, if there is one

@@ -21,23 +21,28 @@ inline namespace v2 {
 namespace fast {
 namespace {
 
+constexpr Twist kNone = Twist::kNone, kRight = Twist::kRight, kAlmost = Twist::kAlmostRight,
+                kAny = Twist::kAny;
+
 /// Joints 2, 3, 4 (the first is 1) are parallel, and right angles elsewhere: Universal Robots.
 /// Their description's right angles have nine digits. Identified models have rows of their own.
-using ParallelWrist = Known<6, 0x020022, 0x001100, 0x010010, Has::kRows>;
+constexpr Geometry<6> kParallelWrist = {
+    {kNone, kAlmost, kNone, kNone, kAlmost, kAlmost}, {0, 0, 1, 1, 0, 0}, {0, 1, 0, 0, 1, 0}};
 
 /// Six joints, 2 and 3 parallel, right angles elsewhere: most industrial robots.
-using SphericalWrist = Known<6, 0x010111, 0x011100, 0x010110>;
+constexpr Geometry<6> kSphericalWrist = {
+    {kNone, kRight, kNone, kRight, kRight, kRight}, {0, 1, 1, 1, 0, 0}, {0, 1, 0, 1, 1, 0}};
 
 /// Seven joints at right angles: Panda, FR3, iiwa, Gen3.
-using RightAngles = Known<7, 0x0111111, 0x0001101, 0x0111110>;
+constexpr Geometry<7> kRightAngles = {{kNone, kRight, kRight, kRight, kRight, kRight, kRight},
+                                      {0, 0, 0, 1, 1, 0, 1},
+                                      {0, 1, 1, 1, 1, 1, 0}};
 
-/// Six or seven joints that turn about any axes.
-using AnySix = Known<6, 0x033333, 0x011111, 0x011111>;
-using AnySeven = Known<7, 0x0333333, 0x0111111, 0x0111111>;
-
-/// Six or seven joints that turn or slide.
-using MixedSix = Known<6, 0x033333, 0x011111, 0x011111, Has::kSlides>;
-using MixedSeven = Known<7, 0x0333333, 0x0111111, 0x0111111, Has::kSlides>;
+/// Six or seven joints about any axes.
+constexpr Geometry<6> kAnySix = {
+    {kNone, kAny, kAny, kAny, kAny, kAny}, {0, 1, 1, 1, 1, 1}, {0, 1, 1, 1, 1, 1}};
+constexpr Geometry<7> kAnySeven = {
+    {kNone, kAny, kAny, kAny, kAny, kAny, kAny}, {0, 1, 1, 1, 1, 1, 1}, {0, 1, 1, 1, 1, 1, 1}};
 
 template <typename V>
 struct Recursions {
@@ -98,8 +103,10 @@ struct Tables {
     return index;
   }
 };
-using Structures = Tables<ParallelWrist, SphericalWrist, RightAngles, AnySix, AnySeven, MixedSix,
-                          MixedSeven, AnyStructure>;
+using Structures =
+    Tables<Known<6, kParallelWrist, Has::kRows>, Known<6, kSphericalWrist>, Known<7, kRightAngles>,
+           Known<6, kAnySix>, Known<7, kAnySeven>, Known<6, kAnySix, Has::kSlides>,
+           Known<7, kAnySeven, Has::kSlides>, AnyStructure>;
 
 template <typename V>
 FAST_INLINE const Recursions<V>& recursionsOf(int structure) {
@@ -138,9 +145,7 @@ FAST_INLINE void derivativesOf(const Robot& robot, int structure, const State<V>
                                const DerivativeEntries<V>& to) {
   const bool own_gravity = robot.gravity_bodies != nullptr;
   Structures::kDerivatives<V>[structure](robot, state, own_gravity ? kNoGravity : robot.root, to);
-  if (own_gravity) {
-    addGravityDerivatives<AnyWithMatrices<V>>(robot, state, to.by_q, to.outer_step);
-  }
+  if (own_gravity) addGravityDerivatives<AnyWithMatrices<V>>(robot, state, to.by_q, to.outer_step);
 }
 
 }  // namespace

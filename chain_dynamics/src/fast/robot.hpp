@@ -46,7 +46,7 @@ struct Body {
 constexpr int kBodyNumbers = 10;
 
 /// Friction of one joint has this many numbers, every law in one form, in this order: those of
-/// FrictionForm [friction_laws/figures.hpp].
+/// FrictionForm [friction_laws/coefficients.hpp].
 constexpr int kFrictionNumbers = 10;
 
 /// A joint's place in the frames of the robot's description, with the angles of Placement.

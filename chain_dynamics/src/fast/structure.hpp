@@ -16,6 +16,7 @@ inline namespace v2 {
 namespace fast {
 namespace {
 
+/// Angle between the axes of two joints: zero, a right angle, a right angle within 1e-8, any.
 enum class Twist { kNone, kRight, kAlmostRight, kAny };
 
 /// An index that is a constant for the compiler.
@@ -82,23 +83,31 @@ using AnyStructure = AnyOf<kMaxJoints>;
 /// Which kinds of joints and parameters a known structure has.
 enum class Has { kTurns, kSlides, kRows };
 
-/// Joints that turn, or also such that slide (Has::kSlides); hexadecimal digits stand for joints,
-/// the first joint in front. Twists: 0 none, 1 a right angle, 2 a right angle within 1e-8, 3 any.
-/// Px, Py: whether px, py may differ from zero. Has::kRows: each row may have its own parameters.
-template <int N, unsigned long long Twists, unsigned long long Px, unsigned long long Py,
-          Has Kind = Has::kTurns>
+/// What is known of the placements of N joints; nothing of the first one's, which is the root.
+template <int N>
+struct Geometry {
+  Twist twist[N];
+  bool px[N], py[N];  ///< whether px, py may differ from zero
+
+  constexpr bool isAligned() const {
+    for (const Twist angle : twist)
+      if (angle == Twist::kAny) return false;
+    return true;
+  }
+};
+
+/// Joints that turn, or also such that slide (Has::kSlides). Has::kRows: each row may have its own
+/// parameters.
+template <int N, const Geometry<N>& Places, Has Kind = Has::kTurns>
 struct Known {
   static constexpr bool kMixed = Kind == Has::kSlides;
   static constexpr bool kRows = Kind == Has::kRows;
-  static constexpr bool kAligned = (Twists & (Twists >> 1) & 0x1111111111111111) == 0;  // no 3
+  static constexpr bool kAligned = Places.isAligned();
   static constexpr int kJoints = N;
   static constexpr int count(const Robot&) { return N; }
-  static constexpr int digit(unsigned long long digits, int i) {
-    return static_cast<int>((digits >> (4 * (N - 1 - i))) & 15);
-  }
-  static constexpr Twist twist(int i) { return static_cast<Twist>(digit(Twists, i)); }
-  static constexpr bool px(int i) { return digit(Px, i) != 0; }
-  static constexpr bool py(int i) { return digit(Py, i) != 0; }
+  static constexpr Twist twist(int i) { return Places.twist[i]; }
+  static constexpr bool px(int i) { return Places.px[i]; }
+  static constexpr bool py(int i) { return Places.py[i]; }
 
   template <typename Step>
   static FAST_INLINE void forwards(const Robot&, const Step& step) {
@@ -133,9 +142,7 @@ struct Known {
                         : twist(i) == Twist::kRight       ? X.sin_twist == 1 && X.cos_twist == 0
                         : twist(i) == Twist::kAlmostRight ? X.sin_twist == 1
                                                           : true;
-      if (!fits || (!px(i) && X.px != 0) || (!py(i) && X.py != 0)) {
-        return false;
-      }
+      if (!fits || (!px(i) && X.px != 0) || (!py(i) && X.py != 0)) return false;
     }
     return true;
   }

@@ -115,8 +115,10 @@ FAST_INLINE AxialRates<V> along(bool sliding, const ForceRates<V>& F) {
   return {F.by_q.n.z, F.by_qd.n.z, F.by_qdd.n.z, F.turned.z};
 }
 
-/// The same of one state, side by side: by_q, by_qd, by_qdd, turned.
+/// The same of one state, side by side.
 struct FourForceRates {
+  enum Lane { kByQ, kByQd, kByQdd, kTurned };
+
   Wrench<Four> F;
 
   FAST_INLINE explicit FourForceRates(const ForceRates<double>& r)
@@ -132,14 +134,18 @@ struct FourForceRates {
     carry<S>(i, robot, state, F);
   }
   FAST_INLINE Wrench<double> inertial() const {
-    return {{F.f.x[2], F.f.y[2], F.f.z[2]}, {F.n.x[2], F.n.y[2], F.n.z[2]}};
+    return {{F.f.x[kByQdd], F.f.y[kByQdd], F.f.z[kByQdd]},
+            {F.n.x[kByQdd], F.n.y[kByQdd], F.n.z[kByQdd]}};
   }
-  FAST_INLINE Vec<double> coriolis() const { return {F.n.x[3], F.n.y[3], F.n.z[3]}; }
+  FAST_INLINE Vec<double> coriolis() const {
+    return {F.n.x[kTurned], F.n.y[kTurned], F.n.z[kTurned]};
+  }
 };
 
 FAST_INLINE AxialRates<double> along(bool sliding, const FourForceRates& rates) {
   const Four& force = sliding ? rates.F.f.z : rates.F.n.z;
-  return {force[0], force[1], force[2], force[3]};
+  return {force[FourForceRates::kByQ], force[FourForceRates::kByQd], force[FourForceRates::kByQdd],
+          force[FourForceRates::kTurned]};
 }
 
 template <typename V>
