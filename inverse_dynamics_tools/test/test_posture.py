@@ -14,7 +14,7 @@ from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.data.recordings import position_ranges
 from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.evaluation.posture import posture_of
-from inverse_dynamics.identification.payload import _solver_of
+from inverse_dynamics.identification.baselines import solver_of
 from inverse_dynamics.robot.descriptions import carried_joints
 from inverse_dynamics.robot.robots import robot_of_description, with_changes
 from inverse_dynamics.verbs import identify as identify_verb
@@ -121,7 +121,7 @@ def test_an_arm_at_rest_is_held_where_it_is(tmp_path, urdf, make):
     # `ids payload` and `ids contact` open the solver again
     q = result.log.q[:5]
     expected = torques(*(part[:5] for part in motion()[1:]))[:, :2]
-    solver = _solver_of(result)
+    solver = solver_of(result.robot)
     assert solver.torques(q, result.log.qd[:5], motion()[3][:5, :2]) == pytest.approx(expected)
 
 

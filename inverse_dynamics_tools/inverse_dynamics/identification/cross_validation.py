@@ -56,8 +56,8 @@ class Chosen:
 class _Alternative:
     law: str
     prior_strength: float
-    errors: list[Floats]  # of each part left out, (M, n), the delay made up for
-    as_computed: list[Floats]  # the same without, as solvers compute them
+    fits: list[ArmFit]  # to all parts but one
+    errors: list[Floats]  # of that part, (M, n), the delay made up for
 
     def scores(self, noise: Floats) -> Floats:
         """Of each part: mean over the joints of the RMSE in units of the noise."""
@@ -77,53 +77,55 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
     """
     step = 1 + sum(map(len, blocks)) // _MOST_SAMPLES
     delay = _delay(fitter, blocks, step)
-    as_recorded = _parts([block.thinned(step) for block in blocks])
-    parts = _Parts(fitter, _parts(_later(blocks, delay, step)), as_recorded)
+    parts = _Parts(fitter, _later(blocks, delay, step))
     whole: dict[str, ArmFit] = {}
     alternatives: list[_Alternative] = []
     start = None
     for law in LAWS:
         options = ArmFitOptions(law, prior_strength=STRENGTHS[1])
         start = whole[law] = fitter.fit(parts.data, options, start)
-        alternatives += parts.left_out(law, STRENGTHS, start)
-    noise = whole["step"].noise
-    best, choices = _simplest(alternatives, noise, delay)
+        starts = [start] * len(parts)
+        for strength in STRENGTHS:
+            alternatives.append(parts.left_out(law, strength, starts))
+            starts = alternatives[-1].fits
+    best, choices = _simplest(alternatives, whole["step"].noise, delay)
     fit = fitter.fit(
         parts.data if step == 1 else fitter.data(together(_later(blocks, delay, 1))),
         ArmFitOptions(best.law, prior_strength=best.prior_strength),
         whole[best.law],
     )
-    band = np.quantile(np.abs(np.concatenate(best.as_computed)), _BAND, axis=0)
+    # as solvers compute torques: the delay isn't made up for
+    as_recorded = _cut([block.thinned(step) for block in blocks])
+    errors = [errors_of(fitter, f, part) for f, part in zip(best.fits, as_recorded, strict=True)]
+    band = np.quantile(np.abs(np.concatenate(errors)), _BAND, axis=0)
     return Chosen(best.law, best.prior_strength, delay, fit, band, choices)
 
 
 class _Parts:
-    """Parts of blocks to be left out in turn; as recorded: without making up for a delay."""
+    """Blocks cut into parts that are left out in turn."""
 
-    def __init__(
-        self, fitter: ArmFitter, parts: Sequence[Block], as_recorded: Sequence[Block]
-    ) -> None:
-        self._fitter, self._parts, self._as_recorded = fitter, parts, as_recorded
-        self.data = fitter.data(together(parts))
+    def __init__(self, fitter: ArmFitter, blocks: Sequence[Block]) -> None:
+        self._fitter, self._parts = fitter, _cut(blocks)
+        self.data = fitter.data(together(self._parts))
+
+    def __len__(self) -> int:
+        return len(self._parts)
 
     def left_out(
-        self, law: str, strengths: Sequence[float], start: ArmFit, passes: int = _PASSES
-    ) -> list[_Alternative]:
-        """Errors of each part under fits to the others, for each prior strength."""
-        found = [_Alternative(law, strength, [], []) for strength in strengths]
-        for k, (part, as_recorded) in enumerate(zip(self._parts, self._as_recorded, strict=True)):
-            fit = start
-            for one in found:
-                options = ArmFitOptions(
-                    law, prior_strength=one.prior_strength, most_passes=passes, without=k
-                )
-                fit = self._fitter.fit(self.data, options, fit)
-                one.errors.append(errors_of(self._fitter, fit, part))
-                one.as_computed.append(errors_of(self._fitter, fit, as_recorded))
+        self, law: str, strength: float, starts: Sequence[ArmFit], passes: int = _PASSES
+    ) -> _Alternative:
+        """Fits to all parts but one, each from a start, and the errors of that part."""
+        options = ArmFitOptions(law, prior_strength=strength, most_passes=passes)
+        found = _Alternative(law, strength, [], [])
+        for k, (part, start) in enumerate(zip(self._parts, starts, strict=True)):
+            options.without = k
+            fit = self._fitter.fit(self.data, options, start)
+            found.fits.append(fit)
+            found.errors.append(errors_of(self._fitter, fit, part))
         return found
 
 
-def _parts(blocks: Sequence[Block]) -> list[Block]:
+def _cut(blocks: Sequence[Block]) -> list[Block]:
     """Parts to be left out in turn: more and shorter ones than the blocks, for a steadier choice."""
     each = max(1, round(_FOLDS / len(blocks)))
     return [part for block in blocks for part in block.parts(each)]
@@ -177,8 +179,8 @@ def _predicts_better(
     """Whether parts that were left out are predicted better with a delay, by a standard error."""
     scores = []
     for by in (0.0, delay):
-        parts = _parts(_later(blocks, by, thinned))
-        tried = _Parts(fitter, parts, parts).left_out(_DELAY_LAW, [STRENGTHS[1]], start, 1)[0]
+        parts = _Parts(fitter, _later(blocks, by, thinned))
+        tried = parts.left_out(_DELAY_LAW, STRENGTHS[1], [start] * len(parts), passes=1)
         scores.append(tried.scores(start.noise))
     gain = scores[0] - scores[1]
     return bool(gain.mean() > gain.std(ddof=1) / np.sqrt(len(gain)))

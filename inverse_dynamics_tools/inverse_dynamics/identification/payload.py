@@ -23,10 +23,11 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import listed
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import Evaluation, evaluate
+from inverse_dynamics.identification.baselines import solver_of
 from inverse_dynamics.identification.uncertainty import read_uncertainty
-from inverse_dynamics.robot.descriptions import read_description, tip_link
+from inverse_dynamics.robot.descriptions import tip_link
 from inverse_dynamics.robot.robots import RIGID_BODY
-from inverse_dynamics.robot.solvers import brings_own_model, open_solver
+from inverse_dynamics.robot.solvers import brings_own_model
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -163,7 +164,7 @@ def estimate_payload(
     evaluation = evaluate(bag, robot, progress=progress, **options)
     _require_own_tip(evaluation.robot, options.get("tip"))
     _require_plausible(evaluation)
-    solver = _solver_of(evaluation)
+    solver = solver_of(evaluation.robot)
     arm, told = _arm_of(evaluation.robot)
     alone, phantom = None, []
     if empty is not None:
@@ -335,11 +336,6 @@ def _settled(last: PayloadEstimate, found: PayloadEstimate) -> bool:
     change = np.append(found.center_of_mass - last.center_of_mass, found.mass - last.mass)
     width = np.append(found.center_of_mass_half_width, found.mass_half_width)
     return bool(np.all(np.abs(change) <= _SETTLED * width))
-
-
-def _solver_of(evaluation: Evaluation) -> Solver:
-    urdf = evaluation.robot.urdf
-    return open_solver(evaluation.robot, "" if urdf is None else read_description(urdf))
 
 
 def _arm_of(robot: Robot) -> tuple[ArmUncertainty | None, list[str]]:
