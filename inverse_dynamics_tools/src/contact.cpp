@@ -204,8 +204,13 @@ void bindDetector(py::module_& module) {
            }),
            py::arg("thresholds"), py::arg("joint_names"), py::kw_only(),
            py::arg("release_share") = usual.share, py::arg("release_time") = usual.time)
-      .def("update", &ContactDetector::update, py::arg("torques"), py::arg("period"),
-           "Whether something touches the robot; torques: (n,) N m, period: s.")
+      .def(
+          "update",
+          [](ContactDetector& detector, const Vector& torques, double period) {
+            return detector.update(torques, period);
+          },
+          py::arg("torques"), py::arg("period"),
+          "Whether something touches the robot; torques: (n,) N m, period: s.")
       .def("run", &runDetector, py::arg("time"), py::arg("torques"), py::arg("valid") = py::none(),
            "(N,) The same of N samples. valid: (N,) those that are looked at; in the others a "
            "contact\n"

@@ -133,8 +133,10 @@ void bindLawOptions(py::module_& module) {
                  Field{"Kp", &PdGains::Kp}, Field{"Kd", &PdGains::Kd});
   bindOptions<2>(module, "Gains", "Gains of computed torque, (n,) each.", "",
                  Field{"Kp", &Gains::Kp}, Field{"Kd", &Gains::Kd})
-      .def_static("of", &Gains::of, py::arg("natural_frequency"), py::arg("damping_ratio"),
-                  "Kp = w^2, Kd = 2 z w; w in rad/s.");
+      .def_static(
+          "of", [](const Vector& w, const Vector& z) { return Gains::of(w, z); },
+          py::arg("natural_frequency"), py::arg("damping_ratio"),
+          "Kp = w^2, Kd = 2 z w; w in rad/s.");
 }
 
 void bindLaws(py::module_& module) {
@@ -200,7 +202,10 @@ void bindSafeStop(py::module_& module) {
   py::class_<SafeStop>(module, "SafeStop", "Ramps references to a standstill.")
       .def(py::init<const Vector&, const std::vector<std::string>&>(), py::arg("deceleration"),
            py::arg("joint_names"))
-      .def("begin", &SafeStop::begin, py::arg("q"), py::arg("qd"))
+      .def(
+          "begin",
+          [](SafeStop& stop, const Vector& q, const Vector& qd) { return stop.begin(q, qd); },
+          py::arg("q"), py::arg("qd"))
       .def(
           "advance",
           [](SafeStop& stop, double period) -> std::tuple<Vector, Vector, Vector> {

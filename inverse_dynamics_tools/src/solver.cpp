@@ -531,9 +531,8 @@ std::unique_ptr<Solver> makeSolver(const SolverName& named, const Description& u
   return std::make_unique<Solver>(std::move(origin));
 }
 
-/// How pickle and copy make the solver again: of the same arguments, with what was set since.
-py::tuple reduced(const py::object& self) {
-  const auto& solver = self.cast<const Solver&>();
+/// What pickle and copy keep: what the solver was made of, and what was set since.
+py::tuple stateOf(const Solver& solver) {
   py::dict since;
   if (solver.find<ids::Payload>() && solver.find<ids::VariableGravity>()) {
     since["payloads"] = payloads(solver);
@@ -541,10 +540,23 @@ py::tuple reduced(const py::object& self) {
     since["base_acceleration"] = baseAcceleration(solver);
   }
   const Origin& origin = solver.origin();
-  return py::make_tuple(
-      py::module_::import("inverse_dynamics.base.restored").attr("restored_solver"),
-      py::make_tuple(py::type::of(self), origin.plugin, origin.urdf, dictOf(origin.parameters),
-                     since));
+  return py::make_tuple(origin.plugin, origin.urdf, dictOf(origin.parameters), since);
+}
+
+std::unique_ptr<Solver> restored(const py::tuple& state) {
+  auto solver = std::make_unique<Solver>(
+      Origin{state[0].cast<std::string>(), state[1].cast<std::string>(), parametersOf(state[2])});
+  const py::dict since = state[3];
+  if (since.empty()) return solver;
+  auto& payload = solver->as<ids::Payload>("payloads");
+  payload.clearPayloads();
+  for (const auto& [name, body] : since["payloads"].cast<ids::Payloads>()) {
+    payload.setPayload(name, body);
+  }
+  auto& mount = solver->as<ids::VariableGravity>("gravity");
+  mount.setGravity(vectorOf("gravity", since["gravity"]));
+  mount.setBaseAcceleration(vectorOf("base_acceleration", since["base_acceleration"]));
+  return solver;
 }
 
 std::string represented(const Solver& solver) {
@@ -597,7 +609,7 @@ void bindSolver(py::module_& module) {
           "given have the solver's defaults.\n\n"
           "Raises SolverError: see inverse_dynamics.errors.")
       .def("__repr__", &represented)
-      .def("__reduce__", &reduced);
+      .def(py::pickle(&stateOf, &restored));
   bindProperties(solver);
   bindQuantities(solver);
   bindCapabilities(solver);

@@ -7,7 +7,6 @@
 #include <pybind11/eigen.h>
 
 #include <Eigen/Core>
-#include <memory>
 
 #include "arrays.hpp"
 
@@ -29,34 +28,10 @@ class type_caster<Eigen::VectorXd> {
     return true;
   }
 
-  /// A copy; of a member, a view that can't be written to.
-  static handle cast(const Eigen::VectorXd& vector, return_value_policy policy, handle parent) {
-    if (policy == return_value_policy::reference_internal) {
-      return eigen_ref_array<Props>(vector, parent);
-    }
+  static handle cast(const Eigen::VectorXd& vector, return_value_policy /*policy*/,
+                     handle /*parent*/) {
     return eigen_array_cast<Props>(vector);
   }
-  static handle cast(Eigen::VectorXd&& vector, return_value_policy /*policy*/, handle /*parent*/) {
-    return eigen_array_cast<Props>(vector);
-  }
-};
-
-/// An argument alone: a view of a copy.
-template <>
-class type_caster<Eigen::Ref<const Eigen::VectorXd>> : public type_caster<Eigen::VectorXd> {
- public:
-  using Type = Eigen::Ref<const Eigen::VectorXd>;
-
-  bool load(handle source, bool convert) {
-    if (!type_caster<Eigen::VectorXd>::load(source, convert)) return false;
-    view_ = std::make_unique<Type>(value);
-    return true;
-  }
-  operator Type*() { return view_.get(); }
-  operator Type&() { return *view_; }
-
- private:
-  std::unique_ptr<Type> view_;
 };
 
 }  // namespace pybind11::detail

@@ -52,7 +52,7 @@ struct RunConfiguration {
   std::vector<std::string> scale;  ///< `KEY=NUMBER`, or a unit, or one for each joint
   std::vector<double> sign;        ///< of each joint, 1 or -1; none: 1
   std::optional<double> rate;      ///< Hz; of samples in a table without time
-  std::string source;                  ///< where description and figures come from
+  std::string source;              ///< where description and figures come from
 };
 
 /// What stands instead of a run configuration's fields; nothing: the field stays.
