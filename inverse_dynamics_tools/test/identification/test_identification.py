@@ -17,7 +17,6 @@ from inverse_dynamics.evaluation.evaluation import CAUSE, Evaluation
 from inverse_dynamics.identification import cross_validation
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import choose, errors_of
-from inverse_dynamics.identification.identify import _notes
 from inverse_dynamics.identification.knowledge import independent_samples, intervals, knowledge
 from inverse_dynamics.identification.result import COLUMNS, LAWS, IdentificationError
 from inverse_dynamics.identification.summary import delay_told
@@ -55,8 +54,7 @@ def test_unseen_blocks_are_predicted_better_than_by_all_others(identified, name)
 def test_notes_leave_out_that_a_model_could_be_identified():
     notes = ("2 columns left out", f"{CAUSE}friction; identify a model")
     without = Evaluation.notes_without_causes.fget(SimpleNamespace(notes=notes))
-    evaluation = SimpleNamespace(notes_without_causes=without)
-    assert _notes([evaluation, evaluation]) == ("2 columns left out",) * 2
+    assert without == ("2 columns left out",)
 
 
 @ROBOTS
