@@ -36,8 +36,7 @@ def refusal(call) -> str:
 @pytest.mark.parametrize(
     ("positional", "named", "text"),
     [
-        ((), {}, "Solver: argument plugin: expected a text, got none"),
-        ((3,), {}, "Solver: argument plugin: expected a text, got 3"),
+        ((3,), {}, "Solver: argument plugin: expected a Robot or a text or a path, got 3"),
         ((UR10,), {"tip": 3.5}, "Solver: argument tip: expected a text, got 3.5"),
         (
             (UR10,),
