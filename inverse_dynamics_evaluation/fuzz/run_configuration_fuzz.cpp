@@ -13,8 +13,8 @@
 #include <fstream>
 #include <string>
 
+#include "inverse_dynamics_evaluation/accelerations.hpp"
 #include "inverse_dynamics_evaluation/error.hpp"
-#include "inverse_dynamics_evaluation/log_accelerations.hpp"
 #include "inverse_dynamics_evaluation/run_configuration.hpp"
 
 namespace {
