@@ -250,7 +250,6 @@ LocatedMap::Entries LocatedMap::leaves() const {
   Entries leaves;
   std::set<std::string> names;
   for (const auto& [key, value] : entries_) {
-    if (value.isNull()) continue;
     Entries found{{"", value}};
     if (value.isMap()) found = value.map().leaves();
     for (const auto& [name, leaf] : found) {

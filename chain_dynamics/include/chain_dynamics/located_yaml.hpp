@@ -131,7 +131,7 @@ class LocatedMap {
   /// All of it, in the order of the file. Their LocatedValue::key() is dotted: `outer.inner`.
   const Entries& entries() const { return entries_; }
 
-  /// All values inside that are neither maps nor null, by dotted names below this map. Throws the
+  /// All values inside that aren't maps, by dotted names below this map. Throws the
   /// error of a name that stands twice: `{a: {b: 1}, a.b: 2}`.
   Entries leaves() const;
 
