@@ -241,7 +241,8 @@ def test_a_known_robot_comes_back(known, found):
 def delay_where(monkeypatch, noise_of):
     """What is found where the noise depends on the delay like this, and each gain counts."""
     fitter = SimpleNamespace(
-        fit=lambda delays, **_: SimpleNamespace(noise=noise_of(np.array(delays)))
+        data=lambda delays: delays,
+        fit=lambda delays, *_: SimpleNamespace(noise=noise_of(np.array(delays))),
     )
     monkeypatch.setattr(cross_validation, "_period", lambda _: 0.008)
     monkeypatch.setattr(cross_validation, "_later", lambda _, delay, __: [delay])
