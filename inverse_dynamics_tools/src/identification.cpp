@@ -274,9 +274,11 @@ void bindIdentification(py::module_& module) {
       .def(
           "fit",
           [](const ArmFitter& f, const HeldData& held, const ArmFitOptions& options,
-             const ArmFit* start) { return f.fit(held.data, options, start); },
+             const std::optional<ArmFit>& start) {
+            return f.fit(held.data, options, start ? &*start : nullptr);
+          },
           py::call_guard<py::gil_scoped_release>(), py::arg("data"), py::arg("options"),
-          py::arg("start") = static_cast<const ArmFit*>(nullptr),
+          py::arg("start") = py::none(),
           "A fit to the samples of all blocks. start: another one to begin with.")
       .def("torques", &torques, py::arg("fit"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
            "Torques of a fit, friction included: (n,) or (N, n).")

@@ -261,7 +261,7 @@ def _places(name: str, joints: Sequence[str]) -> Iterator[tuple[int, tuple[str, 
         if _quantity(rest):
             yield 1, rest, joint
             return
-    if len(joints) == 1 and (quantity := _quantity(words)) and not _rank(1, quantity, words)[1]:
+    if len(joints) == 1 and (said := _quantity(words)) and not _rank(1, said, words)[1]:
         yield 1, words, joints[0]
     for at, word in enumerate(words):
         if word.isdecimal():

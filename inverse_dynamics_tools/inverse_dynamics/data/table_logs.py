@@ -142,7 +142,7 @@ class JoinedTable:
         for k, (table, time) in enumerate(zip(self._tables, self._times, strict=True)):
             chosen = [name for name in columns if self._origin[name][0] == k]
             names = [self._origin[name][1] for name in chosen] + [time] * bool(time)
-            most = [*map(limits.get, chosen), *([math.inf] if time else [])]
+            most = [*(limits[name] for name in chosen), *([math.inf] if time else [])]
             rows = table.read(names, most, progress)
             if k == 0:
                 first, count = (rows[:, -1] if time else None), len(rows)

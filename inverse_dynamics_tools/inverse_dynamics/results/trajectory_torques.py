@@ -143,14 +143,15 @@ def _copied(writer: Writer, connection: Connection) -> Connection | None:
     defined = connection.msgdef.format == MessageDefinitionFormat.MSG and bool(connection.digest)
     if not known and not defined:
         return None
+    ext: Any = connection.ext  # of rosbag2
     return writer.add_connection(
         connection.topic,
         connection.msgtype,
         typestore=None if defined else typestore(),
         msgdef=connection.msgdef.data if defined else None,
         rihs01=connection.digest if defined else None,
-        serialization_format=connection.ext.serialization_format,
-        offered_qos_profiles=connection.ext.offered_qos_profiles,
+        serialization_format=ext.serialization_format,
+        offered_qos_profiles=ext.offered_qos_profiles,
     )
 
 
