@@ -49,22 +49,15 @@ namespace py = pybind11;
 using namespace inverse_dynamics_identification;
 using Vector = Eigen::VectorXd;
 
-void requireSamples(const char* name, const Array& array, py::ssize_t count, py::ssize_t joints) {
-  if (array.ndim() == 2 && array.shape(0) == count && array.shape(1) == joints) return;
-  throw py::value_error(std::string(name) + ": expected an array (" + std::to_string(count) + ", " +
-                        std::to_string(joints) + "), got " +
-                        std::string(py::str(array.attr("shape"))));
-}
-
 /// All samples, one after the other, without the GIL; how many were added.
 Eigen::Index run(SharedEstimator& shared, const Array& time, const Array& q, const Array& qd,
                  const Array& qdd, const Array& measured) {
   const py::ssize_t count = time.ndim() == 1 ? time.shape(0) : 0;
-  const auto n = static_cast<py::ssize_t>(shared.jointCount());
-  requireSamples("q", q, count, n);
-  requireSamples("qd", qd, count, n);
-  requireSamples("qdd", qdd, count, n);
-  requireSamples("measured", measured, count, n);
+  const py::ssize_t n = shared.jointCount();
+  requireShape("q", q, {count, n});
+  requireShape("qd", qd, {count, n});
+  requireShape("qdd", qdd, {count, n});
+  requireShape("measured", measured, {count, n});
   const ConstMap columns[] = {states(q, "q"), states(qd, "qd"), states(qdd, "qdd"),
                               states(measured, "measured")};
   const double* const t = time.data();
@@ -97,24 +90,12 @@ void restart(SharedEstimator& shared) {
 }
 
 void bindNoise(py::module_& module) {
-  py::class_<ResidualNoise>(module, "ResidualNoise",
-                            "Noise of the torques of n joints: white, and correlated in time.")
-      .def(py::init([](const Vector& white, const Vector& correlated, double correlation_time) {
-             ResidualNoise noise;
-             noise.white = white;
-             noise.correlated = correlated;
-             noise.correlation_time = correlation_time;
-             return noise;
-           }),
-           py::arg("white"), py::arg("correlated"),
-           py::arg("correlation_time") = ResidualNoise().correlation_time,
-           "(n,) standard deviations, N m; s.")
-      .def_property_readonly(
-          "white", [](const ResidualNoise& noise) -> Vector { return noise.white; }, "(n,) N m.")
-      .def_property_readonly(
-          "correlated", [](const ResidualNoise& noise) -> Vector { return noise.correlated; },
-          "(n,) N m.")
-      .def_readonly("correlation_time", &ResidualNoise::correlation_time, "s.");
+  using R = ResidualNoise;
+  bindOptions<2>(module, "ResidualNoise",
+                 "Noise of the torques of n joints: white, and correlated in time.",
+                 "(n,) standard deviations, N m; s.", Field{"white", &R::white, "(n,) N m."},
+                 Field{"correlated", &R::correlated, "(n,) N m."},
+                 Field{"correlation_time", &R::correlation_time, "s."});
   module.def(
       "residual_noise",
       [](const Vector& time, const Array& residuals, double correlation_time) {
@@ -153,9 +134,9 @@ Array armTorques(const ArmUncertainty& arm, const SolverObject& solver, const Ve
   ArmDeviations deviations(solverOf(solver), arm);
   const auto n = static_cast<py::ssize_t>(arm.friction.size());
   const py::ssize_t count = q.ndim() == 2 ? q.shape(0) : 0;
-  requireSamples("q", q, count, n);
-  requireSamples("qd", qd, count, n);
-  requireSamples("qdd", qdd, count, n);
+  requireShape("q", q, {count, n});
+  requireShape("qd", qd, {count, n});
+  requireShape("qdd", qdd, {count, n});
   if (z.size() != deviations.count()) {
     throw py::value_error("z: expected " + std::to_string(deviations.count()) + " numbers, got " +
                           std::to_string(z.size()));
@@ -204,14 +185,11 @@ void bindEstimate(py::module_& module) {
       .def_readonly("inertia_half_width", &E::inertia_half_width,
                     "(3, 3) kg m^2, of what the data alone tell.")
       .def_readonly("inertia_is_known", &E::inertia_is_known, "Whether the data tell the inertia.")
-      .def_property_readonly(
-          "offset", [](const E& found) -> Vector { return found.offset; }, "(n,) N m.")
-      .def_property_readonly(
-          "arm", [](const E& found) -> Vector { return found.arm; },
-          "(K,) deviations of the arm from its model, in standard deviations.")
-      .def_property_readonly(
-          "covariance", [](const E& found) -> Eigen::MatrixXd { return found.covariance; },
-          "(10, 10) of m, mc, I about the origin of the tip frame.")
+      .def_readonly("offset", &E::offset, "(n,) N m.")
+      .def_readonly("arm", &E::arm,
+                    "(K,) deviations of the arm from its model, in standard deviations.")
+      .def_readonly("covariance", &E::covariance,
+                    "(10, 10) of m, mc, I about the origin of the tip frame.")
       .def_readonly("blocks", &E::blocks, "Of time, that the intervals rest on.")
       .def_readonly("duration", &E::duration, "s, from the first sample to the last.");
 }
@@ -237,10 +215,7 @@ void bindPayload(py::module_& module) {
                               "Mass, center of mass and inertia of what the tip carries. Threads: "
                               "safe; the GIL is released, and each call waits for those of other "
                               "threads.")
-      .def(py::init([](const SolverObject& solver, const PayloadOptions& options) {
-             return std::make_unique<SharedEstimator>(solverOf(solver), options);
-           }),
-           py::arg("solver"), py::arg("options"))
+      .def(ofSolver<SharedEstimator, PayloadOptions>(), py::arg("solver"), py::arg("options"))
       .def("update", &update, py::arg("time"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
            py::arg("measured"), "Adds a sample: s, (n,) each; PayloadStatus.")
       .def("run", &run, py::arg("time"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
