@@ -95,7 +95,8 @@ def _turned(view: View, flipped: Mask, *, everything: bool) -> Rival:
         "effort_sign" if everything else "effort_direction",
         "A joint is reversed",
         f"torques match if the {whose} reversed",
-        f"change the sign of {which} where the recording is made",
+        f"change the sign of {which} where the recording is made"
+        + ("; of a table: --scale effort=-1" if everything else ""),
         names,
         value=-1.0,
     )
@@ -121,7 +122,8 @@ def _common(shared: Floats, _: Floats) -> Finding | None:
         "Efforts in another unit",
         f"efforts are {scale:.4g} times the torques in every joint"
         + (f": they are in {unit}" if unit else ""),
-        f"divide efforts by {scale:.4g} where the recording is made",
+        f"divide efforts by {scale:.4g} where the recording is made; of a table: --scale "
+        f"effort={1 / scale:.4g}",
         value=scale,
         shared=np.array([scale]),
     )
