@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+import json
 import os
 from dataclasses import replace
 from pathlib import Path
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import JOINTS, RIGID_BODY, UR10, URDF, joint_log, motion, recording
 
-from inverse_dynamics import Solver, evaluate, load_robot, read_recording
+from inverse_dynamics import Solver, cli, evaluate, load_robot, read_recording
 from inverse_dynamics.base import extras
 from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
@@ -213,6 +214,29 @@ def test_xacro_files_are_expanded_and_forces_of_prismatic_joints_are_newtons(tmp
     assert result.units == ("N",)
     assert result.errors[0].unit == "N"
     assert result.errors[0].nrmse < 0.01
+
+
+def test_arguments_of_xacro_stand_behind_the_file_or_are_options(tmp_path, xacro_file, capsys):
+    pytest.importorskip("xacro")
+    text = XACRO.replace(
+        '<xacro:property name="mass" value="${1 + 1}"/>', '<xacro:arg name="mass" default="9"/>'
+    )
+    xacro_file.write_text(text.replace("${mass}", "$(arg mass)"))
+    recording = slide_recording(tmp_path)
+    robot = replace(
+        load_robot("ur10_simulated"), plugin=RIGID_BODY, joints=(), root="base", tip="cart"
+    )
+    assert evaluate(recording, robot, urdf=f"{xacro_file} mass:=2").errors[0].nrmse < 0.01
+    assert evaluate(recording, robot, urdf=xacro_file).errors[0].nrmse > 1
+    command = ["evaluate", str(recording), "--urdf", str(xacro_file), "--no-figures"]
+    assert cli.main([*command, "--xacro", "mass:=2", "--json", "--out", str(tmp_path / "out")]) == 0
+    assert json.loads(capsys.readouterr().out)["result"]["mean_rmse"] < 1
+    with pytest.raises(SystemExit):
+        cli.main([*command, "--xacro", "mass=2"])
+    assert "argument --xacro: expected NAME:=VALUE, got 'mass=2'" in capsys.readouterr().err
+    urdf = str(load_robot("ur10_simulated").urdf)
+    assert cli.main(["evaluate", str(recording), "--urdf", urdf, "--xacro", "mass:=2"]) == 2
+    assert "--xacro mass:=2: expected a .xacro file with it" in capsys.readouterr().err
 
 
 def test_without_xacro_the_error_says_how_to_install_it(bag, robot, xacro_file, monkeypatch):

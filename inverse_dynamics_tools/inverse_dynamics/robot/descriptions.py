@@ -35,12 +35,15 @@ class _DocumentTypeError(Exception):
 def read_description(file: Path) -> str:
     """URDF text of a .urdf or .xacro file, or of a .yaml file of Denavit-Hartenberg parameters.
 
-    Raises RobotError, MissingPackageError.
+    Arguments of xacro may stand behind the name: `arm.urdf.xacro prefix:=left_`. Raises RobotError,
+    MissingPackageError.
     """
+    name, xacro, arguments = f"{file}".partition(".xacro ")
+    file = Path(name + xacro.rstrip()) if xacro else file
     if not os.path.isfile(file):  # Path.is_file() raises where the path is too long
         raise RobotError(f"{file}: no such file; expected a robot description (URDF or .xacro)")
     if file.suffix == ".xacro":
-        return _expanded(file)
+        return _expanded(file, arguments.split())
     data = read_bytes(file, "a URDF", RobotError)
     if not data.strip():
         raise RobotError(f"{file}: is empty; expected a URDF")
@@ -228,11 +231,14 @@ def _joints(file: Path | None, description: str) -> list[Element]:
     return list(parse_description(description, file).iter("joint")) if description else []
 
 
-def _expanded(file: Path) -> str:
+def _expanded(file: Path, arguments: Sequence[str]) -> str:
     require(f"{file}:", "xacro")
     tool = Path(__file__).with_name("xacro_tool.py")
     result = subprocess.run(
-        [sys.executable, str(tool), str(file)], capture_output=True, text=True, check=False
+        [sys.executable, str(tool), str(file), *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     if result.returncode != 0:
         lines = result.stderr.strip().splitlines() or [f"exit code {result.returncode}"]

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.robot.robots import Robot
 
 # Overrides of the run configuration, by name.
-CHAIN = ("--urdf", "--root", "--tip", "--gravity", "--joints", "--parameter")
+CHAIN = ("--urdf", "--xacro", "--root", "--tip", "--gravity", "--joints", "--parameter")
 SOLVER = (*CHAIN, "--plugin", "--no-friction", "--payload")
 TABLE = ("--columns", "--scale", "--sign", "--rate")
 RECORDING = ("--topic", "--effort-is", "--drive-gains", *TABLE, "--cutoff", "--from", "--to")
@@ -146,12 +146,27 @@ def chosen_robot(arguments: argparse.Namespace) -> Robot:
         raise UserError(
             "expected --robot NAME or --urdf FILE, got neither; `ids robots` lists the names"
         )
-    return robot_of_description(arguments.urdf)
+    return robot_of_description(_described(arguments))
+
+
+def _described(arguments: argparse.Namespace) -> Path | None:
+    """The description, with the arguments of --xacro behind its name, as read_description() takes them."""
+    urdf: Path | None = getattr(arguments, "urdf", None)
+    xacro = getattr(arguments, "xacro", None)
+    if not xacro:
+        return urdf
+    if urdf is None or urdf.suffix != ".xacro":
+        raise UserError(
+            f"--xacro {xacro[0]}: expected a .xacro file with it, got {urdf or 'none'}; give it as --urdf"
+        )
+    return Path(" ".join((f"{urdf}", *xacro)))
 
 
 def given_overrides(arguments: argparse.Namespace) -> dict[str, Any]:
     """Arguments of evaluate(), or of with_changes(), that overrides() declared."""
     given = {name: getattr(arguments, name) for name in arguments.overrides}
+    if given.pop("xacro", None):
+        given["urdf"] = _described(arguments)
     parameters = dict(given.pop("parameters", None) or {})
     body = given.pop("payload", None) or {}
     if twice := parameters.keys() & body.keys():

@@ -112,6 +112,13 @@ def file_name(text: str) -> Path:
     return Path(text)
 
 
+def xacro_argument(text: str) -> str:
+    """`NAME:=VALUE`, in one word."""
+    if not re.fullmatch(r"\w+:=\S*", text):
+        raise _wrong("NAME:=VALUE", text)
+    return text
+
+
 def figure_formats(text: str) -> tuple[str, ...]:
     """`png,svg`; `none`: no figure."""
     from inverse_dynamics.figures.plots import FORMATS
