@@ -300,6 +300,7 @@ std::vector<JointEntry> readJoints(const LocatedValue& value, const Conventions&
   const std::vector<LocatedValue> list = value.entries();
   if (list.empty()) value.fail("at least one joint");
   std::vector<JointEntry> entries;
+  entries.reserve(list.size());
   for (const LocatedValue& joint : list) {
     entries.push_back(readJoint(joint, conventions, list.size()));
   }

@@ -52,6 +52,7 @@ const std::string kRosParameters = "ros__parameters.";
 std::map<std::string, ParameterValue> valuesOf(const LocatedValue& document) {
   std::map<std::string, ParameterValue> values;
   for (const auto& [key, value] : document.map().leaves()) {
+    if (value.isNull()) continue;  // as a parameter that isn't set
     const std::size_t node_end = key.find(kRosParameters);
     const std::string name =
         node_end == std::string::npos ? key : key.substr(node_end + kRosParameters.size());

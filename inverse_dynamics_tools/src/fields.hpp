@@ -61,10 +61,10 @@ struct InPython<std::optional<std::array<double, 3>>> {
 };
 
 /// A field of T: how it is read and set.
-template <class T, class Got_, class Given_>
+template <class T, class GotType, class GivenType>
 struct Field {
-  using Got = Got_;
-  using Given = Given_;
+  using Got = GotType;
+  using Given = GivenType;
 
   template <class Base, class Value>
   Field(const char* of_name, Value Base::*member, const char* meaning = "")
@@ -92,17 +92,17 @@ auto inherited(const char* name, Value Base::*member, const char* doc = "") {
                                                                                   doc);
 }
 
-/// A constructor of all fields, the first kRequired of them without a default. Of more than five
+/// A constructor of all fields, the first Required of them without a default. Of more than five
 /// only these can be given without their name. `doc`: its own.
-template <std::size_t kRequired, class T, class... Fields, std::size_t... I>
+template <std::size_t Required, class T, class... Fields, std::size_t... I>
 void defineConstructor(pybind11::class_<T>& of, const char* doc, std::index_sequence<I...> /*all*/,
                        const Fields&... fields) {
   namespace py = pybind11;
-  constexpr std::size_t kPositional = sizeof...(Fields) > 5 ? kRequired : sizeof...(Fields);
+  constexpr std::size_t kPositional = sizeof...(Fields) > 5 ? Required : sizeof...(Fields);
   const auto argument = [](auto number, const auto& field) {
     constexpr std::size_t kNumber = decltype(number)::value;
     const auto usual = [&] {
-      if constexpr (kNumber < kRequired) {
+      if constexpr (kNumber < Required) {
         return py::arg(field.name);
       } else {
         return py::arg(field.name) = field.get(T());
@@ -124,23 +124,23 @@ void defineConstructor(pybind11::class_<T>& of, const char* doc, std::index_sequ
 }
 
 /// Options: attributes that can be set. `meanings`: of the constructor.
-template <std::size_t kRequired = 1, class T, class... Gots, class... Givens>
+template <std::size_t Required = 1, class T, class... Gots, class... Givens>
 pybind11::class_<T> bindOptions(pybind11::module_& module, const char* name, const char* doc,
                                 const char* meanings, const Field<T, Gots, Givens>&... fields) {
   pybind11::class_<T> options(module, name, doc);
-  defineConstructor<kRequired>(options, meanings, std::index_sequence_for<Gots...>(), fields...);
+  defineConstructor<Required>(options, meanings, std::index_sequence_for<Gots...>(), fields...);
   (options.def_property(fields.name, fields.get, fields.set, fields.doc), ...);
   return options;
 }
 
 /// A record: attributes that can't be set; compared, shown and pickled by them, and a dataclass to
 /// dataclasses.replace() and asdict().
-template <std::size_t kRequired = 0, class T, class... Gots, class... Givens>
+template <std::size_t Required = 0, class T, class... Gots, class... Givens>
 pybind11::class_<T> bindRecord(pybind11::module_& module, const char* name, const char* doc,
                                const Field<T, Gots, Givens>&... fields) {
   namespace py = pybind11;
   py::class_<T> record(module, name, doc);
-  defineConstructor<kRequired>(record, "", std::index_sequence_for<Gots...>(), fields...);
+  defineConstructor<Required>(record, "", std::index_sequence_for<Gots...>(), fields...);
   (record.def_property_readonly(fields.name, fields.get, fields.doc), ...);
   const auto dict_of = [fields...](const T& t) {
     py::dict found;
