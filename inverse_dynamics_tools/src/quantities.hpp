@@ -77,7 +77,7 @@ class Quantities {
       class_.def(
           name,
           [=](const Class& self, const Input<I>&... values, const MaybeFloats& out) -> Result {
-            const py::object result = computed(self, out, values...).array(0);
+            py::object result = computed(self, out, values...).array(0);
             if constexpr (std::is_same_v<Result, FloatOrFloats>) {
               return result[py::tuple()];  // a number, of one state
             } else {
