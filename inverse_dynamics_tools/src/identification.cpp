@@ -241,7 +241,8 @@ void bindIdentification(py::module_& module) {
       Field{"law", &O::terms}, Field{"prior_strength", &O::prior_strength},
       Field{"most_passes", &O::most_passes}, Field{"without", &O::without},
       Field{"drive_gains", &O::drive_gains});
-  py::class_<HeldData>(module, "ArmData", "Blocks of samples for any number of fits.");
+  py::class_<HeldData>(module, "ArmData", "Blocks of samples for any number of fits.")
+      .def("__len__", [](const HeldData& held) { return held.arrays.size(); });
   py::class_<ArmFitter>(module, "ArmFitter",
                         "Fits models of one arm: arm_fit.hpp. Threads: safe; the GIL is released.")
       .def_static(
