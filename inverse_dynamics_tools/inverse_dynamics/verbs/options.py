@@ -30,6 +30,7 @@ from inverse_dynamics.verbs.values import (
     payload,
     positive_number,
     three_numbers,
+    xacro_argument,
 )
 
 if TYPE_CHECKING:
@@ -142,11 +143,12 @@ def chosen_robot(arguments: argparse.Namespace) -> Robot:
                 f"as --urdf {arguments.robot}"
             )
         return load_robot(arguments.robot)
-    if arguments.urdf is None:
+    described = _described(arguments)
+    if described is None:
         raise UserError(
             "expected --robot NAME or --urdf FILE, got neither; `ids robots` lists the names"
         )
-    return robot_of_description(_described(arguments))
+    return robot_of_description(described)
 
 
 def _described(arguments: argparse.Namespace) -> Path | None:
@@ -193,6 +195,12 @@ _SHARED = dict(
             "robot description, with or without --robot: .urdf; .xacro, which needs xacro; or .yaml, "
             "Denavit-Hartenberg parameters for `ids identify` (docs/identification.md#without-a-urdf)",
             Path,
+        ),
+        _entry(
+            "--xacro NAME:=VALUE",
+            "an argument of the .xacro file, prefix:=left_; may be given several times",
+            xacro_argument,
+            action="append",
         ),
         _entry("--root LINK", "first link of the chain"),
         _entry("--tip LINK", "last link of the chain"),

@@ -91,6 +91,8 @@ def _new(arguments: argparse.Namespace) -> Arm:
 
     if arguments.urdf is None:
         raise UserError("--new: expected --urdf FILE, got none; give the robot's description")
+    if arguments.xacro:
+        raise UserError("--new: expected no --xacro; give the URDF that xacro makes")
     robot = with_changes(robot_of_description(arguments.urdf), **given_overrides(arguments))
     arm = Arm(robot)
     description = f"{arguments.urdf.name}, {len(arm.joint_names)} joints"
