@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command `ids`: verbs, errors, exit codes.
 
-A verb is a module of inverse_dynamics.verbs with SUMMARY (its line in the list of verbs), EPILOG (examples),
-perhaps DESCRIPTION, `declare(options)` and `run(arguments)`, which imports what is heavy. A package that is
-built on request brings its verb along.
+A verb is a module of inverse_dynamics.verbs with SUMMARY (its line in the list of verbs), EPILOG (examples,
+a paragraph each), perhaps DESCRIPTION, `declare(options)` and `run(arguments)`, which imports what is heavy. Its
+name stands in GROUPS, its line in docs/command_line.md. A package that is built on request brings its verb.
 Exit code 0: done; 2: something that the user can correct, named on stderr (without a verb: the help);
 3: some of several recordings failed, the others are done; 1: an unexpected error, with a report in a
 file; 128 + n: ended by signal n (141: the reader of the output has gone).
@@ -83,7 +83,8 @@ class _ShortHelp(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
         actions = [a for a in parser._actions if a.help is not argparse.SUPPRESS]
         positional = " ".join(f"{a.metavar or a.dest}" for a in actions if not a.option_strings)
-        lines = [f"usage: {parser.prog} {positional} [options]", "", parser.description or "", ""]
+        usage = " ".join(filter(None, (f"usage: {parser.prog}", positional, "[options]")))
+        lines = [usage, "", parser.description or "", ""]
         examples = re.split(r"\n\n", (parser.epilog or "").partition("examples:\n")[2])
         lines += [*examples[:_SHORT_EXAMPLES], ""]
         for group in parser._action_groups:

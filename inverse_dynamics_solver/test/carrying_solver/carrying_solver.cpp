@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "carrying_solver.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <pluginlib/class_list_macros.hpp>
 #include <thread>
@@ -81,7 +82,9 @@ void CarryingSolver::computeTorques(const ConstVectorRef& q, const ConstVectorRe
   }
   // Others get a chance to change the robot; of a large batch now and then.
   if (has("states of a batch mix two robots")) std::this_thread::yield();
-  if (has("threads of a batch mix two robots") && ++calls_ % 1024 == 0) std::this_thread::yield();
+  if (has("threads of a batch mix two robots") && ++calls_ % 1024 == 0) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   const auto pendulum = currentRobot();
   tau[0] = pendulum->inertia * qdd[0] + 0.0 * qd[0] + gravityTorque(*pendulum, q[0]);
 }
