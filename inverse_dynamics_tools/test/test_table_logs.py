@@ -7,6 +7,7 @@ import pytest
 from conftest import JOINTS, motion
 
 from inverse_dynamics import Solver, evaluate, load_robot, read_recording
+from inverse_dynamics.data.recordings import position_ranges
 from inverse_dynamics.data.table_logs import LogFormat, parts_joined
 from inverse_dynamics.errors import BagError, EvaluationError
 
@@ -352,3 +353,19 @@ def test_files_of_one_recording_are_joined_at_the_times_of_the_first(tmp_path):
     whole = tmp_path / "motion.csv"
     whole.write_text(HEADER + ROWS)
     assert parts_joined([whole, whole]) == [whole, whole]
+
+
+@pytest.mark.parametrize(
+    ("column", "scale", "expected"),
+    [
+        ("lift_position", [], {"lift": (2.0, 3.0, 4.0)}),
+        ("lift_position_mm", [], {"lift": (0.002, 0.003, 0.004)}),
+        ("lift_position_mm", ["q=2"], {"lift": (4.0, 6.0, 8.0)}),
+        ("lift_position", ["q=2,3"], {}),
+    ],
+)
+def test_positions_of_joints_outside_the_chain_are_in_si_units(tmp_path, column, scale, expected):
+    file = tmp_path / "log.csv"
+    file.write_text(f"{column}\n2\n4\n")
+    found = position_ranges(file, ["lift"], form=LogFormat(scale=scale))
+    assert found == {joint: pytest.approx(span) for joint, span in expected.items()}

@@ -166,13 +166,13 @@ def match_columns(
     return Matched(joints, columns, {kind: unit for kind, unit in units.items() if unit})
 
 
-def named_positions(names: Sequence[str], joints: Sequence[str]) -> dict[str, str]:
-    """Columns of positions by joint, of those joints whose names they hold."""
-    found: dict[str, str] = {}
+def named_positions(names: Sequence[str], joints: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """Columns of positions, and the units in their names, of those joints whose names they hold."""
+    found: dict[str, tuple[str, str]] = {}
     for name in names:
         for _, pattern, joint in _places(name, joints):
             if isinstance(joint, str) and "*" in pattern and _quantity(pattern) == POSITION:
-                found.setdefault(joint, name)
+                found.setdefault(joint, (name, _unit(POSITION, pattern)))
     return found
 
 
@@ -356,7 +356,7 @@ def _stated(text: str, where: str) -> Iterator[tuple[str, str]]:
         key, equals, pattern = map(str.strip, part.partition("="))
         if key not in _KEYS or not equals or not pattern:
             raise BagError(
-                f"columns: expected KEY=PATTERN with a KEY of {', '.join(_KEYS)}, got {shown(part)}; for "
+                f"{where}: columns: expected KEY=PATTERN with a KEY of {', '.join(_KEYS)}, got {shown(part)}; for "
                 "example: time=t, q=q*, qd=dq*, effort=tau*"
             )
         yield _KEYS[key], pattern

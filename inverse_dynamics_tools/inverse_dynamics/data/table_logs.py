@@ -278,14 +278,19 @@ def read_motion(
 
 
 def read_named_positions(table: Table, joints: Sequence[str], form: LogFormat) -> dict[str, Floats]:
-    """Positions (N,) in SI units of those joints that the table has by name. Raises BagError."""
-    columns = named_positions(table.names, joints)
-    if not columns:
-        return {}
-    rows = table.read([*columns.values()])
+    """Positions (N,) in SI units of those joints that the table has by name. Raises BagError.
+
+    None where the scale is stated joint by joint: it's that of the chain's joints.
+    """
     stated = dict(_stated_scale(text, f"{table.path}") for text in form.scale).get(POSITION, [])
-    factor = _factor(stated[0], f"{table.path}") if len(stated) == 1 else 1.0
-    return {joint: factor * column for joint, column in zip(columns, rows.T, strict=True)}
+    columns = named_positions(table.names, joints)
+    if not columns or len(stated) > 1:
+        return {}
+    rows = table.read([name for name, _ in columns.values()])
+    return {
+        joint: column * _factor(stated[0] if stated else unit or "1", f"{table.path}")
+        for (joint, (_, unit)), column in zip(columns.items(), rows.T, strict=True)
+    }
 
 
 def _check_found(table: Table, matched: Matched, needed: Sequence[str], form: LogFormat) -> None:
