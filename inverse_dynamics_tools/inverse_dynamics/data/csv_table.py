@@ -30,14 +30,14 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Mask
     from inverse_dynamics.base.progress import Progress
 
-SUFFIXES = (".csv", ".txt")
+_SUFFIXES = (".csv", ".tsv", ".txt")
 _BLOCK = 2**20  # characters read together
 _LONGEST_HEADER = 2**22  # characters
 
 
 def is_csv(path: Path) -> bool:
     """Whether the name is that of a text file."""
-    return path.suffix.lower() in SUFFIXES and not os.path.isdir(path)  # paths may be too long
+    return path.suffix.lower() in _SUFFIXES and not os.path.isdir(path)  # paths may be too long
 
 
 class CsvTable:

@@ -4,7 +4,8 @@
     log = read_recording("recording", ["joint_1", "joint_2"])
 
 rosbag2 recordings of sensor_msgs/JointState (bags.py) or trajectory_msgs/JointTrajectory
-(joint_trajectories.py), ROS 1 recordings (ros1_bags.py), and tables: .csv, .txt, .parquet, .npz, .mat (table_logs.py).
+(joint_trajectories.py), ROS 1 recordings (ros1_bags.py), and tables: .csv, .tsv,
+.txt, .parquet, .npz, .mat (table_logs.py).
 """
 
 from __future__ import annotations
@@ -49,8 +50,8 @@ def read_recording(
 ) -> JointLog:
     """Samples of a motion: time, positions, velocities, efforts, accelerations where there are any.
 
-    path: a table (.csv, .txt, .parquet, .npz, .mat), else a rosbag2 recording. joints: names, in the order
-    wanted; none: those of the recording. topic, of a bag; none: usual_topic if it is there, else
+    path: a table (.csv, .tsv, .txt, .parquet, .npz, .mat), else a rosbag2 recording. joints: names, in the
+    order wanted; none: those of the recording. topic, of a bag; none: usual_topic if it is there, else
     the only one of joint states, else the only one of trajectories if there are no joint states. clock:
     which stamp of messages is the time. form: what the names of a table's columns don't say.
 

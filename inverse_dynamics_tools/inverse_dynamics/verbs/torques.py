@@ -38,7 +38,7 @@ def declare(options: Options) -> None:
         "trajectory",
         metavar="TRAJECTORY",
         type=Path,
-        help="rosbag2 recording of trajectory_msgs/JointTrajectory, or a table (.csv or .txt)",
+        help="rosbag2 recording of trajectory_msgs/JointTrajectory, or a table (.csv, .tsv or .txt)",
     )
     options.robot()
     options.output(
