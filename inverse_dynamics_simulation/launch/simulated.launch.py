@@ -10,6 +10,7 @@ ros2 run inverse_dynamics_simulation send_motion trajectory_to_inverse_dynamics 
 from pathlib import Path
 from xml.etree import ElementTree
 
+import yaml
 from ament_index_python.packages import get_package_share_directory
 from inverse_dynamics_ros.launch_files import argument, failing_with_its_node, number, text
 from launch import LaunchDescription
@@ -17,30 +18,6 @@ from launch.actions import ExecuteProcess, OpaqueFunction, RegisterEventHandler
 from launch.event_handlers import OnProcessExit
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
-
-# Positions of the joints at the start [rad].
-INITIAL = {
-    "ur10": {
-        "shoulder_pan_joint": 0.0,
-        "shoulder_lift_joint": -1.6,
-        "elbow_joint": 1.2,
-        "wrist_1_joint": -1.0,
-        "wrist_2_joint": -1.5,
-        "wrist_3_joint": 0.3,
-    },
-    "panda": {
-        "fer_joint1": 0.0,
-        "fer_joint2": -0.5,
-        "fer_joint3": 0.0,
-        "fer_joint4": -2.0,
-        "fer_joint5": 0.0,
-        "fer_joint6": 1.6,
-        "fer_joint7": 0.8,
-    },
-}
-
-# The link that carries the payload.
-TIPS = {"ur10": "tool0", "panda": "fer_link8"}
 
 # Controllers to spawn for each choice, in this order.
 CONTROLLERS = {
@@ -61,7 +38,7 @@ def generate_launch_description():
     """Arguments and processes, as `ros2 launch` asks for them."""
     return LaunchDescription(
         [
-            argument("robot", "Which arm", "ur10", choices=list(INITIAL)),
+            argument("robot", "Which arm", "ur10", choices=["ur10", "panda"]),
             argument(
                 "controller",
                 "inverse_dynamics: computed torque after a joint_trajectory_controller; "
@@ -84,8 +61,15 @@ def generate_launch_description():
 
 
 def _processes(context):
-    robot, bag, config = text(context, "robot"), text(context, "bag"), _parameter_file(context)
-    description = _simulated(robot, number(context, "payload"))
+    robot, bag = text(context, "robot"), text(context, "bag")
+    share = Path(get_package_share_directory("inverse_dynamics_simulation"))
+    own = share / "config" / f"{robot}.yaml"
+    config = text(context, "config") or str(own)
+    if not Path(config).is_file():
+        raise ValueError(
+            f"argument config: expected a parameter file, got '{config}': no such file"
+        )
+    description = _simulated(robot, own, number(context, "payload"))
     spawner = Node(
         package="controller_manager",
         executable="spawner",
@@ -127,26 +111,23 @@ def _processes(context):
     return actions
 
 
-def _parameter_file(context):
-    """Path of the argument `config`. Raises ValueError: no such file."""
-    given = text(context, "config")
-    if given and not Path(given).is_file():
-        raise ValueError(f"argument config: expected a parameter file, got '{given}': no such file")
-    share = Path(get_package_share_directory("inverse_dynamics_simulation"))
-    return given or str(share / "config" / f"{text(context, 'robot')}.yaml")
+def _simulated(robot, config, payload):
+    """The robot's URDF with a simulated hardware component of effort-controlled joints.
 
-
-def _simulated(robot, payload):
-    """The robot's URDF with a simulated hardware component of effort-controlled joints."""
+    config: the parameter file whose posture is where the arm starts.
+    """
+    parameters = yaml.safe_load(config.read_text())
+    law = parameters["feed_forward_controller"]["ros__parameters"]
+    joints = parameters["trajectory_to_feed_forward"]["ros__parameters"]["joints"]
     share = Path(get_package_share_directory("inverse_dynamics_robots"))
     root = ElementTree.parse(share / "urdf" / f"{robot}.urdf").getroot()
     system = ElementTree.SubElement(root, "ros2_control", name=robot, type="system")
     hardware = ElementTree.SubElement(system, "hardware")
     plugin = "inverse_dynamics_simulation/SimulatedArm"
     ElementTree.SubElement(hardware, "plugin").text = plugin
-    for name, value in {"payload": str(payload), "payload_link": TIPS[robot]}.items():
+    for name, value in {"payload": str(payload), "payload_link": law["ids"]["tip"]}.items():
         ElementTree.SubElement(hardware, "param", name=name).text = value
-    for name, position in INITIAL[robot].items():
+    for name, position in zip(joints, law["damping"]["posture"], strict=True):
         joint = ElementTree.SubElement(system, "joint", name=name)
         ElementTree.SubElement(joint, "command_interface", name="effort")
         state = ElementTree.SubElement(joint, "state_interface", name="position")
