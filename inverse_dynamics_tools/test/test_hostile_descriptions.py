@@ -107,14 +107,14 @@ resource.setrlimit(resource.RLIMIT_AS, (6 * 2**30, 6 * 2**30))
 from pathlib import Path
 from inverse_dynamics.robot.descriptions import effort_limits, joint_units
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.figures.scene import scene_from_urdf
+from inverse_dynamics.figures.scene import scene_of
 from inverse_dynamics.simulation.model import SimulatedRobot
 
 file, names = Path("arm.urdf"), ("swing",)
 readers = {
     "units": lambda text: joint_units(file, text, names),
     "limits": lambda text: effort_limits(file, text, names),
-    "scene": lambda text: json.dumps(scene_from_urdf(text, names), allow_nan=False),
+    "scene": lambda text: json.dumps(scene_of(text, names, Path()).links, allow_nan=False),
     "simulation": lambda text: SimulatedRobot.from_urdf(text),
 }
 for case, text in json.load(sys.stdin).items():

@@ -3,6 +3,7 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from test_report import browser, child, play_slowly, press, time_of
 
 from inverse_dynamics.evaluation.evaluation import joint_errors
 from inverse_dynamics.figures import palette
-from inverse_dynamics.figures.scene import scene_from_urdf
+from inverse_dynamics.figures.scene import scene_of
 from inverse_dynamics.report.page import (
     Band,
     Figure,
@@ -57,7 +58,7 @@ def run_of(title: str, text: str) -> ReportRun:
         assumptions=[
             ("solver", "rigid_body_inverse_dynamics_solver/InverseDynamicsSolverRigidBody")
         ],
-        links=scene_from_urdf(text, joints),
+        links=scene_of(text, joints, Path()).links,
         left_out=[(0.0, 0.3), (5.0, 5.0)],
         bands=[Band(0.0, 8.0, np.full(len(joints), 4.0))],
         others={"another model": computed + 6.0},

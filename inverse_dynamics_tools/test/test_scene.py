@@ -2,6 +2,7 @@
 """The robot as it is drawn: shapes, meshes, skeletons."""
 
 import base64
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,7 +22,7 @@ from inverse_dynamics.figures.scene import (
     MOST_TRIANGLES,
     encoded_mesh,
     read_scene,
-    scene_from_urdf,
+    scene_of,
 )
 
 ARM = """<robot name="arm">
@@ -67,7 +68,7 @@ def kinds(link):
 
 
 def test_a_robot_without_shapes_is_drawn_as_its_joints_and_links():
-    links = scene_from_urdf(ARM.format(base="", upper=""), ["a", "b"])
+    links = scene_of(ARM.format(base="", upper=""), ["a", "b"], Path()).links
     assert kinds(links[0]) == ["cylinder", "sphere"]
     assert links[0]["shapes"][0]["size"][1] == pytest.approx(0.3)  # the way to the next joint
     assert sorted(kinds(links[1])) == ["cylinder", "cylinder", "sphere"]
@@ -77,7 +78,7 @@ def test_a_robot_without_shapes_is_drawn_as_its_joints_and_links():
 
 
 def test_shapes_are_drawn_without_a_skeleton():
-    links = scene_from_urdf(ARM.format(base=BOX, upper=""), ["a", "b"])
+    links = scene_of(ARM.format(base=BOX, upper=""), ["a", "b"], Path()).links
     assert [kinds(link) for link in links] == [["box"], [], []]
 
 

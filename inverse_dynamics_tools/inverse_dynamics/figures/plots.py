@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from io import StringIO
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -18,9 +18,7 @@ from inverse_dynamics.figures.thinning import error_limit, line
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
-    from typing import Any
 
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
@@ -75,11 +73,6 @@ def save_torque_figure(evaluation: Evaluation, *files: Path) -> None:
     save_figure(lambda: torque_figure(evaluation), *files)
 
 
-def save_comparison_figure(comparison: Comparison, *files: Path) -> None:
-    """Save comparison_figure(); formats are those of the suffixes. The same runs, the same bytes."""
-    save_figure(lambda: comparison_figure(comparison), *files)
-
-
 def save_figure(make: Callable[[], Figure], *files: Path) -> None:
     """Save what `make` draws, in the common style. The same figure, the same bytes."""
     if not files:
@@ -127,21 +120,23 @@ def make_printable(figure: Figure) -> None:
 def torque_figure(evaluation: Evaluation) -> Figure:
     """Measured and computed torque over time, and the error, one row per joint."""
     from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
 
     n = len(evaluation.joint_names)
     figure = Figure(figsize=(11.0, 1.25 * n + 1.7))
     axes = _panels(figure, n, top=1.32, bottom=0.5)
     left_out = evaluation.samples.left_out_spans(evaluation.log)
+    error_style = {"label": "error: computed - measured", **ERROR}
+    runs = [_Run(evaluation, "computed torque", COMPUTED, error_style)]
     for j, (left, right) in enumerate(axes):
-        _draw_torques(left, evaluation, j)
-        _draw_error(right, evaluation, j)
-        for axis in (left, right):
-            shade(axis, left_out, 0.001, LEFT_OUT)
-    for axis in axes[-1]:
-        axis.set_xlabel("time [s]", color=_MUTED)
-        axis.set_xlim(evaluation.time[0], evaluation.time[-1])
+        _draw_torques(left, runs, j)
+        error = evaluation.errors[j]
+        share = "" if np.isnan(error.nrmse) else f", {100 * error.nrmse:.2g} % of measured range"
+        _draw_errors(right, runs, j, f"RMSE {error.rmse:.3g} {error.unit}{share}")
+        time, difference = right.get_lines()[-1].get_data()
+        right.fill_between(time, 0, difference, color=ERROR["color"], alpha=0.15, linewidth=0)
+        shade(left, left_out, 0.001, LEFT_OUT, label="samples left out")
+        shade(right, left_out, 0.001, LEFT_OUT)
+    _label_time(axes, evaluation)
     robot = evaluation.robot
     friction = "" if robot.friction else ", friction left out"
     write_heading(
@@ -151,16 +146,8 @@ def torque_figure(evaluation: Evaluation) -> Figure:
         f"{evaluation.bag.name}, {len(evaluation.log)} samples, {evaluation.log.duration:.1f} s   ·   "
         f"accelerations: {evaluation.accelerations.summary}",
     )
-    torques: list[Line2D | Patch] = [
-        Line2D([], [], label="measured torque", **MEASURED),
-        Line2D([], [], label="computed torque", **COMPUTED),
-    ]
-    if left_out:
-        torques.append(Patch(label="samples left out", **LEFT_OUT))
-    error = Line2D([], [], label="error: computed - measured", **ERROR)
-    torque_place, error_place = (axis.get_position().x0 for axis in axes[0])
-    write_legend(figure, torques, torque_place, 0.87)
-    write_legend(figure, [error], error_place, 0.87)
+    for axis in axes[0]:
+        write_legend(figure, axis, axis.get_position().x0, 0.87)
     return figure
 
 
@@ -173,27 +160,34 @@ def write_heading(figure: Figure, title: str, *lines: str) -> None:
         figure.text(0.012, 1 - (0.52 + 0.18 * k) / height, text, color=_MUTED)
 
 
-def write_legend(figure: Figure, handles: Sequence[Artist], left: float, inches: float) -> None:
-    """A legend in one row, at this distance from the top."""
+def write_legend(figure: Figure, axes: Axes, left: float, inches: float) -> None:
+    """What is drawn in the axes, in one row at this distance from the top."""
+    handles, labels = axes.get_legend_handles_labels()
+    named = dict(zip(labels, handles, strict=True))
     figure.legend(
-        handles=handles,
+        named.values(),
+        named.keys(),
         loc="upper left",
         bbox_to_anchor=(left, 1 - inches / figure.get_figheight()),
         borderaxespad=0,
         borderpad=0,
-        ncols=len(handles),
+        ncols=len(named),
         frameon=False,
         fontsize=9,
     )
 
 
 def shade(
-    axes: Axes, spans: Sequence[tuple[float, float]], least: float, style: dict[str, Any]
+    axes: Axes,
+    spans: Sequence[tuple[float, float]],
+    least: float,
+    style: dict[str, Any],
+    label: str = "",
 ) -> None:
     """Spans of time [s], each as wide as that part of the axis at least, so that it can be seen."""
     low, high = axes.get_xlim()
     for begin, end in spans:
-        axes.axvspan(begin, max(end, begin + least * (high - low)), **style)
+        axes.axvspan(begin, max(end, begin + least * (high - low)), label=label, **style)
 
 
 def comparison_figure(comparison: Comparison) -> Figure:
@@ -211,32 +205,33 @@ def comparison_figure(comparison: Comparison) -> Figure:
         fontweight="bold",
     )
     axes = _panels(figure, n, top=0.55, bottom=0.8)
+    runs = []
+    for k, (run, label) in enumerate(zip(comparison.evaluations, comparison.labels, strict=True)):
+        style = {"color": palette.RUNS[k % len(palette.RUNS)], "linewidth": 0.9}
+        runs.append(_Run(run, label, style, style))
     for j, (left, right) in enumerate(axes):
-        left.plot(*line(first.time, first.measured[:, j]), **MEASURED, label="measured")
-        largest = 0.0
-        for k, run in enumerate(comparison.evaluations):
-            style = {
-                "color": palette.RUNS[k % len(palette.RUNS)],
-                "linewidth": 0.9,
-                "label": comparison.labels[k],
-            }
-            error = run.computed[:, j] - run.measured[:, j]
-            left.plot(*line(run.time, run.computed[:, j]), **style)
-            right.plot(*line(run.time, error), **style)
-            largest = max(largest, error_limit(error))
-        left.set_title(f"{comparison.joint_names[j]} [{first.units[j]}]", loc="left", fontsize=9)
+        _draw_torques(left, runs, j)
         rmse = " / ".join(f"{value:.3g}" for value in comparison.rmse[:, j])
-        right.set_title(
-            f"error: RMSE {rmse} {first.units[j]}", loc="left", fontsize=9, color=_MUTED
-        )
-        right.axhline(0, color="#999999", linewidth=0.6)
-        right.set_ylim(-1.1 * (largest or 1.0), 1.1 * (largest or 1.0))
-    for axis in axes[-1]:
-        axis.set_xlabel("time [s]", color=_MUTED)
-        axis.set_xlim(first.time[0], first.time[-1])
+        _draw_errors(right, runs, j, f"error: RMSE {rmse} {first.units[j]}")
+    _label_time(axes, first)
     handles, labels = axes[0][0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", ncols=len(labels), frameon=False)
     return figure
+
+
+def _label_time(axes: NDArray[np.object_], evaluation: Evaluation) -> None:
+    for axis in axes[-1]:
+        axis.set_xlabel("time [s]", color=_MUTED)
+        axis.set_xlim(evaluation.time[0], evaluation.time[-1])
+
+
+class _Run(NamedTuple):
+    """An evaluation, and how its computed torques and errors are drawn."""
+
+    evaluation: Evaluation
+    label: str
+    style: dict[str, Any]
+    error_style: dict[str, Any]
 
 
 def _panels(figure: Figure, n: int, *, top: float, bottom: float) -> NDArray[np.object_]:
@@ -254,29 +249,28 @@ def _panels(figure: Figure, n: int, *, top: float, bottom: float) -> NDArray[np.
     return axes
 
 
-def _draw_torques(axes: Axes, evaluation: Evaluation, j: int) -> None:
-    axes.plot(*line(evaluation.time, evaluation.measured[:, j]), **MEASURED)
-    axes.plot(*line(evaluation.time, evaluation.computed[:, j]), **COMPUTED)
-    axes.set_title(
-        f"{evaluation.joint_names[j]} [{evaluation.units[j]}]", loc="left", fontsize=9, pad=3
-    )
+def _draw_torques(axes: Axes, runs: Sequence[_Run], j: int) -> None:
+    """Measured torques of a joint, below those that each run computes."""
+    first = runs[0].evaluation
+    axes.plot(*line(first.time, first.measured[:, j]), label="measured torque", **MEASURED)
+    for run in runs:
+        axes.plot(*line(first.time, run.evaluation.computed[:, j]), label=run.label, **run.style)
+    axes.set_title(f"{first.joint_names[j]} [{first.units[j]}]", loc="left", fontsize=9, pad=3)
     axes.margins(y=0.08)
 
 
-def _draw_error(axes: Axes, evaluation: Evaluation, j: int) -> None:
+def _draw_errors(axes: Axes, runs: Sequence[_Run], j: int, text: str) -> None:
+    """Computed minus measured torques of a joint on an axis about zero; text: how large they are."""
     from matplotlib.ticker import EngFormatter
 
-    error = evaluation.errors[j]
-    differences = evaluation.computed[:, j] - evaluation.measured[:, j]
-    largest = error_limit(differences) or 1.0
-    t, difference = line(evaluation.time, differences)
     axes.axhline(0, color="#999999", linewidth=0.6)
-    axes.fill_between(t, 0, difference, color=ERROR["color"], alpha=0.15, linewidth=0)
-    axes.plot(t, difference, **ERROR)
+    largest = 0.0
+    for run in runs:
+        difference = run.evaluation.computed[:, j] - run.evaluation.measured[:, j]
+        largest = max(largest, error_limit(difference))
+        axes.plot(*line(run.evaluation.time, difference), **run.error_style)
+    largest = largest or 1.0
     axes.set_ylim(-1.1 * largest, 1.1 * largest)
     if largest < 0.01:
         axes.yaxis.set_major_formatter(EngFormatter(sep=""))  # 200µ instead of 0.0002
-    share = "" if np.isnan(error.nrmse) else f", {100 * error.nrmse:.2g} % of measured range"
-    axes.set_title(
-        f"RMSE {error.rmse:.3g} {error.unit}{share}", loc="left", fontsize=9, pad=3, color=_MUTED
-    )
+    axes.set_title(text, loc="left", fontsize=9, pad=3, color=_MUTED)

@@ -60,15 +60,11 @@ def read_scene(file: Path, joints: Sequence[str]) -> Scene:
 
     joints: names of the joints that move, in the order of the recorded positions; all others stay at zero.
     """
-    return _scene(read_description(file), joints, file.parent)
+    return scene_of(read_description(file), joints, file.parent)
 
 
-def scene_from_urdf(urdf: str, joints: Sequence[str]) -> list[dict[str, Any]]:
-    """The links of a URDF's text; relative names of meshes are those of the working directory. Raises RobotError."""
-    return _scene(urdf, joints, Path()).links
-
-
-def _scene(urdf: str, joints: Sequence[str], directory: Path) -> Scene:
+def scene_of(urdf: str, joints: Sequence[str], directory: Path) -> Scene:
+    """The scene of a URDF's text; names of meshes are relative to the directory."""
     robot = parse_description(urdf)
     reader = _Shapes(robot, directory)
     by_parent: dict[str, list[ElementTree.Element]] = {}

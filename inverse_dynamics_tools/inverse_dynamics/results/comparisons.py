@@ -34,7 +34,7 @@ def write_comparison(
     figures: of "png", "svg", "pdf"; none of them: only that of the page. page: whether report.html is
     among the files.
     """
-    from inverse_dynamics.figures.plots import check_formats, save_comparison_figure
+    from inverse_dynamics.figures.plots import check_formats, comparison_figure, save_figure
 
     check_formats(figures)
     first = comparison.evaluations[0]
@@ -42,7 +42,8 @@ def write_comparison(
     inputs = [path for e in comparison.evaluations for path in (e.bag, *e.robot.files)]
     with written_whole(directory, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as target:
         write_text(target / MARK, json_text(summary(comparison)))
-        save_comparison_figure(comparison, *(target / f"comparison.{f}" for f in figures))
+        files = (target / f"comparison.{f}" for f in figures)
+        save_figure(lambda: comparison_figure(comparison), *files)
         if page:
             _write_page(target / "report.html", title, comparison)
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from inverse_dynamics.base.files import Contents, write_text, written_whole
 from inverse_dynamics.base.plain import json_text
-from inverse_dynamics.figures.contacts import save_contact_figure
-from inverse_dynamics.figures.plots import FORMATS, check_formats
+from inverse_dynamics.figures.contacts import contact_figure
+from inverse_dynamics.figures.plots import FORMATS, check_formats, save_figure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,7 +41,8 @@ def write_contacts(
         names = ["time", "torques", "valid", "contact"]
         names += ["wrenches", "unseen"] if contacts.wrenches is not None else []
         np.savez(directory / "series.npz", **{name: getattr(contacts, name) for name in names})
-        save_contact_figure(contacts, *(directory / f"contacts.{suffix}" for suffix in figures))
+        files = (directory / f"contacts.{suffix}" for suffix in figures)
+        save_figure(lambda: contact_figure(contacts), *files)
 
 
 def summary(contacts: Contacts) -> dict[str, Any]:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from inverse_dynamics.base.files import check_output_file, files_written_whole, write_text
 from inverse_dynamics.base.plain import json_text
 from inverse_dynamics.errors import OutputError
-from inverse_dynamics.figures.contacts import save_payload_figure
-from inverse_dynamics.figures.plots import check_formats
+from inverse_dynamics.figures.contacts import payload_figure
+from inverse_dynamics.figures.plots import check_formats, save_figure
 from inverse_dynamics.results.yaml_text import yaml_list, yaml_number
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def write_payload(
         data, *drawn, body = fresh
         write_text(data, json_text(summary(payload)))
         if drawn:
-            save_payload_figure(payload, *drawn)
+            save_figure(lambda: payload_figure(payload), *drawn)
         write_text(body, yaml_text(payload))
 
 
