@@ -17,12 +17,15 @@ import time
 
 import numpy as np
 
-from inverse_dynamics.results.excitations import default_options
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.robot.robots import load_robot
 from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.configuration import StatedSimulation
-from inverse_dynamics.simulation.excitation import motion_gram, optimise_excitation
+from inverse_dynamics.simulation.excitation import (
+    ExcitationOptions,
+    motion_gram,
+    optimise_excitation,
+)
 from inverse_dynamics.simulation.information import CORRELATION, Unknowns
 from inverse_dynamics.simulation.model import SimulatedRobot
 from inverse_dynamics.simulation.trajectory_file import read_trajectory
@@ -64,10 +67,10 @@ def main() -> None:
     robot = load_robot(arguments.robot)
     simulated = SimulatedRobot.from_urdf(read_description(robot.urdf), robot.root, robot.tip)
     stored, _ = read_trajectory(
-        StatedSimulation.of(robot, simulated.chain).trajectory, robot.joints
+        StatedSimulation.of(robot, simulated.chain.joint_names).trajectory, robot.joints
     )
     begin = time.process_time()
-    found = optimise_excitation(simulated, default_options(duration=STORED))
+    found = optimise_excitation(simulated, ExcitationOptions(duration=STORED))
     print(f"search: {time.process_time() - begin:.1f} s of CPU")
     unknowns, states = found.unknowns, found.unknowns.random_states(1000, seed=2)
     old = unknowns.deviations(motion_gram(unknowns, stored, STORED), states).mean()

@@ -13,7 +13,7 @@ from conftest import RIGID_BODY, fails
 from simulation_arms import pendulum, two_links, write_robot
 
 from inverse_dynamics import cli
-from inverse_dynamics.results import excitations
+from inverse_dynamics.simulation import excitation
 from inverse_dynamics.simulation.excitation import ExcitationOptions
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "command_line.md"
@@ -114,7 +114,7 @@ def test_simulate_excite_and_torques(found, ids, tmp_path, monkeypatch):
     result = found("torques`", "torques", "plan.csv", *out, written=["out.csv"])
     assert result["joints"][0]["joint"] == "swing"
 
-    monkeypatch.setattr(excitations, "ExcitationOptions", partial(ExcitationOptions, iterations=6))
+    monkeypatch.setattr(excitation, "ExcitationOptions", partial(ExcitationOptions, iterations=6))
     (tmp_path / "two.urdf").write_text(two_links())
     code, out, err = ids(
         "excite", "--urdf", "two.urdf", "--out", "two.yaml", "--duration", "8", "--json"

@@ -10,7 +10,6 @@ import pytest
 from simulation_arms import pendulum, robots_package, simulated, two_links
 
 from inverse_dynamics.simulation.collision import ContactChecker
-from inverse_dynamics.simulation.descent import minimise
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.excitation import (
     MARGIN,
@@ -18,6 +17,7 @@ from inverse_dynamics.simulation.excitation import (
     Excitation,
     ExcitationOptions,
     condition_of,
+    minimise,
     motion_gram,
     optimise_excitation,
 )
@@ -57,12 +57,6 @@ def test_minimum_of_an_ellipsoid_is_found() -> None:
 def test_minimum_at_a_kink_is_found() -> None:
     best = minimise(lambda x, _: np.sign(x - 0.3), np.zeros(3), iterations=300)
     np.testing.assert_allclose(best, 0.3, atol=2e-3)
-
-
-def test_growing_penalty_is_told_how_far_the_search_is() -> None:
-    seen: list[float] = []
-    minimise(lambda x, done: (seen.append(done), x)[1], np.ones(2), iterations=4)
-    assert seen == [0.0, 0.25, 0.5, 0.75]
 
 
 @SEARCHED
@@ -188,9 +182,3 @@ def test_search_needs_limits(limit: str, text: str) -> None:
 def test_search_that_finds_nothing_says_why() -> None:
     with pytest.raises(SimulationError, match=r"no exciting trajectory was found .* effort"):
         optimise_excitation(arm(payload=Payload(1000.0)), QUICK)
-
-
-def test_missing_shapes_are_named() -> None:
-    robot = SimulatedRobot.from_urdf(pendulum())
-    found = optimise_excitation(robot, QUICK)
-    assert "self-collision can't be checked" in " ".join(found.notes)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -27,12 +26,12 @@ from inverse_dynamics.simulation.model import SimulatedRobot
 
 def unknowns_of(name: str = "ur10") -> Unknowns:
     robot = simulated(name)
-    return Unknowns.of_arm(robot, ExcitationOptions().limits(robot))
+    return ExcitationOptions().unknowns(robot)
 
 
 def test_rows_times_parameters_are_the_torques_and_friction() -> None:
     robot = simulated("panda")
-    unknowns = Unknowns.of_arm(robot, ExcitationOptions().limits(robot))
+    unknowns = ExcitationOptions().unknowns(robot)
     states = unknowns.random_states(50)
     Z, tau = unknowns.rows_and_torques(*states)
     np.testing.assert_allclose(tau, robot.torques(*states), rtol=0, atol=1e-9)
@@ -50,10 +49,9 @@ def test_rows_times_parameters_are_the_torques_and_friction() -> None:
     np.testing.assert_array_equal(np.delete(Z @ b, 3, axis=1), 0.0)
 
 
-@pytest.mark.parametrize("kind", [Unknowns.of_arm, Unknowns.of_payload])
-def test_a_weighted_sum_is_that_of_rows_and_torques(kind: Callable[..., Unknowns]) -> None:
-    robot = simulated("panda")
-    unknowns = kind(robot, ExcitationOptions().limits(robot))
+@pytest.mark.parametrize("payload", [False, True])
+def test_a_weighted_sum_is_that_of_rows_and_torques(payload: bool) -> None:
+    unknowns = ExcitationOptions(payload=payload).unknowns(simulated("panda"))
     states = unknowns.random_states(50)
     Z, tau = unknowns.rows_and_torques(*states)
     random = np.random.default_rng(2)
@@ -110,8 +108,7 @@ def test_no_information_leaves_the_prior_and_more_never_hurts() -> None:
 
 def test_payload_rows_are_those_of_the_last_link() -> None:
     robot = simulated("ur10")
-    limits = ExcitationOptions().limits(robot)
-    arm, payload = Unknowns.of_arm(robot, limits), Unknowns.of_payload(robot, limits)
+    arm, payload = (ExcitationOptions(payload=load).unknowns(robot) for load in (False, True))
     states = arm.random_states(10)
     np.testing.assert_array_equal(payload.rows(*states)[:, :, :10], arm.rows(*states)[:, :, 50:60])
     np.testing.assert_array_equal(payload.predicted[10:], 0.0)
@@ -162,14 +159,15 @@ def test_prior_knows_the_size_of_a_link_to_one_half() -> None:
 def test_gradient_of_the_cost_is_that_of_finite_differences(payload: bool) -> None:
     robot = SimulatedRobot.from_urdf(two_links(height=0.3), tip="tip")
     options = ExcitationOptions(duration=8.0, payload=payload)
-    limits = options.limits(robot)
-    unknowns = (Unknowns.of_payload if payload else Unknowns.of_arm)(robot, limits)
+    unknowns = options.unknowns(robot)
+    limits = unknowns.limits
     moving = np.array([not payload, True, True])
     family = MotionFamily.of(
         robot.chain.joint_names, limits, duration=8.0, slow=0.0 if payload else 3.0, moving=moving
     )
     tight = replace(limits, effort=0.1 * limits.effort)  # so that every penalty counts
-    judge = search._Judge(unknowns, family, tight, ContactChecker(robot, clearance=0.2), None)
+    unknowns = replace(unknowns, limits=tight)
+    judge = search._Judge(unknowns, family, ContactChecker(robot, clearance=0.2), None)
     random = np.random.default_rng(1)
     x = 0.6 * random.standard_normal(family.size)
     value, gradient = judge.cost(x)

@@ -7,10 +7,14 @@ import numpy as np
 import pytest
 from simulation_arms import CHAINS, pendulum, robots_package, simulated
 
-from inverse_dynamics.simulation.controller import DesiredMotion, Gains, JointTrajectoryController
-from inverse_dynamics.simulation.errors import SimulationError
+from inverse_dynamics.simulation.controller import (
+    DesiredMotion,
+    Gains,
+    JointTrajectoryController,
+    default_gains,
+)
 from inverse_dynamics.simulation.model import MOUNTS, JointFriction, Payload, SimulatedRobot
-from inverse_dynamics.simulation.physics import RATES, default_gains, follow
+from inverse_dynamics.simulation.physics import RATES, follow
 from inverse_dynamics.simulation.trajectory import Trajectory, WaypointTrajectory
 from inverse_dynamics.simulation.trajectory_file import read_trajectory
 
@@ -158,16 +162,3 @@ def test_repeating_trajectory_goes_on_and_samples_lie_in_the_middle_of_periods()
     assert motion.time[0] == pytest.approx(0.004)
     np.testing.assert_allclose(np.diff(motion.time), 0.008)
     np.testing.assert_allclose(motion.q[2500:], motion.q[: 2562 - 2500], atol=1e-3)
-
-
-@pytest.mark.parametrize("rate", [0, 124, 2000, -500])
-def test_other_rates_are_refused(rate: int) -> None:
-    with pytest.raises(
-        SimulationError, match=f"rate: expected one of 125, 500, 1000 Hz, got {rate}"
-    ):
-        follow(simulated("ur10"), stored("ur10"), rate=rate, duration=1.0)
-
-
-def test_too_short_a_duration_is_refused() -> None:
-    with pytest.raises(SimulationError, match=r"duration: expected at least two periods"):
-        follow(simulated("ur10"), stored("ur10"), rate=500, duration=0.003)

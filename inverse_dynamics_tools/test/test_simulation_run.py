@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -25,8 +24,6 @@ from inverse_dynamics.simulation import (
     simulate,
     write_run,
 )
-from inverse_dynamics.simulation import run as run_module
-from inverse_dynamics.simulation.excitation import ExcitationOptions
 from inverse_dynamics.simulation.trajectory import WaypointTrajectory
 
 SWING = WaypointTrajectory.through(("swing",), np.array([0.0, 1.0]), np.array([[0.0], [-0.5]]))
@@ -131,15 +128,6 @@ def test_nothing_is_overwritten_unless_asked_and_only_simulations(tmp_path: Path
         write_run(run, out, overwrite=True)
 
 
-def test_nothing_is_left_where_writing_fails(tmp_path: Path) -> None:
-    run = simulate(robot(tmp_path), trajectory=SWING, rate=125)
-    broken = replace(run, trajectory=object())
-    parent = tmp_path / "results"
-    with pytest.raises(TypeError):
-        write_run(broken, parent / "bag")
-    assert list(parent.iterdir()) == []
-
-
 def test_settings_of_the_run_configuration_are_used_and_said(tmp_path: Path) -> None:
     (tmp_path / "swing.yaml").write_text(SWING_FILE)
     simulation = (
@@ -158,18 +146,6 @@ def test_settings_of_the_run_configuration_are_used_and_said(tmp_path: Path) -> 
     other = simulate(robot(tmp_path, simulation), rate=500, gravity=(0, 0, -1.0), duration=0.25)
     assert len(other.log) == 125
     assert other.log.effort[0, 0] == pytest.approx(-2 * 1.0 * 0.5, rel=0.1)
-
-
-def test_trajectory_is_searched_for_where_none_is_stored(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(run_module, "ExcitationOptions", partial(ExcitationOptions, iterations=6))
-    arm = robot(tmp_path, urdf=two_links())
-    seen: set[str] = set()
-    run = simulate(arm, rate=125, duration=0.5, progress=lambda what, *_: seen.add(what))
-    assert "optimised with seed 0" in run.trajectory_source
-    assert run.condition_number < 1000
-    assert seen == {"optimising", "simulating"}
 
 
 def test_friction_by_part_by_the_description_and_by_figures(tmp_path: Path) -> None:
@@ -224,10 +200,8 @@ def test_mistakes_in_the_run_configuration_are_pointed_at(
             "expected either a trajectory or a search for one (optimise), got both",
         ),
         ({"joint_friction": "some"}, "joint friction: expected a part of the effort limit"),
-        ({"joint_friction": 1.5}, "joint friction: expected a part of the effort limit"),
         ({"duration": 0.001}, "duration: expected at least two periods"),
         ({"duration": 1e300}, "duration: expected at most 80000 s at 125 Hz, got 1e+300 s"),
-        ({"duration": 1e9}, "duration: expected at most 80000 s at 125 Hz, got 1e+09 s"),
         (
             {"payload": Payload(20.0, (0.5, 0, 0))},
             "trajectory: joint swing: effort at 0.00 s: expected -100 to",
@@ -248,7 +222,7 @@ def test_friction_by_part_needs_limits(tmp_path: Path) -> None:
     arm = robot(
         tmp_path, urdf=pendulum(limit='<limit lower="-1" upper="1" velocity="0" effort="90"/>')
     )
-    with pytest.raises(SimulationError, match="joint friction: joint swing has no velocity limit"):
+    with pytest.raises(SimulationError, match="joint swing: joint friction needs a velocity limit"):
         simulate(arm, trajectory=SWING, rate=125, joint_friction=0.1)
 
 

@@ -71,12 +71,12 @@ def test_repeated_messages_carry_older_figures_under_newer_stamps() -> None:
     assert (np.diff(recorded.stamps) == 1_000_000).all()
 
 
-@pytest.mark.parametrize("epoch", [EPOCH, 0.0])
-def test_stamps_jitter_but_increase(epoch: float) -> None:
-    recorded = Sensors(jitter=1e-4, epoch=epoch).record(motion(), 0)
-    offset = recorded.stamps - round(1e9 * epoch) - np.round(1e9 * TIME)
+@pytest.mark.parametrize("start", [EPOCH, 0.0])
+def test_stamps_jitter_but_increase(start: float) -> None:
+    recorded = Sensors(jitter=1e-4, start_stamp=start).record(motion(), 0)
+    offset = recorded.stamps - round(1e9 * start) - np.round(1e9 * TIME)
     assert np.std(offset) == pytest.approx(1e5, rel=0.02)
-    wild = Sensors(jitter=0.05, epoch=epoch).record(motion(), 0)
+    wild = Sensors(jitter=0.05, start_stamp=start).record(motion(), 0)
     assert (np.diff(wild.stamps) > 0).all()
     assert wild.stamps[0] >= 0
 
@@ -90,31 +90,19 @@ def test_effects_draw_from_streams_of_their_own() -> None:
     np.testing.assert_array_equal(with_drops.rows, rows)
 
 
-def test_the_seed_decides() -> None:
-    sensors = Sensors(noise=Resolution(1e-3, 1e-3, 1e-3))
-    first, again, other = (sensors.record(motion(), seed).q for seed in (1, 1, 2))
-    np.testing.assert_array_equal(first, again)
-    assert (first != other).any()
-
-
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        ({"drop": 1.0}, "drop: expected a probability from 0 to below 1, got 1"),
-        ({"drop": -0.1}, "drop: expected a probability"),
-        ({"repeat": np.nan}, "repeat: expected a probability"),
-        ({"jitter": -1.0}, "jitter: expected a time in s that isn't negative, got -1"),
-        ({"epoch": 3e9}, "start stamp: expected at most 2e+09 s"),
-        ({"jitter": 1e300}, "jitter: expected at most 60 s, got 1e+300"),
-        ({"noise": Resolution(0, 1e300, 0)}, "noise: velocity: expected at most 1e+06, got 1e+300"),
+        ({"drop": 1.5}, "drop: expected 0 to 1, got 1.5"),
+        ({"repeat": np.nan}, "repeat: expected 0 to 1, got nan"),
+        ({"jitter": -1.0}, "jitter: expected 0 to 60 s, got -1"),
+        ({"start_stamp": 3e9}, "start stamp: expected 0 to 2e9 s (a ROS stamp has 32 bits), got"),
+        ({"effort_delay": 2.0}, "effort delay: expected 0 to 1 s, got 2"),
+        ({"noise": Resolution(0, np.inf, 0)}, "noise: velocity: expected 0 to 1e6, got inf"),
         (
             {"quantisation": Resolution(0, 0, 1e-320)},
             "quantisation: effort: expected 0 or at least 1",
         ),
-        ({"effort_delay": -1e-3}, "effort delay: expected a time in s that isn't negative"),
-        ({"effort_delay": 2.0}, "effort delay: expected at most 1 s, got 2"),
-        ({"noise": Resolution(-1, 0, 0)}, "noise: position: expected a number that isn't negative"),
-        ({"quantisation": Resolution(0, 0, np.inf)}, "quantisation: effort: expected a number"),
     ],
 )
 def test_impossible_sensors_are_refused(options: dict[str, object], text: str) -> None:
@@ -195,11 +183,6 @@ def test_messages_may_be_fewer_than_samples() -> None:
     assert (np.abs(late) < 1e-3).all()
     np.testing.assert_array_equal(recorded.q, motion().q[recorded.rows])
     np.testing.assert_allclose(recorded.stamps, 1e9 * (EPOCH + TIME[recorded.rows]), atol=300)
-
-
-def test_as_many_messages_as_samples_are_all_of_them() -> None:
-    recorded = Sensors(message_rate=1000.0).record(motion(), 0)
-    np.testing.assert_array_equal(recorded.rows, np.arange(N))
 
 
 @pytest.mark.parametrize("rate", [0.0, 1001.0, np.nan])

@@ -168,12 +168,8 @@ def test_a_search_that_nobody_asked_for_is_announced(
     ("options", "text"),
     [
         (["--rate", "100"], "rate: expected one of 125, 500, 1000 Hz, got 100"),
-        (["--drop", "2"], "drop: expected a probability from 0 to below 1, got 2"),
-        (["--joint-friction", "much"], "joint friction: expected a part of the effort limit"),
         (["--from-model"], "solver plugin 'some_package/SomeSolver'"),
         (["--effort-noise", "no_result"], "no_result: expected a result of `ids evaluate`"),
-        (["--message-rate", "2000"], "message rate: expected a rate above zero, and at most"),
-        (["--payload", "30,0.5,0,0"], "joint swing: effort at 0.00 s"),
         (["--optimise"], "expected either a trajectory or a search for one"),
         (["--trajectory", "no.yaml"], "no.yaml: can't be read"),
         (["--robot", "no.yaml"], "no.yaml"),
@@ -200,10 +196,7 @@ def test_mistakes_end_with_code_2_and_leave_nothing(
         (["--noise", "1"], "expected 3 numbers, separated by commas, got '1'"),
         (["--payload", "1,2"], "expected 1 or 4 numbers, separated by commas, got '1,2'"),
         (["--seed", "-1"], "expected an integer that isn't negative"),
-        (["--seed", "9" * 5000], "expected an integer that isn't negative"),
-        (["--duration", "1_0"], "expected a number above zero, got '1_0'"),
         (["--drop", "nan"], "expected a number, got 'nan'"),
-        (["--gravity", "0,0"], "expected three numbers"),
         (["--mount", "wall", "--gravity", "0,0,1"], "not allowed with"),
     ],
 )

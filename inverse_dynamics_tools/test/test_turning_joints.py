@@ -17,9 +17,10 @@ from inverse_dynamics.evaluation.contacts import find_contacts
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.turns import on_one_turn
 from inverse_dynamics.identification.payload import estimate_payload
-from inverse_dynamics.results.excitations import default_options, excite
+from inverse_dynamics.results.excitations import excite
 from inverse_dynamics.robot.robots import load_robot, robot_of_description
 from inverse_dynamics.simulation import simulate, write_run
+from inverse_dynamics.simulation.excitation import ExcitationOptions
 
 JOINTS = ("yaw", "pitch", "roll")
 TURN = 2 * np.pi
@@ -205,7 +206,7 @@ def test_a_motion_is_found_simulated_and_evaluated(urdf, tmp_path):
     first = write_csv(tmp_path / "first.csv", resting)
     resting.q[:, 0] -= TURN
     given = [first, write_csv(tmp_path / "second.csv", resting)]
-    options = default_options(iterations=6, duration=6.0, table=False)
+    options = ExcitationOptions(iterations=6, duration=6.0, table=False)
     found = excite(arm, given=given, options=options)
     assert any("yaw moves by 0 of 6.28 in the 2 given recordings" in note for note in found.notes)
 

@@ -22,20 +22,18 @@ from inverse_dynamics.base.wording import counted
 from inverse_dynamics.errors import EvaluationError
 from inverse_dynamics.evaluation.evaluation import Arm, evaluate
 from inverse_dynamics.evaluation.turns import on_one_turn
-from inverse_dynamics.robot.descriptions import joint_units, read_description
+from inverse_dynamics.robot.descriptions import joint_units
 from inverse_dynamics.robot.robots import Robot, load_robot
 from inverse_dynamics.simulation.configuration import StatedSimulation
-from inverse_dynamics.simulation.errors import SimulationError, described_by
+from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.excitation import (
-    PAYLOAD_DURATION,
     Excitation,
     ExcitationOptions,
-    check_limits,
     motion_gram,
     optimise_excitation,
 )
-from inverse_dynamics.simulation.information import Unknowns, sample_weight
-from inverse_dynamics.simulation.model import GRAVITY, SimulatedRobot
+from inverse_dynamics.simulation.information import sample_weight
+from inverse_dynamics.simulation.modelled import description_of, simulated_robot
 from inverse_dynamics.simulation.trajectory_file import read_trajectory, trajectory_text
 
 if TYPE_CHECKING:
@@ -44,7 +42,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.evaluation import Evaluation
-    from inverse_dynamics.simulation.limits import MotionLimits
+    from inverse_dynamics.simulation.information import Unknowns
+    from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import WaypointTrajectory
 
 LEAD_IN = 3.0  # s from the start of the trajectory to send to its first point
@@ -69,7 +68,6 @@ class ExcitationResult:
     joint_names: tuple[str, ...]  # of the recordings and controllers
     units: tuple[str, ...]
     options: ExcitationOptions
-    limits: MotionLimits  # of the motion
     excitation: Excitation
     deviation: dict[str, Floats]
     noise: Floats  # (n,) N m, of the efforts
@@ -102,53 +100,41 @@ def excite(
             "expected either recordings that are given or a motion for a payload, got both: "
             "recordings of the arm contain no information about a payload"
         )
-    if robot.urdf is None:
-        raise SimulationError(
-            f"{robot.file}: names no urdf; a motion needs the robot's description"
-        )
-    description = read_description(robot.urdf)
-    with described_by(robot.urdf):
-        simulated = SimulatedRobot.from_urdf(
-            description, robot.root, robot.tip, gravity=robot.gravity or GRAVITY
-        )
-    limits = options.limits(simulated)
-    check_limits(simulated, limits)
-    kind = Unknowns.of_payload if options.payload else Unknowns.of_arm
+    description = description_of(robot)
+    simulated = simulated_robot(robot, description)
     noise = _band_noise(robot, simulated)
-    unknowns = kind(simulated, limits, noise)
+    unknowns = options.unknowns(simulated, noise)
     noise_source = "1 % of each effort limit" if noise is None else "95 % band of the robot's model"
-    known: Floats | None = None
+    known = np.zeros_like(unknowns.scale)
+    motions: dict[str, Floats] = {}
     notes: list[str] = []
     if given:
         recordings = on_one_turn([_read(recording, robot, progress) for recording in given])
         unknowns = _with_noise_of(unknowns, recordings)
         noise_source = "residuals of the given recordings"
-        known = np.zeros_like(unknowns.scale)
         for recording in recordings:
             (q, qd, qdd, _), period = _samples(recording)
             known += unknowns.gram(q, qd, qdd, period)
+        motions["given"] = known
         notes += _resting(simulated, recordings)
     say("searching for the motion, which takes about a minute")
     found = optimise_excitation(
-        simulated, options, seed=seed, noise=unknowns.noise, given=known, progress=progress
+        simulated, options, seed=seed, unknowns=unknowns, given=known, progress=progress
     )
-    motions = {} if known is None else {"given": known}
-    base = np.zeros_like(unknowns.scale) if known is None else known
-    stated = None if robot.file == robot.urdf else StatedSimulation.of(robot, simulated.chain)
-    if stated is not None and stated.trajectory is not None:
-        trajectory, _ = read_trajectory(stated.trajectory, simulated.chain.joint_names)
-        motions["stored"] = base + motion_gram(unknowns, trajectory, options.duration)
-    motions["motion"] = base + found.gram
+    stored = StatedSimulation.of(robot, simulated.chain.joint_names).trajectory
+    if stored is not None:
+        trajectory, _ = read_trajectory(stored, simulated.chain.joint_names)
+        motions["stored"] = known + motion_gram(unknowns, trajectory, options.duration)
+    motions["motion"] = known + found.gram
     states = unknowns.random_states(_TEST_STATES, seed=2)
     deviation = {"description": unknowns.deviations(None, states)}
     deviation |= {name: unknowns.deviations(gram, states) for name, gram in motions.items()}
-    greatest, travel = _use_of_limits(simulated, found, limits)
+    greatest, travel = _use_of_limits(found)
     return ExcitationResult(
         robot=robot,
         joint_names=robot.joints or simulated.chain.joint_names,
         units=joint_units(robot.urdf, description, simulated.chain.joint_names),
         options=options,
-        limits=limits,
         excitation=found,
         deviation=deviation,
         noise=unknowns.noise,
@@ -157,14 +143,6 @@ def excite(
         travel=travel,
         notes=(*simulated.chain.notes, *notes, *found.notes),
     )
-
-
-def default_options(**given: object) -> ExcitationOptions:
-    """Options of a motion, for an arm or a payload; those that are None have their defaults."""
-    stated = {name: value for name, value in given.items() if value is not None}
-    if stated.get("payload") and "duration" not in stated:
-        stated["duration"] = PAYLOAD_DURATION
-    return ExcitationOptions(**stated)  # type: ignore[arg-type]
 
 
 def check_output(out: Path, robot: Robot, given: Sequence[Path], *, overwrite: bool) -> None:
@@ -312,18 +290,11 @@ def _resting(robot: SimulatedRobot, recordings: Sequence[Evaluation]) -> list[st
     return notes
 
 
-def _use_of_limits(
-    robot: SimulatedRobot, found: Excitation, limits: MotionLimits
-) -> tuple[Floats, Floats]:
-    time = np.linspace(0.0, found.trajectory.duration, 2001)
-    q, qd, qdd = found.trajectory.at(time)
+def _use_of_limits(found: Excitation) -> tuple[Floats, Floats]:
+    """Greatest velocity, acceleration and torque (3, n), share of each limit; range of positions (n, 2)."""
+    limits = found.unknowns.limits
+    q, qd, qdd = found.trajectory.at(np.linspace(0.0, found.trajectory.duration, 2001))
     tau = found.unknowns.rows_and_torques(q, qd, qdd)[1]
-    shares = [
-        np.abs(values).max(axis=0) / limit
-        for values, limit in (
-            (qd, limits.velocity),
-            (qdd, limits.acceleration),
-            (tau, limits.effort),
-        )
-    ]
-    return np.array(shares), np.column_stack([q.min(axis=0), q.max(axis=0)])
+    greatest = np.abs([qd, qdd, tau]).max(axis=1)
+    shares = greatest / [limits.velocity, limits.acceleration, limits.effort]
+    return shares, np.column_stack([q.min(axis=0), q.max(axis=0)])

@@ -25,7 +25,7 @@ from inverse_dynamics.results.model_files import parameters_in_links, urdf_of
 from inverse_dynamics.results.yaml_text import yaml_number
 from inverse_dynamics.robot.chain_geometry import chain_geometry
 from inverse_dynamics.robot.descriptions import parse_description, read_description
-from inverse_dynamics.robot.link_parameters import inertia_matrix
+from inverse_dynamics.robot.link_parameters import about_center
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -122,10 +122,7 @@ def _lumped_links(
 
 def _set_inertial(link: ElementTree.Element, parameters: Floats) -> None:
     """Mass, center of mass, and inertia about it, in the axes of the link."""
-    mass, center = float(parameters[0]), parameters[1:4] / parameters[0]
-    about_center = inertia_matrix(parameters[4:]) - mass * (
-        center @ center * np.eye(3) - np.outer(center, center)
-    )
+    center, tensor = about_center(parameters)
     inertial = link.find("inertial")
     if inertial is None:
         inertial = ElementTree.Element("inertial")
@@ -134,10 +131,10 @@ def _set_inertial(link: ElementTree.Element, parameters: Floats) -> None:
     tail, indent = inertial.tail, inertial.text
     inertial.clear()
     inertial.tail, inertial.text = tail, indent
-    six = about_center[np.triu_indices(3)]
+    six = tensor[np.triu_indices(3)]
     for tag, attributes in (
         ("origin", {"xyz": " ".join(map(yaml_number, center)), "rpy": "0 0 0"}),
-        ("mass", {"value": yaml_number(mass)}),
+        ("mass", {"value": yaml_number(parameters[0])}),
         ("inertia", {key: yaml_number(x) for key, x in zip(_KEYS, six, strict=True)}),
     ):
         ElementTree.SubElement(inertial, tag, attributes).tail = indent

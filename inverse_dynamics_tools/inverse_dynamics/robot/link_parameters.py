@@ -27,6 +27,13 @@ def inertia_matrix(six: Floats) -> Floats:
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
+def about_center(parameters: Floats) -> tuple[Floats, Floats]:
+    """Center of mass (3,) and inertia (3, 3) about it, along the axes of the frame."""
+    center = parameters[1:4] / parameters[0]
+    to_center = parameters[0] * (center @ center * np.eye(3) - np.outer(center, center))
+    return center, inertia_matrix(parameters[4:]) - to_center
+
+
 def pseudo_inertia(parameters: Floats) -> Floats:
     """(4, 4): positive definite if a body can have these numbers [Wensing, Kim, Slotine 2018]."""
     about_origin, first = inertia_matrix(parameters[4:]), parameters[1:4]

@@ -3,7 +3,7 @@
 
     checker = ContactChecker(robot, clearance=0.01)
     checker.violations(q)               # (N,) m: how far each state is within the clearance, 0 where it is free
-    checker.closest_pair(q[k])          # names of the two links, and their distance
+    checker.closest_pair(q[k])          # distance and names of the two links
 
 Shapes are the URDF's collision boxes, cylinders and spheres. The table is the infinite plane z = 0 of the root
 link. Neighbours in the chain are not compared, nor are links whose shapes always overlap.
@@ -32,14 +32,6 @@ _RANDOM_STATES = 200  # to find links whose shapes always overlap
 _ALWAYS = 0.95  # touching in this part of them
 
 
-@dataclass(frozen=True)
-class Closeness:
-    """Two links and how far they are apart; negative: they overlap."""
-
-    distance: float  # m
-    links: tuple[str, str]
-
-
 @dataclass
 class ContactChecker:
     """Distances between the links of one robot and to its table. Not for several threads at once."""
@@ -58,19 +50,23 @@ class ContactChecker:
         self._ignored = self._always_touching()
 
     @property
-    def has_shapes(self) -> bool:
-        """Whether the description has shapes at all: without them nothing can be said."""
-        return bool(self._model.ngeom > int(self.table))
+    def notes(self) -> tuple[str, ...]:
+        """What can't be checked, in words."""
+        if self._model.ngeom > int(self.table):
+            return ()
+        return ("the description has no collision shapes: self-collision can't be checked",)
 
     def violations(self, q: Floats) -> Floats:
         """How far each state (N, n) is within the clearance: (N,) m, 0 where it is free."""
-        return np.array([self.clearance - self.closest_pair(state).distance for state in q])
+        return np.array([self.clearance - self._closest(state)[0] for state in q])
 
-    def closest_pair(self, q: Floats) -> Closeness:
-        """The two links that are closest within the clearance in one state (n,)."""
-        pairs = self._pairs(q)
-        distance, (a, b) = min(pairs, default=(self.clearance, (-1, -1)))
-        return Closeness(distance, (self._name(a), self._name(b)))
+    def closest_pair(self, q: Floats) -> tuple[float, str, str]:
+        """The distance and names of the two links that are closest in one state (n,), closer than the clearance."""
+        distance, (a, b) = self._closest(q)
+        return distance, self._name(a), self._name(b)
+
+    def _closest(self, q: Floats) -> tuple[float, tuple[int, int]]:
+        return min(self._pairs(q), default=(self.clearance, (-1, -1)))
 
     def _pairs(self, q: Floats) -> list[tuple[float, tuple[int, int]]]:
         """Distance and geoms of what is within the clearance."""
@@ -97,8 +93,6 @@ class ContactChecker:
         return {pair for pair, count in counts.items() if count >= _ALWAYS * _RANDOM_STATES}
 
     def _name(self, geom: int) -> str:
-        if geom < 0:
-            return ""
         body = self._model.geom_bodyid[geom]
         return TABLE if body == 0 else str(self._model.body(body).name)
 

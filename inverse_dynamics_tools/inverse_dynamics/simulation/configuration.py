@@ -24,11 +24,11 @@ from inverse_dynamics.simulation.controller import Gains
 from inverse_dynamics.simulation.physics import RATES
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from inverse_dynamics.base.located_yaml import Mapping
     from inverse_dynamics.robot.robots import Robot
-    from inverse_dynamics.simulation.urdf import UrdfChain
 
 DEFAULT_RATE = 500  # Hz, where neither caller nor run configuration says
 
@@ -49,11 +49,16 @@ class StatedSimulation:
         return Gains(**columns)
 
     @classmethod
-    def of(cls, robot: Robot, chain: UrdfChain) -> StatedSimulation:
+    def of(cls, robot: Robot, joint_names: Sequence[str]) -> StatedSimulation:
         """Reads them. Raises RobotError with file, line and key."""
-        mapping = _simulation(robot)
-        if mapping is None:
+        if (
+            robot.file == robot.urdf or not robot.file.is_file()
+        ):  # made of a description, or by a program
             return cls()
+        value = read_mapping(robot.file, RobotError).optional("simulation")
+        if value is None:
+            return cls()
+        mapping = value.mapping()
         trajectory = mapping.optional("trajectory")
         file = None if trajectory is None else resolve(trajectory.text(), robot.file.parent)
         if trajectory is not None and file is not None and not file.is_file():
@@ -62,26 +67,14 @@ class StatedSimulation:
         if rate is not None and rate.integer() not in RATES:
             rate.fail(f"one of {', '.join(map(str, RATES))} Hz")
         gains = mapping.optional("gains")
-        stated = {} if gains is None else _gains(gains.mapping(), chain)
+        stated = {} if gains is None else _gains(gains.mapping(), joint_names)
         mapping.reject_others()
         return cls(file, DEFAULT_RATE if rate is None else rate.integer(), stated)
 
 
-def states_simulation(robot: Robot) -> bool:
-    """Whether the run configuration has the key `simulation`."""
-    return _simulation(robot) is not None
-
-
-def _simulation(robot: Robot) -> Mapping | None:
-    if not robot.file.is_file():  # a robot that a program made
-        return None
-    value = read_mapping(robot.file, RobotError).optional("simulation")
-    return None if value is None else value.mapping()
-
-
-def _gains(mapping: Mapping, chain: UrdfChain) -> dict[tuple[int, str], float]:
+def _gains(mapping: Mapping, joint_names: Sequence[str]) -> dict[tuple[int, str], float]:
     found = {}
-    for index, joint in enumerate(chain.joint_names):
+    for index, joint in enumerate(joint_names):
         value = mapping.optional(joint)
         if value is None:
             continue

@@ -21,10 +21,12 @@ import numpy as np
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.simulation.model import SimulatedRobot
+    from inverse_dynamics.simulation.trajectory import Trajectory
 
 FASTEST = 60.0
 """Greatest natural frequency of a joint's error with default gains [rad/s]."""
 
+_STATES = 50  # of a trajectory, that default gains suit
 _DAMPING_RATIO = 0.75  # of the default gains, where a joint is lightest
 _SAMPLED_DAMPING = 1.2  # damping rate times period; a sampled velocity loop is unstable from 2 on
 _UPRIGHT = 2.0  # stiffness over the slope of the toppling torque; 1 is marginally stable
@@ -50,28 +52,29 @@ class Gains:
     i_clamp: Floats  # N m
     ff_velocity_scale: Floats  # N m s/rad
 
-    @classmethod
-    def of(cls, robot: SimulatedRobot, q: Floats, period: float) -> Gains:
-        """Gains that suit a robot along states q (N, n), for a controller with this period [s].
 
-        Well damped for the least inertia h_j each joint shows along the way while the others yield, 1 / (H^-1)_jj.
-        All joints get one natural frequency w. The greatest eigenvalue of H^-1 diag(h) limits it: there the arm is
-        lightest, and the sampled damping must be stable. The least eigenvalue, where the arm is heaviest, limits the
-        integral. A joint that carries its load above its axis gets enough stiffness to keep the load there.
-        """
-        inverses = np.linalg.inv([robot.inertia_matrix(x) for x in q])
-        h = 1.0 / np.diagonal(inverses, axis1=1, axis2=2).max(axis=0)
-        # H^-1 diag(h) has the eigenvalues of this symmetric matrix
-        eigenvalues = np.linalg.eigvalsh(np.sqrt(h)[:, None] * inverses * np.sqrt(h))
-        w = min(FASTEST, 0.5 * _SAMPLED_DAMPING / _DAMPING_RATIO / (eigenvalues.max() * period))
-        no_friction = np.zeros_like(h)
-        return cls(
-            p=np.maximum(h * w**2, _UPRIGHT * _toppling(robot, q)),
-            i=h * w**3 * eigenvalues.min() / 5,
-            d=2 * _DAMPING_RATIO * h * w,
-            i_clamp=np.where(np.isfinite(robot.chain.effort), 0.2 * robot.chain.effort, np.inf),
-            ff_velocity_scale=no_friction if robot.friction is None else robot.friction.viscous,
-        )
+def default_gains(robot: SimulatedRobot, trajectory: Trajectory, rate: int) -> Gains:
+    """Gains that suit a robot along a trajectory, for a controller with this rate [Hz].
+
+    Well damped for the least inertia h_j each joint shows along the way while the others yield, 1 / (H^-1)_jj. All
+    joints get one natural frequency w. The greatest eigenvalue of H^-1 diag(h) limits it: there the arm is lightest,
+    and the sampled damping must be stable. The least eigenvalue, where the arm is heaviest, limits the integral. A
+    joint that carries its load above its axis gets enough stiffness to keep the load there.
+    """
+    q = trajectory.at(np.linspace(0.0, trajectory.duration, _STATES))[0]
+    inverses = np.linalg.inv([robot.inertia_matrix(x) for x in q])
+    h = 1.0 / np.diagonal(inverses, axis1=1, axis2=2).max(axis=0)
+    # H^-1 diag(h) has the eigenvalues of this symmetric matrix
+    eigenvalues = np.linalg.eigvalsh(np.sqrt(h)[:, None] * inverses * np.sqrt(h))
+    w = min(FASTEST, 0.5 * _SAMPLED_DAMPING / _DAMPING_RATIO * rate / eigenvalues.max())
+    no_friction = np.zeros_like(h)
+    return Gains(
+        p=np.maximum(h * w**2, _UPRIGHT * _toppling(robot, q)),
+        i=h * w**3 * eigenvalues.min() / 5,
+        d=2 * _DAMPING_RATIO * h * w,
+        i_clamp=np.where(np.isfinite(robot.chain.effort), 0.2 * robot.chain.effort, np.inf),
+        ff_velocity_scale=no_friction if robot.friction is None else robot.friction.viscous,
+    )
 
 
 @dataclass(frozen=True)

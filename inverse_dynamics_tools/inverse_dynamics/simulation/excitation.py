@@ -28,7 +28,6 @@ import numpy as np
 
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.simulation.collision import ContactChecker
-from inverse_dynamics.simulation.descent import minimise
 from inverse_dynamics.simulation.errors import SimulationError, TrajectoryError
 from inverse_dynamics.simulation.excitation_motion import MotionFamily
 from inverse_dynamics.simulation.information import (
@@ -38,9 +37,11 @@ from inverse_dynamics.simulation.information import (
     engine_of,
     sample_weight,
 )
-from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
+from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory, require_limits
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.simulation.model import SimulatedRobot
@@ -71,12 +72,17 @@ _DIFFERENCE = 1e-6  # of velocity limit and so on, in finite differences
 _TURN = 1e-4  # rad, in finite differences of distances
 _CONDITION_SAMPLES = 200
 
+# Of the descent.
+_STEP = 0.02  # of each coordinate, at first
+_MEAN, _SQUARES = 0.9, 0.98  # of the running means, what is kept per step
+_LEAST = 1e-9  # gradient that counts
+
 
 @dataclass(frozen=True)
 class ExcitationOptions:
     """Constraints of a motion, and its purpose."""
 
-    duration: float = DURATION  # s
+    duration: float = 0.0  # s; 0: DURATION, or PAYLOAD_DURATION
     share: float = MARGIN  # of the limits of position, velocity, acceleration and effort
     time_to_full_speed: float = TIME_TO_FULL_SPEED  # s, what limits accelerations
     slow: float = SLOW  # share of the duration, for slow reversals; not for a payload
@@ -85,9 +91,22 @@ class ExcitationOptions:
     table: bool = True
     iterations: int = ITERATIONS
 
+    def __post_init__(self) -> None:
+        usual = PAYLOAD_DURATION if self.payload else DURATION
+        object.__setattr__(self, "duration", self.duration or usual)
+
+    def unknowns(self, robot: SimulatedRobot, noise: Floats | None = None) -> Unknowns:
+        """What is unknown before the motion. noise: (n,) N m, of the efforts; None: a part of each effort limit.
+
+        Raises SimulationError where the description states no limit that the search needs.
+        """
+        return Unknowns.of(robot, self.limits(robot), noise, payload=self.payload)
+
     def limits(self, robot: SimulatedRobot) -> MotionLimits:
         """Limits of the motion."""
-        return MotionLimits.of(robot, self.time_to_full_speed).fraction(self.share)
+        limits = MotionLimits.of(robot, self.time_to_full_speed).fraction(self.share)
+        _check_limits(robot, limits)
+        return limits
 
 
 @dataclass(frozen=True)
@@ -106,21 +125,19 @@ def optimise_excitation(
     options: ExcitationOptions | None = None,
     *,
     seed: int = 0,
-    noise: Floats | None = None,
+    unknowns: Unknowns | None = None,
     given: Floats | None = None,
     progress: Progress = no_progress,
 ) -> Excitation:
     """Exciting motion of a robot; the same seed gives the same one.
 
-    noise: (n,) N m, of the efforts; None: a part of each effort limit. given: (m, m), information that is there
-    already, of Unknowns.gram().
+    unknowns: None: those of the options. given: (m, m), information that is there already, of Unknowns.gram().
 
     Raises SimulationError if none was found within the limits, and where the URDF lacks limits.
     """
     options = options or ExcitationOptions()
-    limits = options.limits(robot)
-    check_limits(robot, limits)
-    unknowns = (Unknowns.of_payload if options.payload else Unknowns.of_arm)(robot, limits, noise)
+    unknowns = unknowns or options.unknowns(robot)
+    limits = unknowns.limits
     moving = np.ones(len(limits.lower), dtype=bool)
     if options.payload:
         moving[:-WRIST] = False
@@ -132,7 +149,7 @@ def optimise_excitation(
         moving=moving,
     )
     searched = ContactChecker(robot, clearance=options.clearance + _CLOSER, table=options.table)
-    judge = _Judge(unknowns, family, limits, searched, given)
+    judge = _Judge(unknowns, family, searched, given)
     x = _start(judge, family, np.random.default_rng(seed))
 
     def gradient(x: Floats, done: float) -> Floats:
@@ -147,22 +164,43 @@ def optimise_excitation(
         condition_of(robot, trajectory),
         unknowns,
         motion_gram(unknowns, trajectory),
-        _notes(unknowns, family, trajectory, checker),
+        (*checker.notes, *_one_sided(unknowns, family, trajectory)),
     )
 
 
-def check_limits(robot: SimulatedRobot, limits: MotionLimits) -> None:
+def minimise(
+    gradient: Callable[[Floats, float], Floats],
+    start: Floats,
+    *,
+    iterations: int,
+    progress: Progress = no_progress,
+) -> Floats:
+    """The point (m,) after `iterations` steps of Adam from `start`, coordinates of about one.
+
+    Steps go along a running mean of the gradients, each coordinate divided by the root of a running mean of their
+    squares [Kingma and Ba, arXiv 1412.6980, algorithm 1], and become shorter towards the end [cosine: Loshchilov and
+    Hutter, arXiv 1608.03983]. There is no line search, which kinks of the cost would stop.
+
+    gradient: of the cost at x (m,), done a part from 0 to 1 of the steps, since penalties may grow.
+    """
+    x = np.array(start, dtype=np.float64)
+    mean, squares = np.zeros_like(x), np.zeros_like(x)
+    for k in range(iterations):
+        progress("optimising", k, iterations)
+        done = k / iterations
+        slope = gradient(x, done)
+        mean = _MEAN * mean + (1.0 - _MEAN) * slope
+        squares = _SQUARES * squares + (1.0 - _SQUARES) * slope**2
+        unbiased = mean / (1.0 - _MEAN ** (k + 1))
+        size = np.sqrt(squares / (1.0 - _SQUARES ** (k + 1)))
+        x = x - _STEP * 0.5 * (1.0 + np.cos(np.pi * done)) * unbiased / (size + _LEAST)
+    progress("optimising", iterations, iterations)
+    return x
+
+
+def _check_limits(robot: SimulatedRobot, limits: MotionLimits) -> None:
     """Raises SimulationError where the description states no limit that the search needs."""
-    for article, name, values in (
-        ("a", "velocity", limits.velocity),
-        ("an", "effort", limits.effort),
-    ):
-        for joint, value in zip(robot.chain.joint_names, values, strict=True):
-            if not (np.isfinite(value) and value > 0):
-                raise SimulationError(
-                    f"robot description: joint {joint}: the search needs {article} {name} limit, got {value:g}; "
-                    f"add <limit {name}=.../>, or give a trajectory by --trajectory"
-                )
+    require_limits(robot.chain, "the search")
     lower, upper = limits.window()
     for joint, low, high in zip(robot.chain.joint_names, lower, upper, strict=True):
         if not low < high:
@@ -227,28 +265,17 @@ def _shrunk_until_free(
     )
 
 
-def _notes(
-    unknowns: Unknowns,
-    family: MotionFamily,
-    trajectory: WaypointTrajectory,
-    checker: ContactChecker,
-) -> tuple[str, ...]:
-    notes = []
-    if not checker.has_shapes:
-        notes.append("the description has no collision shapes: self-collision can't be checked")
-    if family.reversals:
-        g = unknowns.gravity(trajectory.positions[list(family.reversals)])
-        heavy = _greatest_gravity(unknowns) > _LIGHT * unknowns.limits.effort
-        one_sided = [
-            name
-            for name, loaded, values in zip(family.joint_names, heavy, g.T, strict=True)
-            if loaded and values.min() * values.max() >= 0.0
-        ]
-        if one_sided:
-            notes.append(
-                f"slow reversals under gravity in one direction only: {', '.join(one_sided)}"
-            )
-    return tuple(notes)
+def _one_sided(
+    unknowns: Unknowns, family: MotionFamily, trajectory: WaypointTrajectory
+) -> list[str]:
+    """A note on joints whose slow reversals see gravity in one direction only."""
+    if not family.reversals:
+        return []
+    g = unknowns.gravity(trajectory.positions[list(family.reversals)])
+    heavy = _greatest_gravity(unknowns) > _LIGHT * unknowns.limits.effort
+    alike = heavy & (g.min(axis=0) * g.max(axis=0) >= 0.0)
+    names = ", ".join(np.array(family.joint_names)[alike])
+    return [f"slow reversals under gravity in one direction only: {names}"] if names else []
 
 
 def _greatest_gravity(unknowns: Unknowns) -> Floats:
@@ -264,11 +291,10 @@ class _Judge:
         self,
         unknowns: Unknowns,
         family: MotionFamily,
-        limits: MotionLimits,
         checker: ContactChecker,
         given: Floats | None,
     ) -> None:
-        self.weight = _FIRST_WEIGHT
+        self.weight, limits = _FIRST_WEIGHT, unknowns.limits
         self._unknowns, self._family, self._limits = unknowns, family, limits
         self._checker = checker
         self._given = np.zeros_like(unknowns.scale) if given is None else given

@@ -14,7 +14,7 @@ derivatives by x cost nothing.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,18 +26,13 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats, Mask
     from inverse_dynamics.simulation.limits import MotionLimits
 
+    Basis = tuple[Floats, Floats, Floats]
+    """Positions of all waypoints (K) to positions, velocities, accelerations at N times: (N, K) each."""
+
 KNOTS = 0.5  # s between waypoints
 SLOW_SPEED = 0.05  # part of the velocity limit, the greatest in slow reversals
 _BUMP_SPEED = 1.12 * np.pi  # greatest speed of a slow motion there and back, of 1 rad in 1 s
 _BUMP = np.array([0.0, 0.5, 1.0, 0.5, 0.0])  # waypoints of a slow motion there and back
-
-
-class Basis(NamedTuple):
-    """Positions of all waypoints (K) to positions, velocities, accelerations at N times: (N, K) each."""
-
-    q: Floats
-    qd: Floats
-    qdd: Floats
 
 
 @dataclass(frozen=True)
@@ -66,19 +61,20 @@ class MotionFamily:
         moving: Mask,
     ) -> MotionFamily:
         """duration: s; slow: s of it, for two slow reversals; 0: none."""
-        parts = _parts(duration, slow)
+        halves = 2 if slow else 1
+        fast = (duration - slow) / halves
+        count = max(2, round(fast / KNOTS))
+        legs = []  # duration, poses and bumps of the waypoints of each part between rests
+        for half in range(halves):
+            begin, end = half * count, 0 if half == halves - 1 else (half + 1) * count
+            if slow:
+                legs.append((slow / 2, 4 * [begin], _BUMP[1:]))
+            legs.append((fast, [*range(begin + 1, begin + count), end], np.zeros(count)))
         times, poses, bumps, rests = [0.0], [0], [0.0], []
-        for index, (kind, seconds) in enumerate(parts):
-            if kind == "slow":
-                count, pose = len(_BUMP) - 1, poses[-1]
-                poses += count * [pose]
-                bumps += list(_BUMP[1:])
-            else:
-                count = max(2, round(seconds / KNOTS))
-                last = 0 if index == len(parts) - 1 else max(poses) + count
-                poses += [*range(max(poses) + 1, max(poses) + count), last]
-                bumps += count * [0.0]
-            times += list(times[-1] + seconds * np.arange(1, count + 1) / count)
+        for seconds, ahead, bump in legs:
+            times += list(times[-1] + seconds * np.arange(1, len(ahead) + 1) / len(ahead))
+            poses += ahead
+            bumps += list(bump)
             rests.append(len(times) - 1)
         lower, upper = limits.window()
         way = SLOW_SPEED * limits.velocity * (slow / 2) / _BUMP_SPEED
@@ -106,15 +102,10 @@ class MotionFamily:
         """How many free numbers there are."""
         return self.amplitudes.size
 
-    def poses(self, x: Floats) -> Floats:
-        """The free poses (P, n) [rad]."""
-        return np.asarray(
-            self.middle + self.waves @ (self.amplitudes * x.reshape(self.amplitudes.shape))
-        )
-
     def positions(self, x: Floats) -> Floats:
         """Waypoints (K, n) [rad]."""
-        return np.asarray(self.pose_of @ self.poses(x) + self.offsets)
+        waves = self.waves @ (self.amplitudes * x.reshape(self.amplitudes.shape))
+        return np.asarray(self.pose_of @ (self.middle + waves) + self.offsets)
 
     def member(self, x: Floats) -> WaypointTrajectory:
         """The motion of free numbers x (size,)."""
@@ -125,12 +116,12 @@ class MotionFamily:
     def basis(self, time: Floats) -> Basis:
         """Matrices that turn positions of waypoints into the motion at those times."""
         unit = WaypointTrajectory.through((), self.times, np.eye(len(self.times)), self.rests)
-        return Basis(*unit.at(time))
+        return unit.at(time)
 
     def states(self, x: Floats, basis: Basis) -> tuple[Floats, Floats, Floats]:
         """q, qd, qdd (N, n)."""
         positions = self.positions(x)
-        return basis.q @ positions, basis.qd @ positions, basis.qdd @ positions
+        return basis[0] @ positions, basis[1] @ positions, basis[2] @ positions
 
     def pulled_back(self, slopes: Sequence[Floats], basis: Basis) -> Floats:
         """Gradient by x (size,) of what has three gradients (N, n), by q, qd and qdd."""
@@ -146,11 +137,3 @@ def _waves(count: int) -> Floats:
     """Columns: cosines of 0, 1/2, 1, ... turns over `count` poses, of amplitude one."""
     at = (np.arange(count) + 0.5) / count
     return np.asarray(np.cos(np.pi * np.outer(at, np.arange(count))))
-
-
-def _parts(duration: float, slow: float) -> list[tuple[str, float]]:
-    """Kinds and times [s] of the parts of a motion."""
-    if slow == 0.0:
-        return [("fast", duration)]
-    fast = (duration - slow) / 2
-    return [("slow", slow / 2), ("fast", fast), ("slow", slow / 2), ("fast", fast)]

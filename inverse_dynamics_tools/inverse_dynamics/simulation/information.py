@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How uncertain the predicted torques of an arm are after a motion has been recorded.
 
-    unknowns = Unknowns.of_arm(robot, limits, noise)
+    unknowns = Unknowns.of(robot, limits, noise)
     gram = unknowns.gram(q, qd, qdd, period)          # of a motion, or of a recording
     random = unknowns.random_states(1000)
     unknowns.deviations(gram, random)                 # (n,) N m, mean over the random states
@@ -22,7 +22,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -30,7 +29,7 @@ from inverse_dynamics._core import FastModel
 from inverse_dynamics.robot.link_parameters import inertia_matrix, pseudo_inertia
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
@@ -60,18 +59,8 @@ _BLOCK = 2000  # states at a time
 
 def engine_of(robot: SimulatedRobot) -> FastModel:
     """The chain as the description has it, with the payload."""
-    chain, payload, urdf = robot.chain, robot.payload, robot.chain.urdf
-    if payload is not None:
-        mass, *center = (repr(float(number)) for number in (payload.mass, *payload.center))
-        place = " ".join(center)
-        body = (
-            f'<link name="ids_payload"><inertial><origin xyz="{place}"/><mass value="{mass}"/>'
-            '<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>'
-            f'<joint name="ids_payload" type="fixed"><parent link={quoteattr(chain.tip)}/>'
-            '<child link="ids_payload"/></joint>'
-        )
-        urdf = urdf.removesuffix("</robot>") + f"{body}</robot>"
-    return FastModel.from_urdf(urdf, root=chain.root, tip=chain.tip, gravity=robot.gravity)
+    chain = robot.chain
+    return FastModel.from_urdf(chain.urdf, root=chain.root, tip=chain.tip, gravity=robot.gravity)
 
 
 def base_count(engine: FastModel) -> int:
@@ -117,33 +106,33 @@ class Unknowns:
     predicted: Floats  # (m,) 1 for unknowns whose effect on torques is to be known, 0 for others
 
     @classmethod
-    def of_arm(
-        cls, robot: SimulatedRobot, limits: MotionLimits, noise: Floats | None = None
+    def of(
+        cls,
+        robot: SimulatedRobot,
+        limits: MotionLimits,
+        noise: Floats | None = None,
+        *,
+        payload: bool = False,
     ) -> Unknowns:
-        """All parameters of an arm. noise: None: NOISE of each effort limit."""
+        """All parameters of an arm. noise: None: NOISE of each effort limit.
+
+        payload: the ten parameters of a body at the tip instead; what friction may have changed is a nuisance.
+        """
         model = engine_of(robot)
         links = model.parameters.reshape(-1, PARAMETERS_PER_LINK)
         total = max(float(links[:, 0].sum()), 1e-3)
-        scales = [_prior_scale(_pseudo_inertia(link, total)) for link in links]
-        own = _own_scales(limits)
-        scale = _block_diagonal([*scales, np.diag(own)])
+        if payload:
+            bodies = [_PAYLOAD_SHARE * total * np.diag([*3 * [_PAYLOAD_RADIUS**2 / 5], 1.0])]
+        else:
+            bodies = [_pseudo_inertia(link, total) for link in links]
+        own, inertial = _own_scales(limits), PARAMETERS_PER_LINK * len(bodies)
+        scale = np.diag(np.append(np.zeros(inertial), own))
+        for begin, body in zip(range(0, inertial, PARAMETERS_PER_LINK), bodies, strict=True):
+            part = slice(begin, begin + PARAMETERS_PER_LINK)
+            scale[part, part] = _prior_scale(body)
+        predicted = np.repeat([1.0, 0.0 if payload else 1.0], [inertial, len(own)])
         noise = NOISE * limits.effort if noise is None else noise
-        return cls(model, limits, noise, slice(0, links.size), scale, np.ones(len(scale)))
-
-    @classmethod
-    def of_payload(
-        cls, robot: SimulatedRobot, limits: MotionLimits, noise: Floats | None = None
-    ) -> Unknowns:
-        """The ten parameters of a body at the tip; what friction may have changed is a nuisance."""
-        model = engine_of(robot)
-        links = model.parameters.reshape(-1, PARAMETERS_PER_LINK)
-        mass = _PAYLOAD_SHARE * max(float(links[:, 0].sum()), 1e-3)
-        ball = _prior_scale(mass * np.diag([*3 * [_PAYLOAD_RADIUS**2 / 5], 1.0]))
-        own = _own_scales(limits)
-        scale = _block_diagonal([ball, np.diag(own)])
-        noise = NOISE * limits.effort if noise is None else noise
-        predicted = np.repeat([1.0, 0.0], [PARAMETERS_PER_LINK, len(own)])
-        columns = slice(links.size - PARAMETERS_PER_LINK, links.size)
+        columns = slice(links.size - inertial, links.size)
         return cls(model, limits, noise, columns, scale, predicted)
 
     def rows(self, q: Floats, qd: Floats, qdd: Floats) -> Floats:
@@ -256,15 +245,6 @@ def _own_scales(limits: MotionLimits) -> Floats:
         shape,
     ]
     return np.column_stack(columns).ravel()
-
-
-def _block_diagonal(blocks: Sequence[Floats]) -> Floats:
-    whole = np.zeros(2 * (sum(map(len, blocks)),))
-    at = 0
-    for block in blocks:
-        whole[at : at + len(block), at : at + len(block)] = block
-        at += len(block)
-    return whole
 
 
 def sample_weight(period: float) -> float:

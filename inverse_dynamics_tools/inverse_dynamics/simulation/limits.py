@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics.simulation.errors import TrajectoryError
+from inverse_dynamics.simulation.errors import SimulationError, TrajectoryError
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.simulation.collision import ContactChecker
     from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory
+    from inverse_dynamics.simulation.urdf import UrdfChain
 
 CHECK_STEP = 0.01
 """Trajectories are checked at points this far apart [s]."""
@@ -66,6 +67,17 @@ class MotionLimits:
         )
 
 
+def require_limits(chain: UrdfChain, what: str) -> None:
+    """Raises SimulationError where the description limits no velocity or effort; what: needs them."""
+    for limit, values in (("a velocity", chain.velocity), ("an effort", chain.effort)):
+        for joint, value in zip(chain.joint_names, values, strict=True):
+            if not (np.isfinite(value) and value > 0):
+                raise SimulationError(
+                    f"robot description: joint {joint}: {what} needs {limit} limit, got {value:g}; "
+                    f"add <limit {limit.split()[1]}=.../>"
+                )
+
+
 def check_trajectory(
     robot: SimulatedRobot,
     trajectory: Trajectory,
@@ -109,9 +121,9 @@ def check_trajectory(
 
 def _check_contacts(time: Floats, q: Floats, checker: ContactChecker) -> None:
     for k in np.flatnonzero(checker.violations(q) > 0)[:1]:
-        pair = checker.closest_pair(q[k])
+        distance, one, other = checker.closest_pair(q[k])
         raise TrajectoryError(
-            f"trajectory: at {time[k]:.2f} s {pair.links[0]} and {pair.links[1]}: expected a distance of "
-            f"at least {checker.clearance:g} m, got {pair.distance:.3f} m; "
+            f"trajectory: at {time[k]:.2f} s {one} and {other}: expected a distance of "
+            f"at least {checker.clearance:g} m, got {distance:.3f} m; "
             "change the motion, or let --optimise find one"
         )

@@ -15,8 +15,9 @@ What MuJoCo would do to a URDF on its own, and what is done about it:
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -32,11 +33,15 @@ if TYPE_CHECKING:
 else:
     mujoco = lazily_imported("mujoco", "a simulation")
 
-GRAVITY = (0.0, 0.0, -9.81)
+Gravity = tuple[float, float, float]
+
+GRAVITY: Gravity = (0.0, 0.0, -9.81)
 """Acceleration of falling bodies in the frame of the root link [m/s^2], robot standing on the floor."""
 
 MOUNTS = {"floor": (0.0, 0.0, -9.81), "wall": (-9.81, 0.0, 0.0), "ceiling": (0.0, 0.0, 9.81)}
 """Gravity in the frame of the root link: its z axis points up, away from the wall (x up), or down."""
+
+_NEAR = 1e-7  # rad/s; slopes between closer velocities are rounding
 
 
 @dataclass(frozen=True)
@@ -56,33 +61,33 @@ class Inertia:
     tensor: Floats  # (3, 3), along the axes of the link's frame
 
 
-@dataclass(frozen=True)
-class Bodies:
-    """Inertia in place of that of a description: of links by their names, and of the motors."""
+class Friction:
+    """Friction in each joint, n: a law of velocity and position."""
 
-    inertia: dict[str, Inertia]  # a link that isn't named has none
-    rotor_inertia: Floats  # (n,) kg m^2 (prismatic kg), seen at the joint
+    viscous: Floats  # (n,) N m s/rad that a controller makes up for with ff_velocity_scale
+    steepest: Floats | float = 0.0  # (n,) rad/s, the velocity at which friction changes fastest
 
-
-class Friction(Protocol):
-    """Friction in each joint, n."""
-
-    @property
-    def viscous(self) -> Floats:
-        """(n,) N m s/rad that a controller makes up for with ff_velocity_scale."""
-
-    def torques(self, qd: Floats, q: Floats, /) -> Floats:
+    def torques(self, qd: Floats, q: Floats) -> Floats:
         """Friction torques (..., n) in states (..., n), as the actuators must add them."""
+        raise NotImplementedError
 
-    def line(self, qd: Floats, q: Floats, /) -> tuple[Floats, Floats]:
+    def line(self, qd: Floats, q: Floats) -> tuple[Floats, Floats]:
         """(n,) slope, not negative, and torque at zero velocity of a line.
 
-        It has the torque of friction at qd, and stays close to it from there to where friction changes fastest.
+        It has the torque of friction at qd and, while friction grows with velocity, also where the law is steepest,
+        such as the step of Coulomb friction.
         """
+        center = np.full_like(qd, self.steepest)
+        apart = np.where(np.abs(qd - center) < _NEAR, _NEAR, qd - center)
+        here, there, middle = self.torques(
+            np.array([qd, center + apart, center]), np.array(3 * [q])
+        )
+        slope = np.maximum((there - middle) / apart, 0.0)
+        return slope, here - slope * qd
 
 
 @dataclass(frozen=True)
-class JointFriction:
+class JointFriction(Friction):
     """Friction in each joint: `coulomb tanh(qd / slip) + viscous qd`; n each.
 
     The hyperbolic tangent is the sign function with a slope at rest, and a case of the sigmoid that identified models
@@ -93,19 +98,9 @@ class JointFriction:
     viscous: Floats  # N m s/rad
     slip: float = 0.02  # rad/s
 
-    def torques(self, qd: Floats, _q: Floats | None = None) -> Floats:
+    def torques(self, qd: Floats, q: Floats | None = None) -> Floats:
         """Friction torques (..., n) at velocities (..., n), as the actuators must add them."""
         return self.coulomb * np.tanh(qd / self.slip) + self.viscous * qd
-
-    def secant(self, qd: Floats) -> Floats:
-        """Torque over velocity, N m s/rad: at rest its limit, the slope."""
-        x = np.abs(qd) / self.slip
-        ratio = np.tanh(x) / np.maximum(x, 1e-9)
-        return self.coulomb / self.slip * np.where(x < 1e-9, 1.0, ratio) + self.viscous
-
-    def line(self, qd: Floats, _q: Floats | None = None) -> tuple[Floats, Floats]:
-        """Through zero."""
-        return self.secant(qd), np.zeros_like(qd)
 
 
 @dataclass(frozen=True)
@@ -115,8 +110,7 @@ class SimulatedRobot:
     chain: UrdfChain
     model: mujoco.MjModel
     dofs: Floats = field(repr=False)  # (n,) index of each joint in MuJoCo's vectors
-    gravity: tuple[float, float, float]
-    payload: Payload | None
+    gravity: Gravity
     friction: Friction | None
 
     @classmethod
@@ -126,23 +120,20 @@ class SimulatedRobot:
         root: str = "",
         tip: str = "",
         *,
-        gravity: tuple[float, float, float] = GRAVITY,
+        gravity: Gravity = GRAVITY,
         payload: Payload | None = None,
         friction: Friction | None = None,
-        bodies: Bodies | None = None,
+        rotor_inertia: Floats | None = None,
     ) -> SimulatedRobot:
         """Model of the chain from root to tip (empty: the URDF's root and its only leaf).
 
-        bodies: in place of those of the description.
+        rotor_inertia: (n,) kg m^2 (prismatic kg), seen at the joint.
         """
         chain = chain_from_urdf(urdf, root, tip)
+        if payload is not None:
+            chain = _loaded(chain, payload)
         spec = _read_spec(chain)
         inertia = _inertia(spec)
-        if bodies is not None:
-            nothing = Inertia(0.0, np.zeros(3), np.zeros((3, 3)))
-            inertia = {**dict.fromkeys(inertia, nothing), **bodies.inertia}
-        if payload is not None:
-            _attach(spec, chain.tip, payload)
         try:
             model = spec.compile()
         except ValueError as error:
@@ -153,8 +144,8 @@ class SimulatedRobot:
         dofs = np.array([model.joint(name).dofadr[0] for name in chain.joint_names])
         if isinstance(friction, JointFriction):
             _check_friction(friction, len(dofs))
-        if bodies is not None:
-            model.dof_armature[dofs] = bodies.rotor_inertia
+        if rotor_inertia is not None:
+            model.dof_armature[dofs] = rotor_inertia
         model.dof_damping[:] = 0.0
         model.dof_frictionloss[:] = 0.0
         model.opt.gravity = _rotation_of_root(model, chain.root) @ np.array(gravity)
@@ -166,7 +157,7 @@ class SimulatedRobot:
         model.opt.disableflags |= int(
             mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_LIMIT
         )
-        return cls(chain, model, dofs, gravity, payload, friction)
+        return cls(chain, model, dofs, gravity, friction)
 
     def new_data(self) -> mujoco.MjData:
         """State of a simulation: q = qd = 0."""
@@ -226,20 +217,21 @@ def _massless(error: Exception, chain: UrdfChain, inertia: dict[str, Inertia]) -
     )
 
 
-def _attach(spec: mujoco.MjSpec, tip: str, payload: Payload) -> None:
+def _loaded(chain: UrdfChain, payload: Payload) -> UrdfChain:
+    """The chain with a link without a volume, fixed to the tip."""
     if not (np.isfinite(payload.mass) and payload.mass > 0 and np.isfinite(payload.center).all()):
         raise SimulationError(
             "payload: expected a mass above zero [kg] and a finite center of mass [m], got "
             f"{payload.mass:g} kg at {', '.join(f'{x:g}' for x in payload.center)}"
         )
-    spec.body(tip).add_body(
-        name="ids_payload",
-        pos=[0.0, 0.0, 0.0],
-        ipos=payload.center,
-        mass=payload.mass,
-        inertia=[0.0, 0.0, 0.0],
-        explicitinertial=True,
+    place = " ".join(repr(float(number)) for number in payload.center)
+    load = (
+        f'<link name="ids_payload"><inertial><origin xyz="{place}"/><mass value="{float(payload.mass)!r}"/>'
+        '<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>'
+        f'<joint name="ids_payload" type="fixed"><parent link={quoteattr(chain.tip)}/>'
+        '<child link="ids_payload"/></joint>'
     )
+    return replace(chain, urdf=chain.urdf.removesuffix("</robot>") + f"{load}</robot>")
 
 
 def _inertia(spec: mujoco.MjSpec) -> dict[str, Inertia]:
@@ -250,7 +242,7 @@ def _inertia(spec: mujoco.MjSpec) -> dict[str, Inertia]:
             continue
         R = np.empty((3, 3))
         mujoco.mju_quat2Mat(R.reshape(9), body.iquat)
-        xx, yy, zz, xy, xz, yz = body.fullinertia
+        xx, yy, zz, xy, xz, yz = np.nan_to_num(body.fullinertia)  # NaN: all are zero
         tensor = R @ [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] @ R.T
         found[body.name] = Inertia(body.mass, np.array(body.ipos), tensor)
     return found

@@ -3,44 +3,54 @@
 
     solver = model_solver(robot, description, gravity, payload)
     friction = ModelFriction(solver)                       # any law that the solver has
-    bodies = model_bodies(robot, chain, description)       # of a model as `ids identify` writes it
+    text, rotors = modelled_description(robot, chain, description)   # of a model as `ids identify` writes it
 
 MuJoCo computes the rigid bodies, so that a simulated recording still checks the engine; friction is the solver's.
 """
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from inverse_dynamics._core import FastModel, Solver
+from inverse_dynamics.base.decimals import decimal
 from inverse_dynamics.robot.chain_geometry import chain_geometry
-from inverse_dynamics.robot.link_parameters import inertia_matrix, pseudo_inertia, turned
+from inverse_dynamics.robot.descriptions import parse_description, read_description
+from inverse_dynamics.robot.link_parameters import about_center, pseudo_inertia, turned
 from inverse_dynamics.robot.solvers import open_solver
 from inverse_dynamics.simulation.errors import SimulationError
-from inverse_dynamics.simulation.model import Bodies, Inertia, Payload, SimulatedRobot
+from inverse_dynamics.simulation.limits import require_limits
+from inverse_dynamics.simulation.model import (
+    GRAVITY,
+    Friction,
+    JointFriction,
+    SimulatedRobot,
+)
+from inverse_dynamics.simulation.urdf import chain_from_urdf
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.robot.robots import Robot
+    from inverse_dynamics.simulation.model import Gravity, Payload
     from inverse_dynamics.simulation.urdf import UrdfChain
 
 _STATES = 20  # in which simulator and solver are compared
 _SAME = 1e-7  # of the greatest torque: rounding, of moments about principal axes
 _FASTEST = 1.0  # rad/s, of velocities that steps of friction are looked for at
 _VELOCITIES = 4001
-_NEAR = 1e-7  # rad/s; slopes between closer velocities are rounding
 
 
-class ModelFriction:
+class ModelFriction(Friction):
     """Friction of a solver. Laws that depend on the load count the solver's payloads and gravity."""
 
-    def __init__(self, solver: Solver, center: Floats) -> None:
-        """center: (n,) rad/s, where the laws are steepest."""
-        self._solver, self._center = solver, center
-        self.viscous = np.zeros_like(center)  # a controller has all of the law as feed-forward
+    def __init__(self, solver: Solver, steepest: Floats) -> None:
+        """steepest: (n,) rad/s, where the laws are."""
+        self._solver, self.steepest = solver, steepest
+        self.viscous = np.zeros_like(steepest)  # a controller has all of the law as feed-forward
 
     @classmethod
     def of(cls, solver: Solver) -> ModelFriction | None:
@@ -53,23 +63,61 @@ class ModelFriction:
         steepest = np.abs(np.diff(torques, axis=0)).argmax(axis=0)
         return cls(solver, 0.5 * (qd[steepest] + qd[steepest + 1]))
 
-    def torques(self, qd: Floats, q: Floats, /) -> Floats:
+    def torques(self, qd: Floats, q: Floats) -> Floats:
         """(..., n) at velocities and positions (..., n)."""
         return self._solver.friction_vector(qd, q=q)
 
-    def line(self, qd: Floats, q: Floats, /) -> tuple[Floats, Floats]:
-        """Through the friction at the velocity where the law is steepest, such as the step of Coulomb friction."""
-        apart = qd - self._center
-        apart = np.where(np.abs(apart) < _NEAR, _NEAR, apart)
-        here, there, center = self.torques(
-            np.array([qd, self._center + apart, self._center]), np.array([q, q, q])
+
+def description_of(robot: Robot) -> str:
+    """The robot's description. Raises SimulationError where the run configuration names none, RobotError."""
+    if robot.urdf is None:
+        raise SimulationError(
+            f"{robot.file}: names no urdf; a simulation needs the robot's description"
         )
-        slope = np.maximum((there - center) / apart, 0.0)
-        return slope, here - slope * qd
+    return read_description(robot.urdf)
 
 
-def model_solver(
-    robot: Robot, description: str, gravity: tuple[float, float, float], payload: Payload | None
+def simulated_robot(
+    robot: Robot,
+    description: str,
+    *,
+    gravity: Gravity | None = None,
+    payload: Payload | None = None,
+    joint_friction: Friction | float | str | None = None,
+    from_model: bool = False,
+) -> SimulatedRobot:
+    """The robot of a run configuration; options are those of simulate(). Errors name the description's file."""
+    gravity = gravity or robot.gravity or GRAVITY
+    try:
+        chain = chain_from_urdf(description, robot.root, robot.tip)
+        solver = None
+        if from_model or joint_friction == "model":
+            solver = _model_solver(robot, description, gravity, payload)
+        friction = _friction(robot, chain, solver, joint_friction)
+        urdf, rotor_inertia = description, None
+        if from_model:
+            urdf, rotor_inertia = modelled_description(robot, chain, description)
+        simulated = SimulatedRobot.from_urdf(
+            urdf,
+            robot.root,
+            robot.tip,
+            gravity=gravity,
+            payload=payload,
+            friction=friction,
+            rotor_inertia=rotor_inertia,
+        )
+    except SimulationError as error:
+        text = str(error)
+        if not text.startswith("robot description"):
+            raise
+        raise SimulationError(text.replace("robot description", f"{robot.urdf}", 1)) from error
+    if solver is not None and from_model:
+        check_same_torques(simulated, robot, solver)
+    return simulated
+
+
+def _model_solver(
+    robot: Robot, description: str, gravity: Gravity, payload: Payload | None
 ) -> Solver:
     """The run configuration's solver, with friction, for a robot that is mounted and loaded like this."""
     solver = open_solver(replace(robot, friction=True), description)
@@ -79,8 +127,38 @@ def model_solver(
     return solver
 
 
-def model_bodies(robot: Robot, chain: UrdfChain, description: str) -> Bodies:
-    """Links and rotor inertias of the run configuration's model. Raises SimulationError, SolverError."""
+def _friction(
+    robot: Robot, chain: UrdfChain, solver: Solver | None, given: Friction | float | str | None
+) -> Friction | None:
+    if solver is not None and given in (None, "model"):
+        found = ModelFriction.of(solver)
+        if found is None and given == "model":
+            raise SimulationError(
+                f"joint friction: expected a solver with friction, got {robot.plugin}, which has none for "
+                f"{robot.name}; name a robot whose model has friction"
+            )
+        return found
+    if not isinstance(given, float | int | str):
+        return given
+    if given == "urdf":
+        return JointFriction(chain.friction, chain.damping)
+    try:
+        part = decimal(given) if isinstance(given, str) else float(given)
+    except ValueError:
+        part = np.nan
+    if not 0 <= part < 1:
+        raise SimulationError(
+            f"joint friction: expected a part of the effort limit, 0 to below 1, urdf or model, got {given}"
+        )
+    require_limits(chain, "joint friction")
+    return JointFriction(part * chain.effort, part * chain.effort / chain.velocity)
+
+
+def modelled_description(robot: Robot, chain: UrdfChain, description: str) -> tuple[str, Floats]:
+    """The description with the links of the run configuration's model, and rotor inertias (n,) seen at the joints.
+
+    Links that the model doesn't name have no inertia of their own. Raises SimulationError, SolverError.
+    """
     if robot.model is None:
         raise SimulationError(
             f"{robot.file}: model: expected a model file, whose links are to be simulated, got none; identify one "
@@ -92,13 +170,20 @@ def model_bodies(robot: Robot, chain: UrdfChain, description: str) -> Bodies:
             f"{robot.model}: expected the joints of the description ({', '.join(chain.joint_names)}), got "
             f"{', '.join(engine.joint_names)}"
         )
-    inertia = {}
     geometry = chain_geometry(description, chain.root, chain.joint_names)
-    for joint, parameters in zip(geometry, engine.parameters.reshape(-1, 10), strict=True):
-        inertia[joint.link] = _inertia(
+    inertials = {
+        joint.link: _inertial(
             turned(parameters, joint.rotation_from_z), f"{robot.model}: link {joint.link}"
         )
-    return Bodies(inertia, _rotor_inertia(robot, engine))
+        for joint, parameters in zip(geometry, engine.parameters.reshape(-1, 10), strict=True)
+    }
+    tree = parse_description(description)
+    for link in tree.findall("link"):
+        for stated in link.findall("inertial"):
+            link.remove(stated)
+        if (inertial := inertials.get(link.get("name", ""))) is not None:
+            link.append(inertial)
+    return ElementTree.tostring(tree, encoding="unicode"), _rotor_inertia(robot, engine)
 
 
 def check_same_torques(simulated: SimulatedRobot, robot: Robot, solver: Solver) -> None:
@@ -115,17 +200,23 @@ def check_same_torques(simulated: SimulatedRobot, robot: Robot, solver: Solver) 
         )
 
 
-def _inertia(parameters: Floats, where: str) -> Inertia:
-    """Of m, mc, I about the link's origin."""
-    mass, first = parameters[0], parameters[1:4]
+def _inertial(parameters: Floats, where: str) -> ElementTree.Element:
+    """<inertial> of a link."""
     if not np.linalg.eigvalsh(pseudo_inertia(parameters))[0] > 0:
         raise SimulationError(
             f"{where}: expected inertia that a body can have, got a pseudo-inertia that isn't positive definite; "
             "simulate the model's friction alone with --joint-friction model"
         )
-    center = first / mass
-    to_center = mass * (center @ center * np.eye(3) - np.outer(center, center))
-    return Inertia(float(mass), center, inertia_matrix(parameters[4:]) - to_center)
+    center, tensor = about_center(parameters)
+    inertial, six = ElementTree.Element("inertial"), tensor[np.triu_indices(3)].tolist()
+    keys = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    for tag, values in (
+        ("origin", {"xyz": " ".join(map(repr, center.tolist()))}),
+        ("mass", {"value": repr(float(parameters[0]))}),
+        ("inertia", dict(zip(keys, map(repr, six), strict=True))),
+    ):
+        ElementTree.SubElement(inertial, tag, values)
+    return inertial
 
 
 def _rotor_inertia(robot: Robot, engine: FastModel) -> Floats:

@@ -23,7 +23,11 @@ import numpy as np
 
 from inverse_dynamics.base.extras import lazily_imported
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.simulation.controller import DesiredMotion, Gains, JointTrajectoryController
+from inverse_dynamics.simulation.controller import (
+    DesiredMotion,
+    JointTrajectoryController,
+    default_gains,
+)
 from inverse_dynamics.simulation.errors import SimulationError
 
 if TYPE_CHECKING:
@@ -31,6 +35,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.simulation.controller import Gains
     from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory
 else:
@@ -46,7 +51,6 @@ LONGEST_STEP = 5e-4
 # rad (prismatic m) from the trajectory: where controllers of real arms usually stop.
 _LOST = 0.2
 
-_STATES_FOR_GAINS = 50
 _PROGRESS_EVERY = 500  # ticks
 
 
@@ -163,12 +167,6 @@ def drive(
     if not np.isfinite(qdd).all():
         raise SimulationError("the simulation became unstable: lower the controller's gains")
     return Response((np.arange(ticks) + 0.5) / rate, q, qd, qdd, effort, friction)
-
-
-def default_gains(robot: SimulatedRobot, trajectory: Trajectory, rate: int) -> Gains:
-    """Gains that suit a robot along a trajectory."""
-    states = trajectory.at(np.linspace(0.0, trajectory.duration, _STATES_FOR_GAINS))[0]
-    return Gains.of(robot, states, 1.0 / rate)
 
 
 def _advance(robot: SimulatedRobot, data: mujoco.MjData, effort: Floats, steps: int) -> None:

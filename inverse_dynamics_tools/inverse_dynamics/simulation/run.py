@@ -10,45 +10,37 @@ configuration.py reads the settings that a run configuration has for it.
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from inverse_dynamics.base.decimals import decimal
 from inverse_dynamics.base.extras import lazily_imported
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import listed
 from inverse_dynamics.data.joint_log import JointLog
-from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.configuration import StatedSimulation
-from inverse_dynamics.simulation.errors import SimulationError, described_by
+from inverse_dynamics.simulation.controller import default_gains
+from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.excitation import (
     ExcitationOptions,
     condition_of,
     optimise_excitation,
 )
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
-from inverse_dynamics.simulation.model import GRAVITY, Friction, JointFriction, SimulatedRobot
-from inverse_dynamics.simulation.modelled import (
-    ModelFriction,
-    check_same_torques,
-    model_bodies,
-    model_solver,
-)
+from inverse_dynamics.simulation.model import GRAVITY
+from inverse_dynamics.simulation.modelled import ModelFriction, description_of, simulated_robot
 from inverse_dynamics.simulation.physics import (
     Motion,
     check_followed,
     check_rate,
-    default_gains,
     follow,
 )
-from inverse_dynamics.simulation.sensors import Recorded, Sensors
+from inverse_dynamics.simulation.sensors import EffortNoise, Recorded, Sensors
 from inverse_dynamics.simulation.trajectory import FourierTrajectory
 from inverse_dynamics.simulation.trajectory_file import read_trajectory
-from inverse_dynamics.simulation.urdf import chain_from_urdf
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -59,7 +51,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.robot.robots import Robot
-    from inverse_dynamics.simulation.model import Payload
+    from inverse_dynamics.simulation.model import Friction, Gravity, Payload
     from inverse_dynamics.simulation.trajectory import Trajectory
     from inverse_dynamics.simulation.urdf import UrdfChain
 else:
@@ -101,7 +93,7 @@ def simulate(
     payload: Payload | None = None,
     joint_friction: Friction | float | str | None = None,
     from_model: bool = False,
-    gravity: tuple[float, float, float] | None = None,
+    gravity: Gravity | None = None,
     table: bool = True,
     say: Callable[[str], None] = lambda text: None,
     progress: Progress = no_progress,
@@ -124,18 +116,18 @@ def simulate(
 
     Raises UserError: SimulationError, TrajectoryError, RobotError.
     """
-    if robot.urdf is None:
-        raise SimulationError(
-            f"{robot.file}: names no urdf; a simulation needs the robot's description"
-        )
-    description = read_description(robot.urdf)
+    description = description_of(robot)
     gravity = gravity or robot.gravity or GRAVITY
-    with described_by(robot.urdf):
-        simulated = _simulated_robot(
-            robot, description, gravity, payload, joint_friction, from_model
-        )
+    simulated = simulated_robot(
+        robot,
+        description,
+        gravity=gravity,
+        payload=payload,
+        joint_friction=joint_friction,
+        from_model=from_model,
+    )
     chain = simulated.chain
-    stated = StatedSimulation.of(robot, chain)
+    stated = StatedSimulation.of(robot, chain.joint_names)
     rate = stated.rate if rate is None else rate
     check_rate(rate)
     sensors = sensors or Sensors()
@@ -155,19 +147,14 @@ def simulate(
         found = optimise_excitation(simulated, options, seed=seed, progress=progress)
         chosen, source = (
             found.trajectory,
-            (
-                f"Exciting trajectory for {chain.name}, optimised with seed {seed}: condition number of "
-                f"the base regressor {found.condition_number:.4g}."
-            ),
+            f"Exciting trajectory for {chain.name}, optimised with seed {seed}: condition number of "
+            f"the base regressor {found.condition_number:.4g}.",
         )
     else:
         chosen, source = _begun_by_seed(*_given_trajectory(stated.trajectory, chain), seed)
     checker = ContactChecker(simulated, table=table)
-    notes = list(chain.notes)
-    if not checker.has_shapes:
-        notes.append("the description has no collision shapes: self-collision can't be checked")
     check_trajectory(simulated, chosen, MotionLimits.of(simulated), checker)
-    notes += _unused(robot)
+    notes = [*chain.notes, *checker.notes, *_unused(robot)]
     if seed and trajectory is not None and not sensors.are_random:
         notes.append("the seed has no effect: the trajectory is given, and nothing is random")
     duration = duration or chosen.duration
@@ -181,7 +168,7 @@ def simulate(
         "joints": list(chain.joint_names),
         "root": chain.root,
         "tip": chain.tip,
-        "gravity": list(map(float, gravity)),
+        "gravity": _plain(gravity),
         "rate": rate,
         "duration": float(duration),
         "seed": seed,
@@ -189,7 +176,7 @@ def simulate(
         "payload": _plain(payload),
         "links": links.name if links else None,
         "joint_friction": _friction_settings(robot, simulated.friction),
-        **_sensor_settings(sensors),
+        **_plain(sensors),
         "gains": _plain(gains),
         "mujoco": mujoco.__version__,
         "robot_description_sha256": hashlib.sha256(description.encode()).hexdigest(),
@@ -204,41 +191,6 @@ def simulate(
         settings=settings,
         notes=tuple(notes),
     )
-
-
-def _simulated_robot(
-    robot: Robot,
-    description: str,
-    gravity: tuple[float, float, float],
-    payload: Payload | None,
-    joint_friction: Friction | float | str | None,
-    from_model: bool,
-) -> SimulatedRobot:
-    chain = chain_from_urdf(description, robot.root, robot.tip)
-    solver = None
-    if from_model or joint_friction == "model":
-        solver = model_solver(robot, description, gravity, payload)
-    if solver is not None and joint_friction in (None, "model"):
-        friction: Friction | None = ModelFriction.of(solver)
-        if friction is None and joint_friction == "model":
-            raise SimulationError(
-                f"joint friction: expected a solver with friction, got {robot.plugin}, which has none for "
-                f"{robot.name}; name a robot whose model has friction"
-            )
-    else:
-        friction = _friction(joint_friction, chain)
-    simulated = SimulatedRobot.from_urdf(
-        description,
-        robot.root,
-        robot.tip,
-        gravity=gravity,
-        payload=payload,
-        friction=friction,
-        bodies=model_bodies(robot, chain, description) if from_model else None,
-    )
-    if solver is not None and from_model:
-        check_same_torques(simulated, robot, solver)
-    return simulated
 
 
 def _given_trajectory(given: Path | Trajectory, chain: UrdfChain) -> tuple[Trajectory, str]:
@@ -271,29 +223,6 @@ def _unused(robot: Robot) -> list[str]:
     return notes
 
 
-def _friction(given: Friction | float | str | None, chain: UrdfChain) -> Friction | None:
-    if given is None or not isinstance(given, float | int | str):
-        return given
-    if given == "urdf":
-        return JointFriction(chain.friction, chain.damping)
-    try:
-        part = decimal(given) if isinstance(given, str) else float(given)
-    except ValueError:
-        part = np.nan
-    if not 0 <= part < 1:
-        raise SimulationError(
-            f"joint friction: expected a part of the effort limit, 0 to below 1, urdf or model, got {given}"
-        )
-    for name, limits in (("effort", chain.effort), ("velocity", chain.velocity)):
-        for joint, limit in zip(chain.joint_names, limits, strict=True):
-            if not (np.isfinite(limit) and limit > 0):
-                raise SimulationError(
-                    f"joint friction: joint {joint} has no {name} limit to take a part of; "
-                    "state one in the URDF"
-                )
-    return JointFriction(part * chain.effort, part * chain.effort / chain.velocity)
-
-
 def _joint_log(robot: Robot, chain: UrdfChain, recorded: Recorded) -> JointLog:
     """Messages under the names that the run configuration gives the joints in recordings."""
     names = robot.joints or chain.joint_names
@@ -313,31 +242,16 @@ def _joint_log(robot: Robot, chain: UrdfChain, recorded: Recorded) -> JointLog:
     )
 
 
-def _friction_settings(robot: Robot, friction: Friction | None) -> dict[str, Any] | None:
+def _friction_settings(robot: Robot, friction: Friction | None) -> Any:
     if isinstance(friction, ModelFriction):
         return {"model": robot.plugin if robot.model is None else robot.model.name}
     return _plain(friction)
 
 
-def _sensor_settings(sensors: Sensors) -> dict[str, Any]:
-    return {
-        "noise": _plain(sensors.noise),
-        "effort_noise": None if sensors.effort_noise is None else sensors.effort_noise.source,
-        "effort_delay": sensors.effort_delay,
-        "message_rate": sensors.message_rate,
-        "quantisation": _plain(sensors.quantisation),
-        "drop": sensors.drop,
-        "repeat": sensors.repeat,
-        "jitter": sensors.jitter,
-        "start_stamp": sensors.epoch,
-    }
-
-
-def _plain(thing: object) -> dict[str, Any] | None:
-    """The fields of a dataclass as plain data."""
-    if thing is None:
-        return None
-    return {
-        name: [float(x) for x in value] if isinstance(value, np.ndarray | tuple) else value
-        for name, value in vars(thing).items()
-    }
+def _plain(thing: object) -> Any:
+    """What YAML can hold."""
+    if isinstance(thing, EffortNoise):
+        return thing.source
+    if is_dataclass(thing):
+        return {name: _plain(value) for name, value in vars(thing).items()}
+    return [float(x) for x in thing] if isinstance(thing, np.ndarray | tuple) else thing

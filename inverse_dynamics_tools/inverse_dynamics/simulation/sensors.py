@@ -30,10 +30,7 @@ EPOCH = 1_700_000_000.0
 STRETCH = 2.0
 """Default length of a stretch [s], several times the correlation time of the residuals of real arms."""
 
-_LATEST_EPOCH = 2.0e9  # s
-_MOST_JITTER = 60.0  # s
-_MOST_DELAY = 1.0  # s
-_FINEST, _COARSEST = 1e-12, 1e6  # of noise and steps
+_FINEST = 1e-12  # of noise and steps
 _ROUNDING = 1e-9
 
 
@@ -107,13 +104,6 @@ class Resolution:
     effort: float  # N m
 
 
-NOISE = Resolution(1e-5, 1e-3, 0.1)
-"""Default standard deviations, of the order of an industrial arm's."""
-
-QUANTISATION = Resolution(1e-5, 1e-3, 0.01)
-"""Default steps."""
-
-
 class Recorded(NamedTuple):
     """Messages: M of them, n joints."""
 
@@ -129,35 +119,34 @@ class Sensors:
     """How a motion is recorded; by default as it is."""
 
     noise: Resolution | None = None  # standard deviations of Gaussian noise
+    effort_noise: EffortNoise | None = None  # of another colour, on top of `noise`
+    effort_delay: float = 0.0  # s by which recorded efforts are older than positions and velocities
+    message_rate: float | None = None  # Hz; None: a message for each sample
     quantisation: Resolution | None = None  # steps
     drop: float = 0.0  # probability that a message is lost
     repeat: float = 0.0  # probability that a message carries the numbers of the one before
     jitter: float = 0.0  # s, standard deviation of the stamps
-    epoch: float = EPOCH  # s
-    effort_noise: EffortNoise | None = None  # of another colour, on top of `noise`
-    effort_delay: float = 0.0  # s by which recorded efforts are older than positions and velocities
-    message_rate: float | None = None  # Hz; None: a message for each sample
+    start_stamp: float = EPOCH  # s
 
     def __post_init__(self) -> None:
-        for name, value in (("drop", self.drop), ("repeat", self.repeat)):
-            if not 0 <= value < 1:
-                raise SimulationError(
-                    f"{name}: expected a probability from 0 to below 1, got {value:g}"
-                )
-        for name, value, most, why in (
-            ("jitter", self.jitter, _MOST_JITTER, ""),
-            ("start stamp", self.epoch, _LATEST_EPOCH, " (a ROS stamp has 32 bits)"),
-            ("effort delay", self.effort_delay, _MOST_DELAY, ""),
+        steps = {
+            f"{name}: {quantity}": value
+            for name, three in (("noise", self.noise), ("quantisation", self.quantisation))
+            for quantity, value in (vars(three).items() if three else ())
+        }
+        for name, value, most in (
+            ("drop", self.drop, "1"),
+            ("repeat", self.repeat, "1"),
+            ("jitter", self.jitter, "60 s"),
+            ("start stamp", self.start_stamp, "2e9 s (a ROS stamp has 32 bits)"),
+            ("effort delay", self.effort_delay, "1 s"),
+            *((name, value, "1e6") for name, value in steps.items()),
         ):
-            _check(name, value, "a time in s that isn't negative", most, f"{most:g} s{why}")
-        for name, three in (("noise", self.noise), ("quantisation", self.quantisation)):
-            for quantity, value in vars(three).items() if three else ():
-                where = f"{name}: {quantity}"
-                _check(where, value, "a number that isn't negative", _COARSEST, f"{_COARSEST:g}")
-                if 0 < value < _FINEST:
-                    raise SimulationError(
-                        f"{where}: expected 0 or at least {_FINEST:g}, got {value:g}"
-                    )
+            if not 0 <= value <= float(most.split()[0]):
+                raise SimulationError(f"{name}: expected 0 to {most}, got {value:g}")
+        for name, value in steps.items():
+            if 0 < value < _FINEST:
+                raise SimulationError(f"{name}: expected 0 or at least {_FINEST:g}, got {value:g}")
 
     @property
     def are_random(self) -> bool:
@@ -233,11 +222,6 @@ class Sensors:
         offsets = np.round(1e9 * jittered).astype(np.int64)
         order = np.arange(len(time))
         apart = np.maximum.accumulate(offsets - order) + order
-        return apart - min(0, int(apart[0])) + round(self.epoch * 1e9)  # never before the epoch
-
-
-def _check(name: str, value: float, expected: str, most: float, most_text: str) -> None:
-    if not (np.isfinite(value) and value >= 0):
-        raise SimulationError(f"{name}: expected {expected}, got {value:g}")
-    if value > most:
-        raise SimulationError(f"{name}: expected at most {most_text}, got {value:g}")
+        return (
+            apart - min(0, int(apart[0])) + round(self.start_stamp * 1e9)
+        )  # never before the start

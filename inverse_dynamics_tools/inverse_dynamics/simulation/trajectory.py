@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,21 +25,6 @@ from inverse_dynamics.simulation.errors import TrajectoryError
 
 if TYPE_CHECKING:
     from inverse_dynamics.base.arrays import Floats
-
-
-class Trajectory(Protocol):
-    """A desired motion of n joints over `duration` seconds."""
-
-    @property
-    def joint_names(self) -> tuple[str, ...]:
-        """Names of the joints, in the order of the columns of `at`."""
-
-    @property
-    def duration(self) -> float:
-        """How long the motion takes [s]."""
-
-    def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
-        """q, qd, qdd (N, n) at times (N,) s from the start."""
 
 
 @dataclass(frozen=True)
@@ -146,6 +131,9 @@ class WaypointTrajectory:
         )
         return np.asarray(q), np.asarray(qd) / h, np.asarray(qdd) / h**2
 
+
+Trajectory = FourierTrajectory | WaypointTrajectory
+"""A desired motion of n joints over `duration` seconds."""
 
 # Quintic Hermite polynomials on [0, 1], highest power first: value 1 of position, velocity or acceleration
 # at the left end, then at the right end; the five others are zero.

@@ -59,22 +59,20 @@ def read_trajectory(file: Path, joint_names: Sequence[str]) -> tuple[Trajectory,
     source = top.optional("source")
     words = f"From the file {file.name}." if source is None else source.text().strip()
     order = _order(top.required("joints"), joint_names)
-    names = tuple(joint_names)
-    trajectory: Trajectory
-    if kind == "fourier":
-        period = top.required("period")
-        if period.number() <= 0:
-            period.fail("a time in s above zero")
-        center = _row(top.required("center"), len(names))
-        sine = _table(top.required("sine"), rows=len(names))
-        cosine = _table(top.required("cosine"), rows=len(names), columns=sine.shape[1])
-        trajectory = FourierTrajectory(
-            names, period.number(), center[order], sine[order], cosine[order]
-        )
-    else:
-        trajectory = _waypoints(top, names, order)
+    read = _fourier if kind == "fourier" else _waypoints
+    trajectory = read(top, tuple(joint_names), order)
     top.reject_others()
     return trajectory, words
+
+
+def _fourier(top: Mapping, names: tuple[str, ...], order: list[int]) -> FourierTrajectory:
+    period = top.required("period")
+    if period.number() <= 0:
+        period.fail("a time in s above zero")
+    center = _row(top.required("center"), len(names))
+    sine = _table(top.required("sine"), rows=len(names))
+    cosine = _table(top.required("cosine"), rows=len(names), columns=sine.shape[1])
+    return FourierTrajectory(names, period.number(), center[order], sine[order], cosine[order])
 
 
 def _waypoints(top: Mapping, names: tuple[str, ...], order: list[int]) -> WaypointTrajectory:
@@ -94,10 +92,8 @@ def trajectory_text(trajectory: Trajectory, source: str) -> str:
     """The file of a trajectory; all digits are kept."""
     if isinstance(trajectory, FourierTrajectory):
         kind, names = "fourier", ["period", "center", "sine", "cosine"]
-    elif isinstance(trajectory, WaypointTrajectory):
-        kind, names = "waypoints", ["times", "positions", *(["rests"] if trajectory.rests else [])]
     else:
-        raise TypeError(f"no file format for {type(trajectory).__name__}")
+        kind, names = "waypoints", ["times", "positions", *(["rests"] if trajectory.rests else [])]
     content: dict[str, Any] = {"schema": SCHEMA, "kind": kind, "source": " ".join(source.split())}
     content["joints"] = list(trajectory.joint_names)
     content |= {name: np.asarray(getattr(trajectory, name)).tolist() for name in names}

@@ -51,7 +51,9 @@ def write_run(
     import yaml
 
     with written_whole(out, overwrite=overwrite, contents=CONTENTS) as directory:
-        _write_bag(run, directory, out.name, storage, progress)
+        bag = directory / out.name  # its files are named after the directory they will be in
+        write_joint_logs(bag, {run.log.topic: run.log}, storage=storage, progress=progress)
+        move_up(bag)
         settings = {**run.settings, "storage": storage}
         write_text(directory / MARK, yaml.safe_dump(settings, sort_keys=False))
         trajectory = trajectory_text(run.trajectory, run.trajectory_source)
@@ -68,12 +70,3 @@ def write_run(
             friction=motion.friction[rows],
             q_desired=motion.q_desired[rows],
         )
-
-
-def _write_bag(
-    run: SimulatedRun, directory: Path, name: str, storage: Storage, progress: Progress
-) -> None:
-    """Files of the bag, named after the directory they will be in."""
-    bag = directory / name
-    write_joint_logs(bag, {run.log.topic: run.log}, storage=storage, progress=progress)
-    move_up(bag)

@@ -108,25 +108,22 @@ def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.results.excitations import (
         check_output,
-        default_options,
         excite,
         sending_file,
         summary,
         write_excitation,
     )
     from inverse_dynamics.robot.robots import with_changes
+    from inverse_dynamics.simulation.excitation import ExcitationOptions
     from inverse_dynamics.verbs.screen import announce, progress_bar, show, title
     from inverse_dynamics.verbs.tables import excitation_table
 
     robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
     check_output(arguments.out, robot, arguments.given, overwrite=arguments.overwrite)
-    options = default_options(
-        duration=arguments.duration,
-        share=arguments.share,
-        time_to_full_speed=arguments.time_to_full_speed,
-        clearance=arguments.clearance,
-        table=arguments.table,
-        payload=arguments.payload,
+    names = ("duration", "share", "time_to_full_speed", "clearance", "table", "payload")
+    given = {name: getattr(arguments, name) for name in names}
+    options = ExcitationOptions(
+        **{name: value for name, value in given.items() if value is not None}
     )
     with progress_bar() as progress:
         result = excite(

@@ -137,7 +137,7 @@ def _checked(robot: Robot) -> tuple[Arm, list[str]]:
     from inverse_dynamics.base.wording import did_you_mean
     from inverse_dynamics.evaluation.evaluation import Arm
     from inverse_dynamics.robot.descriptions import effort_limits, read_description
-    from inverse_dynamics.simulation.configuration import StatedSimulation, states_simulation
+    from inverse_dynamics.simulation.configuration import StatedSimulation
 
     arm = Arm(robot)
     notes = list(arm.solver.warnings)
@@ -151,8 +151,5 @@ def _checked(robot: Robot) -> tuple[Arm, list[str]]:
     if robot.urdf is not None:
         description = read_description(robot.urdf)
         effort_limits(robot.urdf, description, arm.joint_names)
-        if states_simulation(robot):
-            from inverse_dynamics.simulation.urdf import chain_from_urdf
-
-            StatedSimulation.of(robot, chain_from_urdf(description, robot.root, robot.tip))
+        StatedSimulation.of(robot, arm.joint_names)
     return arm, notes

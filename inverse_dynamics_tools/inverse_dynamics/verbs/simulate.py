@@ -47,6 +47,10 @@ results, written whole or not at all:
   truth.npz                      per message, without sensor errors: time, q, qd, effort, qdd, friction
 """
 
+# Options that are arguments of Sensors, and those of simulate().
+_SENSORS = "noise quantisation drop repeat jitter start_stamp effort_delay message_rate"
+_SIMULATION = "trajectory optimise rate duration seed payload joint_friction from_model table"
+
 
 def declare(options: Options) -> None:
     """Arguments and options."""
@@ -164,7 +168,12 @@ def _declare_recording(recording: Options) -> None:
         default=0.0,
     )
     recording.add("--jitter S", "standard deviation of the time stamps [s]", number, default=0.0)
-    recording.add("--start-stamp S", "time stamp of the start [s] (default: 1700000000)", number)
+    recording.add(
+        "--start-stamp S",
+        "time stamp of the start [s] (default: 1700000000)",
+        number,
+        default=1.7e9,
+    )
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -181,33 +190,18 @@ def run(arguments: argparse.Namespace) -> None:
     )
 
     from inverse_dynamics.simulation import MOUNTS, EffortNoise, simulate, write_run
-    from inverse_dynamics.simulation.sensors import EPOCH, Sensors
+    from inverse_dynamics.simulation.sensors import Sensors
 
+    noise = arguments.effort_noise and EffortNoise.of_result(arguments.effort_noise)
     sensors = Sensors(
-        noise=arguments.noise,
-        quantisation=arguments.quantisation,
-        drop=arguments.drop,
-        repeat=arguments.repeat,
-        jitter=arguments.jitter,
-        epoch=EPOCH if arguments.start_stamp is None else arguments.start_stamp,
-        effort_noise=arguments.effort_noise and EffortNoise.of_result(arguments.effort_noise),
-        effort_delay=arguments.effort_delay,
-        message_rate=arguments.message_rate,
+        effort_noise=noise, **{name: getattr(arguments, name) for name in _SENSORS.split()}
     )
     with progress_bar() as progress:
         result = simulate(
             robot,
-            trajectory=arguments.trajectory,
-            optimise=arguments.optimise,
-            rate=arguments.rate,
-            duration=arguments.duration,
-            seed=arguments.seed,
+            **{name: getattr(arguments, name) for name in _SIMULATION.split()},
             sensors=sensors,
-            payload=arguments.payload,
-            joint_friction=arguments.joint_friction,
-            from_model=arguments.from_model,
             gravity=MOUNTS[arguments.mount] if arguments.mount else arguments.gravity,
-            table=arguments.table,
             say=announce,
             progress=progress,
         )
