@@ -28,7 +28,7 @@ from inverse_dynamics.simulation.excitation import (
 )
 from inverse_dynamics.simulation.information import CORRELATION, Unknowns
 from inverse_dynamics.simulation.model import SimulatedRobot
-from inverse_dynamics.simulation.trajectory_file import read_trajectory
+from inverse_dynamics.simulation.trajectory import read_trajectory
 
 STORED = 20.0  # s
 CANDIDATES = 3000

@@ -23,8 +23,7 @@ from inverse_dynamics.results.identifications import write_identification
 from inverse_dynamics.robot.robots import load_robot, robot_of_description
 from inverse_dynamics.simulation import excitation, simulate, write_run
 from inverse_dynamics.simulation.excitation import ExcitationOptions
-from inverse_dynamics.simulation.trajectory import WaypointTrajectory
-from inverse_dynamics.simulation.trajectory_file import read_trajectory
+from inverse_dynamics.simulation.trajectory import WaypointTrajectory, read_trajectory
 
 
 @pytest.fixture

@@ -23,8 +23,7 @@ from inverse_dynamics.simulation.excitation import (
 )
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
 from inverse_dynamics.simulation.model import Payload, SimulatedRobot
-from inverse_dynamics.simulation.trajectory import FourierTrajectory
-from inverse_dynamics.simulation.trajectory_file import read_trajectory
+from inverse_dynamics.simulation.trajectory import FourierTrajectory, read_trajectory
 
 QUICK = ExcitationOptions(iterations=9)
 SEARCHED = pytest.mark.parametrize(

@@ -11,8 +11,11 @@ from inverse_dynamics.simulation.collision import TABLE, ContactChecker
 from inverse_dynamics.simulation.errors import TrajectoryError
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
 from inverse_dynamics.simulation.model import JointFriction, Payload, SimulatedRobot
-from inverse_dynamics.simulation.trajectory import FourierTrajectory, WaypointTrajectory
-from inverse_dynamics.simulation.trajectory_file import read_trajectory
+from inverse_dynamics.simulation.trajectory import (
+    FourierTrajectory,
+    WaypointTrajectory,
+    read_trajectory,
+)
 
 
 def arm(**options: object) -> SimulatedRobot:

@@ -19,7 +19,7 @@ from inverse_dynamics.robot.robots import Robot
 from inverse_dynamics.robot.solvers import open_solver
 from inverse_dynamics.simulation import Payload, SimulationError, simulate
 from inverse_dynamics.simulation.modelled import ModelFriction
-from inverse_dynamics.simulation.trajectory_file import read_trajectory
+from inverse_dynamics.simulation.trajectory import read_trajectory
 
 LOAD = Payload(4.0, (0.02, 0.0, 0.1))
 # of the torques, up to 300 N m: moments about principal axes are rounded

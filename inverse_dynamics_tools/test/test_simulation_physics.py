@@ -15,8 +15,7 @@ from inverse_dynamics.simulation.controller import (
 )
 from inverse_dynamics.simulation.model import MOUNTS, JointFriction, Payload, SimulatedRobot
 from inverse_dynamics.simulation.physics import RATES, follow
-from inverse_dynamics.simulation.trajectory import Trajectory, WaypointTrajectory
-from inverse_dynamics.simulation.trajectory_file import read_trajectory
+from inverse_dynamics.simulation.trajectory import Trajectory, WaypointTrajectory, read_trajectory
 
 PERIOD = 0.01
 

@@ -9,8 +9,12 @@ import numpy as np
 import pytest
 
 from inverse_dynamics.simulation.errors import TrajectoryError
-from inverse_dynamics.simulation.trajectory import FourierTrajectory, WaypointTrajectory
-from inverse_dynamics.simulation.trajectory_file import read_trajectory, trajectory_text
+from inverse_dynamics.simulation.trajectory import (
+    FourierTrajectory,
+    WaypointTrajectory,
+    read_trajectory,
+    trajectory_text,
+)
 
 NAMES = ("a", "b")
 

@@ -132,8 +132,6 @@ def torque_figure(evaluation: Evaluation) -> Figure:
         error = evaluation.errors[j]
         share = "" if np.isnan(error.nrmse) else f", {100 * error.nrmse:.2g} % of measured range"
         _draw_errors(right, runs, j, f"RMSE {error.rmse:.3g} {error.unit}{share}")
-        time, difference = right.get_lines()[-1].get_data()
-        right.fill_between(time, 0, difference, color=ERROR["color"], alpha=0.15, linewidth=0)
         shade(left, left_out, 0.001, LEFT_OUT, label="samples left out")
         shade(right, left_out, 0.001, LEFT_OUT)
     _label_time(axes, evaluation)
@@ -254,7 +252,8 @@ def _draw_torques(axes: Axes, runs: Sequence[_Run], j: int) -> None:
     first = runs[0].evaluation
     axes.plot(*line(first.time, first.measured[:, j]), label="measured torque", **MEASURED)
     for run in runs:
-        axes.plot(*line(first.time, run.evaluation.computed[:, j]), label=run.label, **run.style)
+        computed = line(run.evaluation.time, run.evaluation.computed[:, j])
+        axes.plot(*computed, label=run.label, **run.style)
     axes.set_title(f"{first.joint_names[j]} [{first.units[j]}]", loc="left", fontsize=9, pad=3)
     axes.margins(y=0.08)
 
@@ -268,7 +267,10 @@ def _draw_errors(axes: Axes, runs: Sequence[_Run], j: int, text: str) -> None:
     for run in runs:
         difference = run.evaluation.computed[:, j] - run.evaluation.measured[:, j]
         largest = max(largest, error_limit(difference))
-        axes.plot(*line(run.evaluation.time, difference), **run.error_style)
+        time, drawn = line(run.evaluation.time, difference)
+        if len(runs) == 1:
+            axes.fill_between(time, 0, drawn, color=ERROR["color"], alpha=0.15, linewidth=0)
+        axes.plot(time, drawn, **run.error_style)
     largest = largest or 1.0
     axes.set_ylim(-1.1 * largest, 1.1 * largest)
     if largest < 0.01:

@@ -161,11 +161,11 @@ def summary(evaluations: Mapping[str, Evaluation], notes: Sequence[str]) -> dict
 
 def _contents() -> Contents:
     """All files of a demonstration."""
-    from inverse_dynamics.simulation import writer
+    from inverse_dynamics.simulation import run
 
     parts = {"comparison": comparisons.CONTENTS, "ur10_real_urdf": CONTENTS}
     parts |= dict.fromkeys(TITLES, CONTENTS)
-    parts |= {f"{name}_bag": writer.CONTENTS for name in SIMULATED}
+    parts |= {f"{name}_bag": run.CONTENTS for name in SIMULATED}
     files = (
         f"{directory}/{file.replace('{name}', directory)}"
         for directory, contents in parts.items()

@@ -34,7 +34,7 @@ from inverse_dynamics.simulation.excitation import (
 )
 from inverse_dynamics.simulation.information import sample_weight
 from inverse_dynamics.simulation.modelled import description_of, simulated_robot
-from inverse_dynamics.simulation.trajectory_file import read_trajectory, trajectory_text
+from inverse_dynamics.simulation.trajectory import read_trajectory, trajectory_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

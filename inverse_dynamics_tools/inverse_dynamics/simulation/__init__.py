@@ -11,9 +11,8 @@ MuJoCo is independent of the engine and of every solver here, so a simulated rec
 
 from inverse_dynamics.simulation.errors import SimulationError, TrajectoryError
 from inverse_dynamics.simulation.model import MOUNTS, JointFriction, Payload
-from inverse_dynamics.simulation.run import SimulatedRun, simulate
+from inverse_dynamics.simulation.run import SimulatedRun, simulate, write_run
 from inverse_dynamics.simulation.sensors import EffortNoise, Resolution, Sensors
-from inverse_dynamics.simulation.writer import write_run
 
 __all__ = [
     "MOUNTS",

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A simulated robot that is what a model says: its friction, and its links and rotor inertias.
+"""The simulated robot of a run configuration; links, rotor inertias and friction may be those of its model.
 
-    solver = model_solver(robot, description, gravity, payload)
-    friction = ModelFriction(solver)                       # any law that the solver has
-    text, rotors = modelled_description(robot, chain, description)   # of a model as `ids identify` writes it
+    simulated = simulated_robot(robot, description_of(robot), joint_friction="model", from_model=True)
 
 MuJoCo computes the rigid bodies, so that a simulated recording still checks the engine; friction is the solver's.
 """

@@ -4,7 +4,13 @@
     run = simulate(load_robot("ur10_simulated"), rate=500, seed=1)
     write_run(run, Path("bag"))
 
-configuration.py reads the settings that a run configuration has for it.
+configuration.py reads the settings that a run configuration has for it. Files are a bag like any other, with the truth
+beside its messages; rosbag2 and its tools read only what metadata.yaml names:
+
+    BAG/metadata.yaml, BAG/BAG.db3 or BAG/BAG.mcap      what rosbag2 would have recorded
+    BAG/simulation.yaml                                 how it was made
+    BAG/trajectory.yaml                                 the desired motion, for --trajectory
+    BAG/truth.npz                                       one row per message: the motion without any sensor's error
 """
 
 from __future__ import annotations
@@ -17,8 +23,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from inverse_dynamics.base.extras import lazily_imported
+from inverse_dynamics.base.files import Contents, move_up, write_text, written_whole
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import listed
+from inverse_dynamics.data.bags import write_joint_logs
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.configuration import StatedSimulation
@@ -30,7 +38,6 @@ from inverse_dynamics.simulation.excitation import (
     optimise_excitation,
 )
 from inverse_dynamics.simulation.limits import MotionLimits, check_trajectory
-from inverse_dynamics.simulation.model import GRAVITY
 from inverse_dynamics.simulation.modelled import ModelFriction, description_of, simulated_robot
 from inverse_dynamics.simulation.physics import (
     Motion,
@@ -39,8 +46,11 @@ from inverse_dynamics.simulation.physics import (
     follow,
 )
 from inverse_dynamics.simulation.sensors import EffortNoise, Recorded, Sensors
-from inverse_dynamics.simulation.trajectory import FourierTrajectory
-from inverse_dynamics.simulation.trajectory_file import read_trajectory
+from inverse_dynamics.simulation.trajectory import (
+    FourierTrajectory,
+    read_trajectory,
+    trajectory_text,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -50,12 +60,22 @@ if TYPE_CHECKING:
     from inverse_dynamics._core import Solver
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
+    from inverse_dynamics.data.joint_log import Storage
     from inverse_dynamics.robot.robots import Robot
     from inverse_dynamics.simulation.model import Friction, Gravity, Payload
     from inverse_dynamics.simulation.trajectory import Trajectory
     from inverse_dynamics.simulation.urdf import UrdfChain
 else:
     mujoco = lazily_imported("mujoco", "a simulation")
+yaml = lazily_imported("yaml", "a simulation")
+
+MARK = "simulation.yaml"
+"""The file by which a directory is known as a simulated recording."""
+
+CONTENTS = Contents(
+    MARK,
+    (MARK, "metadata.yaml", "{name}.db3*", "{name}.mcap", "trajectory.yaml", "truth.npz"),
+)
 
 
 @dataclass(frozen=True)
@@ -117,7 +137,6 @@ def simulate(
     Raises UserError: SimulationError, TrajectoryError, RobotError.
     """
     description = description_of(robot)
-    gravity = gravity or robot.gravity or GRAVITY
     simulated = simulated_robot(
         robot,
         description,
@@ -168,7 +187,7 @@ def simulate(
         "joints": list(chain.joint_names),
         "root": chain.root,
         "tip": chain.tip,
-        "gravity": _plain(gravity),
+        "gravity": _plain(simulated.gravity),
         "rate": rate,
         "duration": float(duration),
         "seed": seed,
@@ -191,6 +210,31 @@ def simulate(
         settings=settings,
         notes=tuple(notes),
     )
+
+
+def write_run(
+    run: SimulatedRun,
+    out: Path,
+    *,
+    storage: Storage = "sqlite3",
+    overwrite: bool = False,
+    progress: Progress = no_progress,
+) -> None:
+    """Writes a simulated recording to the directory `out`, whole or not at all.
+
+    overwrite: replace an older simulated recording. Raises OutputError, BagError.
+    """
+    with written_whole(out, overwrite=overwrite, contents=CONTENTS) as directory:
+        bag = directory / out.name  # its files are named after the directory they will be in
+        write_joint_logs(bag, {run.log.topic: run.log}, storage=storage, progress=progress)
+        move_up(bag)
+        settings = {**run.settings, "storage": storage}
+        write_text(directory / MARK, yaml.safe_dump(settings, sort_keys=False))
+        trajectory = trajectory_text(run.trajectory, run.trajectory_source)
+        write_text(directory / "trajectory.yaml", trajectory)
+        names = ("time", "q", "qd", "qdd", "effort", "friction", "q_desired")
+        truth = {name: getattr(run.motion, name)[run.recorded.rows] for name in names}
+        np.savez(directory / "truth.npz", joint_names=np.array(run.settings["joints"]), **truth)
 
 
 def _given_trajectory(given: Path | Trajectory, chain: UrdfChain) -> tuple[Trajectory, str]:

@@ -180,7 +180,7 @@ def run(arguments: argparse.Namespace) -> None:
     """Do it."""
     from inverse_dynamics.base.files import check_output_directory
     from inverse_dynamics.robot.robots import load_robot
-    from inverse_dynamics.simulation.writer import CONTENTS
+    from inverse_dynamics.simulation.run import CONTENTS
     from inverse_dynamics.verbs.screen import announce, progress_bar, show
 
     robot = load_robot(arguments.robot)
