@@ -94,20 +94,6 @@ def test_no_text_is_cut_off_or_covers_another():
         assert not any(box.overlaps(other) for other in boxes[i + 1 :])
 
 
-def test_many_samples_are_thinned_without_losing_an_extreme():
-    evaluation = make_evaluation(100_001, 1)
-    spike = evaluation.computed.copy()
-    spike[54_321] = 1e3
-    spike[77_777] = -1e3
-    left = torque_figure(replace(evaluation, computed=spike)).axes[0]
-    x, y = left.get_lines()[1].get_data()
-    assert len(x) < 7000
-    assert (y.max(), y.min()) == (1e3, -1e3)
-    assert x[y.argmax()] == evaluation.time[54_321]
-    assert (np.diff(x) > 0).all()
-    assert (x[0], x[-1]) == pytest.approx((0, evaluation.time[-1]), abs=0.5)
-
-
 def test_the_same_evaluation_gives_the_same_bytes(tmp_path):
     evaluation = make_evaluation(100)
     starts = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}

@@ -12,8 +12,6 @@ from simulation_arms import pendulum, robots_package, simulated, two_links
 from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.errors import SimulationError
 from inverse_dynamics.simulation.excitation import (
-    MARGIN,
-    TIME_TO_FULL_SPEED,
     Excitation,
     ExcitationOptions,
     condition_of,
@@ -62,7 +60,7 @@ def test_minimum_at_a_kink_is_found() -> None:
 def test_motion_is_within_all_limits_at_1_khz_and_clear_of_itself(name: str) -> None:
     robot = simulated(name)
     found = searched(name)
-    limits = MotionLimits.of(robot, TIME_TO_FULL_SPEED).fraction(MARGIN)
+    limits = MotionLimits.of(robot, 0.5).fraction(0.8)
     trajectory = found.trajectory
     check_trajectory(robot, trajectory, limits, ContactChecker(robot), step=1e-3)
     assert trajectory.duration == pytest.approx(20.0)

@@ -47,12 +47,6 @@ if TYPE_CHECKING:
     from inverse_dynamics.simulation.model import SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory, WaypointTrajectory
 
-DURATION = 20.0  # s
-PAYLOAD_DURATION = 8.0  # s
-MARGIN = 0.8  # part of each limit that a motion may use
-TIME_TO_FULL_SPEED = 0.5  # s, what limits accelerations, since a URDF states no limit of them
-SLOW = 0.2  # part of the time, for slow reversals
-ITERATIONS = 600
 WRIST = 3  # how many joints move for a payload
 
 _START_WAVES = 2  # of each joint
@@ -82,18 +76,17 @@ _LEAST = 1e-9  # gradient that counts
 class ExcitationOptions:
     """Constraints of a motion, and its purpose."""
 
-    duration: float = 0.0  # s; 0: DURATION, or PAYLOAD_DURATION
-    share: float = MARGIN  # of the limits of position, velocity, acceleration and effort
-    time_to_full_speed: float = TIME_TO_FULL_SPEED  # s, what limits accelerations
-    slow: float = SLOW  # share of the duration, for slow reversals; not for a payload
+    duration: float = 0.0  # s; 0: 20, or 8 for a payload
+    share: float = 0.8  # of the limits of position, velocity, acceleration and effort
+    time_to_full_speed: float = 0.5  # s, what limits accelerations, since a URDF doesn't
+    slow: float = 0.2  # share of the duration, for slow reversals; not for a payload
     payload: bool = False  # whether a body at the tip is to be identified, instead of the arm
     clearance: float = 0.01  # m, from itself and from the table
     table: bool = True
-    iterations: int = ITERATIONS
+    iterations: int = 600
 
     def __post_init__(self) -> None:
-        usual = PAYLOAD_DURATION if self.payload else DURATION
-        object.__setattr__(self, "duration", self.duration or usual)
+        object.__setattr__(self, "duration", self.duration or (8.0 if self.payload else 20.0))
 
     def unknowns(self, robot: SimulatedRobot, noise: Floats | None = None) -> Unknowns:
         """What is unknown before the motion. noise: (n,) N m, of the efforts; None: a part of each effort limit.
