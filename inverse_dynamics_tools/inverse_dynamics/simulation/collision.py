@@ -11,6 +11,7 @@ link. Neighbours in the chain are not compared, nor are links whose shapes alway
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -86,10 +87,8 @@ class ContactChecker:
         random = np.random.default_rng(0)
         chain = self.robot.chain
         lower, upper = np.maximum(chain.lower, -np.pi), np.minimum(chain.upper, np.pi)
-        counts: dict[tuple[int, int], int] = {}
-        for _ in range(_RANDOM_STATES):
-            for pair in {pair for _, pair in self._pairs(random.uniform(lower, upper))}:
-                counts[pair] = counts.get(pair, 0) + 1
+        states = random.uniform(lower, upper, (_RANDOM_STATES, len(lower)))
+        counts = Counter(pair for q in states for pair in {pair for _, pair in self._pairs(q)})
         return {pair for pair, count in counts.items() if count >= _ALWAYS * _RANDOM_STATES}
 
     def _name(self, geom: int) -> str:

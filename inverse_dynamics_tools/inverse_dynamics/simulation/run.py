@@ -62,7 +62,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Storage
     from inverse_dynamics.robot.robots import Robot
-    from inverse_dynamics.simulation.model import Friction, Gravity, Payload
+    from inverse_dynamics.simulation.model import Friction, Gravity, Payload, SimulatedRobot
     from inverse_dynamics.simulation.trajectory import Trajectory
     from inverse_dynamics.simulation.urdf import UrdfChain
 else:
@@ -162,13 +162,7 @@ def simulate(
         say(
             f"{why}searching for an exciting one, which takes about a minute; --trajectory names one"
         )
-        options = ExcitationOptions(table=table)
-        found = optimise_excitation(simulated, options, seed=seed, progress=progress)
-        chosen, source = (
-            found.trajectory,
-            f"Exciting trajectory for {chain.name}, optimised with seed {seed}: condition number of "
-            f"the base regressor {found.condition_number:.4g}.",
-        )
+        chosen, source = _searched(simulated, ExcitationOptions(table=table), seed, progress)
     else:
         chosen, source = _begun_by_seed(*_given_trajectory(stated.trajectory, chain), seed)
     checker = ContactChecker(simulated, table=table)
@@ -242,6 +236,17 @@ def _given_trajectory(given: Path | Trajectory, chain: UrdfChain) -> tuple[Traje
     if isinstance(given, Path):
         return read_trajectory(given, chain.joint_names)
     return given, "Given by the caller."
+
+
+def _searched(
+    robot: SimulatedRobot, options: ExcitationOptions, seed: int, progress: Progress
+) -> tuple[Trajectory, str]:
+    """A new exciting trajectory, and where it comes from."""
+    found = optimise_excitation(robot, options, seed=seed, progress=progress)
+    return found.trajectory, (
+        f"Exciting trajectory for {robot.chain.name}, optimised with seed {seed}: condition number of "
+        f"the base regressor {found.condition_number:.4g}."
+    )
 
 
 def _begun_by_seed(trajectory: Trajectory, source: str, seed: int) -> tuple[Trajectory, str]:
