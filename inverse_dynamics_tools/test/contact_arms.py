@@ -2,7 +2,7 @@
 """Arms in MuJoCo that are pushed and hit: what their sensors say, 1000 times a second.
 
     arm = ContactArm("panda")
-    recorded = arm.record(RandomMotion(arm, seed=0), 60.0, seed=0)
+    recorded = arm.record(random_motion(arm, 0, 60.0), 60.0, seed=0)
 
 The plant: bodies of the URDF, the identified robot's friction in the joints, computed torque at 1 kHz. What is
 recorded: positions of an encoder with 2^19 steps per turn, no velocities, torques with white noise.
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -22,6 +22,7 @@ from simulation_arms import CHAINS, robots_package, simulated, urdf_of
 
 from inverse_dynamics import Solver
 from inverse_dynamics.simulation.model import GRAVITY, _inertia, _read_spec, _write_true_inertia
+from inverse_dynamics.simulation.trajectory import FourierTrajectory, WaypointTrajectory
 from inverse_dynamics.simulation.urdf import chain_from_urdf
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.simulation.model import SimulatedRobot
+    from inverse_dynamics.simulation.trajectory import Trajectory
 
 PERIOD = 1e-3  # s
 ENCODER_STEP = 2 * np.pi / 2**19  # rad
@@ -58,11 +60,6 @@ ELBOW = {"ur10": "forearm_link", "panda": "fer_link4"}
 _FREQUENCY, _DAMPING = 30.0, 1.0  # rad/s, of computed torque
 
 
-class Reference(Protocol):
-    def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
-        """q, qd, qdd: (N, n) each."""
-
-
 @dataclass(frozen=True)
 class Recorded:
     """N samples, as a controller reads them at the end of each of its periods."""
@@ -87,62 +84,37 @@ class Ball:
         return float(np.sqrt(2.0 / self.mass))
 
 
-class RandomMotion:
+def random_motion(
+    arm: ContactArm, seed: int, duration: float, share: float = 0.5
+) -> WaypointTrajectory:
     """From one random posture to the next, with rests between; as fast as `share` of the velocity limits."""
-
-    def __init__(self, arm: ContactArm, seed: int, duration: float, share: float = 0.5) -> None:
-        random = np.random.default_rng((seed, 77))
-        postures, times, now = [arm.home], [0.0], 0.0
-        while now < duration:
-            if random.random() < 0.3:  # rests
-                now += random.uniform(0.3, 1.5)
-                postures.append(postures[-1])
-            else:
-                postures.append(arm.home + arm.range * random.uniform(-1, 1, len(arm.home)))
-                way = np.abs(postures[-1] - postures[-2]) / (share * arm.velocity)
-                now += max(0.4, 1.875 * float(way.max()))  # of a quintic
-            times.append(now)
-        self._postures, self._times = np.array(postures), np.array(times)
-
-    def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
-        """q, qd, qdd, (N, n) each: quintics that begin and end at rest."""
-        part = np.clip(np.searchsorted(self._times, time, "right") - 1, 0, len(self._times) - 2)
-        duration = (self._times[part + 1] - self._times[part])[:, None]
-        way = self._postures[part + 1] - self._postures[part]
-        s = (time - self._times[part])[:, None] / duration
-        q = self._postures[part] + way * s**3 * (10 - 15 * s + 6 * s**2)
-        qd = way * 30 * s**2 * (1 - s) ** 2 / duration
-        qdd = way * 60 * s * (1 - s) * (1 - 2 * s) / duration**2
-        return q, qd, qdd
+    random = np.random.default_rng((seed, 77))
+    postures, times, now = [arm.home], [0.0], 0.0
+    while now < duration:
+        if random.random() < 0.3:  # rests
+            now += random.uniform(0.3, 1.5)
+            postures.append(postures[-1])
+        else:
+            postures.append(arm.home + arm.range * random.uniform(-1, 1, len(arm.home)))
+            way = np.abs(postures[-1] - postures[-2]) / (share * arm.velocity)
+            now += max(0.4, 1.875 * float(way.max()))  # of a quintic
+        times.append(now)
+    rests = tuple(range(1, len(times) - 1))
+    return WaypointTrajectory.through((), np.array(times), np.array(postures), rests)
 
 
-class Swing:
+def swing(arm: ContactArm, start: Floats, end: Floats) -> FourierTrajectory:
     """From one posture to another and back, again and again, at up to half of the velocity limits."""
-
-    def __init__(self, arm: ContactArm, start: Floats, end: Floats) -> None:
-        self._start, self._way = start, end - start
-        self._duration = max(1.0, 1.875 * float(np.abs(2 * self._way / arm.velocity).max()))
-
-    def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
-        w = np.pi / self._duration
-        s, sd, sdd = (
-            0.5 - 0.5 * np.cos(w * time),
-            0.5 * w * np.sin(w * time),
-            0.5 * w**2 * np.cos(w * time),
-        )
-        q = self._start + np.outer(s, self._way)
-        return q, np.outer(sd, self._way), np.outer(sdd, self._way)
+    way = end - start
+    duration = max(1.0, 1.875 * float(np.abs(2 * way / arm.velocity).max()))
+    speed = (0.5 * np.pi / duration * way)[:, None]
+    return FourierTrajectory((), 2 * duration, start + way / 2, np.zeros_like(speed), speed)
 
 
-class Still:
+def still(posture: Floats) -> FourierTrajectory:
     """Rest in one posture."""
-
-    def __init__(self, posture: Floats) -> None:
-        self._posture = posture
-
-    def at(self, time: Floats) -> tuple[Floats, Floats, Floats]:
-        q = np.repeat(self._posture[None], len(time), axis=0)
-        return q, np.zeros_like(q), np.zeros_like(q)
+    nothing = np.zeros((len(posture), 1))
+    return FourierTrajectory((), 1.0, posture, nothing, nothing)
 
 
 def write_model(name: str, file: Path) -> Path:
@@ -290,7 +262,7 @@ class ContactArm:
 
     def record(
         self,
-        reference: Reference,
+        reference: Trajectory,
         duration: float,
         seed: int,
         force: Callable[[float], Floats] | None = None,
@@ -317,7 +289,7 @@ class ContactArm:
             contact[k] = self.ball is not None and (touching or data.ncon > 0)
         return self._sensed(q, effort, seed, forces, contact)
 
-    def carry_out(self, motion: Reference, duration: float, seed: int) -> Recorded:
+    def carry_out(self, motion: Trajectory, duration: float, seed: int) -> Recorded:
         """The same of a motion that is carried out exactly: torques are those of the bodies and of friction."""
         count = round(duration / PERIOD)
         q, qd, qdd = motion.at((np.arange(count) + 0.5) * PERIOD)  # mean torques of the periods

@@ -18,10 +18,10 @@ from contact_arms import (
     RIGID_BODY,
     Ball,
     ContactArm,
-    RandomMotion,
     Recorded,
-    Still,
-    Swing,
+    random_motion,
+    still,
+    swing,
     write_model,
 )
 from simulation_arms import CHAINS, urdf_of
@@ -70,7 +70,7 @@ class Bench:
         self.arm = ContactArm(name)
         self.solver = Solver(RIGID_BODY, model=str(write_model(name, directory / "model.yaml")))
         self.kinematics = Solver(KDL, urdf_of(name), *CHAINS[name])
-        quiet = self.arm.carry_out(RandomMotion(self.arm, 1000, QUIET), QUIET, 1000)
+        quiet = self.arm.carry_out(random_motion(self.arm, 1000, QUIET), QUIET, 1000)
         torques, valid = self.estimate(quiet)
         assert valid[51:].all()
         self.thresholds: ContactThresholds = contact_thresholds(
@@ -106,9 +106,9 @@ class Bench:
         direction = np.random.default_rng((seed, 9)).standard_normal(3)
         force = FORCE * direction / np.linalg.norm(direction)
         start, end = self.posture(seed), self.posture(seed + 100)
-        swing = Swing(self.arm, start, start + 0.3 * (end - start))
+        there_and_back = swing(self.arm, start, start + 0.3 * (end - start))
         return self.arm.record(
-            swing if moving else Still(start),
+            there_and_back if moving else still(start),
             1.6 if moving else 0.8,
             seed,
             force=lambda t: force * (t >= PUSHED),
@@ -159,7 +159,7 @@ def test_a_ball_of_1_joule_is_noticed_within_30_ms(bench: Bench, place: str, see
             if np.abs(J.T @ direction).max() >= 0.3:
                 break
         arm = ContactArm(bench.name, Ball(link, direction, time=0.2))
-        recorded = arm.record(Still(posture), 0.35, seed)
+        recorded = arm.record(still(posture), 0.35, seed)
         touched = int(np.argmax(recorded.contact))
         alarms = bench.alarms(recorded)
         assert recorded.contact.any()
@@ -177,7 +177,7 @@ def test_a_ball_of_1_joule_is_noticed_within_30_ms(bench: Bench, place: str, see
 def test_no_false_alarm_in_minutes_of_random_motion(bench: Bench, seeds: range) -> None:
     greatest = np.zeros(len(bench.arm.home))
     for seed in seeds:
-        recorded = bench.arm.carry_out(RandomMotion(bench.arm, seed, 60.0), 60.0, seed)
+        recorded = bench.arm.carry_out(random_motion(bench.arm, seed, 60.0), 60.0, seed)
         assert not bench.alarms(recorded).any(), f"seed {seed}"
         greatest = np.maximum(greatest, np.abs(bench.estimate(recorded)[0]).max(axis=0))
     with np.printoptions(precision=2, suppress=True):
@@ -215,7 +215,7 @@ def test_the_jacobian_is_that_of_mujoco(bench: Bench) -> None:
 
 
 def test_torques_of_motions_that_are_carried_out_are_those_of_mujoco(bench: Bench) -> None:
-    states = RandomMotion(bench.arm, 1000, QUIET).at(np.linspace(0.0, QUIET, 1000))
+    states = random_motion(bench.arm, 1000, QUIET).at(np.linspace(0.0, QUIET, 1000))
     expected = [bench.arm.torques(*state) for state in zip(*states, strict=True)]
     torques = bench.arm.solver.torques(*states)
     assert np.allclose(torques, expected, rtol=0, atol=1e-9)
