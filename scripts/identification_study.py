@@ -17,7 +17,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import numpy as np
-from known_truth import LEAST_DELAY_ERROR, MOST_ERROR, Truth
+from known_truth import MOST_ERROR, Truth
 from payload_truth import STEP, Arm, trials
 from studies import DOCS, ROBOTS, table
 
@@ -106,7 +106,7 @@ def known_robots(directory: Path) -> str:
                 f"{np.median(errors):.3g} N m ({min(errors):.3g} to {max(errors):.3g})",
                 f"{most:g} N m",
                 f"{np.median(delays):.2g} ms, at most {max(delays):.2g} ms",
-                f"{1e3 * max(LEAST_DELAY_ERROR, truth.period / 2):.3g} ms",
+                f"{1e3 * truth.most_delay_error:.3g} ms",
                 f"{100 * inside:.1f} %",
             )
         )
