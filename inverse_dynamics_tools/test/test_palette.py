@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from inverse_dynamics.figures import palette
-from inverse_dynamics.figures.plots import COMPUTED, ERROR, MEASURED
 
 # Linear RGB as seen by protanopes, deuteranopes and tritanopes [Machado, Oliveira, Fernandes 2009, table 1].
 SIGHT = {
@@ -75,10 +74,3 @@ def test_lines_and_texts_stand_out_from_the_paper(colors):
         for ground in ("paper", "panel"):
             assert contrast(colors[name], colors[ground]) >= 4.5, (name, ground)
     assert contrast(colors["on-accent"], colors["accent"]) >= 4.5
-
-
-def test_figures_and_pages_have_the_same_colours():
-    assert MEASURED["color"] == palette.LIGHT["measured"] == palette.MEASURED
-    assert COMPUTED["color"] == palette.LIGHT["computed"] == palette.RUNS[0]
-    assert ERROR["color"] == palette.LIGHT["error"]
-    assert palette.ERROR not in palette.RUNS

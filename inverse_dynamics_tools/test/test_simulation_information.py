@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from simulation_arms import simulated, two_links
 
+from inverse_dynamics.robot.link_parameters import turned
 from inverse_dynamics.simulation import excitation as search
 from inverse_dynamics.simulation.collision import ContactChecker
 from inverse_dynamics.simulation.excitation import ExcitationOptions
@@ -114,15 +115,6 @@ def test_payload_rows_are_those_of_the_last_link() -> None:
     np.testing.assert_array_equal(payload.predicted[10:], 0.0)
 
 
-def rotated(link: np.ndarray, R: np.ndarray) -> np.ndarray:
-    """Ten parameters in axes turned by R."""
-    upper = np.triu_indices(3)
-    inertia = np.zeros((3, 3))
-    inertia[upper] = link[4:]
-    inertia += np.triu(inertia, 1).T
-    return np.r_[link[0], R @ link[1:4], (R @ inertia @ R.T)[upper]]
-
-
 @pytest.mark.parametrize(
     "link",
     [
@@ -139,11 +131,11 @@ def test_prior_of_a_link_does_not_depend_on_its_frame(link: np.ndarray) -> None:
     R = np.array(
         [[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1.0]]
     )
-    here, there = (_prior_scale(_pseudo_inertia(p, 20.0)) for p in (link, rotated(link, R)))
+    here, there = (_prior_scale(_pseudo_inertia(p, 20.0)) for p in (link, turned(link, R)))
     change = 1e-3 * np.random.default_rng(0).standard_normal(10)
     lengths = [
         np.linalg.norm(np.linalg.solve(scale, p))
-        for scale, p in ((here, change), (there, rotated(change, R)))
+        for scale, p in ((here, change), (there, turned(change, R)))
     ]
     assert lengths[0] == pytest.approx(lengths[1], rel=1e-6)
 
