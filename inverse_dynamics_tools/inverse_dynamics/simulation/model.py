@@ -77,13 +77,12 @@ class Friction:
         It has the torque of friction at qd and, while friction grows with velocity, also where the law is steepest,
         such as the step of Coulomb friction.
         """
-        center = np.full_like(qd, self.steepest)
-        apart = np.where(np.abs(qd - center) < _NEAR, _NEAR, qd - center)
-        here, there, middle = self.torques(
-            np.array([qd, center + apart, center]), np.array(3 * [q])
-        )
+        center = 0.0 * qd + self.steepest
+        apart = qd - center
+        apart = np.where(np.abs(apart) < _NEAR, _NEAR, apart)
+        there, middle = self.torques(np.array([center + apart, center]), np.array([q, q]))
         slope = np.maximum((there - middle) / apart, 0.0)
-        return slope, here - slope * qd
+        return slope, there - slope * (center + apart)
 
 
 @dataclass(frozen=True)
