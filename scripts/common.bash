@@ -31,7 +31,7 @@ solver_packages=(
 )
 user_packages=(
   inverse_dynamics_evaluation inverse_dynamics_control
-  inverse_dynamics_identification inverse_dynamics_tools
+  inverse_dynamics_identification inverse_dynamics_timing inverse_dynamics_tools
 )
 
 # Debian and Ubuntu packages, in groups.

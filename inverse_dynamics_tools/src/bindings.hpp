@@ -27,6 +27,7 @@ void bindControl(pybind11::module_& module);
 void bindContact(pybind11::module_& module);
 void bindPayload(pybind11::module_& module);
 void bindIdentification(pybind11::module_& module);
+void bindTiming(pybind11::module_& module);
 
 /// Makes wrong calls readable; after all the others.
 ///

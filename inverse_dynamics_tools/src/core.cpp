@@ -25,6 +25,7 @@ PYBIND11_MODULE(_core, module) {
   inverse_dynamics_tools::bindContact(module);
   inverse_dynamics_tools::bindPayload(module);
   inverse_dynamics_tools::bindIdentification(module);
+  inverse_dynamics_tools::bindTiming(module);
   inverse_dynamics_tools::explainWrongCalls(module);
   pybind11::module_::import("inverse_dynamics.base.wheels").attr("find_other_wheels")();
 }

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The fastest motion along a path within the limits of the joints.
+///
+///     MotionLimits limits;
+///     limits.torque = Eigen::VectorXd::Constant(6, 50.0);
+///     const Retimed fastest = retime(*solver, Path::lines(waypoints, 0.05), limits);
+///     if (!fastest) throw std::runtime_error(text(fastest.refusal, solver->jointNames()));
+///     fastest.trajectory.evaluate(t, q, qd, qdd);
+///
+/// **Method.** Along a path `q(s)` all torques follow from the squared speed `z = s'^2` of its
+/// parameter and from its acceleration u,
+///
+///     tau = a(s) u + b(s) z + g(s) + f(s, z),
+///
+/// `a = H q'`, `b = H q'' + C(q, q') q'`, gravity g, friction f. On a grid over s with constant u in
+/// each interval, a backward pass finds the greatest z at each point from which the end can be
+/// reached, a forward pass takes the greatest acceleration that stays below [reachability analysis:
+/// Pham, Pham 2018, doi 10.1109/TRO.2018.2819195]. Limits hold at both ends of each interval. Friction
+/// isn't linear in z: each step solves its linear program again with friction at the solution, until
+/// nothing changes, so friction there is exact.
+///
+/// Where friction falls with speed (Stribeck), the speeds from which the end is reached may not be one
+/// interval; they are taken for one.
+#pragma once
+
+#include <Eigen/Core>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "chain_dynamics/owned.hpp"
+#include "inverse_dynamics_timing/path.hpp"
+#include "inverse_dynamics_timing/trajectory.hpp"
+
+namespace inverse_dynamics_timing {
+inline namespace v2 {
+
+/// Limits of the joints' sizes, both directions; n numbers > 0 each, or none: unlimited.
+struct MotionLimits {
+  chain_dynamics::OwnedVector torque;        ///< N m (sliders: N); required
+  chain_dynamics::OwnedVector velocity;      ///< rad/s
+  chain_dynamics::OwnedVector acceleration;  ///< rad/s^2
+  /// rad/s^3; a pass after the optimisation averages the path's speed over a span of time, which
+  /// costs more time than an optimum would [smoothJerk()].
+  chain_dynamics::OwnedVector jerk;
+
+  /// @name Motors whose torque falls with speed
+  /// The torque limit falls in a line from `torque` at `knee_velocity` to zero at
+  /// `no_load_velocity`, rad/s. Both or none.
+  /// @{
+  chain_dynamics::OwnedVector knee_velocity;
+  chain_dynamics::OwnedVector no_load_velocity;
+  /// @}
+
+  double tip_speed = std::numeric_limits<double>::infinity();  ///< of the tip's origin, m/s
+};
+
+struct RetimeOptions {
+  Eigen::Index points = 1000;  ///< of the grid, about; each polynomial piece has a few at least
+  double start_speed = 0.0;    ///< ds/dt at the path's start, >= 0
+  double end_speed = 0.0;      ///< at its end
+  /// Share of the measured torques that shall be within the limits, for solvers whose model states
+  /// how far they are from the computed ones [torque_deviation.hpp]: 0.95 leaves a band of 95 % free
+  /// below each limit. 0: the computed torque itself may reach the limit.
+  double margin = 0.0;
+};
+
+/// Why there is no motion.
+struct Refusal {
+  enum class Reason {
+    kNone,
+    kTorqueAtRest,  ///< a joint can't hold the robot at `s`, nor pass at any speed
+    kNoWayOn,       ///< each speed at `s` leads where limits can't be kept
+    kStartTooFast,  ///< the start's speed is beyond what limits allow
+  };
+  Reason reason = Reason::kNone;
+  double s = 0.0;             ///< where, parameter of the path
+  Eigen::Index joint = -1;    ///< which joint lacks torque
+  double missing = 0.0;       ///< how much, N m; kStartTooFast: the greatest speed that is possible
+};
+
+/// Text of a refusal, with the joint's name; empty: none.
+std::string text(const Refusal& refusal, const std::vector<std::string>& joint_names);
+
+struct Retimed {
+  Trajectory trajectory;  ///< empty where refused
+  Refusal refusal;
+
+  explicit operator bool() const { return refusal.reason == Refusal::Reason::kNone; }
+};
+
+/// The fastest motion along a path.
+///
+/// Real time: no; memory grows linearly with points. Threads: safe, many paths may be timed with one
+/// solver at once.
+///
+/// @throws inverse_dynamics_solver::SizeMismatchException           path or a limit of another size.
+/// @throws inverse_dynamics_solver::InvalidParameterValueException  a limit that isn't > 0, no torque
+///   limit, options out of range, a margin for a model that states no deviation, a tip speed for a
+///   solver without kinematics.
+Retimed retime(const inverse_dynamics_solver::InverseDynamicsSolver& solver, const Path& path,
+               const MotionLimits& limits, const RetimeOptions& options = {});
+
+/// The greatest speed ds/dt at which limits can be kept for an instant, at each point of a
+/// trajectory's grid: what its speed is compared with. NaN where there is none.
+chain_dynamics::OwnedVector speedLimit(const inverse_dynamics_solver::InverseDynamicsSolver& solver,
+                                       const Trajectory& trajectory, const MotionLimits& limits,
+                                       const RetimeOptions& options = {});
+
+}  // namespace v2
+}  // namespace inverse_dynamics_timing

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// A path with its time.
+///
+///     for (double t = 0; t < trajectory.duration(); t += 0.002) trajectory.evaluate(t, q, qd, qdd);
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "chain_dynamics/owned.hpp"
+#include "inverse_dynamics_timing/path.hpp"
+
+namespace inverse_dynamics_timing {
+inline namespace v2 {
+
+/// A motion along a path with constant `d2s/dt2` between the points of a grid.
+class Trajectory {
+ public:
+  Trajectory() = default;
+
+  /// @param s      rising; at a stop its number stands twice.
+  /// @param speed  ds/dt at each, >= 0; zero at stops only and at the ends.
+  Trajectory(Path path, const Eigen::Ref<const Eigen::VectorXd>& s,
+             const Eigen::Ref<const Eigen::VectorXd>& speed);
+
+  double duration() const { return time_.size() == 0 ? 0.0 : time_[time_.size() - 1]; }
+  const Path& path() const { return *path_; }
+
+  /// @name At the points of the grid
+  /// @{
+  const chain_dynamics::OwnedVector& time() const { return time_; }    ///< s
+  const chain_dynamics::OwnedVector& s() const { return s_; }          ///< parameter of the path
+  const chain_dynamics::OwnedVector& speed() const { return speed_; }  ///< ds/dt, 1/s times its unit
+  /// @}
+
+  /// q, qd, qdd at a time, limited to 0 to duration(). Allocates nothing.
+  ///
+  /// Accelerations jump at points of the grid: there those after it.
+  void evaluate(double t, Eigen::Ref<Eigen::VectorXd> q, Eigen::Ref<Eigen::VectorXd> qd,
+                Eigen::Ref<Eigen::VectorXd> qdd) const;
+
+ private:
+  std::optional<Path> path_;
+  chain_dynamics::OwnedVector time_, s_, speed_;
+};
+
+/// The motion with joint jerks within limits: its speed is averaged over a span of time, which is as
+/// short as the limits allow.
+///
+/// The path stays the same. Averaged states lie between those of the motion, so its torques pass their
+/// limits only as far as H, C and g change within the span; retime() then slows the motion.
+///
+/// @param jerk  n, > 0, rad/s^3: of `qdd` over 1 ms.
+Trajectory smoothJerk(const Trajectory& motion, const Eigen::Ref<const Eigen::VectorXd>& jerk);
+
+/// The motion slower by a factor >= 1, the same along the whole path.
+Trajectory slowed(const Trajectory& motion, double factor);
+
+}  // namespace v2
+}  // namespace inverse_dynamics_timing

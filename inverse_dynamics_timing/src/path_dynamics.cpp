@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "path_dynamics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/kinematics.hpp>
+#include <inverse_dynamics_solver/torque_deviation.hpp>
+#include <string>
+
+namespace inverse_dynamics_timing {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+namespace ids = inverse_dynamics_solver;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Squared speed at which the tip moves at its greatest speed, at each point.
+VectorXd capOfTip(const InverseDynamicsSolver& solver, const MatrixXd& q, const MatrixXd& dq,
+                  double tip_speed) {
+  const auto& kinematics = dynamic_cast<const ids::Kinematics&>(solver);
+  MatrixXd J(6, q.rows());
+  VectorXd cap(q.cols());
+  for (Index k = 0; k < q.cols(); ++k) {
+    kinematics.getTipJacobian(q.col(k), J);
+    cap[k] = tip_speed * tip_speed / (J.topRows(3) * dq.col(k)).squaredNorm();
+  }
+  return cap;
+}
+
+/// Half the width of the band that holds a share of the measured torques.
+VectorXd bandOf(const InverseDynamicsSolver& solver, double margin) {
+  if (margin == 0.0) return VectorXd::Zero(solver.jointCount());
+  // The model states the band of 95 %. A normal distribution has the others: erf(x / sqrt 2) = margin.
+  double x = 1.0;
+  for (int step = 0; step < 60; ++step) {
+    x += (margin - std::erf(x / std::sqrt(2.0))) * std::sqrt(M_PI / 2) * std::exp(x * x / 2);
+  }
+  return x / 1.959963984540054 * dynamic_cast<const ids::TorqueDeviation&>(solver).getTorqueDeviation();
+}
+
+}  // namespace
+
+PathDynamics::PathDynamics(const InverseDynamicsSolver& solver, const Path& path, const VectorXd& s,
+                           const MotionLimits& limits, double margin)
+    : solver_(solver), path_(path), limits_(limits), s_(s), band_(bandOf(solver, margin)) {
+  const Index n = path.jointCount(), count = s.size();
+  const bool accelerations = limits.acceleration.size() > 0;
+  const Index rows = accelerations ? 2 * n : n;
+  q_.resize(n, count), dq_.resize(n, count), g_.resize(n, count), at_rest_.resize(n, count);
+  a_.resize(rows, count), b_.resize(rows, count);
+  MatrixXd ddq(n, count);
+  for (Index k = 0; k < count; ++k) {
+    path.evaluate(s[k], q_.col(k), dq_.col(k), ddq.col(k), k + 1 == count);
+  }
+
+  // With f the friction: tau(q, 0, q') - tau(q, 0, 0) = H q'; tau(q, q', q'') = H q'' + C q' + f + g.
+  const MatrixXd still = MatrixXd::Zero(n, count);
+  MatrixXd part(n, count);
+  solver.getGravityVectorBatch(q_, g_);
+  solver.getFrictionVectorBatch(q_, still, at_rest_);
+  solver.getTorquesBatch(q_, still, dq_, part);
+  a_.topRows(n) = part - g_ - at_rest_;
+  solver.getTorquesBatch(q_, dq_, ddq, part);
+  b_.topRows(n) = part - g_;
+  solver.getFrictionVectorBatch(q_, dq_, part);
+  b_.topRows(n) -= part;
+  if (accelerations) a_.bottomRows(n) = dq_, b_.bottomRows(n) = ddq;
+
+  cap_ = std::isfinite(limits.tip_speed) ? capOfTip(solver, q_, dq_, limits.tip_speed)
+                                         : VectorXd::Constant(count, kInfinity);
+  const auto limitBy = [&](const chain_dynamics::OwnedVector& velocity) {
+    for (Index k = 0; k < count && velocity.size() > 0; ++k) {
+      cap_[k] = std::min(cap_[k], (velocity.array() / dq_.col(k).array()).square().minCoeff());
+    }
+  };
+  limitBy(limits.velocity);
+  limitBy(limits.no_load_velocity);
+}
+
+double PathDynamics::torqueLimit(Index j, double velocity) const {
+  const double limit = limits_.torque[j] - band_[j];
+  if (limits_.knee_velocity.size() == 0) return limit;
+  const double knee = limits_.knee_velocity[j], none = limits_.no_load_velocity[j];
+  const double share = std::clamp((none - std::abs(velocity)) / (none - knee), 0.0, 1.0);
+  return limits_.torque[j] * share - band_[j];
+}
+
+Room PathDynamics::emptyRoom() const {
+  const VectorXd zero = VectorXd::Zero(rows());
+  return {-1, 0.0, zero, zero, zero, zero};
+}
+
+void PathDynamics::room(Index k, double z, Room& room) const {
+  const Index n = g_.rows();
+  room.k = k, room.z = z;
+  // The second state is beside the first one, for the slopes. Steps this small are exact to 1e-8.
+  const double step = 1e-5 * z;
+  Eigen::Matrix<double, Eigen::Dynamic, 2, 0, 64, 2> qd(n, 2), f(n, 2);
+  qd.col(0) = std::sqrt(z) * dq_.col(k);
+  qd.col(1) = std::sqrt(z + step) * dq_.col(k);
+  f.colwise() = at_rest_.col(k);
+  for (Index i = 0; i < 2 && z > 0.0; ++i) {
+    solver_.getFrictionVector(q_.col(k), qd.col(i), f.col(i));
+  }
+  for (Index j = 0; j < n; ++j) {
+    const std::array<double, 2> limit{torqueLimit(j, qd(j, 0)), torqueLimit(j, qd(j, 1))};
+    room.up[j] = limit[0] - g_(j, k) - f(j, 0);
+    room.down[j] = limit[0] + g_(j, k) + f(j, 0);
+    room.up_slope[j] = step > 0 ? (limit[1] - limit[0] - (f(j, 1) - f(j, 0))) / step : 0.0;
+    room.down_slope[j] = step > 0 ? (limit[1] - limit[0] + (f(j, 1) - f(j, 0))) / step : 0.0;
+  }
+  if (rows() > n) {
+    room.up.tail(n) = room.down.tail(n) = limits_.acceleration;
+    room.up_slope.tail(n).setZero(), room.down_slope.tail(n).setZero();
+  }
+}
+
+double PathDynamics::excess(Index k, double x, double y) const {
+  const Index n = g_.rows();
+  const double s = (s_[k] + s_[k + 1]) / 2, z = (x + y) / 2, u = (y - x) / (2 * (s_[k + 1] - s_[k]));
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 64, 1> q(n), qd(n), ddq(n), f(n);
+  path_.evaluate(s, q, qd, ddq);
+  qd *= std::sqrt(z);
+  solver_.getFrictionVector(q, qd, f);
+  double most = 0.0;
+  for (Index j = 0; j < n; ++j) {
+    const double tau = (a_(j, k) + a_(j, k + 1)) / 2 * u + (b_(j, k) + b_(j, k + 1)) / 2 * z +
+                       (g_(j, k) + g_(j, k + 1)) / 2 + f[j];
+    most = std::max(most, (std::abs(tau) - torqueLimit(j, qd[j])) / limits_.torque[j]);
+  }
+  return most;
+}
+
+Index PathDynamics::weakest(Index k, double& missing) const {
+  Index joint = -1;
+  double worst = 0.0;
+  for (Index j = 0; j < g_.rows(); ++j) {
+    const double limit = torqueLimit(j, 0.0);
+    const double lacks = std::abs(g_(j, k) + at_rest_(j, k)) - limit;
+    if (lacks > worst * limits_.torque[j]) worst = lacks / limits_.torque[j], joint = j, missing = lacks;
+  }
+  return joint;
+}
+
+namespace {
+
+[[noreturn]] void refuseOption(const std::string& where, const std::string& expected,
+                         const std::string& got, const std::string& remedy = "") {
+  throw ids::InvalidParameterValueException(
+      ids::errorText("retime(): " + where, "", expected, got, remedy));
+}
+
+void checkLimit(const InverseDynamicsSolver& solver, const char* name,
+                const chain_dynamics::OwnedVector& limit) {
+  if (limit.size() == 0) return;
+  if (limit.size() != solver.jointCount()) {
+    throw ids::SizeMismatchException(ids::errorText(
+        std::string("retime(): limits.") + name, "",
+        std::to_string(solver.jointCount()) + " numbers, one per joint, or none", std::to_string(limit.size())));
+  }
+  for (Index j = 0; j < limit.size(); ++j) {
+    if (!(limit[j] > 0.0) || !std::isfinite(limit[j])) {
+      refuseOption(std::string("limits.") + name + " of " + solver.jointNames()[static_cast<std::size_t>(j)],
+             "a finite number > 0", std::to_string(limit[j]));
+    }
+  }
+}
+
+}  // namespace
+
+void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,
+           const RetimeOptions& options) {
+  const Index n = solver.jointCount();
+  if (path.jointCount() != n) {
+    throw ids::SizeMismatchException(
+        ids::errorText("retime(): path", "", std::to_string(n) + " joints, as the solver has",
+                       std::to_string(path.jointCount())));
+  }
+  if (n > 64) refuseOption("solver", "at most 64 joints", std::to_string(n));
+  if (limits.torque.size() == 0) refuseOption("limits.torque", "a limit of each joint, N m", "none");
+  checkLimit(solver, "torque", limits.torque);
+  checkLimit(solver, "velocity", limits.velocity);
+  checkLimit(solver, "acceleration", limits.acceleration);
+  checkLimit(solver, "jerk", limits.jerk);
+  checkLimit(solver, "knee_velocity", limits.knee_velocity);
+  checkLimit(solver, "no_load_velocity", limits.no_load_velocity);
+  if (limits.knee_velocity.size() != limits.no_load_velocity.size() ||
+      (limits.knee_velocity.array() >= limits.no_load_velocity.array()).any()) {
+    refuseOption("limits.knee_velocity", "for each joint less than no_load_velocity, or neither of them",
+           "otherwise");
+  }
+  if (!(limits.tip_speed > 0.0)) refuseOption("limits.tip_speed", "> 0 m/s", std::to_string(limits.tip_speed));
+  if (std::isfinite(limits.tip_speed) && dynamic_cast<const ids::Kinematics*>(&solver) == nullptr) {
+    refuseOption("limits.tip_speed", "a solver with the capability Kinematics", "one without",
+           "leave the limit out, or use another solver");
+  }
+  if (options.points < 2) refuseOption("options.points", ">= 2", std::to_string(options.points));
+  if (!(options.start_speed >= 0.0) || !std::isfinite(options.start_speed)) {
+    refuseOption("options.start_speed", "finite, >= 0", std::to_string(options.start_speed));
+  }
+  if (!(options.end_speed >= 0.0) || !std::isfinite(options.end_speed)) {
+    refuseOption("options.end_speed", "finite, >= 0", std::to_string(options.end_speed));
+  }
+  if (!(options.margin >= 0.0) || !(options.margin < 1.0)) {
+    refuseOption("options.margin", "a share, 0 <= margin < 1", std::to_string(options.margin));
+  }
+  if (options.margin == 0.0) return;
+  const auto* deviation = dynamic_cast<const ids::TorqueDeviation*>(&solver);
+  if (deviation == nullptr || !deviation->hasTorqueDeviation()) {
+    refuseOption("options.margin", "a model that states the deviation of its torques",
+           "one that doesn't", "identify the robot, or leave the margin out");
+  }
+  const VectorXd band = bandOf(solver, options.margin);
+  for (Index j = 0; j < n; ++j) {
+    if (band[j] < limits.torque[j]) continue;
+    refuseOption("options.margin", "a band narrower than the torque limit",
+           "for " + solver.jointNames()[static_cast<std::size_t>(j)] + " " + std::to_string(band[j]) + " of " +
+               std::to_string(limits.torque[j]) + " N m");
+  }
+}
+
+}  // namespace inverse_dynamics_timing

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file
+/// The dynamics of a robot that can only move along a path, at the points of a grid.
+#pragma once
+
+#include <Eigen/Core>
+#include <inverse_dynamics_solver/inverse_dynamics_solver.hpp>
+#include <limits>
+
+#include "inverse_dynamics_timing/retime.hpp"
+
+namespace inverse_dynamics_timing {
+
+using inverse_dynamics_solver::InverseDynamicsSolver;
+
+/// How much is left below the limits of each row at a squared speed z, and how that changes with z:
+/// `a u + b z <= up`, `-(a u + b z) <= down`.
+struct Room {
+  Eigen::Index k = -1;  // at this point of the grid
+  double z = 0.0;
+  Eigen::VectorXd up, down, up_slope, down_slope;
+};
+
+/// Rows are the joints' torques, and below them, where they are limited, the joints' accelerations.
+class PathDynamics {
+ public:
+  /// @param s  points between two stops, rising; the last is that before a stop.
+  PathDynamics(const InverseDynamicsSolver& solver, const Path& path, const Eigen::VectorXd& s,
+               const MotionLimits& limits, double margin);
+
+  Eigen::Index points() const { return s_.size(); }
+  Eigen::Index rows() const { return a_.rows(); }
+  double s(Eigen::Index k) const { return s_[k]; }
+  auto a(Eigen::Index k) const { return a_.col(k); }
+  auto b(Eigen::Index k) const { return b_.col(k); }
+  /// The greatest squared speed that velocities and the tip allow; may be infinite.
+  double cap(Eigen::Index k) const { return cap_[k]; }
+
+  /// Room at point k for a squared speed z >= 0; with z = 0 slopes are zero.
+  void room(Eigen::Index k, double z, Room& room) const;
+  Room emptyRoom() const;
+
+  /// How far a torque is above its limit in the middle of interval k, as a share of the limit, with
+  /// squared speeds x and y at its ends. Friction is that of the middle, the rest the mean of the ends.
+  double excess(Eigen::Index k, double x, double y) const;
+
+  /// The joint that lacks most torque to stand still at point k, and how much; -1: none lacks any.
+  Eigen::Index weakest(Eigen::Index k, double& missing) const;
+
+ private:
+  double torqueLimit(Eigen::Index j, double velocity) const;
+
+  const InverseDynamicsSolver& solver_;
+  const Path& path_;
+  const MotionLimits& limits_;
+  Eigen::VectorXd s_, band_, cap_;
+  Eigen::MatrixXd q_, dq_;
+  Eigen::MatrixXd a_, b_, g_;
+  Eigen::MatrixXd at_rest_;  // friction, n x N
+};
+
+/// Throws unless limits and options can be used [retime.hpp].
+void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,
+           const RetimeOptions& options);
+
+}  // namespace inverse_dynamics_timing

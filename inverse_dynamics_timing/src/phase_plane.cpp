@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "phase_plane.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace inverse_dynamics_timing {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// Linear programs of a step, each with friction at the solution of the last one.
+constexpr int kPrograms = 40;
+constexpr int kDampedFrom = 10;
+// Relative change of z that ends them. Newton's method leaves about its square.
+constexpr double kSame = 1e-4;
+
+// Beyond every speed that limits of torque allow.
+constexpr double kFastest = 1e12;
+
+bool same(double z, double other) { return std::abs(z - other) <= kSame * std::max(z, other); }
+
+}  // namespace
+
+PhasePlane::PhasePlane(const PathDynamics& dynamics)
+    : dynamics_(dynamics),
+      here_(dynamics.emptyRoom()),
+      next_(dynamics.emptyRoom()),
+      low_(VectorXd::Zero(dynamics.points())),
+      high_(low_),
+      z_(low_) {
+  planes_.reserve(static_cast<std::size_t>(4 * dynamics.rows() + 2));
+}
+
+/// The room at a point for about this z.
+void PhasePlane::look(Index k, double z, Room& room) const {
+  if (room.k != k || !same(room.z, z)) dynamics_.room(k, z, room);
+}
+
+/// What limits demand of the squared speeds x and y at the ends of interval k, where `u = m (y - x)`,
+/// `m = 1 / (2 ds)`: at its start `a u + b x <= up + up_slope (x - x0)`, x0 the speed of here_; at its
+/// end the same of y and next_.
+void PhasePlane::addInterval(Index k) {
+  const double m = 0.5 / (dynamics_.s(k + 1) - dynamics_.s(k));
+  planes_.clear();
+  planes_.add(1.0, 0.0, high_[k + 1]);
+  planes_.add(-1.0, 0.0, -low_[k + 1]);
+  const auto a = dynamics_.a(k), b = dynamics_.b(k), next_a = dynamics_.a(k + 1), next_b = dynamics_.b(k + 1);
+  for (Index j = 0; j < dynamics_.rows(); ++j) {
+    const double p = a[j] * m, r = b[j] - p;
+    planes_.add(p, r - here_.up_slope[j], here_.up[j] - here_.up_slope[j] * here_.z);
+    planes_.add(-p, -r - here_.down_slope[j], here_.down[j] - here_.down_slope[j] * here_.z);
+    const double next_r = -next_a[j] * m, next_p = next_b[j] - next_r;
+    planes_.add(next_p - next_.up_slope[j], next_r, next_.up[j] - next_.up_slope[j] * next_.z);
+    planes_.add(-next_p - next_.down_slope[j], -next_r, next_.down[j] - next_.down_slope[j] * next_.z);
+  }
+}
+
+/// The greatest or least x at point k from which a y in low_[k + 1] to high_[k + 1] is reached.
+bool PhasePlane::backward(Index k, End end, double& x) {
+  const bool greatest = end == End::kGreatest;
+  const double cap = std::min(dynamics_.cap(k), kFastest);
+  double y = greatest ? high_[k + 1] : low_[k + 1];
+  x = greatest ? std::min(y, cap) : 0.0;
+  if (greatest && k + 2 < dynamics_.points()) {
+    const double step = (dynamics_.s(k + 1) - dynamics_.s(k)) / (dynamics_.s(k + 2) - dynamics_.s(k + 1));
+    x = std::clamp(y + step * (y - high_[k + 2]), 0.0, cap);
+  }
+  for (int program = 0; program < kPrograms; ++program) {
+    look(k, x, here_);
+    look(k + 1, y, next_);
+    addInterval(k);
+    double to = greatest ? cap : 0.0;
+    if (!planes_.approach(to, greatest ? 0.0 : cap)) return false;
+    const HalfPlanes::Range range = planes_.range(to);
+    const double y_to = std::max(greatest ? range.high : range.low, 0.0);
+    const bool done = same(to, here_.z) && same(y_to, next_.z);
+    x = program < kDampedFrom ? to : (x + to) / 2;
+    y = program < kDampedFrom ? y_to : (y + y_to) / 2;
+    if (done) break;
+  }
+  return true;
+}
+
+/// The greatest y that is reached from z_[k].
+double PhasePlane::forward(Index k) {
+  const double x = z_[k];
+  look(k, x, here_);
+  double y = k == 0 ? x : std::max(x + (x - z_[k - 1]), 0.0);
+  y = std::clamp(y, low_[k + 1], high_[k + 1]);
+  for (int program = 0; program < kPrograms; ++program) {
+    look(k + 1, y, next_);
+    addInterval(k);
+    const HalfPlanes::Range range = planes_.range(x);
+    // Rounding, or friction that makes what is reachable more than an interval, leaves no room.
+    const double to = range.low > range.high ? (range.low + range.high) / 2 : range.high;
+    const double y_to = std::clamp(to, low_[k + 1], high_[k + 1]);
+    const bool done = same(y_to, next_.z);
+    y = program < kDampedFrom ? y_to : (y + y_to) / 2;
+    if (done) break;
+  }
+  std::swap(here_, next_);
+  return y;
+}
+
+bool PhasePlane::refuse(Index k, Refusal::Reason reason) {
+  refusal_ = {reason, dynamics_.s(k), -1, 0.0};
+  return false;
+}
+
+bool PhasePlane::solve(double start, double end) {
+  const Index last = dynamics_.points() - 1;
+  for (Index k = 0; k <= last; ++k) {
+    double missing = 0.0;
+    const Index joint = dynamics_.weakest(k, missing);
+    stands_.push_back(joint < 0);
+    if (joint < 0 || greatest(k) >= 0.0) continue;
+    refuse(k, Refusal::Reason::kTorqueAtRest);
+    refusal_.joint = joint, refusal_.missing = missing;
+    return false;
+  }
+  low_[last] = high_[last] = end;
+  for (Index k = last - 1; k >= 0; --k) {
+    if (!backward(k, End::kGreatest, high_[k])) return refuse(k, Refusal::Reason::kNoWayOn);
+    const auto here = static_cast<std::size_t>(k);
+    const bool rest = low_[k + 1] == 0.0 && stands_[here] && stands_[here + 1];
+    if (!rest && !backward(k, End::kLeast, low_[k])) low_[k] = high_[k];
+    std::swap(here_, next_);
+  }
+  if (start > high_[0] * (1 + 1e-9)) {
+    refuse(0, Refusal::Reason::kStartTooFast);
+    refusal_.missing = std::sqrt(high_[0]);
+    return false;
+  }
+  if (start < low_[0] * (1 - 1e-9)) return refuse(0, Refusal::Reason::kNoWayOn);
+  z_[0] = start;
+  for (Index k = 0; k < last; ++k) z_[k + 1] = forward(k);
+  for (Index k = 1; k < last; ++k) {
+    if (!(z_[k] > 0.0)) return refuse(k, Refusal::Reason::kNoWayOn);  // time has no end
+  }
+  return true;
+}
+
+double PhasePlane::greatest(Index k) {
+  double z = std::min(dynamics_.cap(k), kFastest);
+  double x = std::min(z, 1.0);
+  for (int program = 0; program < kPrograms; ++program) {
+    look(k, x, here_);
+    planes_.clear();
+    const auto a = dynamics_.a(k), b = dynamics_.b(k);
+    for (Index j = 0; j < dynamics_.rows(); ++j) {
+      planes_.add(a[j], b[j] - here_.up_slope[j], here_.up[j] - here_.up_slope[j] * here_.z);
+      planes_.add(-a[j], -b[j] - here_.down_slope[j], here_.down[j] - here_.down_slope[j] * here_.z);
+    }
+    double to = z;
+    if (!planes_.approach(to, 0.0)) return -1.0;
+    const bool done = same(to, here_.z);
+    x = program < kDampedFrom ? to : (x + to) / 2;
+    if (done) break;
+  }
+  return x;
+}
+
+}  // namespace inverse_dynamics_timing

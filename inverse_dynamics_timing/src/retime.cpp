@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_timing/retime.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "path_dynamics.hpp"
+#include "phase_plane.hpp"
+
+namespace inverse_dynamics_timing {
+inline namespace v2 {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr Index kLeastOfPiece = 4;  // intervals of each polynomial piece
+constexpr Index kLeastAtStop = 40;  // and of one that begins or ends at rest
+
+/// Points of the pieces from knot `first` to knot `last`. Towards stops they lie quadratically
+/// denser: there speed grows with the root of the way.
+VectorXd gridOf(const Path& path, Index first, Index last, Index points) {
+  std::vector<double> s{path.knots()[first]};
+  const double whole = path.end() - path.start();
+  for (Index k = first; k < last; ++k) {
+    const double from = path.knots()[k], length = path.knots()[k + 1] - from;
+    const bool starts = k == first, ends = k + 1 == last;
+    const auto wanted = static_cast<Index>(std::lround(static_cast<double>(points) * length / whole));
+    const Index count = std::max(wanted, starts || ends ? kLeastAtStop : kLeastOfPiece);
+    for (Index i = 1; i <= count; ++i) {
+      const double x = static_cast<double>(i) / static_cast<double>(count);
+      double share = x;
+      if (starts && ends) share = (1 - std::cos(M_PI * x)) / 2;
+      if (starts && !ends) share = x * x;
+      if (!starts && ends) share = 1 - (1 - x) * (1 - x);
+      s.push_back(i == count ? path.knots()[k + 1] : from + share * length);
+    }
+  }
+  return Eigen::Map<const VectorXd>(s.data(), static_cast<Index>(s.size()));
+}
+
+/// Numbers of the knots at which sections begin and end.
+std::vector<Index> borders(const Path& path) {
+  std::vector<Index> result{0};
+  const double* const knots = path.knots().data();
+  for (const double stop : path.stops()) {
+    result.push_back(std::lower_bound(knots, knots + path.knots().size(), stop) - knots);
+  }
+  result.push_back(path.knots().size() - 1);
+  return result;
+}
+
+constexpr double kAllowed = 1e-3;  // above a limit between points, share of it
+constexpr int kRefinements = 5;
+constexpr Index kParts = 4;
+
+/// The grid with intervals split in whose middle limits are passed: friction changes within them, as
+/// a joint turns back. Empty: none are.
+VectorXd refined(const PathDynamics& dynamics, const VectorXd& z) {
+  std::vector<double> s{dynamics.s(0)};
+  for (Index k = 0; k + 1 < dynamics.points(); ++k) {
+    const double from = dynamics.s(k), to = dynamics.s(k + 1);
+    const bool coarse = dynamics.excess(k, z[k], z[k + 1]) > kAllowed;
+    for (Index i = 1; coarse && i < kParts; ++i) {
+      s.push_back(from + (to - from) * static_cast<double>(i) / kParts);
+    }
+    s.push_back(to);
+  }
+  if (static_cast<Index>(s.size()) == dynamics.points()) return {};
+  return Eigen::Map<const VectorXd>(s.data(), static_cast<Index>(s.size()));
+}
+
+/// Where along a motion a torque is furthest above its limit, and by which share of it.
+double overload(const InverseDynamicsSolver& solver, const Trajectory& motion,
+                const MotionLimits& limits, double margin, double& s) {
+  double worst = 0.0;
+  const VectorXd grid = motion.s();
+  Index first = 0;
+  for (Index k = 1; k <= grid.size(); ++k) {
+    if (k < grid.size() && grid[k] > grid[k - 1]) continue;
+    const PathDynamics dynamics(solver, motion.path(), grid.segment(first, k - first), limits, margin);
+    Room room = dynamics.emptyRoom();
+    for (Index i = 0; i + 1 < dynamics.points(); ++i) {
+      const double v = motion.speed()[first + i], w = motion.speed()[first + i + 1];
+      const double u = (w * w - v * v) / (2 * (dynamics.s(i + 1) - dynamics.s(i)));
+      dynamics.room(i, v * v, room);
+      const VectorXd used = dynamics.a(i) * u + dynamics.b(i) * v * v;
+      const double over = std::max((used - room.up).maxCoeff(), (-used - room.down).maxCoeff());
+      if (over > worst) worst = over, s = dynamics.s(i);
+    }
+    first = k;
+  }
+  return worst;
+}
+
+/// The motion with its jerk in limits, and then as slow as torques demand.
+Retimed withoutJerk(const InverseDynamicsSolver& solver, const Trajectory& motion,
+                    const MotionLimits& limits, double margin) {
+  constexpr double kSlower = 1.01, kSlowest = 4.0;
+  const Trajectory smooth = smoothJerk(motion, limits.jerk);
+  const double allowed = 1e-3 * limits.torque.minCoeff();
+  double s = 0.0;
+  for (double factor = 1.0; factor < kSlowest; factor *= kSlower) {
+    Trajectory slower = slowed(smooth, factor);
+    if (overload(solver, slower, limits, margin, s) <= allowed) return {std::move(slower), {}};
+  }
+  return {{}, {Refusal::Reason::kNoWayOn, s, -1, 0.0}};
+}
+
+}  // namespace
+
+Retimed retime(const InverseDynamicsSolver& solver, const Path& path, const MotionLimits& limits,
+               const RetimeOptions& options) {
+  check(solver, path, limits, options);
+  const std::vector<Index> knots = borders(path);
+  std::vector<double> s, speed;
+  for (std::size_t section = 0; section + 1 < knots.size(); ++section) {
+    const bool first = section == 0, last = section + 2 == knots.size();
+    const double start = first ? options.start_speed : 0.0, end = last ? options.end_speed : 0.0;
+    VectorXd grid = gridOf(path, knots[section], knots[section + 1], options.points), finer, z;
+    for (int round = 0;; ++round) {
+      const PathDynamics dynamics(solver, path, grid, limits, options.margin);
+      PhasePlane plane(dynamics);
+      if (!plane.solve(start * start, end * end)) return {{}, plane.refusal()};
+      z = plane.z();
+      finer = refined(dynamics, z);
+      if (finer.size() == 0 || round == kRefinements) break;
+      grid = finer;
+    }
+    s.insert(s.end(), grid.begin(), grid.end());
+    for (const double squared : z) speed.push_back(std::sqrt(squared));
+  }
+  const auto count = static_cast<Index>(s.size());
+  Trajectory fastest(path, Eigen::Map<const VectorXd>(s.data(), count),
+                     Eigen::Map<const VectorXd>(speed.data(), count));
+  if (limits.jerk.size() == 0) return {std::move(fastest), {}};
+  return withoutJerk(solver, fastest, limits, options.margin);
+}
+
+chain_dynamics::OwnedVector speedLimit(const InverseDynamicsSolver& solver,
+                                       const Trajectory& trajectory, const MotionLimits& limits,
+                                       const RetimeOptions& options) {
+  check(solver, trajectory.path(), limits, options);
+  const VectorXd s = trajectory.s();
+  const PathDynamics dynamics(solver, trajectory.path(), s, limits, options.margin);
+  PhasePlane plane(dynamics);
+  chain_dynamics::OwnedVector limit(s.size());
+  for (Index k = 0; k < s.size(); ++k) limit[k] = std::sqrt(plane.greatest(k));
+  return limit;
+}
+
+std::string text(const Refusal& refusal, const std::vector<std::string>& joint_names) {
+  const auto number = [](double value) {
+    std::string digits(32, '\0');
+    digits.resize(static_cast<std::size_t>(std::snprintf(digits.data(), digits.size(), "%.4g", value)));
+    return digits;
+  };
+  const std::string place = "at s = " + number(refusal.s) + " of the path";
+  switch (refusal.reason) {
+    case Refusal::Reason::kNone:
+      return {};
+    case Refusal::Reason::kTorqueAtRest:
+      return place + " joint " + joint_names[static_cast<std::size_t>(refusal.joint)] + " lacks " +
+             number(refusal.missing) + " N m to hold the robot, and no speed helps; lighten the "
+             "payload, change the path, or raise the limit";
+    case Refusal::Reason::kNoWayOn:
+      return place + " each speed leads to where limits can't be kept; change the path, or raise "
+             "the limits";
+    case Refusal::Reason::kStartTooFast:
+      return "the start's speed is too high: expected ds/dt of at most " + number(refusal.missing) +
+             "; start slower";
+  }
+  return {};
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_timing

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_timing/trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace inverse_dynamics_timing {
+inline namespace v2 {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// A part of a motion between two stops: points first to last of its grid.
+struct Section {
+  Index first, last;
+};
+
+std::vector<Section> sectionsOf(const Trajectory& motion) {
+  std::vector<Section> sections{{0, 0}};
+  for (Index k = 1; k < motion.s().size(); ++k) {
+    if (motion.s()[k] == motion.s()[k - 1]) sections.push_back({k, k});
+    sections.back().last = k;
+  }
+  return sections;
+}
+
+/// s at a time, from the section's start on; beyond its ends it stands still.
+double positionAt(const Trajectory& motion, const Section& section, double t) {
+  const auto& time = motion.time();
+  t += time[section.first];
+  if (t <= time[section.first]) return motion.s()[section.first];
+  if (t >= time[section.last]) return motion.s()[section.last];
+  const double* const begin = time.data();
+  const Index k = std::upper_bound(begin + section.first, begin + section.last, t) - begin - 1;
+  const double share = (t - time[k]) / (time[k + 1] - time[k]);
+  const double speed = motion.speed()[k] + share * (motion.speed()[k + 1] - motion.speed()[k]);
+  return motion.s()[k] + (motion.speed()[k] + speed) / 2 * (t - time[k]);
+}
+
+constexpr double kStep = 1e-3;  // s, of smoothed motions
+
+/// The motion with its speed averaged over a span of time; stops stay stops.
+Trajectory averaged(const Trajectory& motion, double span) {
+  std::vector<double> s, speed;
+  for (const Section& section : sectionsOf(motion)) {
+    const double duration = motion.time()[section.last] - motion.time()[section.first] + span;
+    const auto steps = std::max<Index>(static_cast<Index>(std::ceil(duration / kStep)), 4);
+    const double step = duration / static_cast<double>(steps);
+    const double from = motion.s()[section.first], to = motion.s()[section.last];
+    const std::size_t begin = s.size();
+    for (Index i = 0; i <= steps; ++i) {
+      const double t = static_cast<double>(i) * step;
+      const double v = i == 0 || i == steps
+                           ? 0.0
+                           : (positionAt(motion, section, t) - positionAt(motion, section, t - span)) / span;
+      s.push_back(i == 0 ? from : s.back() + (speed.back() + v) / 2 * step);
+      speed.push_back(v);
+    }
+    // Sums of trapezoids miss the end by little.
+    const double scale = (to - from) / (s.back() - from);
+    for (std::size_t i = begin; i < s.size(); ++i) s[i] = from + (s[i] - from) * scale;
+    s.back() = to;
+  }
+  const auto count = static_cast<Index>(s.size());
+  return {motion.path(), Eigen::Map<const VectorXd>(s.data(), count),
+          Eigen::Map<const VectorXd>(speed.data(), count)};
+}
+
+/// The greatest jerk of a joint over its limit.
+double jerkOf(const Trajectory& motion, const Eigen::Ref<const VectorXd>& limit) {
+  const Index n = limit.size();
+  VectorXd q(n), qd(n), before(VectorXd::Zero(n)), qdd(n);
+  double most = 0.0;
+  const auto steps = static_cast<Index>(std::ceil(motion.duration() / kStep));
+  for (Index i = 0; i <= steps; ++i) {
+    motion.evaluate((static_cast<double>(i) + 0.5) * kStep, q, qd, qdd);
+    if (i == steps) qdd.setZero();  // it stands
+    most = std::max(most, ((qdd - before).cwiseAbs().array() / limit.array()).maxCoeff() / kStep);
+    before = qdd;
+  }
+  return most;
+}
+
+}  // namespace
+
+Trajectory::Trajectory(Path path, const Eigen::Ref<const VectorXd>& s,
+                       const Eigen::Ref<const VectorXd>& speed)
+    : path_(std::move(path)), time_(s.size()), s_(s), speed_(speed) {
+  time_[0] = 0.0;
+  for (Index k = 0; k + 1 < s.size(); ++k) {
+    const double way = s[k + 1] - s[k];
+    time_[k + 1] = time_[k] + (way > 0.0 ? 2 * way / (speed[k] + speed[k + 1]) : 0.0);
+  }
+}
+
+void Trajectory::evaluate(double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd> qd,
+                          Eigen::Ref<VectorXd> qdd) const {
+  const double* const begin = time_.data();
+  const Index last = time_.size() - 1;
+  const Index k = std::clamp<Index>(std::upper_bound(begin, begin + last, t) - begin - 1, 0, last - 1);
+  t = std::clamp(t, 0.0, time_[last]) - time_[k];
+  const double interval = time_[k + 1] - time_[k];
+  const double u = interval > 0.0 ? (speed_[k + 1] - speed_[k]) / interval : 0.0;
+  const double speed = speed_[k] + u * t;
+  const double s = std::min(s_[k] + (speed_[k] + speed) / 2 * t, s_[k + 1]);
+  path_->evaluate(s, q, qd, qdd, s == s_[k + 1]);
+  qdd = qdd * (speed * speed) + qd * u;
+  qd *= speed;
+}
+
+Trajectory smoothJerk(const Trajectory& motion, const Eigen::Ref<const VectorXd>& jerk) {
+  double span = 2 * kStep;
+  Trajectory smooth = averaged(motion, span);
+  double too_short = 0.0;
+  while (jerkOf(smooth, jerk) > 1.0) {
+    too_short = span;
+    span *= 2;
+    smooth = averaged(motion, span);
+  }
+  for (int halving = 0; too_short > 0.0 && halving < 8; ++halving) {
+    const double middle = (too_short + span) / 2;
+    Trajectory between = averaged(motion, middle);
+    if (jerkOf(between, jerk) > 1.0) {
+      too_short = middle;
+    } else {
+      span = middle;
+      smooth = std::move(between);
+    }
+  }
+  return smooth;
+}
+
+Trajectory slowed(const Trajectory& motion, double factor) {
+  return {motion.path(), motion.s(), motion.speed() / factor};
+}
+
+}  // namespace v2
+}  // namespace inverse_dynamics_timing

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inverse_dynamics_timing/retime.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_solver/kinematics.hpp>
+#include <iterator>
+#include <kdl_inverse_dynamics_solver/kdl_inverse_dynamics_solver.hpp>
+#include <limits>
+#include <memory>
+#include <random>
+#include <rigid_body_inverse_dynamics_solver/rigid_body_inverse_dynamics_solver.hpp>
+#include <thread>
+
+#include "dense_reference.hpp"
+
+namespace {
+
+using namespace inverse_dynamics_timing;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using inverse_dynamics_solver::InverseDynamicsSolver;
+using inverse_dynamics_solver::InvalidParameterValueException;
+using RigidBody = rigid_body_inverse_dynamics_solver::InverseDynamicsSolverRigidBody;
+using Kdl = kdl_inverse_dynamics_solver::InverseDynamicsSolverKDL;
+using testing::HasSubstr;
+using testing::Property;
+using testing::Throws;
+
+constexpr double kLimit = 0.005;  // above a limit between points of the grid, share of it
+
+std::string fileText(const std::string& name) {
+  std::ifstream file(INVERSE_DYNAMICS_ROBOTS_DIR "/" + name);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+template <class Solver = RigidBody>
+std::unique_ptr<InverseDynamicsSolver> described(const std::string& urdf) {
+  auto solver = std::make_unique<Solver>();
+  solver->initialize({}, "", fileText("urdf/" + urdf));
+  return solver;
+}
+
+std::unique_ptr<InverseDynamicsSolver> identified(const std::string& model) {
+  auto solver = std::make_unique<RigidBody>();
+  solver->initialize({{"model", std::string(INVERSE_DYNAMICS_ROBOTS_DIR "/models/" + model)}});
+  return solver;
+}
+
+/// A slider of `mass` kg, moved by the force `mass qdd`.
+std::unique_ptr<InverseDynamicsSolver> slider() {
+  auto solver = std::make_unique<RigidBody>();
+  solver->initialize({}, "", R"(<robot name="slider"><link name="base"/>
+    <link name="carriage"><inertial><mass value="2"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <joint name="x" type="prismatic"><parent link="base"/><child link="carriage"/><axis xyz="1 0 0"/>
+    <limit effort="10" velocity="10" lower="-9" upper="9"/></joint></robot>)");
+  return solver;
+}
+
+MatrixXd randomWaypoints(Index joints, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> angle(-1.3, 1.3);
+  MatrixXd waypoints(joints, 4);
+  for (double& value : waypoints.reshaped()) value = angle(random);
+  return waypoints;
+}
+
+VectorXd ur10Torques() { return (VectorXd(6) << 330, 330, 150, 56, 56, 56).finished(); }
+VectorXd pandaTorques() { return (VectorXd(7) << 87, 87, 87, 87, 12, 12, 12).finished(); }
+
+/// The greatest of `used / limit` of the torques, ten times finer than the grid.
+double greatestUse(const InverseDynamicsSolver& solver, const Trajectory& motion, const VectorXd& torque) {
+  const Index n = torque.size();
+  VectorXd q(n), qd(n), qdd(n);
+  double most = 0.0;
+  for (Index k = 0; k + 1 < motion.time().size(); ++k) {
+    for (int i = 0; i < 10; ++i) {
+      const double interval = motion.time()[k + 1] - motion.time()[k];
+      motion.evaluate(motion.time()[k] + interval * (i + 0.5) / 10, q, qd, qdd);
+      const VectorXd tau = solver.getTorques(q, qd, qdd);
+      most = std::max(most, (tau.cwiseAbs().array() / torque.array()).maxCoeff());
+    }
+  }
+  return most;
+}
+
+auto refused(const std::string& text) {
+  return Throws<InvalidParameterValueException>(
+      Property(&InvalidParameterValueException::what, HasSubstr(text)));
+}
+
+// A mass pushed halfway and braked halfway: T = 2 sqrt(way m / F).
+TEST(Retime, SliderIsPushedHalfwayAndBrakedHalfway) {
+  const auto solver = slider();
+  const Path path = Path::lines((MatrixXd(1, 2) << -1.0, 2.0).finished(), 0.0);
+  MotionLimits limits;
+  limits.torque = VectorXd::Constant(1, 10.0);
+  const Retimed fastest = retime(*solver, path, limits);
+  ASSERT_TRUE(fastest);
+  EXPECT_NEAR(fastest.trajectory.duration(), 2 * std::sqrt(3.0 * 2.0 / 10.0), 1e-4);
+}
+
+// F = 10 N gives 5 m/s^2: 0.2 s to 1 m/s, 0.1 m of way; the same to brake.
+TEST(Retime, SliderKeepsItsGreatestVelocity) {
+  const auto solver = slider();
+  const Path path = Path::lines((MatrixXd(1, 2) << 0.0, 2.0).finished(), 0.0);
+  MotionLimits limits;
+  limits.torque = VectorXd::Constant(1, 10.0);
+  limits.velocity = VectorXd::Constant(1, 1.0);
+  EXPECT_NEAR(retime(*solver, path, limits).trajectory.duration(), 0.4 + 1.8, 1e-3);
+  limits.velocity = {}, limits.tip_speed = 1.0;
+  EXPECT_NEAR(retime(*solver, path, limits).trajectory.duration(), 0.4 + 1.8, 1e-3);
+  limits.tip_speed = std::numeric_limits<double>::infinity();
+  limits.acceleration = VectorXd::Constant(1, 2.0);
+  EXPECT_NEAR(retime(*solver, path, limits).trajectory.duration(), 2.0, 1e-3);
+}
+
+// m dv/dt = F (1 - v / v0): the motor comes closer to v0, never beyond.
+TEST(Retime, SliderWithAMotorWhoseForceFallsWithSpeed) {
+  const auto solver = slider();
+  const Path path = Path::lines((MatrixXd(1, 2) << 0.0, 2.0).finished(), 0.0);
+  MotionLimits limits;
+  limits.torque = VectorXd::Constant(1, 10.0);
+  limits.knee_velocity = VectorXd::Constant(1, 1e-9);
+  limits.no_load_velocity = VectorXd::Constant(1, 1.0);
+  const Retimed fastest = retime(*solver, path, limits);
+  ASSERT_TRUE(fastest);
+  // Accelerating: x = t - tau (1 - exp(-t / tau)), v = 1 - exp(-t / tau), tau = m v0 / F = 0.2 s.
+  const Trajectory& motion = fastest.trajectory;
+  VectorXd q(1), qd(1), qdd(1);
+  for (const double t : {0.05, 0.2, 0.5, 1.0}) {
+    motion.evaluate(t, q, qd, qdd);
+    EXPECT_NEAR(qd[0], 1 - std::exp(-t / 0.2), 2e-3);
+  }
+}
+
+TEST(Retime, StartsAndEndsWithTheSpeedsAsked) {
+  const auto solver = slider();
+  const Path path = Path::lines((MatrixXd(1, 2) << 0.0, 2.0).finished(), 0.0);
+  MotionLimits limits;
+  limits.torque = VectorXd::Constant(1, 10.0);
+  RetimeOptions options;
+  options.start_speed = 1.0, options.end_speed = 2.0;
+  const Retimed fastest = retime(*solver, path, limits, options);
+  ASSERT_TRUE(fastest);
+  EXPECT_DOUBLE_EQ(fastest.trajectory.speed()[0], 1.0);
+  EXPECT_NEAR(fastest.trajectory.speed()[fastest.trajectory.speed().size() - 1], 2.0, 1e-9);
+  options.start_speed = 5.0;  // 2 m aren't enough to brake to 2 m/s with 5 m/s^2: 4.9 m/s are
+  const Retimed too_fast = retime(*solver, path, limits, options);
+  EXPECT_EQ(too_fast.refusal.reason, Refusal::Reason::kStartTooFast);
+  EXPECT_NEAR(too_fast.refusal.missing, std::sqrt(24.0), 1e-3);
+  EXPECT_THAT(text(too_fast.refusal, solver->jointNames()), HasSubstr("4.899"));
+}
+
+// Whatever the friction is, the duration is that of dynamic programming.
+TEST(Retime, IsAsFastAsDynamicProgrammingWithFrictionAndWithout) {
+  constexpr double kSame = 0.01;
+  const struct {
+    std::unique_ptr<InverseDynamicsSolver> solver;
+    VectorXd torque;
+  } robots[] = {{described("ur10.urdf"), 0.5 * ur10Torques()},
+                {identified("ur10_identified.yaml"), 0.6 * ur10Torques()},
+                {identified("franka_inria_identified.yaml"), 0.8 * pandaTorques()}};
+  for (const auto& robot : robots) {
+    for (const unsigned seed : {1U, 2U}) {
+      const Path path = Path::spline(randomWaypoints(robot.solver->jointCount(), seed));
+      MotionLimits limits;
+      limits.torque = robot.torque;
+      const Retimed fastest = retime(*robot.solver, path, limits);
+      ASSERT_TRUE(fastest) << text(fastest.refusal, robot.solver->jointNames());
+      DenseGrid grid;
+      grid.fastest = 1.2 * fastest.trajectory.speed().maxCoeff();
+      const double reference = denseDuration(*robot.solver, path, robot.torque, grid);
+      EXPECT_NEAR(fastest.trajectory.duration() / reference, 1.0, kSame) << seed;
+    }
+  }
+}
+
+TEST(Retime, TorquesStayWithinLimitsBetweenPoints) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    for (const bool real : {false, true}) {
+      const auto solver = real ? identified("ur10_identified.yaml") : described("ur10.urdf");
+      const VectorXd torque = ur10Torques();
+      MotionLimits limits;
+      limits.torque = torque;
+      for (const Path& path : {Path::spline(randomWaypoints(6, seed)),
+                               Path::lines(randomWaypoints(6, seed), 0.1)}) {
+        const Retimed fastest = retime(*solver, path, limits);
+        ASSERT_TRUE(fastest) << text(fastest.refusal, solver->jointNames());
+        EXPECT_LT(greatestUse(*solver, fastest.trajectory, torque), 1 + kLimit) << seed << real;
+        // and some joint is at its limit, nearly everywhere
+        EXPECT_GT(greatestUse(*solver, fastest.trajectory, torque), 1 - kLimit);
+      }
+    }
+  }
+}
+
+TEST(Retime, WayBackTakesAsLongWithoutFrictionAndGravity) {
+  auto solver = std::make_unique<RigidBody>();
+  solver->initialize({{"gravity", std::vector<double>{0, 0, 0}}}, "", fileText("urdf/ur10.urdf"));
+  const MatrixXd waypoints = randomWaypoints(6, 7);
+  MotionLimits limits;
+  limits.torque = ur10Torques();
+  const double there = retime(*solver, Path::spline(waypoints), limits).trajectory.duration();
+  const double back =
+      retime(*solver, Path::spline(waypoints.rowwise().reverse()), limits).trajectory.duration();
+  EXPECT_NEAR(there / back, 1.0, 1e-3);
+}
+
+TEST(Retime, AnotherSolverOfTheRobotGivesTheSameMotion) {
+  const Path path = Path::spline(randomWaypoints(6, 3));
+  MotionLimits limits;
+  limits.torque = ur10Torques();
+  const double own = retime(*described("ur10.urdf"), path, limits).trajectory.duration();
+  EXPECT_NEAR(retime(*described<Kdl>("ur10.urdf"), path, limits).trajectory.duration(), own, 1e-6);
+}
+
+TEST(Retime, StandsStillAtStops) {
+  const auto solver = described("ur10.urdf");
+  const MatrixXd waypoints = randomWaypoints(6, 5);
+  MotionLimits limits;
+  limits.torque = ur10Torques();
+  const Path path = Path::lines(waypoints, 0.0);
+  const Retimed fastest = retime(*solver, path, limits);
+  ASSERT_TRUE(fastest);
+  const Trajectory& motion = fastest.trajectory;
+  ASSERT_EQ(path.stops().size(), 2);
+  double total = 0.0;
+  for (Index k = 0; k + 1 < waypoints.cols(); ++k) {
+    total += retime(*solver, Path::lines(waypoints.middleCols(k, 2), 0.0), limits).trajectory.duration();
+  }
+  EXPECT_NEAR(motion.duration(), total, 1e-2 * total);
+  VectorXd q(6), qd(6), qdd(6), before(6);
+  motion.evaluate(0.0, q, qd, qdd);
+  EXPECT_EQ(qd.norm(), 0.0);
+  for (double t = 1e-4; t < motion.duration(); t += 1e-4) {
+    before = qd;
+    motion.evaluate(t, q, qd, qdd);
+    EXPECT_LT((qd - before).norm(), 0.1);  // velocities don't jump
+  }
+}
+
+TEST(Retime, RefusesAPathThatTorquesCannotHold) {
+  const auto solver = described("ur10.urdf");
+  MatrixXd waypoints = MatrixXd::Zero(6, 2);
+  waypoints(1, 0) = -1.5;  // upright; to stretched out, level
+  MotionLimits limits;
+  limits.torque = ur10Torques();
+  limits.torque[1] = 60.0;
+  const Retimed none = retime(*solver, Path::spline(waypoints), limits);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.trajectory.duration(), 0.0);
+  EXPECT_THAT(text(none.refusal, solver->jointNames()), HasSubstr("shoulder_lift_joint"));
+}
+
+TEST(Retime, SaysWhichJointLacksHowMuchTorque) {
+  const auto solver = described("ur10.urdf");
+  MatrixXd waypoints = MatrixXd::Zero(6, 2);
+  waypoints(5, 1) = 1.0;  // stretched out, level: the last joint turns
+  MotionLimits limits;
+  limits.torque = ur10Torques();
+  limits.torque[1] = 60.0;
+  const Retimed none = retime(*solver, Path::spline(waypoints), limits);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.refusal.reason, Refusal::Reason::kTorqueAtRest);
+  EXPECT_EQ(none.refusal.joint, 1);
+  const double gravity = solver->getGravityVector(waypoints.col(0))[1];
+  EXPECT_NEAR(none.refusal.missing, std::abs(gravity) - 60.0, 1e-6);
+}
+
+TEST(Retime, MarginLeavesTheBandOfTheModelFree) {
+  auto solver = identified("ur10_identified.yaml");
+  MotionLimits limits;
+  limits.torque = ur10Torques();
+  RetimeOptions options;
+  options.margin = 0.95;
+  const Path path = Path::spline(randomWaypoints(6, 1));
+  EXPECT_THAT([&] { retime(*solver, path, limits, options); }, refused("deviation"));
+}
+
+TEST(Retime, JerkStaysWithinItsLimit) {
+  const auto solver = described("ur10.urdf");
+  const Path path = Path::spline(randomWaypoints(6, 2));
+  MotionLimits limits;
+  limits.torque = ur10Torques();
+  const double fastest = retime(*solver, path, limits).trajectory.duration();
+  limits.jerk = VectorXd::Constant(6, 300.0);
+  const Retimed smooth = retime(*solver, path, limits);
+  ASSERT_TRUE(smooth) << text(smooth.refusal, solver->jointNames());
+  const Trajectory& motion = smooth.trajectory;
+  EXPECT_GT(motion.duration(), fastest);
+  EXPECT_LT(greatestUse(*solver, motion, ur10Torques()), 1 + kLimit);
+  VectorXd q(6), qd(6), qdd(6), before = VectorXd::Zero(6);
+  for (double t = 5e-4; t < motion.duration(); t += 1e-3) {
+    motion.evaluate(t, q, qd, qdd);
+    EXPECT_LT((qdd - before).cwiseAbs().maxCoeff() / 1e-3, 300.0 * 1.1);
+    before = qdd;
+  }
+}
+
+TEST(Retime, SpeedLimitIsAboveTheSpeed) {
+  const auto solver = identified("franka_inria_identified.yaml");
+  MotionLimits limits;
+  limits.torque = pandaTorques();
+  const Retimed fastest = retime(*solver, Path::spline(randomWaypoints(7, 4)), limits);
+  ASSERT_TRUE(fastest);
+  const VectorXd limit = speedLimit(*solver, fastest.trajectory, limits);
+  EXPECT_TRUE((fastest.trajectory.speed().array() <= 1.001 * limit.array()).all());
+}
+
+TEST(Retime, ThreadsShareASolver) {
+  const auto solver = identified("franka_inria_identified.yaml");
+  MotionLimits limits;
+  limits.torque = pandaTorques();
+  std::vector<double> alone, together(8);
+  for (unsigned i = 0; i < 8; ++i) {
+    alone.push_back(retime(*solver, Path::spline(randomWaypoints(7, i)), limits).trajectory.duration());
+  }
+  std::vector<std::thread> threads;
+  for (unsigned i = 0; i < 8; ++i) {
+    threads.emplace_back([&, i] {
+      together[i] = retime(*solver, Path::spline(randomWaypoints(7, i)), limits).trajectory.duration();
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(together, alone);
+}
+
+TEST(Retime, RefusesWrongLimitsAndOptions) {
+  const auto solver = slider();
+  const Path path = Path::lines((MatrixXd(1, 2) << 0.0, 2.0).finished(), 0.0);
+  const auto with = [&](auto change) {
+    return [&, change] {
+      MotionLimits limits;
+      limits.torque = VectorXd::Constant(1, 10.0);
+      RetimeOptions options;
+      change(limits, options);
+      retime(*solver, path, limits, options);
+    };
+  };
+  using L = MotionLimits;
+  using O = RetimeOptions;
+  EXPECT_THAT(with([](L& limits, O&) { limits.torque = {}; }), refused("limits.torque"));
+  EXPECT_THAT(with([](L& limits, O&) { limits.torque[0] = -1; }), refused("of x"));
+  EXPECT_THAT(with([](L& limits, O&) { limits.velocity = VectorXd::Zero(1); }), refused("> 0"));
+  EXPECT_THAT(with([](L& limits, O&) { limits.knee_velocity = VectorXd::Ones(1); }),
+              refused("no_load_velocity"));
+  EXPECT_THAT(with([](L& limits, O&) { limits.tip_speed = 0; }), refused("tip_speed"));
+  EXPECT_THAT(with([](L&, O& options) { options.points = 1; }), refused("points"));
+  EXPECT_THAT(with([](L&, O& options) { options.margin = 1; }), refused("margin"));
+  EXPECT_THAT(with([](L&, O& options) { options.end_speed = -1; }), refused("end_speed"));
+  EXPECT_THROW(with([](L& limits, O&) { limits.jerk = VectorXd::Ones(2); })(),
+               inverse_dynamics_solver::SizeMismatchException);
+}
+
+}  // namespace

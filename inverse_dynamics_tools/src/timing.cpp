@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <pybind11/stl.h>
+
+#include <inverse_dynamics_solver/exceptions.hpp>
+#include <inverse_dynamics_timing/retime.hpp>
+#include <vector>
+
+#include "annotations.hpp"
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "fields.hpp"
+#include "vectors.hpp"
+
+namespace inverse_dynamics_tools {
+namespace {
+
+namespace py = pybind11;
+using namespace inverse_dynamics_timing;
+using Stops = std::vector<Eigen::Index>;
+
+/// q and its first and second derivative, (N, n) each: `evaluate(x, q, first, second)` at N numbers.
+template <class Evaluate>
+ThreeFloats statesAt(const Eigen::VectorXd& at, Eigen::Index joints, const Evaluate& evaluate) {
+  Array arrays[] = {Array({at.size(), joints}), Array({at.size(), joints}),
+                    Array({at.size(), joints})};
+  Map q = columns(arrays[0]), first = columns(arrays[1]), second = columns(arrays[2]);
+  unlocked([&] {
+    for (Eigen::Index k = 0; k < at.size(); ++k) {
+      evaluate(at[k], q.col(k), first.col(k), second.col(k));
+    }
+    return 0;
+  });
+  return {Floats(arrays[0]), Floats(arrays[1]), Floats(arrays[2])};
+}
+
+void bindPath(py::module_& module) {
+  py::class_<Path>(module, "JointPath", "Where joints go, without time: q(s), a piecewise polynomial.")
+      .def_static(
+          "spline",
+          [](const Array& waypoints, const Stops& stops) {
+            return Path::spline(states(waypoints, "waypoints"), stops);
+          },
+          py::arg("waypoints"), py::arg("stops") = Stops(),
+          "Cubic spline through waypoints (m, n); stops: numbers of those to stand still at.")
+      .def_static(
+          "lines",
+          [](const Array& waypoints, double deviation, const Stops& stops) {
+            return Path::lines(states(waypoints, "waypoints"), deviation, stops);
+          },
+          py::arg("waypoints"), py::arg("deviation"), py::arg("stops") = Stops(),
+          "Straight lines; curves pass corners by at most `deviation` rad, with 0 the robot stops.")
+      .def_property_readonly("joint_count", &Path::jointCount)
+      .def_property_readonly(
+          "knots", [](const Path& path) { return arrayOf(path.knots()); },
+          "Ends of the polynomial pieces, of the path's parameter s.")
+      .def_property_readonly(
+          "stops", [](const Path& path) { return arrayOf(path.stops()); },
+          "s where the robot stands still on its way.")
+      .def(
+          "states",
+          [](const Path& path, const Eigen::VectorXd& s) {
+            return statesAt(s, path.jointCount(), [&](double at, auto q, auto dq, auto ddq) {
+              path.evaluate(at, q, dq, ddq);
+            });
+          },
+          py::arg("s"), "q, dq/ds, d2q/ds2 at s (N,): (N, n) each.");
+}
+
+Trajectory retimed(const SolverObject& solver, const Path& path, const MotionLimits& limits,
+                   const RetimeOptions& options) {
+  const auto held = solverOf(solver);
+  Retimed result = unlocked([&] { return retime(*held, path, limits, options); });
+  if (!result) {
+    throw inverse_dynamics_solver::Exception("path: " + text(result.refusal, held->jointNames()));
+  }
+  return std::move(result.trajectory);
+}
+
+}  // namespace
+
+void bindTiming(py::module_& module) {
+  bindPath(module);
+  using L = MotionLimits;
+  bindOptions<1>(module, "MotionLimits", "Limits of the joints' sizes, both directions.",
+                 "(n,) each; empty: unlimited.", Field{"torque", &L::torque, "(n,) N m."},
+                 Field{"velocity", &L::velocity, "(n,) rad/s."},
+                 Field{"acceleration", &L::acceleration, "(n,) rad/s^2."},
+                 Field{"jerk", &L::jerk, "(n,) rad/s^3."},
+                 Field{"knee_velocity", &L::knee_velocity,
+                       "(n,) rad/s, above which a motor's torque falls."},
+                 Field{"no_load_velocity", &L::no_load_velocity,
+                       "(n,) rad/s, at which a motor has none left."},
+                 Field{"tip_speed", &L::tip_speed, "m/s; infinite: unlimited."});
+  using O = RetimeOptions;
+  bindOptions(module, "RetimeOptions", "How a path is timed.", "",
+              Field{"points", &O::points, "of the grid, about."},
+              Field{"start_speed", &O::start_speed, "ds/dt at the path's start."},
+              Field{"end_speed", &O::end_speed, "ds/dt at its end."},
+              Field{"margin", &O::margin, "share of measured torques within limits; 0: computed ones."});
+  using T = Trajectory;
+  py::class_<T>(module, "TimedPath", "A path with its time.")
+      .def_property_readonly("duration", &T::duration, "s.")
+      .def_property_readonly("path", &T::path)
+      .def_property_readonly(
+          "time", [](const T& t) { return arrayOf(t.time()); }, "(K,) s, of the grid's points.")
+      .def_property_readonly(
+          "s", [](const T& t) { return arrayOf(t.s()); }, "(K,) the path's parameter.")
+      .def_property_readonly(
+          "speed", [](const T& t) { return arrayOf(t.speed()); }, "(K,) ds/dt.")
+      .def(
+          "states",
+          [](const T& t, const Eigen::VectorXd& time) {
+            return statesAt(time, t.path().jointCount(), [&](double at, auto q, auto qd, auto qdd) {
+              t.evaluate(at, q, qd, qdd);
+            });
+          },
+          py::arg("time"), "q, qd, qdd at times (N,) s: (N, n) each.");
+  module.def("retime_path", &retimed, py::arg("solver"), py::arg("path"), py::arg("limits"),
+             py::arg("options") = O(), "The fastest motion along a path within limits: TimedPath.");
+  module.def(
+      "speed_limit",
+      [](const SolverObject& solver, const T& trajectory, const L& limits, const O& options) {
+        const auto held = solverOf(solver);
+        const auto limit = unlocked([&] { return speedLimit(*held, trajectory, limits, options); });
+        return arrayOf(limit);
+      },
+      py::arg("solver"), py::arg("trajectory"), py::arg("limits"), py::arg("options") = O(),
+      "(K,) the greatest ds/dt for which limits can be kept for an instant, at a grid's points.");
+}
+
+}  // namespace inverse_dynamics_tools
