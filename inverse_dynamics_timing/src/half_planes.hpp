@@ -21,9 +21,7 @@ class HalfPlanes {
   struct Range {
     double low, high;
     double low_slope, high_slope;
-    bool empty() const {
-      return low - high > 1e-12 * (std::abs(low) + std::abs(high));
-    }
+    bool empty() const { return low - high > 1e-12 * (std::abs(low) + std::abs(high)); }
   };
 
   void reserve(std::size_t count) { upper_.reserve(count), lower_.reserve(count); }

@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 [[noreturn]] void refusePath(const std::string& what, const std::string& expected,
-                         const std::string& got, const std::string& remedy = "") {
+                             const std::string& got, const std::string& remedy = "") {
   throw inverse_dynamics_solver::InvalidParameterValueException(
       inverse_dynamics_solver::errorText("path", what, expected, got, remedy));
 }
@@ -30,7 +30,8 @@ struct Way {
 
 Way wayThrough(const Path::Points& waypoints) {
   if (!waypoints.allFinite()) {
-    refusePath("a waypoint isn't finite", "finite positions, rad (sliders: m)", "a NaN or infinity");
+    refusePath("a waypoint isn't finite", "finite positions, rad (sliders: m)",
+               "a NaN or infinity");
   }
   // Nearer than rounding of the positions themselves: the same waypoint.
   const double same = waypoints.size() > 0 ? 1e-9 * (1.0 + waypoints.cwiseAbs().maxCoeff()) : 0.0;
@@ -47,7 +48,7 @@ Way wayThrough(const Path::Points& waypoints) {
   way.points.conservativeResize(Eigen::NoChange, static_cast<Index>(way.at.size()));
   if (way.at.size() < 2) {
     refusePath("nothing moves", "two different waypoints at least",
-           std::to_string(waypoints.cols()) + ", all at one place");
+               std::to_string(waypoints.cols()) + ", all at one place");
   }
   return way;
 }
@@ -57,8 +58,8 @@ std::vector<bool> stopsOf(const Way& way, const std::vector<Index>& stops) {
   std::vector<bool> result(way.at.size(), false);
   for (const Index stop : stops) {
     if (stop < 0 || stop >= static_cast<Index>(way.number.size())) {
-      refusePath("no waypoint of a stop's number",
-             "0 to " + std::to_string(way.number.size() - 1), std::to_string(stop));
+      refusePath("no waypoint of a stop's number", "0 to " + std::to_string(way.number.size() - 1),
+                 std::to_string(stop));
     }
     result[static_cast<std::size_t>(way.number[static_cast<std::size_t>(stop)])] = true;
   }
@@ -112,7 +113,8 @@ Path Path::spline(const Points& waypoints, const std::vector<Index>& stops) {
     const double h = path.knots_[k + 1] - path.knots_[k];
     auto c = path.piece(k);
     c.col(0) = way.points.col(k);
-    c.col(1) = (way.points.col(k + 1) - way.points.col(k)) / h - h / 6 * (2 * M.col(k) + M.col(k + 1));
+    c.col(1) =
+        (way.points.col(k + 1) - way.points.col(k)) / h - h / 6 * (2 * M.col(k) + M.col(k + 1));
     c.col(2) = M.col(k) / 2;
     c.col(3) = (M.col(k + 1) - M.col(k)) / (6 * h);
   }
@@ -146,7 +148,8 @@ Path Path::lines(const Points& waypoints, double deviation, const std::vector<In
     const double widest = std::min(length(k - 1), length(k)) / 2;
     if (turn < 1e-9) continue;  // no corner
     corner.reach = std::min(widest, deviation / (kCornerDistance * turn));
-    corner.stop = stopped[static_cast<std::size_t>(k)] || corner.reach < 1e-6 * widest || turn > 1.999;
+    corner.stop =
+        stopped[static_cast<std::size_t>(k)] || corner.reach < 1e-6 * widest || turn > 1.999;
     if (corner.stop) corner.reach = 0.0;
   }
   for (std::size_t k = 1; k + 1 < corners.size(); ++k) corners[k].stop |= stopped[k];
@@ -184,7 +187,8 @@ Path Path::lines(const Points& waypoints, double deviation, const std::vector<In
   return path;
 }
 
-Path Path::function(const Function& evaluate, Index joints, const Eigen::Ref<const VectorXd>& knots) {
+Path Path::function(const Function& evaluate, Index joints,
+                    const Eigen::Ref<const VectorXd>& knots) {
   for (Index k = 0; k < knots.size(); ++k) {
     if (!std::isfinite(knots[k]) || (k > 0 && !(knots[k] > knots[k - 1]))) {
       refusePath("knots", "finite, rising", "knot " + std::to_string(k) + " isn't");
@@ -198,7 +202,8 @@ Path Path::function(const Function& evaluate, Index joints, const Eigen::Ref<con
     evaluate(knots[k + 1], q1, v1, a1);
     if (!q0.allFinite() || !q1.allFinite() || !v0.allFinite() || !v1.allFinite() ||
         !a0.allFinite() || !a1.allFinite()) {
-      refusePath("the function isn't finite", "finite q, q', q''", "a NaN or infinity near knot " + std::to_string(k));
+      refusePath("the function isn't finite", "finite q, q', q''",
+                 "a NaN or infinity near knot " + std::to_string(k));
     }
     const double h = knots[k + 1] - knots[k];
     // The polynomial's rest beyond the parabola of the start must give q, q', q'' of the end.

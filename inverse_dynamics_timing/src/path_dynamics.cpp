@@ -41,7 +41,8 @@ VectorXd bandOf(const InverseDynamicsSolver& solver, double margin) {
   for (int step = 0; step < 60; ++step) {
     x += (margin - std::erf(x / std::sqrt(2.0))) * std::sqrt(M_PI / 2) * std::exp(x * x / 2);
   }
-  return x / 1.959963984540054 * dynamic_cast<const ids::TorqueDeviation&>(solver).getTorqueDeviation();
+  return x / 1.959963984540054 *
+         dynamic_cast<const ids::TorqueDeviation&>(solver).getTorqueDeviation();
 }
 
 }  // namespace
@@ -123,7 +124,8 @@ void PathDynamics::room(Index k, double z, Room& room) const {
 
 double PathDynamics::excess(Index k, double x, double y) const {
   const Index n = g_.rows();
-  const double s = (s_[k] + s_[k + 1]) / 2, z = (x + y) / 2, u = (y - x) / (2 * (s_[k + 1] - s_[k]));
+  const double s = (s_[k] + s_[k + 1]) / 2, z = (x + y) / 2,
+               u = (y - x) / (2 * (s_[k + 1] - s_[k]));
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 64, 1> q(n), qd(n), ddq(n), f(n);
   path_.evaluate(s, q, qd, ddq);
   qd *= std::sqrt(z);
@@ -143,7 +145,8 @@ Index PathDynamics::weakest(Index k, double& missing) const {
   for (Index j = 0; j < g_.rows(); ++j) {
     const double limit = torqueLimit(j, 0.0);
     const double lacks = std::abs(g_(j, k) + at_rest_(j, k)) - limit;
-    if (lacks > worst * limits_.torque[j]) worst = lacks / limits_.torque[j], joint = j, missing = lacks;
+    if (lacks > worst * limits_.torque[j])
+      worst = lacks / limits_.torque[j], joint = j, missing = lacks;
   }
   return joint;
 }
@@ -151,7 +154,7 @@ Index PathDynamics::weakest(Index k, double& missing) const {
 namespace {
 
 [[noreturn]] void refuseOption(const std::string& where, const std::string& expected,
-                         const std::string& got, const std::string& remedy = "") {
+                               const std::string& got, const std::string& remedy = "") {
   throw ids::InvalidParameterValueException(
       ids::errorText("retime(): " + where, "", expected, got, remedy));
 }
@@ -160,14 +163,16 @@ void checkLimit(const InverseDynamicsSolver& solver, const char* name,
                 const chain_dynamics::OwnedVector& limit) {
   if (limit.size() == 0) return;
   if (limit.size() != solver.jointCount()) {
-    throw ids::SizeMismatchException(ids::errorText(
-        std::string("retime(): limits.") + name, "",
-        std::to_string(solver.jointCount()) + " numbers, one per joint, or none", std::to_string(limit.size())));
+    throw ids::SizeMismatchException(
+        ids::errorText(std::string("retime(): limits.") + name, "",
+                       std::to_string(solver.jointCount()) + " numbers, one per joint, or none",
+                       std::to_string(limit.size())));
   }
   for (Index j = 0; j < limit.size(); ++j) {
     if (!(limit[j] > 0.0) || !std::isfinite(limit[j])) {
-      refuseOption(std::string("limits.") + name + " of " + solver.jointNames()[static_cast<std::size_t>(j)],
-             "a finite number > 0", std::to_string(limit[j]));
+      refuseOption(
+          std::string("limits.") + name + " of " + solver.jointNames()[static_cast<std::size_t>(j)],
+          "a finite number > 0", std::to_string(limit[j]));
     }
   }
 }
@@ -183,7 +188,8 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
                        std::to_string(path.jointCount())));
   }
   if (n > 64) refuseOption("solver", "at most 64 joints", std::to_string(n));
-  if (limits.torque.size() == 0) refuseOption("limits.torque", "a limit of each joint, N m", "none");
+  if (limits.torque.size() == 0)
+    refuseOption("limits.torque", "a limit of each joint, N m", "none");
   checkLimit(solver, "torque", limits.torque);
   checkLimit(solver, "velocity", limits.velocity);
   checkLimit(solver, "acceleration", limits.acceleration);
@@ -192,13 +198,14 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
   checkLimit(solver, "no_load_velocity", limits.no_load_velocity);
   if (limits.knee_velocity.size() != limits.no_load_velocity.size() ||
       (limits.knee_velocity.array() >= limits.no_load_velocity.array()).any()) {
-    refuseOption("limits.knee_velocity", "for each joint less than no_load_velocity, or neither of them",
-           "otherwise");
+    refuseOption("limits.knee_velocity",
+                 "for each joint less than no_load_velocity, or neither of them", "otherwise");
   }
-  if (!(limits.tip_speed > 0.0)) refuseOption("limits.tip_speed", "> 0 m/s", std::to_string(limits.tip_speed));
+  if (!(limits.tip_speed > 0.0))
+    refuseOption("limits.tip_speed", "> 0 m/s", std::to_string(limits.tip_speed));
   if (std::isfinite(limits.tip_speed) && dynamic_cast<const ids::Kinematics*>(&solver) == nullptr) {
     refuseOption("limits.tip_speed", "a solver with the capability Kinematics", "one without",
-           "leave the limit out, or use another solver");
+                 "leave the limit out, or use another solver");
   }
   if (options.points < 2) refuseOption("options.points", ">= 2", std::to_string(options.points));
   if (!(options.start_speed >= 0.0) || !std::isfinite(options.start_speed)) {
@@ -214,14 +221,14 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
   const auto* deviation = dynamic_cast<const ids::TorqueDeviation*>(&solver);
   if (deviation == nullptr || !deviation->hasTorqueDeviation()) {
     refuseOption("options.margin", "a model that states the deviation of its torques",
-           "one that doesn't", "identify the robot, or leave the margin out");
+                 "one that doesn't", "identify the robot, or leave the margin out");
   }
   const VectorXd band = bandOf(solver, options.margin);
   for (Index j = 0; j < n; ++j) {
     if (band[j] < limits.torque[j]) continue;
     refuseOption("options.margin", "a band narrower than the torque limit",
-           "for " + solver.jointNames()[static_cast<std::size_t>(j)] + " " + std::to_string(band[j]) + " of " +
-               std::to_string(limits.torque[j]) + " N m");
+                 "for " + solver.jointNames()[static_cast<std::size_t>(j)] + " " +
+                     std::to_string(band[j]) + " of " + std::to_string(limits.torque[j]) + " N m");
   }
 }
 

@@ -47,14 +47,16 @@ void PhasePlane::addInterval(Index k) {
   planes_.clear();
   planes_.add(1.0, 0.0, high_[k + 1]);
   planes_.add(-1.0, 0.0, -low_[k + 1]);
-  const auto a = dynamics_.a(k), b = dynamics_.b(k), next_a = dynamics_.a(k + 1), next_b = dynamics_.b(k + 1);
+  const auto a = dynamics_.a(k), b = dynamics_.b(k), next_a = dynamics_.a(k + 1),
+             next_b = dynamics_.b(k + 1);
   for (Index j = 0; j < dynamics_.rows(); ++j) {
     const double p = a[j] * m, r = b[j] - p;
     planes_.add(p, r - here_.up_slope[j], here_.up[j] - here_.up_slope[j] * here_.z);
     planes_.add(-p, -r - here_.down_slope[j], here_.down[j] - here_.down_slope[j] * here_.z);
     const double next_r = -next_a[j] * m, next_p = next_b[j] - next_r;
     planes_.add(next_p - next_.up_slope[j], next_r, next_.up[j] - next_.up_slope[j] * next_.z);
-    planes_.add(-next_p - next_.down_slope[j], -next_r, next_.down[j] - next_.down_slope[j] * next_.z);
+    planes_.add(-next_p - next_.down_slope[j], -next_r,
+                next_.down[j] - next_.down_slope[j] * next_.z);
   }
 }
 
@@ -65,7 +67,8 @@ bool PhasePlane::backward(Index k, End end, double& x) {
   double y = greatest ? high_[k + 1] : low_[k + 1];
   x = greatest ? std::min(y, cap) : 0.0;
   if (greatest && k + 2 < dynamics_.points()) {
-    const double step = (dynamics_.s(k + 1) - dynamics_.s(k)) / (dynamics_.s(k + 2) - dynamics_.s(k + 1));
+    const double step =
+        (dynamics_.s(k + 1) - dynamics_.s(k)) / (dynamics_.s(k + 2) - dynamics_.s(k + 1));
     x = std::clamp(y + step * (y - high_[k + 2]), 0.0, cap);
   }
   for (int program = 0; program < kPrograms; ++program) {
@@ -152,7 +155,8 @@ double PhasePlane::greatest(Index k) {
     const auto a = dynamics_.a(k), b = dynamics_.b(k);
     for (Index j = 0; j < dynamics_.rows(); ++j) {
       planes_.add(a[j], b[j] - here_.up_slope[j], here_.up[j] - here_.up_slope[j] * here_.z);
-      planes_.add(-a[j], -b[j] - here_.down_slope[j], here_.down[j] - here_.down_slope[j] * here_.z);
+      planes_.add(-a[j], -b[j] - here_.down_slope[j],
+                  here_.down[j] - here_.down_slope[j] * here_.z);
     }
     double to = z;
     if (!planes_.approach(to, 0.0)) return -1.0;

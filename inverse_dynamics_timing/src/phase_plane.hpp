@@ -35,8 +35,8 @@ class PhasePlane {
 
   const PathDynamics& dynamics_;
   HalfPlanes planes_;
-  Room here_, next_;          // of both ends of an interval
-  std::vector<bool> stands_;  // whether torques hold the robot still
+  Room here_, next_;            // of both ends of an interval
+  std::vector<bool> stands_;    // whether torques hold the robot still
   Eigen::VectorXd low_, high_;  // squared speeds from which the end can be reached
   Eigen::VectorXd z_;
   Refusal refusal_;

@@ -27,7 +27,8 @@ VectorXd gridOf(const Path& path, Index first, Index last, Index points) {
   for (Index k = first; k < last; ++k) {
     const double from = path.knots()[k], length = path.knots()[k + 1] - from;
     const bool starts = k == first, ends = k + 1 == last;
-    const auto wanted = static_cast<Index>(std::lround(static_cast<double>(points) * length / whole));
+    const auto wanted =
+        static_cast<Index>(std::lround(static_cast<double>(points) * length / whole));
     const Index count = std::max(wanted, starts || ends ? kLeastAtStop : kLeastOfPiece);
     for (Index i = 1; i <= count; ++i) {
       const double x = static_cast<double>(i) / static_cast<double>(count);
@@ -80,7 +81,8 @@ double overload(const InverseDynamicsSolver& solver, const Trajectory& motion,
   Index first = 0;
   for (Index k = 1; k <= grid.size(); ++k) {
     if (k < grid.size() && grid[k] > grid[k - 1]) continue;
-    const PathDynamics dynamics(solver, motion.path(), grid.segment(first, k - first), limits, margin);
+    const PathDynamics dynamics(solver, motion.path(), grid.segment(first, k - first), limits,
+                                margin);
     Room room = dynamics.emptyRoom();
     for (Index i = 0; i + 1 < dynamics.points(); ++i) {
       const double v = motion.speed()[first + i], w = motion.speed()[first + i + 1];
@@ -154,7 +156,8 @@ chain_dynamics::OwnedVector speedLimit(const InverseDynamicsSolver& solver,
 std::string text(const Refusal& refusal, const std::vector<std::string>& joint_names) {
   const auto number = [](double value) {
     std::string digits(32, '\0');
-    digits.resize(static_cast<std::size_t>(std::snprintf(digits.data(), digits.size(), "%.4g", value)));
+    digits.resize(
+        static_cast<std::size_t>(std::snprintf(digits.data(), digits.size(), "%.4g", value)));
     return digits;
   };
   const std::string place = "at s = " + number(refusal.s) + " of the path";
@@ -163,10 +166,12 @@ std::string text(const Refusal& refusal, const std::vector<std::string>& joint_n
       return {};
     case Refusal::Reason::kTorqueAtRest:
       return place + " joint " + joint_names[static_cast<std::size_t>(refusal.joint)] + " lacks " +
-             number(refusal.missing) + " N m to hold the robot, and no speed helps; lighten the "
+             number(refusal.missing) +
+             " N m to hold the robot, and no speed helps; lighten the "
              "payload, change the path, or raise the limit";
     case Refusal::Reason::kNoWayOn:
-      return place + " each speed leads to where limits can't be kept; change the path, or raise "
+      return place +
+             " each speed leads to where limits can't be kept; change the path, or raise "
              "the limits";
     case Refusal::Reason::kStartTooFast:
       return "the start's speed is too high: expected ds/dt of at most " + number(refusal.missing) +

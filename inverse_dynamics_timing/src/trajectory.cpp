@@ -53,9 +53,10 @@ Trajectory averaged(const Trajectory& motion, double span) {
     const std::size_t begin = s.size();
     for (Index i = 0; i <= steps; ++i) {
       const double t = static_cast<double>(i) * step;
-      const double v = i == 0 || i == steps
-                           ? 0.0
-                           : (positionAt(motion, section, t) - positionAt(motion, section, t - span)) / span;
+      const double v =
+          i == 0 || i == steps
+              ? 0.0
+              : (positionAt(motion, section, t) - positionAt(motion, section, t - span)) / span;
       s.push_back(i == 0 ? from : s.back() + (speed.back() + v) / 2 * step);
       speed.push_back(v);
     }
@@ -100,7 +101,8 @@ void Trajectory::evaluate(double t, Eigen::Ref<VectorXd> q, Eigen::Ref<VectorXd>
                           Eigen::Ref<VectorXd> qdd) const {
   const double* const begin = time_.data();
   const Index last = time_.size() - 1;
-  const Index k = std::clamp<Index>(std::upper_bound(begin, begin + last, t) - begin - 1, 0, last - 1);
+  const Index k =
+      std::clamp<Index>(std::upper_bound(begin, begin + last, t) - begin - 1, 0, last - 1);
   t = std::clamp(t, 0.0, time_[last]) - time_[k];
   const double interval = time_[k + 1] - time_[k];
   const double u = interval > 0.0 ? (speed_[k + 1] - speed_[k]) / interval : 0.0;

@@ -17,7 +17,7 @@ namespace inverse_dynamics_timing {
 
 /// A grid of places along the path and of speeds from 0 to `fastest`.
 struct DenseGrid {
-  int places = 150, speeds = 3000, accelerations = 40;
+  int places = 300, speeds = 3000, accelerations = 40;
   double fastest = 1.0;
 };
 
@@ -36,7 +36,8 @@ inline Accelerations accelerationsAt(const inverse_dynamics_solver::InverseDynam
   const Eigen::VectorXd more = solver.getTorques(q, zero, dq) - solver.getTorques(q, zero, zero);
   Accelerations u{-1e9, 1e9};
   for (Eigen::Index j = 0; j < n; ++j) {
-    const double up = (torque[j] - coasting[j]) / more[j], down = (-torque[j] - coasting[j]) / more[j];
+    const double up = (torque[j] - coasting[j]) / more[j],
+                 down = (-torque[j] - coasting[j]) / more[j];
     u.least = std::max(u.least, std::min(up, down));
     u.greatest = std::min(u.greatest, std::max(up, down));
   }
@@ -45,10 +46,12 @@ inline Accelerations accelerationsAt(const inverse_dynamics_solver::InverseDynam
 
 /// Shortest duration from rest to rest, s; infinite: there is none on the grid.
 inline double denseDuration(const inverse_dynamics_solver::InverseDynamicsSolver& solver,
-                            const Path& path, const Eigen::VectorXd& torque, const DenseGrid& grid) {
+                            const Path& path, const Eigen::VectorXd& torque,
+                            const DenseGrid& grid) {
   const double infinity = std::numeric_limits<double>::infinity();
   const double step = (path.end() - path.start()) / grid.places, unit = grid.fastest / grid.speeds;
-  std::vector<double> later(static_cast<std::size_t>(grid.speeds) + 1, infinity);  // time to the end
+  std::vector<double> later(static_cast<std::size_t>(grid.speeds) + 1,
+                            infinity);  // time to the end
   later[0] = 0.0;
   const auto timeFrom = [&](double speed) {
     const double place = speed / unit;

@@ -51,7 +51,8 @@ void expectSmooth(const Path& path) {
     const double s = path.start() + (path.end() - path.start()) * (i + 0.3) / 51;
     const State before = at(path, s - step), here = at(path, s), after = at(path, s + step);
     EXPECT_LT(((after.q - before.q) / (2 * step) - here.dq).norm(), 1e-5 * (1 + here.dq.norm()));
-    EXPECT_LT(((after.dq - before.dq) / (2 * step) - here.ddq).norm(), 1e-3 * (1 + here.ddq.norm()));
+    EXPECT_LT(((after.dq - before.dq) / (2 * step) - here.ddq).norm(),
+              1e-3 * (1 + here.ddq.norm()));
   }
 }
 

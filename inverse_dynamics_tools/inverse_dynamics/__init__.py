@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     __version__: str
 
     from inverse_dynamics._core import FastModel as FastModel
+    from inverse_dynamics._core import JointPath as JointPath
+    from inverse_dynamics._core import MotionLimits as MotionLimits
     from inverse_dynamics._core import Solver as Solver
     from inverse_dynamics._core import available_solvers as available_solvers
     from inverse_dynamics.data.bags import read_joint_log as read_joint_log
@@ -34,6 +36,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.evaluation import Evaluation as Evaluation
     from inverse_dynamics.evaluation.evaluation import JointError as JointError
     from inverse_dynamics.evaluation.evaluation import evaluate as evaluate
+    from inverse_dynamics.evaluation.retiming import Retimed as Retimed
+    from inverse_dynamics.evaluation.retiming import retime as retime
     from inverse_dynamics.evaluation.trajectory_torques import (
         TrajectoryTorques as TrajectoryTorques,
     )
@@ -52,6 +56,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.results.exports import export_series as export_series
     from inverse_dynamics.results.many_evaluations import ManyEvaluations as ManyEvaluations
     from inverse_dynamics.results.many_evaluations import evaluate_many as evaluate_many
+    from inverse_dynamics.results.retimed import write_retimed as write_retimed
     from inverse_dynamics.results.trajectory_torques import (
         write_trajectory_torques as write_trajectory_torques,
     )
@@ -60,13 +65,14 @@ if TYPE_CHECKING:
     from inverse_dynamics.robot.robots import robot_names as robot_names
 
 _MODULES = {  # and the names that users know
-    "_core": ("FastModel", "Solver", "available_solvers"),
+    "_core": ("FastModel", "JointPath", "MotionLimits", "Solver", "available_solvers"),
     "data.bags": ("read_joint_log", "read_topics", "write_joint_logs"),
     "data.joint_log": ("JointLog",),
     "data.public_recordings": ("fetch_recordings",),
     "data.recordings": ("read_recording",),
     "errors": ("UserError",),
     "evaluation.evaluation": ("Evaluation", "JointError", "evaluate"),
+    "evaluation.retiming": ("Retimed", "retime"),
     "evaluation.trajectory_torques": ("TrajectoryTorques", "trajectory_torques"),
     "figures.plots": ("save_torque_figure", "torque_figure"),
     "identification.identify": ("identify",),
@@ -75,6 +81,7 @@ _MODULES = {  # and the names that users know
     "results.excitations": ("ExcitationResult", "excite", "write_excitation"),
     "results.exports": ("export_series",),
     "results.many_evaluations": ("ManyEvaluations", "evaluate_many"),
+    "results.retimed": ("write_retimed",),
     "results.trajectory_torques": ("write_trajectory_torques",),
     "robot.robots": ("Robot", "load_robot", "robot_names"),
 }

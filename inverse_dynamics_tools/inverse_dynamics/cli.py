@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 GROUPS = {
     "look": ("demo", "data", "robots", "evaluate", "compare", "contact"),
     "identify": ("excite", "identify", "payload"),
-    "plan": ("simulate", "torques"),
+    "plan": ("simulate", "torques", "retime"),
     "share": ("report", "export", "completion"),
 }
 VERBS = tuple(verb for group in GROUPS.values() for verb in group)

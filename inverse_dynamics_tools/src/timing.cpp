@@ -34,7 +34,8 @@ ThreeFloats statesAt(const Eigen::VectorXd& at, Eigen::Index joints, const Evalu
 }
 
 void bindPath(py::module_& module) {
-  py::class_<Path>(module, "JointPath", "Where joints go, without time: q(s), a piecewise polynomial.")
+  py::class_<Path>(module, "JointPath",
+                   "Where joints go, without time: q(s), a piecewise polynomial.")
       .def_static(
           "spline",
           [](const Array& waypoints, const Stops& stops) {
@@ -81,22 +82,23 @@ Trajectory retimed(const SolverObject& solver, const Path& path, const MotionLim
 void bindTiming(py::module_& module) {
   bindPath(module);
   using L = MotionLimits;
-  bindOptions<1>(module, "MotionLimits", "Limits of the joints' sizes, both directions.",
-                 "(n,) each; empty: unlimited.", Field{"torque", &L::torque, "(n,) N m."},
-                 Field{"velocity", &L::velocity, "(n,) rad/s."},
-                 Field{"acceleration", &L::acceleration, "(n,) rad/s^2."},
-                 Field{"jerk", &L::jerk, "(n,) rad/s^3."},
-                 Field{"knee_velocity", &L::knee_velocity,
-                       "(n,) rad/s, above which a motor's torque falls."},
-                 Field{"no_load_velocity", &L::no_load_velocity,
-                       "(n,) rad/s, at which a motor has none left."},
-                 Field{"tip_speed", &L::tip_speed, "m/s; infinite: unlimited."});
+  bindOptions<1>(
+      module, "MotionLimits", "Limits of the joints' sizes, both directions.",
+      "(n,) each; empty: unlimited.", Field{"torque", &L::torque, "(n,) N m."},
+      Field{"velocity", &L::velocity, "(n,) rad/s."},
+      Field{"acceleration", &L::acceleration, "(n,) rad/s^2."},
+      Field{"jerk", &L::jerk, "(n,) rad/s^3."},
+      Field{"knee_velocity", &L::knee_velocity, "(n,) rad/s, above which a motor's torque falls."},
+      Field{"no_load_velocity", &L::no_load_velocity,
+            "(n,) rad/s, at which a motor has none left."},
+      Field{"tip_speed", &L::tip_speed, "m/s; infinite: unlimited."});
   using O = RetimeOptions;
-  bindOptions(module, "RetimeOptions", "How a path is timed.", "",
-              Field{"points", &O::points, "of the grid, about."},
-              Field{"start_speed", &O::start_speed, "ds/dt at the path's start."},
-              Field{"end_speed", &O::end_speed, "ds/dt at its end."},
-              Field{"margin", &O::margin, "share of measured torques within limits; 0: computed ones."});
+  bindOptions<0>(
+      module, "RetimeOptions", "How a path is timed.", "",
+      Field{"points", &O::points, "of the grid, about."},
+      Field{"start_speed", &O::start_speed, "ds/dt at the path's start."},
+      Field{"end_speed", &O::end_speed, "ds/dt at its end."},
+      Field{"margin", &O::margin, "share of measured torques within limits; 0: computed ones."});
   using T = Trajectory;
   py::class_<T>(module, "TimedPath", "A path with its time.")
       .def_property_readonly("duration", &T::duration, "s.")

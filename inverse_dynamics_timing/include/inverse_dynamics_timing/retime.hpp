@@ -76,9 +76,9 @@ struct Refusal {
     kStartTooFast,  ///< the start's speed is beyond what limits allow
   };
   Reason reason = Reason::kNone;
-  double s = 0.0;             ///< where, parameter of the path
-  Eigen::Index joint = -1;    ///< which joint lacks torque
-  double missing = 0.0;       ///< how much, N m; kStartTooFast: the greatest speed that is possible
+  double s = 0.0;           ///< where, parameter of the path
+  Eigen::Index joint = -1;  ///< which joint lacks torque
+  double missing = 0.0;     ///< how much, N m; kStartTooFast: the greatest speed that is possible
 };
 
 /// Text of a refusal, with the joint's name; empty: none.

@@ -29,9 +29,11 @@ class Trajectory {
 
   /// @name At the points of the grid
   /// @{
-  const chain_dynamics::OwnedVector& time() const { return time_; }    ///< s
-  const chain_dynamics::OwnedVector& s() const { return s_; }          ///< parameter of the path
-  const chain_dynamics::OwnedVector& speed() const { return speed_; }  ///< ds/dt, 1/s times its unit
+  const chain_dynamics::OwnedVector& time() const { return time_; }  ///< s
+  const chain_dynamics::OwnedVector& s() const { return s_; }        ///< parameter of the path
+  const chain_dynamics::OwnedVector& speed() const {
+    return speed_;
+  }  ///< ds/dt, 1/s times its unit
   /// @}
 
   /// q, qd, qdd at a time, limited to 0 to duration(). Allocates nothing.

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.evaluation.comparison import Comparison
     from inverse_dynamics.evaluation.contacts import Contacts
     from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.evaluation.retiming import Retimed
     from inverse_dynamics.evaluation.summary import EvaluationSummary
     from inverse_dynamics.evaluation.trajectory_torques import TrajectoryTorques
     from inverse_dynamics.identification.payload import Payload
@@ -223,6 +224,21 @@ def load_table(result: TrajectoryTorques) -> Table:
             _moment(load.peak_time, load.peak_trajectory, several),
             f"{load.limit:g} {load.unit}" if limited else "-",
             passed,
+        )
+    return table
+
+
+def retime_table(result: Retimed) -> Table:
+    """Of each joint: its greatest torque and velocity, and how long it is at its torque limit."""
+    table = _table("peak", "limit", "at limit", "velocity", text=("joint",))
+    for j, joint in enumerate(result.joint_names):
+        unit, speed = result.units[j], "rad/s" if result.units[j] == "N m" else "m/s"
+        table.add_row(
+            joint,
+            f"{max(result.efforts[:, j], key=abs):.3f} {unit}",
+            f"{result.limits.torque[j]:g} {unit}",
+            f"{100 * result.at_limit[j]:.0f} %",
+            f"{abs(result.qd[:, j]).max():.2f} {speed}",
         )
     return table
 

@@ -208,3 +208,10 @@ def _payload_of_file(text: str) -> dict[str, Parameter]:
     except UserError as error:
         raise argparse.ArgumentTypeError(str(error)) from None
     return stated
+
+
+def whole_numbers(text: str) -> tuple[int, ...]:
+    """`0,1,2`."""
+    return tuple(
+        whole_number(part, "integers that aren't negative, a,b,c") for part in text.split(",")
+    )

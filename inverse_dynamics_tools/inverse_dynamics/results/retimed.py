@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Files of a timed path: a recording of trajectory_msgs/JointTrajectory with efforts, a table, numbers, a figure."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from inverse_dynamics.base.files import (
+    Contents,
+    check_output_directory,
+    move_up,
+    write_text,
+    written_whole,
+)
+from inverse_dynamics.base.plain import json_text
+from inverse_dynamics.data.bags import new_recording, unwritable
+from inverse_dynamics.data.joint_trajectories import MESSAGE_TYPE, typestore
+from inverse_dynamics.errors import BagError
+from inverse_dynamics.figures.plots import check_formats
+from inverse_dynamics.figures.retiming import save_retime_figure
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from inverse_dynamics.data.joint_log import Storage
+    from inverse_dynamics.evaluation.retiming import Retimed
+
+MARK = "retime.json"
+TABLE = "trajectory.csv"
+TOPIC = "/joint_trajectory"
+CONTENTS = Contents(MARK, (MARK, TABLE, "torques.*", "metadata.yaml", "{name}.db3*", "{name}.mcap"))
+
+
+def check_output(
+    out: Path,
+    figures: Sequence[str] = (),
+    *,
+    overwrite: bool = False,
+    inputs: Iterable[Path | None] = (),
+) -> None:
+    """Raise OutputError unless write_retimed() may write there."""
+    check_formats(figures)
+    check_output_directory(out, overwrite=overwrite, contents=CONTENTS, inputs=inputs)
+
+
+def write_retimed(
+    result: Retimed,
+    out: Path | str,
+    *,
+    overwrite: bool = False,
+    figures: Sequence[str] = ("png",),
+    storage: Storage = "sqlite3",
+    inputs: Iterable[Path | None] = (),
+) -> None:
+    """Write all files, or none. overwrite: replace an older result. Raises OutputError, BagError."""
+    out = Path(out)
+    check_output(out, figures, overwrite=overwrite, inputs=inputs)
+    with written_whole(out, overwrite=overwrite, contents=CONTENTS, inputs=inputs) as directory:
+        try:
+            with new_recording(directory / out.name, storage) as writer:
+                topic = writer.add_connection(TOPIC, MESSAGE_TYPE, typestore=typestore())
+                writer.write(topic, 0, typestore().serialize_cdr(message_of(result), MESSAGE_TYPE))
+        except Exception as error:  # writers raise more than they document
+            raise error if isinstance(error, BagError) else unwritable(out, error) from error
+        move_up(directory / out.name)
+        write_text(directory / TABLE, table_text(result))
+        save_retime_figure(result, *(directory / f"torques.{suffix}" for suffix in figures))
+        write_text(directory / MARK, json_text(summary(result)))
+
+
+def message_of(result: Retimed) -> Any:
+    """The motion as trajectory_msgs/JointTrajectory, of the types of rosbags."""
+    types = typestore().types
+    header = types["std_msgs/msg/Header"](types["builtin_interfaces/msg/Time"](0, 0), "")
+    point = types["trajectory_msgs/msg/JointTrajectoryPoint"]
+    duration = types["builtin_interfaces/msg/Duration"]
+    states = (result.q, result.qd, result.qdd, result.efforts)
+    points = [
+        point(
+            *(np.ascontiguousarray(row) for row in rows),
+            duration(int(ns // 10**9), int(ns % 10**9)),
+        )
+        for *rows, ns in zip(*states, np.round(result.time * 1e9).astype(np.int64), strict=True)
+    ]
+    return types[MESSAGE_TYPE](header, list(result.joint_names), points)
+
+
+def table_text(result: Retimed) -> str:
+    """The motion as a table that `ids torques` reads."""
+    names = ("position", "velocity", "acceleration", "effort")
+    columns = [f"{name}.{joint}" for name in names for joint in result.joint_names]
+    rows = np.column_stack((result.time, result.q, result.qd, result.qdd, result.efforts))
+    text = io.StringIO()
+    np.savetxt(text, rows, "%.17g", ",", header=",".join(("time", *columns)), comments="")
+    return text.getvalue()
+
+
+def summary(result: Retimed) -> dict[str, Any]:
+    """Durations, limits and loads, for JSON."""
+    peak = np.abs(result.efforts).argmax(axis=0)
+    return {
+        "schema": 1,
+        "robot": result.robot.name,
+        "plugin": result.robot.plugin,
+        "duration": result.duration,
+        "duration_by_acceleration": result.duration + result.seconds_saved,
+        "acceleration": result.acceleration,
+        "energy": result.energy.driven,
+        "energy_friction": result.energy.friction,
+        "peak_power": result.energy.peak_power,
+        "joints": [
+            {
+                "joint": joint,
+                "unit": result.units[j],
+                "limit": result.limits.torque[j],
+                "band": result.band[j],
+                "peak": result.efforts[peak[j], j],
+                "peak_time": result.time[peak[j]],
+                "peak_velocity": np.abs(result.qd[:, j]).max(),
+                "at_limit": result.at_limit[j],
+            }
+            for j, joint in enumerate(result.joint_names)
+        ],
+        "notes": result.notes,
+    }

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`ids retime`: the fastest motion along a path within torque limits."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from inverse_dynamics.verbs.options import SOLVER, TABLE, Options, chosen_robot, given_overrides
+from inverse_dynamics.verbs.values import numbers, positive_number, share, whole_numbers
+
+if TYPE_CHECKING:
+    import argparse
+
+SUMMARY = "time a path so that it takes as little as torque limits allow"
+EPILOG = """\
+examples:
+  ids retime waypoints.yaml --robot ur10_real --out fast
+      a YAML file of waypoints (docs/retime.md), a table with columns position.JOINT, or a
+      recording of trajectory_msgs/JointTrajectory; times are ignored
+
+  ids retime picks.csv --robot ur10_real --deviation 0.05 --payload 3 --out fast
+      straight lines that pass the waypoints by at most 0.05 rad, with 3 kg at the tip
+
+  ids retime planned --robot my_robot.yaml --margin 0.95 --out fast
+      the band that holds 95 % of measured torques stays within limits
+
+The output directory is a recording of the trajectory with efforts; beside it a table, numbers and a
+figure. Limits of torque and velocity are those of the robot description unless they are given.
+"""
+
+
+def declare(options: Options) -> None:
+    """Arguments and options."""
+    options.argument(
+        "path",
+        metavar="PATH",
+        type=Path,
+        help="waypoints: a YAML file, a table, or a recording of trajectory_msgs/JointTrajectory",
+    )
+    options.robot()
+    options.output("DIR", "directory of the result", required=True, replaces=True)
+    options.figures()
+    way = options.group("the path")
+    way.add(
+        "--deviation RAD",
+        "straight lines, passing waypoints by at most this; 0: it stops there",
+        _distance,
+    )
+    way.add("--stops K,K,...", "waypoints to stand still at, from 0", whole_numbers, default=())
+    limits = options.group("limits, one for all joints or one for each")
+    limits.add("--torque A,B,...", "N m (default: of the robot description)", numbers)
+    limits.add("--velocity A,B,...", "rad/s (default: of the robot description)", numbers)
+    limits.add("--acceleration A,B,...", "rad/s^2", numbers)
+    limits.add("--jerk A,B,...", "rad/s^3, by a pass after the optimisation", numbers)
+    limits.add("--tip-speed M/S", "speed of the tip, m/s", positive_number)
+    limits.add("--margin SHARE", "of measured torques that stay within limits: 0.95", share)
+    options.shared("--json", "--topic")
+    options.overrides(*SOLVER, *TABLE)
+
+
+def _distance(text: str) -> float:
+    return 0.0 if text.strip() == "0" else positive_number(text)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do it."""
+    from inverse_dynamics.results.retimed import check_output
+    from inverse_dynamics.robot.robots import with_changes
+
+    robot = with_changes(chosen_robot(arguments), **given_overrides(arguments))
+    inputs = (arguments.path, *robot.files)
+    check_output(arguments.out, arguments.figures, overwrite=arguments.overwrite, inputs=inputs)
+
+    from inverse_dynamics._core import RetimeOptions
+    from inverse_dynamics.evaluation.evaluation import Arm
+    from inverse_dynamics.evaluation.retiming import description_limits, retime
+    from inverse_dynamics.results.retimed import summary, write_retimed
+    from inverse_dynamics.verbs.screen import show, title
+    from inverse_dynamics.verbs.tables import retime_table
+
+    names = ("torque", "velocity", "acceleration", "jerk")
+    given = {name: getattr(arguments, name) for name in names if getattr(arguments, name)}
+    limits = description_limits(Arm(robot), robot, **given)
+    if arguments.tip_speed:
+        limits.tip_speed = arguments.tip_speed
+    result = retime(
+        arguments.path,
+        robot,
+        limits,
+        topic=arguments.topic or "",
+        deviation=arguments.deviation,
+        stops=arguments.stops,
+        options=RetimeOptions(margin=arguments.margin or 0.0),
+    )
+    write_retimed(
+        result,
+        arguments.out,
+        overwrite=arguments.overwrite,
+        figures=arguments.figures,
+        inputs=inputs,
+    )
+    energy = result.energy
+    show(
+        arguments,
+        summary(result),
+        [arguments.out],
+        [
+            title(robot),
+            ("duration", f"{result.duration:.3f} s"),
+            (
+                "by acceleration",
+                f"{result.duration + result.seconds_saved:.3f} s with at most {result.acceleration:.3g} "
+                "rad/s^2 in each joint, the most that keeps torques within limits here",
+            ),
+            (
+                "energy",
+                f"{energy.driven:.1f} J, {energy.friction:.1f} J of it friction; at most "
+                f"{energy.peak_power:.0f} W",
+            ),
+            ("note", result.notes),
+            retime_table(result),
+            ("written", arguments.out),
+        ],
+    )

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: Apache-2.0
+import json
+import os
+
+import numpy as np
+import pytest
+from conftest import JOINTS
+
+from inverse_dynamics import Solver, cli, load_robot, retime, trajectory_torques
+from inverse_dynamics._core import JointPath, MotionLimits, RetimeOptions, retime_path
+from inverse_dynamics.errors import UserError
+from inverse_dynamics.evaluation.retiming import MotionEnergy
+from inverse_dynamics.robot.robots import with_changes
+
+WAYPOINTS = np.array(
+    [
+        [0.0, -1.0, 1.0, 0.0, 0.0, 0.0],
+        [0.5, -1.5, 1.5, 0.5, 0.3, 0.0],
+        [1.5, -1.2, 0.8, 0.2, 1.3, 0.4],
+        [2.0, -0.5, 0.5, 0.0, 1.0, 1.0],
+    ]
+)
+LIMITS = {
+    "ur10_simulated": [330.0, 330.0, 150.0, 56.0, 56.0, 56.0],
+    "panda_simulated": [87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0],
+}
+PATHS = 200 if "IDS_NIGHTLY_TESTS" in os.environ else 4  # of each robot, against other planners
+SHORTER = 5e-3
+
+
+@pytest.fixture(scope="module")
+def fastest():
+    return retime(WAYPOINTS, "ur10_real")
+
+
+def write_waypoints(directory, suffix):
+    path = directory / f"way{suffix}"
+    if suffix == ".csv":
+        columns = ",".join(f"position.{joint}" for joint in JOINTS)
+        np.savetxt(path, WAYPOINTS, delimiter=",", header=columns, comments="")
+        return path
+    rows = ", ".join(f"[{', '.join(map(str, row))}]" for row in WAYPOINTS)
+    path.write_text(
+        f"schema: 1\nkind: waypoints\njoints: [{', '.join(JOINTS)}]\ntimes: [0, 1, 2, 3]\n"
+        f"positions: [{rows}]\n"
+    )
+    return path
+
+
+def test_motion_visits_the_waypoints_at_rest_at_both_ends(fastest):
+    assert fastest.qd[[0, -1]] == pytest.approx(0.0)
+    for waypoint in WAYPOINTS:
+        assert np.abs(fastest.q - waypoint).max(axis=1).min() < 0.01  # between samples
+    q, qd, _ = fastest.timed.states(fastest.time)
+    assert np.abs(np.gradient(q, fastest.time, axis=0) - qd)[1:-1].max() < 0.1
+    assert (np.abs(fastest.use) <= 1.005).all()
+    assert (np.abs(fastest.qd) <= 1.005 * fastest.limits.velocity).all()
+    assert fastest.seconds_saved > 0.0
+
+
+def test_efforts_are_those_of_the_solver(fastest):
+    solver = load_robot("ur10_real").solver()
+    np.testing.assert_array_equal(
+        fastest.efforts, solver.torques(fastest.q, fastest.qd, fastest.qdd)
+    )
+
+
+@pytest.mark.parametrize("suffix", [".yaml", ".csv"])
+def test_files_of_waypoints_give_the_same_motion(tmp_path, fastest, suffix):
+    found = retime(write_waypoints(tmp_path, suffix), "ur10_real")
+    assert found.duration == pytest.approx(fastest.duration, abs=1e-12)
+
+
+def test_energy_of_a_lifted_and_lowered_load_counts_the_lift_alone():
+    time = np.linspace(0.0, 2.0, 2001)
+    qd = np.sin(np.pi * time)[:, None]
+    efforts = np.full((2001, 1), 10.0)
+
+    class Frictionless:
+        def friction_vector(self, qd, q):
+            return 0.0 * qd
+
+    energy = MotionEnergy.of(Frictionless(), time, np.zeros_like(qd), qd, efforts)
+    assert energy.driven == pytest.approx(10.0 * 2.0 / np.pi, rel=1e-5)
+    assert energy.peak_power == pytest.approx(10.0)
+    assert energy.friction == 0.0
+
+
+def test_friction_that_helps_to_brake_is_used(fastest):
+    without = retime(WAYPOINTS, load_robot("ur10_simulated"), fastest.limits)
+    assert without.energy.friction == 0.0
+    assert fastest.energy.friction > 0.5 * fastest.energy.driven
+
+
+@pytest.mark.parametrize("robot", LIMITS)
+def test_as_fast_as_toppra(robot):
+    toppra = pytest.importorskip("toppra")
+    constraint = toppra.constraint
+    torque = np.array(LIMITS[robot])
+    velocity = np.full(len(torque), 10.0)
+    solver = load_robot(robot).solver()
+    random = np.random.default_rng(1)
+    for k in range(PATHS):
+        waypoints = random.uniform(-1.5, 1.5, (5, len(torque)))[:: 1 if k % 2 else -1]
+        path = JointPath.spline(waypoints)
+        ours = retime_path(solver, path, MotionLimits(torque=torque, velocity=velocity))
+        theirs = toppra.algorithm.TOPPRA(
+            [
+                constraint.JointVelocityConstraint(np.c_[-velocity, velocity]),
+                constraint.JointTorqueConstraint(
+                    solver.torques, np.c_[-torque, torque], np.zeros_like(torque)
+                ),
+            ],
+            toppra.SplineInterpolator(path.knots, waypoints, bc_type="natural"),
+            gridpoints=np.linspace(0.0, path.knots[-1], 1001),
+        ).compute_trajectory(0, 0)
+        assert ours.duration == pytest.approx(theirs.duration, rel=SHORTER)
+
+
+def test_continuous_joints_take_the_short_way():
+    urdf = """<robot name="turner"><link name="base"/><link name="arm"><inertial><mass value="1"/>
+      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+      <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+      <limit effort="10" velocity="3"/></joint></robot>"""
+    from inverse_dynamics.evaluation.retiming import unwrapped
+
+    ways = unwrapped(np.array([[3.0], [-3.0]]), Solver(urdf=urdf))
+    assert ways[1, 0] == pytest.approx(2 * np.pi - 3.0)
+
+
+def test_command_writes_a_trajectory_that_ids_torques_confirms(tmp_path, capsys):
+    out = tmp_path / "fast"
+    way = write_waypoints(tmp_path, ".csv")
+    options = ["--robot", "ur10_simulated", "--out", str(out), "--payload", "5,0,0,0.05"]
+    assert cli.main(["retime", str(way), "--deviation", "0.1", *options]) == 0
+    assert "duration" in capsys.readouterr().out
+    numbers = json.loads((out / "retime.json").read_text())
+    assert {path.name for path in out.iterdir()} == {
+        "fast.db3",
+        "metadata.yaml",
+        "retime.json",
+        "torques.png",
+        "trajectory.csv",
+    }
+    robot = with_changes(
+        load_robot("ur10_simulated"),
+        parameters={"payload": {"mass": 5.0, "center_of_mass": [0, 0, 0.05]}},
+    )
+    checked = trajectory_torques(out, robot)
+    assert checked.times[0][-1] == pytest.approx(numbers["duration"], abs=1e-8)
+    assert np.abs(checked.torques[0]).max(axis=0) == pytest.approx(
+        [abs(joint["peak"]) for joint in numbers["joints"]]
+    )
+    assert cli.main(["retime", str(way), *options]) == 0  # replaces its own earlier result
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (["--torque", "1,2"], "expected 1 number or 6, one per joint"),
+        (["--torque", "20"], "shoulder_lift_joint lacks"),
+        (["--margin", "0.95"], "a model that states the deviation"),
+        (["--stops", "9"], "expected 0 to 3, got 9"),
+    ],
+)
+def test_refusals_say_what_to_do(tmp_path, capsys, arguments, text):
+    way = write_waypoints(tmp_path, ".csv")
+    command = ["retime", str(way), "--robot", "ur10_simulated", "--out", str(tmp_path / "o")]
+    assert cli.main([*command, *arguments]) == 2
+    assert text in " ".join(capsys.readouterr().err.split())
+    assert not (tmp_path / "o").exists()
+
+
+def test_wrong_paths_are_refused():
+    with pytest.raises(UserError, match=r"waypoints \(m, 6\)"):
+        retime(WAYPOINTS[:, :5], "ur10_simulated")
+    with pytest.raises(UserError, match="two different waypoints"):
+        retime(WAYPOINTS[:1], "ur10_simulated")
+
+
+def test_points_of_the_grid_may_be_few():
+    solver = load_robot("ur10_simulated").solver()
+    limits = MotionLimits(torque=LIMITS["ur10_simulated"])
+    coarse = retime_path(solver, JointPath.spline(WAYPOINTS), limits, RetimeOptions(points=100))
+    fine = retime_path(solver, JointPath.spline(WAYPOINTS), limits, RetimeOptions(points=2000))
+    assert coarse.duration == pytest.approx(fine.duration, rel=0.02)
