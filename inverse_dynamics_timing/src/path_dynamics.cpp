@@ -154,9 +154,9 @@ Index PathDynamics::weakest(Index k, double& missing) const {
 namespace {
 
 [[noreturn]] void refuseOption(const std::string& where, const std::string& expected,
-                               const std::string& got, const std::string& remedy = "") {
+                               const std::string& got) {
   throw ids::InvalidParameterValueException(
-      ids::errorText("retime(): " + where, "", expected, got, remedy));
+      ids::errorText("retime(): " + where, "", expected, got));
 }
 
 void checkLimit(const InverseDynamicsSolver& solver, const char* name,
@@ -187,41 +187,38 @@ void check(const InverseDynamicsSolver& solver, const Path& path, const MotionLi
         ids::errorText("retime(): path", "", std::to_string(n) + " joints, as the solver has",
                        std::to_string(path.jointCount())));
   }
-  if (n > 64) refuseOption("solver", "at most 64 joints", std::to_string(n));
-  if (limits.torque.size() == 0)
-    refuseOption("limits.torque", "a limit of each joint, N m", "none");
   checkLimit(solver, "torque", limits.torque);
   checkLimit(solver, "velocity", limits.velocity);
   checkLimit(solver, "acceleration", limits.acceleration);
   checkLimit(solver, "jerk", limits.jerk);
   checkLimit(solver, "knee_velocity", limits.knee_velocity);
   checkLimit(solver, "no_load_velocity", limits.no_load_velocity);
-  if (limits.knee_velocity.size() != limits.no_load_velocity.size() ||
-      (limits.knee_velocity.array() >= limits.no_load_velocity.array()).any()) {
-    refuseOption("limits.knee_velocity",
-                 "for each joint less than no_load_velocity, or neither of them", "otherwise");
-  }
-  if (!(limits.tip_speed > 0.0))
-    refuseOption("limits.tip_speed", "> 0 m/s", std::to_string(limits.tip_speed));
-  if (std::isfinite(limits.tip_speed) && dynamic_cast<const ids::Kinematics*>(&solver) == nullptr) {
-    refuseOption("limits.tip_speed", "a solver with the capability Kinematics", "one without",
-                 "leave the limit out, or use another solver");
-  }
-  if (options.points < 2) refuseOption("options.points", ">= 2", std::to_string(options.points));
-  if (!(options.start_speed >= 0.0) || !std::isfinite(options.start_speed)) {
-    refuseOption("options.start_speed", "finite, >= 0", std::to_string(options.start_speed));
-  }
-  if (!(options.end_speed >= 0.0) || !std::isfinite(options.end_speed)) {
-    refuseOption("options.end_speed", "finite, >= 0", std::to_string(options.end_speed));
-  }
-  if (!(options.margin >= 0.0) || !(options.margin < 1.0)) {
-    refuseOption("options.margin", "a share, 0 <= margin < 1", std::to_string(options.margin));
-  }
-  if (options.margin == 0.0) return;
   const auto* deviation = dynamic_cast<const ids::TorqueDeviation*>(&solver);
-  if (deviation == nullptr || !deviation->hasTorqueDeviation()) {
-    refuseOption("options.margin", "a model that states the deviation of its torques",
-                 "one that doesn't", "identify the robot, or leave the margin out");
+  const bool kinematics = dynamic_cast<const ids::Kinematics*>(&solver) != nullptr;
+  const auto speed = [](double value) { return value >= 0.0 && std::isfinite(value); };
+  const struct {
+    bool right;
+    const char *where, *expected;
+    double got;
+  } rules[] = {
+      {n <= 64, "solver", "at most 64 joints", static_cast<double>(n)},
+      {limits.torque.size() == n, "limits.torque", "a limit of each joint, N m", 0.0},
+      {limits.knee_velocity.size() == limits.no_load_velocity.size() &&
+           (limits.knee_velocity.array() < limits.no_load_velocity.array()).all(),
+       "limits.knee_velocity", "for each joint less than no_load_velocity, or neither", NAN},
+      {limits.tip_speed > 0.0, "limits.tip_speed", "> 0 m/s", limits.tip_speed},
+      {std::isinf(limits.tip_speed) || kinematics, "limits.tip_speed",
+       "none, or a solver with the capability Kinematics", limits.tip_speed},
+      {options.points >= 2, "options.points", ">= 2", static_cast<double>(options.points)},
+      {speed(options.start_speed), "options.start_speed", "finite, >= 0", options.start_speed},
+      {speed(options.end_speed), "options.end_speed", "finite, >= 0", options.end_speed},
+      {options.margin >= 0.0 && options.margin < 1.0, "options.margin", "0 <= margin < 1",
+       options.margin},
+      {options.margin == 0.0 || (deviation != nullptr && deviation->hasTorqueDeviation()),
+       "options.margin", "0, or a model that states the deviation of its torques", options.margin},
+  };
+  for (const auto& rule : rules) {
+    if (!rule.right) refuseOption(rule.where, rule.expected, std::to_string(rule.got));
   }
   const VectorXd band = bandOf(solver, options.margin);
   for (Index j = 0; j < n; ++j) {

@@ -100,7 +100,8 @@ class Retimed:
     @property
     def at_limit(self) -> Floats:
         """(n,) share of the time that each joint's torque is at its limit."""
-        return (np.abs(self.use) > _AT_LIMIT).mean(axis=0)
+        share: Floats = (np.abs(self.use) > _AT_LIMIT).mean(axis=0)
+        return share
 
     def plot(self) -> Any:
         """The figure of retime_figure(), of matplotlib."""
