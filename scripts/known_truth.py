@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inverse_dynamics import FastModel, _core, evaluate, load_robot
+from inverse_dynamics import _core, evaluate, load_robot
 from inverse_dynamics.identification.blocks import blocks_of
 from inverse_dynamics.identification.cross_validation import choose, errors_of
 from inverse_dynamics.identification.identify import BLOCKS
@@ -31,7 +31,7 @@ from inverse_dynamics.identification.knowledge import (
     knowledge,
 )
 from inverse_dynamics.results.identifications import write_identification
-from inverse_dynamics.results.model_files import predicted_torques, urdf_of
+from inverse_dynamics.results.model_files import identified_model, urdf_of
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.simulation import EffortNoise, Resolution, Sensors, simulate, write_run
 from inverse_dynamics.simulation.trajectory import WaypointTrajectory
@@ -154,7 +154,7 @@ class Truth:
             prior_strength=chosen.prior_strength,
             worth=float(independent_samples(errors).mean() / sum(map(len, errors))),
         )
-        engine = _engine(self.found)
+        engine = identified_model(self.found)
         truth = self.found.model.parameters.ravel()
         combinations = [c for c, _, _ in _combinations(engine, fitter.joint_names)]
         found = intervals(known, engine, self.found.units)[: len(combinations)]
@@ -189,11 +189,4 @@ def _residuals(found: Identification, evaluation: Evaluation) -> Floats:
 
 
 def _torques(found: Identification, q: Floats, qd: Floats, qdd: Floats) -> Floats:
-    return predicted_torques(found.model, _engine(found), q, qd, qdd)
-
-
-def _engine(found: Identification) -> FastModel:
-    robot = found.robot
-    return FastModel.from_urdf(
-        read_description(urdf_of(found)), root=robot.root, tip=robot.tip, gravity=robot.gravity
-    )
+    return identified_model(found).torques(q, qd, qdd)

@@ -3,6 +3,7 @@
 #include "joint_frame.hpp"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace chain_dynamics {
 inline namespace v2 {
@@ -26,6 +27,15 @@ Matrix3<double> rotationFromRollPitchYaw(const Vector3<double>& rpy) {
   const Vector3<double> z = Vector3<double>::UnitZ();
   return (AngleAxisd(rpy.z(), z) * AngleAxisd(rpy.y(), y) * AngleAxisd(rpy.x(), x))
       .toRotationMatrix();
+}
+
+Vector3<double> rollPitchYaw(const Matrix3<double>& R) {
+  const double yaw = std::atan2(R(1, 0), R(0, 0));
+  const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
+  // of RotZ(yaw)' R: exact for any yaw where the pitch is near a right angle
+  const double s = std::sin(yaw), c = std::cos(yaw);
+  const double roll = std::atan2(s * R(0, 2) - c * R(1, 2), c * R(1, 1) - s * R(0, 1));
+  return {roll, pitch, yaw};
 }
 
 LinkParameters symmetric(const LinkParameters& link) {

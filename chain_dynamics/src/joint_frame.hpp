@@ -24,6 +24,9 @@ Matrix3<double> rotationFromZ(const Vector3<double>& axis);
 /// URDF's roll, pitch, yaw [rad]: `RotZ(yaw) RotY(pitch) RotX(roll)`.
 Matrix3<double> rotationFromRollPitchYaw(const Vector3<double>& rpy);
 
+/// The inverse: pitch within a quarter turn.
+Vector3<double> rollPitchYaw(const Matrix3<double>& R);
+
 /// Parameters with the last bits of rounding removed that make a moved inertia asymmetric.
 LinkParameters symmetric(const LinkParameters& link);
 

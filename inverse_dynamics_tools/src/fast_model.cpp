@@ -18,7 +18,11 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "description.hpp"
+#include "friction.hpp"
 #include "quantities.hpp"
+
+INVERSE_DYNAMICS_TOOLS_OBJECT(IdentifiedModel,
+                              "inverse_dynamics.identification.result.IdentifiedModel")
 
 namespace inverse_dynamics_tools {
 namespace {
@@ -32,7 +36,7 @@ constexpr Index kParameters = 10;
 class FastModel {
  public:
   FastModel(const chain_dynamics::Model& model, std::int64_t threads)
-      : chain_(model.chain), names_(chain_.jointNames()), threads_(threads), fast_(model) {
+      : model_(model), names_(model.chain.jointNames()), threads_(threads), fast_(model) {
     if (threads < 1) {
       throw ids::InvalidParameterValueException(
           ids::errorText("FastModel: argument threads", "", "1 or more", std::to_string(threads)));
@@ -40,7 +44,8 @@ class FastModel {
   }
 
   const std::vector<std::string>& joints() const { return names_; }
-  const chain_dynamics::Chain& chain() const { return chain_; }
+  const chain_dynamics::Model& model() const { return model_; }
+  std::int64_t threads() const { return threads_; }
   const chain_dynamics::FastModel& fast() const { return fast_; }
 
   template <class OfPart>
@@ -53,13 +58,24 @@ class FastModel {
   }
 
  private:
-  chain_dynamics::Chain chain_;
+  chain_dynamics::Model model_;
   std::vector<std::string> names_;
   std::int64_t threads_;
   chain_dynamics::FastModel fast_;
 };
 
 using Numbers3 = std::array<double, 3>;
+
+/// Of rows (n, 10).
+std::vector<chain_dynamics::LinkParameters> linksOf(const Array& rows, py::ssize_t n) {
+  std::vector<chain_dynamics::LinkParameters> links;
+  for (py::ssize_t i = 0; i < n; ++i) {
+    using Vector10 = Eigen::Matrix<double, kParameters, 1>;
+    const Vector10 p = Eigen::Map<const Vector10>(rows.data() + kParameters * i);
+    links.push_back(chain_dynamics::LinkParameters::fromVector(p));
+  }
+  return links;
+}
 
 std::unique_ptr<FastModel> fromUrdf(const Description& urdf, const std::string& root,
                                     const std::string& tip, const std::optional<Numbers3>& gravity,
@@ -74,6 +90,47 @@ std::unique_ptr<FastModel> fromUrdf(const Description& urdf, const std::string& 
 
 std::unique_ptr<FastModel> fromFile(const std::string& path, std::int64_t threads) {
   return std::make_unique<FastModel>(chain_dynamics::modelFromFile(path), threads);
+}
+
+/// The chain with what an IdentifiedModel of identification/result.py has.
+std::unique_ptr<FastModel> identified(const FastModel& engine, const IdentifiedModel& found) {
+  const chain_dynamics::Chain& chain = engine.model().chain;
+  const auto n = static_cast<py::ssize_t>(chain.jointCount());
+  const auto numbers = [&](const char* name, const std::vector<py::ssize_t>& shape) {
+    auto array = found.attr(name).cast<Array>();
+    requireShape(name, array, shape);
+    return array;
+  };
+  const Array links = numbers("parameters", {n, kParameters}),
+              rotors = numbers("rotor_inertia", {n}), bands = numbers("torque_deviation", {n}),
+              seen = numbers("seen", {3, n, 2});
+  std::vector<chain_dynamics::Joint> joints = chain.joints();
+  std::vector<chain_dynamics::SeenRange> ranges;
+  for (py::ssize_t j = 0; j < n; ++j) {
+    joints[static_cast<std::size_t>(j)].rotor_inertia = rotors.at(j);
+    const auto interval = [&](py::ssize_t of) {
+      return chain_dynamics::Interval{seen.at(of, j, 0), seen.at(of, j, 1)};
+    };
+    ranges.push_back({interval(0), interval(1), interval(2)});
+  }
+  chain_dynamics::Model model(
+      chain_dynamics::Chain(chain.name(), joints, linksOf(links, n), chain.gravity(), chain.tip()));
+  for (const auto& law :
+       found.attr("friction").cast<std::vector<chain_dynamics::SmoothCoulomb>>()) {
+    model.friction.emplace_back(law);
+  }
+  model.torque_deviation = Eigen::Map<const Eigen::VectorXd>(bands.data(), n);
+  model.seen = ranges;
+  return std::make_unique<FastModel>(model, engine.threads());
+}
+
+std::string fileText(const FastModel& of, const std::string& name, const std::string& source,
+                     const std::string& validity) {
+  chain_dynamics::Model model = of.model();
+  model.name = name;
+  model.source = source;
+  model.validity = validity;
+  return chain_dynamics::modelFileText(model);
 }
 
 /// Rows (n, 3, 3), (n, 3) and (n, 10) of the joints.
@@ -91,7 +148,6 @@ std::unique_ptr<FastModel> fromJoints(const std::vector<std::string>& names,
         "others"));
   }
   std::vector<chain_dynamics::Joint> joints;
-  std::vector<chain_dynamics::LinkParameters> parameters;
   for (py::ssize_t i = 0; i < n; ++i) {
     using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
     chain_dynamics::Joint joint;
@@ -101,11 +157,9 @@ std::unique_ptr<FastModel> fromJoints(const std::vector<std::string>& names,
     joint.placement.R = Eigen::Map<const RowMajor>(rotations.data() + 9 * i);
     joint.placement.p = Eigen::Map<const Eigen::Vector3d>(offsets.data() + 3 * i);
     joints.push_back(joint);
-    using Vector10 = Eigen::Matrix<double, kParameters, 1>;
-    const Vector10 p = Eigen::Map<const Vector10>(links.data() + kParameters * i);
-    parameters.push_back(chain_dynamics::LinkParameters::fromVector(p));
   }
-  const chain_dynamics::Chain chain("joints", joints, parameters, Eigen::Vector3d(gravity.data()));
+  const chain_dynamics::Chain chain("joints", joints, linksOf(links, n),
+                                    Eigen::Vector3d(gravity.data()));
   return std::make_unique<FastModel>(chain_dynamics::Model(chain), threads);
 }
 
@@ -129,6 +183,10 @@ void bindQuantities(py::class_<FastModel>& model) {
   using M = const FastModel&;
   using Part = const PartOfCall&;
   Quantities<FastModel>(model)
+      .add(
+          "torques", std::array{"q", "qd", "qdd"}, std::array{kPerJoint},
+          [](M m, Part p) { m.fast().torquesBatch(p.in(0), p.in(1), p.in(2), p.states(0)); },
+          "tau = H qdd + C qd + g + f, friction included.")
       .add(
           "forward_dynamics", std::array{"q", "qd", "tau"}, std::array{kPerJoint},
           [](M m, Part p) {
@@ -181,12 +239,16 @@ void bindFastModel(py::module_& module) {
   bindMaking(model);
   bindQuantities(model);
   model
+      .def("identified", &identified, py::arg("found"),
+           "The same chain with links, rotors and friction that were identified.")
+      .def("file_text", &fileText, py::kw_only(), py::arg("name"), py::arg("source"),
+           py::arg("validity"), "The text of a model file, of which from_file() makes this model.")
       .def_property_readonly(
           "joint_names", [](const FastModel& m) { return tupleOf(m.joints()); },
           "Names of the joints, from root to tip: the order of all arrays.")
       .def_property_readonly(
           "parameters",
-          [](const FastModel& m) { return arrayOf(chain_dynamics::parameters(m.chain())); },
+          [](const FastModel& m) { return arrayOf(chain_dynamics::parameters(m.model().chain)); },
           "(10 n,) of the rigid bodies: m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz of each\n"
           "link, in its frame and about its origin.");
 }

@@ -22,7 +22,6 @@ from inverse_dynamics.identification.result import (
     Interval,
     PriorDecided,
 )
-from inverse_dynamics.results.model_files import predicted_torques
 
 WIDTH = 0.05  # rad/s, of the step
 NOISE = 0.1  # N m
@@ -40,10 +39,18 @@ def arm() -> IdentifiedModel:
     return _model(1.05 * engine().parameters.reshape(n, 10), np.full(n, 0.3), _friction(n))
 
 
+def predicted_torques(model: IdentifiedModel, q, qd, qdd) -> np.ndarray:
+    """By the regressor, and by the law of friction as it is written."""
+    fv, fc, fo = (np.array([law[key] for law in model.friction]) for key in ("fv", "fc", "fo"))
+    friction = fv * qd + fo + fc * np.tanh(qd / WIDTH)
+    rigid = engine().regressor(q, qd, qdd) @ model.parameters.ravel()
+    return rigid + model.rotor_inertia * qdd + friction
+
+
 def simulated_torques(q, qd, qdd, seed: int = 0) -> np.ndarray:
     """Measured torques of the arm."""
     noise = NOISE * np.random.default_rng(seed).standard_normal(q.shape)
-    return predicted_torques(arm(), engine(), q, qd, qdd) + noise
+    return predicted_torques(arm(), q, qd, qdd) + noise
 
 
 def identification(recording: Path = Path("recording"), **changes: object) -> Identification:
@@ -81,9 +88,7 @@ def identification(recording: Path = Path("recording"), **changes: object) -> Id
         "held_out": {c: np.sqrt((error**2).mean(axis=0)) for c, error in residual.items()},
         "coverage": inside.mean(axis=0),
         "blocks": tuple(blocks),
-        "noise": np.sqrt(
-            ((predicted_torques(model, engine(), q, qd, qdd) - measured) ** 2).mean(axis=0)
-        ),
+        "noise": np.sqrt(((predicted_torques(model, q, qd, qdd) - measured) ** 2).mean(axis=0)),
         "independent": np.full(len(JOINTS), float(len(q))),
         "choices": (
             Choice("step", 10.0, 0.004, 1.02, 0.01, chosen=True),
@@ -154,7 +159,7 @@ def _block(recording, model, q, qd, qdd, stamps, measured, part) -> HeldOutBlock
         measured=measured[part],
         computed={
             "urdf": engine().regressor(*states) @ engine().parameters,
-            "identified": predicted_torques(model, engine(), *states),
+            "identified": predicted_torques(model, *states),
         },
         band=np.full(q.shape[1], 1.96 * NOISE),
         law="step",

@@ -5,6 +5,7 @@
 ///
 ///     Model ur10 = modelFromFile("ur10_identified.yaml");
 ///     Model mine = modelFromYaml("schema: 1\nname: mine\n...", "mine.yaml");
+///     std::ofstream("mine.yaml") << modelFileText(mine);     // every digit
 ///
 /// Files are read strictly: an unknown, missing or repeated key, a wrong length or type and a
 /// number that isn't finite are errors that name file, line and key. Check rows, states with the
@@ -30,6 +31,14 @@ Model modelFromFile(const std::string& path);
 /// @param where  what messages call it, usually a file name.
 /// @throws ModelError  `where:line: key: expected ..., got ...; remedy`.
 Model modelFromYaml(const std::string& text, const std::string& where);
+
+/// The text of the file that modelFromYaml() reads as this model, in schema 2 and torques.
+///
+/// Links are in the frames of model.chain, whose z is the joint's axis. Check rows are of states
+/// within `seen`, of any where that isn't known.
+/// @throws ModelError  a model that checkModel() refuses, or with what no file states: parameters of
+///     gravity beside rows, or with masses of their own.
+std::string modelFileText(const Model& model);
 
 }  // namespace v2
 }  // namespace chain_dynamics

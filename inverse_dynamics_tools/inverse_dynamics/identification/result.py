@@ -74,7 +74,7 @@ class IdentifiedModel:
 
     parameters: Floats  # (n, 10): m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz about the origin
     rotor_inertia: Floats  # (n,) kg m^2 (prismatic kg), seen at the joint
-    friction: tuple[Mapping[str, float], ...]  # values of smooth_coulomb, by the model file's keys
+    friction: tuple[dict[str, float], ...]  # values of smooth_coulomb, by the model file's keys
     drive_gains: Floats | None  # (n,) N m/A where efforts are currents
     torque_deviation: Floats  # (n,) N m: half the width of the 95 % band of measured - computed
     seen: Floats  # (3, n, 2): lowest and highest q, qd, qdd of the samples

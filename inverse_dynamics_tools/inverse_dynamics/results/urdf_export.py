@@ -19,13 +19,12 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from inverse_dynamics import _core
 from inverse_dynamics.errors import RobotError
-from inverse_dynamics.results.model_files import parameters_in_links, urdf_of
+from inverse_dynamics.results.model_files import identified_model, urdf_of
 from inverse_dynamics.results.yaml_text import yaml_number
 from inverse_dynamics.robot.chain_geometry import chain_geometry
 from inverse_dynamics.robot.descriptions import parse_description, read_description
-from inverse_dynamics.robot.link_parameters import about_center
+from inverse_dynamics.robot.link_parameters import about_center, turned
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -45,8 +44,9 @@ def urdf_text(found: Identification) -> str:
     robot = _parsed(body)
     geometry = chain_geometry(text, found.robot.root, found.joints)
     lumped = _lumped_links(robot, found.joints, [joint.link for joint in geometry])
-    for joint, parameters in zip(geometry, parameters_in_links(found, geometry), strict=True):
-        _set_inertial(_named(robot, "link", joint.link), parameters)
+    for joint, parameters in zip(geometry, found.model.parameters, strict=True):
+        in_link = turned(parameters, joint.rotation_from_z)
+        _set_inertial(_named(robot, "link", joint.link), in_link)
         for link in lumped[joint.link]:
             _remove_inertial(_named(robot, "link", link))
     for name, (damping, friction) in zip(found.joints, _damping_and_friction(found), strict=True):
@@ -159,17 +159,10 @@ def _set_dynamics(joint: ElementTree.Element, damping: float, friction: float) -
 
 def _damping_and_friction(found: Identification) -> list[tuple[float, float]]:
     """fv, and the height of the step at the mean load of the recordings."""
-    robot = found.robot
-    engine = _core.FastModel.from_urdf(
-        read_description(urdf_of(found)),
-        root=robot.root,
-        tip=robot.tip,
-        gravity=robot.gravity or (0.0, 0.0, -9.81),
-    )
     q = np.concatenate([block.q for block in found.blocks])
     q = q[:: max(1, len(q) // _LOAD_STATES)]
     still = np.zeros_like(q)
-    gravity = engine.regressor(q, still, still) @ found.model.parameters.ravel()
+    gravity = identified_model(found).regressor(q, still, still) @ found.model.parameters.ravel()
     load = np.abs(gravity).mean(axis=0)
     return [
         (float(law["fv"]), float(law["fc"] + law.get("fl", 0.0) * load[j]))

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "chain_dynamics/model_file.hpp"
+#include "joint_frame.hpp"
+
+namespace chain_dynamics {
+inline namespace v2 {
+namespace {
+
+constexpr Eigen::Index kCheckedStates = 4;
+constexpr double kTolerance = 1e-9;  // N m: rounding, of numbers up to 1e5
+
+// ---------------------------------------------------------------------------------------------
+// Values as YAML has them
+
+/// The fewest digits that are read as the same number; a whole number as one.
+std::string number(double value) {
+  constexpr double kExact = 1e15;
+  if (value == std::trunc(value) && std::abs(value) < kExact) {
+    return std::to_string(static_cast<long long>(value));
+  }
+  char text[32];
+  std::size_t size = 0;
+  double read = 0;
+  for (int digits = 1; read != value; ++digits) {
+    char* const end =
+        std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr;
+    std::from_chars(text, end, read);
+    size = static_cast<std::size_t>(end - text);
+  }
+  return {text, size};
+}
+
+template <class Numbers>
+std::string list(const Numbers& numbers) {
+  std::string text;
+  for (const double value : numbers) text += (text.empty() ? "" : ", ") + number(value);
+  return "[" + text + "]";
+}
+
+std::string list(const LinkParameters& link) { return list(link.toVector()); }
+
+std::string list(const Interval& interval) {
+  return list(std::vector<double>{interval.lower, interval.upper});
+}
+
+std::string pose(const Transform<double>& X) {
+  return "xyz: " + list(X.p) + ", rpy: " + list(rollPitchYaw(X.R));
+}
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char letter : text) {
+    if (static_cast<unsigned char>(letter) < 0x20) {
+      char code[5];
+      std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned>(letter));
+      result += code;
+    } else {
+      result += (letter == '"' || letter == '\\' ? "\\" : "") + std::string(1, letter);
+    }
+  }
+  return result + "\"";
+}
+
+// ---------------------------------------------------------------------------------------------
+// Joints
+
+const char* typeText(JointType type) {
+  return type == JointType::kPrismatic    ? "prismatic"
+         : type == JointType::kContinuous ? "continuous"
+                                          : "revolute";
+}
+
+/// `    key: {...}` of the limits that are stated; a velocity or effort of zero states none.
+std::string limitsLine(const JointLimits& limits) {
+  std::string text;
+  const auto add = [&text](const char* key, double value, bool stated) {
+    if (!stated || !std::isfinite(value)) return;
+    text += (text.empty() ? "" : ", ") + std::string(key) + ": " + number(value);
+  };
+  add("lower", limits.lower, true);
+  add("upper", limits.upper, true);
+  add("velocity", limits.velocity, limits.velocity > 0);
+  add("effort", limits.effort, limits.effort > 0);
+  return text.empty() ? "" : "    limits: {" + text + "}\n";
+}
+
+/// With the optional coefficients that aren't zero.
+std::string frictionLine(const FrictionLaw& law) {
+  return std::visit(
+      [](const auto& named) {
+        std::string text = std::string("    friction: {law: ") + named.kName;
+        for (const auto& coefficient : named.coefficients()) {
+          const double value = named.*coefficient.value;
+          if (coefficient.required || value != 0) {
+            text += std::string(", ") + coefficient.name + ": " + number(value);
+          }
+        }
+        return text + "}\n";
+      },
+      law);
+}
+
+std::string linkLines(const Model& model, std::size_t j) {
+  if (model.row_parameters.empty()) return "    link: " + list(model.chain.links()[j]) + "\n";
+  std::string text = "    row:\n";
+  for (const LinkParameters& link : model.row_parameters[j]) text += "      - " + list(link) + "\n";
+  return text;
+}
+
+std::string jointLines(const Model& model, std::size_t j) {
+  const Joint& joint = model.chain.joints()[j];
+  const auto entry = [j](const char* key, const OwnedVector& values) {
+    if (values.size() == 0) return std::string();
+    return std::string("    ") + key + ": " + number(values[static_cast<Eigen::Index>(j)]) + "\n";
+  };
+  std::string text = "  - name: " + quoted(joint.name) + "\n    type: " + typeText(joint.type) +
+                     "\n    placement: {" + pose(joint.placement) + ", axis: [0, 0, 1]}\n" +
+                     limitsLine(joint.limits);
+  if (joint.rotor_inertia != 0) {
+    text += "    rotor_inertia: " + number(joint.rotor_inertia) + "\n";
+  }
+  text += entry("drive_gain", model.drive_gains);
+  if (!model.friction.empty()) text += frictionLine(model.friction[j]);
+  text += linkLines(model, j);
+  if (!model.gravity_parameters.empty()) {
+    text += "    gravity_first_moment: " + list(model.gravity_parameters[j].first_moment) + "\n";
+  }
+  text += entry("torque_deviation", model.torque_deviation);
+  if (model.seen.empty()) return text + "\n";
+  const SeenRange& seen = model.seen[j];
+  return text + "    seen: {q: " + list(seen.q) + ", qd: " + list(seen.qd) +
+         ", qdd: " + list(seen.qdd) + "}\n\n";
+}
+
+// ---------------------------------------------------------------------------------------------
+// Check rows
+
+/// State k: q, qd, qdd of each joint, spread over what was seen.
+Eigen::MatrixXd checkedState(const Model& model, Eigen::Index k) {
+  constexpr double kGolden = 0.6180339887498949;  // whose multiples fill [0, 1) evenly
+  Eigen::MatrixXd state(model.chain.jointCount(), 3);
+  for (Eigen::Index j = 0; j < state.rows(); ++j) {
+    const SeenRange range = model.seen.empty() ? SeenRange{{-1, 1}, {-1, 1}, {-1, 1}}
+                                               : model.seen[static_cast<std::size_t>(j)];
+    const Interval* const intervals[] = {&range.q, &range.qd, &range.qdd};
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const double steps = kGolden * static_cast<double>(1 + c + 3 * (j + state.rows() * k));
+      const auto& [lower, upper] = *intervals[c];
+      state(j, c) = lower + (upper - lower) * (steps - std::floor(steps));
+    }
+  }
+  return state;
+}
+
+std::string checkLines(const Model& model) {
+  std::string text = "checks:\n  tolerance: " + number(kTolerance) + "\n  states:\n";
+  Eigen::VectorXd tau(model.chain.jointCount()), f(tau);
+  for (Eigen::Index k = 0; k < kCheckedStates; ++k) {
+    const Eigen::MatrixXd state = checkedState(model, k);
+    torques(model, state.col(0), state.col(1), state.col(2), tau);
+    frictionVector(model, state.col(0), state.col(1), f);
+    text += "    - {q: " + list(state.col(0)) + ", qd: " + list(state.col(1)) +
+            ", qdd: " + list(state.col(2)) + ", torques: " + list(tau + f) + "}\n";
+  }
+  return text;
+}
+
+/// Refuses what a file can't state.
+void checkWritable(const Model& model) {
+  checkModel(model);
+  for (std::size_t i = 0; i < model.gravity_parameters.size(); ++i) {
+    if (model.row_parameters.empty() &&
+        model.gravity_parameters[i].mass == model.chain.links()[i].mass) {
+      continue;
+    }
+    throw ModelError("model " + model.name, "gravity_parameters of joint " + std::to_string(i + 1),
+                     "the masses of the links, and no row_parameters", "others",
+                     "a model file states no other");
+  }
+}
+
+}  // namespace
+
+std::string modelFileText(const Model& model) {
+  checkWritable(model);
+  std::string text =
+      "# SPDX-License-Identifier: Apache-2.0\n#\n"
+      "# What each key means: docs/model_file.md. A row of `link` is\n"
+      "# m, mcx, mcy, mcz, Ixx, Ixy, Ixz, Iyy, Iyz, Izz.\n"
+      "schema: 2\nname: " +
+      quoted(model.name) + "\nsource: " + quoted(model.source) +
+      "\nvalidity: " + quoted(model.validity) + "\nunits: SI\n" +
+      (model.drive_gains.size() > 0 ? "levels: {parameters: torque, friction: torque}\n" : "") +
+      "\ngeometry: placements\ngravity: " + list(model.chain.gravity()) +
+      "\nparameters: about_origin\ntip: {" + pose(model.chain.tip()) + "}\n\njoints:\n";
+  for (std::size_t j = 0; j < model.chain.joints().size(); ++j) text += jointLines(model, j);
+  return text + checkLines(model);
+}
+
+}  // namespace v2
+}  // namespace chain_dynamics

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// What modelFileText() writes is read as the same model.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <string>
+
+#include "chain_dynamics/friction.hpp"
+#include "chain_dynamics/urdf.hpp"
+#include "example_models.hpp"
+#include "joint_frame.hpp"
+#include "model_file_texts.hpp"
+
+namespace chain_dynamics::model_file_writer_test {
+
+using ::testing::HasSubstr;
+
+Eigen::VectorXd statedTorques(const Model& robot) {
+  Eigen::VectorXd f(robot.chain.jointCount());
+  frictionVector(robot, Eigen::VectorXd::LinSpaced(f.size(), 0.3, 1.1),
+                 Eigen::VectorXd::LinSpaced(f.size(), -1.2, 2.0), f);
+  return f + someTorques(robot);
+}
+
+void expectSame(const Model& written, const Model& read) {
+  EXPECT_EQ(read.name, written.name);
+  EXPECT_EQ(read.source, written.source);
+  EXPECT_EQ(read.validity, written.validity);
+  EXPECT_EQ(read.chain.jointNames(), written.chain.jointNames());
+  EXPECT_EQ(read.chain.jointTypes(), written.chain.jointTypes());
+  EXPECT_EQ(read.drive_gains, written.drive_gains);
+  EXPECT_EQ(read.torque_deviation, written.torque_deviation);
+  EXPECT_EQ(read.row_parameters.size(), written.row_parameters.size());
+  EXPECT_EQ(read.gravity_parameters.size(), written.gravity_parameters.size());
+  EXPECT_LT(difference(read.chain.tip().p, written.chain.tip().p), kRounding);
+  EXPECT_LT(difference(read.chain.tip().R, written.chain.tip().R), kRounding);
+  const Eigen::VectorXd expected = statedTorques(written);
+  EXPECT_LT(difference(statedTorques(read), expected),
+            kRounding * (1 + expected.cwiseAbs().maxCoeff()));
+  for (std::size_t j = 0; j < written.chain.joints().size(); ++j) {
+    const Joint &one = written.chain.joints()[j], &other = read.chain.joints()[j];
+    EXPECT_EQ(other.rotor_inertia, one.rotor_inertia);
+    EXPECT_EQ(other.limits.lower, one.limits.lower);
+    EXPECT_EQ(other.limits.upper, one.limits.upper);
+    EXPECT_EQ(other.limits.velocity, one.limits.velocity);
+    EXPECT_EQ(other.limits.effort, one.limits.effort);
+    if (written.row_parameters.empty()) {
+      EXPECT_EQ(read.chain.links()[j].toVector(), written.chain.links()[j].toVector());
+    }
+    if (written.seen.empty()) continue;
+    EXPECT_EQ(read.seen[j].qdd.lower, written.seen[j].qdd.lower);
+    EXPECT_EQ(read.seen[j].q.upper, written.seen[j].q.upper);
+  }
+}
+
+TEST(ModelFileWriter, ModelsOfThisProjectComeBack) {
+  for (const std::string name :
+       {"franka_gaz2019_feasible", "franka_inria_identified", "ur10_identified"}) {
+    SCOPED_TRACE(name);
+    const Model robot = modelFromFile(kRobots + "/models/" + name + ".yaml");
+    expectSame(robot, model(modelFileText(robot)));
+  }
+}
+
+TEST(ModelFileWriter, WhatIdentificationFindsComesBackDigitByDigit) {
+  Model robot = test::withChangingSteps(Model(test::randomChain(7)), 3);
+  robot.source = "two \"lines\",\nwith \\ and ü";
+  robot.torque_deviation = Eigen::VectorXd::LinSpaced(7, 0.1, 1.0 / 3);
+  robot.seen.assign(7, {{-1.0 / 3, 2}, {-1e-7, 1.5}, {-9, 12.125}});
+  expectSame(robot, model(modelFileText(robot)));
+}
+
+TEST(ModelFileWriter, RefusesWhatNoFileStates) {
+  Model robot(test::randomChain(3));
+  robot.gravity_parameters = robot.chain.links();
+  robot.gravity_parameters[1].mass += 1;
+  EXPECT_THAT(errorOf([&] { modelFileText(robot); }),
+              HasSubstr("gravity_parameters of joint 2: expected the masses of the links"));
+}
+
+TEST(ModelFileWriter, RollPitchYawGivesTheRotationBack) {
+  constexpr double kRightAngle = 1.5707963267948966;
+  for (const Eigen::Vector3d& rpy :
+       {Eigen::Vector3d(0.3, -1.1, 2.9), Eigen::Vector3d(-3, 0.2, -2),
+        Eigen::Vector3d(0.3, kRightAngle, 0.7), Eigen::Vector3d(1, -kRightAngle, 2)}) {
+    const Eigen::Matrix3d R = rotationFromRollPitchYaw(rpy);
+    EXPECT_LT(difference(rotationFromRollPitchYaw(rollPitchYaw(R)), R), 2e-15) << rpy.transpose();
+  }
+}
+
+}  // namespace chain_dynamics::model_file_writer_test
