@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "friction_columns.hpp"
+
 namespace inverse_dynamics_identification {
 inline namespace v2 {
 namespace {
@@ -23,86 +25,71 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kSettledStep = 0.02;  // Gauss-Newton step, relative to the width, that ends it
-const double kGainDeviation = std::log(kDriveGainFactor);
 constexpr double kSettledGain = 1e-3;  // the same, of the logarithm of a drive gain
 constexpr int kNoiseIterations = 4;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double logRatio(double to, double from) { return std::log(to / from); }
+/// An unknown of a joint that torques aren't linear in: a fit takes Gauss-Newton steps of it, or of its
+/// logarithm.
+struct Curved {
+  Index column;                 // of the derivative
+  double StepFriction::*value;  // null: the drive gain
+  bool is_logarithm;
+  double center, deviation;  // what it is drawn to
+  double least, most;
+  double settled = kSettledStep;
 
-OwnColumn drawnTo(double center, double deviation) {
-  return {false, std::numeric_limits<double>::infinity(), center, deviation};
+  double of(const ArmFit& fit, Index j) const {
+    return value != nullptr ? fit.friction[static_cast<std::size_t>(j)].*value : fit.drive_gains[j];
+  }
+  double distance(const ArmFit& fit, Index j) const {
+    return is_logarithm ? std::log(of(fit, j) / center) : of(fit, j) - center;
+  }
+  /// Of the longest step: the width of friction, or a factor e.
+  double unit(const ArmFit& fit, Index j) const {
+    return is_logarithm ? 1.0 : fit.friction[static_cast<std::size_t>(j)].width;
+  }
+  double moved(const ArmFit& fit, Index j, double by) const {
+    const double longest = unit(fit, j), step = std::clamp(by, -longest, longest);
+    return std::clamp(is_logarithm ? of(fit, j) * std::exp(step) : of(fit, j) + step, least, most);
+  }
+};
+
+/// Those of a joint, of which `greatest` is the greatest velocity.
+std::vector<Curved> curvedUnknowns(const ArmFitOptions& options, Index joint, double greatest) {
+  using namespace own_column;
+  const FrictionPrior& prior = options.friction;
+  const double factor = std::log(prior.width_factor), most_shift = prior.most_shift * greatest;
+  std::vector<Curved> curved = {
+      {kShift, &StepFriction::shift, false, 0, prior.shift * greatest, -most_shift, most_shift},
+      {kWidth, &StepFriction::width, true, prior.width * greatest, factor,
+       prior.least_width * greatest, prior.most_width * greatest}};
+  if (options.terms == FrictionTerms::kStribeck) {
+    curved.push_back({kStribeckVelocity, &StepFriction::vs, true,
+                      prior.stribeck_velocity * greatest, factor, 0, greatest});
+  }
+  if (options.drive_gains.size() > 0) {
+    curved.push_back({ownColumns(options.terms), nullptr, true, options.drive_gains[joint],
+                      std::log(kDriveGainFactor), 0, kInfinity, kSettledGain});
+  }
+  return curved;
 }
 
-/// The own columns of a fit whose shift, width, vs and drive gains are held.
-std::vector<Index> heldColumns(FrictionTerms terms) {
-  using namespace own_column;
-  std::vector<Index> columns = {kAcceleration, kVelocity, kOne, kStep};
-  if (terms != FrictionTerms::kStep) columns.push_back(kLoad);
-  if (terms == FrictionTerms::kStribeck) columns.push_back(kStribeck);
+/// What is known of the coefficient of a column that torques are linear in.
+OwnColumn linearColumn(Index column, const FrictionPrior& prior) {
+  if (column == own_column::kOne) return {false, kInfinity, 0, 1e4};  // a joint may stand still
+  if (column == own_column::kLoad) return {true, prior.most_load, 0, prior.load};
+  return OwnColumn::positive();
+}
+
+/// The own columns that a fit is linear in.
+std::vector<Index> linearColumns(FrictionTerms terms) {
+  std::vector<Index> columns = {own_column::kAcceleration};
+  for (const auto& [c, coefficient] : kLinear) {
+    if (c < ownColumns(terms)) columns.push_back(c);
+  }
   return columns;
 }
-
-/// What width, shift and vs are drawn to, and their bounds, of one joint.
-class StepPrior {
- public:
-  StepPrior(const FrictionPrior& prior, double greatest_velocity)
-      : prior_(prior), greatest_(std::max(greatest_velocity, 1e-6)) {}
-
-  StepFriction start() const {
-    StepFriction law;
-    law.width = prior_.width * greatest_;
-    law.vs = prior_.stribeck_velocity * greatest_;
-    return law;
-  }
-
-  /// Of all columns.
-  std::vector<OwnColumn> columns(const StepFriction& law, FrictionTerms terms) const {
-    const double infinity = std::numeric_limits<double>::infinity();
-    std::vector<OwnColumn> columns(static_cast<std::size_t>(ownColumns(terms)));
-    for (const Index c : {own_column::kAcceleration, own_column::kVelocity, own_column::kStep}) {
-      columns[at(c)] = OwnColumn::positive();
-    }
-    columns[at(own_column::kOne)] = {false, infinity, 0, 1e4};  // for a joint that stands still
-    const double factor = std::log(prior_.width_factor);
-    columns[at(own_column::kShift)] = drawnTo(-law.shift, prior_.shift * greatest_);
-    columns[at(own_column::kWidth)] =
-        drawnTo(logRatio(prior_.width * greatest_, law.width), factor);
-    if (terms == FrictionTerms::kStep) return columns;
-    columns[at(own_column::kLoad)] = {true, prior_.most_load, 0, prior_.load};
-    if (terms == FrictionTerms::kLoad) return columns;
-    columns[at(own_column::kStribeck)] = OwnColumn::positive();
-    columns[at(own_column::kStribeckVelocity)] =
-        drawnTo(logRatio(prior_.stribeck_velocity * greatest_, law.vs), factor);
-    return columns;
-  }
-
-  /// Penalty of width, shift and vs themselves.
-  double penalty(const StepFriction& law, FrictionTerms terms) const {
-    const double factor = std::log(prior_.width_factor);
-    const double shift = law.shift / (prior_.shift * greatest_);
-    const double width = logRatio(prior_.width * greatest_, law.width) / factor;
-    const double vs = terms == FrictionTerms::kStribeck
-                          ? logRatio(prior_.stribeck_velocity * greatest_, law.vs) / factor
-                          : 0.0;
-    return shift * shift + width * width + vs * vs;
-  }
-
-  /// The law after a step of (shift, log width, log vs, and what isn't its own), within bounds.
-  StepFriction moved(StepFriction law, const Eigen::Vector4d& by) const {
-    const double most = prior_.most_shift * greatest_;
-    law.shift = std::clamp(law.shift + std::clamp(by[0], -law.width, law.width), -most, most);
-    law.width = std::clamp(law.width * std::exp(std::clamp(by[1], -1.0, 1.0)),
-                           prior_.least_width * greatest_, prior_.most_width * greatest_);
-    law.vs = std::clamp(law.vs * std::exp(std::clamp(by[2], -1.0, 1.0)), 2 * law.width, greatest_);
-    return law;
-  }
-
- private:
-  static std::size_t at(Index column) { return static_cast<std::size_t>(column); }
-
-  FrictionPrior prior_;
-  double greatest_;
-};
 
 void addGreatest(const ConstStates& qd, VectorXd& greatest) {
   for (Index k = 0; k < qd.count; ++k) {
@@ -126,7 +113,7 @@ void checkOptions(Index joints, const ArmFitOptions& options) {
   }
 }
 
-/// The unknowns of a fit, the steps of shift, width and vs zero.
+/// The unknowns of a fit, the steps of those that it isn't linear in zero.
 Fit linearPart(const ArmFit& arm, FrictionTerms terms) {
   Fit fit;
   fit.parameters = arm.parameters;
@@ -135,12 +122,9 @@ Fit linearPart(const ArmFit& arm, FrictionTerms terms) {
   fit.own = MatrixXd::Zero(columns + (arm.drive_gains.size() > 0 ? 1 : 0), arm.parameters.cols());
   fit.own.row(own_column::kAcceleration) = arm.rotor_inertia.transpose();
   for (Index j = 0; j < fit.own.cols(); ++j) {
-    const StepFriction& law = arm.friction[static_cast<std::size_t>(j)];
-    fit.own(own_column::kVelocity, j) = law.fv;
-    fit.own(own_column::kOne, j) = law.fo;
-    fit.own(own_column::kStep, j) = law.fc;
-    if (columns > own_column::kLoad) fit.own(own_column::kLoad, j) = law.fl;
-    if (columns > own_column::kStribeck) fit.own(own_column::kStribeck, j) = law.fs;
+    for (const auto& [c, coefficient] : kLinear) {
+      if (c < columns) fit.own(c, j) = arm.friction[static_cast<std::size_t>(j)].*coefficient;
+    }
   }
   return fit;
 }
@@ -152,9 +136,10 @@ class Rounds {
 
   Rounds(const std::vector<LinkPrior>& links, const VectorXd& greatest_velocities,
          const ArmFitOptions& options)
-      : links_(links), options_(options), gains_(options.drive_gains.size() > 0) {
-    for (const double greatest : greatest_velocities) {
-      steps_.emplace_back(options.friction, greatest);
+      : links_(links), options_(options), has_gains_(options.drive_gains.size() > 0) {
+    for (Index j = 0; j < greatest_velocities.size(); ++j) {
+      greatest_.push_back(std::max(greatest_velocities[j], 1e-6));
+      curved_.push_back(curvedUnknowns(options, j, greatest_.back()));
     }
   }
 
@@ -162,12 +147,16 @@ class Rounds {
   Prior prior(const ArmFit& fit, bool linear) const {
     Prior prior;
     for (const LinkPrior& link : links_) prior.links.push_back(link.link);
-    if (linear) prior.columns = heldColumns(options_.terms);
-    for (std::size_t j = 0; j < steps_.size(); ++j) {
-      std::vector<OwnColumn> all = steps_[j].columns(fit.friction[j], options_.terms);
-      if (gains_) all.push_back(drawnTo(-gainRatio(fit, j), kGainDeviation));
+    const std::vector<Index> columns = linearColumns(options_.terms);
+    if (linear) prior.columns = columns;
+    for (Index j = 0; j < joints(); ++j) {
+      std::vector<OwnColumn> all(columns.size() + curvedOf(j).size());
+      for (const Index c : columns) all[at(c)] = linearColumn(c, options_.friction);
+      for (const Curved& unknown : curvedOf(j)) {
+        all[at(unknown.column)] = {false, kInfinity, -unknown.distance(fit, j), unknown.deviation};
+      }
       if (!linear) prior.own.insert(prior.own.end(), all.begin(), all.end());
-      for (const Index c : prior.columns) prior.own.push_back(all[static_cast<std::size_t>(c)]);
+      for (const Index c : prior.columns) prior.own.push_back(all[at(c)]);
     }
     return prior;
   }
@@ -175,8 +164,12 @@ class Rounds {
   /// The best fit of all passes. gram_at: sums of the samples at a fit.
   ArmFit run(const ArmFit* start, const GramAt& gram_at) {
     ArmFit tried = start != nullptr ? *start : beginning();
-    if (!gains_ || tried.drive_gains.size() != joints()) tried.drive_gains = options_.drive_gains;
-    if (options_.terms != FrictionTerms::kStribeck) withoutStribeck(tried);
+    if (!has_gains_ || tried.drive_gains.size() != joints()) {
+      tried.drive_gains = options_.drive_gains;
+    }
+    if (options_.terms != FrictionTerms::kStribeck) {
+      for (StepFriction& law : tried.friction) law.fs = 0;
+    }
     int pass = 1;
     if (start != nullptr) {
       last_ = linearPart(tried, options_.terms);
@@ -186,8 +179,8 @@ class Rounds {
       ++pass;
     }
     ArmFit best, current;
-    best.cost = current.cost = std::numeric_limits<double>::infinity();
-    Steps by;
+    best.cost = current.cost = kInfinity;
+    MatrixXd by;
     int shrunk = 0;
     for (; pass <= options_.most_passes; ++pass) {
       const RegressorGram gram = gram_at(tried);
@@ -197,7 +190,7 @@ class Rounds {
       const double gain = current.cost - next.cost;
       if (pass > kFirstPasses && !(gain > 0)) {
         if (++shrunk > kMostShrunk) break;
-        for (Eigen::Vector4d& step : by) step *= 0.3;
+        by *= 0.3;
         tried = moved(current, by);
         continue;
       }
@@ -214,39 +207,39 @@ class Rounds {
   }
 
  private:
-  using Steps = std::vector<Eigen::Vector4d>;  // of shift, log width, log vs, log gain
-  static constexpr double kGain = 1e-1;        // of the cost, that is worth another pass
-  static constexpr int kFirstPasses = 2;       // the way to a better fit may begin with a worse one
-  static constexpr int kMostShrunk = 2;        // steps that are tried again
+  static constexpr double kGain = 1e-1;   // of the cost, that is worth another pass
+  static constexpr int kFirstPasses = 2;  // the way to a better fit may begin with a worse one
+  static constexpr int kMostShrunk = 2;   // steps that are tried again
 
-  Index joints() const { return static_cast<Index>(steps_.size()); }
+  static std::size_t at(Index j) { return static_cast<std::size_t>(j); }
+
+  Index joints() const { return static_cast<Index>(curved_.size()); }
+  const std::vector<Curved>& curvedOf(Index j) const { return curved_[at(j)]; }
 
   ArmFit beginning() const {
     ArmFit fit;
     fit.parameters.resize(10, joints());
-    for (Index j = 0; j < joints(); ++j) {
-      fit.parameters.col(j) = links_[static_cast<std::size_t>(j)].link.toVector();
-    }
     fit.rotor_inertia.setZero(joints());
-    for (const StepPrior& step : steps_) fit.friction.push_back(step.start());
+    for (Index j = 0; j < joints(); ++j) {
+      fit.parameters.col(j) = links_[at(j)].link.toVector();
+      StepFriction& law = fit.friction.emplace_back();
+      law.width = options_.friction.width * greatest_[at(j)];
+      law.vs = options_.friction.stribeck_velocity * greatest_[at(j)];
+    }
     return fit;
   }
 
-  static void withoutStribeck(ArmFit& fit) {
-    for (StepFriction& law : fit.friction) law.fs = 0;
-  }
-
-  FitOptions fitOptions() const {
+  FitOptions fitOptions(int noise_iterations) const {
     FitOptions options;
     options.prior_strength = options_.prior_strength;
-    options.noise_iterations = kNoiseIterations;
+    options.noise_iterations = noise_iterations;
     if (last_.noise.size() > 0) options.noise = last_.noise;
     return options;
   }
 
-  /// With shift, width, vs and gains of an arm, from the last fit on.
+  /// From the last fit on.
   Fit linearFit(const ArmFit& arm, const RegressorGram& gram) const {
-    return consistentFit(gram, prior(arm, true), fitOptions(),
+    return consistentFit(gram, prior(arm, true), fitOptions(kNoiseIterations),
                          last_.own.size() > 0 ? &last_ : nullptr);
   }
 
@@ -256,21 +249,11 @@ class Rounds {
     next.rotor_inertia = fit.own.row(own_column::kAcceleration).transpose();
     next.noise = fit.noise;
     for (Index j = 0; j < joints(); ++j) {
-      StepFriction& law = next.friction[static_cast<std::size_t>(j)];
-      law.fv = fit.own(own_column::kVelocity, j);
-      law.fo = fit.own(own_column::kOne, j);
-      law.fc = fit.own(own_column::kStep, j);
-      const Index columns = ownColumns(options_.terms);
-      law.fl = columns > own_column::kLoad ? fit.own(own_column::kLoad, j) : 0.0;
-      law.fs = columns > own_column::kStribeck ? fit.own(own_column::kStribeck, j) : 0.0;
+      for (const auto& [c, coefficient] : kLinear) {
+        next.friction[at(j)].*coefficient = c < ownColumns(options_.terms) ? fit.own(c, j) : 0.0;
+      }
     }
     return next;
-  }
-
-  /// Logarithm of a drive gain by the one to start from.
-  double gainRatio(const ArmFit& fit, std::size_t j) const {
-    const auto i = static_cast<Index>(j);
-    return logRatio(fit.drive_gains[i], options_.drive_gains[i]);
   }
 
   /// Twice the negative logarithm of the likelihood of what was measured, with the penalties.
@@ -278,54 +261,53 @@ class Rounds {
     const auto N = static_cast<double>(samples);
     double sum = fit.cost - N * (fit.noise.array() / fit.weighed_by.array()).square().sum() +
                  2 * N * fit.noise.array().log().sum();
-    for (std::size_t j = 0; j < steps_.size(); ++j) {
-      sum += steps_[j].penalty(arm.friction[j], options_.terms);
-      if (!gains_) continue;
-      const double ratio = gainRatio(arm, j) / kGainDeviation;
-      sum += ratio * ratio - 2 * N * std::log(arm.drive_gains[static_cast<Index>(j)]);
+    for (Index j = 0; j < joints(); ++j) {
+      for (const Curved& unknown : curvedOf(j)) {
+        const double deviations = unknown.distance(arm, j) / unknown.deviation;
+        sum += deviations * deviations;
+      }
+      if (has_gains_) sum -= 2 * N * std::log(arm.drive_gains[j]);
     }
     return sum;
   }
 
-  /// From the last fit.
-  Steps stepOf(const RegressorGram& gram, const ArmFit& arm) const {
-    FitOptions options = fitOptions();
-    options.noise_iterations = 1;
-    const Fit fit = consistentFit(gram, prior(arm, false), options, &last_);
-    const bool stribeck = options_.terms == FrictionTerms::kStribeck;
-    Steps by;
-    for (Index j = 0; j < joints(); ++j) {
-      by.emplace_back(fit.own(own_column::kShift, j), fit.own(own_column::kWidth, j),
-                      stribeck ? fit.own(own_column::kStribeckVelocity, j) : 0.0,
-                      gains_ ? fit.own(fit.own.rows() - 1, j) : 0.0);
-    }
+  /// Of each unknown that torques aren't linear in, and joint, from the last fit.
+  MatrixXd stepOf(const RegressorGram& gram, const ArmFit& arm) const {
+    const Fit fit = consistentFit(gram, prior(arm, false), fitOptions(1), &last_);
+    MatrixXd by(static_cast<Index>(curvedOf(0).size()), joints());
+    for (Index i = 0; i < by.rows(); ++i) by.row(i) = fit.own.row(curvedOf(0)[at(i)].column);
     return by;
   }
 
-  ArmFit moved(const ArmFit& fit, const Steps& by) const {
+  ArmFit moved(const ArmFit& fit, const MatrixXd& by) const {
     ArmFit result = fit;
-    for (std::size_t j = 0; j < steps_.size(); ++j) {
-      result.friction[j] = steps_[j].moved(fit.friction[j], by[j]);
-      if (gains_) {
-        result.drive_gains[static_cast<Index>(j)] *= std::exp(std::clamp(by[j][3], -1.0, 1.0));
+    for (Index j = 0; j < joints(); ++j) {
+      StepFriction& law = result.friction[at(j)];
+      for (Index i = 0; i < by.rows(); ++i) {
+        const Curved& unknown = curvedOf(j)[at(i)];
+        double& value = unknown.value != nullptr ? law.*unknown.value : result.drive_gains[j];
+        value = unknown.moved(fit, j, by(i, j));
       }
+      law.vs = std::max(law.vs, 2 * law.width);
     }
     return result;
   }
 
-  static bool settled(const Steps& by, const ArmFit& fit) {
-    for (std::size_t j = 0; j < by.size(); ++j) {
-      const Eigen::Vector4d step(by[j][0] / fit.friction[j].width, by[j][1], by[j][2],
-                                 by[j][3] * kSettledStep / kSettledGain);
-      if (step.cwiseAbs().maxCoeff() > kSettledStep) return false;
+  bool settled(const MatrixXd& by, const ArmFit& fit) const {
+    for (Index j = 0; j < joints(); ++j) {
+      for (Index i = 0; i < by.rows(); ++i) {
+        const Curved& unknown = curvedOf(j)[at(i)];
+        if (std::abs(by(i, j)) > unknown.settled * unknown.unit(fit, j)) return false;
+      }
     }
     return true;
   }
 
   const std::vector<LinkPrior>& links_;
   const ArmFitOptions& options_;
-  bool gains_;  // whether they are fitted
-  std::vector<StepPrior> steps_;
+  bool has_gains_;                           // whether they are fitted
+  std::vector<double> greatest_;             // velocities
+  std::vector<std::vector<Curved>> curved_;  // of each joint
   Fit last_;  // of the last pass that was no worse, or what to start from
 };
 

@@ -78,9 +78,7 @@ class Batch {
                       [&](Index c) { return part(own_[static_cast<std::size_t>(c)]); });
       part(tau_) = (has_gains_ ? fit_.drive_gains[j] : 1.0) * valuesOf(samples.tau, j);
       if (carries) part(tau_) -= part(loaded_) - part(alone_);
-      if (!has_gains_) continue;
-      part(own_.back()) = -part(loaded_) - fit_.rotor_inertia[j] * acceleration;
-      for (Index k = 0; k < size; ++k) own_.back()(j, k) -= friction(law, velocity[k], load[k]);
+      if (has_gains_) part(own_.back()) = -part(loaded_) - linearPart(j, size);
     }
     samples.tau = tau_.leftCols(size);
     for (const Rows& column : own_) samples.own_columns.emplace_back(column.leftCols(size));
@@ -96,6 +94,18 @@ class Batch {
     Values values(states.count);
     for (Index k = 0; k < states.count; ++k) values[k] = states(joint, k);
     return values;
+  }
+
+  /// Torques of rotor and friction of a joint, from its columns.
+  Values linearPart(Index j, Index size) const {
+    const auto column = [&](Index c) {
+      return own_[static_cast<std::size_t>(c)].row(j).head(size).array();
+    };
+    Values sum = fit_.rotor_inertia[j] * column(own_column::kAcceleration);
+    for (const auto& [c, coefficient] : kLinear) {
+      if (c < columns_) sum += fit_.friction[static_cast<std::size_t>(j)].*coefficient * column(c);
+    }
+    return sum;
   }
 
   const ArmFit& fit_;
@@ -169,23 +179,16 @@ RegressorGram ArmFitter::gramOf(const ArmFit& fit, FrictionTerms terms,
   return gram;
 }
 
+Model ArmFitter::model(const ArmFit& fit) const {
+  check(fit);
+  Model model(withLinks(fit.parameters, &fit.rotor_inertia));
+  model.friction.assign(fit.friction.begin(), fit.friction.end());
+  return model;
+}
+
 void ArmFitter::torques(const ArmFit& fit, ConstStates q, ConstStates qd, ConstStates qdd,
                         States tau) const {
-  check(fit);
-  const Index n = chain_.jointCount();
-  const FastModel model(Model(withLinks(fit.parameters, &fit.rotor_inertia)), fast_);
-  model.torquesBatch(q, qd, qdd, tau);
-  MatrixXd gravity(n, kBatch);
-  for (Index first = 0; first < q.count; first += kBatch) {
-    const Index size = std::min(kBatch, q.count - first);
-    model.gravityVectorBatch(q.middle(first, size), gravity.leftCols(size));
-    for (Index k = 0; k < size; ++k) {
-      for (Index j = 0; j < n; ++j) {
-        tau(j, first + k) += friction(fit.friction[static_cast<std::size_t>(j)], qd(j, first + k),
-                                      std::abs(gravity(j, k)));
-      }
-    }
-  }
+  FastModel(model(fit), fast_).torquesBatch(q, qd, qdd, tau);
 }
 
 }  // namespace v2

@@ -5,11 +5,20 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <utility>
 
 #include "inverse_dynamics_identification/friction_step.hpp"
 
 namespace inverse_dynamics_identification {
 inline namespace v2 {
+
+/// Coefficients that a law is linear in, and their columns.
+constexpr std::pair<Eigen::Index, double StepFriction::*> kLinear[] = {
+    {own_column::kVelocity, &StepFriction::fv},
+    {own_column::kOne, &StepFriction::fo},
+    {own_column::kStep, &StepFriction::fc},
+    {own_column::kLoad, &StepFriction::fl},
+    {own_column::kStribeck, &StepFriction::fs}};
 
 /// tanh(x), with an error of 1e-16 of one, in a third of the time.
 template <typename Values>

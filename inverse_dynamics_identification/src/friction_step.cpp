@@ -1,24 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_identification/friction_step.hpp"
 
-#include <cmath>
-
 #include "friction_columns.hpp"
 
 namespace inverse_dynamics_identification {
 inline namespace v2 {
-namespace {
-
-double stribeck(const StepFriction& law, double qd) {
-  return std::exp(-(qd / law.vs) * (qd / law.vs));
-}
-
-}  // namespace
-
-double friction(const StepFriction& law, double qd, double load) {
-  const double height = law.fc + law.fl * load + (law.fs != 0 ? law.fs * stribeck(law, qd) : 0.0);
-  return law.fv * qd + law.fo + height * smoothStep((qd + law.shift) / law.width);
-}
 
 Eigen::Index ownColumns(FrictionTerms terms) {
   switch (terms) {

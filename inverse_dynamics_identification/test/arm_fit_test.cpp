@@ -19,9 +19,9 @@ using chain_dynamics::Model;
 constexpr double kNoise = 0.05;  // N m
 
 std::vector<StepFriction> knownFriction(FrictionTerms terms) {
-  std::vector<StepFriction> laws = {{1.5, -0.3, 2, 0, 0, 0.05, 0.02, 0.4},
-                                    {0.8, 0.2, 1, 0, 0, 0.1, -0.03, 0.4},
-                                    {0.3, 0, 0.5, 0, 0, 0.02, 0, 0.4}};
+  std::vector<StepFriction> laws = {{1.5, 2, 0.05, 0.02, -0.3, 0, 0, 0.4},
+                                    {0.8, 1, 0.1, -0.03, 0.2, 0, 0, 0.4},
+                                    {0.3, 0.5, 0.02, 0, 0, 0, 0, 0.4}};
   for (StepFriction& law : laws) {
     if (terms != FrictionTerms::kStep) law.fl = 0.08;
     if (terms == FrictionTerms::kStribeck) law.fs = law.fc;
@@ -42,9 +42,9 @@ Motion measured(FrictionTerms terms, Eigen::Index count, unsigned seed, double d
   const std::vector<StepFriction> laws = knownFriction(terms);
   for (Eigen::Index k = 0; k < count; ++k) {
     for (Eigen::Index j = 0; j < 3; ++j) {
-      motion.tau(j, k) +=
-          0.3 * motion.qdd(j, k) +
-          friction(laws[static_cast<std::size_t>(j)], motion.qd(j, k), std::abs(gravity(j, k)));
+      motion.tau(j, k) += 0.3 * motion.qdd(j, k) +
+                          chain_dynamics::friction(laws[static_cast<std::size_t>(j)],
+                                                   motion.qd(j, k), std::abs(gravity(j, k)));
     }
   }
   motion.tau += noise(3, count, deviation, seed + 1);
@@ -82,39 +82,24 @@ TEST(ArmFitter, FindsAKnownRobotWithItsFriction) {
   }
 }
 
-TEST(ArmFitter, TorquesAreThoseOfAModelWithTheSameFigures) {
+TEST(ArmFitter, TorquesAreThoseOfItsModel) {
   const ArmFitter fitter(threeJointArm(0.6));
   for (const FrictionTerms terms :
        {FrictionTerms::kStep, FrictionTerms::kLoad, FrictionTerms::kStribeck}) {
     SCOPED_TRACE(static_cast<int>(terms));
-    const Motion motion = measured(terms, 700, 1);
+    const Motion motion = measured(terms, 100, 1);
     ArmFitOptions options;
     options.terms = terms;
     const ArmFit fit = fitter.fit({samplesOf(motion)}, options);
-    std::vector<Joint> joints = fitter.description().joints();
-    std::vector<LinkParameters> links;
-    for (std::size_t j = 0; j < 3; ++j) {
-      joints[j].rotor_inertia = fit.rotor_inertia[static_cast<Eigen::Index>(j)];
-      const Eigen::Matrix<double, 10, 1> p = fit.parameters.col(static_cast<Eigen::Index>(j));
-      links.push_back(LinkParameters::fromVector(p));
-    }
-    Model model(Chain("fitted", joints, links, fitter.description().gravity()));
-    for (const StepFriction& law : fit.friction) {
-      chain_dynamics::SmoothCoulomb same;
-      same.fv = law.fv;
-      same.fc = law.fc;
-      same.width = law.width;
-      same.shift = law.shift;
-      same.fo = law.fo;
-      same.fl = law.fl;
-      same.fs = law.fs;
-      same.vs = law.vs;
-      model.friction.emplace_back(same);
-    }
-    Eigen::MatrixXd expected(3, 700), tau(3, 700);
-    FastModel(model).torquesBatch(motion.q, motion.qd, motion.qdd, expected);
+    const Model model = fitter.model(fit);
+    Eigen::VectorXd expected(3), f(3);
+    Eigen::MatrixXd tau(3, 100);
     fitter.torques(fit, motion.q, motion.qd, motion.qdd, tau);
-    EXPECT_LT((tau - expected).cwiseAbs().maxCoeff(), 1e-9);
+    for (Eigen::Index k = 0; k < 100; ++k) {
+      torques(model, motion.q.col(k), motion.qd.col(k), motion.qdd.col(k), expected);
+      frictionVector(model, motion.q.col(k), motion.qd.col(k), f);
+      EXPECT_LT((tau.col(k) - expected - f).cwiseAbs().maxCoeff(), 1e-9);
+    }
   }
 }
 
@@ -147,14 +132,7 @@ TEST(ArmFitter, IsARobotWithFrictionThatBrakesWhateverTheTorquesAre) {
       EXPECT_GE(law.fs, 0);
       EXPECT_GT(law.width, 0);
     }
-    std::vector<Joint> joints = fitter.description().joints();
-    std::vector<LinkParameters> links;
-    for (std::size_t j = 0; j < 3; ++j) {
-      joints[j].rotor_inertia = fit.rotor_inertia[static_cast<Eigen::Index>(j)];
-      const Eigen::Matrix<double, 10, 1> p = fit.parameters.col(static_cast<Eigen::Index>(j));
-      links.push_back(LinkParameters::fromVector(p));
-    }
-    const Model model(Chain("fitted", joints, links, {0, 0, -9.81}));
+    const Model model = fitter.model(fit);
     EXPECT_TRUE(model.inertiaIsPhysical());
     const FastModel fast(model);
     std::mt19937 random(seed);

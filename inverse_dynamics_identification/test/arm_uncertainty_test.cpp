@@ -29,7 +29,8 @@ ArmFitter pandaFitter() {
   return ArmFitter(chain_dynamics::chainFromUrdf(pandaText(), options));
 }
 
-/// The panda's links with some friction; none grows with load, as deviations leave out what links do to load.
+/// The panda's links with some friction; hardly any grows with load, as deviations leave out what links do
+/// to load.
 ArmFit pandaFit(const ArmFitter& fitter) {
   ArmFit fit;
   fit.parameters.resize(10, kJoints);
@@ -39,7 +40,7 @@ ArmFit pandaFit(const ArmFitter& fitter) {
     const auto i = static_cast<std::size_t>(j);
     fit.parameters.col(j) = fitter.description().links()[i].toVector();
     fit.friction.push_back(
-        {0.5, 0.1, 0.8, 0.0, 0.3, 0.1 + 0.02 * static_cast<double>(j), 0.01, 0.4});
+        {0.5, 0.8, 0.1 + 0.02 * static_cast<double>(j), 0.01, 0.1, 1e-6, 0.3, 0.4});
   }
   return fit;
 }

@@ -18,6 +18,8 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "fields.hpp"
+#include "friction.hpp"
+#include "solver_payload.hpp"
 #include "vectors.hpp"
 
 namespace inverse_dynamics_tools {
@@ -74,7 +76,6 @@ using identification::ArmFitter;
 using identification::ArmSamples;
 using identification::FrictionTerms;
 using identification::LinkPrior;
-using identification::StepFriction;
 using Vector = Eigen::VectorXd;
 
 std::unique_ptr<ArmFitter> fitterFromUrdf(const std::string& urdf, const std::string& root,
@@ -92,18 +93,8 @@ std::unique_ptr<ArmFitter> fitterFromUrdf(const std::string& urdf, const std::st
   return std::make_unique<ArmFitter>(chain_dynamics::chainFromUrdf(urdf, options));
 }
 
-// (10,) of what the tip carries in each block, or none.
-using Carried = std::vector<std::optional<Array>>;
-
-chain_dynamics::LinkParameters linkOf(const Array& numbers) {
-  if (numbers.ndim() != 1 || numbers.shape(0) != 10) {
-    throw py::value_error("carried: expected an array (10,) for each block, or None, got " +
-                          std::string(py::str(numbers.attr("shape"))));
-  }
-  using Vector10 = Eigen::Matrix<double, 10, 1>;
-  const Vector10 p = Eigen::Map<const Vector10>(numbers.data());
-  return chain_dynamics::LinkParameters::fromVector(p);
-}
+/// What the tip carries in each block: arguments of set_payload(), or none.
+using Carried = std::vector<std::optional<inverse_dynamics_solver::RigidBody>>;
 
 std::vector<ArmSamples> samplesOf(const std::vector<Block>& blocks, const Carried& carried) {
   if (!carried.empty() && carried.size() != blocks.size()) {
@@ -115,8 +106,8 @@ std::vector<ArmSamples> samplesOf(const std::vector<Block>& blocks, const Carrie
   for (const auto& [q, qd, qdd, tau] : blocks) {
     samples.push_back({states(q, "q"), states(qd, "qd"), states(qdd, "qdd"), states(tau, "tau")});
     if (carried.empty()) continue;
-    const std::optional<Array>& body = carried[samples.size() - 1];
-    if (body) samples.back().carried = linkOf(*body);
+    const auto& body = carried[samples.size() - 1];
+    if (body) samples.back().carried = inverse_dynamics_solver::inTipFrame(*body);
   }
   return samples;
 }
@@ -179,49 +170,24 @@ Array rowsOfLinks(const std::vector<LinkPrior>& priors) {
   return rowsOf(std::move(rows));
 }
 
-NumbersByName figures(const StepFriction& law) {
-  py::dict result;
-  result["fv"] = law.fv;
-  result["fc"] = law.fc;
-  result["width"] = law.width;
-  result["shift"] = law.shift;
-  result["fo"] = law.fo;
-  if (law.fl != 0) result["fl"] = law.fl;
-  if (law.fs != 0) {
-    result["fs"] = law.fs;
-    result["vs"] = law.vs;
-  }
-  return result;
-}
-
-Array copyOf(const chain_dynamics::OwnedVector& vector) {
-  return Array(vector.size(), vector.data());
-}
-
 void bindFit(py::module_& module) {
   py::class_<ArmFit>(module, "ArmFit", "A model of an arm: arm_fit.hpp.")
       .def_property_readonly(
           "parameters", [](const ArmFit& f) { return rowsOf(f.parameters); },
           "(n, 10) m, mc, I of each link, in its frame and about its origin.")
       .def_property_readonly(
-          "rotor_inertia", [](const ArmFit& f) { return copyOf(f.rotor_inertia); },
+          "rotor_inertia", [](const ArmFit& f) { return arrayOf(f.rotor_inertia); },
           "(n,) kg m^2 (prismatic kg).")
+      .def_readonly("friction", &ArmFit::friction,
+                    "smooth_coulomb of each joint, by the keys of the model file.")
       .def_property_readonly(
-          "friction",
-          [](const ArmFit& f) {
-            std::vector<NumbersByName> laws;
-            for (const StepFriction& law : f.friction) laws.push_back(figures(law));
-            return laws;
-          },
-          "Figures of smooth_coulomb of each joint, by the keys of the model file.")
-      .def_property_readonly(
-          "noise", [](const ArmFit& f) { return copyOf(f.noise); },
+          "noise", [](const ArmFit& f) { return arrayOf(f.noise); },
           "(n,) root mean squares of the errors of the samples that it was fitted to.")
       .def_property_readonly(
           "drive_gains",
           [](const ArmFit& f) -> std::optional<Array> {
             if (f.drive_gains.size() == 0) return std::nullopt;
-            return copyOf(f.drive_gains);
+            return arrayOf(f.drive_gains);
           },
           "(n,) N m/A (prismatic N/A) that were fitted; None: of measured torques.")
       .def_readonly("cost", &ArmFit::cost, "What was minimised, up to a constant.")
@@ -267,10 +233,9 @@ void bindIdentification(py::module_& module) {
           "What the prior has changed about each described link, in words; empty: nothing.")
       .def("data", &dataOf, py::arg("blocks"), py::kw_only(), py::arg("carried") = Carried(),
            py::arg("times") = std::vector<Vector>(),
-           "Samples of blocks, q, qd, qdd, tau, (N, n) each. carried: (10,) or None of each block, "
-           "a "
-           "known body m, mc, I in the tip frame, about its origin; times: (N,) s of each block, "
-           "for "
+           "Samples of blocks, q, qd, qdd, tau, (N, n) each. carried: a known body of each block, "
+           "by\n"
+           "the arguments of set_payload(), or None; times: (N,) s of each block, for\n"
            "whitened_information().")
       .def(
           "fit",

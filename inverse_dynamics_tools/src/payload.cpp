@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/stl.h>
 
+#include <array>
 #include <inverse_dynamics_identification/payload_estimator.hpp>
-#include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -14,6 +14,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "fields.hpp"
+#include "friction.hpp"
 #include "solver_payload.hpp"
 #include "vectors.hpp"
 
@@ -49,33 +50,43 @@ namespace py = pybind11;
 using namespace inverse_dynamics_identification;
 using Vector = Eigen::VectorXd;
 
+/// q, qd, qdd: (N, n) each.
+using Motion = std::tuple<Array, Array, Array>;
+/// The same, (n,) each.
+using State = std::tuple<Vector, Vector, Vector>;
+
+/// Columns of N samples of n joints.
+std::array<ConstMap, 3> columnsOf(const Motion& motion, py::ssize_t count, Eigen::Index joints) {
+  const auto& [q, qd, qdd] = motion;
+  requireShape("q", q, {count, joints});
+  requireShape("qd", qd, {count, joints});
+  requireShape("qdd", qdd, {count, joints});
+  return {states(q, "q"), states(qd, "qd"), states(qdd, "qdd")};
+}
+
 /// All samples, one after the other, without the GIL; how many were added.
-Eigen::Index run(SharedEstimator& shared, const Array& time, const Array& q, const Array& qd,
-                 const Array& qdd, const Array& measured) {
-  const py::ssize_t count = time.ndim() == 1 ? time.shape(0) : 0;
-  const py::ssize_t n = shared.jointCount();
-  requireShape("q", q, {count, n});
-  requireShape("qd", qd, {count, n});
-  requireShape("qdd", qdd, {count, n});
-  requireShape("measured", measured, {count, n});
-  const ConstMap columns[] = {states(q, "q"), states(qd, "qd"), states(qdd, "qdd"),
-                              states(measured, "measured")};
-  const double* const t = time.data();
-  return shared.during([&](PayloadEstimator& estimator) {
+Eigen::Index run(SharedEstimator& shared, const Vector& time, const Motion& motion,
+                 const Array& measured) {
+  const auto [q, qd, qdd] = columnsOf(motion, time.size(), shared.jointCount());
+  requireShape("measured", measured, {time.size(), shared.jointCount()});
+  const ConstMap torques = states(measured, "measured");
+  return shared.during([&, &q = q, &qd = qd, &qdd = qdd](PayloadEstimator& estimator) {
     Eigen::Index added = 0;
-    for (py::ssize_t k = 0; k < count; ++k) {
-      const PayloadStatus status = estimator.update(t[k], columns[0].col(k), columns[1].col(k),
-                                                    columns[2].col(k), columns[3].col(k));
+    for (Eigen::Index k = 0; k < time.size(); ++k) {
+      const PayloadStatus status =
+          estimator.update(time[k], q.col(k), qd.col(k), qdd.col(k), torques.col(k));
       added += status == PayloadStatus::kOk ? 1 : 0;
     }
     return added;
   });
 }
 
-PayloadStatus update(SharedEstimator& shared, double time, const Vector& q, const Vector& qd,
-                     const Vector& qdd, const Vector& measured) {
-  return shared.during(
-      [&](PayloadEstimator& estimator) { return estimator.update(time, q, qd, qdd, measured); });
+PayloadStatus update(SharedEstimator& shared, double time, const State& state,
+                     const Vector& measured) {
+  return shared.during([&](PayloadEstimator& estimator) {
+    const auto& [q, qd, qdd] = state;
+    return estimator.update(time, q, qd, qdd, measured);
+  });
 }
 
 std::pair<PayloadEstimate, PayloadStatus> estimate(SharedEstimator& shared) {
@@ -108,45 +119,29 @@ void bindNoise(py::module_& module) {
       "Noise of measured minus computed torques (N, n) [N m], at times (N,) [s].");
 }
 
-double figure(const std::map<std::string, double>& law, const char* key, double otherwise) {
-  const auto found = law.find(key);
-  return found == law.end() ? otherwise : found->second;
-}
-
-std::unique_ptr<ArmUncertainty> makeUncertainty(
-    const std::vector<std::map<std::string, double>>& friction, const Array& factor) {
+std::unique_ptr<ArmUncertainty> makeUncertainty(const std::vector<StepFriction>& friction,
+                                                const Array& factor) {
   if (factor.ndim() != 2) throw py::value_error("factor: expected an array (m, K)");
-  auto result = std::make_unique<ArmUncertainty>();
-  for (const auto& law : friction) {
-    const StepFriction none;
-    result->friction.push_back({figure(law, "fv", none.fv), figure(law, "fo", none.fo),
-                                figure(law, "fc", none.fc), figure(law, "fl", none.fl),
-                                figure(law, "fs", none.fs), figure(law, "width", none.width),
-                                figure(law, "shift", none.shift), figure(law, "vs", none.vs)});
-  }
-  result->factor = states(factor, "factor").transpose();
-  return result;
+  return std::make_unique<ArmUncertainty>(
+      ArmUncertainty{friction, states(factor, "factor").transpose()});
 }
 
 /// Of N states, (N, n).
 Array armTorques(const ArmUncertainty& arm, const SolverObject& solver, const Vector& z,
-                 const Array& q, const Array& qd, const Array& qdd) {
+                 const Motion& motion) {
   ArmDeviations deviations(solverOf(solver), arm);
-  const auto n = static_cast<py::ssize_t>(arm.friction.size());
-  const py::ssize_t count = q.ndim() == 2 ? q.shape(0) : 0;
-  requireShape("q", q, {count, n});
-  requireShape("qd", qd, {count, n});
-  requireShape("qdd", qdd, {count, n});
+  const Array& like_q = std::get<0>(motion);
+  const auto n = static_cast<Eigen::Index>(arm.friction.size());
+  const auto [q, qd, qdd] = columnsOf(motion, like_q.ndim() == 2 ? like_q.shape(0) : 0, n);
   if (z.size() != deviations.count()) {
     throw py::value_error("z: expected " + std::to_string(deviations.count()) + " numbers, got " +
                           std::to_string(z.size()));
   }
-  const ConstMap columns_of[] = {states(q, "q"), states(qd, "qd"), states(qdd, "qdd")};
-  Array result = like(q);
+  Array result = like(like_q);
   Map out = columns(result);
   Eigen::MatrixXd D(z.size(), n);
-  for (py::ssize_t k = 0; k < count; ++k) {
-    deviations.compute(columns_of[0].col(k), columns_of[1].col(k), columns_of[2].col(k), D);
+  for (Eigen::Index k = 0; k < q.cols(); ++k) {
+    deviations.compute(q.col(k), qd.col(k), qdd.col(k), D);
     out.col(k).noalias() = D.transpose() * z;
   }
   return result;
@@ -156,12 +151,11 @@ void bindArm(py::module_& module) {
   py::class_<ArmUncertainty>(
       module, "ArmUncertainty",
       "What the identified model of an arm may be wrong by: arm_uncertainty.hpp.")
-      .def(
-          py::init(&makeUncertainty), py::arg("friction"), py::arg("factor"),
-          "friction: figures of smooth_coulomb of each of n joints, by the keys of the model file; "
-          "factor: (m, K), the covariance of the m unknowns is factor factor'.")
-      .def("torques", &armTorques, py::arg("solver"), py::arg("z"), py::arg("q"), py::arg("qd"),
-           py::arg("qdd"), "Of deviations z (K,) at N states (N, n): (N, n) N m.");
+      .def(py::init(&makeUncertainty), py::arg("friction"), py::arg("factor"),
+           "friction: smooth_coulomb of each of n joints, by the keys of the model file; "
+           "factor: (m, K), the covariance of the m unknowns is factor factor'.")
+      .def("torques", &armTorques, py::arg("solver"), py::arg("z"), py::arg("motion"),
+           "Of deviations z (K,) at q, qd, qdd, (N, n) each: (N, n) N m.");
 }
 
 void bindEstimate(py::module_& module) {
@@ -216,10 +210,10 @@ void bindPayload(py::module_& module) {
                               "safe; the GIL is released, and each call waits for those of other "
                               "threads.")
       .def(ofSolver<SharedEstimator, PayloadOptions>(), py::arg("solver"), py::arg("options"))
-      .def("update", &update, py::arg("time"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
-           py::arg("measured"), "Adds a sample: s, (n,) each; PayloadStatus.")
-      .def("run", &run, py::arg("time"), py::arg("q"), py::arg("qd"), py::arg("qdd"),
-           py::arg("measured"), "Adds N samples, (N,) and (N, n); how many were added.")
+      .def("update", &update, py::arg("time"), py::arg("state"), py::arg("measured"),
+           "Adds a sample: s; q, qd, qdd and torques, (n,) each; PayloadStatus.")
+      .def("run", &run, py::arg("time"), py::arg("motion"), py::arg("measured"),
+           "Adds N samples, as update() does, (N,) and (N, n); how many were added.")
       .def("estimate", &estimate, "(PayloadEstimate, PayloadStatus).")
       .def("restart", &restart, "Forgets all samples.");
 }

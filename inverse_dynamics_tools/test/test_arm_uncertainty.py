@@ -46,9 +46,9 @@ def test_the_file_has_the_deviations_of_the_fit(found, model):
     direct = ArmUncertainty(found.model.friction, found.factor)
     for k in range(5):
         z = np.eye(5)[k]
-        expected = direct.torques(solver, z, *states())
+        expected = direct.torques(solver, z, states())
         np.testing.assert_allclose(
-            read.torques(solver, z, *states()), expected, rtol=1e-5, atol=1e-6 * abs(expected).max()
+            read.torques(solver, z, states()), expected, rtol=1e-5, atol=1e-6 * abs(expected).max()
         )
 
 
@@ -59,7 +59,7 @@ def test_deviations_of_links_are_in_the_frames_of_the_engine(found, model):
     factor[: 10 * len(JOINTS), 0] = np.random.default_rng(5).normal(size=10 * len(JOINTS))
     q, qd, qdd = states()
     expected = engine().regressor(q, qd, qdd) @ factor[: 10 * len(JOINTS), 0]
-    torques = ArmUncertainty(found.model.friction, factor).torques(solver, [1.0], q, qd, qdd)
+    torques = ArmUncertainty(found.model.friction, factor).torques(solver, [1.0], (q, qd, qdd))
     np.testing.assert_allclose(torques, expected, atol=1e-10)
 
 
@@ -125,7 +125,7 @@ def test_an_uncertainty_of_another_arm_is_refused(found, model):
     solver = Solver(RIGID_BODY, model=str(model))
     other = ArmUncertainty(found.model.friction[1:], found.factor)
     with pytest.raises(InvalidParameterError, match="laws of friction"):
-        other.torques(solver, np.zeros(5), *(values[:, 1:] for values in states()))
+        other.torques(solver, np.zeros(5), tuple(values[:, 1:] for values in states()))
 
 
 def test_payloads_are_estimated_with_the_deviations_that_a_model_has(model, tmp_path):

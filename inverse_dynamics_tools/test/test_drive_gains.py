@@ -14,7 +14,7 @@ from inverse_dynamics import _core, evaluate, identify, load_robot, write_joint_
 from inverse_dynamics.cli import main
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.evaluation.evaluation import Arm
-from inverse_dynamics.identification.drive_gains import body, identify_drive_gains
+from inverse_dynamics.identification.drive_gains import identify_drive_gains
 from inverse_dynamics.identification.result import IdentificationError
 from inverse_dynamics.robot.descriptions import read_description
 from inverse_dynamics.verbs.values import payload
@@ -204,19 +204,3 @@ def test_a_center_that_is_not_stated_is_not_taken_for_the_origin(ids, bags, tmp_
 def test_the_option_is_a_recording_and_a_load(text, ids):
     options = ["--known-payload", text, "--robot", "ur10_simulated", "--out", "arm.yaml"]
     fails(ids("identify", "alone", *options), "--known-payload")
-
-
-def test_a_body_has_its_numbers_in_the_tip_frame():
-    numbers = body(
-        {
-            "payload.mass": 2.0,
-            "payload.center_of_mass": [0.2, 0.0, 0.0],
-            "payload.inertia": [1.0, 0.0, 0.0, 2.0, 0.0, 3.0],
-            "payload.frame.xyz": [0.1, 0.0, 0.0],
-            "payload.frame.rpy": [0.0, 0.0, np.pi / 2],
-        }
-    )
-    c = np.array([0.1, 0.2, 0.0])  # x of the body's frame is y of the tip's
-    expected = np.diag([2.0, 1.0, 3.0]) + 2.0 * (c @ c * np.eye(3) - np.outer(c, c))
-    np.testing.assert_allclose(numbers[:4], [2.0, *(2.0 * c)])
-    np.testing.assert_allclose(numbers[4:], expected[np.triu_indices(3)], atol=1e-12)

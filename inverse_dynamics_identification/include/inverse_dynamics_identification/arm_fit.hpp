@@ -151,6 +151,11 @@ class ArmFitter {
   OwnedMatrix whitenedInformation(const ArmFit& fit, FrictionTerms terms, const ArmData& data,
                                   const ResidualNoise& noise) const;
 
+  /// The robot that a fit is.
+  ///
+  /// @throws chain_dynamics::ModelError  a fit of another arm.
+  chain_dynamics::Model model(const ArmFit& fit) const;
+
   /// `tau = H qdd + C qd + g + rotor_inertia qdd + f` of N states.
   void torques(const ArmFit& fit, chain_dynamics::ConstStates q, chain_dynamics::ConstStates qd,
                chain_dynamics::ConstStates qdd, chain_dynamics::States tau) const;

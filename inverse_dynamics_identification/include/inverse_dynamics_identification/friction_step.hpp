@@ -5,14 +5,13 @@
 ///
 ///     f = fv qd + fo + (fc + fl |g(q)| + fs exp(-(qd / vs)^2)) tanh((qd + shift) / width)
 ///
-/// The law smooth_coulomb of model files. g(q) is the joint's gravity torque: gears that carry more
-/// rub more. fs makes the step fall with velocity, as lubricated contacts do (Stribeck). In
-/// fv, fo, fc, fl, fs it is linear; for width, shift and vs a fit takes Gauss-Newton steps with the
-/// derivatives as columns.
+/// In fv, fo, fc, fl, fs the law is linear; for width, shift and vs a fit takes Gauss-Newton steps with
+/// the derivatives as columns.
 
 #pragma once
 
 #include <Eigen/Core>
+#include <chain_dynamics/friction_laws/smooth_coulomb.hpp>
 
 namespace inverse_dynamics_identification {
 inline namespace v2 {
@@ -24,20 +23,8 @@ enum class FrictionTerms {
   kStribeck,  ///< fl and fs
 };
 
-/// Figures of one joint.
-struct StepFriction {
-  double fv = 0;     ///< N m s/rad (prismatic N s/m), not negative
-  double fo = 0;     ///< N m (prismatic N)
-  double fc = 0;     ///< N m, not negative
-  double fl = 0;     ///< not negative
-  double fs = 0;     ///< N m, not negative
-  double width = 1;  ///< rad/s, above zero
-  double shift = 0;  ///< rad/s
-  double vs = 1;     ///< rad/s, above zero
-};
-
-/// f [N m] at a velocity [rad/s] under a load |g(q)| [N m].
-double friction(const StepFriction& law, double qd, double load);
+/// The law of one joint.
+using StepFriction = chain_dynamics::SmoothCoulomb;
 
 /// Own columns of the fit: qdd, qd, 1, step, df/dshift, df/dlog(width), and with their terms
 /// load step, Stribeck step, df/dlog(vs).

@@ -24,11 +24,10 @@ import numpy as np
 from inverse_dynamics._core import ArmFitOptions
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import listed
-from inverse_dynamics.evaluation.evaluation import evaluate
+from inverse_dynamics.evaluation.evaluation import Arm, evaluate
 from inverse_dynamics.identification.blocks import blocks_of
 from inverse_dynamics.identification.knowledge import Knowledge, student_t
 from inverse_dynamics.identification.result import DriveGain, IdentificationError
-from inverse_dynamics.robot.chain_geometry import rotation_of
 from inverse_dynamics.robot.robots import RIGID_BODY, with_changes
 
 if TYPE_CHECKING:
@@ -57,11 +56,11 @@ _FAR = 5.0  # factor by which gains of a robot may differ from their median, to 
 
 @dataclass(frozen=True)
 class _Recording:
-    """Blocks of currents, and what the tip carries: (10,) in its frame, None: nothing that is known."""
+    """Blocks of currents, and the body that the tip carries; None: nothing that is known."""
 
     evaluation: Evaluation
     blocks: list[FitBlock]
-    carried: Floats | None
+    carried: dict[str, Any] | None
 
 
 def identify_drive_gains(
@@ -80,8 +79,15 @@ def identify_drive_gains(
     is neither determined nor stated.
     """
     stated = stated_gains(robot)
+    described = replace(
+        robot,
+        plugin=RIGID_BODY,
+        model=None,
+        friction=False,
+        drive_gains=(1.0,) * len(fitter.joint_names),
+    )
     read = [
-        _read(path, load, robot, fitter, progress, options)
+        _read(path, load, described, {"progress": progress, **options})
         for path, load in [*((path, None) for path in recordings), *known_payloads]
     ]
     fit = _fit(fitter, read)
@@ -103,8 +109,6 @@ def identify_drive_gains(
 
 def stated_gains(robot: Robot) -> tuple[float, ...] | None:
     """N m/A, of the run configuration, or of the model of its solver. Raises UserError."""
-    from inverse_dynamics.evaluation.evaluation import Arm
-
     if robot.drive_gains:
         return robot.drive_gains
     own = Arm(robot).solver.drive_gains
@@ -124,46 +128,17 @@ def check_gains(robot: Robot, effort_is: str | None) -> None:
     )
 
 
-def body(parameters: Mapping[str, Parameter]) -> Floats:
-    """(10,) m, mc, I about the tip's origin, of the parameters payload.* of solvers."""
-    mass = float(parameters["payload.mass"])  # type: ignore[arg-type]
-    xyz, rpy, center, inertia = (
-        np.array(parameters.get(f"payload.{name}", size * [0.0]), dtype=float)
-        for name, size in (
-            ("frame.xyz", 3),
-            ("frame.rpy", 3),
-            ("center_of_mass", 3),
-            ("inertia", 6),
-        )
-    )
-    R = rotation_of(rpy)
-    c = xyz + R @ center
-    xx, xy, xz, yy, yz, zz = inertia
-    about_center = R @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ R.T
-    about_origin = about_center + mass * (c @ c * np.eye(3) - np.outer(c, c))
-    return np.concatenate([[mass], mass * c, about_origin[np.triu_indices(3)]])
-
-
 def _read(
     path: Path | str,
     load: Mapping[str, Parameter] | None,
-    robot: Robot,
-    fitter: ArmFitter,
-    progress: Progress,
+    described: Robot,
     options: Mapping[str, Any],
 ) -> _Recording:
     """Currents of a recording, as if each gain were one; computed: by the description with the load."""
     if load is not None:
         _check_load(path, load)
-    described = replace(
-        robot,
-        plugin=RIGID_BODY,
-        model=None,
-        friction=False,
-        parameters=dict(load or {}),
-        drive_gains=(1.0,) * len(fitter.joint_names),
-    )
-    found = evaluate(path, with_changes(described), progress=progress, **options)
+    described = with_changes(replace(described, parameters=dict(load or {})))
+    found = evaluate(path, described, **options)
     if found.effort.meaning != "current":
         raise IdentificationError(
             f"{path}: expected motor currents, whose gains a known load determines, got "
@@ -172,7 +147,7 @@ def _read(
             "Efforts are motor currents",
         )
     blocks = [block.fitted for block in blocks_of(found, _BLOCKS)]
-    return _Recording(found, blocks, None if load is None else body(load))
+    return _Recording(found, blocks, Arm(described).solver.payloads.get("payload"))
 
 
 def _check_load(path: Path | str, load: Mapping[str, Parameter]) -> None:
@@ -189,7 +164,7 @@ def _check_load(path: Path | str, load: Mapping[str, Parameter]) -> None:
         )
 
 
-def _blocks(read: Sequence[_Recording]) -> tuple[list[FitBlock], list[Floats | None]]:
+def _blocks(read: Sequence[_Recording]) -> tuple[list[FitBlock], list[dict[str, Any] | None]]:
     blocks = [block for recording in read for block in recording.blocks]
     return blocks, [recording.carried for recording in read for _ in recording.blocks]
 

@@ -69,21 +69,26 @@ class EmptyRun:
 
 
 @dataclass(frozen=True)
-class Payload:
-    """What was found. N samples, n joints; order of the chain.
+class Fit:
+    """An estimate, with intervals of 95 %, and the residuals before and after it, (N, n) N m.
 
-    estimate: its intervals are of 95 %. before, after: (N, n) N m, measured minus computed torques
-    without the load, and with it and the offsets.
+    Measured minus computed torques, without the load, and with it and the offsets.
     """
 
-    evaluation: Evaluation
-    empty: Path | None
     estimate: PayloadEstimate
     noise: ResidualNoise
     rounds: int  # until a friction that grows with load was settled
-    time: Floats  # (N,) s
     before: Floats
     after: Floats
+
+
+@dataclass(frozen=True)
+class Payload(Fit):
+    """What was found. N samples, n joints; order of the chain."""
+
+    evaluation: Evaluation
+    empty: Path | None
+    time: Floats  # (N,) s
     notes: tuple[str, ...]
     # (k, 3) orthonormal: directions of the tip frame in which a load may lie anywhere, as no joint bears it
     idle: Floats = field(default_factory=lambda: np.empty((0, 3)))
@@ -100,8 +105,7 @@ class Payload:
     def center_of_mass(self) -> Floats:
         """(3,) m in the tip frame; zero along `idle`."""
         center = self.estimate.center_of_mass
-        seen: Floats = center - self.idle.T @ (self.idle @ center)
-        return seen
+        return np.asarray(center - self.idle.T @ (self.idle @ center))
 
     @property
     def center_of_mass_half_width(self) -> Floats:
@@ -134,16 +138,14 @@ class Samples:
     qdd: Floats
     measured: Floats
 
+    @property
+    def motion(self) -> tuple[Floats, Floats, Floats]:
+        """q, qd, qdd."""
+        return self.q, self.qd, self.qdd
 
-@dataclass(frozen=True)
-class Fit:
-    """An estimate and the residuals that it leaves, (N, n) N m."""
-
-    estimate: PayloadEstimate
-    noise: ResidualNoise
-    rounds: int
-    before: Floats
-    after: Floats
+    def residual(self, solver: Solver) -> Floats:
+        """(N, n) measured minus computed torques."""
+        return self.measured - solver.torques(*self.motion)
 
 
 def estimate_payload(
@@ -170,11 +172,10 @@ def estimate_payload(
     if empty is not None:
         without = evaluate(empty, robot, progress=progress, **options)
         _require_plausible(without)
-        alone = empty_run(samples_of(without), solver)
-        _require_motion(samples_of(without), str(without.bag), "without the load")
-        phantom = _phantom(
-            fit_payload(samples_of(without), solver, arm=arm, where=str(without.bag))
-        )
+        unloaded = samples_of(without)
+        alone = empty_run(unloaded, solver)
+        _require_motion(unloaded, str(without.bag), "without the load")
+        phantom = _phantom(fit_payload(unloaded, solver, arm=arm, where=str(without.bag)))
     samples = samples_of(evaluation)
     where = str(evaluation.bag)
     _require_motion(samples, where)
@@ -182,14 +183,10 @@ def estimate_payload(
     idle = _idle_directions(found.estimate, solver)
     _check(found, samples, evaluation, idle)
     return Payload(
+        **vars(found),
         evaluation=evaluation,
         empty=None if empty is None else without.bag,
-        estimate=found.estimate,
-        noise=found.noise,
-        rounds=found.rounds,
         time=samples.time,
-        before=found.before,
-        after=found.after,
         notes=(*evaluation.notes_without_causes, *told, *phantom, *_notes(found, evaluation, idle)),
         idle=idle,
     )
@@ -209,7 +206,7 @@ def samples_of(evaluation: Evaluation) -> Samples:
 
 def empty_run(samples: Samples, solver: Solver) -> EmptyRun:
     """What is known of an arm that carries nothing."""
-    residual = samples.measured - solver.torques(samples.q, samples.qd, samples.qdd)
+    residual = samples.residual(solver)
     offset = residual.mean(axis=0)
     noise = residual_noise(samples.time, residual - offset)
     blocks = np.floor((samples.time - samples.time[0]) / _BLOCK).astype(int)
@@ -233,10 +230,9 @@ def fit_payload(
     Torques and estimate are computed in turns: friction may grow with the load. arm: what the solver's
     model may be wrong by. where: of errors. Raises PayloadError.
     """
-    before = samples.measured - solver.torques(samples.q, samples.qd, samples.qdd)
-    offset = before.mean(axis=0) if empty is None else empty.offset
+    before = samples.residual(solver)
     if empty is None:
-        options = PayloadOptions(residual_noise(samples.time, before - offset))
+        options = PayloadOptions(residual_noise(samples.time, before - before.mean(axis=0)))
     else:
         options = PayloadOptions(
             empty.noise, offset=empty.offset, offset_deviation=empty.offset_deviation
@@ -248,8 +244,8 @@ def fit_payload(
         after = _carry(samples, solver, found) - found.offset
         while not settled and rounds < _MOST_ROUNDS:
             if empty is None:
-                still = after - _of_arm(samples, solver, arm, found)
-                options.noise = residual_noise(samples.time, still)
+                of_arm = 0.0 if arm is None else arm.torques(solver, found.arm, samples.motion)
+                options.noise = residual_noise(samples.time, after - of_arm)
             last = found
             options.carried = solver.payloads[NAME]
             found = _round(samples, solver, options, where)
@@ -264,7 +260,7 @@ def _round(
     samples: Samples, solver: Solver, options: PayloadOptions, where: str
 ) -> PayloadEstimate:
     estimator = PayloadEstimator(solver, options)
-    estimator.run(samples.time, samples.q, samples.qd, samples.qdd, samples.measured)
+    estimator.run(samples.time, samples.motion, samples.measured)
     found, status = estimator.estimate()
     if status == PayloadStatus.TOO_SHORT:
         duration = samples.time[-1] - samples.time[0] if len(samples.time) else 0.0
@@ -283,16 +279,7 @@ def _carry(samples: Samples, solver: Solver, found: PayloadEstimate) -> Floats:
     with warnings.catch_warnings():  # what is carried is checked at the end
         warnings.simplefilter("ignore", UserWarning)
         solver.set_payload(NAME, found.mass, center_of_mass=found.center_of_mass, inertia=inertia)
-    return samples.measured - solver.torques(samples.q, samples.qd, samples.qdd)
-
-
-def _of_arm(
-    samples: Samples, solver: Solver, arm: ArmUncertainty | None, found: PayloadEstimate
-) -> Floats:
-    """(N, n) N m by which the arm differs from its model, as far as the estimate tells."""
-    if arm is None:
-        return np.zeros_like(samples.measured)
-    return arm.torques(solver, found.arm, samples.q, samples.qd, samples.qdd)
+    return samples.residual(solver)
 
 
 def _idle_directions(found: PayloadEstimate, solver: Solver) -> Floats:
@@ -319,8 +306,7 @@ def _bears(solver: Solver, direction: Floats) -> bool:
 
 
 def _center_covariance(found: PayloadEstimate) -> Floats:
-    covariance: Floats = found.covariance[1:4, 1:4] / found.mass**2
-    return covariance
+    return np.asarray(found.covariance[1:4, 1:4] / found.mass**2)
 
 
 def _center_half_width(found: PayloadEstimate, idle: Floats) -> Floats:
@@ -352,8 +338,7 @@ def _arm_of(robot: Robot) -> tuple[ArmUncertainty | None, list[str]]:
 
 
 def _rms(values: Floats) -> Floats:
-    rms: Floats = np.sqrt(np.mean(values**2, axis=0))
-    return rms
+    return np.asarray(np.sqrt(np.mean(values**2, axis=0)))
 
 
 def _require_own_tip(robot: Robot, tip: str | None) -> None:
@@ -399,16 +384,11 @@ def _check(found: Fit, samples: Samples, evaluation: Evaluation, idle: Floats) -
     where, estimate = evaluation.bag, found.estimate
     varies, left = samples.measured.std(axis=0), found.after.std(axis=0)
     loaded = varies > _LEAST_VARIATION * _rms(samples.measured).max()
-    bad = [
-        name
-        for name, wrong in zip(
-            evaluation.joint_names, loaded & (left > _MOST_UNEXPLAINED * varies), strict=True
-        )
-        if wrong
-    ]
-    if bad:
+    bad = loaded & (left > _MOST_UNEXPLAINED * varies)
+    if bad.any():
+        names = listed(np.array(evaluation.joint_names)[bad].tolist())
         raise PayloadError(
-            f"{where}: no body at the tip explains the torques of {listed(bad)}: more than half of what "
+            f"{where}: no body at the tip explains the torques of {names}: more than half of what "
             "they vary by is left; the model isn't this robot's, or efforts mean something else: look at "
             "`ids evaluate` of a recording without load, and at docs/why_dont_my_torques_match.md"
         )
@@ -477,10 +457,10 @@ def with_load(samples: Samples, solver: Solver, load: dict[str, Any]) -> Samples
     The torques that the load adds by the solver's model, friction that grows with load included, are
     put on top of the measured ones: what is wrong with the model stays as it was.
     """
-    alone = solver.torques(samples.q, samples.qd, samples.qdd)
+    alone = solver.torques(*samples.motion)
     solver.set_payload(NAME, **load)
     try:
-        loaded = solver.torques(samples.q, samples.qd, samples.qdd)
+        loaded = solver.torques(*samples.motion)
     finally:
         solver.remove_payload(NAME)
     return replace(samples, measured=samples.measured + loaded - alone)
