@@ -89,7 +89,7 @@ def recorded(name: str, torques=None, friction: float = 0.04, speed: float = 1.0
     random = np.random.default_rng(0)
     measured = measured + friction * span * (np.tanh(qd / 0.05) + 0.3 * qd)
     measured = measured + NOISE * span * random.standard_normal(q.shape)
-    found = pieces_of(solver.joint_names, time, q, qd, qdd, measured)
+    found = pieces_of(solver.joint_names, time, (q, qd, qdd), measured)
     assert found is not None
     return found
 
@@ -384,7 +384,7 @@ def test_white_noise_is_no_residual_cause():
     noise = np.random.default_rng(2).standard_normal((2000, 2))
     time = np.arange(2000) * 0.01
     motion = [np.sin(time[:, None] * [1.0, 1.3] + phase) for phase in (0.0, np.pi / 2, np.pi)]
-    samples = pieces_of(("a", "b"), time, *motion, 0.1 * noise)
+    samples = pieces_of(("a", "b"), time, motion, 0.1 * noise)
     assert residual_causes(samples, 0 * samples.flat(samples.q)) == ()
 
 
@@ -434,7 +434,7 @@ def test_wrong_masses_in_a_slow_motion_are_no_drift(arm, cycles):
             for size, wave in ((1.0, np.sin), (w, np.cos), (-(w**2), np.sin))
         )
         loaded = torques_of(name, load=(6.0, *random.uniform(-0.2, 0.2, 3)))
-        samples = pieces_of(joints, time, q, qd, qdd, loaded(q, qd, qdd))
+        samples = pieces_of(joints, time, (q, qd, qdd), loaded(q, qd, qdd))
         states = (samples.flat(values) for values in (samples.q, samples.qd, samples.qdd))
         found = residual_causes(samples, model.torques(*states))
         assert "drift" not in {cause.kind for cause in found}
@@ -442,7 +442,7 @@ def test_wrong_masses_in_a_slow_motion_are_no_drift(arm, cycles):
 
 def test_few_samples_have_none():
     time, q, qd, qdd = motion_of(2, duration=0.02)
-    assert pieces_of(("a", "b"), time, q, qd, qdd, q) is None
+    assert pieces_of(("a", "b"), time, (q, qd, qdd), q) is None
 
 
 # ---- recordings of real robots ---------------------------------------------------------------------------------------

@@ -199,7 +199,7 @@ def evaluate(
         return result
     without_gravity = result.effort.meaning == "torque_without_gravity"
     found = compare(
-        pieces_of(arm.joint_names, result.time, *states, result.measured, kept),
+        pieces_of(arm.joint_names, result.time, states, result.measured, kept),
         arm_model(robot, arm.solver, arm.description, without_gravity=without_gravity),
     )
     result = replace(result, effort=found.doubting(result.effort), diagnosis=found.causes)
@@ -275,10 +275,10 @@ def _compare(
     effort = _core.effort_options(robot, arm.solver, effort_is, motion.effort_is)
 
     def ask(found: Evaluated) -> Verdict:
-        columns = (
+        time, q, qd, qdd, effort, kept = (
             found.table.series[name] for name in ("time", "q", "qd", "qdd", "effort", "kept")
         )
-        samples = pieces_of(arm.joint_names, *columns)
+        samples = pieces_of(arm.joint_names, time, (q, qd, qdd), effort, kept)
         model = arm_model(robot, arm.solver, arm.description)
         return meaning_of_efforts(samples, model, effort.drive_gains)
 

@@ -205,5 +205,5 @@ def _causes_of_residuals(
         )
     )
     # pieces of what is computed, in the place of accelerations
-    samples = pieces_of(found.joints, time, q, qd, computed, measured)
+    samples = pieces_of(found.joints, time, (q, qd, computed), measured)
     return () if samples is None else residual_causes(samples, samples.flat(samples.qdd))

@@ -53,13 +53,14 @@ class Samples:
 def pieces_of(
     joints: Sequence[str],
     time: Floats,
-    q: Floats,
-    qd: Floats,
-    qdd: Floats,
+    motion: tuple[Floats, Floats, Floats],
     measured: Floats,
     kept: Mask | None = None,
 ) -> Samples | None:
-    """Four or more pieces, spread over a recording of N samples; None: it is too short. kept: (N,) valid ones."""
+    """Four or more pieces, spread over a recording of N samples; None: it is too short.
+
+    motion: q, qd, qdd; kept: (N,) valid ones.
+    """
     valid = np.flatnonzero(np.ones(len(time), dtype=bool) if kept is None else kept)
     count = len(valid)
     period = (time[valid[-1]] - time[valid[0]]) / max(count - 1, 1) if count else 0.0
@@ -69,7 +70,7 @@ def pieces_of(
         return None
     starts = np.linspace(0, count - length, min(_PIECES, count // length)).astype(np.int64)
     rows = valid[starts[:, None] + np.arange(length)]
-    return Samples(tuple(joints), time[rows], q[rows], qd[rows], qdd[rows], measured[rows])
+    return Samples(tuple(joints), time[rows], *(v[rows] for v in motion), measured[rows])
 
 
 @dataclass(frozen=True)
