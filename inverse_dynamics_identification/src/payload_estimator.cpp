@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "arm_normal.hpp"
 #include "inverse_dynamics_identification/tip_regressor.hpp"
+#include "nuisance.hpp"
 #include "payload_solution.hpp"
 #include "payload_sums.hpp"
 #include "whitening.hpp"
@@ -118,9 +118,8 @@ struct PayloadEstimator::Impl {
         deviations(deviationsOf(solver, given.arm)),
         sums(solver->jointCount(), deviationCount(), given.block),
         part(deviationCount()),
-        rest(part),
-        arm_sum(deviationCount()),
-        arm_rest(deviationCount()) {
+        nuisance(solver->jointCount(), deviationCount()),
+        without(nuisance) {
     const Index n = solver->jointCount(), K = deviationCount();
     check(given, n);
     const auto joints = static_cast<std::size_t>(n);
@@ -140,7 +139,6 @@ struct PayloadEstimator::Impl {
     states.assign(joints, Row::Zero());
     arm_states.assign(joints, Eigen::VectorXd::Zero(K));
     total.assign(joints, JointSums(K));
-    reduced.resize(joints);
     priors.resize(joints);
     Y = Eigen::MatrixXd::Zero(n, 10);
     torques.setZero(n);
@@ -169,12 +167,10 @@ struct PayloadEstimator::Impl {
   void addUp(std::size_t blocks);
   Normal sumOfJoints();
   Vector10 solve(Normal& normal, Matrix10& H);
-  Matrix10 jackknife(std::size_t blocks, const Vector10& phi, const Matrix10& H);
+  Matrix10 jackknife(std::size_t blocks, const Vector10& phi, const Normal& normal,
+                     const Matrix10& H);
   void fill(const Vector10& phi, const Matrix10& jackknife, const Matrix10& A, const Matrix10& H,
             std::size_t blocks, PayloadEstimate& found);
-  OffsetLine offsetLineOf(std::size_t j) {
-    return arm_sum.without(offsetLine(total[j].body, priors[j]), total[j]);
-  }
 
   TipRegressor regressor;
   std::shared_ptr<const InverseDynamicsSolver> solver;
@@ -190,10 +186,8 @@ struct PayloadEstimator::Impl {
   std::vector<Row> states;           // of the filters
   std::vector<Eigen::VectorXd> arm_states;
   std::vector<JointSums> total;   // of all blocks
-  JointSums part, rest;           // of a block, and of the others
-  ArmNormal arm_sum, arm_rest;    // of all joints, and without a block of one
-  Normal arm_loss;                // of arm_sum
-  std::vector<Normal> reduced;    // of each joint
+  JointSums part;                 // of a block
+  Nuisance nuisance, without;     // of all joints, and without a block of one
   chain_dynamics::OwnedMatrix Y;  // n x 10
   chain_dynamics::OwnedVector torques;
   chain_dynamics::OwnedMatrix D;   // K x n
@@ -244,18 +238,10 @@ void PayloadEstimator::Impl::addUp(std::size_t blocks) {
 }
 
 Normal PayloadEstimator::Impl::sumOfJoints() {
-  Normal sum;
-  arm_sum.begin();
-  for (std::size_t j = 0; j < total.size(); ++j) {
-    reduced[j] = withoutOffset(total[j].body, priors[j]);
-    sum.A += reduced[j].A;
-    sum.b += reduced[j].b;
-    arm_sum.add(total[j], priors[j]);
-  }
-  arm_loss = arm_sum.loss();
-  sum.A -= arm_loss.A;
-  sum.b -= arm_loss.b;
-  return sum;
+  nuisance.begin(priors);
+  Index joint = 0;
+  for (const JointSums& sum : total) nuisance.add(joint++, sum);
+  return nuisance.solve();
 }
 
 /// The body, with mass and center of the prior, and the size of offsets, at those of the body. H:
@@ -274,7 +260,7 @@ Vector10 PayloadEstimator::Impl::solve(Normal& normal, Matrix10& H) {
       const Matrix10 V = H.ldlt().solve(Matrix10::Identity());
       double squares = 0.0;
       for (std::size_t j = 0; j < total.size(); ++j) {
-        const OffsetPrior offset = offsetOf(offsetLineOf(j), phi, V);
+        const OffsetPrior offset = nuisance.offset(static_cast<Index>(j), phi, V);
         const double change = offset.mean - offsets[j].mean;
         squares += (change * change + offset.variance) / (noise[j] * noise[j]);
       }
@@ -296,24 +282,19 @@ Vector10 PayloadEstimator::Impl::solve(Normal& normal, Matrix10& H) {
 
 /// CR3: what leaving out each block of each joint changes.
 Matrix10 PayloadEstimator::Impl::jackknife(std::size_t blocks, const Vector10& phi,
-                                           const Matrix10& H) {
+                                           const Normal& normal, const Matrix10& H) {
   Matrix10 V = Matrix10::Zero();
   for (std::size_t j = 0; j < total.size(); ++j) {
-    const Vector10 with = reduced[j].A * phi - reduced[j].b;
     for (std::size_t block = 0; block < blocks; ++block) {
       sums.get(block, j, blocks, part);
-      rest = total[j];
-      rest -= part;
-      arm_rest.begin(arm_sum);
-      arm_rest.add(total[j], priors[j], -1.0);
-      arm_rest.add(rest, priors[j]);
-      const Normal loss = arm_rest.loss();
-      Normal without = withoutOffset(rest.body, priors[j]);
-      without.A += arm_loss.A - loss.A;
-      without.b += arm_loss.b - loss.b;
-      const Matrix10 H_rest = H - reduced[j].A + without.A;
-      const Vector10 change = H_rest.ldlt().solve(without.A * phi - without.b - with);
-      V.noalias() += change * change.transpose();
+      without = nuisance;
+      without.add(static_cast<Index>(j), part, -1.0);
+      Normal change = without.solve();
+      change.A -= normal.A;
+      change.b -= normal.b;
+      const Matrix10 H_rest = H + change.A;
+      const Vector10 by = H_rest.ldlt().solve(change.A * phi - change.b);
+      V.noalias() += by * by.transpose();
     }
   }
   const auto count = static_cast<double>(blocks);
@@ -356,7 +337,8 @@ void fillInertia(const Vector10& phi, const Matrix10& V, const Matrix10& A, doub
     found.inertia_half_width(kRow[i], kColumn[i]) = half;
     found.inertia_half_width(kColumn[i], kRow[i]) = half;
   }
-  found.inertia = centralInertia(phi);
+  found.inertia =
+      chain_dynamics::inertiaAboutCenter(chain_dynamics::LinkParameters::fromVector(phi));
   found.inertia_is_known =
       found.inertia_half_width.diagonal().maxCoeff() < kKnownInertia * found.inertia.trace() / 3.0;
 }
@@ -378,9 +360,10 @@ void PayloadEstimator::Impl::fill(const Vector10& phi, const Matrix10& jackknife
   fillInertia(phi, V, A, studentT(freedom), found);
   found.covariance = V;
   for (std::size_t j = 0; j < total.size(); ++j) {
-    found.offset[static_cast<Index>(j)] = offsetOf(offsetLineOf(j), phi, V).mean;
+    const auto joint = static_cast<Index>(j);
+    found.offset[joint] = nuisance.offset(joint, phi, V).mean;
   }
-  arm_sum.solve(phi, found.arm);
+  nuisance.deviations(phi, found.arm);
   found.blocks = static_cast<Index>(blocks);
   found.duration = last - first;
 }
@@ -396,7 +379,7 @@ PayloadStatus PayloadEstimator::Impl::estimate(PayloadEstimate& found) {
   Normal normal;
   Matrix10 H;
   const Vector10 phi = solve(normal, H);
-  const Matrix10 V = jackknife(blocks, phi, H);
+  const Matrix10 V = jackknife(blocks, phi, normal, H);
   if (!phi.allFinite() || !V.allFinite()) return PayloadStatus::kNotFinite;
   fill(phi, V, normal.A, H, blocks, found);
   return PayloadStatus::kOk;

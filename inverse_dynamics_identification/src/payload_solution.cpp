@@ -21,15 +21,7 @@ constexpr double kLeastInformation = 1e-100;
 constexpr double kDecrease = 1e-4;  // share of the promised decrease that a step must reach
 
 Eigen::Matrix4d pseudoInertiaOf(const Vector10& phi) {
-  const Eigen::Matrix3d I =
-      (Eigen::Matrix3d() << phi[4], phi[5], phi[6], phi[5], phi[7], phi[8], phi[6], phi[8], phi[9])
-          .finished();
-  Eigen::Matrix4d P;
-  P.topLeftCorner<3, 3>() = 0.5 * I.trace() * Eigen::Matrix3d::Identity() - I;
-  P.topRightCorner<3, 1>() = phi.segment<3>(1);
-  P.bottomLeftCorner<1, 3>() = phi.segment<3>(1).transpose();
-  P(3, 3) = phi[0];
-  return P;
+  return pseudoInertia(LinkParameters::fromVector(phi));
 }
 
 double valueOf(const Normal& normal, const Vector10& phi) {
@@ -38,73 +30,23 @@ double valueOf(const Normal& normal, const Vector10& phi) {
 
 }  // namespace
 
-Normal withoutOffset(const Gram& sum, const OffsetPrior& prior) {
-  const Vector10 coupling = sum.block<10, 1>(0, 10);
-  const double weight = sum(10, 10) + 1.0 / prior.variance;
-  const double right = sum(10, 11) + prior.mean / prior.variance;
-  Normal normal;
-  normal.A = sum.topLeftCorner<10, 10>() - coupling * coupling.transpose() / weight;
-  normal.b = sum.block<10, 1>(0, 11) - coupling * (right / weight);
-  return normal;
-}
-
-OffsetLine offsetLine(const Gram& sum, const OffsetPrior& prior) {
-  const double weight = sum(10, 10) + 1.0 / prior.variance;
-  OffsetLine line;
-  line.right = (sum(10, 11) + prior.mean / prior.variance) / weight;
-  line.variance = 1.0 / weight;
-  line.slope = sum.block<10, 1>(0, 10) / weight;
-  return line;
-}
-
-OffsetPrior offsetOf(const OffsetLine& line, const Vector10& phi, const Matrix10& V) {
-  return {line.right - line.slope.dot(phi), line.variance + line.slope.dot(V * line.slope)};
-}
-
-BodyPrior::BodyPrior(double mass, const Eigen::Vector3d& center, double extent) {
-  P0_.topLeftCorner<3, 3>() =
-      mass * (extent * extent * Eigen::Matrix3d::Identity() + center * center.transpose());
-  P0_.topRightCorner<3, 1>() = mass * center;
-  P0_.bottomLeftCorner<1, 3>() = mass * center.transpose();
-  P0_(3, 3) = mass;
-  // [S + c c', c; c', 1]^-1 = [S^-1, -S^-1 c; ., 1 + c' S^-1 c], S = extent^2 1
-  const double inverse = 1.0 / (mass * extent * extent);
-  Q_.topLeftCorner<3, 3>() = inverse * Eigen::Matrix3d::Identity();
-  Q_.topRightCorner<3, 1>() = -inverse * center;
-  Q_.bottomLeftCorner<1, 3>() = -inverse * center.transpose();
-  Q_(3, 3) = 1.0 / mass + inverse * center.squaredNorm();
-}
-
-Vector10 BodyPrior::body() const {
-  const Eigen::Matrix3d S = P0_.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d I = S.trace() * Eigen::Matrix3d::Identity() - S;
-  Vector10 phi;
-  phi << P0_(3, 3), P0_.topRightCorner<3, 1>(), I(0, 0), I(0, 1), I(0, 2), I(1, 1), I(1, 2),
-      I(2, 2);
-  return phi;
-}
+BodyPrior::BodyPrior(double mass, const Eigen::Vector3d& center, double extent)
+    : body_(LinkParameters::fromCenterOfMass(
+                mass, center, 2.0 * mass * extent * extent * Eigen::Matrix3d::Identity())
+                .toVector()),
+      inverse_(pseudoInertiaOf(body_).inverse()) {}
 
 double BodyPrior::value(const Vector10& phi) const {
   const Eigen::Matrix4d P = pseudoInertiaOf(phi);
-  const Eigen::LLT<Eigen::Matrix4d> factor(P);
-  if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
-  const Eigen::Vector4d diagonal = factor.matrixLLT().diagonal();
-  return Q_.cwiseProduct(P).sum() - 2.0 * diagonal.array().log().sum();
+  return inverse_.cwiseProduct(P).sum() - logDeterminant(P);
 }
 
 Vector10 BodyPrior::gradient(const Vector10& phi) const {
-  const Eigen::Matrix4d inverse = pseudoInertiaOf(phi).inverse();
-  return parameterGradient(Q_ - inverse);
+  return parameterGradient(inverse_ - pseudoInertiaOf(phi).inverse());
 }
 
 Matrix10 BodyPrior::hessian(const Vector10& phi) const {
-  const Eigen::Matrix4d inverse = pseudoInertiaOf(phi).inverse();
-  Matrix10 hessian;
-  for (Eigen::Index i = 0; i < 10; ++i) {
-    const Eigen::Matrix4d change = pseudoInertiaOf(Vector10::Unit(i));
-    hessian.col(i) = parameterGradient(inverse * change * inverse);
-  }
-  return 0.5 * (hessian + hessian.transpose());
+  return logDeterminantHessian(pseudoInertiaOf(phi).inverse());
 }
 
 Matrix10 BodyPrior::inertiaInformation(const Vector10& phi) const {
@@ -165,13 +107,6 @@ double studentT(double degrees_of_freedom) {
   const double z2 = z * z;
   return z + z * (z2 + 1) / (4 * n) + z * ((5 * z2 + 16) * z2 + 3) / (96 * n * n) +
          z * (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n);
-}
-
-Eigen::Matrix3d centralInertia(const Vector10& phi) {
-  const Eigen::Vector3d h = phi.segment<3>(1);
-  Eigen::Matrix3d I;
-  I << phi[4], phi[5], phi[6], phi[5], phi[7], phi[8], phi[6], phi[8], phi[9];
-  return I - (h.squaredNorm() * Eigen::Matrix3d::Identity() - h * h.transpose()) / phi[0];
 }
 
 Eigen::Matrix3d centralInertiaChange(const Vector10& phi, const Vector10& d) {

@@ -3,10 +3,7 @@
 /// The body that sums of filtered rows tell of, and how sure it is.
 #pragma once
 
-#include <vector>
-
-#include "inverse_dynamics_identification/payload_estimator.hpp"
-#include "payload_sums.hpp"
+#include <Eigen/Core>
 
 namespace inverse_dynamics_identification {
 inline namespace v2 {
@@ -20,25 +17,6 @@ struct Normal {
   Vector10 b = Vector10::Zero();
 };
 
-/// What is known of the offset of a joint before: N m, and its square.
-struct OffsetPrior {
-  double mean = 0.0;
-  double variance = 1.0;
-};
-
-/// The sum of a joint with its offset at the best value for each body.
-Normal withoutOffset(const Gram& sum, const OffsetPrior& prior);
-
-/// That offset: right - slope' phi; its variance where the body is known.
-struct OffsetLine {
-  double right = 0.0, variance = 1.0;
-  Vector10 slope = Vector10::Zero();
-};
-OffsetLine offsetLine(const Gram& sum, const OffsetPrior& prior);
-
-/// The offset, and its variance where the body has the covariance V.
-OffsetPrior offsetOf(const OffsetLine& line, const Vector10& phi, const Matrix10& V);
-
 /// The prior of the pseudo-inertia: tr(P0^-1 P) - log det P.
 class BodyPrior {
  public:
@@ -46,7 +24,7 @@ class BodyPrior {
   BodyPrior(double mass, const Eigen::Vector3d& center, double extent);
 
   /// The body P0.
-  Vector10 body() const;
+  const Vector10& body() const { return body_; }
 
   /// Infinity where phi isn't a body; P: its pseudo-inertia.
   double value(const Vector10& phi) const;
@@ -58,7 +36,8 @@ class BodyPrior {
   Matrix10 inertiaInformation(const Vector10& phi) const;
 
  private:
-  Eigen::Matrix4d P0_, Q_;  // and its inverse
+  Vector10 body_;
+  Eigen::Matrix4d inverse_;  // P0^-1
 };
 
 /// The minimum of least squares and prior, from the body of the prior on: damped Newton steps.
@@ -70,8 +49,7 @@ Matrix10 covarianceOf(const Matrix10& information);
 /// The upper 97.5 % point of Student's t; degrees_of_freedom >= 1, infinity included.
 double studentT(double degrees_of_freedom);
 
-/// Inertia about the center of mass, and its derivative by phi along a direction.
-Eigen::Matrix3d centralInertia(const Vector10& phi);
+/// Derivative of the inertia about the center of mass by phi, along a direction.
 Eigen::Matrix3d centralInertiaChange(const Vector10& phi, const Vector10& direction);
 
 }  // namespace v2

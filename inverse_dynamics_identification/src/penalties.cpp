@@ -46,18 +46,6 @@ double startOf(const OwnColumn& column) {
   return std::isfinite(column.most) ? 0.5 * column.most : 1.0;
 }
 
-/// Second derivatives of -log det P by the ten parameters: entries tr(P^-1 E_k P^-1 E_l).
-Eigen::Matrix<double, 10, 10> logDetHessian(const Eigen::Matrix4d& inverse) {
-  Eigen::Matrix<double, 10, 10> hessian;
-  for (Index k = 0; k < kParameters; ++k) {
-    Vector10 unit = Vector10::Zero();
-    unit[k] = 1;
-    const Eigen::Matrix4d E = pseudoInertia(LinkParameters::fromVector(unit));
-    hessian.col(k) = parameterGradient(inverse * E * inverse);
-  }
-  return hessian;
-}
-
 }  // namespace
 
 Penalties::Penalties(const Prior& prior) : described_(prior.links), own_(prior.own) {
@@ -99,12 +87,9 @@ double Penalties::value(double strength, const Eigen::VectorXd& x) const {
   double sum = 0;
   for (Index i = 0; i < links(); ++i) {
     const Eigen::Matrix4d P = pseudoInertiaAt(x, i);
-    const Eigen::LLT<Eigen::Matrix4d> factor(P);
-    if (factor.info() != Eigen::Success) return kInfinity;
-    const Eigen::Vector4d diagonal = factor.matrixLLT().diagonal();
-    if (!(diagonal.minCoeff() > 0)) return kInfinity;
-    sum += strength * ((inverses_[static_cast<std::size_t>(i)] * P).trace() -
-                       2 * diagonal.array().log().sum());
+    const double log_determinant = logDeterminant(P);
+    if (!std::isfinite(log_determinant)) return kInfinity;
+    sum += strength * ((inverses_[static_cast<std::size_t>(i)] * P).trace() - log_determinant);
   }
   Index at = kParameters * links();
   for (const OwnColumn& column : own_) sum += penalty(column, x[at++]);
@@ -118,7 +103,7 @@ void Penalties::addDerivatives(double strength, const Eigen::VectorXd& x, Eigen:
     const Index at = kParameters * i;
     gradient.segment<10>(at) +=
         strength * parameterGradient(inverses_[static_cast<std::size_t>(i)] - inverse);
-    hessian.block<10, 10>(at, at) += strength * logDetHessian(inverse);
+    hessian.block<10, 10>(at, at) += strength * logDeterminantHessian(inverse);
   }
   Index at = kParameters * links();
   for (const OwnColumn& column : own_) {

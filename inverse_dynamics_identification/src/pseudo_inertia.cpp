@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inverse_dynamics_identification/pseudo_inertia.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <chain_dynamics/error.hpp>
+#include <limits>
 #include <sstream>
 
 namespace inverse_dynamics_identification {
@@ -45,6 +47,26 @@ Eigen::Matrix<double, 10, 1> parameterGradient(const Eigen::Matrix4d& M) {
   gradient << M(3, 3), 2 * M(0, 3), 2 * M(1, 3), 2 * M(2, 3), half - M(0, 0), -2 * M(0, 1),
       -2 * M(0, 2), half - M(1, 1), -2 * M(1, 2), half - M(2, 2);
   return gradient;
+}
+
+double logDeterminant(const Eigen::Matrix4d& P) {
+  const Eigen::LLT<Eigen::Matrix4d> factor(P);
+  const Eigen::Vector4d diagonal = factor.matrixLLT().diagonal();
+  if (factor.info() != Eigen::Success || !(diagonal.minCoeff() > 0)) {
+    return -std::numeric_limits<double>::infinity();
+  }
+  return 2 * diagonal.array().log().sum();
+}
+
+Eigen::Matrix<double, 10, 10> logDeterminantHessian(const Eigen::Matrix4d& inverse) {
+  using Vector10 = Eigen::Matrix<double, 10, 1>;
+  Eigen::Matrix<double, 10, 10> hessian;
+  for (Eigen::Index k = 0; k < 10; ++k) {
+    const Vector10 unit = Vector10::Unit(k);
+    const Eigen::Matrix4d E = pseudoInertia(LinkParameters::fromVector(unit));
+    hessian.col(k) = parameterGradient(inverse * E * inverse);
+  }
+  return hessian;
 }
 
 LinkPrior linkPrior(const LinkParameters& described, const LinkFloor& floor) {

@@ -7,10 +7,10 @@
 #include <chain_dynamics/urdf.hpp>
 #include <vector>
 
-#include "arm_normal.hpp"
 #include "inverse_dynamics_identification/arm_fit.hpp"
 #include "inverse_dynamics_identification/tip_regressor.hpp"
 #include "moving_arm.hpp"
+#include "nuisance.hpp"
 #include "payload_solution.hpp"
 
 namespace inverse_dynamics_identification {
@@ -262,41 +262,45 @@ TEST(PayloadEstimator, DeviationsOfTheArmArePartOfTheCovarianceOfTorques) {
   EXPECT_LT((found.arm - z).norm(), 1e-3);
 }
 
-TEST(ArmNormal, OffsetAndDeviationsAreThoseOfTheNormalEquationsOfAll) {
-  constexpr Index kDeviations = 3, kAll = 11 + kDeviations;
+TEST(Nuisance, OffsetAndDeviationsAreThoseOfTheNormalEquationsOfAll) {
+  constexpr Index kDeviations = 3, kNuisance = 4, kAll = 10 + kNuisance;
   std::srand(6);
   const OffsetPrior prior{0.3, 0.5};
   JointSums joint(kDeviations);
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(kAll, kAll);  // of body, offset, deviations
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(kAll, kAll);  // of body, deviations, offset
   Eigen::VectorXd b = Eigen::VectorXd::Zero(kAll);
   for (int sample = 0; sample < 20; ++sample) {
     const Row row = Row::Random();
     const Eigen::VectorXd deviations = Eigen::VectorXd::Random(kDeviations);
     joint.add(row, deviations);
     Eigen::VectorXd all(kAll);
-    all << row.head<11>(), deviations;
+    all << row.head<10>(), deviations, row[10];
     A += all * all.transpose();
     b += row[11] * all;
   }
-  A(10, 10) += 1 / prior.variance;
-  b[10] += prior.mean / prior.variance;
-  A.diagonal().tail<kDeviations>().array() += 1;
-  const Eigen::MatrixXd V = A.bottomRightCorner<4, 4>().inverse();  // where the body is known
-  const Eigen::VectorXd right = V * b.tail<4>();
-  const Eigen::MatrixXd slope = V * A.bottomLeftCorner<4, 10>();
+  A.diagonal().segment<kDeviations>(10).array() += 1;
+  A(kAll - 1, kAll - 1) += 1 / prior.variance;
+  b[kAll - 1] += prior.mean / prior.variance;
+  const Eigen::MatrixXd V = A.bottomRightCorner<kNuisance, kNuisance>().inverse();  // known body
+  const Eigen::VectorXd right = V * b.tail<kNuisance>();
+  const Eigen::MatrixXd slope = V * A.bottomLeftCorner<kNuisance, 10>();
 
-  ArmNormal normal(kDeviations);
-  normal.begin();
-  normal.add(joint, prior);
-  normal.loss();
-  const OffsetLine line = normal.without(offsetLine(joint.body, prior), joint);
-  EXPECT_NEAR(line.right, right[0], 1e-12);
-  EXPECT_LT((line.slope - slope.row(0).transpose()).norm(), 1e-12);
-  EXPECT_NEAR(line.variance, V(0, 0), 1e-12);
+  Nuisance nuisance(1, kDeviations);
+  nuisance.begin({prior});
+  nuisance.add(0, joint);
+  const Normal body = nuisance.solve();
+  const Eigen::MatrixXd coupling = A.topRightCorner<10, kNuisance>();
+  EXPECT_LT((body.A - (A.topLeftCorner<10, 10>() - coupling * slope)).norm(), 1e-12);
+  EXPECT_LT((body.b - (b.head<10>() - coupling * right)).norm(), 1e-12);
   const Vector10 phi = Vector10::Random();
+  const Eigen::VectorXd w = right - slope * phi;
+  const OffsetPrior offset = nuisance.offset(0, phi, Matrix10::Identity());
+  EXPECT_NEAR(offset.mean, w[kDeviations], 1e-12);
+  EXPECT_NEAR(offset.variance, V(kDeviations, kDeviations) + slope.row(kDeviations).squaredNorm(),
+              1e-12);
   Eigen::VectorXd z(kDeviations);
-  normal.solve(phi, z);
-  EXPECT_LT((z - (right - slope * phi).tail<kDeviations>()).norm(), 1e-12);
+  nuisance.deviations(phi, z);
+  EXPECT_LT((z - w.head<kDeviations>()).norm(), 1e-12);
 }
 
 TEST(PayloadEstimator, ArmThatDiffersFromItsModelSpoilsLessWhereThatIsEstimated) {

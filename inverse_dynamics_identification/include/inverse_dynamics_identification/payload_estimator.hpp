@@ -148,7 +148,7 @@ class PayloadEstimator {
   /// The body that all samples so far tell of, in 0.1 to 1 ms; with 60 deviations of the arm, about 10 ms.
   ///
   /// @param[out] found  made for as many joints and deviations; unchanged unless the result is kOk.
-  /// Real time: no allocation, lock, exception or system call, up to 120 deviations of the arm.
+  /// Real time: no allocation, lock, exception or system call, up to 128 joints and deviations of the arm together.
   PayloadStatus estimate(PayloadEstimate& found) noexcept;
 
   /// Forgets all samples. Real time: no allocation, lock, exception or system call.

@@ -38,6 +38,12 @@ LinkParameters fromPseudoInertia(const Eigen::Matrix4d& P);
 /// order of LinkParameters::toVector(), of a function of P whose gradient is M.
 Eigen::Matrix<double, 10, 1> parameterGradient(const Eigen::Matrix4d& M);
 
+/// `log det P` of a symmetric P; minus infinity where it isn't positive definite.
+double logDeterminant(const Eigen::Matrix4d& P);
+
+/// Second derivatives of `-log det P` by the ten parameters, `tr(P^-1 E_k P^-1 E_l)`, of P^-1.
+Eigen::Matrix<double, 10, 10> logDeterminantHessian(const Eigen::Matrix4d& inverse);
+
 /// What a body must at least be so that it can be a prior.
 struct LinkFloor {
   double mass = 0.05;    ///< kg
