@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings as contiguous blocks, each cut before any filter and differentiated by itself."""
+"""Recordings as contiguous blocks: ranges of rows of their tables, each differentiated by itself.
+
+So no model is fitted to an acceleration that a filter has made of a block held out.
+"""
 
 from __future__ import annotations
 
@@ -84,54 +87,49 @@ def _at(at: Floats, time: Floats, values: Floats) -> Floats:
 
 def blocks_outside(evaluation: Evaluation, begin: float, end: float) -> list[Block]:
     """What a recording has before and after a part of it [s], each if it is long enough."""
-    count = len(evaluation.time)
     first, after = np.searchsorted(evaluation.time, [begin, end]).tolist()
-    edges = [(a, b) for a, b in ((0, first), (after, count)) if b - a >= _FEWEST]
-    return [_block(evaluation, _used(evaluation), a, b) for a, b in edges]
-
-
-def _used(evaluation: Evaluation) -> Mask:
-    return ~(evaluation.samples.repeated | evaluation.samples.non_increasing)
+    edges = ((0, first), (after, len(evaluation.time)))
+    return [_block(evaluation, slice(a, b)) for a, b in edges if b - a >= _FEWEST]
 
 
 def blocks_of(evaluation: Evaluation, count: int) -> list[Block]:
     """A recording cut into so many blocks of equally many samples."""
-    used = _used(evaluation)
     edges = np.linspace(0, len(evaluation.time), count + 1).round().astype(int)
     if np.diff(edges).min() < _FEWEST:
         raise IdentificationError(
             f"{evaluation.bag}: expected at least {_FEWEST * count} samples, got "
             f"{len(evaluation.time)}; record a longer motion"
         )
-    return [_block(evaluation, used, int(first), int(after)) for first, after in pairwise(edges)]
+    return [_block(evaluation, slice(first, after)) for first, after in pairwise(edges.tolist())]
 
 
-def _block(evaluation: Evaluation, used: Mask, first: int, after: int) -> Block:
-    part, log = slice(first, after), evaluation.log
-    qdd, instants = _accelerations(evaluation, part)
+def _block(evaluation: Evaluation, rows: slice) -> Block:
+    log, samples = evaluation.log, evaluation.samples
+    used = ~(samples.repeated | samples.non_increasing)
+    qdd, instants = _accelerations(evaluation, rows)
     return Block(
         recording=f"{evaluation.bag}",
-        time=evaluation.time[part],
+        time=evaluation.time[rows],
         instants=instants,
-        used=used[part],
-        q=np.ascontiguousarray(log.q[part]),
-        qd=np.ascontiguousarray(log.qd[part]),
-        qdd=np.ascontiguousarray(qdd),
-        tau=np.ascontiguousarray(evaluation.measured[part]),
-        counts=(used & evaluation.samples.kept)[part],
+        used=used[rows],
+        q=log.q[rows],
+        qd=log.qd[rows],
+        qdd=qdd,
+        tau=evaluation.measured[rows],
+        counts=(used & samples.kept)[rows],
     )
 
 
-def _accelerations(evaluation: Evaluation, part: slice) -> tuple[Floats, Floats]:
+def _accelerations(evaluation: Evaluation, rows: slice) -> tuple[Floats, Floats]:
     """Of a block's samples alone, by the method of the evaluation; and when they were taken."""
-    log, how = evaluation.log, evaluation.accelerations
-    time, q, qd, effort = evaluation.time[part], log.q[part], log.qd[part], log.effort[part]
+    log, how, time = evaluation.log, evaluation.accelerations, evaluation.time[rows]
     if how.method == "given":
-        return evaluation.qdd[part], time
+        return evaluation.qdd[rows], time
     if how.method == "backward-difference":
-        return _core.backward_difference(time, qd), time
+        return _core.backward_difference(time, log.qd[rows]), time
     cutoff = 0.0 if how.chosen else how.cutoff or 0.0  # zero: chosen from the block
-    return _core.low_pass_accelerations(time, q, qd, effort, cutoff)[:2]
+    motion = time, log.q[rows], log.qd[rows], log.effort[rows]
+    return _core.low_pass_accelerations(*motion, cutoff)[:2]
 
 
 def together(blocks: Sequence[Block]) -> list[FitBlock]:

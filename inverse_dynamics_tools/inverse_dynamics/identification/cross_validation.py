@@ -76,8 +76,7 @@ def choose(fitter: ArmFitter, blocks: Sequence[Block]) -> Chosen:
     Of long recordings, choices take samples at equal distances; the fit takes all.
     """
     step = 1 + sum(map(len, blocks)) // _MOST_SAMPLES
-    delay = _delay(fitter, blocks, step)
-    parts = _Parts(fitter, _later(blocks, delay, step))
+    delay, parts = _delayed(fitter, blocks, step)
     whole: dict[str, ArmFit] = {}
     alternatives: list[_Alternative] = []
     start = None
@@ -136,14 +135,34 @@ def _later(blocks: Sequence[Block], delay: float, step: int) -> list[Block]:
     return [block.later(delay).thinned(step) for block in blocks]
 
 
-def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> float:
-    """By how much the torques are later than the states [s]; zero where that predicts as well.
+def _delayed(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> tuple[float, _Parts]:
+    """By how much the torques are later than the states [s], zero where that predicts as well; parts without it.
+
+    A delay must predict parts that are left out better, by a standard error.
+    """
+    delay, start = _delay(fitter, blocks, thinned)
+    parts = _Parts(fitter, _later(blocks, 0.0, thinned))
+    if delay == 0:
+        return delay, parts
+    later = _Parts(fitter, _later(blocks, delay, thinned))
+    before, after = (
+        tried.left_out(_DELAY_LAW, STRENGTHS[1], [start] * len(tried), passes=1).scores(start.noise)
+        for tried in (parts, later)
+    )
+    gain = before - after
+    if gain.mean() > gain.std(ddof=1) / np.sqrt(len(gain)):
+        return delay, later
+    return 0.0, parts
+
+
+def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> tuple[float, ArmFit]:
+    """The delay of least noise [s], and a fit with nearly that delay; zero: there is none.
 
     The vertex of the parabola through three costs, gone to twice. Far from the least cost, where there
     is none, the way leads downhill.
     """
-    step, center = max(_period(blocks), _DELAY_STEP), 0.0
-    start, vertices = None, 0
+    step, center, vertices = max(_period(blocks), _DELAY_STEP), 0.0, 0
+    start: ArmFit | None = None
     for _ in range(_MOST_DELAY_STEPS):
         costs = []
         for delay in (center - step, center, center + step):
@@ -161,29 +180,14 @@ def _delay(fitter: ArmFitter, blocks: Sequence[Block], thinned: int) -> float:
         vertices += 1
         if vertices == _VERTICES:
             break
-    else:
-        return 0.0  # no least cost
-    if start is None or abs(center) < _LEAST_DELAY:
-        return 0.0
-    return center if _predicts_better(fitter, blocks, center, thinned, start) else 0.0
+    assert start is not None
+    found = vertices == _VERTICES and abs(center) >= _LEAST_DELAY
+    return (center if found else 0.0), start
 
 
 def _period(blocks: Sequence[Block]) -> float:
     steps = np.concatenate([np.diff(block.instants[block.used]) for block in blocks])
     return float(np.median(steps[steps > 0]))
-
-
-def _predicts_better(
-    fitter: ArmFitter, blocks: Sequence[Block], delay: float, thinned: int, start: ArmFit
-) -> bool:
-    """Whether parts that were left out are predicted better with a delay, by a standard error."""
-    scores = []
-    for by in (0.0, delay):
-        parts = _Parts(fitter, _later(blocks, by, thinned))
-        tried = parts.left_out(_DELAY_LAW, STRENGTHS[1], [start] * len(parts), passes=1)
-        scores.append(tried.scores(start.noise))
-    gain = scores[0] - scores[1]
-    return bool(gain.mean() > gain.std(ddof=1) / np.sqrt(len(gain)))
 
 
 def _simplest(

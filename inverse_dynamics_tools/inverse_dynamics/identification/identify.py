@@ -16,7 +16,11 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.evaluation.evaluation import evaluate
 from inverse_dynamics.evaluation.posture import Posture, locked_joints, posture_of
 from inverse_dynamics.evaluation.turns import on_one_turn
-from inverse_dynamics.identification.baselines import Baselines, root_mean_squares
+from inverse_dynamics.identification.baselines import (
+    baseline_torques,
+    baselines,
+    root_mean_squares,
+)
 from inverse_dynamics.identification.blocks import Block, blocks_of
 from inverse_dynamics.identification.cross_validation import Chosen, choose, errors_of
 from inverse_dynamics.identification.drive_gains import check_gains, identify_drive_gains
@@ -41,16 +45,17 @@ from inverse_dynamics.identification.result import (
 )
 from inverse_dynamics.identification.summary import delay_told
 from inverse_dynamics.identification.uncertainty import factor_of
-from inverse_dynamics.robot.descriptions import parse_description, read_description
+from inverse_dynamics.robot.descriptions import link_of, parse_description, read_description
 from inverse_dynamics.robot.robots import Robot, load_robot
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
-    from inverse_dynamics._core import ArmFitter
+    from inverse_dynamics._core import ArmFitter, Solver
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.evaluation.evaluation import Evaluation
+    from inverse_dynamics.identification.baselines import Computed
     from inverse_dynamics.identification.drive_gains import KnownPayload
     from inverse_dynamics.identification.result import DriveGain
 
@@ -127,7 +132,7 @@ def identify(
     cut = _cut(evaluations, blocks)
     seconds["reading"] = time.perf_counter() - begin
     begin = time.perf_counter()
-    held_out = _held_out(fitter, Baselines(robot, description), cut, progress)
+    held_out = _held_out(fitter, baselines(robot, description), cut, progress)
     chosen = choose(fitter, cut)
     seconds["fitting"] = time.perf_counter() - begin
     begin = time.perf_counter()
@@ -179,12 +184,17 @@ def _check(evaluations: Sequence[Evaluation]) -> None:
     if not evaluations:
         raise IdentificationError("recordings: expected at least one, got none")
     for evaluation in evaluations:
-        if evaluation.effort.meaning == "torque_without_gravity":
-            raise IdentificationError(
-                f"{evaluation.bag}: expected efforts with gravity, as masses show in it alone, got "
-                "torques without; record the motor currents, or torques as the motors have them",
-                "Gravity is subtracted from the efforts",
-            )
+        require_gravity(evaluation)
+
+
+def require_gravity(evaluation: Evaluation) -> None:
+    """Raise IdentificationError for efforts without it."""
+    if evaluation.effort.meaning == "torque_without_gravity":
+        raise IdentificationError(
+            f"{evaluation.bag}: expected efforts with gravity, as masses show in it alone, got "
+            "torques without; record the motor currents, or torques as the motors have them",
+            "Gravity is subtracted from the efforts",
+        )
 
 
 def _cut(evaluations: Sequence[Evaluation], blocks: int) -> list[Block]:
@@ -203,16 +213,18 @@ def _cut(evaluations: Sequence[Evaluation], blocks: int) -> list[Block]:
 
 
 def _held_out(
-    fitter: ArmFitter, baselines: Baselines, cut: Sequence[Block], progress: Progress
+    fitter: ArmFitter, solvers: Mapping[str, Solver], cut: Sequence[Block], progress: Progress
 ) -> list[HeldOutBlock]:
     """Each block predicted by models fitted to, and chosen on, the others."""
     found = []
+    present = solvers.get("present")
+    rows = [] if present is None else [_computed(present, block) for block in cut]
     for k, block in enumerate(cut):
         progress("predicting held-out blocks", k, len(cut) + 1)
-        others = [*cut[:k], *cut[k + 1 :]]
-        chosen = choose(fitter, others)
-        computed = baselines.torques(block, others)
-        computed["identified"] = fitter.torques(chosen.fit, block.q, block.qd, block.qdd)
+        motion = block.q, block.qd, block.qdd
+        chosen = choose(fitter, [*cut[:k], *cut[k + 1 :]])
+        computed = baseline_torques(solvers, motion, [*rows[:k], *rows[k + 1 :]])
+        computed["identified"] = fitter.torques(chosen.fit, *motion)
         found.append(
             HeldOutBlock(
                 recording=block.recording,
@@ -230,6 +242,12 @@ def _held_out(
         )
     progress("predicting held-out blocks", len(cut), len(cut) + 1)
     return found
+
+
+def _computed(solver: Solver, block: Block) -> Computed:
+    """Of the samples to be fitted to."""
+    q, qd, qdd, measured = block.fitted
+    return q, qd, solver.torques(q, qd, qdd), measured
 
 
 def _result(
@@ -386,9 +404,8 @@ def _motion_findings(
 
 def _links(description: str, joints: Sequence[str]) -> tuple[str, ...]:
     """The links that the joints move."""
-    children = {}
-    for joint in parse_description(description).iter("joint"):
-        child = joint.find("child")
-        if child is not None:
-            children[joint.get("name")] = child.get("link", "")
+    children = {
+        joint.get("name"): link_of(joint, "child")
+        for joint in parse_description(description).iter("joint")
+    }
     return tuple(children.get(joint, joint) for joint in joints)

@@ -16,17 +16,18 @@ import numpy as np
 
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.evaluation.evaluation import evaluate
-from inverse_dynamics.identification.baselines import RefittedFriction, solver_of
+from inverse_dynamics.identification.baselines import baseline_torques, baselines, root_mean_squares
+from inverse_dynamics.identification.identify import require_gravity
 from inverse_dynamics.identification.result import IdentificationError
-from inverse_dynamics.results.model_files import model_file_text
-from inverse_dynamics.robot.robots import RIGID_BODY, with_changes
+from inverse_dynamics.results.model_files import model_file_text, urdf_of
+from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.robots import RIGID_BODY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
-    from inverse_dynamics.evaluation.evaluation import Evaluation
     from inverse_dynamics.identification.result import Identification
 
 
@@ -62,43 +63,28 @@ def hold_out(
     robot, gains = found.robot, found.model.drive_gains
     if gains is not None:
         robot = replace(robot, drive_gains=tuple(gains.tolist()))
-    described = replace(robot, plugin=RIGID_BODY, model=None, friction=False, parameters={})
-    robots = {"urdf": with_changes(described)}
-    if "present" in found.held_out:
-        robots["present"] = robot
     with tempfile.TemporaryDirectory() as directory:
         model = Path(directory) / "model.yaml"
         model.write_text(model_file_text(found, "identified"), encoding="utf-8")
-        robots["identified"] = replace(
-            robot, plugin=RIGID_BODY, model=model, friction=True, parameters={}
-        )
-        results = {
-            column: evaluate(recording, robot, progress=progress, **options)
-            for column, robot in robots.items()
-        }
-    errors = {column: _errors(result) for column, result in results.items()}
-    if "present" in results:
-        errors["present_refitted"] = _refitted_errors(found, results["present"])
-    return HoldOut(
-        recording=recording,
-        rmse={column: np.sqrt((error**2).mean(axis=0)) for column, error in errors.items()},
-        coverage=(np.abs(errors["identified"]) <= found.model.torque_deviation).mean(axis=0),
-        notes=results["identified"].notes,
-    )
-
-
-def _errors(result: Evaluation) -> Floats:
-    """(M, n) of the valid samples."""
+        identified = replace(robot, plugin=RIGID_BODY, model=model, friction=True, parameters={})
+        result = evaluate(recording, identified, progress=progress, **options)
+    require_gravity(result)
     kept = result.samples.kept
-    return np.asarray((result.computed - result.measured)[kept])
-
-
-def _refitted_errors(found: Identification, present: Evaluation) -> Floats:
-    """(M, n) of the present model with friction and offset fitted to the identification's blocks."""
+    solvers = baselines(robot, read_description(urdf_of(found)))
+    if "present" not in found.held_out:
+        solvers.pop("present", None)
+    motion = result.log.q[kept], result.log.qd[kept], result.qdd[kept]
     fitted = [
         (b.q[b.counts], b.qd[b.counts], b.computed["present"][b.counts], b.measured[b.counts])
         for b in found.blocks
+        if "present" in solvers
     ]
-    refitted = RefittedFriction(solver_of(present.robot), fitted)
-    torques = refitted.torques(present.log.q, present.log.qd, present.computed)
-    return np.asarray((torques - present.measured)[present.samples.kept])
+    computed = baseline_torques(solvers, motion, fitted)
+    computed["identified"] = result.computed[kept]
+    errors = {column: torques - result.measured[kept] for column, torques in computed.items()}
+    return HoldOut(
+        recording=recording,
+        rmse=root_mean_squares([errors]),
+        coverage=(np.abs(errors["identified"]) <= found.model.torque_deviation).mean(axis=0),
+        notes=result.notes,
+    )

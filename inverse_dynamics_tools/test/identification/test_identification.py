@@ -239,7 +239,7 @@ def test_a_known_robot_comes_back(known, found):
 
 
 def delay_where(monkeypatch, noise_of):
-    """What is found where the noise depends on the delay like this, and each gain counts."""
+    """What is found where the noise depends on the delay like this."""
     fitter = SimpleNamespace(
         data=lambda delays: delays,
         fit=lambda delays, *_: SimpleNamespace(noise=noise_of(np.array(delays))),
@@ -247,8 +247,7 @@ def delay_where(monkeypatch, noise_of):
     monkeypatch.setattr(cross_validation, "_period", lambda _: 0.008)
     monkeypatch.setattr(cross_validation, "_later", lambda _, delay, __: [delay])
     monkeypatch.setattr(cross_validation, "together", lambda delays: delays)
-    monkeypatch.setattr(cross_validation, "_predicts_better", lambda *_: True)
-    return cross_validation._delay(fitter, [], 1)
+    return cross_validation._delay(fitter, [], 1)[0]
 
 
 @pytest.mark.parametrize(("best", "found"), [(3e-5, 0.0), (0.003, 0.003), (-0.003, -0.003)])
