@@ -73,6 +73,13 @@ def of(*patterns, numbers=range(7)):
         (of("q{}", "q{}_filtered"), PANDA, ["q0"]),
         (of("spare", numbers=[0]), PANDA, []),
         (of("q{}", numbers=range(6)), PANDA, []),  # another robot's
+        (["elbow.pos", "pan.pos"], ["x_pan_joint", "x_elbow_joint"], ["pan.pos"]),
+        (
+            ["elapsed_time", *of("qDot_{}", "q_{}", "I_{} (mA)")],
+            PANDA,
+            ["elapsed_time", "q_0", "qDot_0", "I_0 (mA)"],
+        ),
+        (["time_ns", *of("q{}", "v{}", "a{}")], PANDA, ["time_ns", "q0", "v0", "a0"]),
     ],
 )
 def test_names_say_what_columns_hold(names, joints, expected):
@@ -82,9 +89,9 @@ def test_names_say_what_columns_hold(names, joints, expected):
 
 
 def test_units_in_names_are_kept():
-    names = ["t_ms", *of("pos_deg_{}", "vel_deg_s_{}", "torque_nm_{}", numbers=(1, 2))]
+    names = ["t_ms", *of("pos_deg_{}", "vel_deg_s_{}", "torque_mNm_{}", numbers=(1, 2))]
     mapping = match_columns(names, ["a", "b"])
-    assert mapping.units == {"time": "ms", "position": "deg", "velocity": "deg"}
+    assert mapping.units == {"time": "ms", "position": "deg", "velocity": "deg", "effort": "mnm"}
     assert "position: pos_deg_1 to pos_deg_2 [deg]" in mapping.text
 
 

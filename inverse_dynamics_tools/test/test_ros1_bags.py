@@ -5,8 +5,10 @@ import re
 
 import numpy as np
 import pytest
+from conftest import joint_state, write_messages
 
 from inverse_dynamics import read_recording
+from inverse_dynamics.data.table_logs import LogFormat
 from inverse_dynamics.errors import BagError
 
 rosbag1 = pytest.importorskip("rosbags.rosbag1")
@@ -43,16 +45,31 @@ def test_joint_states_are_read_by_name(tmp_path):
     np.testing.assert_array_equal(log.effort, 3 * log.q)
     np.testing.assert_array_equal(log.qd, 2 * log.q)
     np.testing.assert_allclose(log.time, 0.01 * k)
-    assert (log.clock, log.frame_id) == ("header", "base")
+    assert (log.clock, log.topic, log.stamps[0]) == ("header", "/joint_states", 10**9)
     assert log.notes == ("1 message without all joints left out",)
     assert read_recording(bag, ("a",), clock="receive").stamps[0] == 10**9 + 5_000_000
+
+
+def test_joints_of_several_messages_are_merged_by_time(tmp_path):
+    bag = tmp_path / "old.bag"
+    left = [(10**9 + k * 10**7, ("a",), (k,)) for k in range(20)]
+    right = [(10**9 + k * 10**7 + 5 * 10**6, ("b",), (k,)) for k in range(20)]
+    write_bag(bag, {"/left": left, "/right": right})
+    log = read_recording(bag, ("b", "a"))
+    k = np.arange(1.0, 20.0)
+    np.testing.assert_allclose(log.q, np.column_stack([k - 0.5, k]))
+    assert log.topic == "/left, /right"
+    assert log.notes == ("1 row with an empty field left out",)  # before the first of the right
 
 
 @pytest.mark.parametrize(
     ("options", "expected"),
     [
-        ({}, f"expected one topic of {JOINT_STATE}, got /left, /right"),
-        ({"topic": "/up"}, "expected joint states on /up, got topics /left, /right"),
+        ({}, f"expected one topic of {JOINT_STATE} with the joints a, got /left, /right"),
+        (
+            {"topic": "/up"},
+            f"expected messages of {JOINT_STATE} on /up, got none; its topics are /left",
+        ),
         (
             {"topic": "/left", "joints": ("c",)},
             "joints of the recording: a; give the recording's names",
@@ -74,3 +91,17 @@ def test_a_damaged_bag_is_named(tmp_path):
         bag.write_bytes(damaged)
         with pytest.raises(BagError, match=r"old\.bag: can't be read as a ROS 1 recording"):
             read_recording(bag, ("a",))
+
+
+def test_units_and_signs_are_stated_for_any_recording(tmp_path):
+    bag, q = tmp_path / "old.bag", [(0, 90), (1, 180)]
+    write_bag(bag, {"/joint_states": [(k + 1, ("a", "b"), q[k]) for k in range(2)]})
+    messages = [joint_state(["a", "b"], p, 2 * np.array(p), 3 * np.array(p)) for p in q]
+    form = LogFormat(scale=("q=1,deg", "effort=0.5"), sign=(1, -1))
+    for path in (bag, write_messages(tmp_path / "new", messages)):
+        log = read_recording(path, ("a", "b"), form=form)
+        np.testing.assert_allclose(log.q, [[0, -np.pi / 2], [1, -np.pi]])
+        np.testing.assert_allclose(log.qd, [[0, -180], [2, -360]])
+        np.testing.assert_allclose(log.effort, [[0, -135], [1.5, -270]])
+        with pytest.raises(BagError, match=r"scale: expected one of .*position.*, got current"):
+            read_recording(path, ("a", "b"), form=LogFormat(scale=("i=2",)))

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+import json
 import re
 from dataclasses import replace
 
@@ -8,7 +9,7 @@ from conftest import JOINTS, motion
 
 from inverse_dynamics import Solver, evaluate, load_robot, read_recording
 from inverse_dynamics.data.recordings import position_ranges
-from inverse_dynamics.data.table_logs import LogFormat, parts_joined
+from inverse_dynamics.data.table_logs import LogFormat, open_table, parts_joined, read_motion
 from inverse_dynamics.errors import BagError, EvaluationError
 
 HEADER = "time,position.a,velocity.a,effort.a\n"
@@ -174,6 +175,40 @@ def test_a_unit_in_a_heading_is_converted_and_said(file):
     )
 
 
+def test_a_unit_that_only_the_owner_knows_is_asked_for(file):
+    text = HEADER.replace("effort.a", "torque_a [%]") + ROWS
+    fails(file, text, "effort: expected a known unit, got percent: what is one in SI units? State")
+    log = read_recording(file, ("a",), form=LogFormat(scale=("effort=0.5",)))
+    np.testing.assert_array_equal(log.effort[:, 0], [1.5, 1.75])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "# made by a logger\n# t q1 tau1\n0 1 2\n0.5 3 4\n",
+        "t;q1;tau1;\n0;1;2;\n0,5;3;4;\n",
+        "sep=;\nt;q1;tau1\n0;1;2\n0,5;3;4\n",
+        '"t","q1","tau1"\n"0","1","2"\n"0,5","3","4"\n',
+        "t,q1,tau1\nms,rad,mNm\n0,1,2000\n500,3,4000\n",
+        "stamp.sec,stamp.nanosec,q1,tau1\n7,0,1,2\n7,500000000,3,4\n",
+        "t,q1,tau1\n0,1,2\n0.25,,7\n0.3,nan,7\n0.5,3,4\n",
+    ],
+)
+def test_a_table_is_read_as_programs_write_it(file, text):
+    file.write_text(text)
+    motion = read_motion(open_table(file), ("a",), LogFormat(), ("position", "effort"))
+    np.testing.assert_allclose(motion.time - motion.time[0], [0, 0.5])
+    np.testing.assert_array_equal(motion.numbers["position"][:, 0], [1, 3])
+    np.testing.assert_array_equal(motion.numbers["effort"][:, 0], [2, 4])
+
+
+def test_what_is_not_read_is_refused_with_the_command_that_converts_it(tmp_path):
+    file = tmp_path / "log.xlsx"
+    file.write_bytes(b"PK")
+    with pytest.raises(BagError, match=r"got \.xlsx; convert it: python -c .*read_excel.*log\.csv"):
+        read_recording(file, ("a",))
+
+
 def test_commanded_values_of_urs_record_tool_are_not_measured_ones(file):
     fails(
         file,
@@ -268,6 +303,8 @@ def test_what_the_names_do_not_say_is_stated(file):
         (LogFormat(scale=("torgue=2",)), "scale: expected one of time, position"),
         (LogFormat(sign=(1.0, -1.0)), "sign: expected 1 or -1 for each of 1 joint, got 1, -1"),
         (LogFormat(sign=(2.0,)), "sign: expected 1 or -1 for each of 1 joint, got 2"),
+        (LogFormat(columns="q=x"), "columns: x: expected columns of the file, got x; the file has"),
+        (LogFormat("q=x", ("effort=furlong",)), "scale: expected a number other than 0 or one of"),
     ],
 )
 def test_a_statement_that_fits_nothing_is_refused(file, form, expected):
@@ -306,6 +343,40 @@ def test_files_of_arrays_hold_the_same_as_text(tmp_path, kind):
     for found, expected in ((log.q, q), (log.qd, qd), (log.effort, qdd)):
         np.testing.assert_array_equal(found, expected)
     np.testing.assert_array_equal(log.stamps, stamps)
+
+
+def test_a_data_set_of_lerobot_has_its_joints_by_name(tmp_path):
+    """As LeRobot v3 lays it out: episodes in one file, names in meta/info.json."""
+    pa, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    joints = ("shoulder_pan_joint", "elbow_joint")
+    names = [f"{joint}.{kind}" for kind in ("pos", "vel") for joint in ("elbow", "shoulder_pan")]
+    features = {
+        "action": {"names": names[:2]},
+        "observation.state": {"names": {"motors": names}},
+        "observation.effort": {"names": ["elbow", "shoulder_pan"]},
+        "observation.images.top": {"names": ["height", "width", "channel"]},
+    }
+    (tmp_path / "meta").mkdir()
+    (tmp_path / "meta/info.json").write_text(json.dumps({"features": features}))
+    folder = tmp_path / "data/chunk-000"
+    folder.mkdir(parents=True)
+    state = np.arange(24.0).reshape(6, 4)
+    columns = {
+        "timestamp": np.float32([0, 0.1, 0.2, 0, 0.1, 0.2]),
+        "action": [*(state[:, :2] + 9)],
+        "observation.state": [*state],
+        "observation.effort": [*(-state[:, :2])],
+        "episode_index": [0, 0, 0, 1, 1, 1],
+    }
+    for k in range(2):
+        rows = {name: column[3 * k : 3 * k + 3] for name, column in columns.items()}
+        parquet.write_table(pa.table(rows), folder / f"file-00{k}.parquet")
+    whole, second = (read_recording(p, joints) for p in (tmp_path, folder / "file-001.parquet"))
+    np.testing.assert_array_equal(whole.q, state[:, [1, 0]])
+    np.testing.assert_array_equal(whole.qd, state[:, [3, 2]])
+    np.testing.assert_array_equal(whole.effort, -state[:, [1, 0]])
+    np.testing.assert_array_equal(second.q, whole.q[3:])
+    assert whole.notes[-1].startswith("time begins anew 1 time")
 
 
 @pytest.mark.parametrize("kind", ["npz", "mat", "parquet"])

@@ -175,12 +175,19 @@ def test_a_file_without_a_plan_is_said(tmp_path, robot):
     states = write_messages(tmp_path / "states", [joint_state(["a"], [1], [1], [1])])
     with pytest.raises(BagError, match=r"expected one topic of type trajectory_msgs.*got 0"):
         trajectory_torques(states, robot)
-    q, *_ = motion()
-    write_table(tmp_path / "no.csv", table_of(q))
-    with pytest.raises(
-        BagError, match="expected columns of acceleration for the joints shoulder_pan_joint"
-    ):
-        trajectory_torques(tmp_path / "no.csv", robot)
+
+
+def test_positions_alone_are_enough_where_they_are_dense(tmp_path, robot, torques):
+    q, _, _, stamps = motion()
+    columns = {f"q{i}": q[:, i] for i in range(6)} | {"time": 1e-9 * stamps}
+    write_table(tmp_path / "q.csv", columns)
+    result = trajectory_torques(tmp_path / "q.csv", robot)
+    difference = np.abs(result.torques[0] - torques)[100:-100].max()
+    assert difference < 0.02 * np.abs(torques).max()  # of the filter
+    assert result.notes[0].startswith("no velocities or accelerations: those of the positions")
+    write_table(tmp_path / "q.csv", columns | {"time": 1e-6 * stamps})
+    with pytest.raises(BagError, match="expected seconds, got steps of 4: are they ms"):
+        trajectory_torques(tmp_path / "q.csv", robot)
 
 
 def test_the_verb_says_which_limit_is_passed(tmp_path, capsys, monkeypatch):

@@ -58,9 +58,9 @@ def test_a_data_frame_is_a_recording(evaluation, arrays):
     [
         ({"q": None}, BagError, "arrays: expected columns of position for the joints"),
         (
-            {"tau": np.full((1500, 6), np.nan)},
+            {"tau": np.full((1500, 6), np.inf)},
             BagError,
-            "arrays: tau[0]: expected finite numbers, got nan in row 1",
+            "arrays: tau[0]: expected finite numbers, got inf in row 1",
         ),
         (
             {5: 1},

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Logs as arrays: in files of Parquet, NumPy (.npz) and MATLAB (.mat), or in memory.
+"""Logs as arrays: in files of Parquet, NumPy (.npz, .npy) and MATLAB (.mat), or in memory.
 
     table = open_arrays(Path("episode.parquet"))
     table.names    # ("timestamp", "observation.state[0]", "observation.state[1]", ...)
 
 An array of N samples is a column; an array of N x n or n x N numbers is n columns `NAME[0]` ..
 `NAME[n-1]`; an array in a structure of MATLAB is `STRUCTURE.NAME`. N is the longest dimension in the
-file. Other arrays are passed over.
+file. Other arrays are passed over. A Parquet file, or the directory, of a LeRobot data set has the names
+that meta/info.json states: `observation.state.shoulder_pan.pos`.
 """
 
 from __future__ import annotations
 
+import json
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zipfile import BadZipFile
@@ -22,30 +25,21 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
 
-
-class Arrays(type(Path())):  # type: ignore[misc]
-    """Columns in memory, where a path may stand: `Arrays.of({"time": t, "q": q, "tau": tau})`."""
-
-    arrays: dict[str, Any]
-
-    @classmethod
-    def of(cls, source: Any) -> Arrays:
-        """Of a mapping from names to arrays, N or N x n, or of a table of pandas or polars."""
-        made = cls("arrays")
-        made.arrays = {str(name): np.asarray(source[name]) for name in list(source)}
-        return made
+_INFO = "meta/info.json"  # of a LeRobot data set
 
 
 class ArrayTable:
-    """Arrays as a table. path: for errors. Raises BagError."""
+    """Arrays by name, or a table of pandas or polars, as a table. path: for errors. Raises BagError."""
 
-    def __init__(self, path: Path, arrays: dict[str, Any]) -> None:
+    def __init__(self, path: Path, source: Mapping[str, Any]) -> None:
         self.path = path
+        self.incomplete = 0
+        arrays = {str(name): np.asarray(source[name]) for name in list(source)}
         numeric = {name: array for name, array in arrays.items() if _is_numeric(array)}
         samples = max((size for array in numeric.values() for size in array.shape), default=0)
         self._columns = dict(_columns(numeric, samples))
@@ -53,45 +47,45 @@ class ArrayTable:
         if not self.names:
             raise BagError(f"{path}: expected arrays of numbers, got none")
 
-    def read(
-        self,
-        columns: Sequence[str],
-        largest: Sequence[float] | None = None,
-        progress: Progress = no_progress,
-    ) -> Floats:
-        """(N, columns) numbers, all of them finite. Raises BagError."""
+    def read(self, columns: Sequence[str], progress: Progress = no_progress) -> Floats:
+        """(N, columns) numbers, all of them finite; rows with NaN are left out. Raises BagError."""
         progress("reading", 1, 1)
         rows = np.column_stack([np.asarray(self._columns[name], float) for name in columns])
-        if not np.isfinite(rows).all():
-            k, j = (int(i) for i in np.argwhere(~np.isfinite(rows))[0])
+        missing = np.isnan(rows).any(axis=1)
+        self.incomplete = int(missing.sum())
+        if np.isinf(rows).any():
+            k, j = (int(i) for i in np.argwhere(np.isinf(rows))[0])
             raise BagError(
                 f"{self.path}: {columns[j]}: expected finite numbers, got {rows[k, j]} in row {k + 1}; leave "
                 "such rows out"
             )
-        return rows
+        complete: Floats = rows[~missing]
+        return complete
 
 
 def open_arrays(path: Path) -> ArrayTable:
-    """The columns of a file, or of Arrays. Raises BagError, MissingPackageError."""
-    if isinstance(path, Arrays):
-        return ArrayTable(path, path.arrays)
+    """The columns of a file. Raises BagError, MissingPackageError."""
+    suffix = path.suffix.lower() if path.is_file() else ".parquet"
     try:
-        return ArrayTable(path, dict(_READERS[path.suffix.lower()](path)))
+        return ArrayTable(path, dict(_READERS[suffix](path)))
     except FileNotFoundError as error:
         raise BagError(f"{path}: no such file") from error
     except (OSError, ValueError, NotImplementedError, BadZipFile) as error:
         raise BagError(
-            f"{path}: can't be read as {path.suffix} ({error}); is it damaged or of another kind?"
+            f"{path}: can't be read as {suffix} ({error}); is it damaged or of another kind?"
         ) from error
 
 
 def is_array_file(path: Path) -> bool:
-    """Whether it is Arrays, or the name of such a file."""
-    return isinstance(path, Arrays) or (path.suffix.lower() in _READERS and not path.is_dir())
+    """Whether it is the name of such a file, or of the directory of a LeRobot data set."""
+    with suppress(OSError):  # a path may be too long
+        if path.is_dir():
+            return (path / _INFO).is_file()
+    return path.suffix.lower() in _READERS
 
 
 def _is_numeric(array: Any) -> bool:
-    return isinstance(array, np.ndarray) and array.dtype.kind in "fiub" and array.ndim in (1, 2)
+    return array.dtype.kind in "fiub" and array.ndim in (1, 2)
 
 
 def _columns(arrays: dict[str, Any], samples: int) -> Iterator[tuple[str, Any]]:
@@ -109,17 +103,33 @@ def _of_parquet(path: Path) -> Iterator[tuple[str, Any]]:
     import pyarrow as pa
     from pyarrow import parquet
 
-    table = parquet.read_table(path)
+    root = path if path.is_dir() else path.absolute().parent.parent.parent
+    files = sorted(path.glob("data/*/*.parquet")) if path.is_dir() else [path]
+    labels = _labels(root / _INFO)
+    table = pa.concat_tables([parquet.read_table(file, partitioning=None) for file in files])
     for name, column in zip(table.column_names, table.columns, strict=True):
-        kind = column.type
-        if pa.types.is_timestamp(kind):
+        if pa.types.is_timestamp(column.type):
             yield f"{name}_ns", column.cast(pa.timestamp("ns")).cast(pa.int64()).to_numpy()
-        elif pa.types.is_list(kind) or pa.types.is_fixed_size_list(kind):
-            rows = column.to_pylist()
-            if rows and all(row is not None and len(row) == len(rows[0]) for row in rows):
-                yield name, np.array(rows)
+        elif pa.types.is_list(column.type) or pa.types.is_fixed_size_list(column.type):
+            with suppress(ValueError):  # rows differ in their lengths
+                rows = np.stack(column.to_numpy())
+                named = labels.get(name, ())
+                if rows.ndim == 2 and len(named) == rows.shape[1]:
+                    yield from ((f"{name}.{each}", rows[:, k]) for k, each in enumerate(named))
+                else:
+                    yield name, rows
         else:
             yield name, column.to_numpy()
+
+
+def _labels(info: Path) -> dict[str, list[str]]:
+    """What the numbers of each feature of a LeRobot data set are called: a list, or one in a mapping."""
+    if not info.is_file():
+        return {}
+    features = json.loads(info.read_bytes()).get("features", {})
+    names = {key: feature.get("names") for key, feature in features.items()}
+    names |= {key: next(iter(n.values())) for key, n in names.items() if isinstance(n, dict) and n}
+    return {key: n for key, n in names.items() if isinstance(n, list)}
 
 
 def _of_npz(path: Path) -> Iterator[tuple[str, Any]]:
@@ -127,11 +137,18 @@ def _of_npz(path: Path) -> Iterator[tuple[str, Any]]:
         yield from ((name, file[name]) for name in file.files)
 
 
+def _of_npy(path: Path) -> Iterator[tuple[str, Any]]:
+    yield path.stem, np.load(path)
+
+
 def _of_mat(path: Path) -> Iterator[tuple[str, Any]]:
     require("a log of MATLAB", "scipy")
     from scipy.io import loadmat
 
-    found = loadmat(path, squeeze_me=True, struct_as_record=False)
+    try:
+        found = loadmat(path, squeeze_me=True, struct_as_record=False)
+    except NotImplementedError as error:
+        raise ValueError("it is of version 7.3; in MATLAB: save(FILE, '-v7')") from error
     for name, value in found.items():
         if not name.startswith("__"):
             yield from _of_structure(name, value)
@@ -145,4 +162,4 @@ def _of_structure(name: str, value: Any) -> Iterator[tuple[str, Any]]:
         yield from _of_structure(f"{name}.{key}", getattr(value, key))
 
 
-_READERS = {".parquet": _of_parquet, ".npz": _of_npz, ".mat": _of_mat}
+_READERS = {".parquet": _of_parquet, ".npz": _of_npz, ".npy": _of_npy, ".mat": _of_mat}

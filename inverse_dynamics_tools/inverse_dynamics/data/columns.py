@@ -34,35 +34,44 @@ _WORDS = {
     POSITION: "position positions pos q angle angles theta jpos",
     VELOCITY: "velocity velocities vel qd dq qdot speed speeds omega jvel",
     ACCELERATION: "acceleration accelerations acc accel qdd ddq qddot",
-    EFFORT: "effort efforts torque torques tau trq",
+    EFFORT: "effort efforts eff torque torques torq tau trq moment moments",
 }
-_WEAK_WORDS = {CURRENT: "current currents cur i amps", POSITION: "state"}
-_TIME = "time t timestamp timestamps stamp secs seconds"
+_WEAK_WORDS = {
+    CURRENT: "current currents cur curr i iq amps ampere amperes",
+    POSITION: "state",
+    VELOCITY: "v",
+    ACCELERATION: "a",
+}
+_TIME = "time t timestamp timestamps stamp ts secs seconds"
 _TIME_WORDS = frozenset(_TIME.split())
 # These words say nothing: a name that has fewer others is preferred.
 _SAYING_NOTHING = (
     "actual act measured meas joint joints j axis a state states robot arm field data observation header "
-    "cont abs rec"
+    "cont abs rec real elapsed sim sample relative from start"
 )
 _NEUTRAL = frozenset(_SAYING_NOTHING.split())
 # Not what the arm did, or not what its motors did.
 _PASSED_OVER = (
-    "target desired des ref reference cmd command commanded goal setpoint ext external error err limit "
-    "limits max min std temperature temp"
+    "target desired des ref reference cmd command commanded goal setpoint action ext external error err "
+    "limit limits max min std temperature temp tcp ee cartesian cart tool wrench model predicted"
 )
 _OTHER = frozenset(_PASSED_OVER.split())
 
 # Factors to SI units.
 UNITS = {
     "deg": 0.017453292519943295,
-    "degrees": 0.017453292519943295,
     "rad": 1.0,
+    "mrad": 1e-3,
     "rpm": 0.10471975511965977,
     "m": 1.0,
+    "cm": 1e-2,
     "mm": 1e-3,
     "nm": 1.0,
-    "mnm": 1e-3,
+    "knm": 1e3,
+    "ncm": 1e-2,
     "nmm": 1e-3,
+    "mnm": 1e-3,
+    "kgfcm": 0.0980665,
     "a": 1.0,
     "ma": 1e-3,
     "s": 1.0,
@@ -70,16 +79,19 @@ UNITS = {
     "us": 1e-6,
     "ns": 1e-9,
 }
-# Units that a name's last words may state; `a`, `m` and `s` alone are too often something else.
+_SPELLINGS = {"degrees": "deg", "degree": "deg", "sec": "s", "secs": "s", "seconds": "s"}
+# Units that words of a name may state; `a`, `m` and `s` alone are too often something else.
 _UNITS_OF_NAMES = {
     TIME: ("ms", "us", "ns", "s", "sec", "secs", "seconds"),
-    POSITION: ("deg", "degrees", "rad", "mm"),
-    VELOCITY: ("deg", "degrees", "rad", "rpm"),
-    ACCELERATION: ("deg", "degrees", "rad"),
-    EFFORT: ("nm", "mnm", "nmm"),
+    POSITION: ("deg", "degree", "degrees", "rad", "mrad", "mm", "cm"),
+    VELOCITY: ("deg", "degree", "degrees", "rad", "mrad", "rpm", "mm", "cm"),
+    ACCELERATION: ("deg", "degree", "degrees", "rad", "mrad", "mm", "cm"),
+    EFFORT: ("nm", "knm", "ncm", "nmm", "mnm", "kgfcm"),
     CURRENT: ("ma",),
 }
 _PER_TIME = frozenset({"per", "s", "s2", "sec", "second"})
+# Units whose factor only the owner knows.
+UNKNOWN_UNITS = frozenset({"percent", "permille", "counts", "ticks", "increments", "pulses"})
 
 _KEYS = {
     **{name: name for name in (TIME, *_WORDS, CURRENT)},
@@ -103,7 +115,7 @@ class Matched:
 
     joints: tuple[str, ...]
     columns: dict[str, tuple[str, ...]]
-    units: dict[str, str] = field(default_factory=dict)  # that names state: keys of UNITS
+    units: dict[str, str] = field(default_factory=dict)  # that names state: of UNITS, UNKNOWN_UNITS
 
     @property
     def exact(self) -> bool:
@@ -151,7 +163,7 @@ def match_columns(
         raise _ambiguous(where, TIME, time)
     if time:
         _known(names, time, where, f"{TIME}=")
-        columns[TIME] = (time[0],)
+        columns[TIME] = (time[0], *_nanoseconds_beside(time[0], names))
         units[TIME] = _unit(TIME, _words(time[0]))
     found = _families(names, joints)
     for quantity in quantities:
@@ -169,8 +181,9 @@ def match_columns(
 def named_positions(names: Sequence[str], joints: Sequence[str]) -> dict[str, tuple[str, str]]:
     """Columns of positions, and the units in their names, of those joints whose names they hold."""
     found: dict[str, tuple[str, str]] = {}
+    called = {_words(joint): joint for joint in joints}
     for name in names:
-        for _, pattern, joint in _places(name, joints):
+        for _, pattern, joint in _places(name, called):
             if isinstance(joint, str) and "*" in pattern and _quantity(pattern) == POSITION:
                 found.setdefault(joint, (name, _unit(POSITION, pattern)))
     return found
@@ -181,8 +194,13 @@ def named_positions(names: Sequence[str], joints: Sequence[str]) -> dict[str, tu
 
 def _words(name: str) -> tuple[str, ...]:
     """Words and numbers of a name: `Joint1_Pos` has joint, 1, pos."""
+    name = re.sub(r"(?<![A-Za-z])(mNm|kNm|mA|q_?[dD]{1,2}ot)(?![a-z])", _one_word, name)
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[^\W\d_])(?=\d)|(?<=\d)(?=[^\W\d_])", " ", name)
-    return tuple(re.findall(r"[^\W\d_]+|\d+", apart.lower()))
+    return tuple(re.findall(r"[^\W\d_]+|\d+", apart.replace("%", " percent ").lower()))
+
+
+def _one_word(found: re.Match[str]) -> str:
+    return found[0].lower().replace("_", "")
 
 
 def _quantity(words: Sequence[str]) -> str | None:
@@ -199,10 +217,10 @@ def _quantity(words: Sequence[str]) -> str | None:
 
 
 def _unit(quantity: str, words: Sequence[str]) -> str:
-    known = {"sec": "s", "secs": "s", "seconds": "s", "degrees": "deg"}
-    found = [word for word in words if word in _UNITS_OF_NAMES[quantity]]
-    unit = known.get(found[-1], found[-1]) if found else ""
-    return "" if UNITS.get(unit, 1.0) == 1.0 else unit
+    known = UNKNOWN_UNITS.union(_UNITS_OF_NAMES[quantity])
+    found = [word for word in words if word in known]
+    unit = _SPELLINGS.get(found[-1], found[-1]) if found else ""
+    return "" if UNITS.get(unit) == 1.0 else unit
 
 
 def _rank(kind: int, quantity: str, words: Sequence[str]) -> tuple[int, ...]:
@@ -219,8 +237,9 @@ def _rank(kind: int, quantity: str, words: Sequence[str]) -> tuple[int, ...]:
 def _families(names: Sequence[str], joints: Sequence[str]) -> dict[str, list[Family]]:
     """Columns of all joints, by quantity."""
     groups: dict[tuple[int, tuple[str, ...]], dict[str | int, str]] = defaultdict(dict)
+    called = _called(joints)
     for name in names:
-        for kind, pattern, joint in _places(name, joints):
+        for kind, pattern, joint in _places(name, called):
             groups[kind, pattern].setdefault(joint, name)
     found: dict[str, list[Family]] = defaultdict(list)
     for (kind, pattern), columns in groups.items():
@@ -241,8 +260,22 @@ def _families(names: Sequence[str], joints: Sequence[str]) -> dict[str, list[Fam
     return found
 
 
-def _places(name: str, joints: Sequence[str]) -> Iterator[tuple[int, tuple[str, ...], str | int]]:
+def _called(joints: Sequence[str]) -> dict[tuple[str, ...], str]:
+    """Words by which a column may name a joint: `shoulder_pan` or `ur_shoulder_pan_joint`."""
+    full = {joint: _words(joint) for joint in joints}
+    shared = set.intersection(*map(set, full.values())) if len(joints) > 1 else set()
+    short = {j: tuple(w for w in words if w not in shared) for j, words in full.items()}
+    says = all(any(map(str.isalpha, words)) for words in short.values())
+    if len(set(short.values())) < len(joints) or not says:
+        short = {}
+    return {words: joint for found in (short, full) for joint, words in found.items() if words}
+
+
+def _places(
+    name: str, called: dict[tuple[str, ...], str]
+) -> Iterator[tuple[int, tuple[str, ...], str | int]]:
     """Where a column's name may have a joint: kind (0 exactly, 1 by name, 2 by number), the rest, joint."""
+    joints = set(called.values())
     quantity, _, joint = name.partition(".")
     if joint in joints and quantity in _KEYS:
         yield 0, (quantity, "*"), joint
@@ -250,8 +283,7 @@ def _places(name: str, joints: Sequence[str]) -> Iterator[tuple[int, tuple[str, 
     words = _words(name)
     named = [
         (len(own), at, joint)
-        for joint in joints
-        if (own := _words(joint))
+        for own, joint in called.items()
         for at in range(len(words) - len(own) + 1)
         if words[at : at + len(own)] == own
     ]
@@ -262,7 +294,7 @@ def _places(name: str, joints: Sequence[str]) -> Iterator[tuple[int, tuple[str, 
             yield 1, rest, joint
             return
     if len(joints) == 1 and (said := _quantity(words)) and not _rank(1, said, words)[1]:
-        yield 1, words, joints[0]
+        yield 1, words, joints.pop()
     for at, word in enumerate(words):
         if word.isdecimal():
             yield 2, (*words[:at], "*", *words[at + 1 :]), int(word)
@@ -286,6 +318,15 @@ def time_columns(names: Sequence[str]) -> list[str]:
         if _TIME_WORDS.intersection(words) and known.issuperset(words):
             ranked[len(_words(name))].append(name)
     return [*dict.fromkeys(ranked[min(ranked)])] if ranked else []
+
+
+def _nanoseconds_beside(time: str, names: Sequence[str]) -> list[str]:
+    """`stamp.nanosec`, which belongs to `stamp.sec`."""
+    *rest, unit = _words(time) or ("",)
+    if unit not in ("sec", "secs", "seconds"):
+        return []
+    apart = [(*rest, word) for word in ("nsec", "nsecs", "nanosec", "nanosecs", "nanoseconds")]
+    return [name for name in names if _words(name) in apart][:1]
 
 
 def _chosen_time(pattern: str, names: Sequence[str]) -> list[str]:
@@ -329,7 +370,7 @@ def _joints_of(names: Sequence[str], given: dict[str, str]) -> tuple[str, ...]:
         return tuple(named)
     counts = defaultdict(set)
     for name in names:
-        for kind, pattern, number in _places(name, ()):
+        for kind, pattern, number in _places(name, {}):
             if kind == 2 and _quantity(pattern) == POSITION:
                 counts[pattern].add(number)
     largest = max(map(len, counts.values()), default=0)

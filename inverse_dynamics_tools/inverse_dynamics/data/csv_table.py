@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of numbers in text files: a header line, then one row per line.
 
-Between columns: comma, semicolon, tab or spaces, whichever the header has. Decimals have a point, or a
-comma where no comma lies between columns. Columns that aren't asked for may hold anything; rows with an
-empty field in a column that is are left out and counted.
+Between columns: comma, semicolon, tab or spaces. Decimals have a point, or a comma where no comma lies
+between columns. Lines that begin with `#` or `sep=` before the header are passed over; a line of units
+below it is added to the names. Columns that aren't asked for may hold anything; rows with an empty field,
+or nan, in a column that is are left out and counted.
 
-Without a header, or with one that names fewer columns than there are, columns are called by their number, from
-1 on.
+Without a header, or with one that names fewer columns than there are, columns are called by their number,
+from 1 on.
 """
 
 from __future__ import annotations
 
+import csv
 import os
-from collections.abc import Iterable, Iterator
-from operator import itemgetter
+from contextlib import suppress
 from typing import TYPE_CHECKING, TextIO
 
 import numpy as np
@@ -24,10 +25,10 @@ from inverse_dynamics.base.wording import counted, harmless, shown
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
 
-    from inverse_dynamics.base.arrays import Floats, Mask
+    from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
 
 _SUFFIXES = (".csv", ".tsv", ".txt")
@@ -45,66 +46,80 @@ class CsvTable:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self.incomplete = 0  # rows left out so far
         try:
             with self._open() as file:
-                self._lines_before, header = _first_line(file)
-                first_row = _first_line(file)[1]
-        except (OSError, UnicodeDecodeError) as error:
+                comments, lines = self._beginning(file)
+            self._name_columns(comments, lines)
+        except (OSError, UnicodeDecodeError, csv.Error) as error:
             raise self._unreadable(error) from error
-        if len(header) >= _LONGEST_HEADER:
-            raise BagError(
-                f"{path}:{self._lines_before}: expected a header line of at most {_LONGEST_HEADER} "
-                "characters, got a longer one; is it a table of numbers?"
-            )
-        if not header:
-            raise BagError(f"{path}: is empty; expected a header line and rows of numbers")
-        self._delimiter = _delimiter(header)
-        self.names = tuple(
-            name.strip().strip('"').strip() for name in header.lstrip("# ").split(self._delimiter)
-        )
-        self.unnamed = ""  # why the file doesn't name its columns
-        self.incomplete = 0  # rows left out so far
-        self._set_unnamed(first_row)
 
-    def _set_unnamed(self, first_row: str) -> None:
-        if all(_is_number(name.replace(",", ".")) for name in self.names):
+    def _beginning(self, file: TextIO) -> tuple[list[str], dict[int, str]]:
+        """Comments, and the first three other lines by number."""
+        comments: list[str] = []
+        lines: dict[int, str] = {}
+        number = 0
+        while len(lines) < 3 and (text := file.readline(_LONGEST_HEADER)):
+            number += 1
+            if len(text) >= _LONGEST_HEADER:
+                raise BagError(
+                    f"{self.path}:{number}: expected a header line of at most {_LONGEST_HEADER} "
+                    "characters, got a longer one; is it a table of numbers?"
+                )
+            if not lines and text.lower().startswith(("#", "sep=")):
+                comments.append(text.lstrip("# ").strip())
+            elif not text.isspace():
+                lines[number] = text.strip("\r\n")
+        return comments, lines
+
+    def _name_columns(self, comments: list[str], lines: dict[int, str]) -> None:
+        """Find the names, and the line of the first row."""
+        found = list(lines.values()) or comments[-1:]
+        if not found:
+            raise BagError(f"{self.path}: is empty; expected a header line and rows of numbers")
+        self._delimiter = _delimiter(found[0])
+        header, *rows = map(self._fields, found)
+        self.unnamed = ""  # why the file doesn't name its columns
+        if _numbers_in(header) == len(header):
+            rows.insert(0, header)
+            header = self._fields(comments[-1]) if comments else []  # np.savetxt() has it there
             self.unnamed = "expected a header line that names the columns, got numbers"
-            self._lines_before -= 1
-        columns = len(first_row.split(self._delimiter))
-        if len(self.names) < columns and first_row and not self.unnamed:
+        names = [name.strip() for name in header]
+        if len(rows) == 2 and not _numbers_in(rows[0]) and _numbers_in(rows[1]):
+            units = rows.pop(0)
+            names = [f"{n} {unit}".strip() for n, unit in zip(names, units, strict=False)]
+        columns = len(rows[0]) - (not rows[0][-1].strip()) if rows else len(names)
+        if len(names) >= columns > 0:
+            self.unnamed = ""
+            names = names if any(names[columns:]) else names[:columns]
+        elif names:
             self.unnamed = (
                 f"expected a header with {counted(columns, 'name')}, as the first row has columns, got "
-                f"{len(self.names)}"
+                f"{len(names)}"
             )
-        if self.unnamed:
-            self.names = tuple(str(k) for k in range(1, max(columns, len(self.names)) + 1))
+        self.names = tuple(names if not self.unnamed else map(str, range(1, columns + 1)))
+        self._lines_before = [0, *lines][-len(rows)] - 1 if rows else max(lines, default=0)
 
-    def read(
-        self,
-        columns: Sequence[str],
-        largest: Sequence[float] | None = None,
-        progress: Progress = no_progress,
-    ) -> Floats:
-        """(N, columns) numbers, all of them finite and none larger than those. Raises BagError."""
+    def read(self, columns: Sequence[str], progress: Progress = no_progress) -> Floats:
+        """(N, columns) numbers, all of them finite. Raises BagError."""
         self.incomplete = 0
-        limits = np.full(len(columns), np.inf) if largest is None else np.array(largest)
         where = [self.names.index(name) for name in columns]
         size = self.path.stat().st_size
-        blocks = []
+        blocks = [np.empty((0, len(columns)))]
         try:
             with self._open() as file:
                 for _ in range(self._lines_before):
                     file.readline()
                 line, done = self._lines_before + 1, 0
                 while lines := file.readlines(_BLOCK):
-                    blocks.append(self._numbers(lines, line, where, limits))
+                    blocks.append(self._numbers(lines, line, where))
                     line += len(lines)
                     done += sum(map(len, lines))
                     progress("reading", min(done, size), size)
-        except (OSError, UnicodeDecodeError) as error:
+        except (OSError, UnicodeDecodeError, csv.Error) as error:
             raise self._unreadable(error) from error
         progress("reading", size, size)
-        return np.concatenate(blocks) if blocks else np.empty((0, len(columns)))
+        return np.concatenate(blocks)
 
     def rows(self) -> Iterator[list[str]]:
         """Fields of each row, as they are."""
@@ -122,74 +137,51 @@ class CsvTable:
     def _open(self) -> TextIO:
         return self.path.open(encoding="utf-8-sig")
 
-    def _numbers(self, lines: list[str], first: int, where: list[int], limits: Floats) -> Floats:
-        """Numbers of some lines; first: the number of the first line in the file."""
-        rows = [line.split(self._delimiter) for line in lines if not line.isspace()]
-        if set(map(len, rows)) - {len(self.names)}:
-            raise self._wrong_length(lines, first)
-        values = np.empty((len(rows), len(where)))
-        complete = np.ones(len(rows), dtype=bool)
-        try:
-            for j, column in enumerate(where):
-                texts = list(map(itemgetter(column), rows))
-                _refuse_other_notations("".join(texts))
-                values[:, j] = self._column(texts, complete)
-        except ValueError:
-            raise self._no_number(lines, first, where, limits) from None
-        values = values[complete]
-        self.incomplete += len(rows) - len(values)
-        if not (np.abs(values) <= np.minimum(limits, np.finfo(float).max)).all():
-            raise self._no_number(lines, first, where, limits)
-        return values
+    def _fields(self, line: str) -> list[str]:
+        if '"' not in line:
+            return line.split(self._delimiter)
+        return next(csv.reader([line], delimiter=self._delimiter or " ", skipinitialspace=True))
 
-    def _column(self, texts: list[str], complete: Mask) -> Floats:
-        """Its numbers; where a text is blank, NaN, and the row isn't complete. Raises ValueError."""
-        try:
-            return np.fromiter(map(float, texts), float, len(texts))
-        except ValueError:
-            numbers = [self._plain(text) or "nan" for text in texts]
-        complete &= np.array([bool(self._plain(text)) for text in texts])
-        return np.fromiter(map(float, numbers), float, len(texts))
+    def _numbers(self, lines: list[str], first: int, where: list[int]) -> Floats:
+        """Numbers of complete rows; first: the number of the first line in the file."""
+        rows = [line for line in lines if not line.isspace()]
+        widths = {len(line.split(self._delimiter)) for line in rows}
+        if widths == {len(self.names)} and all(map(str.isascii, rows)):
+            if self._delimiter != ",":
+                rows = [line.replace(",", ".") for line in rows]
+            with suppress(ValueError):  # an empty field, or none of a number
+                mark = self._delimiter
+                numbers = np.loadtxt(rows, delimiter=mark, usecols=where, comments=None, ndmin=2)
+                if np.isfinite(numbers).all():
+                    return numbers
+        found = [self._row(text, n, where) for n, text in enumerate(lines, first) if text.strip()]
+        complete = [row for row in found if None not in row]
+        self.incomplete += len(found) - len(complete)
+        return np.array(complete, dtype=float).reshape(-1, len(where))
 
-    def _plain(self, text: str) -> str:
-        """A field without blanks around it, and with a point."""
+    def _row(self, text: str, line: int, where: list[int]) -> list[float | None]:
+        """Numbers of a line; None: its field is empty."""
+        fields, expected = self._fields(text), len(self.names)
+        if len(fields) < expected or "".join(fields[expected:]).strip():
+            raise BagError(
+                f"{self.path}:{line}: expected {counted(expected, 'column')}, as the header has, got "
+                f"{len(fields)}; is the file cut off?"
+            )
+        return [self._number(fields[column], line, column) for column in where]
+
+    def _number(self, text: str, line: int, column: int) -> float | None:
         text = text.strip(ASCII_SPACE)
-        return text if self._delimiter == "," else text.replace(",", ".")
-
-    def _wrong_length(self, lines: list[str], first: int) -> BagError:
-        line, got = next(
-            (line, count)
-            for line, text in enumerate(lines, first)
-            if (count := len(text.split(self._delimiter))) != len(self.names) and text.strip()
-        )
-        return BagError(
-            f"{self.path}:{line}: expected {counted(len(self.names), 'column')}, as the header has, got "
-            f"{got}; is the file cut off?"
-        )
-
-    def _no_number(
-        self, lines: list[str], first: int, where: list[int], limits: Floats
-    ) -> BagError:
-        for line, text in enumerate(lines, first):
-            if text.isspace():
-                continue
-            fields = text.split(self._delimiter)
-            for column, largest in sorted(zip(where, limits, strict=True)):
-                got = self._plain(fields[column])
-                if not got:
-                    continue
-                if not _is_number(got):
-                    return self._bad_field(line, column, f"a number, got {shown(got)}")
-                if not np.isfinite(float(got)):
-                    return self._bad_field(line, column, f"a finite number, got {shown(got)}")
-                if abs(float(got)) > largest:
-                    expected = f"a number of a motion, in SI units, of at most {largest:g}"
-                    return self._bad_field(line, column, f"{expected}, got {shown(got)}")
-        raise AssertionError("no field is bad")
-
-    def _bad_field(self, line: int, column: int, text: str) -> BagError:
-        return BagError(
-            f"{self.path}:{line}: column {column + 1} ({harmless(self.names[column])}): expected {text}"
+        if text.lower() in ("", "nan"):
+            return None
+        finite = " finite" if NOT_FINITE.fullmatch(text) else ""
+        with suppress(ValueError):
+            number = decimal(text.replace(",", "."))
+            if np.isfinite(number):
+                return number
+            finite = " finite"
+        raise BagError(
+            f"{self.path}:{line}: column {column + 1} ({harmless(self.names[column])}): expected a{finite} "
+            f"number, got {shown(text)}"
         )
 
     def _unreadable(self, error: Exception) -> BagError:
@@ -199,36 +191,26 @@ class CsvTable:
                 "rosbag2 recording"
             )
         why = "it isn't text in UTF-8"
-        if isinstance(error, OSError):
-            why = error.strerror or str(error)
+        if not isinstance(error, UnicodeDecodeError):
+            why = getattr(error, "strerror", None) or str(error)
         return BagError(f"{self.path}: can't be read ({why}); expected a table of numbers in text")
 
 
-def _first_line(file: TextIO) -> tuple[int, str]:
-    """Number and text of the first line that isn't blank; "" if there is none."""
-    number = 0
-    while text := file.readline(_LONGEST_HEADER):
-        number += 1
-        if not text.isspace():
-            return number, text.strip()
-    return number, ""
-
-
-def _delimiter(header: str) -> str | None:
+def _delimiter(line: str) -> str | None:
     """None: any spaces."""
-    best = max((",", ";", "\t"), key=header.count)
-    return best if best in header else None
+    spaced = line.replace(",", ".").split()
+    if len(spaced) > 1 and _numbers_in(spaced) == len(spaced):  # `0,01 1,5`
+        return None
+    return next((mark for mark in (";", "\t", ",") if mark in line), None)
+
+
+def _numbers_in(fields: Sequence[str]) -> int:
+    return sum(map(_is_number, fields))
 
 
 def _is_number(text: str) -> bool:
     try:
-        decimal(text)
+        decimal(text.strip().replace(",", "."))
     except ValueError:
-        return NOT_FINITE.fullmatch(text) is not None
+        return NOT_FINITE.fullmatch(text.strip()) is not None
     return True
-
-
-def _refuse_other_notations(texts: str) -> None:
-    """Raise ValueError for what float() takes beyond ASCII decimals: `1_0`, digits of other scripts."""
-    if "_" in texts or not texts.isascii():
-        raise ValueError("not all of them are decimal numbers")

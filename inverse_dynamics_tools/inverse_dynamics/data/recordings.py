@@ -4,19 +4,21 @@
     log = read_recording("recording", ["joint_1", "joint_2"])
 
 rosbag2 recordings of sensor_msgs/JointState (bags.py) or trajectory_msgs/JointTrajectory
-(joint_trajectories.py), ROS 1 recordings (ros1_bags.py), and tables: .csv, .tsv,
-.txt, .parquet, .npz, .mat (table_logs.py).
+(joint_trajectories.py), ROS 1 recordings (ros1_bags.py), and tables: .csv, .tsv, .txt, .parquet, .npz,
+.npy, .mat, data sets of LeRobot, arrays by name (table_logs.py).
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.data import bags, joint_trajectories
+from inverse_dynamics.data.columns import ACCELERATION, EFFORT, POSITION, VELOCITY
 from inverse_dynamics.data.joint_log import JointLog, check_clock
 from inverse_dynamics.data.ros1_bags import is_ros1_bag, read_ros1_log
 from inverse_dynamics.data.table_logs import (
@@ -27,19 +29,28 @@ from inverse_dynamics.data.table_logs import (
     read_named_positions,
     read_table_log,
 )
+from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Clock
 
 _PUBLISHED_BY = 1000  # messages: a joint that none of them has isn't published
+_PANDAS_READS = {  # what isn't read here, by the function that reads it
+    ".xlsx": "read_excel",
+    ".json": "read_json",
+    ".pkl": "read_pickle",
+    ".h5": "read_hdf",
+    ".hdf5": "read_hdf",
+    ".feather": "read_feather",
+}
 
 
 def read_recording(
-    path: Path | str,
+    path: Path | str | Mapping[str, Any],
     joints: Sequence[str] = (),
     *,
     topic: str = "",
@@ -50,10 +61,10 @@ def read_recording(
 ) -> JointLog:
     """Samples of a motion: time, positions, velocities, efforts, accelerations where there are any.
 
-    path: a table (.csv, .tsv, .txt, .parquet, .npz, .mat), else a rosbag2 recording. joints: names, in the
-    order wanted; none: those of the recording. topic, of a bag; none: usual_topic if it is there, else
-    the only one of joint states, else the only one of trajectories if there are no joint states. clock:
-    which stamp of messages is the time. form: what the names of a table's columns don't say.
+    path: a table (.csv, .tsv, .txt, .parquet, .npz, .npy, .mat), arrays by name, else a recording of ROS.
+    joints: names, in the order wanted; none: those of the recording. topic, of a bag; none: usual_topic if
+    it is there, else the only one of joint states, else the only one of trajectories if there are no joint
+    states. clock: which stamp of messages is the time. form: what names don't say.
 
     Raises BagError.
     """
@@ -68,11 +79,12 @@ def read_recording(
     )
     if isinstance(motion, JointLog):
         return motion
+    assert isinstance(path, (str, Path))
     return bags.read_joint_log(path, joints, topic=motion.topic, clock=clock, progress=progress)
 
 
 def open_motion(
-    path: Path | str,
+    path: Path | str | Mapping[str, Any],
     joints: Sequence[str],
     *,
     topic: str,
@@ -83,29 +95,54 @@ def open_motion(
 ) -> JointLog | bags.JointStateTopic:
     """The samples, but for those of joint states, which may be too many for the memory.
 
-    The arguments are those of read_recording().
+    The arguments are those of read_recording(). Joint states that a scale or a sign is stated for are read.
     """
-    path = path if isinstance(path, Path) else Path(path)
+    path = Path(path) if isinstance(path, str) else path
     check_clock(clock)
     if is_table(path):
         table = open_table(path, topic=topic, clock=clock)
         return read_table_log(table, joints, form, progress=progress)
+    assert isinstance(path, Path)
     if is_ros1_bag(path):
-        return read_ros1_log(path, joints, topic=topic, clock=clock, progress=progress)
+        return read_ros1_log(path, joints, topic=topic, clock=clock, form=form, progress=progress)
+    if (reader := _PANDAS_READS.get(path.suffix.lower())) and path.is_file():
+        raise BagError(
+            f"{path}: expected a recording of ROS or a table, got {path.suffix}; convert it: python -c "
+            f"\"import pandas; pandas.{reader}('{path}').to_csv('{path.stem}.csv', index=False)\""
+        )
     recording = bags.open_recording(path)
     topics = bags.topics_of(recording)
     types = {t.name: t.message_type for t in topics if t.message_count or t.name == topic}
     types = types or {t.name: t.message_type for t in topics}
     if not topic:
         topic = _topic(types, usual_topic)
-    if types.get(topic) != joint_trajectories.MESSAGE_TYPE:
+    if types.get(topic) == joint_trajectories.MESSAGE_TYPE:
+        trajectories = joint_trajectories.read_joint_trajectories(path, topic, progress)
+        log = joint_trajectories.joint_log_of(trajectories, joints, clock, topic, recording.storage)
+    elif form.scale or form.sign:
+        log = bags.read_joint_log(path, joints, topic=topic, clock=clock, progress=progress)
+    else:
         return bags.open_joint_states(path, topic)
-    trajectories = joint_trajectories.read_joint_trajectories(path, topic, progress)
-    return joint_trajectories.joint_log_of(trajectories, joints, clock, topic, recording.storage)
+    return _scaled(log, form, f"{path}")
+
+
+def _scaled(log: JointLog, form: LogFormat, where: str) -> JointLog:
+    """The log with what is stated: other units, other signs. Raises BagError."""
+    numbers = {POSITION: log.q, VELOCITY: log.qd, EFFORT: log.effort}
+    if log.qdd is not None:
+        numbers[ACCELERATION] = log.qdd
+    numbers = form.scaled(numbers, {}, len(log.joint_names), where)
+    return replace(
+        log,
+        q=numbers[POSITION],
+        qd=numbers[VELOCITY],
+        effort=numbers[EFFORT],
+        qdd=numbers.get(ACCELERATION),
+    )
 
 
 def position_ranges(
-    path: Path | str,
+    path: Path | str | Mapping[str, Any],
     joints: Sequence[str],
     *,
     turning: Sequence[str] = (),
@@ -119,7 +156,7 @@ def position_ranges(
     Positions that aren't finite are left out. topic, usual_topic: as for read_recording(). Of joint states
     only. Raises BagError.
     """
-    path = path if isinstance(path, Path) else Path(path)
+    path = Path(path) if isinstance(path, str) else path
     found: dict[str, tuple[float, float, float]] = {}
     first: dict[str, float] = {}
     counts: dict[str, int] = {}
@@ -141,7 +178,11 @@ def position_ranges(
 
 
 def _positions(
-    path: Path, joints: Sequence[str], topic: str, usual_topic: str, form: LogFormat
+    path: Path | Mapping[str, Any],
+    joints: Sequence[str],
+    topic: str,
+    usual_topic: str,
+    form: LogFormat,
 ) -> Iterator[tuple[tuple[str, ...], Floats]]:
     """Names, and positions of them in some messages, until it shows that none is of the joints."""
     if is_table(path):
@@ -149,9 +190,13 @@ def _positions(
         if found:
             yield tuple(found), np.column_stack([*found.values()])
         return
+    assert isinstance(path, Path)
+    factors = form.factors(f"{path}").get(POSITION, np.ones(1))
+    if len(factors) > 1:  # of the chain's joints
+        return
     if is_ros1_bag(path):
         log = read_ros1_log(path, topic=topic)
-        yield log.joint_names, log.q
+        yield log.joint_names, factors * log.q
         return
     motion = open_motion(
         path,
@@ -159,16 +204,16 @@ def _positions(
         topic=topic,
         usual_topic=usual_topic,
         clock="auto",
-        form=form,
+        form=PLAIN,
         progress=no_progress,
     )
-    messages, published = 0, False
     if isinstance(motion, JointLog):
         return
+    messages, published = 0, False
     for block in motion.recording.joint_states(motion.topic):
         names, positions = block[0], block[4]
         if positions.shape[1:] == (len(names),):
-            yield names, positions
+            yield names, factors * positions
         messages += len(positions)
         published = published or not set(joints).isdisjoint(names)
         if messages > _PUBLISHED_BY and not published:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Recorded motions in tables: text files, Parquet, .npz, .mat.
+"""Recorded motions in tables: text files, Parquet, .npz, .npy, .mat.
 
-    log = read_table_log(open_table([Path("motion.csv")]), ["shoulder", "elbow"])
+    log = read_table_log(open_table(Path("motion.csv")), ["shoulder", "elbow"])
 
 columns.py finds out which column is what. Time in s; rad, rad/s, N m, rad/s^2 (prismatic m, m/s, N,
 m/s^2); motor currents in A in place of the efforts. LogFormat states what the file doesn't: other
@@ -21,7 +21,7 @@ import numpy as np
 from inverse_dynamics.base.decimals import LARGEST, decimal
 from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.base.wording import counted, listed, shown
-from inverse_dynamics.data.array_files import is_array_file, open_arrays
+from inverse_dynamics.data.array_files import ArrayTable, is_array_file, open_arrays
 from inverse_dynamics.data.columns import (
     ACCELERATION,
     CURRENT,
@@ -43,7 +43,7 @@ from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import BagError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from inverse_dynamics.base.arrays import Floats, Integers
     from inverse_dynamics.base.progress import Progress
@@ -52,6 +52,7 @@ if TYPE_CHECKING:
 _LONGEST_PERIOD = 0.5  # s: no recording of a motion is as slow
 _BETWEEN_RUNS, _PERIODS_BETWEEN_RUNS = 1.0, 50.0  # s; what the time base takes for a gap
 _UNITS_OF_TIME = ((5e5, "ns"), (5e2, "us"), (0.0, "ms"))
+_MOTION = (POSITION, VELOCITY, ACCELERATION)
 _NEEDED_FOR = {
     POSITION: "torques depend on them",
     VELOCITY: "torques depend on them",
@@ -66,19 +67,15 @@ class Table(Protocol):
 
     path: Path
     names: tuple[str, ...]
+    incomplete: int  # rows left out by the last read(): a number was missing
 
-    def read(
-        self,
-        columns: Sequence[str],
-        largest: Sequence[float] | None = None,
-        progress: Progress = no_progress,
-    ) -> Floats:
-        """(N, columns) numbers."""
+    def read(self, columns: Sequence[str], progress: Progress = no_progress) -> Floats:
+        """(N, columns) numbers, all of them finite."""
 
 
 @dataclass(frozen=True)
 class LogFormat:
-    """What a table's names don't say. Empty: nothing.
+    """What a recording's names don't say. Empty: nothing.
 
     columns: see match_columns(). scale: texts `KEY=FACTOR` or `KEY=FACTOR,FACTOR,...`, one for each joint:
     what the quantity's numbers are multiplied by, a number or one of UNITS. sign: of each joint, 1 or -1;
@@ -95,8 +92,62 @@ class LogFormat:
         """What a run configuration states."""
         return LogFormat(robot.columns, robot.scale, robot.sign, robot.rate)
 
+    def factors(self, where: str) -> dict[str, Floats]:
+        """What `scale` states, by quantity. Raises BagError."""
+        found = {}
+        for text in self.scale:
+            key, _, factors = text.partition("=")
+            kind = quantity_named(key.strip(), f"{where}: scale")
+            found[kind] = np.array([_factor(factor, where) for factor in factors.split(",")])
+        return found
+
+    def scaled(
+        self, numbers: Mapping[str, Floats], units: Mapping[str, str], joints: int, where: str
+    ) -> dict[str, Floats]:
+        """Numbers (N, joints) by quantity in SI units. units: those that are known. Raises BagError."""
+        stated = self.factors(where)
+        if others := [kind for kind in stated if kind not in numbers]:
+            raise BagError(
+                f"{where}: scale: expected one of {listed([*numbers])}, which the file has, got "
+                f"{listed(others)}"
+            )
+        for kind, unit in units.items():
+            if kind not in stated and unit not in UNITS:
+                raise BagError(
+                    f"{where}: {kind}: expected a known unit, got {unit}: what is one in SI units? State "
+                    f"--scale {kind}=FACTOR, or one factor for each joint"
+                )
+        if self.sign and (len(self.sign) != joints or {*self.sign} - {1.0, -1.0}):
+            raise BagError(
+                f"{where}: sign: expected 1 or -1 for each of {counted(joints, 'joint')}, got "
+                f"{listed([f'{sign:g}' for sign in self.sign], 20)}"
+            )
+        scaled = {}
+        for kind, columns in numbers.items():
+            factors = stated.get(kind, np.array([UNITS.get(units.get(kind, ""), 1.0)]))
+            if len(factors) not in (1, columns.shape[1]):
+                raise BagError(
+                    f"{where}: scale: {kind}: expected 1 or {counted(columns.shape[1], 'number')}, got "
+                    f"{len(factors)}"
+                )
+            signs = np.array(self.sign) if self.sign and kind != TIME else 1.0
+            scaled[kind] = columns * (factors * signs)
+        return scaled
+
 
 PLAIN = LogFormat()
+
+
+def _factor(text: str, where: str) -> float:
+    try:
+        factor = UNITS.get(text.strip().lower()) or decimal(text)
+    except ValueError:
+        factor = math.nan
+    if not math.isfinite(factor) or factor == 0:
+        raise BagError(
+            f"{where}: scale: expected a number other than 0 or one of {', '.join(UNITS)}, got {shown(text)}"
+        )
+    return factor
 
 
 @dataclass(frozen=True)
@@ -118,6 +169,7 @@ class JoinedTable:
 
     def __init__(self, path: Path, tables: Sequence[Table]) -> None:
         self.path = path
+        self.incomplete = 0
         self._tables = tables
         self._times = [next(iter(time_columns(t.names)), "") for t in tables]
         self._origin = {
@@ -128,56 +180,61 @@ class JoinedTable:
         }
         self.names = tuple(self._origin)
 
-    def read(
-        self,
-        columns: Sequence[str],
-        largest: Sequence[float] | None = None,
-        progress: Progress = no_progress,
-    ) -> Floats:
+    def read(self, columns: Sequence[str], progress: Progress = no_progress) -> Floats:
         """(N, columns) numbers."""
-        limits = dict(zip(columns, largest or [math.inf] * len(columns), strict=True))
         found: dict[str, Floats] = {}
-        first: Floats | None = None
-        count = 0
+        times: Floats | None = None
+        count: int | None = None
+        self.incomplete = 0
         for k, (table, time) in enumerate(zip(self._tables, self._times, strict=True)):
             chosen = [name for name in columns if self._origin[name][0] == k]
             names = [self._origin[name][1] for name in chosen] + [time] * bool(time)
-            most = [*(limits[name] for name in chosen), *([math.inf] if time else [])]
-            rows = table.read(names, most, progress)
-            if k == 0:
-                first, count = (rows[:, -1] if time else None), len(rows)
-            elif first is not None and time and not np.array_equal(first, rows[:, -1]):
-                own = rows[:, -1]
-                rows = np.column_stack([np.interp(first, own, column) for column in rows.T])
+            if not names:
+                continue
+            rows = table.read(names, progress)
+            self.incomplete += table.incomplete
+            if count is None:
+                times, count = (rows[:, -1] if time else None), len(rows)
+            elif times is not None and time and not np.array_equal(times, rows[:, -1]):
+                rows = np.column_stack(
+                    [np.interp(times, rows[:, -1], each, np.nan, np.nan) for each in rows.T]
+                )
             elif len(rows) != count:
                 raise BagError(
                     f"{table.path}: expected {counted(count, 'row')}, as {self._tables[0].path} has, or a "
                     f"column of time in both, got {counted(len(rows), 'row')}"
                 )
             found.update(zip(chosen, rows.T, strict=False))
-        return np.column_stack([found[name] for name in columns])
+        joined = np.column_stack([found[name] for name in columns])
+        outside = np.isnan(joined).any(axis=1)
+        self.incomplete += int(outside.sum())
+        return joined[~outside]
 
 
-def is_table(path: Path) -> bool:
-    """Whether the name is that of a file that open_table() reads."""
-    return is_csv(path) or is_array_file(path)
+def is_table(source: Path | Mapping[str, Any]) -> bool:
+    """Whether open_table() reads it: arrays, or the name of such a file."""
+    return not isinstance(source, Path) or is_csv(source) or is_array_file(source)
 
 
-def open_table(path: Path, *, topic: str = "", clock: Clock = "auto") -> Table:
-    """The table of a file, or of several: `q.csv+effort.csv`.
+def open_table(
+    source: Path | Mapping[str, Any], *, topic: str = "", clock: Clock = "auto"
+) -> Table:
+    """The table of a file, of several, `q.csv+effort.csv`, or of arrays by name.
 
     Raises BagError, also where a topic or a clock is asked for: a table has none.
     """
+    if not isinstance(source, Path):
+        return ArrayTable(Path("arrays"), source)
     for option, given in (("topic", topic), ("clock", "" if clock == "auto" else clock)):
         if given:
             raise BagError(
-                f"{path}: --{option} {given}: a table has no {option}s, recordings have; leave it out"
+                f"{source}: --{option} {given}: a table has no {option}s, recordings have; leave it out"
             )
-    if "+" in f"{path}" and not path.exists():
-        return JoinedTable(path, [open_table(Path(part)) for part in f"{path}".split("+")])
-    if is_array_file(path):
-        return open_arrays(path)
-    table = CsvTable(path)
+    if "+" in f"{source}" and not source.exists():
+        return JoinedTable(source, [open_table(Path(part)) for part in f"{source}".split("+")])
+    if is_array_file(source):
+        return open_arrays(source)
+    table = CsvTable(source)
     table.names = _without_fields(table)
     return table
 
@@ -217,15 +274,13 @@ def read_table_log(
 
     Raises BagError.
     """
-    motion = read_motion(table, joints, form, (POSITION, EFFORT), QUANTITIES, progress)
+    motion = read_motion(table, joints, form, (POSITION, EFFORT), progress)
     check_seconds(table, motion.time)
     time, runs = _one_after_another(motion.time)
     stamps: Integers = np.asarray(np.round(time * 1e9), dtype=np.int64)
-    numbers, notes = motion.numbers, (*motion.notes, *runs)
+    numbers = dict(motion.numbers)
+    derived = add_derivatives(time, numbers, (VELOCITY,))
     measured = CURRENT if CURRENT in numbers else EFFORT
-    if VELOCITY not in numbers:
-        numbers[VELOCITY], note = _differentiated(time, numbers[POSITION])
-        notes = (*notes, note)
     return JointLog(
         joint_names=motion.joints,
         header_stamps=stamps,
@@ -236,7 +291,7 @@ def read_table_log(
         qdd=numbers.get(ACCELERATION),
         effort_is=CURRENT if measured == CURRENT else "",
         topic="",
-        notes=notes,
+        notes=(*motion.notes, *runs, *derived),
     )
 
 
@@ -245,36 +300,36 @@ def read_motion(
     joints: Sequence[str],
     form: LogFormat,
     needed: Sequence[str],
-    quantities: Sequence[str],
     progress: Progress = no_progress,
 ) -> Motion:
-    """Numbers in SI units of those quantities that the table has.
+    """Numbers in SI units of the quantities that the table has; of a motion alone unless efforts are needed.
 
     Raises BagError if one that is needed is missing; of EFFORT and CURRENT either will do.
     """
-    matched = match_columns(table.names, joints, form.columns, f"{table.path}", quantities)
+    where = f"{table.path}"
+    form.factors(where)  # a mistake in it comes first
+    wanted = QUANTITIES if EFFORT in needed else _MOTION
+    matched = match_columns(table.names, joints, form.columns, where, wanted)
     _check_found(table, matched, needed, form)
     names = [name for group in matched.columns.values() for name in group]
-    scales = _scales(matched, form, f"{table.path}")
-    limits = [
-        math.inf if kind == TIME or kind in scales else LARGEST
-        for kind, group in matched.columns.items()
-        for _ in group
-    ]
-    rows = table.read(names, limits, progress)
+    rows = table.read(names, progress)
+    notes = _notes(table, matched)
     if len(rows) < 2:
-        raise BagError(f"{table.path}: expected at least 2 rows after the header, got {len(rows)}")
+        left_out = f"; {notes[-1]}" if table.incomplete else ""
+        raise BagError(
+            f"{where}: expected at least 2 rows after the header, got {len(rows)}{left_out}"
+        )
     ends = np.cumsum([len(group) for group in matched.columns.values()])[:-1]
     numbers = dict(zip(matched.columns, np.split(rows, ends, axis=1), strict=True))
-    for kind, factors in scales.items():
-        numbers[kind] = numbers[kind] * factors
-    time = numbers.pop(TIME, None)
-    notes = list(_notes(table, matched))
+    if len(matched.columns.get(TIME, ())) == 2:
+        numbers[TIME] = numbers[TIME] @ [[1.0], [1e-9]]
+    numbers = form.scaled(numbers, matched.units, len(matched.joints), where)
     if form.rate is not None:
-        time = np.arange(len(rows))[:, None] / form.rate
+        numbers[TIME] = np.arange(len(rows))[:, None] / form.rate
         notes.append(f"samples are {form.rate:g} per second, as stated")
-    assert time is not None
-    return Motion(matched.joints, time[:, 0], numbers, tuple(notes))
+    time = numbers.pop(TIME)[:, 0]
+    _check_size(where, matched, numbers)
+    return Motion(matched.joints, time, numbers, tuple(notes))
 
 
 def read_named_positions(table: Table, joints: Sequence[str], form: LogFormat) -> dict[str, Floats]:
@@ -282,13 +337,13 @@ def read_named_positions(table: Table, joints: Sequence[str], form: LogFormat) -
 
     None where the scale is stated joint by joint: it's that of the chain's joints.
     """
-    stated = dict(_stated_scale(text, f"{table.path}") for text in form.scale).get(POSITION, [])
+    stated = form.factors(f"{table.path}").get(POSITION, np.zeros(0))
     columns = named_positions(table.names, joints)
     if not columns or len(stated) > 1:
         return {}
     rows = table.read([name for name, _ in columns.values()])
     return {
-        joint: column * _factor(stated[0] if stated else unit or "1", f"{table.path}")
+        joint: column * (stated[0] if len(stated) else UNITS.get(unit, 1.0))
         for (joint, (_, unit)), column in zip(columns.items(), rows.T, strict=True)
     }
 
@@ -323,51 +378,16 @@ def _check_found(table: Table, matched: Matched, needed: Sequence[str], form: Lo
         )
 
 
-def _scales(matched: Matched, form: LogFormat, where: str) -> dict[str, Floats]:
-    """Factors by quantity, one for each of its columns."""
-    scales: dict[str, Floats] = {}
-    stated = dict(_stated_scale(text, where) for text in form.scale)
-    for kind, columns in matched.columns.items():
-        texts = list(stated.pop(kind, [matched.units[kind]] if kind in matched.units else []))
-        if len(texts) not in (0, 1, len(columns)):
+def _check_size(where: str, matched: Matched, numbers: Mapping[str, Floats]) -> None:
+    """Raise BagError for numbers that no motion has."""
+    for kind, columns in numbers.items():
+        too_large = np.argwhere(np.abs(columns) > LARGEST)
+        if len(too_large):
+            k, j = (int(i) for i in too_large[0])
             raise BagError(
-                f"{where}: scale: {kind}: expected 1 or {counted(len(columns), 'number')}, got {len(texts)}"
+                f"{where}: {matched.columns[kind][j]}: expected numbers of a motion, in SI units, of at most "
+                f"{LARGEST:g}, got {columns[k, j]:g} in row {k + 1}"
             )
-        if texts:
-            scales[kind] = np.array([_factor(text, where) for text in texts])
-    if stated:
-        raise BagError(
-            f"{where}: scale: expected one of {listed([*matched.columns])}, which the file has, got "
-            f"{listed([*stated])}"
-        )
-    if form.sign:
-        signs = np.array(form.sign, float)
-        if signs.shape != (len(matched.joints),) or not (np.abs(signs) == 1.0).all():
-            raise BagError(
-                f"{where}: sign: expected 1 or -1 for each of {counted(len(matched.joints), 'joint')}, got "
-                f"{listed([f'{sign:g}' for sign in signs], 20)}"
-            )
-        for kind in matched.columns:
-            if kind != TIME:
-                scales[kind] = scales.get(kind, np.ones(1)) * signs
-    return scales
-
-
-def _stated_scale(text: str, where: str) -> tuple[str, list[str]]:
-    key, _, factors = text.partition("=")
-    return quantity_named(key.strip(), f"{where}: scale"), factors.split(",")
-
-
-def _factor(text: str, where: str) -> float:
-    try:
-        factor = UNITS.get(str(text).lower()) or decimal(str(text))
-    except ValueError:
-        factor = math.nan
-    if not math.isfinite(factor) or factor == 0:
-        raise BagError(
-            f"{where}: scale: expected a number other than 0 or one of {', '.join(UNITS)}, got {shown(text)}"
-        )
-    return factor
 
 
 def _notes(table: Table, matched: Matched) -> list[str]:
@@ -379,8 +399,8 @@ def _notes(table: Table, matched: Matched) -> list[str]:
         notes.append(f"columns: {matched.text}")
     if others:
         notes.append(f"{counted(len(others), 'column')} left out: {listed(others)}")
-    if incomplete := getattr(table, "incomplete", 0):
-        notes.append(f"{counted(incomplete, 'row')} with an empty field left out")
+    if table.incomplete:
+        notes.append(f"{counted(table.incomplete, 'row')} with an empty field left out")
     return notes
 
 
@@ -414,21 +434,28 @@ def _one_after_another(time: Floats) -> tuple[Floats, list[str]]:
     return time + np.cumsum(shifts), [note]
 
 
-def _differentiated(time: Floats, q: Floats) -> tuple[Floats, str]:
-    """Velocities (N, n) of positions, by the zero-phase low-pass that accelerations get."""
+def add_derivatives(
+    time: Floats, numbers: dict[str, Floats], wanted: Sequence[str]
+) -> tuple[str, ...]:
+    """Add those of VELOCITY, ACCELERATION that are missing: (N, n), by the filter of accelerations."""
+    missing = [kind for kind in wanted if kind not in numbers]
+    if not missing:
+        return ()
     from inverse_dynamics import _core
 
+    q = numbers[POSITION]
     # a continuous joint may be reported within one turn; no arm goes half a turn between samples
     turned = np.where(np.abs(np.diff(q, axis=0, prepend=q[:1])).max(axis=0) < 3 * np.pi, 1.0, 0.0)
     steady = turned * np.unwrap(q, axis=0) + (1.0 - turned) * q
     distinct = np.concatenate([[True], np.diff(time) > 0])
-    raw = np.gradient(steady[distinct], time[distinct], axis=0)
-    _, _, cutoff, frequency = _core.low_pass_accelerations(
-        time[distinct], steady[distinct], raw, np.zeros((0, 0))
-    )
-    qd = _core.low_pass(raw, frequency, cutoff)
-    qd = np.column_stack([np.interp(time, time[distinct], column) for column in qd.T])
-    return qd, (
-        "no velocities: those of the positions are taken, through a zero-phase low-pass of "
-        f"{cutoff:.3g} Hz"
+    at, steady = time[distinct], steady[distinct]
+    raw = np.gradient(steady, at, axis=0) if VELOCITY in missing else numbers[VELOCITY][distinct]
+    qdd, _, cutoff, frequency = _core.low_pass_accelerations(at, steady, raw, np.zeros((0, 0)))
+    found = {VELOCITY: _core.low_pass(raw, frequency, cutoff), ACCELERATION: qdd}
+    for kind in missing:
+        numbers[kind] = np.column_stack([np.interp(time, at, column) for column in found[kind].T])
+    names = {VELOCITY: "velocities", ACCELERATION: "accelerations"}
+    return (
+        f"no {' or '.join(names[kind] for kind in missing)}: those of the positions are taken, through a "
+        f"zero-phase low-pass of {cutoff:.3g} Hz",
     )

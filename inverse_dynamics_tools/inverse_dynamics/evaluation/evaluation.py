@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 from inverse_dynamics._core import Accelerations, Effort, JointError, joint_errors
 from inverse_dynamics.base.arguments import checked
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.data.array_files import Arrays
 from inverse_dynamics.data.joint_log import JointLog, check_clock
 from inverse_dynamics.data.recordings import open_motion
 from inverse_dynamics.data.table_logs import LogFormat
@@ -150,16 +149,17 @@ def evaluate(
         sign=sign,
         rate=rate,
     )
-    bag = Path(bag) if isinstance(bag, str) else bag if isinstance(bag, Path) else Arrays.of(bag)
+    source = Path(bag) if isinstance(bag, str) else bag
+    bag = source if isinstance(source, Path) else Path("arrays")
     window = TimeWindow(start, end)
 
     arm = Arm(robot)
-    posture = posture_of(bag, robot, arm.description, arm.joint_names, topic=topic)
+    posture = posture_of(source, robot, arm.description, arm.joint_names, topic=topic)
     if posture.parameters:
         robot = replace(robot, parameters={**robot.parameters, **posture.parameters})
         arm = Arm(robot)
     motion = open_motion(
-        bag,
+        source,
         arm.recorded_names,
         topic=topic or "",
         usual_topic=robot.topic,

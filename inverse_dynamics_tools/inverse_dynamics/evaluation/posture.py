@@ -20,8 +20,9 @@ from inverse_dynamics.robot.descriptions import carried_joints
 from inverse_dynamics.robot.solvers import brings_own_model
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
+    from typing import Any
 
     from inverse_dynamics.base.arrays import Parameter
     from inverse_dynamics.robot.robots import Robot
@@ -52,7 +53,7 @@ def locked_joints(robot: Robot) -> dict[str, float]:
 
 
 def posture_of(
-    bag: Path,
+    bag: Path | Mapping[str, Any],
     robot: Robot,
     description: str,
     joint_names: Sequence[str],

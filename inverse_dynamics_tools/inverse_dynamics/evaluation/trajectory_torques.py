@@ -18,11 +18,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inverse_dynamics.base.progress import no_progress
+from inverse_dynamics.base.wording import counted
 from inverse_dynamics.data.columns import ACCELERATION, POSITION, VELOCITY
 from inverse_dynamics.data.csv_table import is_csv
 from inverse_dynamics.data.joint_trajectories import JointTrajectory, read_joint_trajectories
 from inverse_dynamics.data.table_logs import (
     LogFormat,
+    add_derivatives,
     check_seconds,
     open_table,
     read_motion,
@@ -122,9 +124,11 @@ def trajectory_torques(
     arm = Arm(robot)
     solver, joints = arm.solver, arm.recorded_names
     trajectories: list[JointTrajectory] = []
+    notes: tuple[str, ...] = ()
     if is_csv(path):
         table = open_table(path, topic=topic)
-        states = [_states_of_table(table, joints, LogFormat.of(robot), progress)]
+        state, notes = _states_of_table(table, joints, LogFormat.of(robot), progress)
+        states = [state]
     else:
         trajectories = read_joint_trajectories(path, topic, progress)
         states = [_states_of_message(trajectory, joints) for trajectory in trajectories]
@@ -147,19 +151,27 @@ def trajectory_torques(
         torques=tuple(torques),
         trajectories=tuple(trajectories),
         topic=trajectories[0].topic if trajectories else "",
-        notes=tuple(solver.warnings),
+        notes=(*notes, *solver.warnings),
     )
 
 
 def _states_of_table(
     table: Table, joints: Sequence[str], form: LogFormat, progress: Progress
-) -> tuple[Floats, list[Floats]]:
-    kinds = (POSITION, VELOCITY, ACCELERATION)
-    motion = read_motion(table, joints, form, kinds, kinds, progress)
-    states = [motion.numbers[kind] for kind in kinds]
+) -> tuple[tuple[Floats, list[Floats]], tuple[str, ...]]:
+    motion = read_motion(table, joints, form, (POSITION,), progress)
+    if table.incomplete:
+        raise BagError(
+            f"{table.path}: expected a number in every field, got {counted(table.incomplete, 'row')} with "
+            "an empty one; fill it in, or leave out the row"
+        )
+    kinds, numbers = (VELOCITY, ACCELERATION), dict(motion.numbers)
+    if not numbers.keys() >= {*kinds}:  # between points far apart, positions don't tell the motion
+        check_seconds(table, motion.time)
+    notes = add_derivatives(motion.time, numbers, kinds)
+    states = [numbers[kind] for kind in (POSITION, *kinds)]
     if _much_faster_than_it_moves(motion.time, *states[:2]):
         check_seconds(table, motion.time)
-    return motion.time, states
+    return (motion.time, states), notes
 
 
 def _much_faster_than_it_moves(time: Floats, q: Floats, qd: Floats) -> bool:
