@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.verbs.options import Options
     from inverse_dynamics_benchmarks import Measurement
 
-SUMMARY = "how fast this machine is, beside KDL, Pinocchio and MuJoCo"
+SUMMARY = "measure this machine beside KDL, Pinocchio and MuJoCo"
 DESCRIPTION = "Time this library, KDL, Pinocchio and MuJoCo on this machine."
 EPILOG = """\
 examples:

@@ -44,7 +44,7 @@ VERBS = tuple(verb for group in GROUPS.values() for verb in group)
 
 # Packages that are built on request: their modules `verb` are verbs too, where they are built.
 BUILT_ON_REQUEST = {"bench": "inverse_dynamics_benchmarks"}
-_SHORT_EXAMPLES = 2  # in `-h`
+_SCREEN = 22  # lines of `-h`
 
 _EPILOG = """\
 start here:
@@ -53,7 +53,7 @@ start here:
   ids robots                                     list the robots
   ids simulate --robot ur10_simulated --out BAG  record a simulated robot
   ids evaluate RECORDING --robot ur10_real       computed against measured torques: table and plots
-  ids VERB -h, ids VERB --help                   a verb on one screen, and all of it
+  ids VERB -h, ids VERB --help                   a verb on one screen, all of it
 
 Outputs are written whole or not at all. Exit status: 0 done, 2 something to
 correct, 3 some of several recordings failed, 1 an unexpected error, 128 + N
@@ -78,22 +78,29 @@ class _Version(argparse.Action):
 
 
 class _ShortHelp(argparse.Action):
-    """-h: a verb on one screen."""
+    """-h: a verb on one screen, with as many examples as fit, or the verbs."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
-        actions = [a for a in parser._actions if a.help is not argparse.SUPPRESS]
-        positional = " ".join(f"{a.metavar or a.dest}" for a in actions if not a.option_strings)
-        usage = " ".join(filter(None, (f"usage: {parser.prog}", positional, "[options]")))
-        lines = [usage, "", parser.description or "", ""]
-        examples = re.split(r"\n\n", (parser.epilog or "").partition("examples:\n")[2])
-        lines += [*examples[:_SHORT_EXAMPLES], ""]
-        for group in parser._action_groups:
-            options = [_usage(a) for a in group._group_actions if a.option_strings]
-            if options:
-                lines += [f"{group.title}:", f"  {', '.join(options)}"]
-        lines += ["", f"All of it: {parser.prog} --help"]
-        print("\n".join(wrapped("\n".join(lines), terminal_width())))
+        examples = re.split(r"\n\n", (parser.epilog or "").partition("examples:\n")[2])[:2]
+        lines = _short_help(parser, examples)
+        while examples and len(lines) > _SCREEN:
+            examples.pop()
+            lines = _short_help(parser, examples)
+        print("\n".join(lines))
         parser.exit()
+
+
+def _short_help(parser: argparse.ArgumentParser, examples: list[str]) -> list[str]:
+    actions = [a for a in parser._actions if a.help is not argparse.SUPPRESS]
+    positional = " ".join(f"{a.metavar or a.dest}" for a in actions if not a.option_strings)
+    usage = parser.usage or " ".join(filter(None, (parser.prog, positional, "[options]")))
+    lines = [f"usage: {usage}", "", parser.description or "", "", *examples]
+    for group in parser._action_groups:
+        options = [_usage(a) for a in group._group_actions if a.option_strings]
+        if options:
+            lines += [f"{group.title}:", f"  {', '.join(options)}"]
+    lines.append(f"all of it: {parser.prog} --help")
+    return wrapped("\n".join(lines), terminal_width())
 
 
 def _usage(action: argparse.Action) -> str:
@@ -145,7 +152,9 @@ def make_parser() -> argparse.ArgumentParser:
         description="Inverse dynamics of robot arms: which joint torques belong to this motion?",
         epilog=_EPILOG,
         formatter_class=HelpFormatter,
+        add_help=False,
     )
+    _add_help(parser, "show the verbs")
     parser.add_argument(
         "-V", "--version", action=_Version, nargs=0, help="show the version and exit"
     )
@@ -155,15 +164,21 @@ def make_parser() -> argparse.ArgumentParser:
     built = {v: package for v, package in BUILT_ON_REQUEST.items() if find_spec(package)}
     rows = []
     for group, verbs in GROUPS.items():
-        rows.append(f"\n{group}:")
+        title = group
         for verb in (*verbs, *(built if group == "share" else ())):
             module = import_module(
                 f"{built[verb]}.verb" if verb in built else f"inverse_dynamics.verbs.{verb}"
             )
             _add_verb(subparsers, verb, module)
-            rows.append(f"  {verb:<11} {module.SUMMARY}")
-    parser.description = "\n".join((parser.description or "", *rows))
+            rows.append(f"{title:<9} {verb:<10}  {module.SUMMARY}")
+            title = ""
+    parser.description = "\n".join((parser.description or "", "", *rows))
     return parser
+
+
+def _add_help(parser: argparse.ArgumentParser, short: str) -> None:
+    parser.add_argument("-h", action=_ShortHelp, nargs=0, help=short)
+    parser.add_argument("--help", action="help", help="show all of this")
 
 
 def _add_verb(subparsers: Any, verb: str, module: Any) -> None:
@@ -176,8 +191,7 @@ def _add_verb(subparsers: Any, verb: str, module: Any) -> None:
         formatter_class=HelpFormatter,
         add_help=False,
     )
-    parser.add_argument("-h", action=_ShortHelp, nargs=0, help="show this verb on one screen")
-    parser.add_argument("--help", action="help", help="show all of this")
+    _add_help(parser, "show this verb on one screen")
     module.declare(Options(parser))
     parser.set_defaults(run=module.run, parser=parser, verb=verb)
 

@@ -9,6 +9,7 @@ import pytest
 from inverse_dynamics import FastModel, load_robot
 from inverse_dynamics.errors import RobotError
 from inverse_dynamics.robot.descriptions import read_description
+from inverse_dynamics.robot.dh_tables import guess_notes
 
 # Published by the makers: Universal Robots, "DH parameters", and Franka, "Robot and interface
 # specifications".
@@ -79,8 +80,21 @@ def test_limits_and_names_are_those_of_the_table(tmp_path):
         (UR10.replace("a: -0.612", "a: long"), "arm.yaml:5: joints[1].a: expected a number"),
         (UR10.replace("theta", "thetta"), "arm.yaml:9: joints[5].thetta"),
         ("convention: standard\njoints: []\n", "arm.yaml: joints: expected one or more, got none"),
+        (UR10.replace("d: 0.1273", "d: 0, mass: 7") + "mass: 6\n", "arm.yaml: mass: expected more"),
     ],
 )
 def test_what_is_wrong_with_a_table_is_said(tmp_path, text, expected):
     with pytest.raises(RobotError, match=re.escape(expected)):
         model_of(tmp_path, text)
+
+
+def test_masses_that_are_not_stated_are_parts_of_the_arms_mass_and_said_to_be_guesses(tmp_path):
+    file = tmp_path / "arm.yaml"
+    file.write_text(UR10)
+    assert read_description(file).count('<mass value="2.0"/>') == 6
+    assert "mass of link1, link2, link3, link4, link5, link6: 2 kg each" in guess_notes(file)[0]
+    file.write_text(UR10.replace("d: 0.1273", "d: 0.1273, mass: 7.5") + "mass: 30\n")
+    assert read_description(file).count('<mass value="4.5"/>') == 5
+    assert "mass of link2, link3, link4, link5, link6: 4.5 kg each" in guess_notes(file)[0]
+    file.write_text(UR10.replace("alpha", "mass: 1, alpha"))
+    assert guess_notes(file) == []

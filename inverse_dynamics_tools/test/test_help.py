@@ -20,13 +20,14 @@ def test_help_has_an_example_and_fits_the_terminal(ids, monkeypatch, verb):
     assert [line for line in out.splitlines() if len(line) > 80] == []
 
 
-@pytest.mark.parametrize("verb", cli.VERBS)
+@pytest.mark.parametrize("verb", [(), *((verb,) for verb in cli.VERBS)])
 def test_short_help_fits_one_screen(ids, monkeypatch, verb):
     monkeypatch.setenv("COLUMNS", "80")
-    code, out, _ = ids(verb, "-h")
+    code, out, _ = ids(*verb, "-h")
     lines = out.splitlines()
-    assert (code, lines[0][: len(verb) + 11]) == (0, f"usage: ids {verb}")
-    assert len(lines) <= 30
+    assert code == 0
+    assert lines[0].startswith(" ".join(("usage: ids", *verb)))
+    assert len(lines) <= 23  # and the prompt
     assert [line for line in lines if len(line) > 80] == []
     assert "--help" in lines[-1]
 

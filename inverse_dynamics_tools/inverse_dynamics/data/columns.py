@@ -381,6 +381,14 @@ def _first_to_last(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else f"{names[0]} to {names[-1]}"
 
 
+def listed_columns(names: Sequence[str]) -> str:
+    """The columns that there are, for an error: those that differ in a number by the first and the last."""
+    runs: dict[str, list[str]] = defaultdict(list)
+    for name in names:
+        runs[re.sub(r"\d+", "*", name)].append(name)
+    return listed([_first_to_last(run) for run in runs.values()], 40)
+
+
 # ---- what users state ----------------------------------------------------------------------------
 
 
@@ -417,7 +425,7 @@ def _matching(
     if len(chosen) != len(joints):
         raise BagError(
             f"{where}: columns: {pattern}: expected a column for each of the joints {listed(joints, 20)}, got "
-            f"{len(chosen)}: {listed(chosen, 20)}; the file's columns are {listed(names, 40)}"
+            f"{len(chosen)}: {listed(chosen, 20)}; the file's columns are {listed_columns(names)}"
         )
     return tuple(chosen)
 
@@ -438,7 +446,7 @@ def _known(names: Sequence[str], chosen: Sequence[str], where: str, pattern: str
     if unknown or not chosen:
         raise BagError(
             f"{where}: columns: {pattern}: expected columns of the file, got {listed(unknown) or 'none'}; "
-            f"the file has {listed(names, 40)}"
+            f"the file has {listed_columns(names)}"
         )
     if twice := [name for name in chosen if list(names).count(name) > 1]:
         raise BagError(f"{where}: expected each column once, got several named {twice[0]}")

@@ -32,6 +32,7 @@ from inverse_dynamics.data.columns import (
     UNITS,
     VELOCITY,
     Matched,
+    listed_columns,
     match_columns,
     named_positions,
     quantities_named,
@@ -356,7 +357,7 @@ def _check_found(table: Table, matched: Matched, needed: Sequence[str], form: Lo
             f"{table.path}: expected efforts or currents, got both: {found[EFFORT][0]} and "
             f"{found[CURRENT][0]}; state those to compare with: --columns '{EFFORT}=...'"
         )
-    names = listed(table.names, 40)
+    names = listed_columns(table.names)
     of_joints = f" for the joints {listed(matched.joints, 20)}" if matched.joints else ""
     for kind in needed:
         if kind in found or (kind == EFFORT and CURRENT in found):
@@ -398,7 +399,7 @@ def _notes(table: Table, matched: Matched) -> list[str]:
     if not matched.exact:
         notes.append(f"columns: {matched.text}")
     if others:
-        notes.append(f"{counted(len(others), 'column')} left out: {listed(others)}")
+        notes.append(f"{counted(len(others), 'column')} left out: {listed_columns(others)}")
     if table.incomplete:
         notes.append(f"{counted(table.incomplete, 'row')} with an empty field left out")
     return notes

@@ -27,6 +27,7 @@ from inverse_dynamics.evaluation.posture import posture_of
 from inverse_dynamics.evaluation.seen_range import outside_of_seen
 from inverse_dynamics.evaluation.views import Views
 from inverse_dynamics.robot.descriptions import joint_units, read_description
+from inverse_dynamics.robot.dh_tables import guess_notes
 from inverse_dynamics.robot.robots import Robot, load_robot, with_changes
 from inverse_dynamics.robot.solvers import description_notes, open_solver
 
@@ -181,7 +182,8 @@ def evaluate(
         progress=progress,
         scratch="" if scratch is None else scratch,
     )
-    notes = description_notes(robot, "drawing") if urdf is not None else ()
+    notes = [] if robot.urdf is None else guess_notes(robot.urdf)
+    notes += description_notes(robot, "drawing") if urdf is not None else []
     notes = (
         *window.notes,
         *_topic_notes(bag, motion, topic or robot.topic),

@@ -6,12 +6,13 @@
     joints:
       - {a: 0, alpha: 0, d: 0.333}
       - {a: 0, alpha: -90, d: 0, theta: 0, mass: 4, limits: [-100, 100], velocity: 2, effort: 87}
+    mass: 17                    # kg, of the whole arm, if it is known
 
 modified: the frame of joint i is Rx(alpha) Tx(a) Rz(theta + q) Tz(d) of the one before; standard:
 Rz(theta + q) Tz(d) Tx(a) Rx(alpha). `type: prismatic` adds q to d. [Craig, Introduction to robotics, 3.4]
 
-Masses that aren't stated are guesses, 2 kg each, and so are centers of mass, halfway to the next joint, and moments
-of inertia. `ids identify` finds what torques tell of them; torques of the description alone mean nothing.
+Masses that aren't stated are guesses: equal parts of what is left of the arm's mass, else 2 kg each; and so are
+centers of mass, halfway to the next joint, and moments of inertia. `ids identify` finds what torques tell of them.
 """
 
 from __future__ import annotations
@@ -21,11 +22,16 @@ from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
 from inverse_dynamics.base.located_yaml import parse_mapping
+from inverse_dynamics.base.wording import listed
 from inverse_dynamics.errors import RobotError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
     from inverse_dynamics.base.located_yaml import Mapping
 
+SUFFIXES = (".yaml", ".yml")
 GUESSED_MASS = 2.0  # kg, of each link
 _GUESSED_RADIUS = 0.1  # m, of gyration
 
@@ -43,15 +49,16 @@ def urdf_of_dh(text: str, file: str) -> str:
     degrees = table.optional("degrees")
     unit = math.pi / 180 if degrees and degrees.truth() else 1.0
     rows = [entry.mapping() for entry in table.required("joints").entries()]
-    table.reject_others()
     if not rows:
         raise RobotError(f"{file}: joints: expected one or more, got none")
+    guessed = _guessed_mass(table, rows, file)
+    table.reject_others()
     lines = ['<robot name="dh">', '  <link name="base"/>']
     parent = "base"
     for number, row in enumerate(rows, 1):
         a, alpha, d, theta = (_number(row, name) for name in ("a", "alpha", "d", "theta"))
         link, frame = f"link{number}", f"frame{number}"
-        mass = _number(row, "mass", GUESSED_MASS)
+        mass = _number(row, "mass", guessed)
         if modified:
             lines += _fixed(parent, frame, (a, 0.0, 0.0), unit * alpha)
             lines += _joint(row, number, (frame, link), d, unit * theta, unit)
@@ -63,6 +70,32 @@ def urdf_of_dh(text: str, file: str) -> str:
             lines += _fixed(link, frame, (a, 0.0, d), unit * alpha)
             parent = frame
     return "\n".join([*lines, *_fixed(parent, "tip", (0.0, 0.0, 0.0), 0.0), "</robot>"])
+
+
+def guess_notes(file: Path) -> list[str]:
+    """That masses are guesses, if the file is a table that doesn't state them. Raises RobotError."""
+    if file.suffix not in SUFFIXES:
+        return []
+    table = parse_mapping(file.read_text(encoding="utf-8-sig"), f"{file}", RobotError)
+    rows = [entry.mapping() for entry in table.required("joints").entries()]
+    unknown = [f"link{k}" for k, row in enumerate(rows, 1) if row.optional("mass") is None]
+    return [
+        f"{file} doesn't state the mass of {listed(unknown, 20)}: "
+        f"{_guessed_mass(table, rows, f'{file}'):.3g} kg each is a guess, and so are centers of mass and moments "
+        "of inertia; state `mass`, of each link or of the whole arm; `ids identify` finds what a recording tells"
+    ] * bool(unknown)
+
+
+def _guessed_mass(table: Mapping, rows: Sequence[Mapping], file: str) -> float:
+    """kg, of each link whose mass isn't stated. Raises RobotError."""
+    masses = [row.optional("mass") for row in rows]
+    unknown = sum(mass is None for mass in masses)
+    left = _number(table, "mass", math.nan) - sum(mass.number() for mass in masses if mass)
+    if unknown and left <= 0.0:
+        raise RobotError(
+            f"{file}: mass: expected more than the stated links have, got {-left:.3g} kg less"
+        )
+    return left / unknown if unknown and left > 0.0 else GUESSED_MASS
 
 
 def _number(row: Mapping, name: str, absent: float = 0.0) -> float:

@@ -10,7 +10,8 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.verbs.options import Options
 
-SUMMARY = "print the script that completes `ids` commands in bash, zsh or fish"
+SUMMARY = "print the script that completes `ids` commands"
+DESCRIPTION = "Print the script that completes `ids` commands in bash, zsh or fish."
 EPILOG = """\
 examples:
   source <(ids completion bash)   complete in this shell; in ~/.bashrc: in every one

@@ -12,7 +12,8 @@ from inverse_dynamics.verbs.values import file_name, numbers, positive_number, s
 if TYPE_CHECKING:
     import argparse
 
-SUMMARY = "find what touched the robot in a recording, and with which force"
+SUMMARY = "find what touched the robot, and with which force"
+DESCRIPTION = "Find what touched the robot in a recording, and with which force."
 EPILOG = """\
 examples:
   ids contact recording --robot panda_real --quiet 0,60

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
     from inverse_dynamics.verbs.screen import Line
 
-SUMMARY = "fetch the public recordings of a real UR10 and a real Panda"
+SUMMARY = "fetch public recordings of a real UR10 and a real Panda"
+DESCRIPTION = "Fetch the public recordings of a real UR10 and a real Panda."
 EPILOG = """\
 examples:
   ids data --dry-run          what would be fetched, from where, how large

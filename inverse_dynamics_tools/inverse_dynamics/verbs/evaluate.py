@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.robot.robots import Robot
     from inverse_dynamics.verbs.screen import Line
 
-SUMMARY = "compute the torques of a recorded motion and compare them with the measured ones"
+SUMMARY = "compare computed with measured torques of a recording"
+DESCRIPTION = "Compute the torques of a recorded motion and compare them with the measured ones."
 EPILOG = """\
 examples:
   ids evaluate recording --robot ur10_real --out result

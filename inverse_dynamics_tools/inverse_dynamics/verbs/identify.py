@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from inverse_dynamics.robot.robots import Robot
     from inverse_dynamics.verbs.screen import Line
 
-SUMMARY = "identify a model with friction from recordings of a robot, and state its errors"
+SUMMARY = "make a model with friction from recordings"
+DESCRIPTION = "Identify a model with friction from recordings of a robot, and state its errors."
 EPILOG = """\
 examples:
   ids identify recording --robot ur10_real --out arm.yaml
@@ -122,6 +123,7 @@ def _known_payload(text: str) -> tuple[Path, dict[str, Parameter]]:
 
 def run(arguments: argparse.Namespace) -> None:
     """Do it."""
+    from inverse_dynamics.data.table_logs import parts_joined
     from inverse_dynamics.identification.identify import identify
     from inverse_dynamics.results.hold_out import hold_out
     from inverse_dynamics.results.identifications import (
@@ -132,6 +134,7 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.results.urdf_export import mjcf_text, urdf_text
     from inverse_dynamics.verbs.screen import progress_bar, show
 
+    arguments.recordings = parts_joined(arguments.recordings)
     robot = _robot(arguments)
     loads = [recording for recording, _ in arguments.known_payload]
     inputs = (*arguments.recordings, *arguments.hold_out, *loads, *robot.files)

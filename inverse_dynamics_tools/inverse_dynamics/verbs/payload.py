@@ -11,7 +11,8 @@ from inverse_dynamics.verbs.values import file_name
 if TYPE_CHECKING:
     import argparse
 
-SUMMARY = "estimate what the robot carries in a recording: mass, center of mass, inertia"
+SUMMARY = "estimate what the robot carries in a recording"
+DESCRIPTION = "Estimate what the robot carries in a recording: mass, center of mass, inertia."
 EPILOG = """\
 examples:
   ids payload loaded --robot ur10_real --out payload.yaml

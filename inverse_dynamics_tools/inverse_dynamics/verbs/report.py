@@ -12,7 +12,8 @@ from inverse_dynamics.verbs.values import names
 if TYPE_CHECKING:
     import argparse
 
-SUMMARY = "make one HTML page of evaluations: the robot in motion and its torques"
+SUMMARY = "make one page of evaluations: motion and torques"
+DESCRIPTION = "Make one HTML page of evaluations: the robot in motion and its torques."
 EPILOG = """\
 examples:
   ids report result                             report.html of one evaluation
@@ -36,7 +37,7 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.errors import UserError
     from inverse_dynamics.report import report_run, write_page
     from inverse_dynamics.results.evaluations import CONTENTS, read_evaluation
-    from inverse_dynamics.verbs.screen import Screen
+    from inverse_dynamics.verbs.screen import Screen, progress_bar
 
     check_output_file(
         arguments.out, overwrite=arguments.overwrite, inputs=arguments.runs, results=CONTENTS
@@ -44,10 +45,11 @@ def run(arguments: argparse.Namespace) -> None:
     labels = arguments.labels or [""] * len(arguments.runs)
     if len(labels) != len(arguments.runs):
         raise UserError(f"--labels: expected {len(arguments.runs)} names, got {len(labels)}")
-    pages = [
-        report_run(read_evaluation(directory), label)
-        for directory, label in zip(arguments.runs, labels, strict=True)
-    ]
+    pages = []
+    with progress_bar() as progress:
+        for directory, label in zip(arguments.runs, labels, strict=True):
+            progress("drawing", len(pages), len(labels))
+            pages.append(report_run(read_evaluation(directory), label))
     title = arguments.title or f"Measured and computed torques: {', '.join(r.title for r in pages)}"
     write_page(arguments.out, title, pages)
     Screen().print(str(arguments.out))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import sys
+import textwrap
 import time
 from contextlib import contextmanager
 from pathlib import Path
@@ -77,9 +78,18 @@ def show(
         if isinstance(line, tuple):
             key, texts = line
             for text in [texts] if isinstance(texts, (str, Path)) else texts:
-                console.print(f"{key:<14} {text}")
+                console.print(_filled(f"{key:<14} {text}", console))
         else:
             console.print(line)
+
+
+def _filled(text: str, console: Console) -> str:
+    """The text in lines of whole words on a terminal; elsewhere in one."""
+    if not console.is_terminal:
+        return text
+    width, hang = console.width, " " * 15
+    whole = {"break_long_words": False, "break_on_hyphens": False}
+    return textwrap.fill(text, width, subsequent_indent=hang, drop_whitespace=True, **whole)
 
 
 def title(robot: Robot) -> Text:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from inverse_dynamics.simulation import Payload, Resolution, SimulatedRun
     from inverse_dynamics.verbs.screen import Line
 
-SUMMARY = "record a simulated robot (MuJoCo) following an exciting trajectory"
+SUMMARY = "record a simulated robot on an exciting trajectory"
 DESCRIPTION = (
     "Simulate a robot (MuJoCo) under a joint trajectory controller that commands efforts, "
     "while it follows an exciting trajectory, and record its joint states to a bag."

@@ -12,7 +12,8 @@ from inverse_dynamics.verbs.options import SOLVER, TABLE, Options, chosen_robot,
 if TYPE_CHECKING:
     import argparse
 
-SUMMARY = "fill in the efforts of a planned trajectory, and check them against the limits"
+SUMMARY = "fill in the efforts of a planned trajectory"
+DESCRIPTION = "Fill in the efforts of a planned trajectory, and check them against the limits."
 EPILOG = """\
 examples:
   ids torques planned --robot ur10_simulated --out filled
