@@ -26,7 +26,7 @@ from pathlib import Path
 
 import numpy as np
 
-from inverse_dynamics.data.bags import JointLogsWriter
+from inverse_dynamics._core import JointStateWriter
 from inverse_dynamics.evaluation.evaluation import Arm
 from inverse_dynamics.robot.robots import load_robot
 
@@ -43,7 +43,7 @@ def write_recording(path: Path, storage: str, messages: int) -> None:
     names = arm.recorded_names
     random = np.random.default_rng(1)
     frequency = np.linspace(0.11, 0.43, len(names))
-    writer = JointLogsWriter(path, storage, {robot.topic: (names, "base")})
+    writer = JointStateWriter(path, storage, [(robot.topic, list(names), "base")])
     for begin in range(0, messages, BLOCK):
         k = np.arange(begin, min(begin + BLOCK, messages))
         phase = 2 * np.pi * frequency * (k / RATE)[:, None]

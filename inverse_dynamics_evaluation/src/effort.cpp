@@ -36,10 +36,11 @@ Effort withGains(Effort effort, const EffortOptions& options) {
     return effort;
   }
   if (options.drive_gains.empty()) {
-    throw ConfigurationError(
-        options.where + ": effort means current, " + effort.stated_by +
-        ": expected drive gains [N m/A], got none from " + options.gains_from + " nor from " +
-        options.plugin + "; add drive_gains: [...], one per joint, to " + options.configured_by);
+    throw ConfigurationError(options.where + ": effort means current, " + effort.stated_by +
+                             ": expected drive gains [N m/A], got none from " + options.gains_from +
+                             " nor from " + options.plugin +
+                             "; give drive_gains, one per joint, or put them into " +
+                             options.configured_by);
   }
   effort.drive_gains = options.drive_gains;
   return effort;

@@ -175,6 +175,15 @@ def test_a_unit_in_a_heading_is_converted_and_said(file):
     )
 
 
+def test_accelerations_under_another_name_are_taken_where_they_are_stated(file):
+    file.write_text("t,q1,dq1,ddq1,tau1\n0,1,0,2,3\n0.1,1,0,2,3\n")
+    log = read_recording(file, ("a",))
+    assert log.qdd is None
+    assert "accelerations ddq1 to ddq1 aren't taken" in " ".join(log.notes)
+    log = read_recording(file, ("a",), form=LogFormat("qdd=ddq1"))
+    np.testing.assert_array_equal(log.qdd, [[2], [2]])
+
+
 def test_a_unit_that_only_the_owner_knows_is_asked_for(file):
     text = HEADER.replace("effort.a", "torque_a [%]") + ROWS
     fails(file, text, "effort: expected a known unit, got percent: what is one in SI units? State")

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rosbags.rosbag2 import Writer
 
     from inverse_dynamics._core import SampleTable
-    from inverse_dynamics.base.arrays import Floats, Integers
+    from inverse_dynamics.base.arrays import Floats
     from inverse_dynamics.base.progress import Progress
     from inverse_dynamics.data.joint_log import Clock, Storage
 
@@ -59,11 +59,6 @@ def read_topics(path: Path | str) -> list[TopicSummary]:
 def topics_of(recording: Recording) -> list[TopicSummary]:
     """Its topics, by name."""
     return [TopicSummary(*topic) for topic in recording.topics()]
-
-
-def topic_of_type(recording: Recording, message_type: str, topic: str = "") -> str:
-    """The topic; none given: the only one with messages of the type. Raises BagError."""
-    return recording.topic_of_type(message_type, topic)
 
 
 def read_joint_log(
@@ -124,7 +119,7 @@ class JointStateTopic(NamedTuple):
 def open_joint_states(path: Path | str, topic: str = "") -> JointStateTopic:
     """Joint states of a topic; none given: of the only one with any. Raises BagError."""
     recording = open_recording(path)
-    topic = topic_of_type(recording, MESSAGE_TYPE, topic)
+    topic = recording.topic_of_type(MESSAGE_TYPE, topic)
     return JointStateTopic(recording, topic, recording.storage)
 
 
@@ -141,17 +136,20 @@ def write_joint_logs(
 
     Raises BagError if the path exists or can't be written.
     """
+    check_storage(storage)
     logs = list(topics.values())
-    longest = max(map(len, logs), default=0)
-    done = 0
-    about = {topic: (log.joint_names, log.frame_id) for topic, log in topics.items()}
-    writer = JointLogsWriter(path, storage, about)
-    for begin in range(0, longest, _BLOCK):
-        rows = slice(begin, begin + _BLOCK)
-        writer.write([_rows(log, rows) for log in logs])
-        done += sum(len(log.q[rows]) for log in logs)
-        progress("writing the bag", done, sum(map(len, logs)))
-    writer.finish()
+    total, done = sum(map(len, logs)), 0
+    about = [(topic, list(log.joint_names), log.frame_id) for topic, log in topics.items()]
+    with _errors_told(path):
+        writer = JointStateWriter(Path(path), storage, about)
+        for begin in range(0, max(map(len, logs), default=0), _BLOCK):
+            rows = slice(begin, begin + _BLOCK)
+            stamps = [(log.header_stamps[rows], log.receive_stamps[rows]) for log in logs]
+            numbers = [(log.q[rows], log.qd[rows], log.effort[rows]) for log in logs]
+            writer.write([(*s, *n) for s, n in zip(stamps, numbers, strict=True)])
+            done += sum(len(q) for q, *_ in numbers)
+            progress("writing the bag", done, total)
+        writer.finish()
 
 
 def write_torques(
@@ -181,33 +179,6 @@ def write_torques(
         )
 
 
-class JointLogsWriter:
-    """A new recording of joint states, some messages at a time. Raises BagError."""
-
-    def __init__(
-        self,
-        path: Path | str,
-        storage: Storage,
-        topics: Mapping[str, tuple[Sequence[str], str]],
-    ) -> None:
-        """topics: names to joint names and frame."""
-        check_storage(storage)
-        self._path = path
-        about = [(topic, list(names), frame) for topic, (names, frame) in topics.items()]
-        with _errors_told(self._path):
-            self._writer = JointStateWriter(Path(path), storage, about)
-
-    def write(self, rows: Sequence[tuple[Integers, Integers, Floats, Floats, Floats]]) -> None:
-        """The next messages of each topic: header and receive stamps, positions, velocities, efforts."""
-        with _errors_told(self._path):
-            self._writer.write(list(rows))
-
-    def finish(self) -> None:
-        """Write indexes and metadata."""
-        with _errors_told(self._path):
-            self._writer.finish()
-
-
 @contextmanager
 def _errors_told(path: Path | str) -> Iterator[None]:
     try:
@@ -216,16 +187,6 @@ def _errors_told(path: Path | str) -> Iterator[None]:
         raise
     except Exception as error:  # a name that can't be encoded
         raise unwritable(path, error) from error
-
-
-def _rows(log: JointLog, rows: slice) -> tuple[Integers, Integers, Floats, Floats, Floats]:
-    return (
-        log.header_stamps[rows],
-        log.receive_stamps[rows],
-        log.q[rows],
-        log.qd[rows],
-        log.effort[rows],
-    )
 
 
 class _UriPath(type(Path())):  # type: ignore[misc]

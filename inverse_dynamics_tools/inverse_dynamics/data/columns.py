@@ -154,7 +154,7 @@ def match_columns(
     What isn't found is left out; the caller knows what it needs. Raises BagError: a pattern that fits
     nothing, two sets of columns that fit as well, some joints of a quantity missing.
     """
-    given = dict(_stated(stated, where))
+    given = dict(stated_columns(stated, where))
     joints = tuple(joints) or _joints_of(names, given)
     columns: dict[str, tuple[str, ...]] = {}
     units: dict[str, str] = {}
@@ -399,7 +399,7 @@ def quantity_named(key: str, where: str) -> str:
     return _KEYS[key]
 
 
-def _stated(text: str, where: str) -> Iterator[tuple[str, str]]:
+def stated_columns(text: str, where: str) -> Iterator[tuple[str, str]]:
     """Quantities and patterns of `KEY=PATTERN, ...`."""
     for part in filter(None, map(str.strip, text.split(","))):
         key, equals, pattern = map(str.strip, part.partition("="))

@@ -85,7 +85,7 @@ class CsvTable:
             header = self._fields(comments[-1]) if comments else []  # np.savetxt() has it there
             self.unnamed = (
                 "expected a header line that names the columns, got numbers, "
-                f"{counted(len(header), 'column')} beginning with {harmless(', '.join(header[:4]))}"
+                f"{counted(len(rows[0]), 'column')}, {harmless(', '.join(rows[0][:4]))}, ..."
             )
         names = [name.strip() for name in header]
         if len(rows) == 2 and not _numbers_in(rows[0]) and _numbers_in(rows[1]):

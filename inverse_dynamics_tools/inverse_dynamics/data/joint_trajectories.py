@@ -17,7 +17,7 @@ import numpy as np
 from inverse_dynamics.base.decimals import LARGEST
 from inverse_dynamics.base.extras import require
 from inverse_dynamics.base.progress import no_progress
-from inverse_dynamics.data.bags import error_text, open_recording, topic_of_type
+from inverse_dynamics.data.bags import error_text, open_recording
 from inverse_dynamics.data.joint_log import JointLog
 from inverse_dynamics.errors import BagError
 
@@ -97,7 +97,7 @@ def read_joint_trajectories(
 ) -> list[JointTrajectory]:
     """Messages of one topic; none given: of the only one with trajectories. Raises BagError."""
     recording = open_recording(path)
-    topic = topic_of_type(recording, MESSAGE_TYPE, topic)
+    topic = recording.topic_of_type(MESSAGE_TYPE, topic)
     where = f"{path}: {topic}"
     found: list[JointTrajectory] = []
     for _, received, messages in recording.messages(topic):

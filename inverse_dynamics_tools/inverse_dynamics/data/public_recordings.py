@@ -17,9 +17,8 @@ import os
 import shutil
 import urllib.error
 import urllib.request
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from inverse_dynamics.base.ament import DATA_PACKAGE, package_share
 from inverse_dynamics.base.files import Contents, written_whole
@@ -28,7 +27,7 @@ from inverse_dynamics.base.progress import no_progress
 from inverse_dynamics.errors import OutputError, RecordingsError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from inverse_dynamics.base.located_yaml import Mapping
     from inverse_dynamics.base.progress import Progress
@@ -37,21 +36,18 @@ SCHEMA = 1
 METADATA = "metadata.yaml"
 
 _SECONDS = 30.0  # without an answer
-_BLOCK = 65536
 
 
-@dataclass(frozen=True)
-class PublicFile:
+class PublicFile(NamedTuple):
     """One file, and how to know it."""
 
     source: str  # path below PublicRecordings.url
     name: str
-    size: int  # bytes
     sha256: str
+    size: int  # bytes
 
 
-@dataclass(frozen=True)
-class PublicRecording:
+class PublicRecording(NamedTuple):
     """A recording: files that are fetched, and metadata that come with this project."""
 
     name: str
@@ -65,13 +61,12 @@ class PublicRecording:
 
     def is_intact(self, directory: Path) -> bool:
         """Whether a directory holds all its files, as they were published."""
-        files = [(directory / f.name, f.sha256) for f in self.files]
-        files.append((directory / METADATA, _sha256(self.metadata)))
-        return all(file.is_file() and _sha256(file) == expected for file, expected in files)
+        expected = {directory / f.name: f.sha256 for f in self.files}
+        expected[directory / METADATA] = _sha256(self.metadata.read_bytes())
+        return all(f.is_file() and _sha256(f.read_bytes()) == s for f, s in expected.items())
 
 
-@dataclass(frozen=True)
-class PublicRecordings:
+class PublicRecordings(NamedTuple):
     """All public recordings of one commit of a public repository."""
 
     repository: str
@@ -106,7 +101,6 @@ def public_recordings() -> PublicRecordings:
         schema.fail(f"{SCHEMA}", "it was written for another version of this command")
     texts = {k: top.required(k).text() for k in ("repository", "commit", "url", "license")}
     entries = [entry.mapping() for entry in top.required("recordings").entries()]
-    top.reject_others()
     recordings = tuple(_recording(entry, file.parent) for entry in entries)
     return PublicRecordings(**texts, recordings=recordings)
 
@@ -114,34 +108,31 @@ def public_recordings() -> PublicRecordings:
 def _recording(mapping: Mapping, directory: Path) -> PublicRecording:
     name = mapping.required("name").text()
     entries = [entry.mapping() for entry in mapping.required("files").entries()]
-    mapping.reject_others()
-    files = []
-    for entry in entries:
-        texts = {key: entry.required(key).text() for key in ("source", "name", "sha256")}
-        files.append(PublicFile(**texts, size=entry.required("size").integer()))
-        entry.reject_others()
+    files = [
+        PublicFile(
+            *(entry.required(key).text() for key in ("source", "name", "sha256")),
+            size=entry.required("size").integer(),
+        )
+        for entry in entries
+    ]
     return PublicRecording(name, tuple(files), directory / name / METADATA)
 
 
 def listed(directory: Path) -> dict[str, Any]:
     """The public recordings, and whether they are in the directory, for JSON."""
     table = public_recordings()
-    places = {recording: directory / "bags" / recording.name for recording in table.recordings}
-    return {
-        "repository": table.repository,
-        "commit": table.commit,
-        "license": table.license,
-        "recordings": [
-            {
-                "name": recording.name,
-                "directory": place,
-                "intact": recording.is_intact(place),
-                "bytes": recording.size,
-                "files": recording.files,
-            }
-            for recording, place in places.items()
-        ],
-    }
+    recordings = [
+        {
+            "name": recording.name,
+            "directory": directory / "bags" / recording.name,
+            "intact": recording.is_intact(directory / "bags" / recording.name),
+            "bytes": recording.size,
+            "files": [file._asdict() for file in recording.files],
+        }
+        for recording in table.recordings
+    ]
+    about = {key: getattr(table, key) for key in ("repository", "commit", "license")}
+    return {**about, "recordings": recordings}
 
 
 def fetch_recordings(
@@ -160,30 +151,29 @@ def fetch_recordings(
     Each recording is written whole or not at all. Raises RecordingsError, OutputError.
     """
     table = public_recordings()
-    places = {r.name: directory / "bags" / r.name for r in table.recordings}
-    missing = []
-    for recording in table.recordings:
-        place = places[recording.name]
-        if recording.is_intact(place):
+    places = {recording: directory / "bags" / recording.name for recording in table.recordings}
+    missing = [recording for recording, place in places.items() if not recording.is_intact(place)]
+    for recording, place in places.items():
+        if recording not in missing:
             say(f"{place}: already there and intact")
-            continue
-        if place.exists() and not overwrite:
+        elif place.exists() and not overwrite:
             raise OutputError(
                 f"{place}: checksum mismatch, or files are missing; remove it, replace it with "
                 "--overwrite, or name another directory with --out"
             )
-        missing.append(recording)
     base = _base_url(source or table.url)
     if missing:
         size = sum(r.size for r in missing) / 1e6
         say(f"fetching {size:.2f} MB ({table.license}) from {base}")
+    inputs = (Path(source) if source and "://" not in source else None,)
     for recording in missing:
-        place = places[recording.name]
+        place = places[recording]
         contents = Contents(METADATA, (METADATA, *(file.name for file in recording.files)))
-        inputs = (Path(source) if source and "://" not in source else None,)
         with written_whole(place, overwrite=overwrite, contents=contents, inputs=inputs) as target:
             for file in recording.files:
-                _fetch(f"{base}/{file.source}", file, target, table, progress)
+                progress(file.name, 0, file.size)
+                (target / file.name).write_bytes(_fetched(f"{base}/{file.source}", file, table))
+                progress(file.name, file.size, file.size)
             shutil.copyfile(recording.metadata, target / METADATA)
         say(f"{place}: fetched, every SHA-256 as published")
     return list(places.values())
@@ -198,45 +188,29 @@ def _base_url(source: str) -> str:
     return directory.absolute().as_uri()
 
 
-def _fetch(
-    url: str, file: PublicFile, target: Path, table: PublicRecordings, progress: Progress
-) -> None:
-    """Fetch a file; raise RecordingsError unless it is the published one, OSError if it can't be written."""
-    digest, done = hashlib.sha256(), 0
-    with (target / file.name).open("wb") as out:
-        for block in _blocks(url, table):
-            done += len(block)
-            if done > file.size:
-                raise table.unusable(
-                    f"{url}: expected {file.size} bytes, got more: it is another file"
-                )
-            digest.update(block)
-            out.write(block)
-            progress(file.name, done, file.size)
-    if done < file.size:
-        raise table.unusable(
-            f"{url}: expected {file.size} bytes, got {done}: the transfer was cut off; try again"
-        )
-    if digest.hexdigest() != file.sha256:
-        raise table.unusable(
-            f"{url}: expected SHA-256 {file.sha256}, got {digest.hexdigest()}: checksum mismatch, and "
-            "nothing of the file was kept"
-        )
-
-
-def _blocks(url: str, table: PublicRecordings) -> Iterator[bytes]:
-    """Content of a URL (http, https, file). Raises RecordingsError."""
+def _fetched(url: str, file: PublicFile, table: PublicRecordings) -> bytes:
+    """Content of a URL (http, https, file). Raises RecordingsError unless it is the published file."""
     try:
         with urllib.request.urlopen(url, timeout=_SECONDS) as answer:
-            while block := answer.read(_BLOCK):
-                yield block
+            content: bytes = answer.read(file.size + 1)
     except urllib.error.HTTPError as error:
         raise table.unusable(f"{url}: the server says {error.code} {error.reason}") from error
     except (http.client.HTTPException, OSError, ValueError) as error:
         reason = getattr(error, "reason", error)
         text = getattr(reason, "strerror", None) or str(reason) or type(error).__name__
         raise table.unusable(f"{url}: can't be reached ({text}); try again") from error
+    if len(content) != file.size:
+        got, why = f"{len(content)}", "the transfer was cut off; try again"
+        if len(content) > file.size:
+            got, why = "more", "it is another file"
+        raise table.unusable(f"{url}: expected {file.size} bytes, got {got}: {why}")
+    if _sha256(content) != file.sha256:
+        raise table.unusable(
+            f"{url}: expected SHA-256 {file.sha256}, got {_sha256(content)}: checksum mismatch, and "
+            "nothing of the file was kept"
+        )
+    return content
 
 
-def _sha256(file: Path) -> str:
-    return hashlib.sha256(file.read_bytes()).hexdigest()
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

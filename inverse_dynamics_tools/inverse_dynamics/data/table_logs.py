@@ -37,6 +37,7 @@ from inverse_dynamics.data.columns import (
     named_positions,
     quantities_named,
     quantity_named,
+    stated_columns,
     time_columns,
 )
 from inverse_dynamics.data.csv_table import CsvTable, is_csv
@@ -312,11 +313,12 @@ def read_motion(
     wanted = QUANTITIES if EFFORT in needed else _MOTION
     matched = match_columns(table.names, joints, form.columns, where, wanted)
     _check_found(table, matched, needed, form)
+    unsure = _unsure_accelerations(matched, form, where) if EFFORT in needed else []
     names = [name for group in matched.columns.values() for name in group]
     rows = table.read(names, progress)
-    notes = _notes(table, matched)
+    notes = [*_notes(table, matched), *unsure]
     if len(rows) < 2:
-        left_out = f"; {notes[-1]}" if table.incomplete else ""
+        left_out = f"; {table.incomplete} have an empty field" if table.incomplete else ""
         raise BagError(
             f"{where}: expected at least 2 rows after the header, got {len(rows)}{left_out}"
         )
@@ -377,6 +379,20 @@ def _check_found(table: Table, matched: Matched, needed: Sequence[str], form: Lo
             f"{table.path}: expected a column of time [s], got {names}; state it with --columns "
             "'time=NAME', or the samples per second with --rate"
         )
+
+
+def _unsure_accelerations(matched: Matched, form: LogFormat, where: str) -> list[str]:
+    """Leave out accelerations of a log that nobody states: most are derivatives full of noise."""
+    stated = [kind for kind, _ in stated_columns(form.columns, where)]
+    columns = matched.columns.get(ACCELERATION, ())
+    known = tuple(f"{ACCELERATION}.{joint}" for joint in matched.joints)
+    if not columns or columns == known or ACCELERATION in stated:
+        return []
+    del matched.columns[ACCELERATION]
+    return [
+        f"accelerations {columns[0]} to {columns[-1]} aren't taken, as recorded ones are mostly noisy; to take "
+        f"them: --columns 'qdd={' '.join(columns)}'"
+    ]
 
 
 def _check_size(where: str, matched: Matched, numbers: Mapping[str, Floats]) -> None:

@@ -73,6 +73,6 @@ def _plan(found: dict[str, Any]) -> Iterator[Line]:
         state = "already there and intact" if recording["intact"] else "to be fetched"
         yield f"{recording['directory']}: {state}"
         for file in recording["files"]:
-            yield f"  {file.size:>9} bytes  {file.source}\n             SHA-256 {file.sha256}"
+            yield f"  {file['size']:>9} bytes  {file['source']}\n             SHA-256 {file['sha256']}"
     missing = sum(r["bytes"] for r in found["recordings"] if not r["intact"])
     yield f"to fetch: {missing / 1e6:.2f} MB; nothing was fetched"
