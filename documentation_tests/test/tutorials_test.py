@@ -25,9 +25,8 @@ def followed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Where the page of one's own robot was followed."""
     directory = tmp_path_factory.mktemp("newcomer")
     text = page("docs/tutorials/my_robot.md")
-    (description,), (configuration,) = blocks_of(text, "xml"), blocks_of(text, "yaml")
+    (description,) = blocks_of(text, "xml")
     (directory / "my_arm.urdf").write_text(description.code)
-    (directory / "my_arm.yaml").write_text(configuration.code)
     for block in blocks_of(text, "python", "bash"):
         run(block, directory)
     return directory
@@ -44,14 +43,6 @@ def test_the_friction_of_my_robot_is_what_is_left(followed: Path) -> None:
 def test_my_robot_has_figures_and_a_page(followed: Path) -> None:
     assert (followed / "my_result/torques.png").stat().st_size > 0
     assert "shoulder" in (followed / "my_report.html").read_text()
-
-
-def test_a_log_of_other_names_and_units_gives_the_same_errors(followed: Path) -> None:
-    errors = [
-        [joint["rmse"] for joint in json.loads((followed / name).read_text())["joints"]]
-        for name in ("my_result/metrics.json", "log_my_arm/metrics.json")
-    ]
-    assert errors[1] == pytest.approx(errors[0], rel=0.02)  # velocities of the positions
 
 
 def test_the_control_loop_is_built_and_prints_what_the_page_says(tmp_path: Path) -> None:

@@ -337,8 +337,7 @@ def test_the_command_writes_table_figure_and_series(ids, tmp_path, recording, ro
     assert series["torques"].shape == (30_000, 1)
     assert series["contact"].sum() > 1000
     assert series["wrenches"].shape == (30_000, 6)
-    fails(ids(*command), "found: exists", "--overwrite")
-    code, out, err = ids(*command, "--overwrite", "--no-figures", "--json")
+    code, out, err = ids(*command, "--no-figures", "--json")
     assert (code, err) == (0, "ids: replaced the earlier result in found\n")
     document = {"schema": 3, "verb": "contact", "written": ["found"], "result": summary}
     assert json.loads(out) == document

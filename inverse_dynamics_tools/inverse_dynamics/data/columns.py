@@ -381,12 +381,12 @@ def _first_to_last(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else f"{names[0]} to {names[-1]}"
 
 
-def listed_columns(names: Sequence[str]) -> str:
-    """The columns that there are, for an error: those that differ in a number by the first and the last."""
+def listed_columns(names: Sequence[str], most: int = 40) -> str:
+    """The first few columns, for an error; those that differ in a number by the first and the last."""
     runs: dict[str, list[str]] = defaultdict(list)
     for name in names:
         runs[re.sub(r"\d+", "*", name)].append(name)
-    return listed([_first_to_last(run) for run in runs.values()], 40)
+    return listed([_first_to_last(run) for run in runs.values()], most)
 
 
 # ---- what users state ----------------------------------------------------------------------------

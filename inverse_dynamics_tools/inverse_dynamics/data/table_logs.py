@@ -415,7 +415,7 @@ def _notes(table: Table, matched: Matched) -> list[str]:
     if not matched.exact:
         notes.append(f"columns: {matched.text}")
     if others:
-        notes.append(f"{counted(len(others), 'column')} left out: {listed_columns(others)}")
+        notes.append(f"{counted(len(others), 'column')} left out: {listed_columns(others, 6)}")
     if table.incomplete:
         notes.append(f"{counted(table.incomplete, 'row')} with an empty field left out")
     return notes

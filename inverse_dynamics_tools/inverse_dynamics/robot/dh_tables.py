@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".yaml", ".yml")
 GUESSED_MASS = 2.0  # kg, of each link
-_GUESSED_RADIUS = 0.1  # m, of gyration
+_GUESSED_RADIUS = 0.1  # m, of gyration, of a link without length
 
 
 def urdf_of_dh(text: str, file: str) -> str:
@@ -138,7 +138,7 @@ def _joint(
 
 
 def _link(name: str, mass: float, center: tuple[float, ...]) -> list[str]:
-    inertia = mass * _GUESSED_RADIUS**2
+    inertia = mass * (_GUESSED_RADIUS**2 + math.hypot(*center) ** 2 / 3)  # a rod about its middle
     moments = " ".join(f'{key}="{inertia!r}"' for key in ("ixx", "iyy", "izz"))
     return [
         f'  <link name="{name}"><inertial>{_origin(center, (0.0, 0.0, 0.0))}<mass value="{mass!r}"/>',

@@ -75,6 +75,7 @@ def declare(options: Options) -> None:
     options.output(
         "DIR",
         "output directory (default: RECORDING_ROBOT_contacts in the working directory)",
+        replaces=True,
     )
     options.shared("--json")
     options.figures()

@@ -9,7 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inverse_dynamics.errors import UserError
-from inverse_dynamics.verbs.options import CHAIN, RECORDING, Options, chosen_robot, given_overrides
+from inverse_dynamics.verbs.options import (
+    CHAIN,
+    RECORDING,
+    Options,
+    chosen_robot,
+    given_overrides,
+    replaces,
+)
 from inverse_dynamics.verbs.values import file_name, stated_payload
 
 if TYPE_CHECKING:
@@ -128,6 +135,7 @@ def run(arguments: argparse.Namespace) -> None:
     from inverse_dynamics.results.hold_out import hold_out
     from inverse_dynamics.results.identifications import (
         check_identification_files,
+        identification_files,
         summary,
         write_identification,
     )
@@ -140,9 +148,10 @@ def run(arguments: argparse.Namespace) -> None:
     inputs = (*arguments.recordings, *arguments.hold_out, *loads, *robot.files)
     more = {"--urdf-out": arguments.urdf_out, "--mjcf-out": arguments.mjcf_out}
     more = {option: file for option, file in more.items() if file is not None}
-    check_identification_files(
-        arguments.out, overwrite=arguments.overwrite, more=more, inputs=inputs
+    overwrite = replaces(arguments, identification_files(arguments.out)) and (
+        arguments.overwrite or not any(file.exists() for file in more.values())
     )
+    check_identification_files(arguments.out, overwrite=overwrite, more=more, inputs=inputs)
     with progress_bar() as progress:
         found = identify(
             arguments.recordings,
@@ -161,7 +170,7 @@ def run(arguments: argparse.Namespace) -> None:
     files = write_identification(
         found,
         arguments.out,
-        overwrite=arguments.overwrite,
+        overwrite=overwrite,
         more={file: texts[option](found) for option, file in more.items()},
         tests=tests,
     )

@@ -34,6 +34,8 @@ from inverse_dynamics.verbs.values import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from inverse_dynamics.robot.robots import Robot
 
 # Overrides of the run configuration, by name.
@@ -149,6 +151,16 @@ def chosen_robot(arguments: argparse.Namespace) -> Robot:
             "expected --robot NAME or --urdf FILE, got neither; `ids robots` lists the names"
         )
     return robot_of_description(described)
+
+
+def replaces(arguments: argparse.Namespace, files: Sequence[Path]) -> bool:
+    """Whether files are replaced: as asked for, or as all of them are there, so an earlier run wrote them."""
+    if arguments.overwrite or not all(file.exists() for file in files):
+        return bool(arguments.overwrite)
+    from inverse_dynamics.verbs.screen import announce
+
+    announce(f"replacing the earlier result in {files[0]}")
+    return True
 
 
 def _described(arguments: argparse.Namespace) -> Path | None:

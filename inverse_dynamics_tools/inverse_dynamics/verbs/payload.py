@@ -5,7 +5,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from inverse_dynamics.verbs.options import RECORDING, SOLVER, Options, chosen_robot, given_overrides
+from inverse_dynamics.verbs.options import (
+    RECORDING,
+    SOLVER,
+    Options,
+    chosen_robot,
+    given_overrides,
+    replaces,
+)
 from inverse_dynamics.verbs.values import file_name
 
 if TYPE_CHECKING:
@@ -66,9 +73,9 @@ def run(arguments: argparse.Namespace) -> None:
 
     robot = chosen_robot(arguments)
     inputs = (arguments.bag, arguments.empty, arguments.urdf, *robot.files)
-    check_payload_output(
-        arguments.out, arguments.figures, overwrite=arguments.overwrite, inputs=inputs
-    )
+    files = payload_files(arguments.out, arguments.figures)
+    overwrite = replaces(arguments, files)
+    check_payload_output(arguments.out, arguments.figures, overwrite=overwrite, inputs=inputs)
 
     from inverse_dynamics.identification.payload import estimate_payload
 
@@ -80,8 +87,7 @@ def run(arguments: argparse.Namespace) -> None:
             progress=progress,
             **given_overrides(arguments),
         )
-    write_payload(payload, arguments.out, overwrite=arguments.overwrite, figures=arguments.figures)
-    files = payload_files(arguments.out, arguments.figures)
+    write_payload(payload, arguments.out, overwrite=overwrite, figures=arguments.figures)
     show(
         arguments,
         summary(payload),
