@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
+import shutil
 import signal
 import sys
 from contextlib import contextmanager, suppress
@@ -23,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 from inverse_dynamics.base.crash import crash_report
 from inverse_dynamics.base.extras import EXTRAS, missing
-from inverse_dynamics.base.help_text import HelpFormatter, terminal_width, wrapped
+from inverse_dynamics.base.help_text import HelpFormatter, filled, terminal_width, wrapped
 from inverse_dynamics.base.wording import did_you_mean, not_built
 from inverse_dynamics.base.wording import message as _message
 from inverse_dynamics.errors import PartialError, UserError
@@ -307,8 +308,13 @@ def _outcome() -> str:
 
 def _say(text: str) -> None:
     """A message to the user, on stderr."""
-    with suppress(OSError):
-        print(_message(f"ids: {text}"), file=sys.stderr, flush=True)
+    text = _message(f"ids: {text}")
+    with suppress(OSError, ValueError):
+        if sys.stderr is not None and sys.stderr.isatty():  # whole words
+            width = shutil.get_terminal_size().columns
+            lines = text.splitlines()
+            text = "\n".join(row for line in lines for row in filled(line, width, "", "  "))
+        print(text, file=sys.stderr, flush=True)
 
 
 def _write_any_character() -> None:

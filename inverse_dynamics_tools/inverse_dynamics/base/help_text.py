@@ -40,7 +40,7 @@ def wrapped(text: str, width: int) -> list[str]:
         nonlocal block, prefix
         if prefix or block:
             hang = " " * len(prefix)
-            lines.extend(_filled(block, width, prefix, hang))
+            lines.extend(filled(block, width, prefix, hang))
         block = prefix = ""
 
     for line in text.splitlines():
@@ -62,7 +62,8 @@ def wrapped(text: str, width: int) -> list[str]:
     return lines
 
 
-def _filled(text: str, width: int, prefix: str, hang: str) -> list[str]:
+def filled(text: str, width: int, prefix: str, hang: str) -> list[str]:
+    """Lines of whole words; what stands before the first one, and before the others."""
     return textwrap.wrap(
         text,
         width,

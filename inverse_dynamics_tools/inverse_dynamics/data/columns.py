@@ -104,8 +104,7 @@ class Family(NamedTuple):
     """Columns whose names differ in the joint alone."""
 
     rank: tuple[int, ...]  # the least is the best
-    pattern: str  # what their names have in common
-    columns: dict[str | int, str]  # by joint or number
+    columns: tuple[str, ...]  # in the order of the joints
     unit: str  # that the names state; "": none
 
 
@@ -173,7 +172,7 @@ def match_columns(
             continue
         _refuse_incomplete(names, joints, quantity, where)
         if best := _best(found[quantity], quantity, where):
-            columns[quantity] = tuple(best.columns.values())
+            columns[quantity] = best.columns
             units[quantity] = best.unit
     return Matched(joints, columns, {kind: unit for kind, unit in units.items() if unit})
 
@@ -244,19 +243,13 @@ def _families(names: Sequence[str], joints: Sequence[str]) -> dict[str, list[Fam
     found: dict[str, list[Family]] = defaultdict(list)
     for (kind, pattern), columns in groups.items():
         numbers = sorted(key for key in columns if isinstance(key, int))
-        order = numbers if kind == 2 else joints
-        complete = (
-            numbers in ([*range(len(joints))], [*range(1, len(joints) + 1)])
-            if kind == 2
-            else len(columns) == len(joints)
-        )
-        quantity = _quantity(pattern)
-        if complete and quantity:
-            ordered = {joint: columns[joint] for joint in order}
-            rank = _rank(kind, quantity, pattern)
-            found[quantity].append(
-                Family(rank, " ".join(pattern), ordered, _unit(quantity, pattern))
-            )
+        order: Sequence[str | int] = numbers if kind == 2 else joints
+        complete = len(columns) == len(joints) and (kind < 2 or numbers[0] in (0, 1))
+        complete = complete and (kind < 2 or numbers[-1] - numbers[0] == len(joints) - 1)
+        if complete and (quantity := _quantity(pattern)):
+            ordered = tuple(columns[key] for key in order)
+            rank, unit = _rank(kind, quantity, pattern), _unit(quantity, pattern)
+            found[quantity].append(Family(rank, ordered, unit))
     return found
 
 
@@ -340,7 +333,7 @@ def _best(families: list[Family], quantity: str, where: str) -> Family | None:
     least = min(family.rank for family in families)
     best = [family for family in families if family.rank == least]
     if len(best) > 1:
-        raise _ambiguous(where, quantity, [_first_to_last([*f.columns.values()]) for f in best])
+        raise _ambiguous(where, quantity, [_first_to_last(family.columns) for family in best])
     return best[0]
 
 

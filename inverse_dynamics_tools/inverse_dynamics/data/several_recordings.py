@@ -94,10 +94,10 @@ def _check_once(paths: Sequence[Path]) -> None:
 
 
 def _twice(one: Path, other: Path) -> BagError:
-    same = str(one) == str(other)
-    got = f"{one}: expected each recording once, got it twice"
-    pair = f"{one}, {other}: expected each recording once, but they are the same one"
-    return BagError(f"{got if same else pair}; leave one of them out")
+    pair = f"{one}: expected each recording once, got it twice"
+    if str(one) != str(other):
+        pair = f"{one}, {other}: expected each recording once, but they are the same one"
+    return BagError(f"{pair}; leave one of them out")
 
 
 def _names(paths: Sequence[Path], taken: Sequence[str]) -> list[str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 import sys
-import textwrap
 import time
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.text import Text
 
+from inverse_dynamics.base.help_text import filled
 from inverse_dynamics.base.plain import plain
 from inverse_dynamics.base.wording import message, printable
 
@@ -78,18 +78,13 @@ def show(
         if isinstance(line, tuple):
             key, texts = line
             for text in [texts] if isinstance(texts, (str, Path)) else texts:
-                console.print(_filled(f"{key:<14} {text}", console))
+                prefix, text = f"{key:<14} ", f"{text}"
+                if console.is_terminal:  # whole words
+                    text = "\n".join(filled(text, console.width, prefix, " " * 15))
+                    prefix = ""
+                console.print(f"{prefix}{text}")
         else:
             console.print(line)
-
-
-def _filled(text: str, console: Console) -> str:
-    """The text in lines of whole words on a terminal; elsewhere in one."""
-    if not console.is_terminal:
-        return text
-    width, hang = console.width, " " * 15
-    whole = {"break_long_words": False, "break_on_hyphens": False}
-    return textwrap.fill(text, width, subsequent_indent=hang, drop_whitespace=True, **whole)
 
 
 def title(robot: Robot) -> Text:
