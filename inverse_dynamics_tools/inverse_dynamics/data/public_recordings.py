@@ -108,13 +108,10 @@ def public_recordings() -> PublicRecordings:
 def _recording(mapping: Mapping, directory: Path) -> PublicRecording:
     name = mapping.required("name").text()
     entries = [entry.mapping() for entry in mapping.required("files").entries()]
-    files = [
-        PublicFile(
-            *(entry.required(key).text() for key in ("source", "name", "sha256")),
-            size=entry.required("size").integer(),
-        )
-        for entry in entries
-    ]
+    files = []
+    for entry in entries:
+        texts = {key: entry.required(key).text() for key in ("source", "name", "sha256")}
+        files.append(PublicFile(**texts, size=entry.required("size").integer()))
     return PublicRecording(name, tuple(files), directory / name / METADATA)
 
 

@@ -182,13 +182,12 @@ def evaluate(
         progress=progress,
         scratch="" if scratch is None else scratch,
     )
-    notes = [] if robot.urdf is None else guess_notes(robot.urdf)
-    notes += description_notes(robot, "drawing") if urdf is not None else []
     notes = (
         *window.notes,
         *_topic_notes(bag, motion, topic or robot.topic),
         *posture.notes,
-        *notes,
+        *(guess_notes(robot.urdf) if robot.urdf is not None else ()),
+        *(description_notes(robot, "drawing") if urdf is not None else ()),
     )
     result = replace(result, notes=(*notes, *result.notes))
     states = (result.log.q, result.log.qd, result.qdd)
