@@ -142,7 +142,8 @@ def _series(
             topics = sorted({f"{c.topic} ({c.msgtype})" for c in reader.connections})
             raise BagError(
                 f"{path}: expected messages of {MESSAGE_TYPE}{topic and f' on {topic}'}, got none; its "
-                f"topics are {listed(topics, 20)}"
+                f"topics are {listed(topics, 20)}; another type becomes a table by `rostopic echo -p -b "
+                f"{path} TOPIC > log.csv`"
             )
         total = sum(c.msgcount for c in chosen)
         for done, (connection, received, raw) in enumerate(reader.messages(chosen)):

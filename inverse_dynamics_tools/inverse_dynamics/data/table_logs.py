@@ -372,7 +372,8 @@ def _check_found(table: Table, matched: Matched, needed: Sequence[str], form: Lo
             )
         raise BagError(
             f"{table.path}: expected columns of {kind}{of_joints}, got {names}; {_NEEDED_FOR[kind]}; state "
-            f"them with --columns '{kind}=NAME*' (* is the joint's name or number)"
+            f"them with --columns '{kind}=NAME*' (* is the joint's name or number), or by the numbers of columns, "
+            f"'{kind}=2-{1 + max(1, len(matched.joints))}'"
         )
     if TIME not in found and form.rate is None:
         raise BagError(

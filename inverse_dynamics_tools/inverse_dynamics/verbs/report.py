@@ -12,6 +12,8 @@ from inverse_dynamics.verbs.values import names
 if TYPE_CHECKING:
     import argparse
 
+    from inverse_dynamics.report.page import ReportRun
+
 SUMMARY = "make one page of evaluations: motion and torques"
 DESCRIPTION = "Make one HTML page of evaluations: the robot in motion and its torques."
 EPILOG = """\
@@ -45,7 +47,7 @@ def run(arguments: argparse.Namespace) -> None:
     labels = arguments.labels or [""] * len(arguments.runs)
     if len(labels) != len(arguments.runs):
         raise UserError(f"--labels: expected {len(arguments.runs)} names, got {len(labels)}")
-    pages = []
+    pages: list[ReportRun] = []
     with progress_bar() as progress:
         for directory, label in zip(arguments.runs, labels, strict=True):
             progress("drawing", len(pages), len(labels))
