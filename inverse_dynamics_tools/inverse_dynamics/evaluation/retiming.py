@@ -216,7 +216,7 @@ def waypoints_of(path: Path | str | ArrayLike, robot: Robot, arm: Arm, topic: st
     if is_csv(path):
         form = replace(LogFormat.of(robot), rate=1.0)  # without a column of time: it is ignored
         return read_motion(
-            open_table(path, topic=topic), arm.recorded_names, form, (POSITION,), (POSITION,)
+            open_table(path, topic=topic), arm.recorded_names, form, (POSITION,)
         ).numbers[POSITION]
     trajectories = read_joint_trajectories(path, topic)
     return np.concatenate([t.numbers("positions", arm.recorded_names) for t in trajectories])

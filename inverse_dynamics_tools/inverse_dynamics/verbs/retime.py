@@ -12,7 +12,7 @@ from inverse_dynamics.verbs.values import numbers, positive_number, share, whole
 if TYPE_CHECKING:
     import argparse
 
-SUMMARY = "time a path so that it takes as little as torque limits allow"
+SUMMARY = "time a path within torque limits"
 EPILOG = """\
 examples:
   ids retime waypoints.yaml --robot ur10_real --out fast
