@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "chain_dynamics/error.hpp"
-#include "chain_dynamics/forward_dynamics.hpp"
 #include "fast/regroup.hpp"
 #include "fast/robot.hpp"
 #include "fast_model_check.hpp"
@@ -20,12 +19,6 @@ using fast::ManyKernels;
 using fast::Robot;
 
 static_assert(FastModel::kMaxJoints == fast::kMaxJoints);
-static_assert(sizeof(Body) == fast::kBodyNumbers * sizeof(double));
-static_assert(sizeof(FrictionForm) == fast::kFrictionNumbers * sizeof(double));
-
-/// Longest chain whose accelerations are solved for in O(n^3); beyond it the O(n) recursion is
-/// faster.
-constexpr Eigen::Index kSolvedJoints = 32;
 
 /// Shift [rad/s] of a step without any: velocities of 1e-100 rad/s would make the kernels' powers of
 /// the exponent denormal. It is nothing beside one.
@@ -231,19 +224,7 @@ void FastModel::dynamicComponents(const double* q, const double* qd, double* H,
 
 void FastModel::forwardDynamics(const double* q, const double* qd, const double* tau,
                                 double* qdd) const {
-  const Chain& chain = data_->chain;
-  const Eigen::Index n = chain.jointCount();
-  if (n <= kSolvedJoints || data_->robot.rows != nullptr ||
-      data_->robot.gravity_bodies != nullptr) {
-    kernels_->forward_dynamics(data_->robot, structure_, q, qd, tau, qdd);
-    return;
-  }
-  using Given = Eigen::Map<const Eigen::VectorXd>;
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1> without_friction(n);
-  kernels_->friction(data_->robot, structure_, q, qd, without_friction.data());
-  without_friction = Given(tau, n) - without_friction;
-  chain_dynamics::forwardDynamics(chain, Given(q, n), Given(qd, n), without_friction,
-                                  Eigen::Map<Eigen::VectorXd>(qdd, n));
+  kernels_->forward_dynamics(data_->robot, structure_, q, qd, tau, qdd);
 }
 
 void FastModel::regressor(const double* q, const double* qd, const double* qdd, double* Y,

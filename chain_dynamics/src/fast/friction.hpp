@@ -25,23 +25,23 @@ FAST_INLINE V signOf(const V& x) {
   return (x > 0.0 ? one : zero) - (x < 0.0 ? one : zero);
 }
 
-// number(k) is the k-th of kFrictionNumbers. Part of the step that is behind at this velocity.
-template <typename V, typename Number>
-FAST_INLINE V stepOf(const V& qd, const Number& number) {
-  return sigmoid<V>(number(4) * (qd + number(5))) - number(6);
+// Part of the step that is behind at this velocity.
+template <typename V>
+FAST_INLINE V stepOf(const V& qd, const FrictionNumbers<V>& law) {
+  return sigmoid<V>(law.alpha * (qd + law.shift)) - law.center;
 }
 
-template <typename V, typename Number>
-FAST_INLINE V frictionOf(const V& qd, const V& height, const Number& number) {
-  return number(0) * qd + (number(1) * signOf(qd) + number(2)) + height * stepOf(qd, number);
+template <typename V>
+FAST_INLINE V frictionOf(const V& qd, const V& height, const FrictionNumbers<V>& law) {
+  return law.fv * qd + (law.fc * signOf(qd) + law.fo) + height * stepOf(qd, law);
 }
 
 // Its derivative by qd, of a constant height; none at the jump of sign(qd).
-template <typename V, typename Number>
-FAST_INLINE V frictionSlopeOf(const V& qd, const V& height, const Number& number) {
-  const V x = number(4) * (qd + number(5));
+template <typename V>
+FAST_INLINE V frictionSlopeOf(const V& qd, const V& height, const FrictionNumbers<V>& law) {
+  const V x = law.alpha * (qd + law.shift);
   const V e = expOfMinus<V>(x < 0.0 ? -x : x);
-  return number(0) + (height * number(4)) * (e / ((1.0 + e) * (1.0 + e)));
+  return law.fv + (height * law.alpha) * (e / ((1.0 + e) * (1.0 + e)));
 }
 
 // Height of the step under a gravity torque, and its derivative by qd.
@@ -50,22 +50,32 @@ struct ChangingHeight {
   V height, slope;
 };
 
-template <typename V, typename Number>
-FAST_INLINE ChangingHeight<V> heightOf(const V& qd, const V& g, const Number& number) {
+template <typename V>
+FAST_INLINE ChangingHeight<V> heightOf(const V& qd, const V& g, const FrictionNumbers<V>& law) {
   // 20: nothing is left of exp(-400)
   const V most = all<V>(20.0);
-  V u = qd * number(9);
+  V u = qd * law.per_vs;
   u = u > 20.0 ? most : u;
   u = u < -20.0 ? -most : u;
   // 1e-40: powers of the square of a velocity of 1e-100 rad/s would be denormal
-  const V stribeck = number(8) * expOfMinus<V>(u * u + 1e-40);
+  const V stribeck = law.fs * expOfMinus<V>(u * u + 1e-40);
   // (a joint without load friction doesn't see a NaN of the others)
   const V zero{};
-  const V load = number(7) > 0.0 ? number(7) * (g < 0.0 ? -g : g) : zero;
-  return {number(3) + (load + stribeck), -2.0 * number(9) * (u * stribeck)};
+  const V load = law.fl > 0.0 ? law.fl * (g < 0.0 ? -g : g) : zero;
+  return {law.A + (load + stribeck), -2.0 * law.per_vs * (u * stribeck)};
 }
 
-// of(qd, numbers of the law, joint) for all joints; result has room for a pack at the end.
+template <typename V, typename Number>
+FAST_INLINE FrictionNumbers<V> lawBy(const Number& number) {
+  return numbersBy<FrictionNumbers<V>>(number, std::make_index_sequence<kFrictionNumbers>());
+}
+FAST_INLINE FrictionNumbers<Pack> lawOfPack(const Robot& robot, int joint) {
+  return lawBy<Pack>([&](std::size_t k) FAST_LAMBDA {
+    return all<Pack>(robot.friction[static_cast<std::ptrdiff_t>(k) * robot.stride + joint]);
+  });
+}
+
+// of(qd, law, joint) for all joints; result has room for a pack at the end.
 template <typename Of>
 FAST_INLINE void forEachLaw(const Robot& robot, const double* qd, double* result, const Of& of) {
   const int n = robot.joints;
@@ -77,18 +87,15 @@ FAST_INLINE void forEachLaw(const Robot& robot, const double* qd, double* result
       for (int j = 0; j < n; ++j) padded[j] = qd[j];
       from = padded;
     }
-    const auto number = [&](int k) {
-      return load<Short>(robot.friction + std::ptrdiff_t{k} * robot.stride + first);
-    };
-    store(of(load<Short>(from), number, first), result + first);
+    const auto law = lawBy<Short>([&](std::size_t k) FAST_LAMBDA {
+      return load<Short>(robot.friction + static_cast<std::ptrdiff_t>(k) * robot.stride + first);
+    });
+    store(of(load<Short>(from), law, first), result + first);
   }
 }
 template <typename Of>
 FAST_INLINE void forEachLaw(const Robot& robot, const Pack* qd, Pack* result, const Of& of) {
-  for (int i = 0; i < robot.joints; ++i) {
-    const auto number = [&](int k) { return all<Pack>(robot.friction[k * robot.stride + i]); };
-    result[i] = of(qd[i], number, i);
-  }
+  for (int i = 0; i < robot.joints; ++i) result[i] = of(qd[i], lawOfPack(robot, i), i);
 }
 
 FAST_INLINE Short atJoint(const double* numbers, int joint) { return load<Short>(numbers + joint); }
@@ -108,8 +115,8 @@ template <typename V>
 FAST_APART void changingFriction(const Robot& robot, int structure, const State<V>& state, V* f) {
   V g[kJointSpace];
   loadOf(robot, structure, state, g);
-  forEachLaw(robot, state.qd, f, [&](const auto& qd, const auto& number, int joint) FAST_LAMBDA {
-    return frictionOf(qd, heightOf(qd, atJoint(g, joint), number).height, number);
+  forEachLaw(robot, state.qd, f, [&](const auto& qd, const auto& law, int joint) FAST_LAMBDA {
+    return frictionOf(qd, heightOf(qd, atJoint(g, joint), law).height, law);
   });
 }
 
@@ -130,44 +137,46 @@ FAST_APART void addChangingFrictionDerivatives(const Robot& robot, int structure
   V g[kJointSpace];
   V of_joints[kJointSpace];
   loadOf(robot, structure, state, g);
-  forEachLaw(
-      robot, state.qd, of_joints, [&](const auto& qd, const auto& number, int joint) FAST_LAMBDA {
-        const auto changing = heightOf(qd, atJoint(g, joint), number);
-        return frictionSlopeOf(qd, changing.height, number) + changing.slope * stepOf(qd, number);
-      });
+  forEachLaw(robot, state.qd, of_joints,
+             [&](const auto& qd, const auto& law, int joint) FAST_LAMBDA {
+               const auto changing = heightOf(qd, atJoint(g, joint), law);
+               return frictionSlopeOf(qd, changing.height, law) + changing.slope * stepOf(qd, law);
+             });
   for (int i = 0; i < robot.joints; ++i) to.by_qd[i + i * to.outer_step] += of_joints[i];
   if (!robot.load_friction) return;
 
   // df/dq = df/dg dg/dq
   forEachLaw(robot, state.qd, of_joints,
-             [&](const auto& qd, const auto& number, int joint) FAST_LAMBDA {
-               return number(7) * signOf(atJoint(g, joint)) * stepOf(qd, number);
-             });
+             [&](const auto& qd, const auto& law, int joint)
+                 FAST_LAMBDA { return law.fl * signOf(atJoint(g, joint)) * stepOf(qd, law); });
   addLoadDerivatives<AnyWithMatrices<V>>(robot, state, of_joints, to.by_q, to.outer_step);
 }
 
-// Where the heights of the steps don't change, of one state; result has room for a pack at the end.
-inline void frictionNumbers(const Robot& robot, const double* qd, double* f) {
-  forEachLaw(robot, qd, f, [](const Short& x, const auto& number, int) FAST_LAMBDA {
-    return frictionOf(x, number(3), number);
+/// Friction torques of one state; f has room for a pack at the end.
+inline void frictionOfJoints(const Robot& robot, int structure, const State<double>& state,
+                             double* f) {
+  if (robot.changing_steps) return changingFriction(robot, structure, state, f);
+  forEachLaw(robot, state.qd, f, [](const Short& qd, const auto& law, int) FAST_LAMBDA {
+    return frictionOf(qd, law.A, law);
   });
 }
 
+// Where the heights of the steps don't change; slopes has room for a pack at the end.
 inline void frictionSlopes(const Robot& robot, const double* qd, double* slopes) {
-  forEachLaw(robot, qd, slopes, [](const Short& x, const auto& number, int) FAST_LAMBDA {
-    return frictionSlopeOf(x, number(3), number);
+  forEachLaw(robot, qd, slopes, [](const Short& x, const auto& law, int) FAST_LAMBDA {
+    return frictionSlopeOf(x, law.A, law);
   });
 }
 
 FAST_INLINE Pack frictionOfPack(const Robot& robot, int i, const Pack& qd) {
   if (robot.friction == nullptr) return 0.0 * qd;
-  const auto number = [&](int k) { return all<Pack>(robot.friction[k * robot.stride + i]); };
-  return frictionOf(qd, number(3), number);
+  const FrictionNumbers<Pack> law = lawOfPack(robot, i);
+  return frictionOf(qd, law.A, law);
 }
 
 FAST_INLINE Pack frictionSlopeOfPack(const Robot& robot, int i, const Pack& qd) {
-  const auto number = [&](int k) { return all<Pack>(robot.friction[k * robot.stride + i]); };
-  return frictionSlopeOf(qd, number(3), number);
+  const FrictionNumbers<Pack> law = lawOfPack(robot, i);
+  return frictionSlopeOf(qd, law.A, law);
 }
 
 }  // namespace

@@ -214,29 +214,11 @@ FAST_INLINE void forEachMotion(const Robot& robot, const State<V>& state, const 
   });
 }
 
-/// The numbers of a body, for several rows side by side.
-template <typename P>
-struct BodyLanes {
-  P mcx, mcy, Sxx, Sxy, Sxz, Syy, Syz, mcz, m, mass_beyond;
-
-  FAST_INLINE BodyLanes(const Robot& robot, int i, int first_row) {
-    const double* const from =
-        robot.row_lanes + std::ptrdiff_t{i} * kBodyNumbers * robot.stride + first_row;
-    const auto number = [&](int k) FAST_LAMBDA {
-      return load<P>(from + std::ptrdiff_t{k} * robot.stride);
-    };
-    mcx = number(0);
-    mcy = number(1);
-    Sxx = number(2);
-    Sxy = number(3);
-    Sxz = number(4);
-    Syy = number(5);
-    Syz = number(6);
-    mcz = number(7);
-    m = number(8);
-    mass_beyond = number(9);
-  }
-};
+/// A struct of numbers from number(0), number(1), ...
+template <typename Numbers, typename Number, std::size_t... K>
+FAST_INLINE Numbers numbersBy(const Number& number, std::index_sequence<K...>) {
+  return {number(K)...};
+}
 
 /// Rows with parameters of their own that are computed side by side from one motion: of a pack of
 /// states one row at a time, ...
@@ -255,8 +237,13 @@ template <>
 struct Rows<double> {
   using P = Short;
   static constexpr int kCount = kShortWidth;
-  static FAST_INLINE BodyLanes<P> body(const Robot& robot, int i, int first_row) {
-    return BodyLanes<P>(robot, i, first_row);
+  static FAST_INLINE BodyOf<P> body(const Robot& robot, int i, int first_row) {
+    const double* const from =
+        robot.row_lanes + std::ptrdiff_t{i} * kBodyNumbers * robot.stride + first_row;
+    const auto number = [&](std::size_t k) FAST_LAMBDA {
+      return load<P>(from + static_cast<std::ptrdiff_t>(k) * robot.stride);
+    };
+    return numbersBy<BodyOf<P>>(number, std::make_index_sequence<kBodyNumbers>());
   }
   static FAST_INLINE double number(const P& value, int row) { return laneOf(value, row); }
 };

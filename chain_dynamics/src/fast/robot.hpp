@@ -16,6 +16,8 @@
 
 #include <cstddef>
 
+#include "chain_dynamics/friction_laws/coefficients.hpp"
+
 namespace chain_dynamics {
 inline namespace v2 {
 namespace fast {
@@ -37,17 +39,18 @@ struct Placement {
 ///
 /// S is the second moment of mass, `S = integral of r r' dm`, so that I = trace(S) 1 - S; Szz is
 /// always zero.
-struct Body {
-  double mcx, mcy;                 ///< first moment
-  double Sxx, Sxy, Sxz, Syy, Syz;  ///< joints that turn only
-  double mcz, m;                   ///< joints that slide only
-  double mass_beyond;              ///< m of this link and all after it
+template <typename Number>
+struct BodyOf {
+  Number mcx, mcy;                 ///< first moment
+  Number Sxx, Sxy, Sxz, Syy, Syz;  ///< joints that turn only
+  Number mcz, m;                   ///< joints that slide only
+  Number mass_beyond;              ///< m of this link and all after it
 };
-constexpr int kBodyNumbers = 10;
+using Body = BodyOf<double>;
 
-/// Friction of one joint has this many numbers, every law in one form, in this order: those of
-/// FrictionForm [friction_laws/coefficients.hpp].
-constexpr int kFrictionNumbers = 10;
+/// How many numbers are of one body, of one friction law.
+constexpr int kBodyNumbers = sizeof(Body) / sizeof(double);
+constexpr int kFrictionNumbers = sizeof(FrictionNumbers<double>) / sizeof(double);
 
 /// A joint's place in the frames of the robot's description, with the angles of Placement.
 struct OwnPlacement {
@@ -75,7 +78,7 @@ struct Robot {
   const Body* gravity_bodies;   ///< null: gravity has the same set
   const Body* const* rows;      ///< null: none; else joints sets of bodies: row j has set j
   const double* row_lanes;      ///< the same: [joint][number of Body][row]
-  const double* friction;       ///< null: none; else [number][joint]
+  const double* friction;       ///< null: none; else [number of FrictionNumbers][joint]
   bool changing_steps;          ///< a law's step depends on load or (Stribeck) on velocity
   bool load_friction;           ///< on load
   int stride;                   ///< joints, and zeros to the end of a pack: rows of the last two

@@ -13,7 +13,8 @@
 ///     FrictionForm form() const;                        // the law in the form below
 ///
 /// and its name in FrictionLaw [friction.hpp]. Reading, checking, scaling, torques, derivatives and
-/// the fast kernels are made of these.
+/// the fast kernels are made of these. A law that the form can't express needs one more of
+/// FrictionNumbers, and the formula with it in friction.hpp and src/fast/friction.hpp: torque and slope.
 
 #pragma once
 
@@ -36,21 +37,28 @@ struct Coefficient {
   const char* required_with = nullptr;
 };
 
+/// The numbers of a law in the form below: of one law, or in the fast kernels of several side by side.
+template <typename Number>
+struct FrictionNumbers {
+  Number fv;      ///< viscous coefficient [N m s/rad]
+  Number fc;      ///< jump at rest, each way [N m]
+  Number fo;      ///< offset [N m]
+  Number A;       ///< height of the smooth step [N m]
+  Number alpha;   ///< its steepness [s/rad]
+  Number shift;   ///< the step is at qd = -shift [rad/s]
+  Number center;  ///< part of the step that is taken off: 1/2 makes it symmetric
+  Number fl;      ///< what a gravity torque of 1 N m adds to the height of the step; >= 0
+  Number fs;      ///< what the Stribeck effect adds at rest [N m]
+  Number per_vs;  ///< 1 / vs [s/rad]
+};
+
 /// Every law in one form, that of the fast kernels:
 ///
 ///     f = fv qd + fc sign(qd) + fo + B (sigmoid(alpha (qd + shift)) - center),
 ///     B = A + fl |g| + fs exp(-(qd / vs)^2),    sigmoid(x) = 1 / (1 + exp(-x)).
-struct FrictionForm {
-  double fv = 0;      ///< viscous coefficient [N m s/rad]
-  double fc = 0;      ///< jump at rest, each way [N m]
-  double fo = 0;      ///< offset [N m]
-  double A = 0;       ///< height of the smooth step [N m]
-  double alpha = 0;   ///< its steepness [s/rad]
-  double shift = 0;   ///< the step is at qd = -shift [rad/s]
-  double center = 0;  ///< part of the step that is taken off: 1/2 makes it symmetric
-  double fl = 0;      ///< what a gravity torque of 1 N m adds to the height of the step; >= 0
-  double fs = 0;      ///< what the Stribeck effect adds at rest [N m]
-  double per_vs = 0;  ///< 1 / vs [s/rad]
+struct FrictionForm : FrictionNumbers<double> {
+  /// No friction.
+  FrictionForm() : FrictionNumbers() {}
 };
 
 }  // namespace v2
